@@ -1,0 +1,12 @@
+# Everything comes from Debian 12 packages; README.md names each with its reason.
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(Protobuf REQUIRED)
+find_package(Boost 1.74 REQUIRED COMPONENTS program_options)
+pkg_check_modules(bullet REQUIRED IMPORTED_TARGET GLOBAL bullet-float64)
+pkg_check_modules(zmq REQUIRED IMPORTED_TARGET GLOBAL libzmq)
+pkg_check_modules(lua REQUIRED IMPORTED_TARGET GLOBAL lua5.3)
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET GLOBAL libxxhash)

@@ -1,0 +1,35 @@
+#pragma once
+// Rigid poses. Frames are right-handed with z up; quaternions are Hamilton, w x y z.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace ziggurat::math {
+
+using Vector2 = Eigen::Vector2d;
+using Vector3 = Eigen::Vector3d;
+using Quaternion = Eigen::Quaterniond;
+
+/// Pose X_AB of a frame B seen from a frame A: p_A = orientation * p_B + position.
+struct Pose {
+  Vector3 position = Vector3::Zero();               ///< origin of B in A [m]
+  Quaternion orientation = Quaternion::Identity();  ///< rotation from B to A, unit
+};
+
+/// X_AC from X_AB and X_BC.
+inline Pose operator*(const Pose& a_b, const Pose& b_c) {
+  return {a_b.position + a_b.orientation * b_c.position, a_b.orientation * b_c.orientation};
+}
+
+/// A point given in B, expressed in A [m].
+inline Vector3 operator*(const Pose& a_b, const Vector3& point) {
+  return a_b.position + a_b.orientation * point;
+}
+
+/// X_BA from X_AB.
+inline Pose inverse(const Pose& a_b) {
+  const Quaternion inverted = a_b.orientation.conjugate();
+  return {-(inverted * a_b.position), inverted};
+}
+
+}  // namespace ziggurat::math

@@ -1,0 +1,14 @@
+#pragma once
+// Where in which file something was said.
+
+#include <cstddef>
+
+namespace ziggurat::scene {
+
+struct Location {
+  std::size_t file = 0;  ///< index into Scene::files
+  unsigned line = 0;     ///< from 1; 0 = nowhere in particular
+  unsigned column = 0;   ///< from 1
+};
+
+}  // namespace ziggurat::scene

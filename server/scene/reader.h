@@ -1,0 +1,56 @@
+#pragma once
+// Reads a scene file and checks it whole: every fault found is reported, not only the first.
+
+#include <cstddef>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace ziggurat::scene {
+
+/// One thing said about a scene file.
+struct Problem {
+  enum class Severity {
+    notice,  ///< accepted, and without effect here
+    fault,   ///< the scene can't be run
+  };
+  Severity severity = Severity::fault;
+  std::string file;
+  Location where;
+  std::string text;  ///< what is wrong, with the value; what would be right
+};
+
+/// `file:line:column: text`, or `file: text` where no line is known.
+std::string to_string(const Problem& problem);
+
+struct ReadOptions {
+  bool lenient = false;  ///< unknown attributes (not elements) become notices
+  std::size_t max_size = std::size_t{64} << 20;  ///< of a file [bytes]
+};
+
+struct ReadResult {
+  Scene scene;                    ///< complete only if no problem is a fault
+  std::vector<Problem> problems;  ///< in document order
+  bool ok() const;                ///< no fault
+};
+
+/// Never throws for what the file says; std::bad_alloc aside.
+ReadResult read_file(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The same for a text; `name` stands in messages, and relative paths start at its folder.
+ReadResult read_text(std::string text, const std::string& name, const ReadOptions& options = {});
+
+/// Carries all faults of an author: scene, arguments, environment.
+class SceneError : public std::runtime_error {
+ public:
+  explicit SceneError(std::vector<Problem> problems);
+  const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  std::vector<Problem> problems_;
+};
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,199 @@
+#pragma once
+// What a scene file may say, as plain data: everything resolved to SI units, radians and
+// quaternions, names resolved to indices, defaults filled in. Degrees and XML end in the reader.
+//
+// Frames: Z up, right-handed. W world, E entity origin, L link (bottom centre of its shape),
+// J joint. The origin of every box, cylinder and sphere is the centre of its bottom: for a
+// sphere the lowest point, for a box the centre of the lower face.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "math/pose.h"
+#include "scene/devices.h"
+#include "scene/location.h"
+
+namespace ziggurat::scene {
+
+// --- time -------------------------------------------------------------------------------------
+
+/// How much physical time a tick's substeps add up to.
+enum class Clock {
+  nominal,  ///< a tick is 1/ticks_per_second s, in `iterations` equal substeps
+  beta50,   ///< `iterations` substeps of 1/(ticks_per_second * iterations^2) s: the slow clock
+            ///< of ARGoS 3.0.0-beta50, for scenes whose parameters were tuned under it
+};
+
+struct Experiment {
+  unsigned ticks_per_second = 10;  ///< >= 1
+  double length = 0;               ///< [s] simulated; 0 = until stopped
+  std::uint64_t random_seed = 0;   ///< 0 = drawn from the system at the start
+  bool real_time = false;          ///< pace ticks to the wall clock
+};
+
+// --- bodies -----------------------------------------------------------------------------------
+
+struct Box {
+  math::Vector3 size;  ///< full extents along x, y, z [m]
+};
+struct Cylinder {
+  double radius;  ///< [m]
+  double height;  ///< along z [m]
+};
+struct Sphere {
+  double radius;  ///< [m]
+};
+using Geometry = std::variant<Box, Cylinder, Sphere>;
+
+/// How a surface rubs. Two surfaces in contact combine by product.
+struct Surface {
+  double friction = 0.5;          ///< Coulomb coefficient, dimensionless
+  double rolling_friction = 0.0;  ///< [m]: resisting torque per normal force
+};
+
+/// Viscous loss of a body: force -m v (k + k |v|), torque -I w (k + k |w|).
+struct Damping {
+  double linear = 0.0;   ///< k for the velocity [1/s and 1/m]
+  double angular = 0.0;  ///< k for the angular velocity [1/s and 1]
+};
+
+struct Link {
+  std::string id;       ///< also the name of the link's anchor
+  Geometry geometry;
+  bool collides = true; ///< false: a frame without collider (a foot-bot's turret)
+  double mass = 0;      ///< [kg]; > 0 unless the link is static
+  math::Pose offset;    ///< X_EL as written: only the reference link's decides where it stands,
+                        ///< joints place all others
+  Surface surface;
+  Damping damping;
+  Location where;
+};
+
+enum class JointType { fixed, spherical, prismatic, revolute };
+
+struct JointLimit {
+  double lower;  ///< [m] or [rad], relative to the assembled pose; <= upper
+  double upper;  ///< [m] or [rad]
+};
+
+struct Joint {
+  std::string id;
+  JointType type = JointType::fixed;
+  math::Vector3 axis = math::Vector3::UnitZ();  ///< unit, in the child link's frame
+  std::optional<JointLimit> limit;              ///< prismatic and revolute only
+  std::size_t parent = 0;                       ///< index into Entity::links
+  std::size_t child = 0;                        ///< index into Entity::links
+  math::Pose parent_frame;                      ///< X_LJ of the joint in the parent link
+  math::Pose child_frame;                       ///< X_LJ of the joint in the child link
+  Location where;
+};
+
+enum class EntityKind { box, cylinder, prototype, foot_bot, e_puck };
+
+/// Anything that stands in the arena. A `<box>` is an entity with one unnamed link.
+struct Entity {
+  std::string id;
+  EntityKind kind = EntityKind::prototype;
+  bool movable = true;             ///< false: the reference link is welded to the world
+  math::Pose pose;                 ///< X_WE at tick 0 (a distributed entity: set when placed)
+  std::vector<Link> links;         ///< in document order, at least one
+  std::size_t reference_link = 0;  ///< index into links: the root of the tree
+  std::vector<Joint> joints;       ///< ordered from the root outwards: a joint's parent link is
+                                   ///< the reference link or the child of an earlier joint
+  Devices devices;
+  std::optional<std::size_t> controller;  ///< index into Scene::controllers
+  std::vector<std::pair<std::string, std::string>> params;  ///< the entity's own <params>, if
+  bool overrides_params = false;                            ///< it has one, replacing the controller's
+  Location where;
+};
+
+// --- distribution -----------------------------------------------------------------------------
+
+enum class DistributionMethod { uniform, gaussian, constant, grid };
+
+/// Draws triples: positions [m], or `z,y,x` angles in degrees as the dialect writes them.
+struct Generator {
+  DistributionMethod method = DistributionMethod::constant;
+  math::Vector3 first = math::Vector3::Zero();   ///< min, mean, values or center
+  math::Vector3 second = math::Vector3::Zero();  ///< max, std_dev, unused or distances
+  std::array<unsigned, 3> layout{1, 1, 1};       ///< grid only: cells along x, y, z
+};
+
+struct Distribution {
+  Generator position;
+  Generator orientation;
+  unsigned quantity = 0;
+  unsigned max_trials = 0;  ///< retries per entity; at most max_trials + 1 attempts
+  unsigned base_num = 0;    ///< the i-th copy is called id + (base_num + i)
+  Entity entity;            ///< the pattern; its id is the base of the copies' ids
+  Location where;
+};
+
+// --- physics and media ------------------------------------------------------------------------
+
+struct Floor {
+  double height = 0;  ///< [m] accepted and drawn; the floor is the half-space z <= 0
+  Surface surface;
+};
+
+struct Magnetism {
+  double force_constant = 7.0500949e-13;  ///< k of the dialect's pair force
+  std::optional<double> max_distance;     ///< pair cut-off [m]; none = unlimited
+};
+
+struct Physics {
+  std::string id;
+  unsigned iterations = 10;  ///< substeps per tick, >= 1
+  Clock clock = Clock::nominal;
+  std::optional<double> max_substep;         ///< [s]: longer substeps are split inside
+  std::optional<unsigned> solver_iterations; ///< constraint solver sweeps per substep
+  std::optional<Floor> floor;
+  std::optional<double> gravity;             ///< downward acceleration [m/s^2]
+  std::optional<Magnetism> magnetism;
+  Location where;
+};
+
+enum class MediumKind { led, directional_led, tag, radio, range_and_bearing };
+
+struct Medium {
+  std::string id;
+  MediumKind kind;
+  Location where;
+};
+
+struct Arena {
+  math::Vector3 size = math::Vector3::Ones();    ///< full extents [m]
+  math::Vector3 center = math::Vector3::Zero();  ///< [m]
+};
+
+// --- controllers ------------------------------------------------------------------------------
+
+struct Controller {
+  std::string id;
+  std::string type;     ///< the element's name: lua_controller, external_controller, …
+  bool lua = false;     ///< driven by ziggurat-lua; otherwise somebody connects
+  std::string command;  ///< external_controller only: what `run` starts; may be empty
+  ControllerDevices devices;  ///< what <actuators> and <sensors> enable
+  std::vector<std::pair<std::string, std::string>> params;  ///< all attributes of <params>
+  Location where;         ///< of the controller's element
+  Location params_where;  ///< of <params>
+};
+
+struct Scene {
+  std::vector<std::string> files;  ///< what Location::file counts; [0] is the scene file
+  Experiment experiment;
+  std::vector<Controller> controllers;
+  Arena arena;
+  std::vector<Entity> entities;  ///< explicitly placed, in document order
+  std::vector<Distribution> distributions;
+  Physics physics;
+  std::vector<Medium> media;
+};
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,47 @@
+#pragma once
+// The tick: apply commands -> physics substeps -> state -> observations. No sockets here;
+// replay, benchmarks and tests drive the same object.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "scene/scene.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::simulation {
+
+struct Options {
+  std::uint64_t seed = 1;             ///< of every random stream; not 0
+  std::optional<scene::Clock> clock;  ///< overrides the scene's
+};
+
+class Simulation {
+ public:
+  /// Places everything, distributing what the scene distributes.
+  /// @throws scene::SceneError if something can't be placed or built
+  Simulation(const scene::Scene& scene, const Options& options);
+  ~Simulation();
+
+  const world::Layout& layout() const;
+  const world::State& state() const;                ///< of the last tick; tick 0 = as placed
+  const world::Observations& observations() const;  ///< of the last tick
+  world::Commands& commands();  ///< applied at the start of the next tick; values persist
+
+  /// Advances by one tick.
+  void step();
+
+  /// Of the last tick's state and observations.
+  std::uint64_t hash() const;
+
+  double tick_length() const;      ///< simulated time per tick by the clock on the wall [s]
+  double physical_length() const;  ///< physical time per tick: shorter under beta50 [s]
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace ziggurat::simulation
