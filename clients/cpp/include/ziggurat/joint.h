@@ -1,0 +1,49 @@
+#pragma once
+// A joint of a robot: its encoder, its motor, or both.
+
+#include <string>
+
+namespace ziggurat {
+
+/// What an encoder reads or a motor controls.
+enum class JointMode {
+  disabled,  ///< reads 0; targets have no effect
+  position,  ///< [m] (prismatic) or [rad] (revolute), from the assembled pose
+  velocity,  ///< [m/s] or [rad/s]
+};
+
+/// A handle into its session, valid as long as that lives. Reading and setting is O(1) and
+/// allocates nothing.
+class Joint {
+ public:
+  const std::string& id() const noexcept { return id_; }
+
+  bool has_encoder() const noexcept { return reading_ != nullptr; }
+  JointMode encoder_mode() const noexcept { return encoder_mode_; }
+  /// What the encoder read at the session's tick, in the unit of encoder_mode(); 0 at tick 0 and
+  /// without an encoder.
+  double encoder() const noexcept { return reading_ == nullptr ? 0.0 : *reading_; }
+
+  bool has_motor() const noexcept { return target_ != nullptr; }
+  JointMode motor_mode() const noexcept { return motor_mode_; }
+  /// Largest impulse per physics substep, as the scene says [N s] or [N m s].
+  double max_impulse() const noexcept { return max_impulse_; }
+  /// Where the motor shall go, in the unit of motor_mode(); sent with the answer to this tick,
+  /// has effect from the start of the next, and stays until changed.
+  /// @throws std::invalid_argument if not finite; std::logic_error without a motor
+  void set_target(double target);
+  /// The last target set; 0 before the first and without a motor.
+  double target() const noexcept { return target_ == nullptr ? 0.0 : *target_; }
+
+ private:
+  friend class Session;
+  std::string id_;
+  JointMode encoder_mode_ = JointMode::disabled;
+  JointMode motor_mode_ = JointMode::disabled;
+  double max_impulse_ = 0;
+  const double* reading_ = nullptr;  // into the session's packed observation
+  double* target_ = nullptr;         // into the session's packed command
+  bool* changed_ = nullptr;          // the session's: some target was set since the last answer
+};
+
+}  // namespace ziggurat

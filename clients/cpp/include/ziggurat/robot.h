@@ -1,0 +1,63 @@
+#pragma once
+// A robot that a session drives.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ziggurat/joint.h"
+
+namespace ziggurat {
+
+/// A handle into its session, valid as long as that lives. Resolve devices by name once, before
+/// the loop; keep the references.
+class Robot {
+ public:
+  const std::string& id() const noexcept { return id_; }
+  /// Id of its controller in the scene.
+  const std::string& controller() const noexcept { return controller_; }
+  /// All attributes of the controller's <params>, in document order.
+  const std::vector<std::pair<std::string, std::string>>& params() const noexcept {
+    return params_;
+  }
+  /// Resolved path of the Lua script; empty for other controllers.
+  const std::string& script() const noexcept { return script_; }
+
+  /// All joints with an encoder or a motor: first those with an encoder in the order of the
+  /// scene's <sensors>, then the others in the order of <actuators>.
+  std::span<Joint> joints() noexcept { return joints_; }
+  /// @throws std::out_of_range, naming the joints there are
+  Joint& joint(std::string_view id);
+
+  /// A line for the server's log, without a line feed at its end; sent with the answer to this
+  /// tick. `log` goes to the server's standard output, `log_error` to its standard error.
+  void log(std::string_view text);
+  void log_error(std::string_view text);
+
+  /// The controller of this robot failed: with the answer to this tick the robot leaves the
+  /// barrier for good and its commands become zero; the session's other robots go on.
+  void fail(std::string_view message);
+  bool failed() const noexcept { return failed_; }
+
+ private:
+  friend class Session;
+  struct Line {
+    std::uint32_t robot;  // position in the session
+    bool error;
+    std::string text;
+  };
+  std::string id_;
+  std::string controller_;
+  std::vector<std::pair<std::string, std::string>> params_;
+  std::string script_;
+  std::vector<Joint> joints_;
+  std::uint32_t position_ = 0;  // in the session
+  bool failed_ = false;
+  std::string failure_;                 // not yet sent; empty if none
+  std::vector<Line>* lines_ = nullptr;  // the session's, not yet sent
+};
+
+}  // namespace ziggurat

@@ -1,0 +1,102 @@
+#pragma once
+// A session with the server: connects, waits for ticks, answers them.
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ziggurat/robot.h"
+
+namespace ziggurat {
+
+/// Whom to connect to and which robots to drive.
+struct Options {
+  std::string endpoint;  ///< `ipc://…` or `tcp://host:port`
+
+  // Which robots. Those that fit everything that is given here; all of the scene if nothing is.
+  std::string controller;           ///< robots of this controller of the scene
+  std::vector<std::string> robots;  ///< ids or globs (`*`, `?`, `[a-z]`)
+  bool lua_only = false;            ///< only robots whose controller is a Lua script
+
+  std::string name = "controller";  ///< of this program, for the server's messages
+  std::string version;              ///< of this program, for the server's messages
+
+  std::chrono::milliseconds connect_timeout{10'000};  ///< wall time until the server's welcome
+  /// Wall time that next() waits for the world; none = for ever: others may take their time.
+  std::optional<std::chrono::milliseconds> wait_timeout;
+
+  /// Endpoint from ZIGGURAT_ENDPOINT, controller from ZIGGURAT_CONTROLLER if that is set: how
+  /// `ziggurat run` starts controllers.
+  /// @throws std::invalid_argument without ZIGGURAT_ENDPOINT
+  static Options from_environment();
+};
+
+/// What is due now.
+enum class Event {
+  init,   ///< the first observation; with readings 0 at tick 0, the world before any physics
+  step,   ///< a tick passed
+  reset,  ///< the world went back to tick 0
+};
+
+/// Why there are no more ticks.
+struct Ending {
+  enum class Reason {
+    finished,     ///< the length of the scene was reached
+    interrupted,  ///< somebody stopped the server
+    failed,       ///< the run can't go on; `message` says why
+  };
+  Reason reason = Reason::finished;
+  std::string message;
+  std::uint64_t tick = 0;  ///< the last one
+};
+
+/// Drives one or more robots in lock-step: the world waits for the answer of every session.
+/// Leaves the world when destroyed: as failed if that happens by an exception, else as done.
+/// Not thread-safe.
+class Session {
+ public:
+  /// Connects and waits for the server's welcome.
+  /// @throws ConnectionError, ProtocolError, std::invalid_argument for an unusable endpoint
+  explicit Session(const Options& options);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Answers the observation in hand with what was set since, and waits for the next. False once
+  /// there are no more ticks; the first call delivers Event::init.
+  /// @throws ConnectionError, ProtocolError; the session is over then
+  bool next();
+
+  Event event() const noexcept;                    ///< that next() delivered
+  std::uint64_t tick() const noexcept;             ///< of the observation in hand
+  std::chrono::nanoseconds time() const noexcept;  ///< simulated, of the observation in hand
+  /// Why next() returned false; none before that.
+  const std::optional<Ending>& ending() const noexcept;
+
+  std::span<Robot> robots() noexcept;  ///< in scene order
+  /// @throws std::out_of_range, naming the robots there are
+  Robot& robot(std::string_view id);
+
+  std::chrono::nanoseconds tick_length() const noexcept;  ///< simulated
+  std::uint32_t ticks_per_second() const noexcept;
+  std::uint64_t seed() const noexcept;             ///< of the run; after a reset, the new one
+  const std::string& scene_hash() const noexcept;  ///< 16 hexadecimal digits
+  const std::string& server_version() const noexcept;
+
+  /// Leaves the world now: sends what is still to be logged and says that the controller is done
+  /// or, with a message, that it failed. What the destructor does otherwise. No effect if called
+  /// again.
+  void leave();
+  void leave_failed(std::string_view message);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace ziggurat
