@@ -1,0 +1,45 @@
+#pragma once
+// A file being written. What stands in the buffer reaches the disk in large pieces, and a disk
+// that takes no more is an error of its own, never a silently shortened file.
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace ziggurat::recording {
+
+/// A file can't be created or written; the message names it and says why.
+class WriteError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class OutputFile {
+ public:
+  /// Creates the file, or empties it. @throws WriteError
+  explicit OutputFile(std::string path);
+  /// Closes without writing what is still in the buffer: close() before is the good end.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Append here; then call written().
+  fmt::memory_buffer& buffer() { return buffer_; }
+
+  /// Says that a whole line stands in the buffer: a full buffer goes to the disk.
+  /// @throws WriteError
+  void written();
+
+  /// Writes the rest and closes; further calls do nothing. @throws WriteError
+  void close();
+
+ private:
+  void flush();
+
+  std::string path_;
+  int descriptor_ = -1;
+  fmt::memory_buffer buffer_;
+};
+
+}  // namespace ziggurat::recording

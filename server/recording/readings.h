@@ -1,0 +1,28 @@
+#pragma once
+// What robots sensed and what they answered: `--readings`.
+
+#include <string>
+
+#include "recording/output_file.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::recording {
+
+/// One line per tick and robot, in scene order: ziggurat.v1.Reading as protobuf JSON with the
+/// field names of recording.proto, devices sorted by id.
+class Readings {
+ public:
+  /// Keeps a reference to `layout`. @throws WriteError
+  Readings(std::string path, const world::Layout& layout);
+
+  /// What was observed at a tick, and the commands that answered it. @throws WriteError
+  void write(const world::Observations& observations, const world::Commands& commands);
+  void close() { file_.close(); }
+
+ private:
+  const world::Layout& layout_;
+  OutputFile file_;
+};
+
+}  // namespace ziggurat::recording

@@ -1,0 +1,55 @@
+#include "recording/trace.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+namespace ziggurat::recording {
+namespace {
+
+// A field of RFC 4180: quoted only where it must be.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+}  // namespace
+
+Trace::Trace(std::string path, const world::Layout& layout) : file_(std::move(path)) {
+  for (std::size_t e = 0; e < layout.entities.size(); ++e) {
+    const auto& entity = layout.entities[e];
+    rows_.push_back({fmt::format(",{},,", field(entity.id)), true, e});
+    if (!entity.lists_links) continue;
+    for (std::size_t l = entity.links.begin; l < entity.links.end(); ++l) {
+      rows_.push_back(
+          {fmt::format(",{},{},", field(entity.id), field(layout.links[l].id)), false, l});
+    }
+  }
+  file_.buffer().append(std::string_view("tick,time_s,entity,link,x,y,z,qw,qx,qy,qz\n"));
+}
+
+void Trace::write(const world::State& state) {
+  const std::string when =
+      fmt::format("{},{}", state.tick, static_cast<double>(state.time_ns) / 1e9);
+  auto& buffer = file_.buffer();
+  for (const Row& row : rows_) {
+    const math::Pose& pose = row.origin ? state.origins[row.index] : state.links[row.index].pose;
+    const auto& p = pose.position;
+    const auto& q = pose.orientation;
+    buffer.append(when);
+    buffer.append(row.names);
+    // Without a precision fmt writes the shortest digits that read back to the same double.
+    fmt::format_to(std::back_inserter(buffer), FMT_STRING("{},{},{},{},{},{},{}\n"), p.x(), p.y(),
+                   p.z(), q.w(), q.x(), q.y(), q.z());
+    file_.written();
+  }
+}
+
+}  // namespace ziggurat::recording

@@ -1,0 +1,37 @@
+#pragma once
+// Where everything stood: `--trace`, a CSV file of world poses.
+
+#include <string>
+#include <vector>
+
+#include "recording/output_file.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::recording {
+
+/// Columns `tick,time_s,entity,link,x,y,z,qw,qx,qy,qz`: poses X_WE and X_WL of the bottom-centre
+/// frames, [m] and unit quaternions, in digits that read back to the same double. Per tick and
+/// entity, in scene order: a row of its origin with an empty link, then one for each link if the
+/// entity lists its links.
+class Trace {
+ public:
+  /// @throws WriteError
+  Trace(std::string path, const world::Layout& layout);
+
+  /// @throws WriteError
+  void write(const world::State& state);
+  void close() { file_.close(); }
+
+ private:
+  struct Row {
+    std::string names;  ///< `,entity,link,` as it stands in the file
+    bool origin;        ///< whether `index` counts State::origins or State::links
+    std::size_t index;
+  };
+
+  std::vector<Row> rows_;
+  OutputFile file_;
+};
+
+}  // namespace ziggurat::recording

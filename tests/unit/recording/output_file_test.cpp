@@ -1,0 +1,59 @@
+#include "recording/output_file.h"
+
+#include <gtest/gtest.h>
+
+#include "file_text.h"
+
+namespace ziggurat::recording {
+namespace {
+
+TEST(OutputFile, HoldsEverythingAfterClose) {
+  const auto path = scratch("file");
+  std::string expected;
+  OutputFile file(path);
+  for (int i = 0; i < 100000; ++i) {
+    const std::string line = fmt::format("line {}\n", i);
+    expected += line;
+    file.buffer().append(line);
+    file.written();
+  }
+  file.close();
+  EXPECT_EQ(text_of(path), expected);
+}
+
+TEST(OutputFile, EmptiesWhatWasThere) {
+  const auto path = scratch("file");
+  for (const std::string text : {"a longer text", "short"}) {
+    OutputFile file(path);
+    file.buffer().append(text);
+    file.close();
+    EXPECT_EQ(text_of(path), text);
+  }
+}
+
+TEST(OutputFile, SaysWhyItCannotBeCreated) {
+  try {
+    OutputFile file("/no/such/folder/file.csv");
+    FAIL() << "created";
+  } catch (const WriteError& error) {
+    EXPECT_STREQ(error.what(),
+                 "/no/such/folder/file.csv: cannot be written: No such file or directory");
+  }
+}
+
+TEST(OutputFile, ReportsAFullDisk) {
+  OutputFile file("/dev/full");
+  file.buffer().append(std::string_view("something"));
+  file.written();
+  EXPECT_THROW(file.close(), WriteError);
+  EXPECT_NO_THROW(file.close()) << "it is closed now";
+}
+
+TEST(OutputFile, ReportsAFullDiskAsSoonAsTheBufferIsFull) {
+  OutputFile file("/dev/full");
+  file.buffer().append(std::string(1 << 20, 'x'));
+  EXPECT_THROW(file.written(), WriteError);
+}
+
+}  // namespace
+}  // namespace ziggurat::recording

@@ -1,0 +1,82 @@
+#include "recording/trace.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <sstream>
+#include <vector>
+
+#include "file_text.h"
+
+namespace ziggurat::recording {
+namespace {
+
+// A box and a robot with two links.
+world::Layout layout() {
+  world::Layout layout;
+  layout.entities = {{"box", {0, 1}, false}, {"robot", {1, 2}, true}};
+  layout.links = {{"", 0}, {"base", 1}, {"arm", 1}};
+  return layout;
+}
+
+world::State state() {
+  world::State state;
+  state.origins.resize(2);
+  state.links.resize(3);
+  return state;
+}
+
+TEST(Trace, HasARowPerOriginAndPerListedLink) {
+  auto now = state();
+  now.tick = 7;
+  now.time_ns = 700'000'000;
+  now.origins[0].position = {1, 2, 3};
+  now.links[2].pose.position = {0, 0, 0.25};
+  now.links[2].pose.orientation = {0, 1, 0, 0};
+  const auto path = scratch("csv");
+  Trace trace(path, layout());
+  trace.write(now);
+  trace.close();
+  EXPECT_EQ(text_of(path),
+            "tick,time_s,entity,link,x,y,z,qw,qx,qy,qz\n"
+            "7,0.7,box,,1,2,3,1,0,0,0\n"
+            "7,0.7,robot,,0,0,0,1,0,0,0\n"
+            "7,0.7,robot,base,0,0,0,1,0,0,0\n"
+            "7,0.7,robot,arm,0,0,0.25,0,1,0,0\n");
+}
+
+TEST(Trace, DigitsReadBackToTheSameDouble) {
+  const std::vector<double> values{0.1, 1.0 / 3, 5e-324, -1.7976931348623157e308, 0.1 + 0.2, 1e22};
+  auto now = state();
+  const auto path = scratch("csv");
+  Trace trace(path, layout());
+  for (const double value : values) {
+    now.origins[0].position.x() = value;
+    trace.write(now);
+  }
+  trace.close();
+  std::istringstream lines(text_of(path));
+  std::vector<double> read;
+  for (std::string line; std::getline(lines, line);) {
+    const auto start = line.find(",box,,");
+    if (start != std::string::npos) read.push_back(std::strtod(&line[start + 6], nullptr));
+  }
+  EXPECT_EQ(read, values);
+}
+
+TEST(Trace, QuotesIdsThatHoldCommasOrQuotes) {
+  world::Layout odd;
+  odd.entities = {{"a,\"b\"", {0, 1}, false}};
+  odd.links = {{"", 0}};
+  world::State now;
+  now.origins.resize(1);
+  now.links.resize(1);
+  const auto path = scratch("csv");
+  Trace trace(path, odd);
+  trace.write(now);
+  trace.close();
+  EXPECT_NE(text_of(path).find("\n0,0,\"a,\"\"b\"\"\",,0,0,0,1,0,0,0\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ziggurat::recording
