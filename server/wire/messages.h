@@ -1,0 +1,127 @@
+#pragma once
+// The protocol's messages as plain data, for whoever must not see protobuf. docs/protocol.md
+// says what they mean; protocol/ziggurat/v1/protocol.proto is how they travel.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "world/layout.h"
+
+namespace ziggurat::wire {
+
+struct Version {
+  std::uint32_t major = 0;
+  std::uint32_t minor = 0;
+  bool operator==(const Version&) const = default;
+};
+
+/// What this server speaks. A client of the same major version is welcome.
+inline constexpr Version version{1, 0};
+
+enum class Role { unspecified, controller, supervisor, observer };
+
+/// What happens when a controller does not answer in time. Only `wait` exists yet.
+enum class DeadlineAction { unspecified, wait, hold, zero, drop, stop };
+
+struct Hello {
+  Version version;
+  Role role = Role::unspecified;
+  std::vector<std::string> robots;  ///< ids or globs
+  std::string controller;           ///< id in the scene; empty: any
+  bool lua_only = false;
+  std::string client_name;
+  std::string client_version;
+  std::string session_token;  ///< of a session to resume; empty: a new one
+  DeadlineAction deadline_action = DeadlineAction::unspecified;
+};
+
+/// A line that a controller logged.
+struct LogLine {
+  std::size_t robot = 0;  ///< into Layout::robots
+  bool error = false;     ///< logerr()
+  std::string text;       ///< UTF-8 without a line feed at the end
+};
+
+enum class LeaveReason { unspecified, done, failed };
+
+struct Leave {
+  std::vector<std::uint32_t> robots;  ///< positions in the session; empty: the whole session
+  LeaveReason reason = LeaveReason::unspecified;
+  std::string message;
+};
+
+/// Same names and numbers as Error.Code of the protocol.
+enum class ErrorCode {
+  unspecified,
+  malformed,
+  too_large,
+  out_of_state,
+  version_mismatch,
+  stale_tick,
+  future_tick,
+  duplicate_tick,
+  unknown_robot,
+  unknown_controller,
+  unknown_device,
+  bad_value,
+  not_yours,
+  robot_taken,
+  unimplemented,
+  forbidden,
+  too_many,
+  no_such_session,
+};
+
+enum class Severity {
+  unspecified,
+  warning,  ///< the message was taken, in part or whole
+  discard,  ///< the message had no effect; the session goes on
+  fatal,    ///< the session is over
+};
+
+/// What was wrong with a peer's message.
+struct Fault {
+  ErrorCode code = ErrorCode::unspecified;
+  Severity severity = Severity::discard;
+  bool retryable = false;
+  std::uint64_t tick = 0;
+  std::string robot;    ///< id, where one is concerned
+  std::string field;    ///< where one is concerned
+  std::string message;  ///< a sentence for people
+};
+
+struct Refusal {
+  Fault fault;
+  Version client_version;
+  std::string holder;  ///< robot_taken: name of the client that drives it
+};
+
+enum class EndReason { finished, interrupted, failed };
+
+struct End {
+  EndReason reason = EndReason::finished;
+  std::string message;
+  std::uint64_t tick = 0;  ///< the last one
+};
+
+/// What every session is told of the run when it is welcomed.
+struct Run {
+  const world::Layout& layout;
+  const std::vector<scene::Controller>& controllers;  ///< of the scene
+  std::vector<std::string> scripts;  ///< per robot of the layout: resolved path of its Lua
+                                     ///< script, or empty
+  std::uint64_t seed = 1;
+  std::int64_t tick_ns = 0;  ///< simulated time of a tick
+  std::uint32_t ticks_per_second = 10;
+  std::string scene_hash;  ///< 16 hexadecimal digits
+  std::string server_version;
+  std::uint64_t max_message_bytes = std::uint64_t{64} << 20;
+};
+
+/// The name in docs/protocol.md, for example "ROBOT_TAKEN".
+const char* to_string(ErrorCode code);
+
+}  // namespace ziggurat::wire
