@@ -1,0 +1,95 @@
+#include "wire/inbox.h"
+
+#include <limits>
+
+#include "wire/command.h"
+#include "wire/leave.h"
+#include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat::wire {
+
+struct Inbox::Message {
+  Kind kind = Kind::malformed;
+  v1::Command command;        // the tick path: long-lived
+  v1::ClientMessage message;  // everything else
+};
+
+Inbox::Inbox() : message_(std::make_unique<Message>()) {}
+Inbox::~Inbox() = default;
+
+Inbox::Kind Inbox::parse(std::string_view bytes) {
+  Message& in = *message_;
+  in.kind = Kind::malformed;
+  if (bytes.size() > std::numeric_limits<int>::max()) return in.kind;
+  if (const auto content = v1::sole_field(bytes, v1::ClientMessage::kCommandFieldNumber)) {
+    if (in.command.ParseFromArray(content->data(), static_cast<int>(content->size()))) {
+      in.kind = Kind::command;
+    }
+    return in.kind;
+  }
+  if (!in.message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return in.kind;
+  switch (in.message.message_case()) {
+    case v1::ClientMessage::kHello:
+      in.kind = Kind::hello;
+      break;
+    case v1::ClientMessage::kLeave:
+      in.kind = Kind::leave;
+      break;
+    case v1::ClientMessage::kHeartbeat:
+      in.kind = Kind::heartbeat;
+      break;
+    case v1::ClientMessage::kCommand:
+      in.kind = Kind::command;
+      in.command.Swap(in.message.mutable_command());
+      break;
+    case v1::ClientMessage::MESSAGE_NOT_SET:
+      break;
+  }
+  return in.kind;
+}
+
+Hello Inbox::hello() const {
+  const v1::Hello& from = message_->message.hello();
+  Hello hello;
+  hello.version = {from.version().major(), from.version().minor()};
+  hello.role = static_cast<Role>(from.role());
+  hello.robots.assign(from.robots().begin(), from.robots().end());
+  hello.controller = from.controller();
+  hello.lua_only = from.lua_only();
+  hello.client_name = from.client_name();
+  hello.client_version = from.client_version();
+  hello.session_token = from.session_token();
+  hello.deadline_action = static_cast<DeadlineAction>(from.deadline_policy().action());
+  return hello;
+}
+
+Leave Inbox::leave() const {
+  const v1::Leave& from = message_->message.leave();
+  Leave leave;
+  leave.robots.assign(from.robots().begin(), from.robots().end());
+  leave.reason = static_cast<LeaveReason>(from.reason());
+  leave.message = from.message();
+  return leave;
+}
+
+std::uint64_t Inbox::heartbeat() const { return message_->message.heartbeat().sequence(); }
+
+std::uint64_t Inbox::command_tick() const { return message_->command.tick(); }
+
+std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {
+  if (message_->kind == Kind::command) return wire::check(message_->command, roster, layout);
+  return wire::check(message_->message.leave(), roster, layout);
+}
+
+void Inbox::apply(const Roster& roster, world::Commands& commands) const {
+  wire::apply(message_->command, roster, commands);
+}
+
+void Inbox::append_log(const Roster& roster, std::vector<LogLine>& lines) const {
+  const auto& log =
+      message_->kind == Kind::command ? message_->command.log() : message_->message.leave().log();
+  append(log, roster, lines);
+}
+
+}  // namespace ziggurat::wire

@@ -1,0 +1,50 @@
+#pragma once
+// Messages as they come from clients: bytes -> plain data or world.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "wire/messages.h"
+#include "wire/roster.h"
+#include "world/state.h"
+
+namespace ziggurat::wire {
+
+/// Holds one message at a time and keeps its memory from command to command.
+class Inbox {
+ public:
+  enum class Kind {
+    malformed,  ///< not a message of this protocol
+    hello,
+    command,
+    leave,
+    heartbeat,
+  };
+
+  Inbox();
+  ~Inbox();
+
+  Kind parse(std::string_view bytes);
+
+  // Of the message in hand, if it is of that kind.
+  Hello hello() const;
+  Leave leave() const;
+  std::uint64_t heartbeat() const;  ///< its sequence
+  std::uint64_t command_tick() const;
+
+  /// What is wrong with the command or leave in hand but its tick, if anything.
+  std::optional<Fault> check(const Roster& roster, const world::Layout& layout) const;
+  /// Writes the checked command's values; those of robots that are gone are skipped.
+  void apply(const Roster& roster, world::Commands& commands) const;
+  /// Appends the lines that the checked command or leave brings.
+  void append_log(const Roster& roster, std::vector<LogLine>& lines) const;
+
+ private:
+  struct Message;
+  std::unique_ptr<Message> message_;
+};
+
+}  // namespace ziggurat::wire

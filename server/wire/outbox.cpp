@@ -1,0 +1,119 @@
+#include "wire/outbox.h"
+
+#include "wire/description.h"
+#include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat::wire {
+namespace {
+
+void fill(const Fault& fault, v1::Error& error) {
+  error.set_code(static_cast<v1::Error::Code>(fault.code));
+  error.set_severity(static_cast<v1::Error::Severity>(fault.severity));
+  error.set_retryable(fault.retryable);
+  error.set_tick(fault.tick);
+  error.set_robot(v1::valid_utf8(fault.robot));
+  error.set_field(fault.field);
+  error.set_message(v1::valid_utf8(fault.message));
+}
+
+void fill(const Version& from, v1::Version& to) {
+  to.set_major(from.major);
+  to.set_minor(from.minor);
+}
+
+v1::End::Reason reason_of(EndReason reason) {
+  switch (reason) {
+    case EndReason::finished:
+      return v1::End::FINISHED;
+    case EndReason::interrupted:
+      return v1::End::INTERRUPTED;
+    case EndReason::failed:
+      return v1::End::FAILED;
+  }
+  return v1::End::REASON_UNSPECIFIED;
+}
+
+}  // namespace
+
+struct Outbox::Message {
+  v1::ServerMessage message;
+  std::size_t size = 0;
+};
+
+Outbox::Outbox() : message_(std::make_unique<Message>()) {}
+Outbox::~Outbox() = default;
+Outbox::Outbox(Outbox&&) noexcept = default;
+Outbox& Outbox::operator=(Outbox&&) noexcept = default;
+
+void Outbox::finish() { message_->size = message_->message.ByteSizeLong(); }
+
+std::size_t Outbox::size() const { return message_->size; }
+
+void Outbox::write(std::uint8_t* to) const {
+  message_->message.SerializeWithCachedSizesToArray(to);
+}
+
+void Outbox::welcome(const Run& run, const Roster& roster, std::string_view token,
+                     std::uint32_t minor) {
+  v1::Welcome& welcome = *message_->message.mutable_welcome();
+  welcome.Clear();
+  fill(Version{version.major, minor}, *welcome.mutable_version());
+  welcome.set_session_token(token.data(), token.size());
+  welcome.set_tick_ns(static_cast<std::uint64_t>(run.tick_ns));
+  welcome.set_ticks_per_second(run.ticks_per_second);
+  welcome.set_mode(v1::MODE_LOCK_STEP);
+  welcome.set_seed(run.seed);
+  welcome.set_scene_hash(run.scene_hash);
+  welcome.set_max_message_bytes(run.max_message_bytes);
+  welcome.set_server_version(run.server_version);
+  welcome.mutable_deadline_policy()->set_action(v1::DeadlinePolicy::WAIT);
+  for (const std::size_t robot : roster.robots) describe(run, robot, *welcome.add_robots());
+  finish();
+}
+
+void Outbox::refusal(const Refusal& from) {
+  v1::Refusal& refusal = *message_->message.mutable_refusal();
+  refusal.Clear();
+  fill(from.fault, *refusal.mutable_error());
+  fill(version, *refusal.mutable_server_version());
+  fill(from.client_version, *refusal.mutable_client_version());
+  refusal.set_holder(v1::valid_utf8(from.holder));
+  finish();
+}
+
+void Outbox::observation(const Roster& roster, const world::Observations& observations) {
+  v1::Observation& observation = *message_->message.mutable_observation();
+  observation.Clear();
+  observation.set_tick(observations.tick);
+  observation.set_time_ns(observations.time_ns);
+  auto& readings = *observation.mutable_joint_readings();
+  for (const Packing::Stretch& piece : roster.joint_sensors.stretches) {
+    const double* begin = observations.joint_readings.data() + piece.flat;
+    readings.Add(begin, begin + piece.count);
+  }
+  finish();
+}
+
+void Outbox::end(const End& from) {
+  v1::End& end = *message_->message.mutable_end();
+  end.Clear();
+  end.set_reason(reason_of(from.reason));
+  end.set_message(v1::valid_utf8(from.message));
+  end.set_tick(from.tick);
+  finish();
+}
+
+void Outbox::error(const Fault& fault) {
+  v1::Error& error = *message_->message.mutable_error();
+  error.Clear();
+  fill(fault, error);
+  finish();
+}
+
+void Outbox::heartbeat(std::uint64_t sequence) {
+  message_->message.mutable_heartbeat()->set_sequence(sequence);
+  finish();
+}
+
+}  // namespace ziggurat::wire

@@ -1,0 +1,41 @@
+#pragma once
+// Messages on their way to a client: plain data or world -> bytes.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "wire/messages.h"
+#include "wire/roster.h"
+#include "world/state.h"
+
+namespace ziggurat::wire {
+
+/// Holds one message at a time and keeps its memory: filling it with observation after
+/// observation allocates nothing once it has grown.
+class Outbox {
+ public:
+  Outbox();
+  ~Outbox();
+  Outbox(Outbox&&) noexcept;
+  Outbox& operator=(Outbox&&) noexcept;
+
+  /// @param minor  of the protocol, as agreed with the client
+  void welcome(const Run& run, const Roster& roster, std::string_view token, std::uint32_t minor);
+  void refusal(const Refusal& refusal);
+  void observation(const Roster& roster, const world::Observations& observations);
+  void end(const End& end);
+  void error(const Fault& fault);
+  void heartbeat(std::uint64_t sequence);
+
+  std::size_t size() const;            ///< of the message in hand [bytes]
+  void write(std::uint8_t* to) const;  ///< writes size() bytes
+
+ private:
+  struct Message;
+  void finish();
+  std::unique_ptr<Message> message_;
+};
+
+}  // namespace ziggurat::wire

@@ -1,0 +1,43 @@
+#pragma once
+// The robots of one session, and where each device value stands: in the session's packed arrays
+// on one side, in the world's flat arrays on the other.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "world/layout.h"
+
+namespace ziggurat::wire {
+
+/// Values of one kind of device over all robots of a session, packed robot by robot.
+struct Packing {
+  /// Values that are neighbours on both sides.
+  struct Stretch {
+    std::size_t packed = 0;  ///< start in the session's array
+    std::size_t flat = 0;    ///< start in the world's array
+    std::size_t count = 0;
+  };
+  std::vector<Stretch> robots;     ///< one per robot of the session
+  std::vector<Stretch> stretches;  ///< the same values in as few pieces as possible
+  std::size_t count = 0;           ///< of all values
+
+  void append(const world::Range& flat);
+};
+
+/// Positions are fixed for the life of a session; robots may leave.
+struct Roster {
+  std::vector<std::size_t> robots;  ///< into Layout::robots, in scene order
+  std::vector<bool> gone;           ///< per robot: left the barrier for good
+  std::size_t gone_count = 0;
+  Packing joint_sensors;
+  Packing joint_actuators;
+
+  bool empty() const { return gone_count == robots.size(); }  ///< all have left
+  void leave(std::size_t position);                           ///< no effect if gone already
+};
+
+/// @param robots  into Layout::robots, ascending
+Roster make_roster(const world::Layout& layout, std::span<const std::size_t> robots);
+
+}  // namespace ziggurat::wire
