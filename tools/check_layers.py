@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Compares every #include in server/, clients/ and protocol/ with the table of who may know whom.
+
+usage: check_layers.py [ROOT]     ROOT is the top of the checkout (default: this file's)
+
+The table is docs/architecture.md's. Each violation is printed as file:line: text; the exit code
+is 1 if there is any. A module that is not in the table is a violation, so a new one is added here
+and in docs/architecture.md first.
+"""
+
+import pathlib
+import re
+import sys
+
+# module -> modules whose headers it may include, besides its own.
+MODULES = {
+    "protocol": [],
+    "math": [],
+    "scene": ["math"],
+    "world": ["math"],
+    "magnetism": ["math"],
+    "physics": ["scene", "world", "magnetism", "math"],
+    "media": ["scene", "world", "math"],
+    "camera": ["scene", "world", "media", "math"],
+    "devices": ["scene", "world", "physics", "media", "camera", "math"],
+    "simulation": ["scene", "world", "magnetism", "physics", "media", "camera", "devices", "math"],
+    "wire": ["scene", "world", "protocol", "math"],
+    "recording": ["scene", "world", "simulation", "wire", "protocol", "math"],
+    "network": ["scene", "world", "wire", "protocol"],
+    "app": ["scene", "world", "magnetism", "physics", "media", "camera", "devices", "simulation",
+            "wire", "recording", "network", "math"],
+    "clients/cpp": ["protocol"],
+    "clients/lua": ["clients/cpp"],
+}
+
+# library -> (pattern of its headers, modules that may include them). Libraries that are not here,
+# such as Eigen and fmt, are free.
+LIBRARIES = {
+    "pugixml": (r"pugixml\.hpp$|pugiconfig\.hpp$", ["scene"]),
+    "Bullet": (r"bullet/|bt[A-Z]\w*\.h$|Bullet\w*/|LinearMath/", ["physics"]),
+    "protobuf": (r"google/protobuf/", ["protocol", "wire", "recording", "network", "clients/cpp"]),
+    "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "app", "clients/cpp"]),
+    "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua"]),
+}
+
+SUFFIXES = {".h", ".hpp", ".hh", ".inl", ".ipp", ".c", ".cc", ".cpp", ".cxx"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*(<[^>]*>|"[^"]*"|\S+)')
+
+
+def module_of(path):
+    """The module that a file belongs to; path is relative to the root."""
+    if path.parts[0] == "protocol":
+        return "protocol"
+    return path.parts[1] if path.parts[0] == "server" else "/".join(path.parts[:2])
+
+
+def target_of(header, root, including):
+    """The module that provides a header of ours, or None for a header from elsewhere."""
+    if header.endswith(".pb.h"):
+        return "protocol"
+    bases = [root / "server", root / "protocol", root / "clients/cpp/include",
+             root / "clients/cpp", root / "clients/lua"]
+    if root / "clients" in including.parents:
+        bases.append(including.parent)
+    for base in bases:
+        found = base / header
+        if found.is_file():
+            return module_of(found.resolve().relative_to(root))
+    return None
+
+
+def violations_of_include(header, quoted, module, root, including):
+    """What is wrong with one include, as sentences."""
+    target = target_of(header, root, including)
+    if target is None and quoted:
+        yield f'"{header}" is not found; headers of this project are included as "module/file.h"'
+    elif target is not None and target != module and target not in MODULES[module]:
+        allowed = ", ".join(MODULES[module]) or "nothing"
+        yield f"{module} includes {header} of {target}; it may know: {allowed}"
+    for library, (pattern, allowed) in LIBRARIES.items():
+        if target is None and re.match(pattern, header) and module not in allowed:
+            yield f"{module} includes {header}; {library} belongs to: {', '.join(allowed)}"
+
+
+def violations_of_file(path, root):
+    """Yields (line number, sentence) for one source file."""
+    module = module_of(path.relative_to(root))
+    if module not in MODULES:
+        yield 1, f"module '{module}' is not in the table of tools/check_layers.py"
+        return
+    for number, line in enumerate(path.read_text(errors="replace").splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        header = match.group(1)
+        if header[0] not in '<"':
+            yield number, f"include of the macro {header}: nobody can tell what it includes"
+            continue
+        for sentence in violations_of_include(header[1:-1], header[0] == '"', module, root, path):
+            yield number, sentence
+
+
+def sources(root):
+    """All C and C++ files that belong to a module, in a fixed order."""
+    for top in ["server", "clients", "protocol"]:
+        for path in sorted((root / top).rglob("*")):
+            if path.suffix in SUFFIXES and path.is_file() and "node_modules" not in path.parts:
+                yield path
+
+
+def check(root):
+    """All violations under root, as file:line: text."""
+    root = root.resolve()
+    return [f"{path.relative_to(root)}:{number}: {sentence}"
+            for path in sources(root) for number, sentence in violations_of_file(path, root)]
+
+
+def main():
+    arguments = sys.argv[1:]
+    if len(arguments) > 1 or arguments[:1] in (["-h"], ["--help"]):
+        print(__doc__)
+        return 0 if len(arguments) == 1 else 1
+    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parents[1]
+    if not (root / "server").is_dir():
+        print(f"{root}: there is no server/ here", file=sys.stderr)
+        return 1
+    found = check(root)
+    print("\n".join(found) or f"{sum(1 for _ in sources(root))} files: every include is allowed")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
