@@ -1,0 +1,82 @@
+// The cameras of a controller: where they sit, their lenses, and what they detect.
+
+#include <array>
+
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr std::array<std::string_view, 3> detector_names{"led_detector", "directional_led_detector",
+                                                         "tag_detector"};
+constexpr std::array<MediumKind, 3> detector_media{MediumKind::led, MediumKind::directional_led,
+                                                   MediumKind::tag};
+constexpr std::array<Detector::Kind, 3> detector_kinds{
+    Detector::Kind::led, Detector::Kind::directional_led, Detector::Kind::tag};
+
+std::optional<Detector> read_detector(Reading& reading, Element& element) {
+  for (std::size_t i = 0; i < detector_names.size(); ++i) {
+    if (element.name() != detector_names[i]) continue;
+    const auto medium = read_medium(reading, element, detector_media[i]);
+    const bool rays = element.optional("show_rays", boolean, false);
+    element.done();
+    if (!medium) return std::nullopt;
+    return Detector{detector_kinds[i], *medium, rays, element.where()};
+  }
+  element.unknown_in("camera", detector_names);
+  return std::nullopt;
+}
+
+math::Vector2 read_principal_point(Element& element) {
+  const auto beta50 = element.optional("principle_point", vector2);
+  const auto corrected = element.optional("principal_point", vector2);
+  if (element.has("principle_point") && element.has("principal_point")) {
+    element.fault_at("principle_point", "and principal_point mean the same; write one of them");
+  } else if (!element.has("principle_point") && !element.has("principal_point")) {
+    element.missing("principal_point");
+  }
+  return corrected.value_or(beta50.value_or(math::Vector2::Zero()));
+}
+
+Camera read_camera(Reading& reading, Element& element) {
+  Camera camera;
+  camera.where = element.where();
+  camera.id = element.required("id", identifier);
+  camera.anchor = element.required("anchor", identifier);
+  camera.pose = {element.required("position", position),
+                 element.required("orientation", orientation)};
+  const auto reach = element.required("range", positive_range, {1.0, 1.0});
+  camera.near = reach.first;
+  camera.far = reach.second;
+  camera.focal_length = element.required("focal_length", positive_vector2, math::Vector2::Ones());
+  camera.principal_point = read_principal_point(element);
+  camera.resolution = element.required("resolution", resolution, {1, 1});
+  for (Element& child : last_of_each_name(element)) {
+    if (const auto detector = read_detector(reading, child)) camera.detectors.push_back(*detector);
+  }
+  element.done();
+  return camera;
+}
+
+}  // namespace
+
+std::vector<Camera> read_cameras(Reading& reading, Element& sensor, ControllerUse& use) {
+  constexpr std::string_view known[] = {"camera"};
+  std::vector<Camera> cameras;
+  Ids ids;
+  for (Element& element : sensor.children()) {
+    if (element.name() != "camera") {
+      element.unknown_in(sensor.name(), known);
+      continue;
+    }
+    cameras.push_back(read_camera(reading, element));
+    use.camera_anchors.push_back(element.where("anchor"));
+    const std::string& id = cameras.back().id;
+    if (!id.empty() && !ids.add(id)) {
+      element.fault_at("id", "is the id of an earlier camera; give each its own");
+    }
+  }
+  return cameras;
+}
+
+}  // namespace ziggurat::scene

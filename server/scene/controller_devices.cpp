@@ -1,0 +1,251 @@
+// <actuators> and <sensors>: a table of all names of the dialect, and what each may say.
+
+#include <array>
+#include <span>
+
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+OneOf<JointMode> joint_modes() {
+  return {{"position", JointMode::position},
+          {"velocity", JointMode::velocity},
+          {"disabled", JointMode::disabled}};
+}
+
+/// What reading one device needs.
+struct Enabling {
+  Reading& reading;
+  Element& element;
+  ControllerDevices& devices;
+  ControllerUse& use;
+};
+
+using Enable = void (*)(const Enabling&);
+
+struct DeviceRow {
+  std::string_view name;
+  std::string_view implementation;
+  std::string_view subject;  ///< of the notice that it has no effect yet; empty: it has
+  Enable enable;
+};
+
+// --- joints -------------------------------------------------------------------------------------
+
+template <class Read>
+void read_joint_list(Element& element, Read read) {
+  constexpr std::string_view known[] = {"joint"};
+  Ids ids;
+  for (Element& joint : element.children()) {
+    if (joint.name() != "joint") {
+      joint.unknown_in("joints", known);
+      continue;
+    }
+    const std::string id = joint.required("id", identifier);
+    if (!id.empty() && !ids.add(id)) joint.fault_at("id", "is listed twice; list it once");
+    const JointMode mode = joint.required("mode", joint_modes(), JointMode::disabled);
+    read(joint, id, mode);
+    joint.done();
+  }
+}
+
+void enable_joint_actuators(const Enabling& e) {
+  read_joint_list(e.element, [&](Element& joint, const std::string& id, JointMode mode) {
+    const double impulse = joint.required("max_impulse", non_negative);
+    if (!id.empty()) e.devices.joint_actuators.push_back({id, mode, impulse, joint.where()});
+  });
+}
+
+void enable_joint_sensors(const Enabling& e) {
+  read_joint_list(e.element, [&](Element& joint, const std::string& id, JointMode mode) {
+    if (!id.empty()) e.devices.joint_sensors.push_back({id, mode, joint.where()});
+  });
+}
+
+// --- devices modelled in Devices ----------------------------------------------------------------
+
+constexpr std::string_view own_medium = "the medium is that of the entity's own <devices>";
+
+void read_radios_use(const Enabling& e) {
+  e.element.without_effect("medium", text, own_medium);
+  if (e.element.optional("show_rays", boolean, false)) e.devices.radios_show_rays = true;
+}
+
+void enable_radios_actuator(const Enabling& e) {
+  e.devices.radios_actuator = true;
+  read_radios_use(e);
+}
+
+void enable_radios_sensor(const Enabling& e) {
+  e.devices.radios_sensor = true;
+  read_radios_use(e);
+}
+
+void enable_leds(const Enabling& e) {
+  e.devices.leds_actuator = true;
+  e.devices.leds_medium = read_medium(e.reading, e.element, MediumKind::led);
+}
+
+void enable_directional_leds(const Enabling& e) {
+  e.devices.directional_leds_actuator = true;
+  e.element.without_effect("medium", text, own_medium);
+}
+
+void enable_tags(const Enabling& e) {
+  e.devices.tags_actuator = true;
+  e.element.without_effect("medium", text, own_medium);
+}
+
+void enable_magnets(const Enabling& e) { e.devices.magnets_actuator = true; }
+
+void enable_proximity(const Enabling& e) {
+  e.devices.proximity_sensor = true;
+  e.devices.proximity_show_rays = e.element.optional("show_rays", boolean, false);
+  e.devices.proximity_noise = e.element.optional("noise_level", non_negative, 0.0);
+}
+
+void enable_cameras(const Enabling& e) {
+  e.devices.cameras_show_frustum = e.element.optional("show_frustum", boolean, false);
+  e.devices.cameras = read_cameras(e.reading, e.element, e.use);
+}
+
+// --- devices that are only checked so far -------------------------------------------------------
+
+void enable_plain(const Enabling& e) {
+  e.element.optional("show_rays", boolean);
+  e.element.optional("noise_level", non_negative);
+}
+
+void enable_wheels(const Enabling& e) {
+  for (const char* name : {"bias_avg", "bias_avg_left", "bias_avg_right", "factor_avg",
+                           "factor_avg_left", "factor_avg_right"}) {
+    e.element.optional(name, number);
+  }
+  for (const char* name : {"bias_stddev", "bias_stddev_left", "bias_stddev_right", "factor_stddev",
+                           "factor_stddev_left", "factor_stddev_right"}) {
+    e.element.optional(name, non_negative);
+  }
+}
+
+void enable_wheel_encoders(const Enabling& e) {
+  e.element.optional("vel_noise_range", range);
+  e.element.optional("dist_noise_range", range);
+}
+
+void enable_positioning(const Enabling& e) {
+  for (const char* name : {"pos_noise_range", "angle_noise_range", "axis_noise_range"}) {
+    e.element.optional(name, range);
+  }
+}
+
+void enable_range_and_bearing_sensor(const Enabling& e) {
+  read_medium(e.reading, e.element, MediumKind::range_and_bearing);
+  e.element.optional("noise_std_dev", non_negative);
+  e.element.optional("packet_drop_prob", probability);
+  e.element.optional("show_rays", boolean);
+}
+
+void enable_blob_camera(const Enabling& e) {
+  read_medium(e.reading, e.element, MediumKind::led);
+  e.element.optional("noise_std_dev", non_negative);
+  e.element.optional("show_rays", boolean);
+}
+
+// --- the tables ---------------------------------------------------------------------------------
+
+constexpr std::array<DeviceRow, 14> actuator_rows{{
+    {"joints", "default", "", enable_joint_actuators},
+    {"radios", "default", "radios", enable_radios_actuator},
+    {"leds", "default", "LEDs", enable_leds},
+    {"directional_leds", "default", "directional LEDs", enable_directional_leds},
+    {"tags", "default", "tags", enable_tags},
+    {"magnets", "default", "magnets and <magnetism>", enable_magnets},
+    {"differential_steering", "default", "differential_steering devices", enable_wheels},
+    {"gripper", "default", "gripper devices", enable_plain},
+    {"range_and_bearing", "default", "range-and-bearing devices", enable_plain},
+    {"quadrotor_position", "default", "quadrotor_position devices", enable_plain},
+    {"quadrotor_speed", "default", "quadrotor_speed devices", enable_plain},
+    {"footbot_turret", "default", "footbot_turret devices", enable_plain},
+    {"footbot_gripper", "default", "footbot_gripper devices", enable_plain},
+    {"footbot_distance_scanner", "default", "footbot_distance_scanner devices", enable_plain},
+}};
+
+constexpr std::array<DeviceRow, 18> sensor_rows{{
+    {"joints", "default", "", enable_joint_sensors},
+    {"radios", "default", "radios", enable_radios_sensor},
+    {"cameras", "default", "cameras", enable_cameras},
+    {"proximity", "default", "proximity sensors", enable_proximity},
+    {"positioning", "default", "positioning sensors", enable_positioning},
+    {"differential_steering", "default", "differential_steering devices", enable_wheel_encoders},
+    {"battery", "default", "battery sensors", enable_plain},
+    {"ground", "rot_z_only", "ground sensors", enable_plain},
+    {"light", "default", "light sensors", enable_plain},
+    {"range_and_bearing", "medium", "range-and-bearing devices", enable_range_and_bearing_sensor},
+    {"colored_blob_omnidirectional_camera", "rot_z_only", "coloured-blob cameras",
+     enable_blob_camera},
+    {"colored_blob_perspective_camera", "default", "coloured-blob cameras", enable_blob_camera},
+    {"footbot_proximity", "default", "footbot_proximity sensors", enable_plain},
+    {"footbot_light", "rot_z_only", "footbot_light sensors", enable_plain},
+    {"footbot_base_ground", "rot_z_only", "footbot_base_ground sensors", enable_plain},
+    {"footbot_motor_ground", "rot_z_only", "footbot_motor_ground sensors", enable_plain},
+    {"footbot_turret_encoder", "default", "footbot_turret_encoder sensors", enable_plain},
+    {"footbot_distance_scanner", "rot_z_only", "footbot_distance_scanner devices", enable_plain},
+}};
+
+void read_device(const Enabling& e, const DeviceRow& row) {
+  e.element.required("implementation", Words{row.implementation});
+  if (!row.subject.empty()) e.reading.document.no_effect_yet(e.element.where(), row.subject);
+  e.use.devices.push_back({std::string(row.name), e.element.where()});
+  row.enable(e);
+  e.element.done();
+}
+
+void read_device_list(Reading& reading, Element& list, ControllerDevices& devices,
+                      ControllerUse& use, std::span<const DeviceRow> rows) {
+  for (Element& element : last_of_each_name(list)) {
+    const Enabling enabling{reading, element, devices, use};
+    bool known = false;
+    for (const DeviceRow& row : rows) {
+      if (row.name != element.name()) continue;
+      known = true;
+      read_device(enabling, row);
+    }
+    if (known) continue;
+    std::vector<std::string_view> names;
+    for (const DeviceRow& row : rows) names.push_back(row.name);
+    element.unknown_in(list.name(), names);
+  }
+  list.done();
+}
+
+}  // namespace
+
+std::vector<Element> last_of_each_name(Element& list) {
+  std::vector<Element> result;
+  std::unordered_map<std::string_view, std::size_t> positions;
+  for (Element& element : list.children()) {
+    const auto [position, fresh] = positions.emplace(element.name(), result.size());
+    if (fresh) {
+      result.push_back(element);
+      continue;
+    }
+    list.document().notice(result[position->second].where(),
+                           fmt::format("this <{}> has no effect: a later one in the same <{}> "
+                                       "replaces it",
+                                       element.name(), list.name()));
+    result[position->second] = element;
+  }
+  return result;
+}
+
+void read_actuators(Reading& reading, Element& list, ControllerDevices& devices,
+                    ControllerUse& use) {
+  read_device_list(reading, list, devices, use, actuator_rows);
+}
+
+void read_sensors(Reading& reading, Element& list, ControllerDevices& devices, ControllerUse& use) {
+  read_device_list(reading, list, devices, use, sensor_rows);
+}
+
+}  // namespace ziggurat::scene

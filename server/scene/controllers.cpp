@@ -1,0 +1,229 @@
+// <controllers>: who drives the robots, with which devices, and whether each robot has them.
+
+#include <algorithm>
+#include <array>
+
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr unsigned most_faults_with_entities = 20;
+constexpr std::size_t longest_type = 100;
+
+void read_params(Element params, Controller& controller) {
+  controller.params = params.all_attributes();
+  controller.params_where = params.where();
+  params.done();
+}
+
+void note_type(Reading& reading, const Element& element) {
+  if (element.name() == "lua_controller" || element.name() == "external_controller") return;
+  constexpr std::array<std::string_view, 2> own{"lua_controller", "external_controller"};
+  const auto meant = nearest(element.name(), own);
+  reading.document.notice(
+      element.where(),
+      fmt::format("<{}> is taken as an external controller: somebody connects and drives it{}",
+                  element.name(), meant ? fmt::format("; or did you mean <{}>?", *meant) : ""));
+}
+
+void read_controller(Reading& reading, Element& element) {
+  Controller controller;
+  ControllerUse use;
+  controller.where = element.where();
+  controller.type = element.name();
+  controller.lua = element.name() == "lua_controller";
+  controller.id = element.required("id", identifier);
+  reading.document.subject = fmt::format("controller {}", in_quotes(controller.id));
+  element.without_effect("library", text, "no libraries are loaded into the server");
+  if (controller.type == "external_controller") {
+    controller.command = element.optional("command", text, "");
+  }
+  if (auto actuators = element.child("actuators")) {
+    use.has_actuators = true;
+    read_actuators(reading, *actuators, controller.devices, use);
+  }
+  if (auto sensors = element.child("sensors")) {
+    use.has_sensors = true;
+    read_sensors(reading, *sensors, controller.devices, use);
+  }
+  if (auto params = element.child("params")) {
+    use.has_params = true;
+    read_params(*params, controller);
+  }
+  element.done();
+  reading.document.subject.clear();
+  note_type(reading, element);
+  const std::size_t index = reading.scene.controllers.size();
+  if (!controller.id.empty() && !reading.controllers.emplace(controller.id, index).second) {
+    element.fault_at("id", "is the id of an earlier controller; give each its own");
+  }
+  reading.scene.controllers.push_back(std::move(controller));
+  reading.uses.push_back(std::move(use));
+}
+
+// --- what an entity must have -------------------------------------------------------------------
+
+struct Component {
+  std::string_view device;
+  bool (*is_carried)(const Entity&);
+  std::string_view element;  ///< that would give the entity one
+};
+
+constexpr std::array<Component, 6> components{{
+    {"radios", [](const Entity& e) { return !e.devices.radios.empty(); }, "<radios>"},
+    {"leds", [](const Entity& e) { return !e.devices.leds.empty(); }, "<leds>"},
+    {"directional_leds", [](const Entity& e) { return !e.devices.directional_leds.empty(); },
+     "<directional_leds>"},
+    {"tags", [](const Entity& e) { return !e.devices.tags.empty(); }, "<tags>"},
+    {"magnets", [](const Entity& e) { return !e.devices.magnets.empty(); }, "<magnets>"},
+    {"proximity", [](const Entity& e) { return !e.devices.proximity_sensors.empty(); },
+     "<proximity_sensors>"},
+}};
+
+/// What an entity lacks for a device, or nothing.
+std::optional<std::string> lacking(const Entity& entity, const DeviceUse& use) {
+  if (use.name == "joints" || use.name == "cameras" || use.name == "positioning") return {};
+  for (const Component& component : components) {
+    if (component.device != use.name) continue;
+    if (component.is_carried(entity)) return {};
+    return fmt::format("has none; write {} into its <devices>, or remove the device",
+                       component.element);
+  }
+  return "is a prototype and has none; remove the device, or use another controller";
+}
+
+/// One device of a controller against one entity at a time.
+struct Check {
+  Reading& reading;
+  const Entity& entity;
+  ControllerUse& use;
+
+  void blame(Location where, std::string text) const {
+    if (!reading.blamed.emplace(where.line, where.column).second) return;
+    ++use.faults;
+    reading.document.fault(where, std::move(text));
+  }
+
+  void check_joint(const std::string& id, Location where, bool actuated,
+                   const std::unordered_map<std::string_view, const Joint*>& joints) const {
+    const auto found = joints.find(id);
+    if (found == joints.end()) {
+      std::vector<std::string> known;
+      for (const Joint& joint : entity.joints) known.push_back(joint.id);
+      blame(where, fmt::format("joint {} does not exist in {} {}; {}", in_quotes(id), "prototype",
+                               in_quotes(entity.id), advice(id, known)));
+      return;
+    }
+    const JointType type = found->second->type;
+    if (actuated && type != JointType::prismatic && type != JointType::revolute) {
+      blame(where, fmt::format("joint {} of prototype {} is {}; only prismatic and revolute joints "
+                               "have an actuator",
+                               in_quotes(id), in_quotes(entity.id),
+                               type == JointType::fixed ? "fixed" : "spherical"));
+    }
+  }
+
+  void check_joints(const ControllerDevices& devices) const {
+    std::unordered_map<std::string_view, const Joint*> joints;
+    for (const Joint& joint : entity.joints) joints.emplace(joint.id, &joint);
+    for (const JointActuator& a : devices.joint_actuators) {
+      check_joint(a.joint, a.where, true, joints);
+    }
+    for (const JointSensor& s : devices.joint_sensors) check_joint(s.joint, s.where, false, joints);
+  }
+
+  void check_cameras(const ControllerDevices& devices) const {
+    for (std::size_t i = 0; i < devices.cameras.size(); ++i) {
+      const std::string& anchor = devices.cameras[i].anchor;
+      if (anchor.empty() || anchor == "origin" || reading.anchors.contains(anchor)) continue;
+      blame(use.camera_anchors[i],
+            fmt::format("anchor {} of camera {} does not exist in prototype {}; {}",
+                        in_quotes(anchor), in_quotes(devices.cameras[i].id), in_quotes(entity.id),
+                        advice(anchor, anchor_names(reading))));
+    }
+  }
+
+  void check_components() const {
+    for (const DeviceUse& device : use.devices) {
+      if (const auto what = lacking(entity, device)) {
+        blame(device.where, fmt::format("{} are enabled for entity {}, which {}", device.name,
+                                        in_quotes(entity.id), *what));
+      }
+    }
+  }
+};
+
+/// Faults of a controller that only matter once somebody uses it.
+void check_sections(const Reading& reading, const Controller& controller, const Entity& entity,
+                    ControllerUse& use) {
+  const auto lacks = [&](const char* name) {
+    reading.document.fault(controller.where,
+                           fmt::format("controller {} lacks the element <{}>; write <{}/> in it",
+                                       in_quotes(controller.id), name, name));
+  };
+  if (!use.has_actuators) lacks("actuators");
+  if (!use.has_sensors) lacks("sensors");
+  use.has_actuators = use.has_sensors = true;  // said once
+  if (!use.has_params && !entity.overrides_params && controller.lua) {
+    lacks("params");
+    use.has_params = true;
+  }
+}
+
+void check_use(Reading& reading, const Entity& entity) {
+  const Controller& controller = reading.scene.controllers[*entity.controller];
+  ControllerUse& use = reading.uses[*entity.controller];
+  check_sections(reading, controller, entity, use);
+  if (entity.kind != EntityKind::prototype || use.faults > most_faults_with_entities) return;
+  const Check check{reading, entity, use};
+  check.check_joints(controller.devices);
+  check.check_cameras(controller.devices);
+  check.check_components();
+}
+
+}  // namespace
+
+void read_controllers(Reading& reading, Element& root) {
+  auto controllers = root.required_child("controllers");
+  if (!controllers) return;
+  for (Element& element : controllers->children()) {
+    if (element.name().size() > longest_type) {
+      reading.document.fault(element.where(),
+                             fmt::format("{} is too long for a type of controller; "
+                                         "write lua_controller",
+                                         in_quotes(element.name())));
+    } else if (const auto why = unsupported_element(element.name())) {
+      reading.document.fault(element.where(),
+                             fmt::format("<{}> is not supported; {}", element.name(), *why));
+    } else {
+      read_controller(reading, element);
+    }
+  }
+  controllers->done();
+}
+
+void read_controller_of(Reading& reading, Element& element, Entity& entity) {
+  auto user = element.child("controller");
+  if (!user) return;
+  const std::string id = user->required("config", identifier);
+  if (auto params = user->child("params")) {
+    entity.overrides_params = true;
+    entity.params = params->all_attributes();
+    params->done();
+  }
+  user->done();
+  if (id.empty()) return;
+  const auto found = reading.controllers.find(id);
+  if (found == reading.controllers.end()) {
+    std::vector<std::string> known;
+    for (const Controller& controller : reading.scene.controllers) known.push_back(controller.id);
+    user->fault_at("config", known.empty() ? "names no controller; write it in <controllers>"
+                                           : "names no controller; " + advice(id, known));
+    return;
+  }
+  entity.controller = found->second;
+  check_use(reading, entity);
+}
+
+}  // namespace ziggurat::scene

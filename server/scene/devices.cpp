@@ -1,0 +1,240 @@
+// <devices> of a prototype, and <leds> of a box or cylinder.
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr unsigned most_ring_sensors = 1000;
+
+/// The id of a device: as written, or `<stem>_<N>`.
+std::string read_device_id(Element& device, std::string_view stem, Ids& ids) {
+  if (!device.has("id")) return ids.next(stem);
+  std::string id = device.optional("id", identifier, "");
+  if (!id.empty() && !ids.add(id)) {
+    device.fault_at("id", fmt::format("is the id of an earlier {}; give each its own", stem));
+  }
+  return id;
+}
+
+/// Reads the children of a container, all of one name.
+template <class Device, class Read>
+std::vector<Device> read_container(Element& container, std::string_view name, Read read) {
+  std::vector<Device> devices;
+  Ids ids;
+  for (Element& element : container.children()) {
+    if (element.name() != name) {
+      element.unknown_in(container.name(), std::array{name});
+      continue;
+    }
+    Device device = read(element, read_device_id(element, name, ids));
+    device.where = element.where();
+    devices.push_back(std::move(device));
+    element.done();
+  }
+  container.done();
+  return devices;
+}
+
+void read_directional_leds(Reading& reading, Element& container, Entity& entity) {
+  Devices& devices = entity.devices;
+  reading.document.no_effect_yet(container.where(), "directional LEDs");
+  devices.directional_led_medium = read_medium(reading, container, MediumKind::directional_led);
+  devices.directional_leds = read_container<DirectionalLed>(
+      container, "directional_led", [&reading](Element& element, std::string id) {
+        const Anchor anchor = read_anchor(reading, element);
+        const math::Pose pose{element.required("position", position),
+                              element.required("orientation", orientation)};
+        const double angle_seen = element.required("observable_angle", half_angle);
+        return DirectionalLed{
+            std::move(id), anchor, pose, angle_seen, element.optional("color", color, Color{}), {}};
+      });
+}
+
+void read_tags(Reading& reading, Element& container, Entity& entity) {
+  reading.document.no_effect_yet(container.where(), "tags");
+  entity.devices.tag_medium = read_medium(reading, container, MediumKind::tag);
+  entity.devices
+      .tags = read_container<Tag>(container, "tag", [&reading](Element& element, std::string id) {
+    const Anchor anchor = read_anchor(reading, element);
+    const math::Pose pose{element.required("position", position),
+                          element.required("orientation", orientation)};
+    const double angle_seen = element.required("observable_angle", half_angle);
+    const double side = element.required("side_length", length, 1.0);
+    return Tag{
+        std::move(id), anchor, pose, angle_seen, side, element.optional("payload", text, ""), {}};
+  });
+}
+
+void read_radios(Reading& reading, Element& container, Entity& entity) {
+  reading.document.no_effect_yet(container.where(), "radios");
+  entity.devices.radio_medium = read_medium(reading, container, MediumKind::radio);
+  entity.devices.radios =
+      read_container<Radio>(container, "radio", [&reading](Element& element, std::string id) {
+        const Anchor anchor = read_anchor(reading, element);
+        element.without_effect("orientation", orientation, "radios reach equally far all around");
+        element.without_effect("duplex_mode", text, "radios send and receive in the same tick");
+        const math::Vector3 at = element.required("position", position);
+        return Radio{std::move(id), anchor, at, element.required("range", positive, 1.0), {}};
+      });
+}
+
+void read_magnets(Reading& reading, Element& container, Entity& entity) {
+  reading.document.no_effect_yet(container.where(), "magnets and <magnetism>");
+  entity.devices.magnets =
+      read_container<Magnet>(container, "magnet", [&reading](Element& element, std::string id) {
+        const Anchor anchor = read_anchor(reading, element);
+        const math::Vector3 offset = element.required("offset", position);
+        const math::Vector3 passive = element.required("passive_field", vector3);
+        return Magnet{std::move(id),
+                      anchor,
+                      offset,
+                      passive,
+                      element.optional("active_field", vector3, math::Vector3::Zero()),
+                      {}};
+      });
+}
+
+void read_proximity_sensor(Reading& reading, Element& element, Entity& entity) {
+  const Anchor anchor = read_anchor(reading, element);
+  const math::Vector3 offset = element.required("offset", position);
+  const math::Vector3 along = element.required("direction", direction, math::Vector3::UnitX());
+  const double reach = element.required("range", length, 1.0);
+  element.done();
+  entity.devices.proximity_sensors.push_back({anchor, offset, along, reach, element.where()});
+}
+
+struct RingDefaults {
+  std::optional<math::Vector3> center;
+  std::optional<double> radius, range, start_angle;
+  std::optional<unsigned> num_sensors;
+};
+
+/// What <proximity_sensors> itself says for rings that leave it out, as beta50 reads it.
+RingDefaults read_ring_defaults(Element& container) {
+  return {container.optional("center", position), container.optional("radius", length),
+          container.optional("range", length), container.optional("start_angle", angle),
+          container.optional("num_sensors", positive_count)};
+}
+
+template <class Read, class T>
+T required_or(Element& element, const char* name, Read read, const std::optional<T>& usual,
+              T fallback) {
+  if (usual && !element.has(name)) {
+    element.optional(name, read);
+    return *usual;
+  }
+  return element.required(name, read, fallback);
+}
+
+void read_ring(Reading& reading, Element& ring, const RingDefaults& usual, Entity& entity) {
+  const Anchor anchor = read_anchor(reading, ring);
+  const math::Vector3 center =
+      ring.optional("center", position, usual.center.value_or(math::Vector3::Zero()));
+  const double start = ring.optional("start_angle", angle, usual.start_angle.value_or(0.0));
+  const double radius = required_or(ring, "radius", length, usual.radius, 1.0);
+  const double reach = required_or(ring, "range", length, usual.range, 1.0);
+  const unsigned number_of_sensors =
+      required_or(ring, "num_sensors", positive_count, usual.num_sensors, 1u);
+  ring.done();
+  if (number_of_sensors > most_ring_sensors) {
+    ring.fault_at("num_sensors", fmt::format("is too many; write at most {}", most_ring_sensors));
+    return;
+  }
+  for (unsigned i = 0; i < number_of_sensors; ++i) {
+    const double turn = start + 2.0 * std::numbers::pi * i / number_of_sensors;
+    const math::Vector3 outward(std::cos(turn), std::sin(turn), 0.0);
+    entity.devices.proximity_sensors.push_back(
+        {anchor, center + radius * outward, outward, reach, ring.where()});
+  }
+}
+
+void read_proximity_sensors(Reading& reading, Element& container, Entity& entity) {
+  constexpr std::array<std::string_view, 2> known{"sensor", "ring"};
+  reading.document.no_effect_yet(container.where(), "proximity sensors");
+  const RingDefaults usual = read_ring_defaults(container);
+  std::vector<Element> children = container.children();
+  if (children.empty()) container.fault("has no sensor; write <sensor …> or <ring …> in it");
+  for (Element& child : children) {
+    if (child.name() == "sensor") {
+      read_proximity_sensor(reading, child, entity);
+    } else if (child.name() == "ring") {
+      read_ring(reading, child, usual, entity);
+    } else {
+      child.unknown_in(container.name(), known);
+    }
+  }
+  container.done();
+}
+
+struct Container {
+  std::string_view name;
+  void (*read)(Reading&, Element&, Entity&);
+};
+
+constexpr std::array<Container, 6> containers{{
+    {"leds", read_leds},
+    {"directional_leds", read_directional_leds},
+    {"tags", read_tags},
+    {"radios", read_radios},
+    {"magnets", read_magnets},
+    {"proximity_sensors", read_proximity_sensors},
+}};
+
+void read_device_container(Reading& reading, Element& element, Entity& entity) {
+  for (const Container& container : containers) {
+    if (container.name == element.name()) return container.read(reading, element, entity);
+  }
+  std::array<std::string_view, containers.size()> known;
+  for (std::size_t i = 0; i < known.size(); ++i) known[i] = containers[i].name;
+  element.unknown_in("devices", known);
+}
+
+}  // namespace
+
+Anchor read_anchor(Reading& reading, Element& element) {
+  const std::string id = element.required("anchor", identifier);
+  if (id.empty() || id == "origin") return {};
+  const auto found = reading.anchors.find(id);
+  if (found != reading.anchors.end()) return {static_cast<int>(found->second)};
+  element.fault_at("anchor", "names no anchor; " + advice(id, anchor_names(reading)));
+  return {};
+}
+
+std::vector<std::string> anchor_names(const Reading& reading) {
+  std::vector<std::string> names(reading.anchors.size());
+  for (const auto& [id, link] : reading.anchors) names[link] = id;
+  names.insert(names.begin(), "origin");
+  return names;
+}
+
+void read_leds(Reading& reading, Element& container, Entity& entity) {
+  reading.document.no_effect_yet(container.where(), "LEDs");
+  entity.devices.led_medium = read_medium(reading, container, MediumKind::led);
+  entity.devices.leds =
+      read_container<Led>(container, "led", [&reading](Element& element, std::string id) {
+        const Anchor anchor = read_anchor(reading, element);
+        const math::Vector3 offset = element.required("offset", position);
+        return Led{std::move(id), anchor, offset, element.required("color", color), {}};
+      });
+}
+
+void read_devices(Reading& reading, Element& element, Entity& entity) {
+  auto devices = element.child("devices");
+  if (!devices) return;
+  Ids seen;
+  for (Element& container : devices->children()) {
+    if (!seen.add(std::string(container.name()))) {
+      container.fault("is the second of its kind; write all devices of a kind into one element");
+      continue;
+    }
+    read_device_container(reading, container, entity);
+  }
+  devices->done();
+}
+
+}  // namespace ziggurat::scene

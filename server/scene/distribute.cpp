@@ -1,0 +1,149 @@
+// <distribute>: how many copies of one entity, and how their poses are drawn.
+
+#include <array>
+#include <limits>
+
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr unsigned most_copies = 1'000'000;  // of all <distribute> together
+
+void read_uniform(Element& element, Generator& out) {
+  out.first = element.required("min", vector3);
+  out.second = element.required("max", vector3);
+  if ((out.first.array() > out.second.array()).any() && element.has("min") && element.has("max")) {
+    element.fault_at("min", "is above max in a component; write min <= max in each");
+  }
+}
+
+Generator read_generator(Element element) {
+  Generator out;
+  out.method =
+      element.required("method",
+                       OneOf<DistributionMethod>{{"uniform", DistributionMethod::uniform},
+                                                 {"gaussian", DistributionMethod::gaussian},
+                                                 {"constant", DistributionMethod::constant},
+                                                 {"grid", DistributionMethod::grid}},
+                       DistributionMethod::uniform);
+  switch (out.method) {
+    case DistributionMethod::uniform:
+      read_uniform(element, out);
+      break;
+    case DistributionMethod::gaussian:
+      out.first = element.required("mean", vector3);
+      out.second = element.required("std_dev", non_negative_vector3);
+      break;
+    case DistributionMethod::constant:
+      out.first = element.required("values", vector3);
+      break;
+    case DistributionMethod::grid:
+      out.first = element.required("center", vector3);
+      out.second = element.required("distances", vector3);
+      out.layout = element.required("layout", cells, {1, 1, 1});
+      break;
+  }
+  element.done();
+  return out;
+}
+
+/// Whether a grid has a cell for each of `quantity` entities.
+bool has_room(const Generator& generator, unsigned quantity) {
+  if (generator.method != DistributionMethod::grid) return true;
+  std::uint64_t total = 1;
+  for (const unsigned n : generator.layout) {
+    if (total >= quantity) return true;
+    total *= n;  // at most 2^32 * 2^32
+  }
+  return total >= quantity;
+}
+
+void read_quantities(Element& entity, Distribution& out) {
+  out.quantity = entity.required("quantity", count);
+  out.max_trials = entity.required("max_trials", count);
+  out.base_num = entity.optional("base_num", count, 0);
+  if (out.base_num > std::numeric_limits<unsigned>::max() - out.quantity) {
+    entity.fault_at("base_num", "makes numbers above 4294967295; write less");
+    out.quantity = 0;
+  }
+  if (out.quantity > most_copies) {
+    entity.fault_at("quantity", fmt::format("is too many; write at most {}", most_copies));
+    out.quantity = 0;
+  }
+  for (const auto& [generator, name] :
+       {std::pair(&out.position, "position"), std::pair(&out.orientation, "orientation")}) {
+    if (has_room(*generator, out.quantity)) continue;
+    const auto& [x, y, z] = generator->layout;
+    entity.fault_at("quantity", fmt::format("is more than the {}x{}x{} cells of its {} grid; "
+                                            "enlarge layout or write less",
+                                            x, y, z, name));
+  }
+}
+
+/// Takes the ids of all copies; a taken one is a fault, once.
+void take_ids(Reading& reading, Element& pattern, const std::string& id, const Distribution& out) {
+  if (id.empty()) return;
+  for (unsigned i = 0; i < out.quantity; ++i) {
+    const std::string copy = id + std::to_string(out.base_num + i);
+    if (reading.entity_ids.add(copy)) continue;
+    pattern.fault_at("id", fmt::format("makes a copy called {}, which is the id of another entity; "
+                                       "choose another id or base_num",
+                                       in_quotes(copy)));
+    return;
+  }
+}
+
+void read_pattern(Reading& reading, Element& pattern, Distribution& out) {
+  constexpr std::array<std::string_view, 6> known{"box",      "cylinder", "prototype",
+                                                  "foot-bot", "e-puck",   "light"};
+  if (is_entity(pattern.name())) {
+    out.entity = read_entity(reading, pattern, Placement::distributed);
+    take_ids(reading, pattern, out.entity.id, out);
+    reading.scene.distributions.push_back(std::move(out));
+  } else if (pattern.name() == "light") {
+    const std::string id = read_light(reading, pattern, Placement::distributed);
+    take_ids(reading, pattern, id, out);
+  } else {
+    pattern.unknown_in("entity", known);
+  }
+}
+
+std::uint64_t copies_so_far(const Scene& scene) {
+  std::uint64_t copies = 0;
+  for (const Distribution& distribution : scene.distributions) copies += distribution.quantity;
+  return copies;
+}
+
+}  // namespace
+
+void read_distribution(Reading& reading, Element& element) {
+  Distribution out;
+  out.where = element.where();
+  if (auto position = element.required_child("position")) out.position = read_generator(*position);
+  if (auto orientation = element.required_child("orientation")) {
+    out.orientation = read_generator(*orientation);
+  }
+  auto entity = element.required_child("entity");
+  element.done();
+  if (!entity) return;
+  read_quantities(*entity, out);
+  std::vector<Element> patterns = entity->children();
+  entity->done();
+  if (patterns.empty()) {
+    entity->fault("has nothing to distribute; write one entity, such as <box …>, in it");
+    return;
+  }
+  if (patterns.size() > 1) {
+    reading.document.notice(patterns[1].where(),
+                            "only the first entity of a <distribute> has an effect");
+  }
+  if (copies_so_far(reading.scene) + out.quantity > most_copies) {
+    entity->fault_at("quantity", fmt::format("makes more than {} distributed entities; write less",
+                                             most_copies));
+    return;
+  }
+  read_pattern(reading, patterns.front(), out);
+}
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,355 @@
+#include "scene/document.h"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr std::size_t most_faults = 1000;
+
+/// The offset of the first byte that is not well-formed UTF-8, or npos.
+std::size_t first_bad_utf8(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned char lead = byte(i);
+    const std::size_t size = lead < 0x80   ? 1
+                             : lead < 0xC2 ? 0
+                             : lead < 0xE0 ? 2
+                             : lead < 0xF0 ? 3
+                             : lead < 0xF5 ? 4
+                                           : 0;
+    if (size == 0 || size > text.size() - i) return i;
+    for (std::size_t k = 1; k < size; ++k) {
+      if ((byte(i + k) & 0xC0) != 0x80) return i;
+    }
+    if (size > 2) {
+      const unsigned char second = byte(i + 1);
+      if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F) ||
+          (lead == 0xF0 && second < 0x90) || (lead == 0xF4 && second > 0x8F)) {
+        return i;
+      }
+    }
+    i += size;
+  }
+  return std::string_view::npos;
+}
+
+/// What to say about the parser's complaint.
+std::string complaint(const pugi::xml_parse_result& result, bool at_end) {
+  if (at_end) return "the file ends too early; close every element that was opened";
+  switch (result.status) {
+    case pugi::status_no_document_element:
+      return "there is no element; write <argos-configuration> … </argos-configuration>";
+    case pugi::status_unrecognized_tag:
+    case pugi::status_bad_start_element:
+      return "this is no element; write &lt; for a literal <";
+    case pugi::status_bad_attribute:
+      return "this attribute is malformed; write name=\"value\"";
+    case pugi::status_bad_end_element:
+      return "this closing tag is malformed; write </name>";
+    case pugi::status_end_element_mismatch:
+      return "this closing tag closes nothing that is open here; close elements in reverse order "
+             "of opening";
+    case pugi::status_bad_comment:
+      return "this comment is not closed; end it with -->";
+    case pugi::status_bad_pi:
+      return "this <? is not closed; end it with ?>";
+    case pugi::status_bad_cdata:
+      return "this CDATA section is not closed; end it with ]]>";
+    case pugi::status_bad_doctype:
+      return "this document type declaration is malformed; remove it";
+    default:
+      return result.description();
+  }
+}
+
+}  // namespace
+
+Document::Document(std::string text, std::string name, std::size_t file, const ReadOptions& options)
+    : source_(std::move(text)), name_(std::move(name)), file_(file), options_(options) {
+  line_starts_.push_back(0);
+  for (std::size_t i = 0; i < source_.size(); ++i) {
+    if (source_[i] == '\n') line_starts_.push_back(i + 1);
+  }
+  if (check_text()) parse();
+}
+
+bool Document::check_text() {
+  if (trimmed(source_).empty()) {
+    fault({file_, 0, 0}, "the file is empty; a scene begins with <argos-configuration>");
+    return false;
+  }
+  if (const std::size_t nul = source_.find('\0'); nul != std::string::npos) {
+    fault(at(nul), "this is binary data, not a scene; write an XML file in UTF-8");
+    return false;
+  }
+  if (const std::size_t bad = first_bad_utf8(source_); bad != std::string_view::npos) {
+    fault(at(bad), "this is not UTF-8; save the file in UTF-8");
+    return false;
+  }
+  return true;
+}
+
+void Document::parse() {
+  buffer_ = source_;
+  constexpr unsigned options = pugi::parse_default | pugi::parse_doctype;
+  const pugi::xml_parse_result result =
+      tree_.load_buffer_inplace(buffer_.data(), buffer_.size(), options, pugi::encoding_utf8);
+  check_doctype();
+  if (!result) {
+    const auto offset = std::min(
+        static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)), source_.size());
+    const bool at_end = trimmed(std::string_view(source_).substr(offset)).empty() &&
+                        result.status != pugi::status_no_document_element;
+    fault(at(offset), "malformed XML: " + complaint(result, at_end));
+    return;
+  }
+  root_ = tree_.document_element();
+  for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling()) {
+    if (node.type() != pugi::node_element) continue;
+    fault(locate(node.name() - 1),
+          fmt::format("a second root element, <{}>; a file has one", node.name()));
+  }
+}
+
+void Document::check_doctype() {
+  for (const pugi::xml_node node : tree_.children()) {
+    if (node.type() != pugi::node_doctype) continue;
+    const bool entities = std::string_view(node.value()).find("<!ENTITY") != std::string_view::npos;
+    if (entities) {
+      fault(locate(node.value()),
+            "the document type declares entities, which are never expanded here; write the text "
+            "itself");
+    } else {
+      notice(locate(node.value()), "the document type declaration has no effect here");
+    }
+  }
+}
+
+Location Document::at(std::size_t offset) const {
+  const auto next = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
+  const auto line = static_cast<std::size_t>(next - line_starts_.begin());
+  return {file_, static_cast<unsigned>(line),
+          static_cast<unsigned>(offset - line_starts_[line - 1] + 1)};
+}
+
+Location Document::locate(const char* character) const {
+  return at(static_cast<std::size_t>(character - buffer_.data()));
+}
+
+std::string_view Document::raw(const pugi::xml_attribute& attribute) const {
+  const auto begin = static_cast<std::size_t>(attribute.value() - buffer_.data());
+  return std::string_view(source_).substr(begin, source_.find(source_[begin - 1], begin) - begin);
+}
+
+void Document::add(Problem::Severity severity, Location where, std::string text) {
+  if (!subject.empty()) text += fmt::format(" (in {})", subject);
+  problems_.push_back({severity, name_, where, std::move(text)});
+}
+
+void Document::fault(Location where, std::string text) {
+  add(Problem::Severity::fault, where, std::move(text));
+  if (++faults_ < most_faults) return;
+  subject.clear();
+  problems_.push_back({Problem::Severity::fault, name_, where,
+                       fmt::format("{} faults; the rest of the file was not read", faults_)});
+  throw TooManyFaults{};
+}
+
+void Document::notice(Location where, std::string text) {
+  if (!noticed_.insert(text).second) return;
+  problems_.push_back({Problem::Severity::notice, name_, where, std::move(text)});
+}
+
+void Document::no_effect_yet(Location where, std::string_view subject_of_notice) {
+  notice(where, fmt::format("{} are checked, but have no effect yet", subject_of_notice));
+}
+
+std::vector<Problem> Document::problems() const {
+  std::vector<Problem> sorted = problems_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Problem& a, const Problem& b) {
+    return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
+  });
+  return sorted;
+}
+
+// --- Element ------------------------------------------------------------------------------------
+
+Location Element::where() const { return document_->locate(node_.name() - 1); }
+
+Location Element::where(const char* attribute) const {
+  const pugi::xml_attribute found = node_.attribute(attribute);
+  if (found.empty()) return where();
+  const std::string_view raw = document_->raw(found);
+  const std::string_view text = trimmed(raw);
+  const std::size_t skipped = text.empty() ? 0 : static_cast<std::size_t>(text.data() - raw.data());
+  return document_->locate(found.value() + skipped);
+}
+
+std::optional<std::string> Element::take(const char* attribute) {
+  asked_attributes_.push_back(attribute);
+  const pugi::xml_attribute found = node_.attribute(attribute);
+  if (found.empty()) return std::nullopt;
+  check_references(found);
+  return std::string(trimmed(found.value()));
+}
+
+void Element::check_references(const pugi::xml_attribute& attribute) const {
+  const std::string_view raw = document_->raw(attribute);
+  for (std::size_t begin = raw.find('&'); begin != std::string_view::npos;
+       begin = raw.find('&', begin + 1)) {
+    const std::size_t end = raw.find(';', begin);
+    const std::string_view name =
+        end == std::string_view::npos ? "" : raw.substr(begin + 1, end - begin - 1);
+    constexpr std::string_view known[] = {"amp", "lt", "gt", "quot", "apos"};
+    if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
+    unsigned code = 0;
+    if (name.starts_with('#')) {
+      const bool hexadecimal = name.size() > 1 && name[1] == 'x';
+      const std::string_view digits = name.substr(hexadecimal ? 2 : 1);
+      const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code,
+                                                 hexadecimal ? 16 : 10);
+      if (error != std::errc() || stop != digits.data() + digits.size()) code = 0;
+    }
+    const bool white = code == 0x9 || code == 0xA || code == 0xD;
+    const bool character = (code >= 0x20 && code <= 0x10FFFF && !(code >= 0xD800 && code < 0xE000));
+    if (white || character) continue;
+    document_->fault(document_->locate(attribute.value()),
+                     fmt::format("{}={} of <{}> has the reference {}, which stands for no "
+                                 "character; write &amp; for a literal &",
+                                 attribute.name(), in_quotes(raw), this->name(),
+                                 in_quotes(raw.substr(begin, name.size() + 2))));
+    return;
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> Element::all_attributes() {
+  any_attribute_ = true;
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const pugi::xml_attribute attribute : node_.attributes()) {
+    check_references(attribute);
+    result.emplace_back(attribute.name(), trimmed(attribute.value()));
+  }
+  return result;
+}
+
+std::optional<Element> Element::child(const char* name) {
+  asked_children_.push_back(name);
+  const pugi::xml_node found = node_.child(name);
+  if (!found) return std::nullopt;
+  if (const pugi::xml_node second = found.next_sibling(name)) {
+    document_->notice(document_->locate(second.name() - 1),
+                      fmt::format("a second <{}> in <{}> has no effect: the first one counts", name,
+                                  this->name()));
+  }
+  return Element(*document_, found);
+}
+
+std::optional<Element> Element::required_child(const char* name) {
+  std::optional<Element> found = child(name);
+  if (!found) fault(fmt::format("lacks the element <{0}>; write <{0} …> in it", name));
+  return found;
+}
+
+std::vector<Element> Element::children() {
+  any_child_ = true;
+  std::vector<Element> result;
+  for (const pugi::xml_node node : node_.children()) {
+    if (node.type() == pugi::node_element) result.emplace_back(*document_, node);
+  }
+  return result;
+}
+
+void Element::child_without_effect(const char* name, std::string_view why) {
+  asked_children_.push_back(name);
+  if (const pugi::xml_node found = node_.child(name)) {
+    document_->notice(document_->locate(found.name() - 1),
+                      fmt::format("<{}> has no effect here: {}", name, why));
+  }
+}
+
+void Element::done() {
+  check_repeated_attributes();
+  for (const pugi::xml_attribute attribute : node_.attributes()) {
+    if (any_attribute_) break;
+    const std::string_view name = attribute.name();
+    if (std::find(asked_attributes_.begin(), asked_attributes_.end(), name) ==
+        asked_attributes_.end()) {
+      report_unknown_attribute(attribute);
+    }
+  }
+  for (const pugi::xml_node node : node_.children()) {
+    if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
+      document_->notice(document_->locate(node.value()),
+                        fmt::format("the text {} in <{}> has no effect here",
+                                    in_quotes(trimmed(node.value())), name()));
+    }
+    if (node.type() != pugi::node_element || any_child_) continue;
+    if (std::find(asked_children_.begin(), asked_children_.end(), node.name()) ==
+        asked_children_.end()) {
+      Element(*document_, node).unknown_in(name(), asked_children_);
+    }
+  }
+}
+
+void Element::check_repeated_attributes() const {
+  std::vector<std::pair<std::string_view, const char*>> names;
+  for (const pugi::xml_attribute attribute : node_.attributes()) {
+    names.emplace_back(attribute.name(), attribute.name());
+  }
+  std::sort(names.begin(), names.end());
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    if (names[i].first != names[i - 1].first) continue;
+    document_->fault(document_->locate(names[i].second),
+                     fmt::format("malformed XML: <{}> has the attribute {} twice; write it once",
+                                 name(), in_quotes(names[i].first)));
+  }
+}
+
+void Element::report_unknown_attribute(const pugi::xml_attribute& attribute) const {
+  const Location where = document_->locate(attribute.name());
+  const std::string_view name = attribute.name();
+  const std::span<const std::string_view> known(asked_attributes_);
+  if (document_->options().lenient) {
+    document_->notice(where, fmt::format("unknown attribute {} of <{}> has no effect; {}",
+                                         in_quotes(name), this->name(), advice(name, known)));
+    return;
+  }
+  if (const auto why = unsupported_attribute(name)) {
+    document_->fault(where, fmt::format("the attribute {}={} of <{}> is not supported; {}", name,
+                                        in_quotes(attribute.value()), this->name(), *why));
+    return;
+  }
+  document_->fault(where, fmt::format("<{}> has an unknown attribute {}={}; {}", this->name(), name,
+                                      in_quotes(attribute.value()), advice(name, known)));
+}
+
+void Element::unknown_in(std::string_view parent, std::span<const std::string_view> known) const {
+  if (const auto why = unsupported_element(name())) {
+    document_->fault(where(), fmt::format("<{}> is not supported; {}", name(), *why));
+    return;
+  }
+  document_->fault(where(), fmt::format("unknown element <{}> in <{}>; {}", name(), parent,
+                                        advice(name(), known)));
+}
+
+void Element::fault_at(const char* attribute, std::string_view text) const {
+  document_->fault(
+      where(attribute),
+      fmt::format("{}={} of <{}> {}", attribute,
+                  in_quotes(trimmed(node_.attribute(attribute).value())), name(), text));
+}
+
+void Element::fault(std::string_view text) const {
+  document_->fault(where(), fmt::format("<{}> {}", name(), text));
+}
+
+void Element::missing(const char* attribute) const {
+  fault(fmt::format("lacks the attribute {0}; write {0}=\"…\"", attribute));
+}
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,189 @@
+#pragma once
+// A scene file as XML: elements and attributes with their line and column, and a record of which
+// of them somebody asked for, so that whatever nobody knows is found by itself.
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <pugixml.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <unordered_set>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "scene/names.h"
+#include "scene/reader.h"
+#include "scene/values.h"
+
+namespace ziggurat::scene {
+
+/// Thrown when so many faults were found that reading on makes no sense; ends a reading early.
+struct TooManyFaults {};
+
+/// One parsed file and what was found wrong with it.
+class Document {
+ public:
+  /// Parses; what is wrong with the text itself (not UTF-8, malformed, …) is a fault.
+  Document(std::string text, std::string name, std::size_t file, const ReadOptions& options);
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+
+  /// The root element; empty if the text is no well-formed document.
+  pugi::xml_node root() const { return root_; }
+
+  void fault(Location where, std::string text);
+  void notice(Location where, std::string text);  ///< each text once
+
+  /// Notice that something is read and checked, and does nothing yet: each subject once.
+  /// @param subject  plural, for example "radios"
+  void no_effect_yet(Location where, std::string_view subject);
+
+  /// Where a character of the parsed text stands.
+  Location locate(const char* character) const;
+
+  /// The attribute's text as written, before character references are replaced.
+  std::string_view raw(const pugi::xml_attribute& attribute) const;
+
+  const ReadOptions& options() const { return options_; }
+
+  /// All problems so far, in document order.
+  std::vector<Problem> problems() const;
+
+  /// Named in messages while it stands, for example `prototype "vehicle"`.
+  std::string subject;
+
+ private:
+  void parse();
+  bool check_text();
+  void check_doctype();
+  Location at(std::size_t offset) const;
+  void add(Problem::Severity severity, Location where, std::string text);
+
+  std::string source_;  ///< as read
+  std::string buffer_;  ///< what the parser works in: same offsets, changed characters
+  std::string name_;
+  std::size_t file_;
+  ReadOptions options_;
+  std::vector<std::size_t> line_starts_;
+  pugi::xml_document tree_;
+  pugi::xml_node root_;
+  std::vector<Problem> problems_;
+  std::size_t faults_ = 0;
+  std::unordered_set<std::string> noticed_;
+};
+
+/// One element being read. Ask for what it may hold, then call done().
+class Element {
+ public:
+  Element(Document& document, pugi::xml_node node) : document_(&document), node_(node) {}
+
+  std::string_view name() const { return node_.name(); }
+  Location where() const;
+  Document& document() const { return *document_; }
+
+  /// Where an attribute's value begins, or the element if it has none of that name.
+  Location where(const char* attribute) const;
+  bool has(const char* attribute) const { return !node_.attribute(attribute).empty(); }
+
+  /// What a reader of values gives.
+  template <class Read>
+  using ValueOf = std::variant_alternative_t<0, std::invoke_result_t<Read, std::string_view>>;
+
+  /// The attribute's value, or nothing if it is missing or wrong; a wrong one is a fault.
+  template <class Read>
+  std::optional<ValueOf<Read>> optional(const char* attribute, Read read) {
+    const std::optional<std::string> text = take(attribute);
+    if (!text) return std::nullopt;
+    auto value = read(std::string_view(*text));
+    if (const Wrong* wrong = std::get_if<1>(&value)) {
+      fault_at(attribute, wrong->text);
+      return std::nullopt;
+    }
+    return std::get<0>(std::move(value));
+  }
+
+  /// The same with a default.
+  template <class Read>
+  ValueOf<Read> optional(const char* attribute, Read read, ValueOf<Read> fallback) {
+    return optional(attribute, read).value_or(std::move(fallback));
+  }
+
+  /// The attribute's value; a missing or wrong one is a fault and gives zero or nothing.
+  template <class Read>
+  ValueOf<Read> required(const char* attribute, Read read) {
+    return required(attribute, read, blank<ValueOf<Read>>());
+  }
+
+  /// The same, giving `fallback` after a fault.
+  template <class Read>
+  ValueOf<Read> required(const char* attribute, Read read, ValueOf<Read> fallback) {
+    if (!has(attribute)) missing(attribute);
+    return optional(attribute, read).value_or(std::move(fallback));
+  }
+
+  /// Checks an attribute that does nothing here, and says so.
+  template <class Read>
+  void without_effect(const char* attribute, Read read, std::string_view why) {
+    if (!has(attribute)) return;
+    optional(attribute, read);
+    document_->notice(where(attribute),
+                      fmt::format("{} of <{}> has no effect here: {}", attribute, name(), why));
+  }
+
+  /// All attributes, trimmed, whatever their names: for <params>.
+  std::vector<std::pair<std::string, std::string>> all_attributes();
+
+  /// The child of that name, if there is one; a second one is a notice.
+  std::optional<Element> child(const char* name);
+  /// The same; none is a fault.
+  std::optional<Element> required_child(const char* name);
+  /// All children, for a caller that knows what to do with each name.
+  std::vector<Element> children();
+  /// Children that do nothing here, with everything in them.
+  void child_without_effect(const char* name, std::string_view why);
+
+  /// Reports attributes and children that nobody asked for, repeated attributes, and text.
+  void done();
+
+  /// Reports this element as one that its parent can't hold.
+  /// @param known  what the parent may hold
+  void unknown_in(std::string_view parent, std::span<const std::string_view> known) const;
+
+  /// `attribute="value" of <element> <text>`, at the value.
+  void fault_at(const char* attribute, std::string_view text) const;
+  /// `<element> <text>`, at the element.
+  void fault(std::string_view text) const;
+  void missing(const char* attribute) const;
+
+ private:
+  template <class T>
+  static T blank() {
+    if constexpr (requires { T::Zero(); }) {
+      return T::Zero();
+    } else if constexpr (requires { T::Identity(); }) {
+      return T::Identity();
+    } else {
+      return T{};
+    }
+  }
+
+  std::optional<std::string> take(const char* attribute);
+  void check_references(const pugi::xml_attribute& attribute) const;
+  void check_repeated_attributes() const;
+  void report_unknown_attribute(const pugi::xml_attribute& attribute) const;
+
+  Document* document_;
+  pugi::xml_node node_;
+  std::vector<std::string_view> asked_attributes_;
+  std::vector<std::string_view> asked_children_;
+  bool any_attribute_ = false;
+  bool any_child_ = false;
+};
+
+}  // namespace ziggurat::scene

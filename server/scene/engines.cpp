@@ -1,0 +1,111 @@
+// <physics_engines>: one three-dimensional world. Its defaults for surfaces and damping are read
+// before any body is.
+
+#include <array>
+
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr double usual_gravity = 10.0;  // [m/s^2], the dialect's default of `g`
+constexpr std::array<std::string_view, 2> engine_names{"dynamics3d", "dynamics2d"};
+
+void read_floor(Reading& reading, Element floor) {
+  Floor& out = reading.scene.physics.floor.emplace();
+  out.height = floor.optional("height", non_negative, 0.0);
+  out.surface = read_surface(reading, floor, Surface{});
+  floor.done();
+}
+
+void read_gravity(Reading& reading, Element gravity) {
+  reading.scene.physics.gravity = gravity.optional("g", number, usual_gravity);
+  gravity.done();
+}
+
+void read_magnetism(Reading& reading, Element magnetism) {
+  reading.document.no_effect_yet(magnetism.where(), "magnets and <magnetism>");
+  Magnetism& out = reading.scene.physics.magnetism.emplace();
+  out.force_constant = magnetism.optional("force_constant", non_negative, out.force_constant);
+  out.max_distance = magnetism.optional("max_distance", positive);
+  magnetism.done();
+}
+
+void read_dynamics3d(Reading& reading, Element& engine) {
+  Physics& physics = reading.scene.physics;
+  physics.clock =
+      engine.optional("clock", OneOf<Clock>{{"nominal", Clock::nominal}, {"beta50", Clock::beta50}},
+                      Clock::nominal);
+  physics.max_substep = engine.optional("max_substep", positive);
+  physics.solver_iterations = engine.optional("solver_iterations", positive_count);
+  reading.defaults.friction = engine.optional("friction", non_negative);
+  reading.defaults.rolling_friction = engine.optional("rolling_friction", non_negative);
+  reading.defaults.linear_damping = engine.optional("linear_damping", non_negative);
+  reading.defaults.angular_damping = engine.optional("angular_damping", non_negative);
+  if (auto floor = engine.child("floor")) read_floor(reading, *floor);
+  if (auto gravity = engine.child("gravity")) read_gravity(reading, *gravity);
+  if (auto magnetism = engine.child("magnetism")) read_magnetism(reading, *magnetism);
+  engine.done();
+}
+
+void read_dynamics2d(Reading& reading, Element& engine) {
+  constexpr std::string_view why = "two-dimensional robots live in the same 3D world";
+  reading.document.notice(engine.where(),
+                          "<dynamics2d> runs in the same 3D world as everything else");
+  engine.without_effect("elevation", number, why);
+  engine.child_without_effect("friction", why);
+  engine.child_without_effect("spatial_hash", why);
+  engine.child_without_effect("boundaries", why);
+  engine.done();
+}
+
+}  // namespace
+
+Surface read_surface(Reading& reading, Element& element, const Surface& usual) {
+  return {element.optional("friction", non_negative,
+                           reading.defaults.friction.value_or(usual.friction)),
+          element.optional("rolling_friction", non_negative,
+                           reading.defaults.rolling_friction.value_or(usual.rolling_friction))};
+}
+
+Damping read_damping(Reading& reading, Element& element, const Damping& usual) {
+  return {element.optional("linear_damping", non_negative,
+                           reading.defaults.linear_damping.value_or(usual.linear)),
+          element.optional("angular_damping", non_negative,
+                           reading.defaults.angular_damping.value_or(usual.angular))};
+}
+
+void read_engines(Reading& reading, Element& root) {
+  auto engines = root.required_child("physics_engines");
+  if (!engines) return;
+  Physics& physics = reading.scene.physics;
+  Ids ids;
+  bool has_dynamics3d = false;
+  for (Element& engine : engines->children()) {
+    const bool three = engine.name() == "dynamics3d";
+    if (!three && engine.name() != "dynamics2d") {
+      engine.unknown_in(engines->name(), engine_names);
+      continue;
+    }
+    const std::string id = engine.required("id", identifier);
+    const unsigned iterations = engine.optional("iterations", positive_count, 10);
+    if (!id.empty() && !ids.add(id)) {
+      engine.fault_at("id", "is the id of an earlier engine; give each its own");
+    }
+    if (three && has_dynamics3d) {
+      engine.fault("is the second of its kind; there is one world, so write one <dynamics3d>");
+      continue;
+    }
+    if (three || !reading.has_engine) {
+      physics.id = id;
+      physics.iterations = iterations;
+      physics.where = engine.where();
+    }
+    reading.has_engine = true;
+    has_dynamics3d |= three;
+    three ? read_dynamics3d(reading, engine) : read_dynamics2d(reading, engine);
+  }
+  engines->done();
+}
+
+}  // namespace ziggurat::scene

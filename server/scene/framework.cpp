@@ -1,0 +1,55 @@
+// <framework>: time, and what belongs to a process and has no effect on a server.
+
+#include <cmath>
+
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr double most_ticks = 9007199254740992.0;  // 2^53: counted exactly in every double
+constexpr double longest = 9e9;                    // [s]: nanoseconds fit 64 bits
+
+void read_experiment(Element experiment, Experiment& out) {
+  out.ticks_per_second = experiment.required("ticks_per_second", positive_count, 1);
+  out.length = experiment.optional("length", non_negative, 0.0);
+  out.random_seed = experiment.optional("random_seed", seed, 0);
+  out.real_time = experiment.optional("real_time", boolean, false);
+  if (out.length > longest || out.length * out.ticks_per_second > most_ticks) {
+    experiment.fault_at("length",
+                        "is too long; write at most 9e9 s and 2^53 ticks, or 0 for no end");
+  }
+  experiment.done();
+}
+
+void read_system(Element system) {
+  constexpr std::string_view why = "results never depend on threads";
+  system.without_effect("threads", count, why);
+  system.without_effect("method", Words{"balance_quantity", "balance_length"}, why);
+  system.without_effect("pin_threads_to_cores", boolean, why);
+  system.done();
+}
+
+void read_profiling(Element profiling) {
+  profiling.document().notice(profiling.where(),
+                              "<profiling> has no effect here: the run's summary holds the times");
+  profiling.required("file", identifier);
+  profiling.required("format", Words{"human_readable", "table"});
+  profiling.optional("truncate_file", boolean);
+  profiling.done();
+}
+
+}  // namespace
+
+void read_framework(Reading& reading, Element& root) {
+  auto framework = root.required_child("framework");
+  if (!framework) return;
+  if (auto experiment = framework->required_child("experiment")) {
+    read_experiment(*experiment, reading.scene.experiment);
+  }
+  if (auto system = framework->child("system")) read_system(*system);
+  if (auto profiling = framework->child("profiling")) read_profiling(*profiling);
+  framework->done();
+}
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,252 @@
+// <links> and <joints> of a prototype: bodies and how they hang together.
+
+#include <algorithm>
+#include <numbers>
+#include <queue>
+
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr Surface link_surface{0.5, 0.0};
+constexpr Damping link_damping{0.04, 0.04};
+
+enum class Shape { box, cylinder, sphere };
+
+Geometry read_geometry(Element& link) {
+  const Shape shape = link.required(
+      "geometry",
+      OneOf<Shape>{{"box", Shape::box}, {"cylinder", Shape::cylinder}, {"sphere", Shape::sphere}});
+  if (!link.has("geometry")) {
+    for (const char* name : {"size", "radius", "height"}) link.optional(name, text);
+    return Box{math::Vector3::Ones()};
+  }
+  switch (shape) {
+    case Shape::cylinder: {
+      const double radius = link.required("radius", length, 1.0);
+      return Cylinder{radius, link.required("height", length, 1.0)};
+    }
+    case Shape::sphere:
+      return Sphere{link.required("radius", length, 1.0)};
+    case Shape::box:
+      break;
+  }
+  return Box{link.required("size", size, math::Vector3::Ones())};
+}
+
+Link read_link(Reading& reading, Element& element, Ids& ids) {
+  Link link;
+  link.where = element.where();
+  const bool named = element.has("id");
+  link.id = element.optional("id", identifier, "");
+  if (!named) link.id = ids.next("link");
+  if (link.id == "origin") {
+    element.fault_at("id", "is the name of the entity's own frame; choose another");
+  } else if (named && !link.id.empty() && !ids.add(link.id)) {
+    element.fault_at("id", "is the id of an earlier link; give each its own");
+  }
+  link.geometry = read_geometry(element);
+  link.mass = element.required("mass", mass, 1.0);
+  link.offset = read_pose(element);
+  link.surface = read_surface(reading, element, link_surface);
+  link.damping = read_damping(reading, element, link_damping);
+  element.done();
+  return link;
+}
+
+std::optional<std::size_t> read_link_name(Element& element, const char* attribute,
+                                          const Reading& reading) {
+  const std::string id = element.required(attribute, identifier);
+  if (id.empty()) return std::nullopt;
+  const auto found = reading.anchors.find(id);
+  if (found != reading.anchors.end()) return found->second;
+  std::vector<std::string> links = anchor_names(reading);
+  links.erase(links.begin());
+  element.fault_at(attribute, "names no link; " + advice(id, links));
+  return std::nullopt;
+}
+
+/// `<parent>` or `<child>` of a joint; false after a fault.
+bool read_side(const Reading& reading, Element& joint, const char* name, std::size_t& link,
+               math::Pose& frame) {
+  auto side = joint.required_child(name);
+  if (!side) return false;
+  const auto found = read_link_name(*side, "link", reading);
+  frame = read_pose(*side);
+  side->done();
+  if (found) link = *found;
+  return found.has_value();
+}
+
+void read_axis_and_limit(Element& element, Joint& joint) {
+  const bool moves = joint.type == JointType::prismatic || joint.type == JointType::revolute;
+  if (!moves) {
+    constexpr std::string_view why = "only prismatic and revolute joints have one";
+    element.without_effect("axis", vector3, why);
+    element.without_effect("limit", range, why);
+    return;
+  }
+  joint.axis = element.required("axis", direction, math::Vector3::UnitZ());
+  if (const auto limit = element.optional("limit", range)) {
+    const double unit = joint.type == JointType::revolute ? std::numbers::pi / 180.0 : 1.0;
+    joint.limit = JointLimit{limit->first * unit, limit->second * unit};
+  }
+}
+
+/// A joint, or nothing if it connects no two links.
+std::optional<Joint> read_joint(const Reading& reading, Element& element, Ids& ids) {
+  Joint joint;
+  joint.where = element.where();
+  const bool named = element.has("id");
+  joint.id = element.optional("id", identifier, "");
+  if (!named) joint.id = ids.next("joint");
+  if (named && !joint.id.empty() && !ids.add(joint.id)) {
+    element.fault_at("id", "is the id of an earlier joint; give each its own");
+  }
+  joint.type = element.required("type", OneOf<JointType>{{"fixed", JointType::fixed},
+                                                         {"spherical", JointType::spherical},
+                                                         {"prismatic", JointType::prismatic},
+                                                         {"revolute", JointType::revolute}});
+  read_axis_and_limit(element, joint);
+  element.without_effect("disable_collision", boolean,
+                         "links of one prototype never collide with each other");
+  const bool parent = read_side(reading, element, "parent", joint.parent, joint.parent_frame);
+  const bool child = read_side(reading, element, "child", joint.child, joint.child_frame);
+  element.done();
+  if (!parent || !child) return std::nullopt;
+  return joint;
+}
+
+constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+/// The joint that leads to each link, or `none`; a second one is a fault.
+std::vector<std::size_t> incoming_joints(Document& document, const Entity& entity, bool& sound) {
+  std::vector<std::size_t> incoming(entity.links.size(), none);
+  for (std::size_t i = 0; i < entity.joints.size(); ++i) {
+    const Joint& joint = entity.joints[i];
+    const std::string child = in_quotes(entity.links[joint.child].id);
+    if (joint.child == entity.reference_link) {
+      sound = false;
+      document.fault(joint.where,
+                     fmt::format("joint {} has the reference link {} as its child, which closes a "
+                                 "cycle; swap its parent and child",
+                                 in_quotes(joint.id), child));
+    } else if (incoming[joint.child] != none) {
+      sound = false;
+      document.fault(joint.where,
+                     fmt::format("joint {} gives link {} a second parent, after joint {}; joints "
+                                 "make a tree, so remove one of them",
+                                 in_quotes(joint.id), child,
+                                 in_quotes(entity.joints[incoming[joint.child]].id)));
+    } else {
+      incoming[joint.child] = i;
+    }
+  }
+  return incoming;
+}
+
+/// Reports each cycle and each unconnected part of the tree once.
+void report_unreached(Document& document, const Entity& entity,
+                      const std::vector<std::size_t>& incoming) {
+  enum class Mark : char { unseen, current, known };
+  std::vector<Mark> marks(entity.links.size(), Mark::unseen);
+  marks[entity.reference_link] = Mark::known;
+  for (std::size_t start = 0; start < entity.links.size(); ++start) {
+    std::vector<std::size_t> path;
+    std::size_t link = start;
+    while (marks[link] == Mark::unseen) {
+      marks[link] = Mark::current;
+      path.push_back(link);
+      if (incoming[link] == none) break;
+      link = entity.joints[incoming[link]].parent;
+    }
+    if (!path.empty() && incoming[link] == none && link == path.back()) {
+      document.fault(entity.links[link].where,
+                     fmt::format("link {} is not connected to the reference link {}; add a joint "
+                                 "whose child it is",
+                                 in_quotes(entity.links[link].id),
+                                 in_quotes(entity.links[entity.reference_link].id)));
+    } else if (marks[link] == Mark::current) {
+      const Joint& joint = entity.joints[incoming[link]];
+      document.fault(
+          joint.where,
+          fmt::format("joint {} is part of a cycle that never meets the reference link "
+                      "{}; joints make a tree",
+                      in_quotes(joint.id), in_quotes(entity.links[entity.reference_link].id)));
+    }
+    for (const std::size_t passed : path) marks[passed] = Mark::known;
+  }
+}
+
+}  // namespace
+
+void order_joints(Document& document, Entity& entity) {
+  bool sound = true;
+  const std::vector<std::size_t> incoming = incoming_joints(document, entity, sound);
+  std::vector<std::vector<std::size_t>> outgoing(entity.links.size());
+  for (std::size_t i = 0; i < entity.joints.size(); ++i) {
+    if (incoming[entity.joints[i].child] == i) outgoing[entity.joints[i].parent].push_back(i);
+  }
+  // Of the joints whose parent is placed, the first in the document comes next.
+  std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> next;
+  for (const std::size_t i : outgoing[entity.reference_link]) next.push(i);
+  std::vector<Joint> ordered;
+  while (!next.empty()) {
+    const std::size_t i = next.top();
+    next.pop();
+    ordered.push_back(entity.joints[i]);
+    for (const std::size_t j : outgoing[entity.joints[i].child]) next.push(j);
+  }
+  if (ordered.size() + 1 < entity.links.size()) report_unreached(document, entity, incoming);
+  if (sound && ordered.size() + 1 == entity.links.size()) entity.joints = std::move(ordered);
+}
+
+void read_links(Reading& reading, Element& element, Entity& entity) {
+  auto links = element.required_child("links");
+  if (!links) return;
+  constexpr std::string_view known[] = {"link"};
+  Ids ids;
+  for (Element& link : links->children()) {
+    if (link.name() == "link") {
+      entity.links.push_back(read_link(reading, link, ids));
+    } else {
+      link.unknown_in("links", known);
+    }
+  }
+  if (entity.links.empty()) links->fault("has no link; write at least one <link …>");
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    reading.anchors.emplace(entity.links[i].id, i);
+  }
+  const auto reference = read_link_name(*links, "ref", reading);
+  links->done();
+  if (reference) entity.reference_link = *reference;
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    const bool welded = !entity.movable && i == entity.reference_link;
+    if (entity.links[i].mass > 0 || welded) continue;
+    reading.document.fault(
+        entity.links[i].where,
+        fmt::format("mass of link {} is 0; write more than 0 kg", in_quotes(entity.links[i].id)));
+  }
+}
+
+void read_joints(Reading& reading, Element& element, Entity& entity) {
+  bool complete = true;
+  if (auto joints = element.child("joints")) {
+    constexpr std::string_view known[] = {"joint"};
+    Ids ids;
+    for (Element& joint : joints->children()) {
+      if (joint.name() != "joint") {
+        joint.unknown_in("joints", known);
+      } else if (auto read = read_joint(reading, joint, ids)) {
+        entity.joints.push_back(std::move(*read));
+      } else {
+        complete = false;
+      }
+    }
+    joints->done();
+  }
+  if (complete && !entity.links.empty()) order_joints(reading.document, entity);
+}
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,124 @@
+#include "scene/names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "scene/values.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr std::size_t longest_compared = 64;  // characters of a name
+constexpr std::size_t most_compared = 256;    // candidates
+
+using Reasons = std::span<const std::pair<std::string_view, std::string_view>>;
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> element_reasons{{
+    {"loop_functions", "user libraries are not loaded into the server; connect a controller"},
+    {"include", "files are not included yet; write the elements into this file"},
+    {"eye-bot", "its flight model does not exist here; model it as a <prototype>"},
+    {"spiri", "its flight model does not exist here; model it as a <prototype>"},
+    {"quadrotor", "its flight model does not exist here; model it as a <prototype>"},
+    {"mini-quadrotor", "its flight model does not exist here; model it as a <prototype>"},
+    {"kheperaiv", "model it as a <prototype>"},
+    {"pi-puck", "model it as a <prototype>"},
+    {"builderbot", "model it as a <prototype>"},
+    {"drone", "model it as a <prototype>"},
+    {"block", "model it as a <prototype>"},
+    {"pointmass3d", "use <dynamics3d>"},
+    {"physx", "use <dynamics3d>"},
+    {"srocs", "use <magnetism>"},
+    {"simple_radio", "use <radio>"},
+    {"simple_radios", "use <radios>"},
+    {"boundaries", "the world is one and unbounded; remove it"},
+    {"buzz_controller", "use <external_controller> or <lua_controller>"},
+}};
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 2> attribute_reasons{{
+    {"default_friction", "write friction"},
+    {"debug_file", "record the run instead"},
+}};
+
+std::optional<std::string_view> reason(std::string_view name, Reasons reasons) {
+  for (const auto& [known, why] : reasons) {
+    if (known == name) return why;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const std::size_t width = b.size() + 1;
+  std::vector<std::size_t> table((a.size() + 1) * width);
+  const auto at = [&](std::size_t i, std::size_t j) -> std::size_t& {
+    return table[i * width + j];
+  };
+  for (std::size_t i = 0; i <= a.size(); ++i) at(i, 0) = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) at(0, j) = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = at(i - 1, j - 1) + (a[i - 1] == b[j - 1] ? 0 : 1);
+      at(i, j) = std::min({at(i - 1, j) + 1, at(i, j - 1) + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        at(i, j) = std::min(at(i, j), at(i - 2, j - 2) + 1);
+      }
+    }
+  }
+  return at(a.size(), b.size());
+}
+
+std::optional<std::string_view> nearest(std::string_view name,
+                                        std::span<const std::string_view> candidates) {
+  if (name.size() > longest_compared) return std::nullopt;
+  std::optional<std::string_view> best;
+  std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
+  for (const std::string_view candidate :
+       candidates.first(std::min(most_compared, candidates.size()))) {
+    if (candidate.size() > longest_compared) continue;
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string advice(std::string_view name, std::span<const std::string_view> candidates) {
+  constexpr std::size_t listed = 12;
+  if (const auto meant = nearest(name, candidates)) {
+    return fmt::format("did you mean {}?", in_quotes(*meant));
+  }
+  if (candidates.empty()) return "remove it";
+  std::string list;
+  for (const std::string_view candidate : candidates.first(std::min(listed, candidates.size()))) {
+    list += (list.empty() ? "" : ", ") + std::string(candidate.substr(0, longest_compared));
+  }
+  return fmt::format("known here: {}{}", list, candidates.size() > listed ? ", …" : "");
+}
+
+std::string advice(std::string_view name, const std::vector<std::string>& candidates) {
+  const std::vector<std::string_view> views(candidates.begin(), candidates.end());
+  return advice(name, std::span<const std::string_view>(views));
+}
+
+std::string Ids::next(std::string_view stem) {
+  for (;; ++lowest_) {
+    std::string id = fmt::format("{}_{}", stem, lowest_);
+    if (add(id)) return id;
+  }
+}
+
+std::optional<std::string_view> unsupported_element(std::string_view name) {
+  return reason(name, element_reasons);
+}
+
+std::optional<std::string_view> unsupported_attribute(std::string_view name) {
+  return reason(name, attribute_reasons);
+}
+
+}  // namespace ziggurat::scene

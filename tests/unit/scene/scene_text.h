@@ -1,0 +1,67 @@
+#pragma once
+// A sound scene in parts, each of which a test replaces, and ways to look at what was said of it.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "scene/reader.h"
+
+namespace ziggurat::scene {
+
+/// The parts of a scene file. Each stands on a line of its own, from line 2 on, at column 1.
+struct SceneText {
+  std::string framework = R"(<framework><experiment ticks_per_second="10"/></framework>)";
+  std::string controllers = R"(<controllers/>)";
+  std::string arena = R"(<arena size="2,2,2"/>)";
+  std::string engines = R"(<physics_engines><dynamics3d id="dyn"/></physics_engines>)";
+  std::string media = R"(<media/>)";
+  std::string rest;
+
+  std::string str() const {
+    return "<argos-configuration>\n" + framework + "\n" + controllers + "\n" + arena + "\n" +
+           engines + "\n" + media + "\n" + rest + "</argos-configuration>\n";
+  }
+  ReadResult read(const ReadOptions& options = {}) const {
+    return read_text(str(), "test.argos", options);
+  }
+};
+
+inline std::string all_problems(const ReadResult& result) {
+  std::string text;
+  for (const Problem& problem : result.problems) {
+    text += (problem.severity == Problem::Severity::fault ? "fault  " : "notice ") +
+            to_string(problem) + "\n";
+  }
+  return text;
+}
+
+inline std::vector<std::string> said(const ReadResult& result, Problem::Severity severity) {
+  std::vector<std::string> texts;
+  for (const Problem& problem : result.problems) {
+    if (problem.severity == severity) texts.push_back(to_string(problem));
+  }
+  return texts;
+}
+
+inline std::vector<std::string> faults(const ReadResult& result) {
+  return said(result, Problem::Severity::fault);
+}
+
+inline std::vector<std::string> notices(const ReadResult& result) {
+  return said(result, Problem::Severity::notice);
+}
+
+inline std::size_t count_containing(const std::vector<std::string>& texts,
+                                    const std::string& part) {
+  return static_cast<std::size_t>(
+      std::count_if(texts.begin(), texts.end(),
+                    [&](const std::string& text) { return text.find(part) != std::string::npos; }));
+}
+
+/// An arena with these elements in it.
+inline std::string arena_with(const std::string& elements) {
+  return "<arena size=\"4,4,2\" center=\"0,0,1\">" + elements + "</arena>";
+}
+
+}  // namespace ziggurat::scene
