@@ -1,0 +1,12 @@
+#include "magnetism/kernel.h"
+
+#include "magnetism/kernel_avx2.h"
+
+namespace ziggurat::magnetism {
+
+const Kernel& best_kernel() {
+  const Kernel* avx2 = avx2_kernel();
+  return avx2 != nullptr ? *avx2 : baseline_kernel();
+}
+
+}  // namespace ziggurat::magnetism

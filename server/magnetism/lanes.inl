@@ -1,0 +1,140 @@
+// Four doubles side by side, and the pair formulas on them. Included by one translation unit per
+// instruction set, inside an anonymous namespace; nothing here may call a library function.
+
+typedef double Lanes __attribute__((vector_size(32)));
+typedef double UnalignedLanes __attribute__((vector_size(32), aligned(8), may_alias));
+typedef double AliasedLanes __attribute__((vector_size(32), may_alias));
+typedef long long Mask __attribute__((vector_size(32)));
+
+#define ZIGGURAT_INLINE [[gnu::always_inline]] static inline
+
+ZIGGURAT_INLINE Lanes all(double value) { return Lanes{value, value, value, value}; }
+
+ZIGGURAT_INLINE Lanes load(const Row& row) {
+  return *reinterpret_cast<const AliasedLanes*>(&row);
+}
+
+ZIGGURAT_INLINE Lanes load(const double* values) {
+  return *reinterpret_cast<const UnalignedLanes*>(values);
+}
+
+ZIGGURAT_INLINE void store(Row& row, const Lanes& lanes) {
+  *reinterpret_cast<AliasedLanes*>(&row) = lanes;
+}
+
+/// value where the mask is set, else +0.
+ZIGGURAT_INLINE Lanes keep(const Mask& mask, const Lanes& value) {
+  return reinterpret_cast<Lanes>(mask & reinterpret_cast<Mask>(value));
+}
+
+ZIGGURAT_INLINE Lanes larger(const Lanes& a, const Lanes& b) {
+  const Mask mask = a > b;
+  return reinterpret_cast<Lanes>((mask & reinterpret_cast<Mask>(a)) |
+                                 (~mask & reinterpret_cast<Mask>(b)));
+}
+
+ZIGGURAT_INLINE Lanes square_root(const Lanes& a) {
+#if defined(__AVX__)
+  return _mm256_sqrt_pd(a);
+#elif defined(__SSE2__)
+  const __m128d low = _mm_sqrt_pd(__m128d{a[0], a[1]});
+  const __m128d high = _mm_sqrt_pd(__m128d{a[2], a[3]});
+  return Lanes{low[0], low[1], high[0], high[1]};
+#else
+  return Lanes{__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]),
+               __builtin_sqrt(a[3])};
+#endif
+}
+
+/// Rows to columns and back.
+ZIGGURAT_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+  const Lanes ab_even = __builtin_shuffle(a, b, Mask{0, 4, 2, 6});
+  const Lanes ab_odd = __builtin_shuffle(a, b, Mask{1, 5, 3, 7});
+  const Lanes cd_even = __builtin_shuffle(c, d, Mask{0, 4, 2, 6});
+  const Lanes cd_odd = __builtin_shuffle(c, d, Mask{1, 5, 3, 7});
+  a = __builtin_shuffle(ab_even, cd_even, Mask{0, 1, 4, 5});
+  b = __builtin_shuffle(ab_odd, cd_odd, Mask{0, 1, 4, 5});
+  c = __builtin_shuffle(ab_even, cd_even, Mask{2, 3, 6, 7});
+  d = __builtin_shuffle(ab_odd, cd_odd, Mask{2, 3, 6, 7});
+}
+
+/// Coordinates of four rows, one register each.
+struct Columns {
+  Lanes x, y, z, w;
+};
+
+ZIGGURAT_INLINE Columns columns(const Lanes& x, const Lanes& y, const Lanes& z) {
+  return {x, y, z, all(0)};
+}
+
+ZIGGURAT_INLINE Columns columns(const Row& a, const Row& b, const Row& c, const Row& d) {
+  Columns result{load(a), load(b), load(c), load(d)};
+  transpose(result.x, result.y, result.z, result.w);
+  return result;
+}
+
+ZIGGURAT_INLINE Columns same(const Row& row) {
+  return {all(row.x), all(row.y), all(row.z), all(row.w)};
+}
+
+ZIGGURAT_INLINE Lanes dot(const Columns& a, const Columns& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// What the first four dipoles feel and the field that the second four feel.
+struct FourPairs {
+  Columns force;         ///< on the first
+  Columns first_field;   ///< of the second at the first
+  Columns second_field;  ///< of the first at the second
+};
+
+/// Factor on the energy and its derivative by distance, see Range.
+struct Fade {
+  Lanes factor, slope;
+};
+
+ZIGGURAT_INLINE Fade fade(const Lanes& distance, const Range& range) {
+  const double width = range.maximum - range.taper_start;
+  Lanes u = (distance - range.taper_start) * (1 / width);
+  u = larger(u, all(0));
+  u = -larger(-u, all(-1));
+  const Lanes rest = 1 - u;
+  return {1 - u * u * u * (10 - 15 * u + 6 * (u * u)), (-30 / width) * (u * u) * (rest * rest)};
+}
+
+/// @param allowed  lanes that count, before the range is looked at
+template <bool tapered>
+ZIGGURAT_INLINE FourPairs four_pairs(const Columns& p1, const Columns& m1, const Columns& p2,
+                                     const Columns& m2, const Range& range, const Mask& allowed) {
+  constexpr double K = 1e-7;
+  Columns n = columns(p1.x - p2.x, p1.y - p2.y, p1.z - p2.z);
+  const Lanes squared = dot(n, n);
+  const Lanes closest = larger(p1.w + p2.w, all(range.minimum));
+  const Lanes inverse = 1 / square_root(larger(squared, closest * closest));
+  const Mask mask = allowed & (squared <= range.maximum * range.maximum);
+  n.x *= inverse;
+  n.y *= inverse;
+  n.z *= inverse;
+  const Lanes along1 = dot(m1, n);
+  const Lanes along2 = dot(m2, n);
+  const Lanes product = along1 * along2;
+  const Lanes moments = dot(m1, m2);
+  const Lanes whole = keep(mask, K * (inverse * inverse * inverse));
+  const Fade f = tapered ? fade(1 / inverse, range) : Fade{all(1), all(0)};
+  const Lanes cube = tapered ? whole * f.factor : whole;
+  const Lanes quartic = 3 * (cube * inverse);
+  Lanes radial = quartic * (moments - 5 * product);
+  // The gradient of the fading: - f' U n with U = K / d^3 (m1.m2 - 3 (m1.n)(m2.n)).
+  if constexpr (tapered) radial -= f.slope * (whole * (moments - 3 * product));
+  const Lanes toward1 = quartic * along2;
+  const Lanes toward2 = quartic * along1;
+  const Lanes thrice1 = 3 * along1;
+  const Lanes thrice2 = 3 * along2;
+  return {columns(toward1 * m1.x + toward2 * m2.x + radial * n.x,
+                  toward1 * m1.y + toward2 * m2.y + radial * n.y,
+                  toward1 * m1.z + toward2 * m2.z + radial * n.z),
+          columns(cube * (thrice2 * n.x - m2.x), cube * (thrice2 * n.y - m2.y),
+                  cube * (thrice2 * n.z - m2.z)),
+          columns(cube * (thrice1 * n.x - m1.x), cube * (thrice1 * n.y - m1.y),
+                  cube * (thrice1 * n.z - m1.z))};
+}
