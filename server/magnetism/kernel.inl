@@ -1,5 +1,7 @@
 // The loops of Kernel; see lanes.inl about who includes this.
 
+#include "magnetism/lanes.inl"
+
 ZIGGURAT_INLINE Mask nobody_masked() { return Mask{-1, -1, -1, -1}; }
 
 template <bool tapered>

@@ -15,7 +15,6 @@
 namespace ziggurat::magnetism {
 namespace {
 #include "magnetism/kernel.inl"
-#include "magnetism/lanes.inl"
 }  // namespace
 }  // namespace ziggurat::magnetism
 #pragma GCC pop_options

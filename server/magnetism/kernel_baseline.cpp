@@ -8,7 +8,6 @@
 namespace ziggurat::magnetism {
 namespace {
 #include "magnetism/kernel.inl"
-#include "magnetism/lanes.inl"
 }  // namespace
 
 const Kernel& baseline_kernel() {
