@@ -1,6 +1,7 @@
 #pragma once
 // A robot that a session drives.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -34,6 +35,7 @@ class Robot {
 
   /// A line for the server's log, without a line feed at its end; sent with the answer to this
   /// tick. `log` goes to the server's standard output, `log_error` to its standard error.
+  /// @throws std::length_error if the session logs more at one tick than a message can hold
   void log(std::string_view text);
   void log_error(std::string_view text);
 
@@ -49,6 +51,13 @@ class Robot {
     bool error;
     std::string text;
   };
+  struct Log {  // of a session, not yet sent
+    std::vector<Line> lines;
+    std::size_t bytes = 0;
+    std::size_t max_bytes = 0;
+  };
+  void add_line(bool error, std::string_view text);
+
   std::string id_;
   std::string controller_;
   std::vector<std::pair<std::string, std::string>> params_;
@@ -56,8 +65,8 @@ class Robot {
   std::vector<Joint> joints_;
   std::uint32_t position_ = 0;  // in the session
   bool failed_ = false;
-  std::string failure_;                 // not yet sent; empty if none
-  std::vector<Line>* lines_ = nullptr;  // the session's, not yet sent
+  std::string failure_;  // not yet sent; empty if none
+  Log* log_ = nullptr;   // the session's
 };
 
 }  // namespace ziggurat

@@ -1,0 +1,62 @@
+#pragma once
+// The client's end of the wire: one DEALER, messages in and out.
+
+#include <zmq.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat {
+
+class Connection {
+ public:
+  using Kind = v1::ServerMessage::MessageCase;
+
+  /// Starts to connect; the server may come up later.
+  /// @throws std::invalid_argument for an unusable endpoint
+  explicit Connection(const std::string& endpoint);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  const std::string& endpoint() const { return endpoint_; }
+
+  void send(const v1::ClientMessage& message);
+
+  /// From now on a connection that closes is an error; before, it is tried again.
+  void expect_open() { is_expected_open_ = true; }
+
+  /// Waits for a message: which one, or none when the time is over. Kinds that this client does
+  /// not know are MESSAGE_NOT_SET.
+  /// @param timeout  wall time; none = for ever
+  /// @throws ConnectionError if the server closed the connection, or sent what is no message
+  std::optional<Kind> receive(std::optional<std::chrono::milliseconds> timeout);
+
+  // What came last, valid until the next is received. Observations have a message of their own
+  // that keeps its memory.
+  const v1::Observation& observation() const { return observation_; }
+  const v1::ServerMessage& message() const { return message_; }
+
+ private:
+  void close();
+  bool receive_frame(std::chrono::milliseconds timeout);
+  bool was_closed();
+  Kind parse();
+
+  std::string endpoint_;
+  void* context_ = nullptr;
+  void* socket_ = nullptr;
+  void* monitor_ = nullptr;  // tells when the connection closes
+  std::chrono::milliseconds socket_timeout_{-1};
+  bool is_expected_open_ = false;
+  bool is_closed_ = false;
+  zmq_msg_t frame_;
+  v1::Observation observation_;
+  v1::ServerMessage message_;
+};
+
+}  // namespace ziggurat

@@ -1,0 +1,21 @@
+#include <cstdlib>
+#include <stdexcept>
+
+#include "ziggurat/session.h"
+
+namespace ziggurat {
+
+Options Options::from_environment() {
+  const char* endpoint = std::getenv("ZIGGURAT_ENDPOINT");
+  if (endpoint == nullptr || *endpoint == '\0') {
+    throw std::invalid_argument(
+        "ZIGGURAT_ENDPOINT is not set; it says where the server listens, for example "
+        "tcp://127.0.0.1:7400");
+  }
+  Options options;
+  options.endpoint = endpoint;
+  if (const char* controller = std::getenv("ZIGGURAT_CONTROLLER")) options.controller = controller;
+  return options;
+}
+
+}  // namespace ziggurat

@@ -1,0 +1,175 @@
+#include "ziggurat/session.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "session_state.h"
+#include "ziggurat/v1/envelope.h"
+
+namespace ziggurat {
+
+Session::Session(const Options& options) : state_(std::make_unique<State>(options)) {
+  state_->open();
+}
+
+Session::~Session() {
+  try {
+    if (std::uncaught_exceptions() > state_->exceptions) {
+      leave_failed("the controller was ended by an exception");
+    } else {
+      leave();
+    }
+  } catch (const std::exception&) {
+    // The server is gone: nobody is left to tell.
+  }
+}
+
+bool Session::next() {
+  State& state = *state_;
+  if (state.ending || state.is_over) return false;
+  try {
+    if (state.owes) state.answer();
+    return state.wait();
+  } catch (const ConnectionError&) {
+    state.is_over = true;
+    throw;
+  }
+}
+
+void Session::State::answer() {
+  send_failures();
+  v1::Command& command = *outgoing.mutable_command();
+  command.Clear();
+  command.set_tick(tick);
+  if (changed) command.mutable_joint_targets()->Add(targets.begin(), targets.end());
+  move_log_to(*command.mutable_log());
+  changed = false;
+  owes = false;
+  connection.send(outgoing);
+}
+
+void Session::State::send_failures() {
+  for (Robot& robot : robots) {
+    if (robot.failure_.empty()) continue;
+    v1::ClientMessage message;
+    v1::Leave& leave = *message.mutable_leave();
+    leave.add_robots(robot.position_);
+    leave.set_reason(v1::Leave::FAILED);
+    leave.set_message(std::exchange(robot.failure_, {}));
+    connection.send(message);
+  }
+}
+
+void Session::State::move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines) {
+  for (Robot::Line& from : log.lines) {
+    v1::LogLine& line = *lines.Add();
+    line.set_robot(from.robot);
+    line.set_error(from.error);
+    line.set_text(std::move(from.text));
+  }
+  log.lines.clear();
+  log.bytes = 0;
+}
+
+bool Session::State::wait() {
+  for (;;) {
+    const auto kind = connection.receive(options.wait_timeout);
+    if (!kind) {
+      throw ConnectionError("the server at " + options.endpoint + " was silent for " +
+                            std::to_string(options.wait_timeout->count()) +
+                            " ms after the answer to tick " + std::to_string(tick));
+    }
+    const v1::ServerMessage& message = connection.message();
+    switch (*kind) {
+      case Connection::Kind::kObservation:
+        read(connection.observation());
+        return true;
+      case Connection::Kind::kEnd:
+        read(message.end());
+        return false;
+      case Connection::Kind::kReset:
+        read(message.reset());
+        break;
+      case Connection::Kind::kError:
+        if (message.error().severity() == v1::Error::WARNING) break;
+        is_over = message.error().severity() == v1::Error::FATAL;
+        throw to_exception(message.error());
+      case Connection::Kind::kDisplaced:
+        is_over = true;
+        throw ProtocolError("DISPLACED: " + message.displaced().message(),
+                            {.code = "DISPLACED", .holder = message.displaced().by()});
+      default:
+        break;  // signs of life, or news of a later version
+    }
+  }
+}
+
+void Session::State::read(const v1::Observation& observation) {
+  if (static_cast<std::size_t>(observation.joint_readings_size()) != readings.size()) {
+    throw ConnectionError(options.endpoint + ": the server sent " +
+                          std::to_string(observation.joint_readings_size()) +
+                          " joint readings; it had announced " + std::to_string(readings.size()));
+  }
+  std::copy(observation.joint_readings().begin(), observation.joint_readings().end(),
+            readings.begin());
+  tick = observation.tick();
+  time = std::chrono::nanoseconds(observation.time_ns());
+  event = !has_begun ? Event::init : is_reset ? Event::reset : Event::step;
+  has_begun = true;
+  is_reset = false;
+  owes = true;
+}
+
+void Session::State::read(const v1::End& end) {
+  Ending::Reason reason = Ending::Reason::failed;
+  if (end.reason() == v1::End::FINISHED) reason = Ending::Reason::finished;
+  if (end.reason() == v1::End::INTERRUPTED) reason = Ending::Reason::interrupted;
+  ending = Ending{reason, end.message(), end.tick()};
+}
+
+void Session::State::read(const v1::Reset& reset) {
+  seed = reset.seed();
+  is_reset = true;
+  std::fill(targets.begin(), targets.end(), 0.0);
+  changed = false;
+}
+
+void Session::leave() { state_->leave(v1::Leave::DONE, {}); }
+
+void Session::leave_failed(std::string_view message) { state_->leave(v1::Leave::FAILED, message); }
+
+void Session::State::leave(v1::Leave::Reason reason, std::string_view message) {
+  if (is_over) return;
+  is_over = true;
+  send_failures();
+  v1::Leave& leave = *outgoing.mutable_leave();
+  leave.Clear();
+  leave.set_reason(reason);
+  leave.set_message(v1::valid_utf8(message));
+  move_log_to(*leave.mutable_log());
+  connection.send(outgoing);
+}
+
+Event Session::event() const noexcept { return state_->event; }
+std::uint64_t Session::tick() const noexcept { return state_->tick; }
+std::chrono::nanoseconds Session::time() const noexcept { return state_->time; }
+const std::optional<Ending>& Session::ending() const noexcept { return state_->ending; }
+std::span<Robot> Session::robots() noexcept { return state_->robots; }
+std::chrono::nanoseconds Session::tick_length() const noexcept { return state_->tick_length; }
+std::uint32_t Session::ticks_per_second() const noexcept { return state_->ticks_per_second; }
+std::uint64_t Session::seed() const noexcept { return state_->seed; }
+const std::string& Session::scene_hash() const noexcept { return state_->scene_hash; }
+const std::string& Session::server_version() const noexcept { return state_->server_version; }
+
+Robot& Session::robot(std::string_view id) {
+  for (Robot& robot : state_->robots) {
+    if (robot.id() == id) return robot;
+  }
+  std::string message = "this session has no robot '" + std::string(id) + "'; it has ";
+  for (const Robot& robot : state_->robots) {
+    message += (&robot == state_->robots.data() ? "'" : ", '") + robot.id() + "'";
+  }
+  throw std::out_of_range(message);
+}
+
+}  // namespace ziggurat

@@ -1,0 +1,61 @@
+#pragma once
+// What a Session keeps.
+
+#include <exception>
+
+#include "connection.h"
+#include "ziggurat/error.h"
+#include "ziggurat/session.h"
+
+namespace ziggurat {
+
+struct Session::State {
+  explicit State(const Options& from) : options(from), connection(from.endpoint) {}
+
+  // welcome.cpp
+  void open();  // Hello … Welcome
+  void read(const v1::Welcome& welcome);
+  void add_joints(const v1::RobotDescription& description, Robot& robot, const double*& reading,
+                  double*& target);
+
+  // session.cpp
+  void answer();  // Command, after the Leaves of robots that failed
+  void send_failures();
+  bool wait();  // for the next observation; false if there is none
+  void read(const v1::Observation& observation);
+  void read(const v1::End& end);
+  void read(const v1::Reset& reset);
+  void move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines);
+  void leave(v1::Leave::Reason reason, std::string_view message);
+
+  Options options;
+  Connection connection;
+  int exceptions = std::uncaught_exceptions();  // when the session began
+
+  std::vector<Robot> robots;
+  std::vector<double> readings;  // packed, over all robots
+  std::vector<double> targets;   // packed, over all robots
+  bool changed = false;          // some target, since the last answer
+  Robot::Log log;
+  v1::ClientMessage outgoing;  // long-lived: keeps its memory
+
+  Event event = Event::init;
+  bool has_begun = false;  // an observation was delivered
+  bool is_reset = false;   // the next observation is the first after a reset
+  bool owes = false;       // the observation in hand is not answered yet
+  bool is_over = false;    // nothing is to be said any more
+  std::uint64_t tick = 0;
+  std::chrono::nanoseconds time{0};
+  std::optional<Ending> ending;
+
+  std::chrono::nanoseconds tick_length{0};
+  std::uint32_t ticks_per_second = 0;
+  std::uint64_t seed = 0;
+  std::string scene_hash;
+  std::string server_version;
+};
+
+/// The server's words as an exception; `holder` if it refused for somebody else's sake.
+ProtocolError to_exception(const v1::Error& error, const std::string& holder = {});
+
+}  // namespace ziggurat

@@ -1,0 +1,8 @@
+# find_package(ziggurat) -> ziggurat::client. The library is static: what it uses comes along.
+include(CMakeFindDependencyMacro)
+find_dependency(Protobuf)
+find_dependency(PkgConfig)
+if(NOT TARGET PkgConfig::zmq)
+  pkg_check_modules(zmq REQUIRED IMPORTED_TARGET GLOBAL libzmq)
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/targets.cmake)
