@@ -1,0 +1,217 @@
+#include "physics/bodies.h"
+
+#include "physics/assembly.h"
+#include "physics/convert.h"
+#include "physics/geometry.h"
+
+namespace ziggurat::physics {
+namespace {
+
+using math::Pose;
+
+LinkBody link_body(const scene::Link& link, bool moves, const Pose& placed) {
+  LinkBody body;
+  body.moves = moves;
+  body.mass = link.mass;
+  body.inertia = inertia(link.geometry, link.mass);
+  body.center_of_mass = center_of_mass(link.geometry);
+  body.damping = link.damping;
+  body.placed = placed;
+  return body;
+}
+
+/// Gives a collision object its shape and surface.
+void furnish(Body& body, btCollisionObject& object, const scene::Link& link,
+             const btTransform& transform) {
+  body.shapes.push_back(bullet_shape(link.geometry));
+  body.colliders.push_back(std::make_unique<contact::Collider>());
+  contact::Collider& collider = *body.colliders.back();
+  collider.shape = contact_shape(link.geometry);
+  collider.friction = link.surface.friction;
+  collider.rolling_friction = link.surface.rolling_friction;
+  collider.previous = transform;
+  object.setCollisionShape(body.shapes.back().get());
+  object.setUserPointer(&collider);
+  object.setWorldTransform(transform);
+}
+
+/// A single body slower than this for half a second sleeps until something touches it.
+constexpr double sleeping_velocity = 4e-3;         // [m/s]
+constexpr double sleeping_angular_velocity = 0.4;  // [rad/s]
+
+void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
+  const scene::Link& link = entity.links[0];
+  LinkBody part = link_body(link, entity.movable, placed[0]);
+  const btTransform transform =
+      to_bullet(placed[0] * Pose{part.center_of_mass, math::Quaternion::Identity()});
+  btRigidBody::btRigidBodyConstructionInfo info(
+      entity.movable ? link.mass : 0, nullptr, nullptr,
+      entity.movable ? to_bullet(part.inertia) : btVector3(0, 0, 0));
+  info.m_startWorldTransform = transform;
+  body.rigid = std::make_unique<btRigidBody>(info);
+  furnish(body, *body.rigid, link, transform);
+  body.rigid->setSleepingThresholds(sleeping_velocity, sleeping_angular_velocity);
+  part.rigid = body.rigid.get();
+  body.links.push_back(part);
+}
+
+/// A multi-body's links must be numbered from the root outwards; joints already are.
+std::vector<int> number_links(const scene::Entity& entity) {
+  std::vector<int> numbers(entity.links.size(), -1);
+  int next = 0;
+  for (const scene::Joint& joint : entity.joints) numbers[joint.child] = next++;
+  return numbers;
+}
+
+void set_up_joint(btMultiBody& multi, int index, const scene::Joint& joint, const LinkBody& parent,
+                  const LinkBody& child, int parent_index) {
+  const btVector3 inertia = to_bullet(child.inertia);
+  // Bullet's rotation takes the parent's coordinates to the child's.
+  const btQuaternion rotation = to_bullet(math::Quaternion(
+      joint.child_frame.orientation * joint.parent_frame.orientation.conjugate()));
+  const btVector3 to_pivot = to_bullet(math::Vector3(joint.parent_frame.position - parent.center_of_mass));
+  const btVector3 from_pivot = to_bullet(math::Vector3(child.center_of_mass - joint.child_frame.position));
+  const btVector3 axis = to_bullet(joint.axis);
+  switch (joint.type) {
+    case scene::JointType::fixed:
+      multi.setupFixed(index, child.mass, inertia, parent_index, rotation, to_pivot, from_pivot);
+      break;
+    case scene::JointType::spherical:
+      multi.setupSpherical(index, child.mass, inertia, parent_index, rotation, to_pivot, from_pivot, true);
+      break;
+    case scene::JointType::prismatic:
+      multi.setupPrismatic(index, child.mass, inertia, parent_index, rotation, axis, to_pivot, from_pivot, true);
+      break;
+    case scene::JointType::revolute:
+      multi.setupRevolute(index, child.mass, inertia, parent_index, rotation, axis, to_pivot, from_pivot, true);
+      break;
+  }
+}
+
+void add_link_colliders(Body& body, const scene::Entity& entity) {
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    if (!entity.links[i].collides) continue;
+    const LinkBody& part = body.links[i];
+    auto collider = std::make_unique<btMultiBodyLinkCollider>(body.multi.get(), part.index);
+    furnish(body, *collider, entity.links[i], part.transform());
+    if (part.index < 0) {
+      body.multi->setBaseCollider(collider.get());
+      if (!entity.movable) collider->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
+    } else {
+      body.multi->getLink(part.index).m_collider = collider.get();
+    }
+    if (part.moves) collider->setActivationState(DISABLE_DEACTIVATION);
+    body.link_colliders.push_back(std::move(collider));
+  }
+}
+
+bool same_damping(const scene::Entity& entity) {
+  for (const scene::Link& link : entity.links) {
+    if (link.damping.linear != entity.links[0].damping.linear ||
+        link.damping.angular != entity.links[0].damping.angular) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
+  const std::vector<int> numbers = number_links(entity);
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    const bool moves = entity.movable || i != entity.reference_link;
+    body.links.push_back(link_body(entity.links[i], moves, placed[i]));
+    body.links.back().index = numbers[i];
+  }
+  const LinkBody& base = body.links[entity.reference_link];
+  body.multi = std::make_unique<btMultiBody>(static_cast<int>(entity.joints.size()), base.mass,
+                                             to_bullet(base.inertia), !entity.movable, false);
+  btMultiBody& multi = *body.multi;
+  for (LinkBody& part : body.links) part.multi = &multi;
+  for (const scene::Joint& joint : entity.joints) {
+    set_up_joint(multi, numbers[joint.child], joint, body.links[joint.parent],
+                 body.links[joint.child], numbers[joint.parent]);
+  }
+  multi.finalizeMultiDof();
+  multi.setHasSelfCollision(false);
+  multi.setCanSleep(false);
+  multi.setUseGyroTerm(true);
+  // Bullet's own damping is the dialect's law; where links differ our plug-in applies it.
+  const scene::Damping damping = same_damping(entity) ? entity.links[0].damping : scene::Damping{};
+  multi.setLinearDamping(damping.linear);
+  multi.setAngularDamping(damping.angular);
+  if (same_damping(entity)) {
+    for (LinkBody& part : body.links) part.damping = {};
+  }
+  multi.setMaxAppliedImpulse(1e6);
+  multi.setMaxCoordinateVelocity(1e6);
+  multi.setBaseWorldTransform(
+      to_bullet(base.placed * Pose{base.center_of_mass, math::Quaternion::Identity()}));
+  btAlignedObjectArray<btQuaternion> rotations;
+  btAlignedObjectArray<btVector3> positions;
+  multi.forwardKinematics(rotations, positions);
+  add_link_colliders(body, entity);
+}
+
+}  // namespace
+
+btTransform LinkBody::transform() const {
+  if (rigid) return rigid->getWorldTransform();
+  if (index < 0) return multi->getBaseWorldTransform();
+  return multi->getLink(index).m_cachedWorldTransform;
+}
+
+void LinkBody::apply_force(const btVector3& force) const {
+  if (rigid) {
+    rigid->applyCentralForce(force);
+  } else if (index < 0) {
+    multi->addBaseForce(force);
+  } else {
+    multi->addLinkForce(index, force);
+  }
+}
+
+void LinkBody::apply_torque(const btVector3& torque) const {
+  if (rigid) {
+    rigid->applyTorque(torque);
+  } else if (index < 0) {
+    multi->addBaseTorque(torque);
+  } else {
+    multi->addLinkTorque(index, torque);
+  }
+}
+
+void Body::motions(std::vector<Motion>& out) const {
+  out.resize(links.size());
+  if (rigid) {
+    out[0] = {rigid->getLinearVelocity(), rigid->getAngularVelocity()};
+    return;
+  }
+  // Bullet's tree velocities come in each link's own frame, the base first.
+  const int count = multi->getNumLinks() + 1;
+  btAlignedObjectArray<btVector3> omega, velocity;
+  omega.resize(count);
+  velocity.resize(count);
+  multi->compTreeLinkVelocities(&omega[0], &velocity[0]);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const btMatrix3x3 basis = links[i].transform().getBasis();
+    out[i] = {basis * velocity[links[i].index + 1], basis * omega[links[i].index + 1]};
+  }
+}
+
+Body build(const scene::Entity& entity) {
+  Body body;
+  body.reference_link = entity.reference_link;
+  body.placed = entity.pose;
+  body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
+  std::vector<Pose> placed = assemble(entity);
+  for (Pose& pose : placed) pose = entity.pose * pose;
+  const bool single = entity.kind == scene::EntityKind::box || entity.kind == scene::EntityKind::cylinder;
+  if (single) {
+    build_rigid(body, entity, placed);
+  } else {
+    build_multi(body, entity, placed);
+  }
+  return body;
+}
+
+}  // namespace ziggurat::physics

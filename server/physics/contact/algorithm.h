@@ -1,0 +1,33 @@
+#pragma once
+// Joins the contact geometry to Bullet: one collision algorithm for every pair of our shapes.
+
+#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+
+#include <memory>
+
+#include "physics/contact/shapes.h"
+
+namespace ziggurat::physics::contact {
+
+/// What the algorithm needs of a collision object, which carries a pointer to it.
+struct Collider {
+  Shape shape;
+  btScalar friction = 0.5;        ///< Coulomb coefficient; two surfaces combine by product
+  btScalar rolling_friction = 0;  ///< [m]; two surfaces combine by sum
+  btScalar reach = 0;             ///< how far ahead this body is looked for, this substep [m]
+  btTransform previous = btTransform::getIdentity();  ///< pose one substep ago
+};
+
+/// The collider of one of our collision objects.
+const Collider& collider_of(const btCollisionObject& object);
+
+/// Bullet's pools with elements large enough for our algorithm; without it the heap is overrun.
+btDefaultCollisionConstructionInfo construction_info();
+
+/// Makes our algorithm answer for all pairs of box, cylinder, sphere and plane. The returned
+/// object must outlive the dispatcher's use of it.
+std::unique_ptr<btCollisionAlgorithmCreateFunc> register_algorithms(btCollisionDispatcher& dispatcher);
+
+}  // namespace ziggurat::physics::contact

@@ -1,0 +1,150 @@
+// Chooses the function for a pair of shapes, and thins out what it found.
+
+#include <algorithm>
+
+#include "physics/contact/pairs.h"
+
+namespace ziggurat::physics::contact {
+namespace {
+
+/// Fills `out` if a function for (a, b) in this order exists.
+bool find_in_order(const Shape& a, const btTransform& pose_a, const Shape& b,
+                   const btTransform& pose_b, btScalar reach, Contacts& out) {
+  if (const auto* sphere = std::get_if<Sphere>(&a)) {
+    if (const auto* other = std::get_if<Sphere>(&b)) {
+      sphere_sphere(*sphere, pose_a, *other, pose_b, reach, out);
+    } else if (const auto* box = std::get_if<Box>(&b)) {
+      sphere_box(*sphere, pose_a, *box, pose_b, reach, out);
+    } else if (const auto* cylinder = std::get_if<Cylinder>(&b)) {
+      sphere_cylinder(*sphere, pose_a, *cylinder, pose_b, reach, out);
+    } else {
+      sphere_plane(*sphere, pose_a, pose_b, reach, out);
+    }
+    return true;
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&a)) {
+    if (std::holds_alternative<Sphere>(b)) return false;
+    if (std::holds_alternative<HalfSpace>(b)) {
+      cylinder_plane(*cylinder, pose_a, pose_b, reach, out);
+    } else {
+      cylinder_convex(*cylinder, pose_a, b, pose_b, reach, out);
+    }
+    return true;
+  }
+  if (const auto* box = std::get_if<Box>(&a)) {
+    if (const auto* other = std::get_if<Box>(&b)) {
+      box_box(*box, pose_a, *other, pose_b, reach, out);
+      return true;
+    }
+    if (std::holds_alternative<HalfSpace>(b)) {
+      box_plane(*box, pose_a, pose_b, reach, out);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Grows with the angle of (x, y) from 0 to 4 over a full turn; cheaper than an arc tangent and
+/// the same on every processor.
+btScalar turn(btScalar x, btScalar y) {
+  const btScalar sum = btFabs(x) + btFabs(y);
+  if (sum == 0) return 0;
+  const btScalar part = x / sum;
+  return y < 0 ? 3 + part : 1 - part;
+}
+
+/// Radius of the sphere about the shape's centre that holds it [m].
+btScalar bounding_radius(const Shape& shape) {
+  if (const auto* box = std::get_if<Box>(&shape)) return box->half.length();
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    return btSqrt(cylinder->radius * cylinder->radius + cylinder->half_height * cylinder->half_height);
+  }
+  const auto* sphere = std::get_if<Sphere>(&shape);
+  return sphere ? sphere->radius : 0;
+}
+
+/// Whether the bodies are too far apart for any contact; costs next to nothing.
+bool far_apart(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
+               btScalar reach) {
+  const btVector3 between = pose_a.getOrigin() - pose_b.getOrigin();
+  if (std::holds_alternative<HalfSpace>(b)) {
+    return between.dot(pose_b.getBasis().getColumn(2)) > bounding_radius(a) + reach;
+  }
+  if (std::holds_alternative<HalfSpace>(a)) {
+    return -between.dot(pose_a.getBasis().getColumn(2)) > bounding_radius(b) + reach;
+  }
+  const btScalar most = bounding_radius(a) + bounding_radius(b) + reach;
+  return between.length2() > most * most;
+}
+
+}  // namespace
+
+void swap_sides(Contacts& contacts) {
+  for (int i = 0; i < contacts.count; ++i) {
+    contacts.points[i].on_b += contacts.normal * contacts.points[i].distance;
+  }
+  contacts.normal = -contacts.normal;
+}
+
+Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
+              btScalar reach) {
+  Contacts out;
+  if (far_apart(a, pose_a, b, pose_b, reach)) return out;
+  if (!find_in_order(a, pose_a, b, pose_b, reach, out) &&
+      find_in_order(b, pose_b, a, pose_a, reach, out)) {
+    swap_sides(out);
+  }
+  return out;
+}
+
+void reduce(Contacts& contacts, const btTransform& pose_a) {
+  auto& points = contacts.points;
+  const btVector3& normal = contacts.normal;
+  if (contacts.count > 4) {
+    // Ties go to the first: a later point must be better by more than rounding.
+    const btScalar better = 1 + btScalar(1e-6), tiny = btScalar(1e-12);
+    int deepest = 0, farthest = 0, left = 0, right = 0;
+    for (int i = 1; i < contacts.count; ++i) {
+      if (points[i].distance < points[deepest].distance - btScalar(1e-9)) deepest = i;
+    }
+    farthest = left = right = deepest;
+    btScalar most = 0;
+    for (int i = 0; i < contacts.count; ++i) {
+      const btScalar away = (points[i].on_b - points[deepest].on_b).length2();
+      if (away > most * better + tiny) most = away, farthest = i;
+    }
+    const btVector3 base = points[farthest].on_b - points[deepest].on_b;
+    btScalar most_left = 0, most_right = 0;
+    for (int i = 0; i < contacts.count; ++i) {
+      const btScalar area = base.cross(points[i].on_b - points[deepest].on_b).dot(normal);
+      if (area > most_left * better + tiny) most_left = area, left = i;
+      if (area < most_right * better - tiny) most_right = area, right = i;
+    }
+    int kept[4] = {deepest, farthest, left, right};
+    std::array<Point, 4> chosen;
+    int count = 0;
+    for (int i = 0; i < 4; ++i) {
+      if (std::find(kept, kept + i, kept[i]) == kept + i) chosen[count++] = points[kept[i]];
+    }
+    std::copy_n(chosen.begin(), count, points.begin());
+    contacts.count = count;
+  }
+  if (contacts.count < 2) return;
+  // A stable order makes the solver sweep the same way each step: by angle about the middle.
+  btVector3 middle(0, 0, 0);
+  for (int i = 0; i < contacts.count; ++i) middle += points[i].on_b;
+  middle /= btScalar(contacts.count);
+  const int up = (pose_a.getBasis().transpose() * normal).absolute().maxAxis();
+  const btVector3 first = pose_a.getBasis().getColumn((up + 1) % 3);
+  const btVector3 second = pose_a.getBasis().getColumn((up + 2) % 3);
+  std::array<std::pair<btScalar, Point>, 4> ordered;
+  for (int i = 0; i < contacts.count; ++i) {
+    const btVector3 arm = points[i].on_b - middle;
+    ordered[i] = {turn(arm.dot(first), arm.dot(second)), points[i]};
+  }
+  std::stable_sort(ordered.begin(), ordered.begin() + contacts.count,
+                   [](const auto& p, const auto& q) { return p.first < q.first; });
+  for (int i = 0; i < contacts.count; ++i) points[i] = ordered[i].second;
+}
+
+}  // namespace ziggurat::physics::contact

@@ -1,0 +1,73 @@
+// Boxes, cylinders and spheres against a half-space.
+
+#include <algorithm>
+
+#include "physics/contact/pairs.h"
+
+namespace ziggurat::physics::contact {
+namespace {
+
+/// Adds a point of A by its height over the plane.
+void add(const btVector3& point, const btTransform& plane, btScalar reach, Contacts& out) {
+  const btScalar distance = out.normal.dot(point - plane.getOrigin());
+  if (distance <= reach) out.add(point - out.normal * distance, distance);
+}
+
+/// Of many points over one plane only the lowest can carry: ties keep their order.
+void keep_lowest(Contacts& contacts, int most) {
+  if (contacts.count <= most) return;
+  std::stable_sort(contacts.points.begin(), contacts.points.begin() + contacts.count,
+                   [](const Point& p, const Point& q) { return p.distance < q.distance; });
+  contacts.count = most;
+}
+
+/// Up to this sine of the tilt a cap counts as flat: its rim is then 0.6 % of the radius off.
+constexpr btScalar flat_tilt = 0.02;
+/// From this cosine of the tilt on a cylinder stands on a cap; below, it lies on its side.
+constexpr btScalar standing = 0.7;
+
+}  // namespace
+
+void box_plane(const Box& a, const btTransform& pose_a, const btTransform& plane, btScalar reach,
+               Contacts& out) {
+  out.normal = plane.getBasis().getColumn(2);
+  const btVector3& half = a.half;
+  for (int corner = 0; corner < 8; ++corner) {
+    add(pose_a * btVector3(corner & 1 ? half.x() : -half.x(), corner & 2 ? half.y() : -half.y(),
+                           corner & 4 ? half.z() : -half.z()),
+        plane, reach, out);
+  }
+  keep_lowest(out, 4);
+}
+
+void cylinder_plane(const Cylinder& a, const btTransform& pose_a, const btTransform& plane,
+                    btScalar reach, Contacts& out) {
+  out.normal = plane.getBasis().getColumn(2);
+  // The lower cap is the one that faces the plane.
+  const btVector3 axis = pose_a.getBasis().getColumn(2);
+  const btScalar up = out.normal.dot(axis);
+  const btVector3 to_lower = axis * (up < 0 ? a.half_height : -a.half_height);
+  btVector3 down = axis * up - out.normal;  // in the caps, towards the plane; its length is sin(tilt)
+  const bool flat = down.length2() < flat_tilt * flat_tilt;
+  // Flat on its cap the deepest direction is noise: points fixed in the body rest quietly.
+  if (flat) down = pose_a.getBasis().getColumn(0);
+  down *= a.radius / down.length();
+  const btVector3 across = axis.cross(down);
+  const btVector3 lower = pose_a.getOrigin() + to_lower, upper = pose_a.getOrigin() - to_lower;
+  add(lower + down, plane, reach, out);
+  if (btFabs(up) < standing) {
+    add(upper + down, plane, reach, out);
+    return;
+  }
+  add(lower + across, plane, reach, out);
+  add(lower - across, plane, reach, out);
+  add(lower - down, plane, reach, out);
+}
+
+void sphere_plane(const Sphere& a, const btTransform& pose_a, const btTransform& plane,
+                  btScalar reach, Contacts& out) {
+  out.normal = plane.getBasis().getColumn(2);
+  add(pose_a.getOrigin() - out.normal * a.radius, plane, reach, out);
+}
+
+}  // namespace ziggurat::physics::contact

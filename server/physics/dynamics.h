@@ -1,0 +1,27 @@
+#pragma once
+// Bullet's multi-body world with bounding boxes that look ahead as far as our contacts do.
+
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+
+namespace ziggurat::physics {
+
+class Dynamics final : public btMultiBodyDynamicsWorld {
+ public:
+  Dynamics(btDispatcher& dispatcher, btDbvtBroadphase& broadphase,
+           btMultiBodyConstraintSolver& solver, btCollisionConfiguration& configuration);
+
+  /// One step of exactly this length, with the forces applied since the last.
+  void substep(btScalar length);
+
+  /// Sets every moving collider's reach for the coming substep and its box accordingly.
+  void updateAabbs() override;
+
+ private:
+  void keep_in_box(btBroadphaseProxy& proxy, const btVector3& low, const btVector3& high);
+
+  btDbvtBroadphase& broadphase_;
+  btScalar length_ = 0;  ///< of the substep under way [s]
+};
+
+}  // namespace ziggurat::physics

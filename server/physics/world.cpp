@@ -1,0 +1,217 @@
+#include "physics/world.h"
+
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+
+#include <cmath>
+
+#include "physics/convert.h"
+#include "physics/dynamics.h"
+#include "physics/floor.h"
+#include "physics/forces.h"
+#include "physics/joints.h"
+
+namespace ziggurat::physics {
+namespace {
+
+constexpr unsigned default_solver_iterations = 50;
+
+void configure(btContactSolverInfo& info, const scene::Physics& physics) {
+  info.m_numIterations = static_cast<int>(physics.solver_iterations.value_or(default_solver_iterations));
+  info.m_solverMode = SOLVER_SIMD | SOLVER_USE_WARMSTARTING | SOLVER_USE_2_FRICTION_DIRECTIONS;
+  info.m_splitImpulse = false;  // its threshold is in raw metres, and multi-bodies ignore it
+  info.m_erp = info.m_erp2 = 0.2;
+  info.m_frictionERP = 0.2;
+  // Sweeps end early once no row changes a velocity by more than this [m/s or rad/s], squared.
+  info.m_leastSquaresResidualThreshold = 1e-8;
+  info.m_minimumSolverBatchSize = 1;  // each island ends its sweeps when it is done
+}
+
+}  // namespace
+
+struct World::Parts {
+  Parts(const scene::Physics& physics, double substep)
+      : gravity(physics.gravity.value_or(0)),
+        splits(physics.max_substep && substep > *physics.max_substep
+                   ? static_cast<int>(std::ceil(substep / *physics.max_substep))
+                   : 1),
+        length(substep / splits),
+        configuration(contact::construction_info()),
+        dispatcher(&configuration),
+        algorithms(contact::register_algorithms(dispatcher)),
+        dynamics(dispatcher, broadphase, solver, configuration) {
+    configure(dynamics.getSolverInfo(), physics);
+    gDeactivationTime = 0.5;  // the one global of Bullet that we set; the same for every world [s]
+    dynamics.setGravity(btVector3(0, 0, 0));
+    if (physics.floor) plugins.push_back(std::make_unique<Floor>(*physics.floor, dynamics));
+    if (physics.gravity) plugins.push_back(std::make_unique<Gravity>(*physics.gravity));
+    plugins.push_back(std::make_unique<ViscousDamping>());
+  }
+  ~Parts();
+
+  void add_joints(const scene::Entity& entity, Body& body);
+
+  double gravity;  // [m/s^2]
+  int splits;      // internal substeps per substep
+  double length;   // of an internal substep [s]
+  bool stepped = false;
+
+  // Destroyed from the end: the world before what it points to.
+  std::vector<Body> bodies;
+  std::vector<MovingJoint> joints;
+  std::vector<std::size_t> motors;  // into joints
+  std::size_t link_count = 0;
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher;
+  std::unique_ptr<btCollisionAlgorithmCreateFunc> algorithms;
+  btDbvtBroadphase broadphase;
+  btMultiBodyConstraintSolver solver;
+  Dynamics dynamics;
+  std::vector<std::unique_ptr<Plugin>> plugins;
+};
+
+World::Parts::~Parts() {
+  for (MovingJoint& joint : joints) {
+    if (joint.limit) dynamics.removeMultiBodyConstraint(joint.limit.get());
+    if (joint.motor.constraint) dynamics.removeMultiBodyConstraint(joint.motor.constraint.get());
+  }
+  for (Body& body : bodies) {
+    for (auto& collider : body.link_colliders) dynamics.removeCollisionObject(collider.get());
+    if (body.multi) dynamics.removeMultiBody(body.multi.get());
+    if (body.rigid) dynamics.removeRigidBody(body.rigid.get());
+  }
+}
+
+void World::Parts::add_joints(const scene::Entity& entity, Body& body) {
+  for (std::size_t i = 0; i < entity.joints.size(); ++i) {
+    const scene::Joint& joint = entity.joints[i];
+    if (joint.type != scene::JointType::revolute && joint.type != scene::JointType::prismatic) continue;
+    MovingJoint moving;
+    moving.entity = body.entity;
+    moving.index = i;
+    moving.multi = body.multi.get();
+    moving.link = body.links[joint.child].index;
+    if (joint.limit) {
+      moving.limit = std::make_unique<btMultiBodyJointLimitConstraint>(
+          body.multi.get(), moving.link, joint.limit->lower, joint.limit->upper);
+      dynamics.addMultiBodyConstraint(moving.limit.get());
+      moving.limit->finalizeMultiDof();
+    }
+    joints.push_back(std::move(moving));
+  }
+}
+
+World::World(const scene::Physics& physics, double substep)
+    : parts_(std::make_unique<Parts>(physics, substep)) {}
+World::~World() = default;
+
+void World::add(const scene::Entity& entity) {
+  Parts& p = *parts_;
+  p.bodies.push_back(build(entity));
+  Body& body = p.bodies.back();
+  body.entity = p.bodies.size() - 1;
+  body.first_link = p.link_count;
+  p.link_count += body.links.size();
+  if (body.rigid) p.dynamics.addRigidBody(body.rigid.get());
+  if (body.multi) p.dynamics.addMultiBody(body.multi.get());
+  for (auto& collider : body.link_colliders) {
+    const bool fixed = collider->isStaticObject();
+    p.dynamics.addCollisionObject(
+        collider.get(), fixed ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter,
+        fixed ? btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter
+              : btBroadphaseProxy::AllFilter);
+  }
+  p.add_joints(entity, body);
+  for (auto& plugin : p.plugins) plugin->body_added(body);
+}
+
+JointIndex World::joint(std::size_t entity, std::size_t joint) const {
+  std::size_t i = 0;
+  while (parts_->joints[i].entity != entity || parts_->joints[i].index != joint) ++i;
+  return {i};
+}
+
+void World::add_motor(JointIndex index, scene::JointMode mode, double max_impulse) {
+  MovingJoint& joint = parts_->joints[index.value];
+  joint.motor.mode = mode;
+  joint.motor.max_impulse = max_impulse;
+  if (mode == scene::JointMode::disabled) return;
+  joint.motor.constraint =
+      std::make_unique<btMultiBodyJointMotor>(joint.multi, joint.link, 0, 0, max_impulse);
+  parts_->dynamics.addMultiBodyConstraint(joint.motor.constraint.get());
+  joint.motor.constraint->finalizeMultiDof();
+  parts_->motors.push_back(index.value);
+}
+
+void World::set_target(JointIndex joint, double target) {
+  parts_->joints[joint.value].motor.target = target;
+}
+
+double World::position(JointIndex index) const {
+  const MovingJoint& joint = parts_->joints[index.value];
+  return joint.multi->getJointPos(joint.link);
+}
+
+double World::velocity(JointIndex index) const {
+  const MovingJoint& joint = parts_->joints[index.value];
+  return joint.multi->getJointVel(joint.link);
+}
+
+void World::step() {
+  Parts& p = *parts_;
+  p.stepped = true;
+  for (int split = 0; split < p.splits; ++split) {
+    for (auto& plugin : p.plugins) plugin->before_substep(p.bodies, p.length);
+    for (const std::size_t motor : p.motors) {
+      MovingJoint& joint = p.joints[motor];
+      steer(joint, p.length, joint.motor.max_impulse / p.splits);
+    }
+    p.dynamics.substep(p.length);
+  }
+}
+
+void World::read(world::State& state) const {
+  Parts& p = *parts_;
+  state.origins.resize(p.bodies.size());
+  state.links.resize(p.link_count);
+  std::vector<Motion> motions;
+  btAlignedObjectArray<btQuaternion> rotations;
+  btAlignedObjectArray<btVector3> positions;
+  for (const Body& body : p.bodies) {
+    if (body.multi && p.stepped) body.multi->forwardKinematics(rotations, positions);
+    body.motions(motions);
+    for (std::size_t i = 0; i < body.links.size(); ++i) {
+      const LinkBody& link = body.links[i];
+      world::LinkState& out = state.links[body.first_link + i];
+      out.pose = link.placed;
+      if (p.stepped && link.moves) {
+        out.pose = from_bullet(link.transform());
+        out.pose.position -= out.pose.orientation * link.center_of_mass;
+      }
+      out.angular_velocity = from_bullet(motions[i].angular_velocity);
+      const math::Vector3 arm = out.pose.orientation * -link.center_of_mass;
+      out.velocity = from_bullet(motions[i].velocity) + out.angular_velocity.cross(arm);
+    }
+    const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
+    state.origins[body.entity] =
+        p.stepped ? reference * body.origin_from_reference : body.placed;
+  }
+}
+
+double World::energy() const {
+  double total = 0;
+  std::vector<Motion> motions;
+  for (const Body& body : parts_->bodies) {
+    body.motions(motions);
+    for (std::size_t i = 0; i < body.links.size(); ++i) {
+      const LinkBody& link = body.links[i];
+      if (!link.moves) continue;
+      const btTransform pose = link.transform();
+      const btVector3 w = pose.getBasis().transpose() * motions[i].angular_velocity;
+      total += link.mass * (motions[i].velocity.length2() / 2 + parts_->gravity * pose.getOrigin().z());
+      total += (to_bullet(link.inertia) * w).dot(w) / 2;
+    }
+  }
+  return total;
+}
+
+}  // namespace ziggurat::physics

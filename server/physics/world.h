@@ -1,0 +1,56 @@
+#pragma once
+// The physical world: bodies, joints and contacts on Bullet, stepped one substep at a time.
+// No Bullet type leaves this module.
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "scene/scene.h"
+#include "world/state.h"
+
+namespace ziggurat::physics {
+
+/// A joint with a coordinate, as the world counts them.
+struct JointIndex {
+  std::size_t value = 0;
+};
+
+class World {
+ public:
+  /// @param substep  length of a substep as the clock says [s]; if the scene allows less
+  ///                 (max_substep) each is split inside
+  World(const scene::Physics& physics, double substep);
+  ~World();
+
+  /// Adds an entity at its pose; its links take the next places of State::links.
+  void add(const scene::Entity& entity);
+
+  /// A revolute or prismatic joint of an entity added before.
+  /// @param entity  in order of adding;  @param joint  index into Entity::joints
+  JointIndex joint(std::size_t entity, std::size_t joint) const;
+
+  /// Gives a joint a motor. Targets start at 0.
+  /// @param max_impulse  what it may give per substep [N s] or [N m s]
+  void add_motor(JointIndex joint, scene::JointMode mode, double max_impulse);
+  /// @param target  [m] or [rad] in position mode, [m/s] or [rad/s] in velocity mode
+  void set_target(JointIndex joint, double target);
+
+  double position(JointIndex joint) const;  ///< [m] or [rad]; 0 as assembled
+  double velocity(JointIndex joint) const;  ///< [m/s] or [rad/s]
+
+  /// Advances by one substep.
+  void step();
+
+  /// Writes origins and links; tick and time are the caller's.
+  void read(world::State& state) const;
+
+  /// Kinetic plus gravitational energy of everything that moves [J].
+  double energy() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace ziggurat::physics

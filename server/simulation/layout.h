@@ -1,0 +1,14 @@
+#pragma once
+// Names everything: the positions that flat arrays are indexed by.
+
+#include <vector>
+
+#include "scene/scene.h"
+#include "world/layout.h"
+
+namespace ziggurat::simulation {
+
+/// @param entities  all of them, placed, in scene order
+world::Layout make_layout(const scene::Scene& scene, const std::vector<scene::Entity>& entities);
+
+}  // namespace ziggurat::simulation
