@@ -40,7 +40,7 @@ LIBRARIES = {
     "Bullet": (r"bullet/|bt[A-Z]\w*\.h$|Bullet\w*/|LinearMath/", ["physics"]),
     "protobuf": (r"google/protobuf/", ["protocol", "wire", "recording", "network", "clients/cpp"]),
     "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "app", "clients/cpp"]),
-    "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua"]),
+    "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua", "app"]),
 }
 
 SUFFIXES = {".h", ".hpp", ".hh", ".inl", ".ipp", ".c", ".cc", ".cpp", ".cxx"}

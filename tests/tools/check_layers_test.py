@@ -70,7 +70,7 @@ class CheckLayers(unittest.TestCase):
         self.assert_caught("server/scene/bad.cpp", "#  include <LinearMath/btQuad.h>\n", "Bullet")
         self.assert_caught("server/app/bad.cpp", "#include <google/protobuf/any.h>\n", "protobuf")
         self.assert_caught("server/wire/bad.cpp", "#include <zmq.hpp>\n", "ZeroMQ")
-        self.assert_caught("server/app/bad.cpp", "#include <lua.hpp>\n", "Lua")
+        self.assert_caught("server/wire/bad.cpp", "#include <lua.hpp>\n", "Lua")
 
     def test_catches_generated_messages_outside_their_modules(self):
         text = '#include "ziggurat/v1/protocol.pb.h"\n'
