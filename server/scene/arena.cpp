@@ -15,7 +15,7 @@ void read_ground(Reading& reading, Element element) {
   reading.document.no_effect_yet(element.where(), "ground colours (<floor> of the arena)");
   const std::string id = element.required("id", identifier);
   const std::string source = element.required("source", Words{"image", "loop_functions"});
-  if (source == "image") element.required("path", identifier);
+  if (source == "image") element.required("path", path);
   if (source == "loop_functions") {
     element.fault_at("source", "is not supported; write source=\"image\" and a path");
   }

@@ -11,9 +11,18 @@ namespace {
 constexpr unsigned most_faults_with_entities = 20;
 constexpr std::size_t longest_type = 100;
 
+void note_children_of_params(Element& params) {
+  for (const Element& child : params.children()) {
+    params.document().notice(child.where(),
+                             "elements in <params> have no effect here: its attributes reach the "
+                             "controller");
+  }
+}
+
 void read_params(Element params, Controller& controller) {
   controller.params = params.all_attributes();
   controller.params_where = params.where();
+  note_children_of_params(params);
   params.done();
 }
 
@@ -111,16 +120,21 @@ struct Check {
     if (found == joints.end()) {
       std::vector<std::string> known;
       for (const Joint& joint : entity.joints) known.push_back(joint.id);
-      blame(where, fmt::format("joint {} does not exist in {} {}; {}", in_quotes(id), "prototype",
+      blame(where, fmt::format("joint {} does not exist in prototype {}; {}", in_quotes(id),
                                in_quotes(entity.id), advice(id, known)));
       return;
     }
     const JointType type = found->second->type;
-    if (actuated && type != JointType::prismatic && type != JointType::revolute) {
+    if (type == JointType::prismatic || type == JointType::revolute) return;
+    const std::string_view is = type == JointType::fixed ? "fixed" : "spherical";
+    if (actuated) {
       blame(where, fmt::format("joint {} of prototype {} is {}; only prismatic and revolute joints "
                                "have an actuator",
-                               in_quotes(id), in_quotes(entity.id),
-                               type == JointType::fixed ? "fixed" : "spherical"));
+                               in_quotes(id), in_quotes(entity.id), is));
+    } else {
+      reading.document.notice(where, fmt::format("the sensor of joint {} always reads 0: the joint "
+                                                 "is {}",
+                                                 in_quotes(id), is));
     }
   }
 
@@ -210,6 +224,7 @@ void read_controller_of(Reading& reading, Element& element, Entity& entity) {
   if (auto params = user->child("params")) {
     entity.overrides_params = true;
     entity.params = params->all_attributes();
+    note_children_of_params(*params);
     params->done();
   }
   user->done();

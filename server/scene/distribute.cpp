@@ -10,37 +10,43 @@ namespace {
 
 constexpr unsigned most_copies = 1'000'000;  // of all <distribute> together
 
-void read_uniform(Element& element, Generator& out) {
-  out.first = element.required("min", vector3);
-  out.second = element.required("max", vector3);
-  if ((out.first.array() > out.second.array()).any() && element.has("min") && element.has("max")) {
+using Triple = Value<math::Vector3> (*)(std::string_view);
+
+void read_uniform(Element& element, Triple triple, Generator& out) {
+  const math::Vector3 unknown =
+      math::Vector3::Constant(std::numeric_limits<double>::quiet_NaN());  // above nothing
+  out.first = element.required("min", triple, unknown);
+  out.second = element.required("max", triple, unknown);
+  if ((out.first.array() > out.second.array()).any()) {
     element.fault_at("min", "is above max in a component; write min <= max in each");
   }
 }
 
-Generator read_generator(Element element) {
+/// @param triple  reads a position, or the degrees of an orientation
+Generator read_generator(Element element, Triple triple) {
   Generator out;
-  out.method =
-      element.required("method",
-                       OneOf<DistributionMethod>{{"uniform", DistributionMethod::uniform},
-                                                 {"gaussian", DistributionMethod::gaussian},
-                                                 {"constant", DistributionMethod::constant},
-                                                 {"grid", DistributionMethod::grid}},
-                       DistributionMethod::uniform);
+  if (!element.has("method")) element.missing("method");
+  const auto method = element.optional(
+      "method", OneOf<DistributionMethod>{{"uniform", DistributionMethod::uniform},
+                                          {"gaussian", DistributionMethod::gaussian},
+                                          {"constant", DistributionMethod::constant},
+                                          {"grid", DistributionMethod::grid}});
+  if (!method) return out;
+  out.method = *method;
   switch (out.method) {
     case DistributionMethod::uniform:
-      read_uniform(element, out);
+      read_uniform(element, triple, out);
       break;
     case DistributionMethod::gaussian:
-      out.first = element.required("mean", vector3);
+      out.first = element.required("mean", triple);
       out.second = element.required("std_dev", non_negative_vector3);
       break;
     case DistributionMethod::constant:
-      out.first = element.required("values", vector3);
+      out.first = element.required("values", triple);
       break;
     case DistributionMethod::grid:
-      out.first = element.required("center", vector3);
-      out.second = element.required("distances", vector3);
+      out.first = element.required("center", triple);
+      out.second = element.required("distances", triple);
       out.layout = element.required("layout", cells, {1, 1, 1});
       break;
   }
@@ -120,9 +126,11 @@ std::uint64_t copies_so_far(const Scene& scene) {
 void read_distribution(Reading& reading, Element& element) {
   Distribution out;
   out.where = element.where();
-  if (auto position = element.required_child("position")) out.position = read_generator(*position);
-  if (auto orientation = element.required_child("orientation")) {
-    out.orientation = read_generator(*orientation);
+  if (auto child = element.required_child("position")) {
+    out.position = read_generator(*child, position);
+  }
+  if (auto child = element.required_child("orientation")) {
+    out.orientation = read_generator(*child, vector3);
   }
   auto entity = element.required_child("entity");
   element.done();

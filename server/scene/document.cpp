@@ -10,6 +10,7 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr std::size_t most_faults = 1000;
+constexpr std::size_t smallest_average_element = 32;  // [bytes], with its closing tag
 
 /// The offset of the first byte that is not well-formed UTF-8, or npos.
 std::size_t first_bad_utf8(std::string_view text) {
@@ -81,6 +82,15 @@ Document::Document(std::string text, std::string name, std::size_t file, const R
 bool Document::check_text() {
   if (trimmed(source_).empty()) {
     fault({file_, 0, 0}, "the file is empty; a scene begins with <argos-configuration>");
+    return false;
+  }
+  const auto most_elements = std::max<std::ptrdiff_t>(
+      1'000'000, static_cast<std::ptrdiff_t>(options_.max_size / smallest_average_element));
+  if (std::count(source_.begin(), source_.end(), '<') > 2 * most_elements) {
+    fault({file_, 0, 0},
+          fmt::format("the file has more than {} elements; split the scene, or raise "
+                      "--max-scene-size",
+                      most_elements));
     return false;
   }
   if (const std::size_t nul = source_.find('\0'); nul != std::string::npos) {
@@ -277,6 +287,7 @@ void Element::done() {
   for (const pugi::xml_attribute attribute : node_.attributes()) {
     if (any_attribute_) break;
     const std::string_view name = attribute.name();
+    if (name.starts_with("xml:") || name.starts_with("xmlns")) continue;  // XML's own
     if (std::find(asked_attributes_.begin(), asked_attributes_.end(), name) ==
         asked_attributes_.end()) {
       report_unknown_attribute(attribute);

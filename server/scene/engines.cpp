@@ -8,6 +8,8 @@
 namespace ziggurat::scene {
 namespace {
 
+constexpr unsigned most_iterations = 1'000'000;  // substeps of a tick
+constexpr unsigned most_solver_iterations = 10'000;
 constexpr double usual_gravity = 10.0;  // [m/s^2], the dialect's default of `g`
 constexpr std::array<std::string_view, 2> engine_names{"dynamics3d", "dynamics2d"};
 
@@ -36,8 +38,9 @@ void read_dynamics3d(Reading& reading, Element& engine) {
   physics.clock =
       engine.optional("clock", OneOf<Clock>{{"nominal", Clock::nominal}, {"beta50", Clock::beta50}},
                       Clock::nominal);
-  physics.max_substep = engine.optional("max_substep", positive);
-  physics.solver_iterations = engine.optional("solver_iterations", positive_count);
+  physics.max_substep = engine.optional("max_substep", duration);
+  physics.solver_iterations =
+      engine.optional("solver_iterations", Whole{1, most_solver_iterations});
   reading.defaults.friction = engine.optional("friction", non_negative);
   reading.defaults.rolling_friction = engine.optional("rolling_friction", non_negative);
   reading.defaults.linear_damping = engine.optional("linear_damping", non_negative);
@@ -88,7 +91,7 @@ void read_engines(Reading& reading, Element& root) {
       continue;
     }
     const std::string id = engine.required("id", identifier);
-    const unsigned iterations = engine.optional("iterations", positive_count, 10);
+    const unsigned iterations = engine.optional("iterations", Whole{1, most_iterations}, 10);
     if (!id.empty() && !ids.add(id)) {
       engine.fault_at("id", "is the id of an earlier engine; give each its own");
     }

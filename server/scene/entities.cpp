@@ -49,8 +49,8 @@ void read_single_body(Reading& reading, Element& element, Entity& entity, Placem
 void read_prototype(Reading& reading, Element& element, Entity& entity, Placement placement) {
   entity.movable = element.optional("movable", boolean, true);
   entity.pose = read_body(element, placement);
-  read_links(reading, element, entity);
-  read_joints(reading, element, entity);
+  const bool rooted = read_links(reading, element, entity);
+  read_joints(reading, element, entity, rooted);
   read_devices(reading, element, entity);
   read_controller_of(reading, element, entity);
 }
@@ -77,7 +77,6 @@ void read_steering_limits(Element engine) {
 void read_robot(Reading& reading, Element& element, Entity& entity, Placement placement) {
   entity.pose = read_body(element, placement);
   entity.links.emplace_back().where = element.where();
-  if (!element.has("id")) return;
   element.optional("rab_range", positive);
   element.optional("rab_data_size", count);
   if (entity.kind == EntityKind::foot_bot) {
@@ -89,9 +88,8 @@ void read_robot(Reading& reading, Element& element, Entity& entity, Placement pl
   element.optional("perspective_camera_range", positive);
   if (auto battery = element.child("battery")) read_battery(*battery);
   if (auto engine = element.child("dynamics2d")) read_steering_limits(*engine);
-  if (auto controller = element.required_child("controller")) {
-    read_controller_of(reading, element, entity);
-  }
+  element.required_child("controller");
+  read_controller_of(reading, element, entity);
   element.fault("is not supported yet; model the robot as a <prototype>");
 }
 

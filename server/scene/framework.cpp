@@ -8,10 +8,11 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr double most_ticks = 9007199254740992.0;  // 2^53: counted exactly in every double
-constexpr double longest = 9e9;                    // [s]: nanoseconds fit 64 bits
+constexpr unsigned most_per_second = 1'000'000;
+constexpr double longest = 9e9;  // [s]: nanoseconds fit 64 bits
 
 void read_experiment(Element experiment, Experiment& out) {
-  out.ticks_per_second = experiment.required("ticks_per_second", positive_count, 1);
+  out.ticks_per_second = experiment.required("ticks_per_second", Whole{1, most_per_second}, 1);
   out.length = experiment.optional("length", non_negative, 0.0);
   out.random_seed = experiment.optional("random_seed", seed, 0);
   out.real_time = experiment.optional("real_time", boolean, false);
@@ -33,7 +34,7 @@ void read_system(Element system) {
 void read_profiling(Element profiling) {
   profiling.document().notice(profiling.where(),
                               "<profiling> has no effect here: the run's summary holds the times");
-  profiling.required("file", identifier);
+  profiling.required("file", path);
   profiling.required("format", Words{"human_readable", "table"});
   profiling.optional("truncate_file", boolean);
   profiling.done();

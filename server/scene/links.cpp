@@ -15,35 +15,39 @@ constexpr Damping link_damping{0.04, 0.04};
 enum class Shape { box, cylinder, sphere };
 
 Geometry read_geometry(Element& link) {
-  const Shape shape = link.required(
-      "geometry",
-      OneOf<Shape>{{"box", Shape::box}, {"cylinder", Shape::cylinder}, {"sphere", Shape::sphere}});
-  if (!link.has("geometry")) {
+  constexpr std::string_view why = "the geometry has no such extent";
+  const OneOf<Shape> shapes{
+      {"box", Shape::box}, {"cylinder", Shape::cylinder}, {"sphere", Shape::sphere}};
+  if (!link.has("geometry")) link.missing("geometry");
+  const auto shape = link.optional("geometry", shapes);
+  if (!shape) {
     for (const char* name : {"size", "radius", "height"}) link.optional(name, text);
     return Box{math::Vector3::Ones()};
   }
-  switch (shape) {
-    case Shape::cylinder: {
-      const double radius = link.required("radius", length, 1.0);
-      return Cylinder{radius, link.required("height", length, 1.0)};
-    }
-    case Shape::sphere:
-      return Sphere{link.required("radius", length, 1.0)};
-    case Shape::box:
-      break;
+  if (shape == Shape::box) {
+    link.without_effect("radius", number, why);
+    link.without_effect("height", number, why);
+    return Box{link.required("size", size, math::Vector3::Ones())};
   }
-  return Box{link.required("size", size, math::Vector3::Ones())};
+  link.without_effect("size", vector3, why);
+  const double radius = link.required("radius", length, 1.0);
+  if (shape == Shape::cylinder) return Cylinder{radius, link.required("height", length, 1.0)};
+  link.without_effect("height", number, why);
+  return Sphere{radius};
 }
 
-Link read_link(Reading& reading, Element& element, Ids& ids) {
+/// @param distinct  made false if the link's name can't be told from another's
+Link read_link(Reading& reading, Element& element, Ids& ids, bool& distinct) {
   Link link;
   link.where = element.where();
   const bool named = element.has("id");
   link.id = element.optional("id", identifier, "");
   if (!named) link.id = ids.next("link");
   if (link.id == "origin") {
+    distinct = false;
     element.fault_at("id", "is the name of the entity's own frame; choose another");
   } else if (named && !link.id.empty() && !ids.add(link.id)) {
+    distinct = false;
     element.fault_at("id", "is the id of an earlier link; give each its own");
   }
   link.geometry = read_geometry(element);
@@ -104,11 +108,17 @@ std::optional<Joint> read_joint(const Reading& reading, Element& element, Ids& i
   if (named && !joint.id.empty() && !ids.add(joint.id)) {
     element.fault_at("id", "is the id of an earlier joint; give each its own");
   }
-  joint.type = element.required("type", OneOf<JointType>{{"fixed", JointType::fixed},
-                                                         {"spherical", JointType::spherical},
-                                                         {"prismatic", JointType::prismatic},
-                                                         {"revolute", JointType::revolute}});
-  read_axis_and_limit(element, joint);
+  if (!element.has("type")) element.missing("type");
+  const auto type = element.optional("type", OneOf<JointType>{{"fixed", JointType::fixed},
+                                                              {"spherical", JointType::spherical},
+                                                              {"prismatic", JointType::prismatic},
+                                                              {"revolute", JointType::revolute}});
+  joint.type = type.value_or(JointType::fixed);
+  if (type) {
+    read_axis_and_limit(element, joint);
+  } else {
+    for (const char* name : {"axis", "limit"}) element.optional(name, text);
+  }
   element.without_effect("disable_collision", boolean,
                          "links of one prototype never collide with each other");
   const bool parent = read_side(reading, element, "parent", joint.parent, joint.parent_frame);
@@ -202,14 +212,15 @@ void order_joints(Document& document, Entity& entity) {
   if (sound && ordered.size() + 1 == entity.links.size()) entity.joints = std::move(ordered);
 }
 
-void read_links(Reading& reading, Element& element, Entity& entity) {
+bool read_links(Reading& reading, Element& element, Entity& entity) {
   auto links = element.required_child("links");
-  if (!links) return;
+  if (!links) return false;
   constexpr std::string_view known[] = {"link"};
   Ids ids;
+  bool distinct = true;
   for (Element& link : links->children()) {
     if (link.name() == "link") {
-      entity.links.push_back(read_link(reading, link, ids));
+      entity.links.push_back(read_link(reading, link, ids, distinct));
     } else {
       link.unknown_in("links", known);
     }
@@ -228,10 +239,11 @@ void read_links(Reading& reading, Element& element, Entity& entity) {
         entity.links[i].where,
         fmt::format("mass of link {} is 0; write more than 0 kg", in_quotes(entity.links[i].id)));
   }
+  return reference.has_value() && distinct;
 }
 
-void read_joints(Reading& reading, Element& element, Entity& entity) {
-  bool complete = true;
+void read_joints(Reading& reading, Element& element, Entity& entity, bool rooted) {
+  bool complete = rooted;
   if (auto joints = element.child("joints")) {
     constexpr std::string_view known[] = {"joint"};
     Ids ids;
@@ -246,7 +258,7 @@ void read_joints(Reading& reading, Element& element, Entity& entity) {
     }
     joints->done();
   }
-  if (complete && !entity.links.empty()) order_joints(reading.document, entity);
+  if (complete) order_joints(reading.document, entity);
 }
 
 }  // namespace ziggurat::scene

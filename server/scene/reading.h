@@ -90,9 +90,11 @@ math::Pose read_body(Element& element, Placement placement);
 /// `position` and `orientation` of any element, both optional.
 math::Pose read_pose(Element& element);
 
-/// Reads <links> and <joints> and orders the joints from the root outwards.
-void read_links(Reading& reading, Element& element, Entity& entity);
-void read_joints(Reading& reading, Element& element, Entity& entity);
+/// Reads <links>; false if links can't be told apart or no reference link is known.
+bool read_links(Reading& reading, Element& element, Entity& entity);
+
+/// Reads <joints> and, if the tree is `rooted`, orders them from the root outwards.
+void read_joints(Reading& reading, Element& element, Entity& entity, bool rooted);
 
 /// Checks that joints make a tree with the reference link at its root, and orders them.
 void order_joints(Document& document, Entity& entity);

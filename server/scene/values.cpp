@@ -14,6 +14,7 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double shortest_length = 1e-6, longest_length = 1e6;
+constexpr double shortest_duration = 1e-6;
 constexpr double lightest_mass = 1e-9, heaviest_mass = 1e9;
 
 constexpr std::string_view white_space = " \t\r\n\v\f";
@@ -52,8 +53,9 @@ Value<std::uint64_t> integer(std::string_view text, std::uint64_t least, std::ui
   return result;
 }
 
-Value<unsigned> small_integer(std::string_view text, unsigned least) {
-  const auto value = integer(text, least, std::numeric_limits<unsigned>::max());
+Value<unsigned> small_integer(std::string_view text, unsigned least,
+                              unsigned most = std::numeric_limits<unsigned>::max()) {
+  const auto value = integer(text, least, most);
   if (const Wrong* wrong = std::get_if<Wrong>(&value)) return *wrong;
   return static_cast<unsigned>(std::get<std::uint64_t>(value));
 }
@@ -214,6 +216,14 @@ Value<double> half_angle(std::string_view text) {
   return value;
 }
 
+Value<double> duration(std::string_view text) {
+  Value<double> value = positive(text);
+  if (const double* v = std::get_if<double>(&value); v && *v < shortest_duration) {
+    return Wrong{"is too short; write 1e-6 s or more"};
+  }
+  return value;
+}
+
 Value<unsigned> count(std::string_view text) { return small_integer(text, 0); }
 
 Value<unsigned> positive_count(std::string_view text) { return small_integer(text, 1); }
@@ -304,11 +314,18 @@ Value<bool> boolean(std::string_view text) {
 Value<std::string> text(std::string_view text) { return std::string(text); }
 
 Value<std::string> identifier(std::string_view text) {
+  constexpr std::size_t longest = 255;
   if (text.empty()) return Wrong{"is empty; write a name"};
+  if (text.size() > longest) return Wrong{"is too long; write a name of at most 255 bytes"};
   if (std::any_of(text.begin(), text.end(),
                   [](unsigned char c) { return c < 0x20 || c == 0x7f; })) {
     return Wrong{"contains a control character; write a name without"};
   }
+  return std::string(text);
+}
+
+Value<std::string> path(std::string_view text) {
+  if (text.empty()) return Wrong{"is empty; write the path of a file"};
   return std::string(text);
 }
 
@@ -331,6 +348,10 @@ Value<Color> color(std::string_view text) {
   const auto& rgba = std::get<0>(channels);
   return Color{static_cast<std::uint8_t>(rgba[0]), static_cast<std::uint8_t>(rgba[1]),
                static_cast<std::uint8_t>(rgba[2])};
+}
+
+Value<unsigned> Whole::operator()(std::string_view text) const {
+  return small_integer(text, least, most);
 }
 
 Value<std::string> Words::operator()(std::string_view text) const {

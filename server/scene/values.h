@@ -44,6 +44,7 @@ Value<double> half_angle(std::string_view text);        ///< 0 to 180 degrees ->
 Value<double> angle(std::string_view text);             ///< degrees -> [rad]
 Value<unsigned> count(std::string_view text);           ///< integer 0 to 4294967295
 Value<unsigned> positive_count(std::string_view text);  ///< integer 1 to 4294967295
+Value<double> duration(std::string_view text);          ///< 1e-6 or more [s]
 Value<std::uint64_t> seed(std::string_view text);       ///< integer 0 to 2^64 - 1
 
 // --- several numbers ----------------------------------------------------------------------------
@@ -68,7 +69,8 @@ math::Quaternion orientation_from_degrees(const math::Vector3& zyx);
 
 Value<bool> boolean(std::string_view text);            ///< `true` or `false`
 Value<std::string> text(std::string_view text);        ///< anything
-Value<std::string> identifier(std::string_view text);  ///< not empty, no control characters
+Value<std::string> identifier(std::string_view text);  ///< 1 to 255 bytes, no control characters
+Value<std::string> path(std::string_view text);        ///< not empty
 Value<Color> color(std::string_view text);             ///< a name, or `r,g,b,a` of 0 to 255
 
 /// Reads one of a fixed set of words.
@@ -88,6 +90,12 @@ class OneOf {
 
  private:
   std::vector<std::pair<std::string_view, T>> words_;
+};
+
+/// Reads an integer from `least` to `most`.
+struct Whole {
+  unsigned least, most;
+  Value<unsigned> operator()(std::string_view text) const;
 };
 
 /// Accepts exactly these words and keeps the text.

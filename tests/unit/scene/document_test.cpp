@@ -1,0 +1,217 @@
+// What is wrong with a file before anything in it has a meaning.
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "scene_text.h"
+
+namespace ziggurat::scene {
+namespace {
+
+std::string only_fault(const ReadResult& result) {
+  const auto texts = faults(result);
+  if (texts.size() != 1) {
+    ADD_FAILURE() << texts.size() << " faults:\n" << all_problems(result);
+    return "";
+  }
+  return texts[0];
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class Folder : public testing::Test {
+ protected:
+  void SetUp() override {
+    char pattern[] = "/tmp/ziggurat-scene-XXXXXX";
+    path = ::mkdtemp(pattern);
+  }
+  void TearDown() override { std::filesystem::remove_all(path); }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name, std::ios::binary) << text;
+    return path / name;
+  }
+  std::filesystem::path path;
+};
+
+TEST_F(Folder, ASoundFileIsRead) {
+  const ReadResult result = read_file(write("sound.argos", SceneText{}.str()));
+  EXPECT_TRUE(result.problems.empty()) << all_problems(result);
+  EXPECT_EQ(result.scene.files.at(0), (path / "sound.argos").string());
+  EXPECT_EQ(result.scene.experiment.ticks_per_second, 10u);
+}
+
+TEST_F(Folder, MissingFolderFifoAndUnreadable) {
+  EXPECT_TRUE(contains(only_fault(read_file(path / "none.argos")), "does not exist"));
+  EXPECT_TRUE(contains(only_fault(read_file(path)), "not a regular file"));
+  ASSERT_EQ(::mkfifo((path / "fifo").c_str(), 0600), 0);
+  EXPECT_TRUE(contains(only_fault(read_file(path / "fifo")), "not a regular file"));
+  EXPECT_TRUE(contains(only_fault(read_file("/dev/zero")), "not a regular file"));
+}
+
+TEST_F(Folder, EmptyAndBinary) {
+  EXPECT_TRUE(contains(only_fault(read_file(write("empty", ""))), "is empty"));
+  EXPECT_TRUE(contains(only_fault(read_file(write("white", " \n\t\n"))), "is empty"));
+  EXPECT_TRUE(contains(only_fault(read_file(write("binary", std::string("\x7f"
+                                                                        "ELF\0\1",
+                                                                        6)))),
+                       "binary:1:5: this is binary data"));
+  EXPECT_TRUE(contains(only_fault(read_file(write("latin", "<a>\n<b id=\"caf\xe9\"/></a>"))),
+                       "latin:2:11: this is not UTF-8"));
+}
+
+TEST_F(Folder, TooLargeIsRefusedBeforeItIsRead) {
+  const std::filesystem::path file = write("large", SceneText{}.str());
+  ReadOptions options;
+  options.max_size = 100;
+  EXPECT_TRUE(contains(only_fault(read_file(file, options)), "larger than 100 bytes"));
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 40);  // a sparse terabyte
+  EXPECT_TRUE(contains(only_fault(read_file(file)), "larger than 67108864 bytes"));
+}
+
+TEST(Text, SizeAtTheLimitIsRead) {
+  const std::string text = SceneText{}.str();
+  ReadOptions options;
+  options.max_size = text.size();
+  EXPECT_TRUE(read_text(text, "t", options).ok());
+  --options.max_size;
+  EXPECT_FALSE(read_text(text, "t", options).ok());
+}
+
+TEST(Text, TruncatedAnywhereIsAFaultWithLineAndColumn) {
+  const std::string text = SceneText{}.str();
+  const std::size_t end = text.rfind("</argos-configuration>");
+  for (std::size_t size = 1; size < end + 20; ++size) {
+    const ReadResult result = read_text(text.substr(0, size), "t");
+    const std::string fault = only_fault(result);
+    EXPECT_TRUE(contains(fault, "malformed XML")) << size << ": " << fault;
+    EXPECT_GE(result.problems[0].where.line, 1u);
+    EXPECT_GE(result.problems[0].where.column, 1u);
+  }
+  EXPECT_EQ(only_fault(read_text("<a>\n  <b>\n", "t")),
+            "t:2:6: malformed XML: the file ends too early; close every element that was opened");
+}
+
+TEST(Text, MalformedXml) {
+  EXPECT_TRUE(contains(only_fault(read_text("<a>\n  <b></c>\n</a>", "t")),
+                       "t:2:8: malformed XML: this closing tag closes nothing"));
+  EXPECT_TRUE(contains(only_fault(read_text("hello", "t")), "there is no element"));
+  EXPECT_TRUE(contains(only_fault(read_text("<a b=c/>", "t")), "t:1:6: malformed XML"));
+}
+
+TEST(Text, AnEntityBombIsHarmlessAndSaid) {
+  std::string text = "<?xml version=\"1.0\"?>\n<!DOCTYPE bomb [\n<!ENTITY lol0 \"lol\">\n";
+  for (int i = 1; i < 10; ++i) {
+    text += "<!ENTITY lol" + std::to_string(i) + " \"";
+    for (int k = 0; k < 10; ++k) text += "&lol" + std::to_string(i - 1) + ";";
+    text += "\">\n";
+  }
+  SceneText scene;
+  scene.arena = arena_with("<box id=\"&lol9;\" size=\"1,1,1\" movable=\"false\"><body/></box>");
+  const ReadResult result = read_text(text + "]>\n" + scene.str(), "t");
+  const auto texts = faults(result);
+  ASSERT_EQ(texts.size(), 2u) << all_problems(result);
+  EXPECT_TRUE(contains(texts[0], "t:2:11: the document type declares entities"));
+  EXPECT_TRUE(contains(texts[1], "reference \"&lol9;\", which stands for no character"));
+}
+
+TEST(Text, CharacterReferencesAreReplaced) {
+  SceneText text;
+  text.arena =
+      arena_with("<box id=\"a&#98;&amp;&#x63;\" size=\"1,1,1\" movable=\"false\"><body/></box>");
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(result.scene.entities.at(0).id, "ab&c");
+  for (const char* reference : {"&#0;", "&#xD800;", "&#1;", "&#x110000;", "& b", "&nbsp;"}) {
+    text.arena = arena_with("<box id=\"a" + std::string(reference) +
+                            "\" size=\"1,1,1\" movable=\"false\"><body/></box>");
+    EXPECT_FALSE(text.read().ok()) << reference;
+  }
+}
+
+TEST(Text, RepeatedAttributesAndSecondRoots) {
+  SceneText text;
+  text.arena = R"(<arena size="1,1,1" size="2,2,2"/>)";
+  EXPECT_TRUE(contains(only_fault(text.read()),
+                       "4:21: malformed XML: <arena> has the attribute "
+                       "\"size\" twice"));
+  EXPECT_TRUE(contains(only_fault(read_text(SceneText{}.str() + "<more/>", "t")),
+                       "a second root element, <more>"));
+}
+
+TEST(Text, ByteOrderMarkAndUtf8) {
+  EXPECT_TRUE(read_text("\xef\xbb\xbf" + SceneText{}.str(), "t").problems.empty());
+  SceneText text;
+  text.arena = arena_with(R"(<box id="café" size="1,1,1" movable="false"><body/></box>)");
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(result.scene.entities.at(0).id, "café");
+}
+
+TEST(Text, StrayTextIsNoticed) {
+  SceneText text;
+  text.arena = arena_with("oops");
+  const ReadResult result = text.read();
+  EXPECT_TRUE(result.ok());
+  EXPECT_EQ(count_containing(notices(result), "the text \"oops\" in <arena> has no effect"), 1u);
+}
+
+TEST(Text, EndlessFaultsEnd) {
+  std::string boxes;
+  for (int i = 0; i < 100000; ++i) boxes += "<box/>";
+  SceneText text;
+  text.arena = arena_with(boxes);
+  const auto texts = faults(text.read());
+  EXPECT_EQ(texts.size(), 1001u);
+  EXPECT_EQ(count_containing(texts, "the rest of the file was not read"), 1u);
+}
+
+TEST(Text, DepthAndBreadthAreBounded) {
+  std::string deep;
+  for (int i = 0; i < 200000; ++i) deep += "<a>";
+  EXPECT_FALSE(read_text(deep, "t").ok());
+  for (int i = 0; i < 200000; ++i) deep += "</a>";
+  EXPECT_FALSE(read_text(deep, "t").ok());
+  EXPECT_TRUE(contains(only_fault(read_text(std::string(9'000'000, '<'), "t")),
+                       "more than 2097152 elements"));
+}
+
+TEST(Lenient, UnknownAttributesAreNoticesAndElementsStayFaults) {
+  SceneText text;
+  text.arena = R"(<arena size="1,1,1" colour="red"><blob/></arena>)";
+  EXPECT_EQ(faults(text.read()).size(), 2u);
+  ReadOptions options;
+  options.lenient = true;
+  const ReadResult result = text.read(options);
+  EXPECT_TRUE(contains(only_fault(result), "unknown element <blob>"));
+  EXPECT_EQ(count_containing(notices(result), "4:21: unknown attribute \"colour\" of <arena>"), 1u);
+}
+
+TEST(Problems, StandInDocumentOrder) {
+  SceneText text;
+  text.framework = "<framework><experiment ticks_per_second=\"0\"/></framework>";
+  text.arena = arena_with("<box/>");
+  text.engines = "<physics_engines><dynamics3d/></physics_engines>";
+  const ReadResult result = text.read();
+  for (std::size_t i = 1; i < result.problems.size(); ++i) {
+    EXPECT_LE(result.problems[i - 1].where.line, result.problems[i].where.line);
+  }
+  EXPECT_EQ(result.problems.front().where.line, 2u);
+  EXPECT_EQ(result.problems.back().where.line, 5u);
+}
+
+TEST(SceneErrorText, CarriesAllFaultsAndNoNotices) {
+  const SceneError error({{Problem::Severity::notice, "f", {0, 1, 1}, "n"},
+                          {Problem::Severity::fault, "f", {0, 2, 3}, "one"},
+                          {Problem::Severity::fault, "g", {}, "two"}});
+  EXPECT_STREQ(error.what(), "f:2:3: one\ng: two");
+  EXPECT_EQ(error.problems().size(), 3u);
+}
+
+}  // namespace
+}  // namespace ziggurat::scene

@@ -1,0 +1,35 @@
+#include "scene/names.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace ziggurat::scene {
+namespace {
+
+TEST(EditDistance, CountsEdits) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("radius", "raduis"), 1u);  // neighbours swapped
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(edit_distance("orientation", "oriention"), 2u);
+}
+
+TEST(Nearest, OnlyWhatMayHaveBeenMeant) {
+  constexpr std::array<std::string_view, 3> names{"position", "orientation", "size"};
+  EXPECT_EQ(nearest("positon", names), "position");
+  EXPECT_EQ(nearest("colour", names), std::nullopt);
+  EXPECT_EQ(nearest(std::string(100000, 'p'), names), std::nullopt);
+}
+
+TEST(Ids, NumbersTheUnnamedFromZeroWhateverTheNamed) {
+  Ids ids;
+  EXPECT_TRUE(ids.add("front"));
+  EXPECT_EQ(ids.next("magnet"), "magnet_0");
+  EXPECT_TRUE(ids.add("magnet_1"));
+  EXPECT_EQ(ids.next("magnet"), "magnet_2");
+  EXPECT_FALSE(ids.add("magnet_0"));
+}
+
+}  // namespace
+}  // namespace ziggurat::scene

@@ -1,0 +1,213 @@
+// What framework, engines, media and controllers give, and what they say has no effect.
+
+#include <gtest/gtest.h>
+
+#include "scene_text.h"
+
+namespace ziggurat::scene {
+namespace {
+
+TEST(Framework, DefaultsAndValues) {
+  SceneText text;
+  EXPECT_EQ(text.read().scene.experiment.length, 0.0);
+  text.framework =
+      R"(<framework><experiment ticks_per_second=" 5 " length="8.5" random_seed="124" real_time="true"/></framework>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.problems.empty()) << all_problems(result);
+  const Experiment& experiment = result.scene.experiment;
+  EXPECT_EQ(experiment.ticks_per_second, 5u);
+  EXPECT_EQ(experiment.length, 8.5);
+  EXPECT_EQ(experiment.random_seed, 124u);
+  EXPECT_TRUE(experiment.real_time);
+}
+
+TEST(Framework, WhatHasNoEffectIsNoticed) {
+  SceneText text;
+  text.framework =
+      R"(<framework><system threads="4" method="balance_length"/><experiment ticks_per_second="1"/>)"
+      R"(<profiling file="p" format="table"/></framework>)";
+  text.rest = "<visualization><qt-opengl anything=\"at all\"/></visualization>\n";
+  const ReadResult result = text.read();
+  EXPECT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(count_containing(notices(result), "threads of <system> has no effect"), 1u);
+  EXPECT_EQ(count_containing(notices(result), "<profiling> has no effect"), 1u);
+  EXPECT_EQ(count_containing(notices(result), "7:1: <visualization> has no effect"), 1u);
+}
+
+TEST(Framework, TheFirstOfTwoCounts) {
+  SceneText text;
+  text.rest = R"(<framework><experiment ticks_per_second="77"/></framework>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(result.scene.experiment.ticks_per_second, 10u);
+  EXPECT_EQ(count_containing(notices(result), "a second <framework>"), 1u);
+}
+
+TEST(Engines, DefaultsAndValues) {
+  SceneText text;
+  const ReadResult plain = text.read();
+  EXPECT_EQ(plain.scene.physics.iterations, 10u);
+  EXPECT_EQ(plain.scene.physics.clock, Clock::nominal);
+  EXPECT_FALSE(plain.scene.physics.floor || plain.scene.physics.gravity);
+  text.engines =
+      R"(<physics_engines><dynamics3d id="d" iterations="25" clock="beta50" max_substep="0.001")"
+      R"( solver_iterations="50" friction="0.7"><gravity/><floor rolling_friction="0.1"/>)"
+      R"(</dynamics3d></physics_engines>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.problems.empty()) << all_problems(result);
+  const Physics& physics = result.scene.physics;
+  EXPECT_EQ(physics.iterations, 25u);
+  EXPECT_EQ(physics.clock, Clock::beta50);
+  EXPECT_EQ(physics.max_substep, 0.001);
+  EXPECT_EQ(physics.solver_iterations, 50u);
+  EXPECT_EQ(physics.gravity, 10.0);
+  EXPECT_EQ(physics.floor->surface.friction, 0.7);
+  EXPECT_EQ(physics.floor->surface.rolling_friction, 0.1);
+}
+
+TEST(Engines, TwoDimensionalEnginesShareTheWorld) {
+  SceneText text;
+  text.engines =
+      R"(<physics_engines><dynamics2d id="flat" elevation="0"><friction box_linear_friction="1"/>)"
+      R"(</dynamics2d><dynamics3d id="deep" iterations="3"/></physics_engines>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(result.scene.physics.id, "deep");
+  EXPECT_EQ(result.scene.physics.iterations, 3u);
+  EXPECT_EQ(count_containing(notices(result), "<dynamics2d> runs in the same 3D world"), 1u);
+}
+
+TEST(Engines, EntitiesNeedOne) {
+  SceneText text;
+  text.engines = "<physics_engines/>";
+  EXPECT_TRUE(text.read().ok());
+  text.arena = arena_with(R"(<box id="b" size="1,1,1" movable="false"><body/></box>)");
+  EXPECT_EQ(count_containing(faults(text.read()), "<physics_engines> has no engine"), 1u);
+}
+
+TEST(Media, KeepDocumentOrderAndSayOnceThatTheyComeLater) {
+  SceneText text;
+  text.media =
+      R"(<media><tag id="t" index="grid" grid_size="20,20,20"/><led id="l" grid_size="1,1,1"/>)"
+      R"(<led id="m"/><range_and_bearing id="r" check_occlusions="false"/></media>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  ASSERT_EQ(result.scene.media.size(), 4u);
+  EXPECT_EQ(result.scene.media[0].kind, MediumKind::tag);
+  EXPECT_EQ(result.scene.media[2].id, "m");
+  EXPECT_EQ(count_containing(notices(result), "LEDs are checked, but have no effect yet"), 1u);
+  EXPECT_EQ(count_containing(notices(result), "grid_size of <led> has no effect"), 1u);
+}
+
+TEST(Controllers, KindsAndParams) {
+  SceneText text;
+  text.controllers = R"(<controllers>
+<lua_controller id="l"><actuators/><sensors/><params script=" a b.lua " gain="2"/></lua_controller>
+<external_controller id="e" command="./drive --fast"><actuators/><sensors/></external_controller>
+<footbot_diffusion_controller id="c" library="x.so"><actuators/><sensors/><params alpha="7"><deep/></params></footbot_diffusion_controller>
+</controllers>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  const auto& controllers = result.scene.controllers;
+  ASSERT_EQ(controllers.size(), 3u);
+  EXPECT_TRUE(controllers[0].lua);
+  EXPECT_EQ(controllers[0].params[0], std::pair(std::string("script"), std::string("a b.lua")));
+  EXPECT_EQ(controllers[0].params[1].second, "2");
+  EXPECT_EQ(controllers[0].params_where.line, 4u);
+  EXPECT_EQ(controllers[0].params_where.column, 46u);
+  EXPECT_FALSE(controllers[1].lua);
+  EXPECT_EQ(controllers[1].command, "./drive --fast");
+  EXPECT_EQ(controllers[2].type, "footbot_diffusion_controller");
+  EXPECT_EQ(count_containing(notices(result),
+                             "6:1: <footbot_diffusion_controller> is taken as an "
+                             "external controller"),
+            1u);
+  EXPECT_EQ(count_containing(notices(result), "library of"), 1u);
+  EXPECT_EQ(count_containing(notices(result), "elements in <params> have no effect"), 1u);
+}
+
+TEST(Controllers, EveryNameOfTheDialectIsKnown) {
+  const char* actuators[] = {"joints",
+                             "radios",
+                             "leds",
+                             "directional_leds",
+                             "tags",
+                             "magnets",
+                             "differential_steering",
+                             "gripper",
+                             "range_and_bearing",
+                             "quadrotor_position",
+                             "quadrotor_speed",
+                             "footbot_turret",
+                             "footbot_gripper",
+                             "footbot_distance_scanner"};
+  const std::pair<const char*, const char*> sensors[] = {
+      {"joints", "default"},
+      {"radios", "default"},
+      {"cameras", "default"},
+      {"proximity", "default"},
+      {"positioning", "default"},
+      {"differential_steering", "default"},
+      {"battery", "default"},
+      {"ground", "rot_z_only"},
+      {"light", "default"},
+      {"range_and_bearing", "medium"},
+      {"colored_blob_omnidirectional_camera", "rot_z_only"},
+      {"colored_blob_perspective_camera", "default"},
+      {"footbot_proximity", "default"},
+      {"footbot_light", "rot_z_only"},
+      {"footbot_base_ground", "rot_z_only"},
+      {"footbot_motor_ground", "rot_z_only"},
+      {"footbot_turret_encoder", "default"},
+      {"footbot_distance_scanner", "rot_z_only"}};
+  std::string list = "<controllers><lua_controller id=\"c\"><actuators>";
+  for (const std::string name : actuators) {
+    list +=
+        "<" + name + " implementation=\"default\"" + (name == "leds" ? " medium=\"leds\"/>" : "/>");
+  }
+  list += "</actuators><sensors>";
+  for (const auto& [name, implementation] : sensors) {
+    const std::string n = name;
+    list += "<" + n + " implementation=\"" + implementation + "\"" +
+            (n == "range_and_bearing"        ? " medium=\"rab\"/>"
+             : n.starts_with("colored_blob") ? " medium=\"leds\"/>"
+                                             : "/>");
+  }
+  SceneText text;
+  text.controllers = list + "</sensors><params/></lua_controller></controllers>";
+  text.media = R"(<media><led id="leds"/><range_and_bearing id="rab"/></media>)";
+  const ReadResult result = text.read();
+  EXPECT_TRUE(result.ok()) << all_problems(result);
+  for (const char* subject : {"radios are", ": cameras are", "footbot_turret devices are",
+                              "positioning sensors are", "battery sensors are"}) {
+    EXPECT_EQ(count_containing(notices(result), subject), 1u) << subject;
+  }
+}
+
+TEST(Controllers, WithoutEffectOnDevices) {
+  SceneText text;
+  text.controllers =
+      R"(<controllers><lua_controller id="c"><actuators><radios implementation="default" medium="r"/>)"
+      R"(</actuators><sensors><radios implementation="default" medium="r"/></sensors><params/>)"
+      R"(</lua_controller></controllers>)";
+  const ReadResult result = text.read();
+  EXPECT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(count_containing(notices(result), "medium of <radios> has no effect here"), 1u);
+}
+
+TEST(Controllers, TheLastOfTwoDevicesCounts) {
+  SceneText text;
+  text.controllers = R"(<controllers><lua_controller id="c"><actuators/><sensors>)"
+                     R"(<joints implementation="default"><joint id="a" mode="position"/></joints>)"
+                     R"(<joints implementation="default"><joint id="b" mode="position"/></joints>)"
+                     R"(</sensors><params/></lua_controller></controllers>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  const auto& joints = result.scene.controllers[0].devices.joint_sensors;
+  ASSERT_EQ(joints.size(), 1u);
+  EXPECT_EQ(joints[0].joint, "b");
+  EXPECT_EQ(count_containing(notices(result), "this <joints> has no effect"), 1u);
+}
+
+}  // namespace
+}  // namespace ziggurat::scene
