@@ -7,6 +7,16 @@
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat {
+namespace {
+
+ProtocolError displaced(const v1::Displaced& by) {
+  ProtocolError::Details details;
+  details.code = "DISPLACED";
+  details.holder = by.by();
+  return ProtocolError("DISPLACED: " + by.message(), details);
+}
+
+}  // namespace
 
 Session::Session(const Options& options) : state_(std::make_unique<State>(options)) {
   state_->open();
@@ -96,8 +106,7 @@ bool Session::State::wait() {
         throw to_exception(message.error());
       case Connection::Kind::kDisplaced:
         is_over = true;
-        throw ProtocolError("DISPLACED: " + message.displaced().message(),
-                            {.code = "DISPLACED", .holder = message.displaced().by()});
+        throw displaced(message.displaced());
       default:
         break;  // signs of life, or news of a later version
     }
