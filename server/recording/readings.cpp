@@ -38,8 +38,8 @@ v1::Reading reading(const world::Layout& layout, const world::RobotLayout& robot
 // encoding sorts them by key, and turning that into JSON keeps the order.
 std::string to_json(const v1::Reading& reading) {
   static constexpr char prefix[] = "type.ziggurat";
-  const std::unique_ptr<pb::util::TypeResolver> resolver(
-      pb::util::NewTypeResolverForDescriptorPool(prefix, v1::Reading::descriptor()->file()->pool()));
+  const std::unique_ptr<pb::util::TypeResolver> resolver(pb::util::NewTypeResolverForDescriptorPool(
+      prefix, v1::Reading::descriptor()->file()->pool()));
   std::string bytes;
   {
     pb::io::StringOutputStream stream(&bytes);

@@ -30,15 +30,14 @@ TEST(Readings, IsALinePerRobotInSceneOrderWithNamesOfTheProto) {
   Readings readings(path, robots);
   readings.write({3, 300'000'000, {0.5, 0.25, 0}}, {{1.5, -2}});
   readings.close();
-  EXPECT_EQ(text_of(path),
-            R"({"tick":"3","time_s":0.3,"robot":"r0",)"
-            R"("observation":{"joint_encoders":{"left":0.25,"right":0.5}},)"
-            R"("command":{"joint_targets":{"right":1.5}}})"
-            "\n"
-            R"({"tick":"3","time_s":0.3,"robot":"r1",)"
-            R"("observation":{"joint_encoders":{"arm":0}},)"
-            R"("command":{"joint_targets":{"arm":-2}}})"
-            "\n");
+  EXPECT_EQ(text_of(path), R"({"tick":"3","time_s":0.3,"robot":"r0",)"
+                           R"("observation":{"joint_encoders":{"left":0.25,"right":0.5}},)"
+                           R"("command":{"joint_targets":{"right":1.5}}})"
+                           "\n"
+                           R"({"tick":"3","time_s":0.3,"robot":"r1",)"
+                           R"("observation":{"joint_encoders":{"arm":0}},)"
+                           R"("command":{"joint_targets":{"arm":-2}}})"
+                           "\n");
 }
 
 TEST(Readings, ReadBackAsTheSameMessage) {

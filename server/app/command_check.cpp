@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/arguments.h"
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/loading.h"
+#include "app/options.h"
+#include "app/scripts.h"
+#include "simulation/simulation.h"
+
+namespace ziggurat::app {
+namespace {
+
+using Severity = scene::Problem::Severity;
+
+struct Finding {
+  std::vector<scene::Problem> problems;
+  std::size_t entities = 0;  ///< of the world that was built; 0 if it could not be
+  std::size_t robots = 0;
+
+  std::size_t count(Severity severity) const {
+    return static_cast<std::size_t>(
+        std::ranges::count(problems, severity, &scene::Problem::severity));
+  }
+};
+
+// Reads the file, compiles the scripts and, if all is well so far, places everything.
+Finding examine(const std::string& path, const Options& options) {
+  auto read = scene::read_file(path, options.reading);
+  Finding finding{std::move(read.problems)};
+  const auto add = [&](const std::vector<scene::Problem>& more) {
+    finding.problems.insert(finding.problems.end(), more.begin(), more.end());
+  };
+  add(check_scripts(read.scene, path));
+  if (finding.count(Severity::fault) > 0) return finding;
+  try {
+    const simulation::Simulation simulation(read.scene, {choose_seed(options, read.scene), {}});
+    finding.entities = simulation.layout().entities.size();
+    finding.robots = simulation.layout().robots.size();
+  } catch (const scene::SceneError& error) {
+    add(error.problems());
+  }
+  return finding;
+}
+
+nlohmann::ordered_json to_json(const std::string& path, const Finding& finding) {
+  auto problems = nlohmann::ordered_json::array();
+  for (const auto& problem : finding.problems) {
+    problems.push_back({{"severity", problem.severity == Severity::fault ? "fault" : "notice"},
+                        {"file", problem.file},
+                        {"line", problem.where.line},
+                        {"column", problem.where.column},
+                        {"text", problem.text}});
+  }
+  return {{"scene", path},
+          {"ok", finding.count(Severity::fault) == 0},
+          {"entities", finding.entities},
+          {"robots", finding.robots},
+          {"problems", problems}};
+}
+
+std::string verdict(const std::string& path, const Finding& finding) {
+  const auto faults = finding.count(Severity::fault), notices = finding.count(Severity::notice);
+  const auto counted = [](std::size_t n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  if (faults > 0) {
+    return fmt::format("{}: {}, {}", path, counted(faults, "fault"), counted(notices, "notice"));
+  }
+  return fmt::format(
+      "{}: good; {}, {} with a controller; {}", path,
+      finding.entities == 1 ? "1 entity" : fmt::format("{} entities", finding.entities),
+      finding.robots, counted(notices, "notice"));
+}
+
+}  // namespace
+
+std::string help_check() {
+  std::ostringstream text;
+  text << R"(usage: ziggurat check SCENE... [OPTION]...
+
+Reports everything that is wrong with scene files, and everything in them that has no effect here:
+reads them whole, compiles their Lua scripts and places their entities, but starts nothing.
+
+  ziggurat check vehicle.argos
+  ziggurat check scenes/*.argos --quiet
+      faults only
+  ziggurat check vehicle.argos --json
+      an array with an object per scene
+
+Exit codes: 0 no scene has a fault; 1 one has.
+
+)" << check_options();
+  return text.str();
+}
+
+int execute_check(const Arguments& arguments) {
+  const auto options = parse_options(arguments, check_options());
+  if (options.scenes.empty()) throw UsageError("which scene? the path of a scene file is due");
+  Console console({options.quiet, false});
+  auto report = nlohmann::ordered_json::array();
+  bool good = true;
+  for (const auto& path : options.scenes) {
+    const auto finding = examine(path, options);
+    good = good && finding.count(Severity::fault) == 0;
+    if (options.json) {
+      report.push_back(to_json(path, finding));
+      continue;
+    }
+    for (const auto& problem : finding.problems) console.problem(problem);
+    if (!options.quiet) console.result(verdict(path, finding));
+  }
+  if (options.json) {
+    console.result(report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  }
+  console.flush();
+  return good ? exit_code::finished : exit_code::fault;
+}
+
+}  // namespace ziggurat::app

@@ -1,0 +1,34 @@
+#include <fmt/format.h>
+
+#include "app/arguments.h"
+#include "app/commands.h"
+#include "app/console.h"
+
+namespace ziggurat::app {
+
+std::string help_help() {
+  std::string text = R"(usage: ziggurat COMMAND [ARGUMENT]...
+
+Ziggurat runs robots in lock-step with controllers that are programs of their own.
+
+)";
+  for (const auto& command : commands()) {
+    text += fmt::format("  {:<8} {}\n", command.name, command.summary);
+  }
+  text += R"(
+  ziggurat help COMMAND    what a command does, with examples
+  ziggurat --version       the version
+)";
+  return text;
+}
+
+int execute_help(const Arguments& arguments) {
+  if (arguments.size() > 1) throw UsageError("one command at a time: ziggurat help COMMAND");
+  Console console;
+  const auto text = arguments.empty() ? help_help() : command_named(arguments[0]).help();
+  console.result(text.substr(0, text.find_last_not_of('\n') + 1));
+  console.flush();
+  return exit_code::finished;
+}
+
+}  // namespace ziggurat::app

@@ -1,0 +1,34 @@
+#include "app/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/arguments.h"
+
+namespace ziggurat::app {
+namespace {
+
+constexpr Command table[] = {
+    {"run", "run a scene with its controllers", help_run, execute_run},
+    {"serve", "run a scene for controllers that connect from outside", help_serve, execute_serve},
+    {"check", "report every fault and notice of scene files", help_check, execute_check},
+    {"help", "explain a command", help_help, execute_help},
+};
+
+}  // namespace
+
+std::span<const Command> commands() { return table; }
+
+const Command& command_named(const std::string& name) {
+  const auto found = std::ranges::find(table, name, &Command::name);
+  if (found != std::end(table)) return *found;
+  std::vector<std::string> names;
+  for (const auto& command : table) names.emplace_back(command.name);
+  const auto suggestion = closest(name, names);
+  throw UsageError(fmt::format(
+      "there is no command '{}'; {}", name,
+      suggestion.empty() ? "'ziggurat help' lists them" : "did you mean '" + suggestion + "'?"));
+}
+
+}  // namespace ziggurat::app

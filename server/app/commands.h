@@ -1,0 +1,45 @@
+#pragma once
+// The commands of the program: one table, one file per command.
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ziggurat::app {
+
+/// What stands on the command line behind the command's name.
+using Arguments = std::vector<std::string>;
+
+/// How the program ends.
+namespace exit_code {
+constexpr int finished = 0;
+constexpr int fault = 1;  ///< of scene, arguments or environment
+constexpr int controller_failed = 3;
+constexpr int interrupted = 130;  ///< Ctrl-C
+}  // namespace exit_code
+
+struct Command {
+  std::string_view name;
+  std::string_view summary;  ///< one line for the list of commands
+  std::string (*help)();     ///< what `ziggurat help NAME` prints
+  int (*execute)(const Arguments&);
+};
+
+std::span<const Command> commands();
+
+/// The command with that name. @throws UsageError with a suggestion
+const Command& command_named(const std::string& name);
+
+std::string help_run();
+std::string help_serve();
+std::string help_check();
+std::string help_help();
+
+/// Each returns an exit code and throws what main() turns into one.
+int execute_run(const Arguments& arguments);
+int execute_serve(const Arguments& arguments);
+int execute_check(const Arguments& arguments);
+int execute_help(const Arguments& arguments);
+
+}  // namespace ziggurat::app

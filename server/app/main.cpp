@@ -1,0 +1,58 @@
+// The program `ziggurat`: finds the command, and turns what it throws into a message and an exit
+// code.
+
+#include <algorithm>
+#include <exception>
+#include <string>
+
+#include "app/arguments.h"
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/version.h"
+#include "scene/reader.h"
+
+namespace ziggurat::app {
+namespace {
+
+bool asks_for_help(const Arguments& arguments) {
+  const auto end = std::ranges::find(arguments, "--");
+  return std::any_of(arguments.begin(), end,
+                     [](const auto& each) { return each == "--help" || each == "-h"; });
+}
+
+int dispatch(Arguments arguments, Console& console) {
+  if (arguments.empty()) {
+    console.report(help_help());
+    return exit_code::fault;
+  }
+  const std::string name = arguments.front();
+  arguments.erase(arguments.begin());
+  if (name == "--version") {
+    console.result(std::string("ziggurat ") + version);
+    console.flush();
+    return exit_code::finished;
+  }
+  if (name == "--help" || name == "-h") return execute_help({});
+  const Command& command = command_named(name);
+  if (asks_for_help(arguments)) return execute_help({name});
+  return command.execute(arguments);
+}
+
+}  // namespace
+}  // namespace ziggurat::app
+
+int main(int count, char** texts) {
+  using namespace ziggurat::app;
+  const Arguments arguments(texts + std::min(count, 1), texts + count);
+  Console::Style style;
+  style.json = std::ranges::find(arguments, "--json") != arguments.end();
+  Console console(style);
+  try {
+    return dispatch(arguments, console);
+  } catch (const ziggurat::scene::SceneError& error) {
+    for (const auto& problem : error.problems()) console.problem(problem);
+  } catch (const std::exception& error) {
+    console.fault(error.what());
+  }
+  return exit_code::fault;
+}

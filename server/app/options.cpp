@@ -1,0 +1,165 @@
+#include "app/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/arguments.h"
+
+namespace ziggurat::app {
+namespace {
+
+namespace po = boost::program_options;
+
+auto text(const char* name) { return po::value<std::string>()->value_name(name); }
+auto texts(const char* name) {
+  return po::value<std::vector<std::string>>()->composing()->value_name(name);
+}
+
+constexpr unsigned width = 96;
+
+po::options_description reading_options() {
+  po::options_description options("Reading the scene", width);
+  options.add_options()                                          //
+      ("lenient", "unknown attributes are notices, not faults")  //
+      ("max-scene-size", text("SIZE"), "largest scene file, as 64M (the default)");
+  return options;
+}
+
+po::options_description world_options() {
+  po::options_description options("The run", width);
+  options.add_options()                                                  //
+      ("ticks", text("N"), "N ticks, whatever the scene's length says")  //
+      ("duration", text("S"),
+       "S simulated seconds, whatever the scene's length says; "
+       "0 is until Ctrl-C")                                                          //
+      ("seed", text("N"), "random seed; 0 draws one from the system and prints it")  //
+      ("clock", text("nominal|beta50"),
+       "physical time per tick: 1/ticks_per_second, or the "
+       "slow clock of ARGoS 3.0.0-beta50")  //
+      ("real-time", po::value<std::string>()->implicit_value("1")->value_name("FACTOR"),
+       "pace to the wall clock, FACTOR times as fast (1 if left out)")  //
+      ("endpoint", texts("URL"),
+       "listen here too: tcp://127.0.0.1:5770, tcp://127.0.0.1:* or "
+       "ipc:///short/path; may be repeated")  //
+      ("insecure", "allow endpoints that other machines can reach");
+  return options;
+}
+
+po::options_description output_options() {
+  po::options_description options("What comes out", width);
+  options.add_options()                                                                        //
+      ("quiet", "no progress, notices and summary on stderr")                                  //
+      ("json", "messages for machines: one JSON object a line")                                //
+      ("hash", "last line of stdout: hash TICK DIGITS of the final state")                     //
+      ("hash-file", text("FILE"), "such a line for every tick")                                //
+      ("trace", text("FILE.csv"), "world poses of everything at every tick")                   //
+      ("readings", text("FILE.jsonl"), "what robots sensed and answered at every tick")        //
+      ("rays", text("FILE.jsonl"), "tested rays; no device casts any yet: the file is empty")  //
+      ("images", text("DIR"), "camera images; no camera takes any yet: the folder is empty")   //
+      ("summary", text("FILE.json"), "the summary for machines");
+  return options;
+}
+
+double positive_number(std::string_view option, const std::string& value) {
+  const auto number = to_number(option, value);
+  if (number <= 0) throw UsageError(fmt::format("{} is {}; more than 0 is due", option, value));
+  return number;
+}
+
+scene::Clock to_clock(const std::string& value) {
+  if (value == "nominal") return scene::Clock::nominal;
+  if (value == "beta50") return scene::Clock::beta50;
+  throw UsageError(fmt::format("--clock is '{}'; nominal or beta50 is due", value));
+}
+
+std::pair<std::string, std::string> to_controller(const std::string& value) {
+  const auto equals = value.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == value.size()) {
+    throw UsageError(fmt::format("--controller is '{}'; ID=COMMAND is due", value));
+  }
+  return {value.substr(0, equals), value.substr(equals + 1)};
+}
+
+}  // namespace
+
+po::options_description run_options() {
+  po::options_description processes("Controllers", width);
+  processes.add_options()  //
+      ("lua-processes", text("N"),
+       "share the Lua robots among N processes; 1 if left out, "
+       "0 is one for each robot")  //
+      ("controller", texts("ID=CMD"), "the scene's controller ID is CMD, whatever the scene says");
+  po::options_description options("", width);
+  options.add(world_options()).add(processes).add(output_options()).add(reading_options());
+  return options;
+}
+
+po::options_description serve_options() {
+  po::options_description options("", width);
+  options.add(world_options()).add(output_options()).add(reading_options());
+  return options;
+}
+
+po::options_description check_options() {
+  po::options_description options("", width);
+  options.add(reading_options())
+      .add_options()("json", "the report as JSON on stdout")("quiet", "faults only");
+  return options;
+}
+
+Options parse_options(const Arguments& arguments, const po::options_description& known) {
+  const Parsed parsed = parse(arguments, known);
+  const auto flag = [&](const char* name) { return parsed.values.count(name) > 0; };
+  const auto value = [&](const char* name) {
+    return flag(name) ? parsed.values[name].as<std::string>() : std::string();
+  };
+  const auto list = [&](const char* name) {
+    return flag(name) ? parsed.values[name].as<std::vector<std::string>>()
+                      : std::vector<std::string>();
+  };
+  Options options;
+  options.scenes = parsed.positional;
+  options.reading.lenient = flag("lenient");
+  if (flag("max-scene-size")) {
+    options.reading.max_size = to_size("--max-scene-size", value("max-scene-size"));
+  }
+  if (flag("ticks")) options.ticks = to_integer("--ticks", value("ticks"));
+  if (flag("duration")) {
+    options.duration = to_number("--duration", value("duration"));
+    if (*options.duration < 0) throw UsageError("--duration is negative; seconds are due");
+  }
+  if (options.ticks && options.duration) {
+    throw UsageError("--ticks and --duration both say how long; give one of them");
+  }
+  if (flag("seed")) options.seed = to_integer("--seed", value("seed"));
+  if (flag("clock")) options.clock = to_clock(value("clock"));
+  if (flag("real-time")) options.real_time = positive_number("--real-time", value("real-time"));
+  if (flag("lua-processes")) {
+    options.lua_processes = static_cast<unsigned>(
+        std::min<std::uint64_t>(to_integer("--lua-processes", value("lua-processes")), 1u << 20));
+  }
+  for (const auto& each : list("controller")) options.controllers.push_back(to_controller(each));
+  options.endpoints = list("endpoint");
+  options.insecure = flag("insecure");
+  options.quiet = flag("quiet");
+  options.json = flag("json");
+  options.hash = flag("hash");
+  options.hash_file = value("hash-file");
+  options.trace = value("trace");
+  options.readings = value("readings");
+  options.rays = value("rays");
+  options.images = value("images");
+  options.summary = value("summary");
+  return options;
+}
+
+const std::string& only_scene(const Options& options) {
+  if (options.scenes.empty()) throw UsageError("which scene? the path of a scene file is due");
+  if (options.scenes.size() > 1) {
+    throw UsageError(fmt::format("one scene at a time; '{}' is one too many", options.scenes[1]));
+  }
+  return options.scenes.front();
+}
+
+}  // namespace ziggurat::app

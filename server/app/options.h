@@ -1,0 +1,51 @@
+#pragma once
+// What the command line of `run`, `serve` and `check` may say, as plain data.
+
+#include <boost/program_options/options_description.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/commands.h"
+#include "scene/reader.h"
+#include "scene/scene.h"
+
+namespace ziggurat::app {
+
+struct Options {
+  std::vector<std::string> scenes;  ///< exactly one for run and serve
+  scene::ReadOptions reading;
+
+  std::optional<std::uint64_t> ticks;  ///< replaces the scene's length
+  std::optional<double> duration;      ///< [s] simulated, likewise; 0 = until Ctrl-C
+  std::optional<std::uint64_t> seed;   ///< 0 = drawn from the system
+  std::optional<scene::Clock> clock;
+  std::optional<double> real_time;  ///< simulated seconds per second of the wall; > 0
+
+  unsigned lua_processes = 1;                                    ///< 0 = one per robot
+  std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command
+  std::vector<std::string> endpoints;
+  bool insecure = false;  ///< endpoints may be reached from other machines
+
+  bool quiet = false;
+  bool json = false;
+  bool hash = false;
+  std::string hash_file, trace, readings, rays, images, summary;  ///< paths; empty = none
+};
+
+/// What each command understands, in groups with headings as its help prints them.
+boost::program_options::options_description run_options();
+boost::program_options::options_description serve_options();
+boost::program_options::options_description check_options();
+
+/// @throws UsageError
+Options parse_options(const Arguments& arguments,
+                      const boost::program_options::options_description& known);
+
+/// For commands that take one scene. @throws UsageError if there is none or more
+const std::string& only_scene(const Options& options);
+
+}  // namespace ziggurat::app

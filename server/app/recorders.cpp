@@ -1,0 +1,50 @@
+#include "app/recorders.h"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <filesystem>
+
+namespace ziggurat::app {
+
+Recorders::Recorders(const Options& options, const world::Layout& layout) {
+  if (!options.trace.empty()) trace_.emplace(options.trace, layout);
+  if (!options.hash_file.empty()) hashes_.emplace(options.hash_file);
+  if (!options.readings.empty()) readings_.emplace(options.readings, layout);
+  if (!options.rays.empty()) recording::OutputFile(options.rays).close();
+  if (!options.images.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(options.images, error);
+    if (error) {
+      throw recording::WriteError(
+          fmt::format("{}: cannot be made: {}", options.images, error.message()));
+    }
+  }
+}
+
+void Recorders::tick(const simulation::Simulation& simulation) {
+  if (trace_) trace_->write(simulation.state());
+  if (hashes_) hashes_->write(simulation.state().tick, simulation.hash());
+}
+
+void Recorders::exchange(const world::Observations& observations, const world::Commands& commands) {
+  if (readings_) readings_->write(observations, commands);
+}
+
+void Recorders::close() {
+  std::exception_ptr first;
+  const auto close = [&](auto& file) {
+    if (!file) return;
+    try {
+      file->close();
+    } catch (const recording::WriteError&) {
+      if (!first) first = std::current_exception();
+    }
+  };
+  close(trace_);
+  close(hashes_);
+  close(readings_);
+  if (first) std::rethrow_exception(first);
+}
+
+}  // namespace ziggurat::app

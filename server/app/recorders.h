@@ -1,0 +1,36 @@
+#pragma once
+// The files that a run leaves behind, as the command line asks for them.
+
+#include <memory>
+#include <optional>
+
+#include "app/options.h"
+#include "recording/hash_file.h"
+#include "recording/readings.h"
+#include "recording/trace.h"
+#include "simulation/simulation.h"
+
+namespace ziggurat::app {
+
+class Recorders {
+ public:
+  /// Creates all files, so that a path that can't be written is known before the run.
+  /// @throws recording::WriteError
+  Recorders(const Options& options, const world::Layout& layout);
+
+  /// After a tick, and once for tick 0. @throws recording::WriteError
+  void tick(const simulation::Simulation& simulation);
+
+  /// What robots sensed and answered at a tick. @throws recording::WriteError
+  void exchange(const world::Observations& observations, const world::Commands& commands);
+
+  /// Completes every file, also when one of them fails. @throws recording::WriteError
+  void close();
+
+ private:
+  std::optional<recording::Trace> trace_;
+  std::optional<recording::HashFile> hashes_;
+  std::optional<recording::Readings> readings_;
+};
+
+}  // namespace ziggurat::app

@@ -1,0 +1,91 @@
+#include "app/scripts.h"
+
+#include <fmt/format.h>
+
+#include <lua.hpp>
+#include <memory>
+
+namespace ziggurat::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One use of a script: what the message about it says.
+struct Use {
+  const std::vector<std::pair<std::string, std::string>>* params;
+  scene::Location where;
+};
+
+std::vector<Use> uses(const scene::Scene& scene) {
+  std::vector<Use> result;
+  for (const auto& controller : scene.controllers) {
+    if (controller.lua) result.push_back({&controller.params, controller.params_where});
+  }
+  const auto add = [&](const scene::Entity& entity) {
+    if (entity.controller && entity.overrides_params && scene.controllers[*entity.controller].lua) {
+      result.push_back({&entity.params, entity.where});
+    }
+  };
+  for (const auto& entity : scene.entities) add(entity);
+  for (const auto& distribution : scene.distributions) add(distribution.entity);
+  return result;
+}
+
+std::optional<std::string> fault(const std::string& script, const fs::path& scene_file) {
+  const auto path = find_script(script, scene_file);
+  if (!path) {
+    return fmt::format(
+        "script '{}' is not there; it may stand in the working directory, beside "
+        "the scene file or in a folder above it",
+        script);
+  }
+  if (auto error = compile_error(*path)) return "script does not compile: " + *error;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<fs::path> find_script(const std::string& script, const fs::path& scene_file) {
+  std::error_code error;
+  const auto there = [&](const fs::path& path) { return fs::is_regular_file(path, error); };
+  const fs::path relative(script);
+  if (there(relative)) return fs::absolute(relative).lexically_normal();
+  if (relative.is_absolute()) return std::nullopt;
+  for (auto folder = fs::absolute(scene_file).lexically_normal().parent_path();;
+       folder = folder.parent_path()) {
+    if (there(folder / relative)) return (folder / relative).lexically_normal();
+    if (folder == folder.parent_path()) return std::nullopt;
+  }
+}
+
+std::optional<std::string> compile_error(const fs::path& script) {
+  const std::unique_ptr<lua_State, decltype(&lua_close)> lua(luaL_newstate(), lua_close);
+  if (luaL_loadfilex(lua.get(), script.c_str(), "t") == LUA_OK) return std::nullopt;
+  return lua_tostring(lua.get(), -1);
+}
+
+std::string script_of(const std::vector<std::pair<std::string, std::string>>& params) {
+  for (const auto& [name, value] : params) {
+    if (name == "script") return value;
+  }
+  return {};
+}
+
+std::vector<scene::Problem> check_scripts(const scene::Scene& scene, const fs::path& scene_file) {
+  using Severity = scene::Problem::Severity;
+  std::vector<scene::Problem> problems;
+  for (const Use& use : uses(scene)) {
+    const auto file =
+        use.where.file < scene.files.size() ? scene.files[use.where.file] : scene_file.string();
+    const auto script = script_of(*use.params);
+    if (script.empty()) {
+      problems.push_back({Severity::notice, file, use.where,
+                          "no script is named in <params>: its robots do nothing"});
+    } else if (auto text = fault(script, scene_file)) {
+      problems.push_back({Severity::fault, file, use.where, *text});
+    }
+  }
+  return problems;
+}
+
+}  // namespace ziggurat::app

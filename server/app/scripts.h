@@ -1,0 +1,31 @@
+#pragma once
+// Lua scripts named by a scene: where they are, and whether they can run at all.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/reader.h"
+#include "scene/scene.h"
+
+namespace ziggurat::app {
+
+/// Looks in the working directory, then in the scene file's folder and its parents.
+/// @returns an absolute path
+std::optional<std::filesystem::path> find_script(const std::string& script,
+                                                 const std::filesystem::path& scene_file);
+
+/// Lua's own `file:line: message` if the text doesn't compile or can't be read; else nothing.
+std::optional<std::string> compile_error(const std::filesystem::path& script);
+
+/// The value of `script` among these; empty if there is none.
+std::string script_of(const std::vector<std::pair<std::string, std::string>>& params);
+
+/// A fault for each script of a Lua controller that is missing or doesn't compile, with the line
+/// of its <params>; a notice for each that names none.
+std::vector<scene::Problem> check_scripts(const scene::Scene& scene,
+                                          const std::filesystem::path& scene_file);
+
+}  // namespace ziggurat::app

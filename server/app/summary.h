@@ -1,0 +1,46 @@
+#pragma once
+// How a run went, for people and as JSON.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ziggurat::app {
+
+/// Why a run is over.
+enum class Ending { finished, interrupted, forced, controller_vanished };
+
+struct Summary {
+  std::string scene;  ///< path as given
+  Ending ending = Ending::finished;
+  std::uint64_t ticks = 0;
+  double simulated_s = 0;
+  double startup_s = 0;  ///< wall time until every robot had its controller
+  double wall_s = 0;     ///< of the ticks; the next four are parts of it
+  double physics_s = 0;
+  double exchange_s = 0;  ///< sending, and waiting for controllers
+  double recording_s = 0;
+  double pacing_s = 0;           ///< waiting for the wall clock (--real-time)
+  std::uint64_t late_ticks = 0;  ///< paced ticks that began after their time
+  std::uint64_t seed = 0;
+  std::uint64_t hash = 0;
+  std::size_t robots = 0;
+
+  struct Failure {
+    std::string robot;
+    std::string controller;
+    std::uint64_t tick = 0;
+    std::string message;
+  };
+  std::vector<Failure> failures;  ///< robots whose controller failed, in order of time
+  std::string vanished;           ///< the sentence on the controller that vanished
+};
+
+/// Several lines without line feed at the end; on failures others have the word.
+std::string to_text(const Summary& summary);
+std::string to_json(const Summary& summary);  ///< one line
+
+int exit_code_of(const Summary& summary);
+
+}  // namespace ziggurat::app

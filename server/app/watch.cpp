@@ -1,0 +1,238 @@
+#include "app/watch.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+namespace ziggurat::app {
+namespace {
+
+using std::chrono::milliseconds;
+using Membership = network::RobotStatus::Membership;
+
+constexpr milliseconds look_around{200};  // between looks while nothing arrives
+constexpr milliseconds look_closely{20};  // while a controller may have vanished
+constexpr milliseconds last_words{250};   // of a process that ended: still under way to us
+constexpr milliseconds noticeable{500};   // a wait that the progress line names
+constexpr milliseconds long_wait{5000};   // a wait that is worth a line of its own
+constexpr milliseconds farewell{2000};    // for controllers to answer the end
+constexpr int patience_ms = 1000;         // for processes to end after that
+
+}  // namespace
+
+Watch::Watch(const Watched& watched, double tick_length)
+    : watched_(watched), progress_(watched.console, tick_length) {}
+
+std::optional<Ending> Watch::gather() {
+  const auto ending = until([&](const auto& wait) { return watched_.server.gather(wait); });
+  gathered_ = !ending;
+  return ending;
+}
+
+std::optional<Ending> Watch::collect(world::Commands& commands, std::uint64_t tick) {
+  tick_ = tick;
+  return until([&](const auto& wait) { return watched_.server.collect(commands, wait); });
+}
+
+std::optional<Ending> Watch::sleep_until(clock::time_point moment) {
+  for (;;) {
+    if (auto ending = interruption()) return ending;
+    const auto left = std::chrono::ceil<milliseconds>(moment - clock::now());
+    if (left.count() <= 0) break;
+    if (progress_.due()) progress_.show(tick_, "");
+    watched_.console.flush();
+    pollfd signals{watched_.signals.descriptor(), POLLIN, 0};
+    ::poll(&signals, 1, static_cast<int>(std::min(left, look_around).count()));
+  }
+  return std::nullopt;
+}
+
+Ending Watch::stay_paused() {
+  watched_.console.notice("paused: the scene has no controllers; --real-time makes it run");
+  for (;;) {
+    if (auto ending = sleep_until(clock::now() + look_around)) return *ending;
+    watched_.server.gather({milliseconds{0}, {}});  // whoever knocks gets an answer
+    take_report();
+  }
+}
+
+std::optional<Ending> Watch::until(const Step& step) {
+  waiting_since_ = clock::now();
+  const std::array descriptors{watched_.signals.descriptor()};
+  for (;;) {
+    const auto outcome = step({suspected_since_ ? look_closely : look_around, descriptors});
+    take_report();
+    auto ending = interruption();
+    const bool complete = outcome == network::Outcome::complete;
+    if (!ending && !complete) ending = disappearance();
+    if (ending || complete) {
+      print_log();
+      if (progress_.due()) progress_.show(tick_, "");
+      return ending;
+    }
+    say_who_is_awaited();
+  }
+}
+
+std::optional<Ending> Watch::interruption() {
+  const auto arrived = watched_.signals.take();
+  if (arrived.interruptions == 0) return std::nullopt;
+  return arrived.interruptions > 1 ? Ending::forced : Ending::interrupted;
+}
+
+// A process that ended may have said before that its robots leave, and that may still be under
+// way; a peer that is lost may be a process whose end we are about to hear of.
+std::optional<Ending> Watch::disappearance() {
+  if (watched_.waits_for_ever) return std::nullopt;
+  const ControllerProcess* dead = nullptr;
+  for (auto& process : watched_.processes) {
+    if (process.process.poll() && !is_left(process) && !dead) dead = &process;
+  }
+  const auto lost = gathered_ ? missing_robots() : std::vector<std::size_t>();
+  if (!dead && lost.empty()) {
+    suspected_since_.reset();
+    return std::nullopt;
+  }
+  if (!suspected_since_) suspected_since_ = clock::now();
+  if (clock::now() - *suspected_since_ < last_words) return std::nullopt;
+  if (dead) {
+    vanished_ = fmt::format("{} (process {}) {} {}; it drove {}", dead->name, dead->process.id(),
+                            dead->process.how_it_ended(),
+                            gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick",
+                            names_of(dead->robots, watched_.layout));
+  } else {
+    vanished_ =
+        fmt::format("the controller of {} went away at tick {}", by_controller(lost), tick_);
+  }
+  return Ending::controller_vanished;
+}
+
+// Lines wait for the end of their tick: then their order depends on nobody's speed.
+void Watch::take_report() {
+  auto report = watched_.server.take_report();
+  for (const auto& notice : report.notices) watched_.console.notice(notice);
+  std::ranges::move(report.log, std::back_inserter(log_));
+  for (auto& failure : report.failures) {
+    const auto& robot = watched_.layout.robots[failure.robot];
+    print_log();
+    watched_.console.fault(fmt::format("robot {} (controller '{}') failed at tick {}: {}", robot.id,
+                                       watched_.scene.controllers[robot.controller].id,
+                                       failure.tick, failure.message));
+    failures_.push_back(std::move(failure));
+  }
+}
+
+void Watch::print_log() {
+  std::ranges::stable_sort(log_, {}, &wire::LogLine::robot);
+  for (const auto& line : log_) {
+    watched_.console.log_line(tick_, watched_.layout.robots[line.robot].id, line.text, line.error);
+  }
+  log_.clear();
+  watched_.console.flush();
+}
+
+std::vector<std::size_t> Watch::missing_robots() const {
+  std::vector<std::size_t> robots;
+  const auto status = watched_.server.status();
+  for (std::size_t r = 0; r < status.size(); ++r) {
+    if (status[r].membership == Membership::free) robots.push_back(r);
+  }
+  return robots;
+}
+
+std::vector<std::size_t> Watch::awaited_robots() const {
+  std::vector<std::size_t> robots;
+  const auto status = watched_.server.status();
+  for (std::size_t r = 0; r < status.size(); ++r) {
+    if (status[r].membership == Membership::free || status[r].awaited) robots.push_back(r);
+  }
+  return robots;
+}
+
+bool Watch::is_left(const ControllerProcess& process) const {
+  const auto status = watched_.server.status();
+  return std::ranges::all_of(process.robots, [&](std::size_t robot) {
+    return status[robot].membership == Membership::gone;
+  });
+}
+
+// "r0, r1 (controller 'drive'), r7 (controller 'lift')"
+std::string Watch::by_controller(const std::vector<std::size_t>& robots) const {
+  std::string text;
+  for (std::size_t c = 0; c < watched_.scene.controllers.size(); ++c) {
+    std::vector<std::size_t> driven;
+    std::ranges::copy_if(robots, std::back_inserter(driven), [&](std::size_t robot) {
+      return watched_.layout.robots[robot].controller == c;
+    });
+    if (driven.empty()) continue;
+    text += fmt::format("{}{} (controller '{}')", text.empty() ? "" : ", ",
+                        names_of(driven, watched_.layout), watched_.scene.controllers[c].id);
+  }
+  return text;
+}
+
+void Watch::say_who_is_awaited() {
+  const auto waited = clock::now() - waiting_since_;
+  const auto robots = awaited_robots();
+  if (progress_.due()) {
+    progress_.show(tick_, waited > noticeable ? by_controller(robots) : std::string());
+  }
+  // Somebody has to act if nobody was started for them: say so at once.
+  const auto has_process = [&](std::size_t robot) {
+    return std::ranges::any_of(watched_.processes, [&](const auto& process) {
+      return std::ranges::find(process.robots, robot) != process.robots.end();
+    });
+  };
+  const bool somebody_must_connect =
+      std::ranges::any_of(missing_robots(), [&](std::size_t robot) { return !has_process(robot); });
+  if (!somebody_must_connect && waited < long_wait) return;
+  auto text = by_controller(robots);
+  if (text.empty() || text == said_) return;
+  const auto where =
+      somebody_must_connect
+          ? fmt::format(" to connect to {}", fmt::join(watched_.server.endpoints(), " or "))
+          : std::string();
+  watched_.console.notice(fmt::format("waiting for {}{}", text, where));
+  said_ = std::move(text);
+}
+
+void Watch::wind_down(const wire::End& end) {
+  watched_.server.finish(end);
+  const std::array descriptors{watched_.signals.descriptor()};
+  const auto deadline = clock::now() + farewell;
+  while (clock::now() < deadline) {
+    const auto outcome = watched_.server.drain({look_closely, descriptors});
+    take_report();
+    if (outcome == network::Outcome::complete) break;
+    if (watched_.signals.take().interruptions > 0) {
+      for (auto& each : watched_.processes) each.process.signal(SIGKILL);
+      break;
+    }
+  }
+  print_log();
+  end_processes();
+}
+
+void Watch::end_processes() {
+  std::vector<ChildProcess*> children;
+  for (auto& each : watched_.processes) children.push_back(&each.process);
+  end_all(children, patience_ms, [&] { return watched_.signals.take().interruptions > 0; });
+}
+
+std::vector<Summary::Failure> Watch::failures() const {
+  auto sorted = failures_;
+  std::ranges::sort(sorted, {}, [](const auto& each) { return std::tuple(each.tick, each.robot); });
+  std::vector<Summary::Failure> result;
+  for (const auto& each : sorted) {
+    const auto& robot = watched_.layout.robots[each.robot];
+    result.push_back(
+        {robot.id, watched_.scene.controllers[robot.controller].id, each.tick, each.message});
+  }
+  return result;
+}
+
+}  // namespace ziggurat::app

@@ -1,0 +1,89 @@
+#pragma once
+// Waiting for controllers with open eyes: signals, processes that end, whoever keeps us waiting.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/console.h"
+#include "app/controllers.h"
+#include "app/progress.h"
+#include "app/signals.h"
+#include "app/summary.h"
+#include "network/server.h"
+#include "scene/scene.h"
+#include "world/layout.h"
+
+namespace ziggurat::app {
+
+/// What a watch looks at; all of it outlives the watch.
+struct Watched {
+  const scene::Scene& scene;
+  const world::Layout& layout;
+  network::Server& server;
+  Signals& signals;
+  std::vector<ControllerProcess>& processes;
+  Console& console;
+  bool waits_for_ever;  ///< serve: whoever vanishes may come back
+};
+
+class Watch {
+ public:
+  using clock = std::chrono::steady_clock;
+
+  /// @param tick_length  simulated [s]
+  Watch(const Watched& watched, double tick_length);
+
+  // Each waits for something, prints what controllers and peers have to say meanwhile, and
+  // returns how the run ends if that happens first.
+
+  /// Until every robot has its controller.
+  std::optional<Ending> gather();
+  /// Until every controller has answered `tick`.
+  std::optional<Ending> collect(world::Commands& commands, std::uint64_t tick);
+  /// Until that moment.
+  std::optional<Ending> sleep_until(clock::time_point moment);
+
+  /// A world that nobody moves: until it is interrupted.
+  Ending stay_paused();
+
+  /// Ends the run: tells controllers, hears their last words, and sees every process end.
+  /// An interruption meanwhile kills what still runs.
+  void wind_down(const wire::End& end);
+
+  /// Sorted by tick, then by scene order.
+  std::vector<Summary::Failure> failures() const;
+  /// The sentence on the controller that vanished; empty if none did.
+  const std::string& vanished() const { return vanished_; }
+
+ private:
+  using Step = std::function<network::Outcome(const network::Wait&)>;
+
+  std::optional<Ending> until(const Step& step);
+  std::optional<Ending> interruption();
+  std::optional<Ending> disappearance();
+  void take_report();
+  void print_log();
+  std::vector<std::size_t> missing_robots() const;
+  std::vector<std::size_t> awaited_robots() const;
+  bool is_left(const ControllerProcess& process) const;
+  std::string by_controller(const std::vector<std::size_t>& robots) const;
+  void say_who_is_awaited();
+  void end_processes();
+
+  Watched watched_;
+  Progress progress_;
+  bool gathered_ = false;
+  std::uint64_t tick_ = 0;
+  std::vector<wire::LogLine> log_;  ///< of a tick that is not over
+  std::vector<network::Failure> failures_;
+  std::string vanished_;
+  std::optional<clock::time_point> suspected_since_;  ///< that a controller vanished
+  clock::time_point waiting_since_{};
+  std::string said_;  ///< who was awaited, as last printed
+};
+
+}  // namespace ziggurat::app
