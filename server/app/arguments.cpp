@@ -42,21 +42,22 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return cost[a.size()][b.size()];
 }
 
-// An option whose value may be left out takes the next word only if that is a number.
+// An option whose value may be left out takes the next word only if that is a number; left alone
+// Boost takes any word.
 Arguments join_optional_values(const Arguments& arguments) {
+  const auto is_number = [](const std::string& text) {
+    char* end = nullptr;
+    std::strtod(text.c_str(), &end);
+    return end != text.c_str() && *end == '\0';
+  };
   Arguments joined;
+  bool options_ended = false;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     joined.push_back(arguments[i]);
-    if (arguments[i] == "--") {
-      joined.insert(joined.end(), arguments.begin() + static_cast<std::ptrdiff_t>(i) + 1,
-                    arguments.end());
-      break;
-    }
-    if (arguments[i] != "--real-time" || i + 1 == arguments.size()) continue;
-    const std::string& next = arguments[i + 1];
-    char* end = nullptr;
-    std::strtod(next.c_str(), &end);
-    if (end != next.c_str() && *end == '\0') joined.back() += "=" + arguments[++i];
+    options_ended = options_ended || arguments[i] == "--";
+    if (options_ended || arguments[i] != "--real-time") continue;
+    const bool has_value = i + 1 < arguments.size() && is_number(arguments[i + 1]);
+    joined.back() += "=" + (has_value ? arguments[++i] : "1");
   }
   return joined;
 }
