@@ -1,0 +1,86 @@
+#pragma once
+// Peers of a barrier without sockets: what they say, and what they are told.
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "network/barrier.h"
+#include "network/small_run.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat::network {
+
+class Peers {
+ public:
+  explicit Peers(const SmallRun& small, const Config& config = {})
+      : small_(small),
+        commands(small.commands()),
+        barrier(config, small.run(), [this](const std::string& peer, const wire::Outbox& message) {
+          if (unreachable.contains(peer)) return Delivery::unreachable;
+          std::string bytes(message.size(), '\0');
+          message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
+          if (!inboxes[peer].emplace_back().ParseFromString(bytes)) throw std::logic_error("bytes");
+          return Delivery::sent;
+        }) {}
+
+  void say(const std::string& peer, const v1::ClientMessage& message) {
+    barrier.receive(peer, message.SerializeAsString(), &commands);
+  }
+  void say_bytes(const std::string& peer, const std::string& bytes) {
+    barrier.receive(peer, bytes, &commands);
+  }
+
+  /// The one message that the peer was told since it was last asked; empty if none or several.
+  v1::ServerMessage told(const std::string& peer) {
+    auto messages = std::exchange(inboxes[peer], {});
+    return messages.size() == 1 ? messages.front() : v1::ServerMessage{};
+  }
+
+  static v1::ClientMessage hello(const std::string& robots) {
+    v1::ClientMessage message;
+    v1::Hello& hello = *message.mutable_hello();
+    hello.mutable_version()->set_major(1);
+    hello.set_role(v1::ROLE_CONTROLLER);
+    hello.set_client_name("tester");
+    hello.add_robots(robots);
+    return message;
+  }
+  static v1::ClientMessage command(std::uint64_t tick, std::vector<double> targets = {}) {
+    v1::ClientMessage message;
+    message.mutable_command()->set_tick(tick);
+    message.mutable_command()->mutable_joint_targets()->Add(targets.begin(), targets.end());
+    return message;
+  }
+  static v1::ClientMessage leave(std::vector<std::uint32_t> robots = {},
+                                 v1::Leave::Reason reason = v1::Leave::DONE) {
+    v1::ClientMessage message;
+    message.mutable_leave()->mutable_robots()->Add(robots.begin(), robots.end());
+    message.mutable_leave()->set_reason(reason);
+    return message;
+  }
+  static v1::ClientMessage heartbeat(std::uint64_t sequence) {
+    v1::ClientMessage message;
+    message.mutable_heartbeat()->set_sequence(sequence);
+    return message;
+  }
+
+  /// Welcomed with these robots.
+  v1::Welcome join(const std::string& peer, const std::string& robots) {
+    say(peer, hello(robots));
+    return told(peer).welcome();
+  }
+  void publish(std::uint64_t tick) { barrier.publish(small_.observations(tick)); }
+
+ private:
+  const SmallRun& small_;
+
+ public:
+  std::map<std::string, std::vector<v1::ServerMessage>> inboxes;
+  std::set<std::string> unreachable;
+  world::Commands commands;
+  Barrier barrier;
+};
+
+}  // namespace ziggurat::network

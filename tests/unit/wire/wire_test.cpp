@@ -1,0 +1,170 @@
+// What the conformance tests do not see: bytes, memory, packing.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "network/small_run.h"
+#include "wire/inbox.h"
+#include "wire/outbox.h"
+#include "wire/roster.h"
+#include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace {
+std::size_t allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace ziggurat::wire {
+namespace {
+
+using network::SmallRun;
+
+std::string bytes_of(const Outbox& outbox) {
+  std::string bytes(outbox.size(), '\0');
+  outbox.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
+  return bytes;
+}
+
+TEST(Roster, NeighboursAreCopiedInOnePiece) {
+  SmallRun small(6);
+  const std::vector<std::size_t> robots{0, 1, 2, 4, 5};
+  const Roster roster = make_roster(small.layout(), robots);
+  ASSERT_EQ(roster.joint_sensors.stretches.size(), 2U);
+  EXPECT_EQ(roster.joint_sensors.stretches[1].packed, 3U);
+  EXPECT_EQ(roster.joint_sensors.stretches[1].flat, 4U);
+  EXPECT_EQ(roster.joint_sensors.stretches[1].count, 2U);
+  EXPECT_EQ(roster.joint_sensors.count, 5U);
+}
+
+TEST(Roster, RobotsWithoutJointsAreNoObstacle) {
+  SmallRun small(3);
+  small.layout().robots[1].joint_sensors = {0, 0};
+  const std::vector<std::size_t> robots{0, 1, 2};
+  const Roster roster = make_roster(small.layout(), robots);
+  EXPECT_EQ(roster.joint_sensors.count, 2U);
+  EXPECT_EQ(roster.joint_sensors.robots[2].packed, 1U);
+}
+
+TEST(Outbox, ObservationBytes) {
+  const SmallRun small(2);
+  const std::vector<std::size_t> robots{1};
+  const auto run = small.run();
+  Outbox outbox;
+  outbox.observation(make_roster(run.layout, robots), small.observations(3));
+  v1::ServerMessage message;
+  ASSERT_TRUE(message.ParseFromString(bytes_of(outbox)));
+  EXPECT_EQ(message.observation().tick(), 3U);
+  ASSERT_EQ(message.observation().joint_readings_size(), 1);
+  EXPECT_EQ(message.observation().joint_readings(0), 301);
+}
+
+TEST(Outbox, InvalidTextOfASceneIsMadeValid) {
+  SmallRun small(1);
+  small.layout().robots[0].params = {{"name", "caf\xe9"}};
+  const auto run = small.run();
+  const std::vector<std::size_t> robots{0};
+  Outbox outbox;
+  outbox.welcome(run, make_roster(run.layout, robots), "token", 0);
+  v1::ServerMessage message;
+  ASSERT_TRUE(message.ParseFromString(bytes_of(outbox)));
+  EXPECT_EQ(message.welcome().robots(0).params(0).value(), "caf\xEF\xBF\xBD");
+}
+
+TEST(TickPath, AllocatesNothingOnceItHasGrown) {
+  const SmallRun small(64);
+  const auto run = small.run();
+  std::vector<std::size_t> robots(64);
+  for (std::size_t i = 0; i < robots.size(); ++i) robots[i] = i;
+  const Roster roster = make_roster(run.layout, robots);
+  const auto observations = small.observations(5);
+  auto commands = small.commands();
+  v1::ClientMessage answer;
+  answer.mutable_command()->set_tick(5);
+  for (int i = 0; i < 64; ++i) answer.mutable_command()->add_joint_targets(i);
+  const std::string bytes = answer.SerializeAsString();
+  Outbox outbox;
+  Inbox inbox;
+  std::string buffer(10'000, '\0');
+  const auto tick = [&] {
+    outbox.observation(roster, observations);
+    outbox.write(reinterpret_cast<std::uint8_t*>(buffer.data()));
+    if (inbox.parse(bytes) != Inbox::Kind::command) std::abort();
+    if (inbox.check(roster, run.layout)) std::abort();
+    inbox.apply(roster, commands);
+  };
+  tick();
+  const std::size_t before = allocations;
+  for (int i = 0; i < 100; ++i) tick();
+  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(commands.joint_targets[63], 63);
+}
+
+TEST(Inbox, ASecondCommandIsNotMixedWithTheFirst) {
+  Inbox inbox;
+  v1::ClientMessage message;
+  message.mutable_command()->set_tick(7);
+  message.mutable_command()->add_joint_targets(1);
+  ASSERT_EQ(inbox.parse(message.SerializeAsString()), Inbox::Kind::command);
+  EXPECT_EQ(inbox.command_tick(), 7U);
+  message.mutable_command()->Clear();
+  ASSERT_EQ(inbox.parse(message.SerializeAsString()), Inbox::Kind::command);
+  EXPECT_EQ(inbox.command_tick(), 0U);
+  EXPECT_EQ(inbox.parse(""), Inbox::Kind::malformed);
+}
+
+TEST(Inbox, ACommandBehindAnUnknownFieldIsACommand) {
+  Inbox inbox;
+  v1::ClientMessage message;
+  message.mutable_command()->set_tick(7);
+  // Field 15, varint 1, then the command.
+  EXPECT_EQ(inbox.parse("\x78\x01" + message.SerializeAsString()), Inbox::Kind::command);
+  EXPECT_EQ(inbox.command_tick(), 7U);
+}
+
+TEST(Inbox, TruncatedBytesAreMalformed) {
+  v1::ClientMessage message;
+  message.mutable_command()->set_tick(1000);
+  for (int i = 0; i < 40; ++i) message.mutable_command()->add_joint_targets(i);
+  message.mutable_command()->add_log()->set_text("text");
+  const std::string bytes = message.SerializeAsString();
+  Inbox inbox;
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    EXPECT_EQ(inbox.parse(bytes.substr(0, length)), Inbox::Kind::malformed) << length;
+  }
+  EXPECT_EQ(inbox.parse(bytes), Inbox::Kind::command);
+}
+
+TEST(Envelope, SoleField) {
+  EXPECT_EQ(v1::sole_field("\x12\x02xy", 2), "xy");
+  EXPECT_EQ(v1::sole_field(std::string("\x12\x00", 2), 2), "");
+  EXPECT_FALSE(v1::sole_field("\x12\x02xyz", 2));
+  EXPECT_FALSE(v1::sole_field("\x12\x03xy", 2));
+  EXPECT_FALSE(v1::sole_field("\x1a\x02xy", 2));
+  EXPECT_FALSE(v1::sole_field("\x12", 2));
+  EXPECT_FALSE(v1::sole_field("\x12\xff\xff\xff\xff\xff\xff\xff\xff", 2));
+  EXPECT_EQ(v1::sole_field("\x12\xc8\x01" + std::string(200, 'x'), 2), std::string(200, 'x'));
+}
+
+TEST(Envelope, ValidUtf8) {
+  EXPECT_EQ(v1::valid_utf8("h\xc3\xa9 \xe2\x82\xac \xf0\x9f\x90\x9c"),
+            "h\xc3\xa9 \xe2\x82\xac \xf0\x9f\x90\x9c");
+  const std::string mark = "\xEF\xBF\xBD";
+  EXPECT_EQ(v1::valid_utf8("\xff"), mark);
+  EXPECT_EQ(v1::valid_utf8("\xe2\x82"), mark + mark);
+  EXPECT_EQ(v1::valid_utf8("\xc0\xaf"), mark + mark);                // overlong
+  EXPECT_EQ(v1::valid_utf8("\xed\xa0\x80"), mark + mark + mark);     // surrogate
+  EXPECT_EQ(v1::valid_utf8("\xf5\x80\x80\x80").substr(0, 3), mark);  // beyond U+10FFFF
+}
+
+}  // namespace
+}  // namespace ziggurat::wire
