@@ -1,6 +1,5 @@
 #include "physics/world.h"
 
-#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 
 #include <cmath>
 
@@ -9,6 +8,7 @@
 #include "physics/floor.h"
 #include "physics/forces.h"
 #include "physics/joints.h"
+#include "physics/solver.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -64,7 +64,7 @@ struct World::Parts {
   btCollisionDispatcher dispatcher;
   std::unique_ptr<btCollisionAlgorithmCreateFunc> algorithms;
   btDbvtBroadphase broadphase;
-  btMultiBodyConstraintSolver solver;
+  Solver solver;
   Dynamics dynamics;
   std::vector<std::unique_ptr<Plugin>> plugins;
 };

@@ -40,7 +40,9 @@ class Algorithm final : public btActivatingCollisionAlgorithm {
     const btScalar reach = collider_a.reach + collider_b.reach;
     Contacts contacts = find(collider_a.shape, object_a.getWorldTransform(), collider_b.shape,
                              object_b.getWorldTransform(), reach);
-    reduce(contacts, object_a.getWorldTransform());
+    // Sorted in the frame of a body that moves: sorted in the floor's, a robot that turns would
+    // be solved in another order for each heading, and drift that way.
+    reduce(contacts, (object_a.isStaticObject() ? object_b : object_a).getWorldTransform());
     write(contacts, collider_a, collider_b, reach);
   }
 

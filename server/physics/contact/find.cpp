@@ -97,7 +97,7 @@ Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const b
   return out;
 }
 
-void reduce(Contacts& contacts, const btTransform& pose_a) {
+void reduce(Contacts& contacts, const btTransform& frame) {
   auto& points = contacts.points;
   const btVector3& normal = contacts.normal;
   if (contacts.count > 4) {
@@ -134,9 +134,9 @@ void reduce(Contacts& contacts, const btTransform& pose_a) {
   btVector3 middle(0, 0, 0);
   for (int i = 0; i < contacts.count; ++i) middle += points[i].on_b;
   middle /= btScalar(contacts.count);
-  const int up = (pose_a.getBasis().transpose() * normal).absolute().maxAxis();
-  const btVector3 first = pose_a.getBasis().getColumn((up + 1) % 3);
-  const btVector3 second = pose_a.getBasis().getColumn((up + 2) % 3);
+  const int up = (frame.getBasis().transpose() * normal).absolute().maxAxis();
+  const btVector3 first = frame.getBasis().getColumn((up + 1) % 3);
+  const btVector3 second = frame.getBasis().getColumn((up + 2) % 3);
   std::array<std::pair<btScalar, Point>, 4> ordered;
   for (int i = 0; i < contacts.count; ++i) {
     const btVector3 arm = points[i].on_b - middle;

@@ -51,7 +51,8 @@ Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const b
               btScalar reach);
 
 /// Keeps at most four points that span the contact: the deepest, the farthest from it and the
-/// two that enclose the largest area; in a stable order (by angle in the frame of A).
-void reduce(Contacts& contacts, const btTransform& pose_a);
+/// two that enclose the largest area; in a stable order: by angle in the given frame, that of a
+/// body of the pair.
+void reduce(Contacts& contacts, const btTransform& frame);
 
 }  // namespace ziggurat::physics::contact

@@ -1,0 +1,123 @@
+#include "physics/solver.h"
+
+#include <algorithm>
+
+namespace ziggurat::physics {
+
+/// What the impulses of this step have changed of the row's relative velocity so far.
+btScalar Solver::speed_change(const Row& row) const {
+  btScalar speed = 0;
+  if (row.m_multiBodyA) {
+    const int count = row.m_multiBodyA->getNumDofs() + 6;
+    const btScalar* jacobian = &m_data.m_jacobians[row.m_jacAindex];
+    const btScalar* velocity = &m_data.m_deltaVelocities[row.m_deltaVelAindex];
+    for (int i = 0; i < count; ++i) speed += jacobian[i] * velocity[i];
+  } else if (row.m_solverBodyIdA >= 0) {
+    const btSolverBody& body = m_tmpSolverBodyPool[row.m_solverBodyIdA];
+    speed += row.m_contactNormal1.dot(body.m_deltaLinearVelocity) +
+             row.m_relpos1CrossNormal.dot(body.m_deltaAngularVelocity);
+  }
+  if (row.m_multiBodyB) {
+    const int count = row.m_multiBodyB->getNumDofs() + 6;
+    const btScalar* jacobian = &m_data.m_jacobians[row.m_jacBindex];
+    const btScalar* velocity = &m_data.m_deltaVelocities[row.m_deltaVelBindex];
+    for (int i = 0; i < count; ++i) speed += jacobian[i] * velocity[i];
+  } else if (row.m_solverBodyIdB >= 0) {
+    const btSolverBody& body = m_tmpSolverBodyPool[row.m_solverBodyIdB];
+    speed += row.m_contactNormal2.dot(body.m_deltaLinearVelocity) +
+             row.m_relpos2CrossNormal.dot(body.m_deltaAngularVelocity);
+  }
+  return speed;
+}
+
+void Solver::apply(const Row& row, btScalar impulse) {
+  row.m_appliedImpulse += impulse;
+  if (row.m_multiBodyA) {
+    btScalar* change = &m_data.m_deltaVelocitiesUnitImpulse[row.m_jacAindex];
+    applyDeltaVee(change, impulse, row.m_deltaVelAindex, row.m_multiBodyA->getNumDofs() + 6);
+    row.m_multiBodyA->applyDeltaVeeMultiDof2(change, impulse);
+  } else if (row.m_solverBodyIdA >= 0) {
+    btSolverBody& body = m_tmpSolverBodyPool[row.m_solverBodyIdA];
+    body.internalApplyImpulse(row.m_contactNormal1 * body.internalGetInvMass(),
+                              row.m_angularComponentA, impulse);
+  }
+  if (row.m_multiBodyB) {
+    btScalar* change = &m_data.m_deltaVelocitiesUnitImpulse[row.m_jacBindex];
+    applyDeltaVee(change, impulse, row.m_deltaVelBindex, row.m_multiBodyB->getNumDofs() + 6);
+    row.m_multiBodyB->applyDeltaVeeMultiDof2(change, impulse);
+  } else if (row.m_solverBodyIdB >= 0) {
+    btSolverBody& body = m_tmpSolverBodyPool[row.m_solverBodyIdB];
+    body.internalApplyImpulse(row.m_contactNormal2 * body.internalGetInvMass(),
+                              row.m_angularComponentB, impulse);
+  }
+}
+
+/// @return by how much the row's velocity changed
+btScalar Solver::solve_row(const Row& row) {
+  if (row.m_jacDiagABInv == 0) return 0;
+  const btScalar wanted = row.m_rhs - row.m_appliedImpulse * row.m_cfm -
+                          speed_change(row) * row.m_jacDiagABInv;
+  const btScalar impulse =
+      std::clamp(row.m_appliedImpulse + wanted, row.m_lowerLimit, row.m_upperLimit) -
+      row.m_appliedImpulse;
+  apply(row, impulse);
+  return impulse / row.m_jacDiagABInv;
+}
+
+btScalar Solver::solve_friction(const Row& first, const Row& second, btScalar limit) {
+  if (first.m_jacDiagABInv == 0 || second.m_jacDiagABInv == 0) return 0;
+  const btScalar wanted_first = first.m_rhs - speed_change(first) * first.m_jacDiagABInv;
+  const btScalar wanted_second = second.m_rhs - speed_change(second) * second.m_jacDiagABInv;
+  btScalar to_first = first.m_appliedImpulse + wanted_first;
+  btScalar to_second = second.m_appliedImpulse + wanted_second;
+  if (to_first * to_first + to_second * to_second > limit * limit) {
+    // Sliding: step along the slip (both rows scaled alike), then back onto the cone.
+    const btScalar step = btMin(first.m_jacDiagABInv, second.m_jacDiagABInv);
+    to_first = first.m_appliedImpulse + wanted_first * (step / first.m_jacDiagABInv);
+    to_second = second.m_appliedImpulse + wanted_second * (step / second.m_jacDiagABInv);
+    const btScalar length = btSqrt(to_first * to_first + to_second * to_second);
+    if (length > limit) {
+      to_first *= limit / length;
+      to_second *= limit / length;
+    }
+  }
+  const btScalar impulse_first = to_first - first.m_appliedImpulse;
+  const btScalar impulse_second = to_second - second.m_appliedImpulse;
+  apply(first, impulse_first);
+  apply(second, impulse_second);
+  return btMax(btFabs(impulse_first / first.m_jacDiagABInv),
+               btFabs(impulse_second / second.m_jacDiagABInv));
+}
+
+/// Rows come in pairs that belong to one contact, whose normal impulse limits them.
+btScalar Solver::solve_friction(btMultiBodyConstraintArray& rows) {
+  btScalar most = 0;
+  for (int i = 0; i + 1 < rows.size(); i += 2) {
+    const Row& first = rows[i];
+    const btScalar normal = m_multiBodyNormalContactConstraints[first.m_frictionIndex].m_appliedImpulse;
+    most = btMax(most, solve_friction(first, rows[i + 1], first.m_friction * btMax(normal, btScalar(0))));
+  }
+  return most;
+}
+
+btScalar Solver::solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
+                                      btPersistentManifold** manifolds, int manifold_count,
+                                      btTypedConstraint** constraints, int constraint_count,
+                                      const btContactSolverInfo& info, btIDebugDraw* draw) {
+  const btScalar rigid = btSequentialImpulseConstraintSolver::solveSingleIteration(
+      iteration, bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, draw);
+  btScalar most = 0;
+  const int joints = m_multiBodyNonContactConstraints.size();
+  for (int i = 0; i < joints; ++i) {
+    const int index = iteration & 1 ? i : joints - 1 - i;
+    most = btMax(most, btFabs(solve_row(m_multiBodyNonContactConstraints[index])));
+  }
+  for (int i = 0; i < m_multiBodyNormalContactConstraints.size(); ++i) {
+    most = btMax(most, btFabs(solve_row(m_multiBodyNormalContactConstraints[i])));
+  }
+  most = btMax(most, solve_friction(m_multiBodyTorsionalFrictionContactConstraints));
+  most = btMax(most, solve_friction(m_multiBodyFrictionContactConstraints));
+  return btMax(rigid, most * most);
+}
+
+}  // namespace ziggurat::physics
