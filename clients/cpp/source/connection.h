@@ -29,6 +29,7 @@ class Connection {
 
   /// From now on a connection that closes is an error; before, it is tried again.
   void expect_open() { is_expected_open_ = true; }
+  bool is_closed() const { return is_closed_; }
 
   /// Waits for a message: which one, or none when the time is over. Kinds that this client does
   /// not know are MESSAGE_NOT_SET.

@@ -41,7 +41,7 @@ bool Session::next() {
     if (state.owes) state.answer();
     return state.wait();
   } catch (const ConnectionError&) {
-    state.is_over = true;
+    state.is_over = state.connection.is_closed();
     throw;
   }
 }

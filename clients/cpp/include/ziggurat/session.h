@@ -69,7 +69,8 @@ class Session {
 
   /// Answers the observation in hand with what was set since, and waits for the next. False once
   /// there are no more ticks; the first call delivers Event::init.
-  /// @throws ConnectionError, ProtocolError; the session is over then
+  /// @throws ConnectionError; after mere silence, calling again goes on waiting
+  /// @throws ProtocolError
   bool next();
 
   Event event() const noexcept;                    ///< that next() delivered

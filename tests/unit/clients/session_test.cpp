@@ -1,0 +1,366 @@
+// The client against a server that says exactly what the test wants.
+
+#include <gtest/gtest.h>
+#include <zmq.h>
+
+#include <array>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <thread>
+
+#include "ziggurat/v1/protocol.pb.h"
+#include "ziggurat/ziggurat.h"
+
+namespace ziggurat {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Runs `script` in a thread beside the test.
+class FakeServer {
+ public:
+  explicit FakeServer(std::function<void(FakeServer&)> script)
+      : context_(zmq_ctx_new()), router_(zmq_socket(context_, ZMQ_ROUTER)) {
+    constexpr int patience_ms = 5000;
+    constexpr int linger_ms = 500;
+    zmq_setsockopt(router_, ZMQ_RCVTIMEO, &patience_ms, sizeof(patience_ms));
+    zmq_setsockopt(router_, ZMQ_LINGER, &linger_ms, sizeof(linger_ms));
+    zmq_bind(router_, "tcp://127.0.0.1:*");
+    std::array<char, 100> address{};
+    std::size_t size = address.size();
+    zmq_getsockopt(router_, ZMQ_LAST_ENDPOINT, address.data(), &size);
+    endpoint = address.data();
+    thread_ = std::thread([this, script] {
+      script(*this);
+      zmq_close(router_);
+    });
+  }
+  ~FakeServer() {
+    thread_.join();
+    zmq_ctx_term(context_);
+  }
+
+  /// The client's next message; empty if none comes.
+  v1::ClientMessage heard() {
+    std::array<char, 64> peer{};
+    const int size = zmq_recv(router_, peer.data(), peer.size(), 0);
+    if (size < 0) return {};
+    peer_.assign(peer.data(), static_cast<std::size_t>(size));
+    zmq_msg_t frame;
+    zmq_msg_init(&frame);
+    zmq_msg_recv(&frame, router_, 0);
+    v1::ClientMessage message;
+    EXPECT_TRUE(
+        message.ParseFromArray(zmq_msg_data(&frame), static_cast<int>(zmq_msg_size(&frame))));
+    zmq_msg_close(&frame);
+    return message;
+  }
+  void say(const v1::ServerMessage& message) { say_bytes(message.SerializeAsString()); }
+  void say_bytes(const std::string& bytes) {
+    zmq_send(router_, peer_.data(), peer_.size(), ZMQ_SNDMORE);
+    zmq_send(router_, bytes.data(), bytes.size(), 0);
+  }
+
+  /// Two robots "a" and "b", each with joint "slide" (encoder) and "hinge" (encoder and motor).
+  void welcome() {
+    EXPECT_TRUE(heard().has_hello());
+    v1::ServerMessage message;
+    v1::Welcome& welcome = *message.mutable_welcome();
+    welcome.set_seed(7);
+    welcome.set_tick_ns(50'000'000);
+    welcome.set_max_message_bytes(1 << 20);
+    for (const char* id : {"a", "b"}) {
+      v1::RobotDescription& robot = *welcome.add_robots();
+      robot.set_id(id);
+      auto& param = *robot.add_params();
+      param.set_name("speed");
+      param.set_value("3");
+      robot.add_joint_sensors()->set_id("slide");
+      auto& sensor = *robot.add_joint_sensors();
+      sensor.set_id("hinge");
+      sensor.set_mode(v1::JointDescription::POSITION);
+      auto& actuator = *robot.add_joint_actuators();
+      actuator.set_id("hinge");
+      actuator.set_mode(v1::JointDescription::VELOCITY);
+      actuator.set_max_impulse(0.5);
+    }
+    say(message);
+  }
+  void observe(std::uint64_t tick, std::vector<double> readings) {
+    v1::ServerMessage message;
+    message.mutable_observation()->set_tick(tick);
+    message.mutable_observation()->set_time_ns(static_cast<std::int64_t>(tick) * 50'000'000);
+    message.mutable_observation()->mutable_joint_readings()->Add(readings.begin(), readings.end());
+    say(message);
+  }
+  void end() {
+    v1::ServerMessage message;
+    message.mutable_end()->set_reason(v1::End::FINISHED);
+    say(message);
+  }
+
+  std::string endpoint;
+
+ private:
+  void* context_;
+  void* router_;
+  std::string peer_;
+  std::thread thread_;
+};
+
+Options options_for(const FakeServer& server) {
+  Options options;
+  options.endpoint = server.endpoint;
+  options.connect_timeout = milliseconds{3000};
+  options.wait_timeout = milliseconds{3000};
+  return options;
+}
+
+TEST(Session, DevicesAreFoundByNameOnce) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.observe(0, {0, 0, 0, 0});
+    EXPECT_EQ(self.heard().command().joint_targets_size(), 0);  // nothing new
+    self.observe(1, {1, 2, 3, 4});
+    const auto command = self.heard().command();
+    EXPECT_EQ(command.tick(), 1U);
+    ASSERT_EQ(command.joint_targets_size(), 2);
+    EXPECT_EQ(command.joint_targets(0), 0);
+    EXPECT_EQ(command.joint_targets(1), 9);
+    self.end();
+    EXPECT_EQ(self.heard().leave().reason(), v1::Leave::DONE);
+  });
+  Session session(options_for(server));
+  EXPECT_EQ(session.seed(), 7U);
+  EXPECT_EQ(session.tick_length(), std::chrono::milliseconds(50));
+  Robot& robot = session.robot("b");
+  EXPECT_EQ(robot.params().at(0).second, "3");
+  ASSERT_EQ(robot.joints().size(), 2U);
+  Joint& hinge = robot.joint("hinge");
+  Joint& slide = robot.joint("slide");
+  EXPECT_EQ(hinge.encoder_mode(), JointMode::position);
+  EXPECT_EQ(hinge.motor_mode(), JointMode::velocity);
+  EXPECT_EQ(hinge.max_impulse(), 0.5);
+  EXPECT_FALSE(slide.has_motor());
+  EXPECT_THROW(slide.set_target(1), std::logic_error);
+  EXPECT_THROW(hinge.set_target(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+  ASSERT_TRUE(session.next());
+  EXPECT_EQ(session.event(), Event::init);
+  ASSERT_TRUE(session.next());
+  EXPECT_EQ(session.event(), Event::step);
+  EXPECT_EQ(session.time(), std::chrono::milliseconds(50));
+  EXPECT_EQ(slide.encoder(), 3);
+  EXPECT_EQ(hinge.encoder(), 4);
+  EXPECT_EQ(session.robot("a").joint("hinge").encoder(), 2);
+  hinge.set_target(9);
+  EXPECT_EQ(hinge.target(), 9);
+  EXPECT_FALSE(session.next());
+  EXPECT_FALSE(session.next());
+}
+
+TEST(Session, UnknownNamesSayWhatThereIs) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.heard();
+  });
+  Session session(options_for(server));
+  try {
+    session.robot("c");
+    FAIL();
+  } catch (const std::out_of_range& error) {
+    EXPECT_STREQ(error.what(), "this session has no robot 'c'; it has 'a', 'b'");
+  }
+  try {
+    session.robot("a").joint("wheel");
+    FAIL();
+  } catch (const std::out_of_range& error) {
+    EXPECT_NE(std::string(error.what()).find("'slide', 'hinge'"), std::string::npos);
+  }
+}
+
+TEST(Session, ResetIsDeliveredOnTheObservationThatFollows) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.observe(0, {0, 0, 0, 0});
+    EXPECT_EQ(self.heard().command().joint_targets_size(), 2);
+    v1::ServerMessage reset;
+    reset.mutable_reset()->set_seed(8);
+    self.say(reset);
+    self.observe(0, {0, 0, 0, 0});
+    EXPECT_EQ(self.heard().command().joint_targets_size(), 0);  // the server's targets are 0, too
+    self.end();
+    self.heard();
+  });
+  Session session(options_for(server));
+  ASSERT_TRUE(session.next());
+  session.robot("a").joint("hinge").set_target(4);
+  ASSERT_TRUE(session.next());
+  EXPECT_EQ(session.event(), Event::reset);
+  EXPECT_EQ(session.seed(), 8U);
+  EXPECT_EQ(session.robot("a").joint("hinge").target(), 0);
+  EXPECT_FALSE(session.next());
+}
+
+TEST(Session, LogsAndFailuresGoWithTheAnswer) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.observe(0, {0, 0, 0, 0});
+    const auto leave = self.heard().leave();
+    ASSERT_EQ(leave.robots_size(), 1);
+    EXPECT_EQ(leave.robots(0), 1U);
+    EXPECT_EQ(leave.reason(), v1::Leave::FAILED);
+    EXPECT_EQ(leave.message(), "oh");
+    const auto command = self.heard().command();
+    ASSERT_EQ(command.log_size(), 2);
+    EXPECT_EQ(command.log(0).text(), "one");
+    EXPECT_FALSE(command.log(0).error());
+    EXPECT_EQ(command.log(1).text(), "two \xEF\xBF\xBD");
+    EXPECT_TRUE(command.log(1).error());
+    self.end();
+    const auto last = self.heard().leave();
+    EXPECT_EQ(last.robots_size(), 0);
+    ASSERT_EQ(last.log_size(), 1);
+    EXPECT_EQ(last.log(0).text(), "three");
+  });
+  Session session(options_for(server));
+  ASSERT_TRUE(session.next());
+  session.robot("a").log("one");
+  session.robot("b").log_error("two \xff");
+  session.robot("b").fail("oh");
+  session.robot("b").fail("only the first counts");
+  EXPECT_TRUE(session.robot("b").failed());
+  EXPECT_FALSE(session.next());
+  session.robot("a").log("three");
+}
+
+TEST(Session, AFloodOfLogLinesIsTheControllersFault) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.heard();
+  });
+  Session session(options_for(server));
+  const std::string line(100'000, 'x');
+  EXPECT_THROW(for (int i = 0; i < 100; ++i) session.robot("a").log(line), std::length_error);
+}
+
+TEST(Session, ARefusalIsATypedException) {
+  FakeServer server([](FakeServer& self) {
+    self.heard();
+    v1::ServerMessage message;
+    auto& refusal = *message.mutable_refusal();
+    refusal.mutable_error()->set_code(v1::Error::ROBOT_TAKEN);
+    refusal.mutable_error()->set_robot("a");
+    refusal.mutable_error()->set_retryable(true);
+    refusal.mutable_error()->set_message("Robot 'a' is driven by somebody.");
+    refusal.set_holder("somebody");
+    self.say(message);
+  });
+  try {
+    const Session session(options_for(server));
+    FAIL();
+  } catch (const ProtocolError& error) {
+    EXPECT_EQ(error.details().code, "ROBOT_TAKEN");
+    EXPECT_EQ(error.details().robot, "a");
+    EXPECT_EQ(error.details().holder, "somebody");
+    EXPECT_TRUE(error.details().retryable);
+    EXPECT_STREQ(error.what(), "ROBOT_TAKEN: Robot 'a' is driven by somebody.");
+  }
+}
+
+TEST(Session, AnErrorEndsTheLoopAndTheServerIsTold) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.observe(0, {0, 0, 0, 0});
+    self.heard();
+    v1::ServerMessage message;
+    message.mutable_error()->set_code(v1::Error::BAD_VALUE);
+    message.mutable_error()->set_severity(v1::Error::DISCARD);
+    self.say(message);
+    EXPECT_EQ(self.heard().leave().reason(), v1::Leave::FAILED);
+  });
+  EXPECT_THROW(
+      {
+        Session session(options_for(server));
+        while (session.next()) {
+        }
+      },
+      ProtocolError);
+}
+
+TEST(Session, UnknownMessagesAndSignsOfLifeAreIgnored) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    v1::ServerMessage message;
+    message.mutable_heartbeat()->set_sequence(1);
+    self.say(message);
+    message.mutable_paused();
+    self.say(message);
+    self.say_bytes("\xfa\x01\x01x");  // field 31, of a later version
+    self.observe(0, {0, 0, 0, 0});
+    EXPECT_TRUE(self.heard().has_command());  // and no answer to the heartbeat
+    self.end();
+    self.heard();
+  });
+  Session session(options_for(server));
+  EXPECT_TRUE(session.next());
+  EXPECT_FALSE(session.next());
+}
+
+TEST(Session, AnObservationOfTheWrongShapeIsNotRead) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.observe(0, {1, 2, 3});
+    self.heard();
+  });
+  Session session(options_for(server));
+  EXPECT_THROW(session.next(), ConnectionError);
+}
+
+TEST(Session, GarbageIsNotAMessage) {
+  FakeServer server([](FakeServer& self) {
+    self.heard();
+    self.say_bytes("HTTP/1.1 400 Bad Request");
+  });
+  EXPECT_THROW(Session(options_for(server)), ConnectionError);
+}
+
+TEST(Session, SilenceHasItsTimes) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.heard();
+  });
+  Options options = options_for(server);
+  options.wait_timeout = milliseconds{50};
+  Session session(options);
+  try {
+    session.next();
+    FAIL();
+  } catch (const ConnectionError& error) {
+    EXPECT_NE(std::string(error.what()).find(server.endpoint), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("50 ms"), std::string::npos);
+  }
+  EXPECT_THROW(session.next(), ConnectionError);  // still waiting
+}
+
+TEST(Session, NobodyThere) {
+  Options options;
+  options.endpoint = "ipc://@ziggurat-nobody-listens-here";
+  options.connect_timeout = milliseconds{50};
+  EXPECT_THROW(Session{options}, ConnectionError);
+  options.endpoint = "nonsense";
+  EXPECT_THROW(Session{options}, std::invalid_argument);
+}
+
+TEST(Options, FromTheEnvironment) {
+  ::unsetenv("ZIGGURAT_ENDPOINT");
+  EXPECT_THROW(Options::from_environment(), std::invalid_argument);
+  ::setenv("ZIGGURAT_ENDPOINT", "tcp://127.0.0.1:1", 1);
+  ::setenv("ZIGGURAT_CONTROLLER", "wheels", 1);
+  const Options options = Options::from_environment();
+  EXPECT_EQ(options.endpoint, "tcp://127.0.0.1:1");
+  EXPECT_EQ(options.controller, "wheels");
+}
+
+}  // namespace
+}  // namespace ziggurat
