@@ -114,11 +114,6 @@ void complete(Summary& summary, const simulation::Simulation& simulation, const 
 
 // What remains once every process has ended, in this order: the hash is the very last line.
 void conclude(const Options& options, const Summary& summary, Console& console) {
-  if (!options.summary.empty()) {
-    recording::OutputFile file(options.summary);
-    file.buffer().append(to_json(summary) + "\n");
-    file.close();
-  }
   if (!summary.vanished.empty()) console.fault(summary.vanished);
   for (const auto& failure : summary.failures) {
     console.fault(fmt::format("robot {} (controller '{}') had failed at tick {}: {}", failure.robot,
@@ -182,6 +177,7 @@ int execute(const Options& options, Service service) {
   complete(summary, simulation, watch);
   watch.wind_down(end_message(summary));
   summary.failures = watch.failures();
+  recorders.write_summary(summary);
   conclude(options, summary, console);
   return exit_code_of(summary);
 }

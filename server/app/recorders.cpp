@@ -11,6 +11,7 @@ Recorders::Recorders(const Options& options, const world::Layout& layout) {
   if (!options.trace.empty()) trace_.emplace(options.trace, layout);
   if (!options.hash_file.empty()) hashes_.emplace(options.hash_file);
   if (!options.readings.empty()) readings_.emplace(options.readings, layout);
+  if (!options.summary.empty()) summary_.emplace(options.summary);
   if (!options.rays.empty()) recording::OutputFile(options.rays).close();
   if (!options.images.empty()) {
     std::error_code error;
@@ -45,6 +46,12 @@ void Recorders::close() {
   close(hashes_);
   close(readings_);
   if (first) std::rethrow_exception(first);
+}
+
+void Recorders::write_summary(const Summary& summary) {
+  if (!summary_) return;
+  summary_->buffer().append(to_json(summary) + "\n");
+  summary_->close();
 }
 
 }  // namespace ziggurat::app

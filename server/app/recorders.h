@@ -1,10 +1,10 @@
 #pragma once
 // The files that a run leaves behind, as the command line asks for them.
 
-#include <memory>
 #include <optional>
 
 #include "app/options.h"
+#include "app/summary.h"
 #include "recording/hash_file.h"
 #include "recording/readings.h"
 #include "recording/trace.h"
@@ -24,13 +24,18 @@ class Recorders {
   /// What robots sensed and answered at a tick. @throws recording::WriteError
   void exchange(const world::Observations& observations, const world::Commands& commands);
 
-  /// Completes every file, also when one of them fails. @throws recording::WriteError
+  /// Completes every file but the summary, also when one of them fails.
+  /// @throws recording::WriteError
   void close();
+
+  /// @throws recording::WriteError
+  void write_summary(const Summary& summary);
 
  private:
   std::optional<recording::Trace> trace_;
   std::optional<recording::HashFile> hashes_;
   std::optional<recording::Readings> readings_;
+  std::optional<recording::OutputFile> summary_;
 };
 
 }  // namespace ziggurat::app

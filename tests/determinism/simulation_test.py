@@ -1,0 +1,53 @@
+"""The simulation alone: same scene, seed and commands -> same hash at every tick, whether the
+compiler optimised or not, run twice, and after another scene in the same process."""
+
+import os
+import pathlib
+import subprocess
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+PROBE = os.environ["ZIGGURAT_PROBE"]
+OTHER = os.environ["ZIGGURAT_PROBE_OTHER"]  # built with the other optimisation
+SCENES = [TOP / "tests/scenes/arms.argos", *sorted((TOP / "scenes").glob("*.argos"))]
+TICKS = 40
+
+
+def hashes(probe, *scenes):
+    """A list of hash lines per scene."""
+    done = subprocess.run([probe, str(TICKS), *map(str, scenes)], capture_output=True, text=True,
+                          timeout=120)
+    if done.returncode != 0:
+        raise AssertionError(done.stderr)
+    return [part.splitlines()[1:] for part in done.stdout.split("scene ")[1:]]
+
+
+class Simulation(unittest.TestCase):
+    def assert_same(self, first, second):
+        self.assertEqual(len(first), TICKS + 1)
+        for a, b in zip(first, second):  # the first tick that differs says more than a diff
+            self.assertEqual(a, b)
+        self.assertEqual(len(first), len(second))
+
+    def test_moves(self):
+        for scene, lines in zip(SCENES, hashes(PROBE, *SCENES)):
+            self.assertEqual(len({line.split()[2] for line in lines}), TICKS + 1, scene)
+
+    def test_twice(self):
+        for first, second in zip(hashes(PROBE, *SCENES), hashes(PROBE, *SCENES)):
+            self.assert_same(first, second)
+
+    def test_after_another_scene(self):
+        for scene in SCENES:
+            others = [other for other in SCENES if other != scene]
+            runs = hashes(PROBE, scene, *others, scene)
+            self.assert_same(runs[0], runs[-1])
+            self.assert_same(runs[0], hashes(PROBE, scene)[0])
+
+    def test_optimised_or_not(self):
+        for first, second in zip(hashes(PROBE, *SCENES), hashes(OTHER, *SCENES)):
+            self.assert_same(first, second)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

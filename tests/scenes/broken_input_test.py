@@ -1,0 +1,165 @@
+"""Whatever an author gets wrong: one clear message, exit code 1, never a hang or a crash."""
+
+import socket
+
+from harness import FAULT, FINISHED, SceneTest, main
+
+
+class BrokenScene(SceneTest):
+    def fails(self, pattern, *arguments):
+        checked = self.ziggurat("check", self.scene)
+        self.assertEqual(checked.code, FAULT, checked.err)
+        self.assert_is_sentence(checked, pattern)
+        ran = self.run_scene(*arguments, code=FAULT)
+        self.assert_is_sentence(ran, pattern)
+        self.assertEqual(ran.out, "", "nothing ran")
+
+    def test_good_to_begin_with(self):
+        outcome = self.ziggurat("check", self.scene)
+        self.assertEqual((outcome.code, outcome.err), (FINISHED, ""))
+
+    def test_missing_attribute(self):
+        self.change('<box id="box0" size="0.03,0.03,0.08"', '<box id="box0"')
+        self.fails(r"arms\.argos:\d+:\d+: .*size")
+
+    def test_unknown_element(self):
+        self.change("<floor />", "<flor />")
+        self.fails(r"arms\.argos:\d+:\d+: .*flor.*floor")
+
+    def test_unknown_attribute(self):
+        self.change('movable="true" mass="0.05">', 'movable="true" mass="0.05" colour="red">', 1)
+        self.fails(r"arms\.argos:\d+:\d+: .*colour")
+        outcome = self.ziggurat("check", self.scene, "--lenient")
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        self.assertRegex(outcome.err, r"notice: .*colour")
+
+    def test_cyclic_joints(self):
+        self.change("</joints>\n    </prototype>", """  <joint id="back" type="fixed">
+          <parent link="arm" position="0,0,0" orientation="0,0,0" />
+          <child link="base" position="0,0,0" orientation="0,0,0" />
+        </joint>
+      </joints>
+    </prototype>""", 1)
+        self.fails(r"arms\.argos:\d+:\d+: .*(back|base)")
+
+    def test_duplicate_id(self):
+        self.change('<box id="box1"', '<box id="box0"')
+        self.fails(r"arms\.argos:\d+:\d+: .*box0")
+
+    def test_negative_mass(self):
+        self.change('mass="2"', 'mass="-2"', 1)
+        self.fails(r"arms\.argos:\d+:\d+: .*mass.*-2")
+
+    def test_not_a_number(self):
+        self.change('position="0.05,0.08,0"', 'position="nan,0.08,0"')
+        self.fails(r"arms\.argos:\d+:\d+: .*nan")
+
+    def test_zero_iterations(self):
+        self.change('iterations="10"', 'iterations="0"')
+        self.fails(r"arms\.argos:\d+:\d+: .*iterations.*0")
+
+    def test_reversed_range(self):
+        self.change('type="revolute" axis="0,0,1"', 'type="revolute" axis="0,0,1" limit="90:-90"', 1)
+        self.fails(r"arms\.argos:\d+:\d+: .*90:-90")
+
+    def test_truncated(self):
+        self.scene.write_text(self.text[:len(self.text) // 2])
+        self.fails(r"arms\.argos:\d+")
+
+    def test_empty(self):
+        self.scene.write_text("")
+        self.fails(r"arms\.argos")
+
+    def test_huge_file(self):
+        with open(self.scene, "w") as file:
+            file.write("<argos-configuration>")
+            file.write(" " * (100 << 20))
+        self.fails(r"arms\.argos.*(64|--max-scene-size)")
+
+    def test_entity_bomb(self):
+        bomb = '<!DOCTYPE x [<!ENTITY a0 "ha">'
+        for i in range(1, 30):
+            bomb += f'<!ENTITY a{i} "&a{i - 1};&a{i - 1};">'
+        self.change('<?xml version="1.0" ?>', '<?xml version="1.0" ?>' + bomb + "]>")
+        self.change('speed="2"', 'speed="&a29;"')
+        self.fails(r"arms\.argos:\d+")
+
+    def test_nobody_at_that_path(self):
+        outcome = self.run_scene(code=FAULT, scene="nowhere.argos")
+        self.assert_is_sentence(outcome, r"nowhere\.argos")
+
+    def test_folder_instead_of_a_file(self):
+        outcome = self.run_scene(code=FAULT, scene=self.folder)
+        self.assert_is_sentence(outcome, str(self.folder))
+
+    def test_all_faults_at_once(self):
+        self.change('mass="2"', 'mass="-2"', 1)
+        self.change('<box id="box1"', '<box id="box0"')
+        self.change('script="swing.lua" speed="2"', 'script="missing.lua" speed="2"')
+        outcome = self.run_scene(code=FAULT)
+        for pattern in (r"-2", r"box0", r"missing\.lua"):
+            self.assertRegex(outcome.err, pattern)
+
+    def test_crowded_arena(self):
+        self.change('quantity="5"', 'quantity="5000"')
+        self.fails(r"arms\.argos:\d+:\d+: .*can")
+
+
+class BrokenScript(SceneTest):
+    def fails(self, pattern):
+        for command in ("check", "run"):
+            outcome = self.ziggurat(command, self.scene)
+            self.assertEqual(outcome.code, FAULT, outcome.err)
+            self.assert_is_sentence(outcome, pattern)
+
+    def test_missing(self):
+        (self.folder / "swing.lua").unlink()
+        line = self.text[:self.text.index("<params")].count("\n") + 1
+        self.fails(rf"arms\.argos:{line}:\d+: .*'swing\.lua'")
+
+    def test_syntax_error(self):
+        self.write("swing.lua", "function init()\nend\nfunction step( end\n")
+        line = self.text[:self.text.index("<params")].count("\n") + 1
+        self.fails(rf"arms\.argos:{line}:\d+: .*swing\.lua:3:")
+
+
+class BrokenArguments(SceneTest):
+    def refuses(self, pattern, *arguments):
+        outcome = self.ziggurat(*arguments)
+        self.assertEqual(outcome.code, FAULT, outcome.out)
+        self.assert_is_sentence(outcome, pattern)
+
+    def test_unknown_words(self):
+        self.refuses(r"no command 'rnu'; did you mean 'run'", "rnu", self.scene)
+        self.refuses(r"'--tikcs'; did you mean '--ticks'", "run", self.scene, "--tikcs", "3")
+        self.refuses(r"--ticks.*'many'", "run", self.scene, "--ticks", "many")
+        self.refuses(r"which scene", "run")
+        self.refuses(r"'swong'.*did you mean 'swing'", "run", self.scene, "--controller", "swong=x")
+
+    def test_files_that_cannot_be_written(self):
+        for option in ("--trace", "--readings", "--hash-file", "--summary"):
+            self.refuses(r"/no/such/folder/x.*No such file", "run", self.scene, option,
+                         "/no/such/folder/x")
+
+    def test_full_disk(self):
+        for option in ("--trace", "--readings", "--hash-file", "--summary"):
+            self.refuses(r"/dev/full.*No space left", "run", self.scene, option, "/dev/full")
+
+    def test_foreign_address_needs_insecure(self):
+        self.refuses(r"0\.0\.0\.0.*--insecure", "run", self.scene, "--endpoint", "tcp://0.0.0.0:0")
+
+    def test_endpoint_that_is_none(self):
+        self.refuses(r"nonsense", "run", self.scene, "--endpoint", "nonsense")
+
+    def test_port_taken(self):
+        with socket.socket() as other:
+            other.bind(("127.0.0.1", 0))
+            other.listen()
+            port = other.getsockname()[1]
+            for command in ("run", "serve"):
+                self.refuses(rf"127\.0\.0\.1:{port}.*taken", command, self.scene,
+                             "--endpoint", f"tcp://127.0.0.1:{port}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,165 @@
+"""Runs the real programs on small scenes, each test in a folder of its own.
+
+ZIGGURAT_BIN names the folder of the programs. After each test no process that it started may be
+left, nor a file in the runtime folder.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+BIN = pathlib.Path(os.environ.get("ZIGGURAT_BIN", HERE.parents[1] / "build/release/bin"))
+ZIGGURAT = BIN / "ziggurat"
+LUA = BIN / "ziggurat-lua"
+
+FINISHED, FAULT, CONTROLLER_FAILED, INTERRUPTED = 0, 1, 3, 130
+LIMIT = 20  # [s] that any run may take: more is a hang
+
+
+class Outcome:
+    def __init__(self, code, out, err):
+        self.code, self.out, self.err = code, out, err
+
+    @property
+    def lines(self):
+        return self.out.splitlines()
+
+
+class SceneTest(unittest.TestCase):
+    def setUp(self):
+        # A short path: sockets live in it.
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="zt", dir="/tmp"))
+        self.runtime = self.folder / "run"
+        self.runtime.mkdir()
+        self.environment = dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime))
+        for name in ("arms.argos", "swing.lua"):
+            shutil.copy(HERE / name, self.folder)
+        self.scene = self.folder / "arms.argos"
+        self.text = self.scene.read_text()
+        self.started = []
+
+    def tearDown(self):
+        for process in self.started:
+            if process.poll() is None:
+                process.kill()
+                process.communicate()
+        try:
+            self.assertEqual(self.left_processes(), [], "left behind")
+            self.assertEqual(list(self.runtime.iterdir()), [], "left behind")
+        finally:
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+    # --- scenes ---------------------------------------------------------------------------------
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def change(self, old, new, count=-1):
+        """Changes the test's scene; what is to be changed must be there."""
+        self.assertIn(old, self.text)
+        self.text = self.text.replace(old, new, count)
+        self.scene.write_text(self.text)
+
+    # --- runs -----------------------------------------------------------------------------------
+
+    def start(self, *arguments, **options):
+        process = subprocess.Popen(
+            [str(ZIGGURAT), *map(str, arguments)], cwd=self.folder, env=self.environment,
+            stdin=subprocess.DEVNULL, stdout=options.pop("stdout", subprocess.PIPE),
+            stderr=options.pop("stderr", subprocess.PIPE), text=True, errors="replace", **options)
+        self.started.append(process)
+        return process
+
+    def finish(self, process):
+        try:
+            out, err = process.communicate(timeout=LIMIT)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            out, err = process.communicate()
+            self.fail(f"hangs\n--- stdout\n{out}\n--- stderr\n{err}")
+        return Outcome(process.returncode, out or "", err or "")
+
+    def ziggurat(self, *arguments):
+        return self.finish(self.start(*arguments))
+
+    def run_scene(self, *arguments, code=FINISHED, scene=None):
+        """Runs the test's scene and expects that exit code."""
+        outcome = self.ziggurat("run", scene or self.scene, *arguments)
+        self.assertEqual(outcome.code, code, f"\n{outcome.out}\n{outcome.err}")
+        return outcome
+
+    def hash_of(self, *arguments, **options):
+        """The hash line of a quiet run."""
+        return self.run_scene("--hash", "--quiet", *arguments, **options).lines[-1]
+
+    def assert_is_sentence(self, outcome, pattern):
+        """One clear message, not a crash report."""
+        self.assertRegex(outcome.err, pattern)
+        self.assertNotRegex(outcome.err, r"terminate called|Assertion|core dumped|std::|Sanitizer")
+
+    # --- processes ------------------------------------------------------------------------------
+
+    def left_processes(self, patience=2.0):
+        """Command lines that name the test's folder, once they had their time to end."""
+        end = time.monotonic() + patience
+        while True:
+            found = self.processes(str(self.folder))
+            if not found or time.monotonic() > end:
+                return [text for _, text in found]
+            time.sleep(0.01)
+
+    @staticmethod
+    def processes(*patterns):
+        """(id, command line) of each process that names all of these."""
+        found = []
+        for entry in pathlib.Path("/proc").iterdir():
+            if not entry.name.isdigit() or int(entry.name) == os.getpid():
+                continue
+            try:
+                text = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
+            except OSError:
+                continue
+            if all(pattern in text for pattern in patterns):
+                found.append((int(entry.name), text))
+        return sorted(found)
+
+    def lua_processes(self, count=1):
+        """Ids of the test's Lua processes, once that many run."""
+        return self.wait_for(
+            lambda: [i for i, _ in self.processes("ziggurat-lua", str(self.runtime))],
+            lambda ids: len(ids) >= count, "Lua processes")
+
+    def wait_for(self, look, is_enough, what):
+        end = time.monotonic() + LIMIT
+        while time.monotonic() < end:
+            found = look()
+            if is_enough(found):
+                return found
+            time.sleep(0.01)
+        self.fail(f"no {what}")
+
+    def read_until(self, stream, pattern):
+        """Lines of a stream until one matches; returns the match."""
+        seen = []
+        for line in stream:
+            seen.append(line)
+            match = re.search(pattern, line)
+            if match:
+                return match
+        self.fail(f"no line matches {pattern!r}: {seen}")
+
+    def interrupt(self, process):
+        process.send_signal(signal.SIGINT)
+
+
+def main():
+    unittest.main(verbosity=2)

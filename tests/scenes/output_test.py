@@ -1,0 +1,220 @@
+"""What a run prints and writes."""
+
+import csv
+import json
+import os
+import pty
+import re
+
+from harness import FAULT, FINISHED, SceneTest, main
+
+
+class Log(SceneTest):
+    def test_lines_stand_in_the_order_of_ticks_and_robots_whoever_runs_them(self):
+        expected = [f"[0 {robot}] init" for robot in ("r0", "r1", "r2")]
+        for tick in range(1, 6):
+            expected += [f"[{tick} {robot}] step {tick}" for robot in ("r0", "r1", "r2")]
+        expected += [f"[5 {robot}] destroy" for robot in ("r0", "r1", "r2")]
+        for processes in (1, 2, 0):
+            outcome = self.run_scene("--ticks", 5, "--lua-processes", processes)
+            self.assertEqual(outcome.lines, expected, f"{processes} processes")
+
+    def test_quiet_leaves_log_lines_and_hash(self):
+        outcome = self.run_scene("--ticks", 1, "--quiet", "--hash", "--seed", 0)
+        self.assertEqual(outcome.err, "")
+        self.assertEqual(len(outcome.lines), 3 + 3 + 3 + 1)
+        self.assertRegex(outcome.lines[-1], r"^hash 1 [0-9a-f]{16}$")
+
+    def test_errors_go_to_stderr(self):
+        self.write("swing.lua", "function init() end\nfunction step() logerr('oh') end\n")
+        outcome = self.run_scene("--ticks", 2, "--quiet")
+        self.assertEqual(outcome.out, "")
+        self.assertEqual(outcome.err.splitlines(),
+                         [f"[{tick} r{i}] oh" for tick in (1, 2) for i in range(3)])
+
+    def test_reader_that_leaves_ends_the_run(self):
+        read, write = os.pipe()
+        process = self.start("run", self.scene, "--duration", "0", stdout=write)
+        os.close(write)
+        os.read(read, 10)
+        os.close(read)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, FAULT, outcome.err)
+        self.assertRegex(outcome.err, r"stdout.*Broken pipe")
+
+
+class Length(SceneTest):
+    def ticks_of(self, *arguments):
+        return int(self.hash_of(*arguments).split()[1])
+
+    def test_is_the_scene_s_unless_the_command_line_says_otherwise(self):
+        self.assertEqual(self.ticks_of(), 20)
+        self.assertEqual(self.ticks_of("--ticks", 7), 7)
+        self.assertEqual(self.ticks_of("--ticks", 30), 30)
+        self.assertEqual(self.ticks_of("--duration", 0.5), 5)
+        self.assertEqual(self.ticks_of("--ticks", 0), 0)
+
+    def test_n_ticks_are_n_steps(self):
+        outcome = self.run_scene("--ticks", 4, "--quiet")
+        self.assertEqual(sum("step" in line for line in outcome.lines), 4 * 3)
+
+
+class Files(SceneTest):
+    def test_trace(self):
+        path = self.folder / "trace.csv"
+        self.run_scene("--ticks", 3, "--trace", path)
+        with open(path, newline="") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(",".join(rows[0]), "tick,time_s,entity,link,x,y,z,qw,qx,qy,qz")
+        rows = rows[1:]
+        per_tick = []
+        for i in range(3):
+            per_tick += [(f"r{i}", ""), (f"r{i}", "base"), (f"r{i}", "arm")]
+        per_tick += [("box0", ""), ("box1", "")] + [(f"can{i}", "") for i in range(5)]
+        self.assertEqual([(row[2], row[3]) for row in rows], per_tick * 4)
+        self.assertEqual([(row[0], row[1]) for row in rows[::len(per_tick)]],
+                         [("0", "0"), ("1", "0.1"), ("2", "0.2"), ("3", "0.3")])
+        placed = {(row[2], row[3]): [float(value) for value in row[4:]]
+                  for row in rows[:len(per_tick)]}
+        self.assertEqual(placed["box0", ""], [0.05, 0.08, 0, 1, 0, 0, 0])
+        for value, expected in zip(placed["r0", "arm"], [0, 0, 0.05, 1, 0, 0, 0]):
+            self.assertAlmostEqual(value, expected, places=12)
+        for row in rows:
+            for text in row[4:]:
+                self.assertEqual(len(text), len(text.strip()))
+                self.assertLessEqual(len(text), 24)
+
+    def test_readings(self):
+        path = self.folder / "readings.jsonl"
+        self.run_scene("--ticks", 2, "--readings", path)
+        lines = [json.loads(line) for line in path.read_text().splitlines()]
+        self.assertEqual([(line["tick"], line["robot"]) for line in lines],
+                         [(str(tick), f"r{i}") for tick in range(3) for i in range(3)])
+        self.assertEqual(lines[0]["observation"]["joint_encoders"], {"shoulder": 0})
+        self.assertEqual([line["command"]["joint_targets"]["shoulder"] for line in lines[:3]],
+                         [2, 2, -3])
+        self.assertGreater(lines[6]["observation"]["joint_encoders"]["shoulder"], 0)
+        self.assertEqual(lines[6]["time_s"], 0.2)
+
+    def test_hash_file_ends_with_the_hash(self):
+        path = self.folder / "hashes"
+        last = self.hash_of("--ticks", 5, "--hash-file", path)
+        lines = path.read_text().splitlines()
+        self.assertEqual([line.split()[:2] for line in lines], [["hash", str(i)] for i in range(6)])
+        self.assertEqual(lines[-1], last)
+        self.assertEqual(len(set(line.split()[2] for line in lines)), 6)
+
+    def test_rays_and_images_are_there_though_empty(self):
+        self.run_scene("--ticks", 1, "--rays", self.folder / "rays.jsonl",
+                       "--images", self.folder / "images")
+        self.assertEqual((self.folder / "rays.jsonl").read_text(), "")
+        self.assertEqual(list((self.folder / "images").iterdir()), [])
+
+    def test_summary(self):
+        path = self.folder / "summary.json"
+        last = self.hash_of("--ticks", 5, "--summary", path)
+        summary = json.loads(path.read_text())
+        self.assertEqual(summary["ending"], "finished")
+        self.assertEqual(summary["ticks"], 5)
+        self.assertAlmostEqual(summary["simulated_s"], 0.5)
+        self.assertEqual(summary["seed"], 3)
+        self.assertEqual(summary["hash"], last.split()[2])
+        self.assertEqual(summary["robots"], 3)
+        self.assertEqual(summary["failures"], [])
+        parts = summary["wall_time_s"]
+        self.assertAlmostEqual(sum(parts[name] for name in
+                                   ("physics", "exchange", "recording", "pacing")),
+                               summary["wall_s"])
+        self.assertGreater(parts["physics"], 0)
+
+
+class Seed(SceneTest):
+    def test_drawn_seed_is_told_and_repeats_the_run(self):
+        self.change(' random_seed="3"', "")
+        first = self.run_scene("--ticks", 2, "--hash")
+        seed = re.search(r"seed (\d+) drawn", first.err).group(1)
+        again = self.run_scene("--ticks", 2, "--hash", "--seed", seed)
+        self.assertEqual(first.lines[-1], again.lines[-1])
+        self.assertNotIn("drawn", again.err)
+        other = self.run_scene("--ticks", 2, "--hash", "--seed", int(seed) + 1)
+        self.assertNotEqual(first.lines[-1], other.lines[-1])
+
+
+class Pace(SceneTest):
+    def wall_s(self, *arguments):
+        path = self.folder / "summary.json"
+        self.run_scene("--quiet", "--summary", path, *arguments)
+        return json.loads(path.read_text())["wall_s"]
+
+    def test_real_time(self):
+        self.assertGreaterEqual(self.wall_s("--ticks", 10, "--real-time"), 0.99)
+        self.assertGreaterEqual(self.wall_s("--ticks", 20, "--real-time", 4), 0.49)
+        self.assertLess(self.wall_s("--ticks", 10), 0.9)
+
+    def test_scene_may_ask_for_it(self):
+        self.change('random_seed="3"', 'random_seed="3" real_time="true"')
+        self.assertGreaterEqual(self.wall_s("--ticks", 10), 0.99)
+
+    def test_changes_no_result(self):
+        self.assertEqual(self.hash_of("--ticks", 5), self.hash_of("--ticks", 5, "--real-time", 9))
+
+
+class Clock(SceneTest):
+    def test_beta50_is_slower(self):
+        self.assertNotEqual(self.hash_of("--ticks", 5),
+                            self.hash_of("--ticks", 5, "--clock", "beta50"))
+
+
+class Machines(SceneTest):
+    def test_check(self):
+        outcome = self.ziggurat("check", "--json", self.scene, "nowhere.argos")
+        good, missing = json.loads(outcome.out)
+        self.assertEqual((good["ok"], good["robots"], good["entities"]), (True, 3, 10))
+        self.assertFalse(missing["ok"])
+        self.assertEqual(missing["problems"][0]["severity"], "fault")
+
+    def test_messages_are_json(self):
+        self.change('mass="2"', 'mass="-2"', 1)
+        outcome = self.ziggurat("run", "--json", self.scene)
+        for line in outcome.err.splitlines():
+            message = json.loads(line)
+            self.assertEqual(message["severity"], "fault")
+            self.assertGreater(message["line"], 0)
+
+    def test_version_and_help(self):
+        self.assertRegex(self.ziggurat("--version").out, r"^ziggurat \d+\.\d+\.\d+\n$")
+        for command in ("run", "serve", "check", "help"):
+            for arguments in (("help", command), (command, "--help")):
+                outcome = self.ziggurat(*arguments)
+                self.assertEqual(outcome.code, FINISHED)
+                self.assertIn("usage: ziggurat", outcome.out)
+
+
+class Progress(SceneTest):
+    def stderr_on_a_terminal(self, *arguments):
+        ours, theirs = pty.openpty()
+        process = self.start("run", self.scene, *arguments, stderr=theirs)
+        os.close(theirs)
+        text = b""
+        while True:
+            try:
+                piece = os.read(ours, 4096)
+            except OSError:
+                break
+            if not piece:
+                break
+            text += piece
+        os.close(ours)
+        self.assertEqual(self.finish(process).code, FINISHED)
+        return text.decode()
+
+    def test_line_is_on_a_terminal_only(self):
+        arguments = ("--ticks", "10", "--real-time")
+        self.assertRegex(self.stderr_on_a_terminal(*arguments),
+                         r"t = 0\.\d+ s, real-time factor [\d.]+, \d+ ticks/s")
+        self.assertNotIn("t = ", self.stderr_on_a_terminal(*arguments, "--quiet"))
+        self.assertNotIn("t = ", self.run_scene(*arguments).err)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,188 @@
+"""Controllers that end, fail or never come, and people who press Ctrl-C."""
+
+import os
+import re
+import signal
+import time
+
+from harness import (BIN, CONTROLLER_FAILED, FINISHED, INTERRUPTED, LUA, SceneTest, main)
+
+ENDLESS = ("--duration", "0")
+
+
+def lua_command(*arguments):
+    """ziggurat-lua as the command of a controller."""
+    return " ".join([str(LUA), "--connect", "$ZIGGURAT_ENDPOINT", *arguments])
+
+
+class Vanishing(SceneTest):
+    def vanishes(self, outcome, robots):
+        self.assertEqual(outcome.code, CONTROLLER_FAILED, outcome.err)
+        self.assert_is_sentence(outcome, rf"killed by signal 9 .*tick \d+.*{robots}")
+        self.assertEqual(len(re.findall("killed by signal 9", outcome.err)), 1, "one message")
+
+    def test_killed_in_the_middle(self):
+        trace = self.folder / "trace.csv"
+        process = self.start("run", self.scene, *ENDLESS, "--trace", trace)
+        self.read_until(process.stdout, r"^\[20 r2\]")
+        os.kill(self.lua_processes()[0], signal.SIGKILL)
+        outcome = self.finish(process)
+        self.vanishes(outcome, "robots r0, r1, r2")
+        lines = trace.read_text().splitlines()
+        self.assertEqual((len(lines) - 1) % 16, 0, "whole ticks")
+        self.assertTrue(trace.read_text().endswith("\n"))
+        last = int(lines[-1].split(",")[0])
+        self.assertGreaterEqual(last, 20)
+        self.assertIn(f"at tick {last}", outcome.err)
+
+    def test_one_of_several(self):
+        process = self.start("run", self.scene, *ENDLESS, "--lua-processes", 0)
+        self.read_until(process.stdout, r"^\[20 r2\]")
+        ids = self.lua_processes(3)
+        robots = {i: open(f"/proc/{i}/cmdline").read() for i in ids}
+        victim = next(i for i, text in robots.items() if "robots-1" in text)
+        os.kill(victim, signal.SIGKILL)
+        self.vanishes(self.finish(process), "robot r1")
+
+    def test_before_it_connects(self):
+        outcome = self.run_scene("--controller", "swing=exit 4", code=CONTROLLER_FAILED)
+        self.assert_is_sentence(outcome, r"'swing'.*exit code 4 before the first tick.*r0, r1, r2")
+
+    def test_program_that_does_not_exist(self):
+        outcome = self.run_scene("--controller", "swing=/no/such/program", code=CONTROLLER_FAILED)
+        self.assert_is_sentence(outcome, r"'swing'.*exit code 127")
+
+
+class Failing(SceneTest):
+    def test_lua_error_leaves_the_others_running(self):
+        self.write("swing.lua", """
+            local n = 0
+            function init() end
+            function step()
+               n = n + 1
+               if robot.id == "r1" and n == 3 then error("out of luck") end
+               log(n)
+            end""")
+        outcome = self.run_scene("--ticks", 6, code=CONTROLLER_FAILED)
+        self.assertEqual([line for line in outcome.lines if "r1" in line],
+                         ["[1 r1] 1", "[2 r1] 2"])
+        self.assertIn("[6 r0] 6", outcome.lines)
+        self.assertRegex(outcome.err, r"(?s)r1.*tick 3.*out of luck.*r1.*tick 3.*out of luck")
+
+    def test_lua_error_at_the_start(self):
+        self.write("swing.lua", "function init() error('no start') end function step() end")
+        outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.err, r"no start")
+
+    def test_all_may_fail(self):
+        self.write("swing.lua", "function init() end function step() error('none left') end")
+        outcome = self.run_scene("--ticks", 5, "--hash", code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.lines[-1], r"^hash 5 ")
+
+
+class Interruption(SceneTest):
+    def test_control_c_completes_the_files_and_tells_controllers(self):
+        trace, hashes = self.folder / "trace.csv", self.folder / "hashes"
+        process = self.start("run", self.scene, *ENDLESS, "--trace", trace, "--hash",
+                             "--hash-file", hashes)
+        self.read_until(process.stdout, r"^\[20 r2\]")
+        self.interrupt(process)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, INTERRUPTED, outcome.err)
+        self.assertEqual(sum(line.endswith("] destroy") for line in outcome.lines), 3)
+        self.assertEqual(outcome.lines[-1], hashes.read_text().splitlines()[-1])
+        self.assertEqual((len(trace.read_text().splitlines()) - 1) % 16, 0)
+        self.assertRegex(outcome.err, "interrupted: ")
+
+    def test_termination_is_the_same(self):
+        process = self.start("run", self.scene, *ENDLESS)
+        self.read_until(process.stdout, r"^\[2 r2\]")
+        process.terminate()
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_before_anybody_is_there(self):
+        process = self.start("run", self.scene, "--controller", "swing=sleep 100")
+        time.sleep(0.3)
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_endless_loop_of_a_script_is_no_obstacle(self):
+        self.write("swing.lua", "function init() end function step() while true do end end")
+        process = self.start("run", self.scene)
+        self.lua_processes()
+        time.sleep(0.3)
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_second_control_c_does_not_wait(self):
+        self.write("swing.lua", "function init() end function step() while true do end end")
+        process = self.start("run", self.scene)
+        self.lua_processes()
+        time.sleep(0.3)
+        self.interrupt(process)
+        time.sleep(0.2)
+        start = time.monotonic()
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+        self.assertLess(time.monotonic() - start, 1)
+
+    def test_killed_server_takes_its_controllers_along(self):
+        process = self.start("run", self.scene, *ENDLESS)
+        self.read_until(process.stdout, r"^\[2 r2\]")
+        self.lua_processes()
+        process.kill()
+        process.communicate()
+        self.assertEqual(self.left_processes(), [])
+        for left in self.runtime.glob("ziggurat-*"):  # nobody was there to remove it
+            for file in left.iterdir():
+                file.unlink()
+            left.rmdir()
+
+
+class OtherControllers(SceneTest):
+    def make_external(self, command):
+        self.change('<lua_controller id="swing">', f'<external_controller id="swing" {command}>')
+        self.change("</lua_controller>", "</external_controller>")
+
+    def test_command_of_the_scene(self):
+        self.write("probe.sh", 'echo "$ZIGGURAT_CONTROLLER at $ZIGGURAT_ENDPOINT"; exit 5\n')
+        self.make_external('command="sh probe.sh"')
+        outcome = self.run_scene(code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.out, r"^swing at ipc:///\S+\n$")
+        self.assertIn("exit code 5", outcome.err)
+
+    def test_command_drives(self):
+        robots = self.write("robots", "r0\nr1\nr2\n")
+        by_lua = self.hash_of()
+        by_command = self.hash_of(
+            "--controller", f"swing=exec {lua_command('--robots-file', str(robots), '--quiet')}")
+        self.assertEqual(by_command, by_lua)
+
+    def test_without_command_it_says_whom_it_waits_for(self):
+        self.make_external("")
+        process = self.start("run", self.scene, "--endpoint", "tcp://127.0.0.1:*")
+        match = self.read_until(process.stderr, r"waiting for .*r0, r1, r2.*'swing'.*tcp://127")
+        self.assertTrue(match)
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_unknown_controller_is_external_with_a_notice(self):
+        self.change('<lua_controller id="swing">', '<my_controller id="swing">')
+        self.change("</lua_controller>", "</my_controller>")
+        outcome = self.ziggurat("check", self.scene)
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        self.assertRegex(outcome.err, r"notice: .*my_controller")
+
+    def test_cpp_example_drives_the_vehicle(self):
+        scene = BIN.parents[2] / "scenes/dynamics3d_multi_body_test.argos"
+        example = BIN / "example_vehicle"
+        if not scene.exists() or not example.exists():
+            self.skipTest("no example here")
+        by_lua = self.hash_of("--ticks", 20, scene=scene)
+        by_cpp = self.hash_of("--ticks", 20, "--controller", f"my_controller=exec {example}",
+                              scene=scene)
+        self.assertEqual(by_lua, by_cpp)
+
+
+if __name__ == "__main__":
+    main()

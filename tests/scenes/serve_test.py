@@ -1,0 +1,87 @@
+"""`ziggurat serve`: controllers come from outside, strangers too."""
+
+import json
+import os
+import random
+import socket
+import subprocess
+
+from harness import FINISHED, INTERRUPTED, LUA, SceneTest, main
+
+
+class Serve(SceneTest):
+    def serve(self, *arguments):
+        """The process and where it listens."""
+        process = self.start("serve", self.scene, "--json", "--endpoint", "tcp://127.0.0.1:*",
+                             *arguments)
+        return process, json.loads(process.stdout.readline())["endpoint"]
+
+    def connect(self, endpoint, *robots):
+        """A Lua process for these robots, or all."""
+        arguments = [str(LUA), "--connect", endpoint, "--quiet"]
+        if robots:
+            arguments += ["--robots-file", str(self.write("-".join(robots), "\n".join(robots)))]
+        client = subprocess.Popen(arguments, cwd=self.folder, stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.started.append(client)
+        return client
+
+    def test_waits_runs_and_ends(self):
+        expected = self.hash_of("--ticks", 20)
+        process, endpoint = self.serve("--hash")
+        self.assertRegex(endpoint, r"^tcp://127\.0\.0\.1:[1-9]\d*$")
+        client = self.connect(endpoint)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        self.assertEqual(outcome.lines[-1], expected)
+        self.assertIn("[20 r2] step 20", outcome.lines)
+        client.wait(timeout=10)
+
+    def test_says_for_whom_it_waits(self):
+        process, endpoint = self.serve()
+        self.read_until(process.stderr, r"waiting for robots r0, r1, r2")
+        self.connect(endpoint, "r0", "r2")
+        self.read_until(process.stderr, r"waiting for robot r1 ")
+        self.connect(endpoint, "r1")
+        self.assertEqual(self.finish(process).code, FINISHED)
+
+    def test_default_endpoint_is_plain_text(self):
+        process = self.start("serve", self.scene, "--endpoint", f"ipc://{self.folder}/s")
+        self.assertEqual(process.stdout.readline(), f"endpoint ipc://{self.folder}/s\n")
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_garbage_changes_nothing(self):
+        expected = self.hash_of("--ticks", 20)
+        process, endpoint = self.serve("--hash")
+        address = ("127.0.0.1", int(endpoint.rsplit(":", 1)[1]))
+        noise = random.Random(1)
+        for text in (b"", b"GET / HTTP/1.1\r\n\r\n", b"\xff" + bytes(9) + b"\x7f",
+                     noise.randbytes(100_000)):
+            with socket.create_connection(address) as stranger:
+                try:
+                    stranger.sendall(text)
+                except ConnectionError:
+                    pass
+        # Held open, and silent, through the whole run.
+        with socket.create_connection(address):
+            self.connect(endpoint)
+            outcome = self.finish(process)
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        self.assertEqual(outcome.lines[-1], expected)
+        self.assertNotIn("Traceback", outcome.err)
+
+    def test_scene_without_controllers_is_paused(self):
+        begin, end = self.text.index("<prototype"), self.text.rindex("</prototype>")
+        self.change(self.text[begin:end + len("</prototype>")], "")
+        process, _ = self.serve()
+        self.read_until(process.stderr, r"paused: .*--real-time")
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+        outcome = self.ziggurat("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*",
+                                "--real-time", "20")
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+
+
+if __name__ == "__main__":
+    main()
