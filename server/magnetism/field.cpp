@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace ziggurat::magnetism {
 namespace {
@@ -46,6 +47,21 @@ Field::Field(std::vector<Magnet> magnets, std::size_t bodies, const Options& opt
   for (std::size_t i = magnets_.size(); i < rows; ++i) {
     moments_[i].w = -1 - static_cast<double>(i);
   }
+  if (options.precision == Precision::adaptive) {
+    std::vector<Shape> shapes;
+    std::vector<Quaternion> orientations;
+    for (const Magnet& magnet : magnets_) {
+      shapes.push_back(magnet.freely_turning ? Shape(PointShape{}) : magnet.shape);
+      orientations.push_back(magnet.orientation);
+    }
+    shapes_.emplace(shapes, orientations, options.tolerance);
+    torques_.resize(rows);
+    if (shapes_->reach() > 0) {
+      near_.emplace(std::min(shapes_->reach(), options.max_distance));
+    } else {
+      shapes_.reset();
+    }
+  }
   reset();
 }
 
@@ -73,6 +89,7 @@ void Field::evaluate(double dt, std::span<const Pose> bodies, std::span<const do
   assert(currents.size() == magnets_.size());
   place(bodies, currents);
   neighbours_.update(dipoles());
+  if (shapes_) shapes_->begin_substep();
   if (dt > 0 && !free_.empty()) turn(dt);
   std::fill(forces_.begin(), forces_.end(), Row{});
   std::fill(fields_.begin(), fields_.end(), Row{});
@@ -81,7 +98,79 @@ void Field::evaluate(double dt, std::span<const Pose> bodies, std::span<const do
   } else {
     kernel_.all_pairs(dipoles(), range_, {forces_.data(), fields_.data()});
   }
+  if (shapes_) {
+    std::fill(torques_.begin(), torques_.end(), Row{});
+    visit_near_pairs([this](std::size_t i, std::size_t j) { add_interaction_of_shapes(i, j); });
+  }
   collect(bodies, wrenches);
+}
+
+/// Calls visit(i, j), i < j, in order for all pairs that need more than dipoles.
+template <class Visit>
+void Field::visit_near_pairs(const Visit& visit) {
+  const auto consider = [&](std::size_t i, std::size_t j) {
+    const Row& a = positions_[i];
+    const Row& b = positions_[j];
+    const double x = a.x - b.x;
+    const double y = a.y - b.y;
+    const double z = a.z - b.z;
+    const double reach = std::min(std::max(shapes_->reach(i), shapes_->reach(j)), range_.maximum);
+    if (x * x + y * y + z * z < reach * reach) visit(i, j);
+  };
+  const Neighbours* list = &neighbours_;
+  if (!list->listed()) {
+    near_->update(dipoles());
+    list = &*near_;
+  }
+  if (list->listed()) {
+    const Pairs pairs = list->pairs();
+    for (std::size_t k = 0; k < pairs.count && pairs.first[k] < magnets_.size(); ++k) {
+      consider(pairs.first[k], pairs.second[k]);
+    }
+  } else {
+    for (std::size_t i = 0; i < magnets_.size(); ++i) {
+      for (std::size_t j = i + 1; j < magnets_.size(); ++j) {
+        if (moments_[i].w != moments_[j].w) consider(i, j);
+      }
+    }
+  }
+}
+
+double Field::fade(double distance) const {
+  if (distance <= range_.taper_start) return 1;
+  const double u = (distance - range_.taper_start) / (range_.maximum - range_.taper_start);
+  return 1 - u * u * u * (10 - 15 * u + 6 * (u * u));
+}
+
+void Field::add_interaction_of_shapes(std::size_t first, std::size_t second) {
+  const Vector3 r = vector(positions_[first]) - vector(positions_[second]);
+  const double minimum = std::max(range_.minimum, positions_[first].w + positions_[second].w);
+  const Interaction extra =
+      shapes_->beyond_dipoles(kernel_, dipoles(), first, second, rotations_[magnets_[first].body],
+                              rotations_[magnets_[second].body], minimum);
+  const double factor = fade(r.norm());
+  const auto add = [factor](Row& to, const Vector3& term) {
+    to = row(vector(to) + factor * term, to.w);
+  };
+  add(forces_[first], extra.force_on_first);
+  add(forces_[second], -extra.force_on_first);
+  add(torques_[first], extra.torque_on_first);
+  add(torques_[second], extra.torque_on_second);
+}
+
+void Field::add_field_of_shapes(std::size_t first, std::size_t second) {
+  const auto add = [this](std::size_t free, std::size_t source) {
+    if (!magnets_[free].freely_turning || magnets_[source].freely_turning) return;
+    const Vector3 at = vector(positions_[free]);
+    const Vector3 r = at - vector(positions_[source]);
+    const double minimum = std::max(range_.minimum, positions_[free].w + positions_[source].w);
+    const Vector3 exact =
+        shapes_->field(kernel_, dipoles(), source, rotations_[magnets_[source].body], at);
+    const Vector3 dipole = dipole_field(vector(moments_[source]), r, minimum);
+    external_[free] = row(vector(external_[free]) + fade(r.norm()) * (exact - dipole), 0);
+  };
+  add(first, second);
+  add(second, first);
 }
 
 void Field::place(std::span<const Pose> bodies, std::span<const double> currents) {
@@ -106,6 +195,10 @@ void Field::turn(double dt) {
     } else {
       partners_.list_all(magnets_.size());
     }
+  }
+  if (shapes_) {
+    std::fill(external_.begin(), external_.end(), Row{});
+    visit_near_pairs([this](std::size_t i, std::size_t j) { add_field_of_shapes(i, j); });
   }
   for (const std::uint32_t i : free_) forces_[i] = moments_[i];  // as they were
   relax(kernel_, dipoles(), moments_.data(), external_.data(), free_, partners_, range_, dt,
@@ -132,6 +225,7 @@ void Field::collect(std::span<const Pose> bodies, std::span<Wrench> wrenches) co
     wrench.torque += lever.cross(force);
     if (!magnet.freely_turning) {
       wrench.torque += vector(moments_[i]).cross(vector(fields_[i]));
+      if (shapes_) wrench.torque += vector(torques_[i]);
     }
   }
 }

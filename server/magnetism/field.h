@@ -7,9 +7,11 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "magnetism/adaptive.h"
 #include "magnetism/dipole.h"
 #include "magnetism/neighbours.h"
 #include "magnetism/relaxation.h"
@@ -82,6 +84,11 @@ class Field {
  private:
   void place(std::span<const Pose> bodies, std::span<const double> currents);
   void turn(double dt);
+  template <class Visit>
+  void visit_near_pairs(const Visit& visit);
+  void add_field_of_shapes(std::size_t first, std::size_t second);
+  void add_interaction_of_shapes(std::size_t first, std::size_t second);
+  double fade(double distance) const;
   void collect(std::span<const Pose> bodies, std::span<Wrench> wrenches) const;
   Dipoles dipoles() const { return {positions_.data(), moments_.data(), magnets_.size()}; }
 
@@ -100,6 +107,11 @@ class Field {
   // One row per magnet and padding, see kernel.h.
   std::vector<Row> positions_, moments_, forces_, fields_;
   std::vector<Row> external_;  // fields on freely turning magnets beyond those of dipoles
+
+  // Adaptive precision: what shapes do beyond dipoles.
+  std::optional<ShapedMagnets> shapes_;
+  std::optional<Neighbours> near_;  // where neighbours_ keeps no list
+  std::vector<Row> torques_;
 };
 
 }  // namespace ziggurat::magnetism

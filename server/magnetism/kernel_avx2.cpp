@@ -10,6 +10,7 @@
 
 #if defined(__x86_64__)
 #pragma GCC push_options
+#define ZIGGURAT_AVX2  // GCC 12 does not define __AVX2__ for the pragma
 #pragma GCC target("avx2")
 
 namespace ziggurat::magnetism {

@@ -27,14 +27,19 @@ ZIGGURAT_INLINE Lanes keep(const Mask& mask, const Lanes& value) {
   return reinterpret_cast<Lanes>(mask & reinterpret_cast<Mask>(value));
 }
 
+/// b where a is not greater, in particular where either is not a number.
 ZIGGURAT_INLINE Lanes larger(const Lanes& a, const Lanes& b) {
+#if defined(ZIGGURAT_AVX2)
+  return _mm256_max_pd(a, b);
+#else
   const Mask mask = a > b;
   return reinterpret_cast<Lanes>((mask & reinterpret_cast<Mask>(a)) |
                                  (~mask & reinterpret_cast<Mask>(b)));
+#endif
 }
 
 ZIGGURAT_INLINE Lanes square_root(const Lanes& a) {
-#if defined(__AVX__)
+#if defined(ZIGGURAT_AVX2)
   return _mm256_sqrt_pd(a);
 #elif defined(__SSE2__)
   const __m128d low = _mm_sqrt_pd(__m128d{a[0], a[1]});
@@ -107,34 +112,30 @@ template <bool tapered>
 ZIGGURAT_INLINE FourPairs four_pairs(const Columns& p1, const Columns& m1, const Columns& p2,
                                      const Columns& m2, const Range& range, const Mask& allowed) {
   constexpr double K = 1e-7;
-  Columns n = columns(p1.x - p2.x, p1.y - p2.y, p1.z - p2.z);
-  const Lanes squared = dot(n, n);
+  const Columns r = columns(p1.x - p2.x, p1.y - p2.y, p1.z - p2.z);
+  const Lanes squared = dot(r, r);
   const Lanes closest = larger(p1.w + p2.w, all(range.minimum));
   const Lanes inverse = 1 / square_root(larger(squared, closest * closest));
   const Mask mask = allowed & (squared <= range.maximum * range.maximum);
-  n.x *= inverse;
-  n.y *= inverse;
-  n.z *= inverse;
-  const Lanes along1 = dot(m1, n);
-  const Lanes along2 = dot(m2, n);
-  const Lanes product = along1 * along2;
+  const Lanes square = inverse * inverse;
+  const Lanes along1 = dot(m1, r);
+  const Lanes along2 = dot(m2, r);
   const Lanes moments = dot(m1, m2);
-  const Lanes whole = keep(mask, K * (inverse * inverse * inverse));
+  const Lanes product = (along1 * along2) * square;
+  const Lanes whole = keep(mask, (K * inverse) * square);
   const Fade f = tapered ? fade(1 / inverse, range) : Fade{all(1), all(0)};
   const Lanes cube = tapered ? whole * f.factor : whole;
-  const Lanes quartic = 3 * (cube * inverse);
-  Lanes radial = quartic * (moments - 5 * product);
+  const Lanes fifth = (3 * cube) * square;
+  Lanes radial = fifth * (moments - 5 * product);
   // The gradient of the fading: - f' U n with U = K / d^3 (m1.m2 - 3 (m1.n)(m2.n)).
-  if constexpr (tapered) radial -= f.slope * (whole * (moments - 3 * product));
-  const Lanes toward1 = quartic * along2;
-  const Lanes toward2 = quartic * along1;
-  const Lanes thrice1 = 3 * along1;
-  const Lanes thrice2 = 3 * along2;
-  return {columns(toward1 * m1.x + toward2 * m2.x + radial * n.x,
-                  toward1 * m1.y + toward2 * m2.y + radial * n.y,
-                  toward1 * m1.z + toward2 * m2.z + radial * n.z),
-          columns(cube * (thrice2 * n.x - m2.x), cube * (thrice2 * n.y - m2.y),
-                  cube * (thrice2 * n.z - m2.z)),
-          columns(cube * (thrice1 * n.x - m1.x), cube * (thrice1 * n.y - m1.y),
-                  cube * (thrice1 * n.z - m1.z))};
+  if constexpr (tapered) radial -= (f.slope * inverse) * (whole * (moments - 3 * product));
+  const Lanes toward1 = fifth * along2;
+  const Lanes toward2 = fifth * along1;
+  return {columns((toward1 * m1.x + toward2 * m2.x) + radial * r.x,
+                  (toward1 * m1.y + toward2 * m2.y) + radial * r.y,
+                  (toward1 * m1.z + toward2 * m2.z) + radial * r.z),
+          columns(toward1 * r.x - cube * m2.x, toward1 * r.y - cube * m2.y,
+                  toward1 * r.z - cube * m2.z),
+          columns(toward2 * r.x - cube * m1.x, toward2 * r.y - cube * m1.y,
+                  toward2 * r.z - cube * m1.z)};
 }
