@@ -64,7 +64,8 @@ void Connection::send(const v1::ClientMessage& message) {
   }
 }
 
-std::optional<Connection::Kind> Connection::receive(std::optional<milliseconds> timeout) {
+std::optional<Connection::Kind> Connection::receive(
+    std::optional<milliseconds> timeout, const std::function<bool()>& is_interrupted) {
   const auto end = Clock::now() + timeout.value_or(milliseconds{0});
   milliseconds rest = timeout.value_or(slice);
   for (;;) {
@@ -74,6 +75,7 @@ std::optional<Connection::Kind> Connection::receive(std::optional<milliseconds> 
       if (receive_frame(milliseconds{0})) return parse();
       throw ConnectionError(endpoint_ + ": the server closed the connection");
     }
+    if (is_interrupted && is_interrupted()) return std::nullopt;
     if (!timeout) continue;
     rest = std::chrono::ceil<milliseconds>(end - Clock::now());
     if (rest.count() <= 0) return std::nullopt;

@@ -4,6 +4,7 @@
 #include <zmq.h>
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,8 +35,10 @@ class Connection {
   /// Waits for a message: which one, or none when the time is over. Kinds that this client does
   /// not know are MESSAGE_NOT_SET.
   /// @param timeout  wall time; none = for ever
+  /// @param is_interrupted  if given, asked now and then: true ends the wait with no message
   /// @throws ConnectionError if the server closed the connection, or sent what is no message
-  std::optional<Kind> receive(std::optional<std::chrono::milliseconds> timeout);
+  std::optional<Kind> receive(std::optional<std::chrono::milliseconds> timeout,
+                              const std::function<bool()>& is_interrupted);
 
   // What came last, valid until the next is received. Observations have a message of their own
   // that keeps its memory.

@@ -83,7 +83,8 @@ void Session::State::move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>
 
 bool Session::State::wait() {
   for (;;) {
-    const auto kind = connection.receive(options.wait_timeout);
+    const auto kind = connection.receive(options.wait_timeout, options.is_interrupted);
+    if (!kind && is_interrupted()) return false;
     if (!kind) {
       throw ConnectionError("the server at " + options.endpoint + " was silent for " +
                             std::to_string(options.wait_timeout->count()) +

@@ -22,6 +22,7 @@ struct Session::State {
   void answer();  // Command, after the Leaves of robots that failed
   void send_failures();
   bool wait();  // for the next observation; false if there is none
+  bool is_interrupted() const { return options.is_interrupted && options.is_interrupted(); }
   void read(const v1::Observation& observation);
   void read(const v1::End& end);
   void read(const v1::Reset& reset);

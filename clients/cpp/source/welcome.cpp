@@ -43,7 +43,10 @@ void Session::State::open() {
   fill(options, *outgoing.mutable_hello());
   connection.send(outgoing);
   for (;;) {
-    const auto kind = connection.receive(options.connect_timeout);
+    const auto kind = connection.receive(options.connect_timeout, options.is_interrupted);
+    if (!kind && is_interrupted()) {
+      throw ConnectionError("interrupted while waiting for a welcome at " + options.endpoint);
+    }
     if (!kind) {
       throw ConnectionError("no server welcomed us at " + options.endpoint + " within " +
                             std::to_string(options.connect_timeout.count()) + " ms");

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,6 +30,10 @@ struct Options {
   std::chrono::milliseconds connect_timeout{10'000};  ///< wall time until the server's welcome
   /// Wall time that next() waits for the world; none = for ever: others may take their time.
   std::optional<std::chrono::milliseconds> wait_timeout;
+  /// Asked while waiting, after each signal and at least every half second of wall time: true ends
+  /// the wait. next() then returns false without an ending, and the session can still leave; the
+  /// constructor throws ConnectionError. None = nothing interrupts.
+  std::function<bool()> is_interrupted;
 
   /// Endpoint from ZIGGURAT_ENDPOINT, controller from ZIGGURAT_CONTROLLER if that is set: how
   /// `ziggurat run` starts controllers.

@@ -1,0 +1,68 @@
+// ziggurat-lua: runs Lua controllers against a server.
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "program/options.h"
+#include "program/runner.h"
+#include "program/signals.h"
+#include "ziggurat/error.h"
+#include "ziggurat/session.h"
+
+namespace {
+
+using namespace ziggurat;
+
+enum ExitCode { exit_finished = 0, exit_fault = 1, exit_failed_script = 3, exit_signal = 128 };
+
+Options session_options(const lua::ProgramOptions& from) {
+  Options options;
+  options.endpoint = from.endpoint;
+  options.controller = from.controller;
+  options.robots = from.robots;
+  options.lua_only = !from.script;  // with a script of ours, any robot will do
+  options.name = from.name;
+  options.version = ZIGGURAT_VERSION;
+  options.is_interrupted = [] { return lua::arrived_signal() != 0; };
+  return options;
+}
+
+int run(const lua::ProgramOptions& options) {
+  Session session(session_options(options));
+  if (!options.quiet) {
+    std::fprintf(stderr, "ziggurat-lua: runs %zu robots at %s, seed %llu\n",
+                 session.robots().size(), options.endpoint.c_str(),
+                 static_cast<unsigned long long>(session.seed()));
+  }
+  lua::Runner runner(session, options);
+  runner.run();
+  session.leave();
+  if (const int number = lua::arrived_signal()) return exit_signal + number;
+  const auto& ending = session.ending();
+  if (ending && ending->reason == Ending::Reason::failed && !options.quiet) {
+    std::fprintf(stderr, "ziggurat-lua: the server ended the run: %s\n", ending->message.c_str());
+  }
+  return runner.has_failures() ? exit_failed_script : exit_finished;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+  try {
+    const auto request = lua::read_arguments(count, arguments, ::isatty(STDOUT_FILENO) != 0);
+    if (!request.text.empty()) {
+      std::fputs(request.text.c_str(), stdout);
+      return exit_finished;
+    }
+    lua::handle_signals();
+    return run(request.options);
+  } catch (const std::exception& error) {
+    if (const int number = lua::arrived_signal()) return exit_signal + number;
+    std::fprintf(stderr, "ziggurat-lua: %s\n", error.what());
+    return exit_fault;
+  }
+}

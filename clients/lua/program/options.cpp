@@ -1,0 +1,148 @@
+#include "program/options.h"
+
+#include <boost/program_options.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace ziggurat::lua {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr const char* introduction =
+    R"(Runs Lua controllers of robots against a Ziggurat server.
+
+usage: ziggurat-lua --connect URL [--robot GLOB]... [--script FILE]
+
+  ziggurat serve vehicle.argos --endpoint tcp://127.0.0.1:5770     in one terminal, and
+  ziggurat-lua --connect tcp://127.0.0.1:5770                      in another: all robots of the
+                                                                   scene that have a Lua script
+  ziggurat-lua --connect tcp://127.0.0.1:5770 --robot 'scout*'     some of them
+  ziggurat-lua --connect tcp://127.0.0.1:5770 --script other.lua   with a script of yours
+
+`ziggurat run` starts this program by itself. A script finds robot, log and logerr, and defines
+init, step, reset and destroy: see docs/lua-api.md. A script that fails ends only its own robot.
+
+Exit codes: 0 the run is over; 1 an argument, the connection or the server's answer is at fault;
+3 a script failed; 130 Ctrl-C.)";
+
+auto text(const char* name) { return po::value<std::string>()->value_name(name); }
+
+po::options_description description() {
+  po::options_description options("Options", 96);
+  options.add_options()  //
+      ("connect", text("URL"),
+       "where the server listens: tcp://host:port or ipc:///path; "
+       "ZIGGURAT_ENDPOINT if left out")  //
+      ("robot", po::value<std::vector<std::string>>()->composing()->value_name("GLOB"),
+       "robots to run: an id or a pattern of * ? [a-z]; may be repeated")                  //
+      ("robots-file", text("FILE"), "robots to run: one id or pattern per line")           //
+      ("controller", text("ID"), "robots that have this controller in the scene")          //
+      ("script", text("FILE"), "run this script instead of those that the scene names")    //
+      ("name", text("NAME"), "what the server calls this program in its messages")         //
+      ("max-memory", text("MIB"), "memory that the script of a robot may have; 1024")      //
+      ("echo", "print log lines here too, as is done on a terminal; the server has them")  //
+      ("quiet", "print nothing but faults and what scripts print themselves")              //
+      ("version", "print the version")                                                     //
+      ("help", "print this");
+  return options;
+}
+
+std::string help() {
+  std::ostringstream out;
+  out << introduction << "\n\n" << description();
+  return out.str();
+}
+
+std::string trimmed(const std::string& line) {
+  constexpr const char* space = " \t\r";
+  const auto begin = line.find_first_not_of(space);
+  if (begin == std::string::npos) return {};
+  return line.substr(begin, line.find_last_not_of(space) + 1 - begin);
+}
+
+void append_robots(const std::string& path, std::vector<std::string>& robots) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error("--robots-file " + path + ": it can't be read");
+  const auto before = robots.size();
+  for (std::string line; std::getline(file, line);) {
+    if (auto id = trimmed(line); !id.empty()) robots.push_back(std::move(id));
+  }
+  if (file.bad() || robots.size() == before) {
+    throw std::runtime_error("--robots-file " + path + ": no robot stands in it");
+  }
+}
+
+std::size_t to_bytes(const std::string& mebibytes) {
+  constexpr unsigned long long most = 1ULL << 20;
+  std::size_t used = 0;
+  unsigned long long number = 0;
+  try {
+    number = std::stoull(mebibytes, &used);
+  } catch (const std::logic_error&) {
+  }
+  if (used != mebibytes.size() || mebibytes[0] == '-' || number == 0 || number > most) {
+    throw std::runtime_error("--max-memory " + mebibytes + ": a number of MiB from 1 to 1048576");
+  }
+  return static_cast<std::size_t>(number) << 20;
+}
+
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+po::variables_map parse(int count, const char* const* arguments) {
+  namespace style = po::command_line_style;
+  constexpr int exact = style::unix_style & ~style::allow_guessing;
+  po::variables_map found;
+  try {
+    // No positional arguments: boost names the first one that is there.
+    po::store(po::command_line_parser(count, arguments)
+                  .options(description())
+                  .positional({})
+                  .style(exact)
+                  .run(),
+              found);
+  } catch (const po::error& error) {
+    throw std::runtime_error(std::string(error.what()) + "; ziggurat-lua --help tells what can be");
+  }
+  return found;
+}
+
+}  // namespace
+
+Request read_arguments(int count, const char* const* arguments, bool is_terminal) {
+  const auto found = parse(count, arguments);
+  const auto value = [&](const char* name, std::string otherwise = {}) {
+    return found.count(name) ? found[name].as<std::string>() : otherwise;
+  };
+  Request request;
+  if (found.count("help")) request.text = help();
+  if (found.count("version")) request.text = "ziggurat-lua " ZIGGURAT_VERSION "\n";
+  if (!request.text.empty()) return request;
+
+  ProgramOptions& options = request.options;
+  options.endpoint = value("connect", environment("ZIGGURAT_ENDPOINT"));
+  if (options.endpoint.empty()) {
+    throw std::runtime_error(
+        "--connect is missing: where the server listens, for example tcp://127.0.0.1:5770 "
+        "(or ZIGGURAT_ENDPOINT); ziggurat-lua --help tells more");
+  }
+  if (found.count("robot")) options.robots = found["robot"].as<std::vector<std::string>>();
+  if (found.count("robots-file")) append_robots(value("robots-file"), options.robots);
+  options.controller = value("controller");
+  if (options.controller.empty() && options.robots.empty()) {
+    options.controller = environment("ZIGGURAT_CONTROLLER");
+  }
+  if (found.count("script")) options.script = value("script");
+  options.name = value("name", options.name);
+  if (found.count("max-memory")) options.max_memory = to_bytes(value("max-memory"));
+  options.quiet = found.count("quiet") > 0;
+  options.echo = found.count("echo") > 0 || (is_terminal && !options.quiet);
+  return request;
+}
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,34 @@
+#pragma once
+// The command line of ziggurat-lua.
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ziggurat::lua {
+
+struct ProgramOptions {
+  std::string endpoint;
+  std::vector<std::string> robots;  ///< ids or globs, those of the robots' file included
+  std::string controller;           ///< id in the scene; empty for all
+  std::optional<std::filesystem::path> script;  ///< instead of the one the scene names
+  std::string name = "ziggurat-lua";
+  std::size_t max_memory = std::size_t{1} << 30;  ///< per robot [bytes]
+  bool echo = false;                              ///< log lines are printed here too
+  bool quiet = false;
+};
+
+/// What the arguments ask for: to run, or to print a text and be done.
+struct Request {
+  ProgramOptions options;
+  std::string text;  ///< of --help or --version; empty otherwise
+};
+
+/// Reads the arguments, and ZIGGURAT_ENDPOINT and ZIGGURAT_CONTROLLER for what they leave open.
+/// @param is_terminal  stdout is one: log lines are printed here unless quiet
+/// @throws std::runtime_error that says what is wrong and what would be right
+Request read_arguments(int count, const char* const* arguments, bool is_terminal);
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,101 @@
+#include "program/runner.h"
+
+#include <new>
+
+#include "program/exchange.h"
+#include "program/find_script.h"
+#include "script/interrupt.h"
+
+namespace ziggurat::lua {
+
+Runner::Runner(ziggurat::Session& session, const ProgramOptions& options)
+    : session_(session), options_(options) {
+  for (ziggurat::Robot& robot : session_.robots()) seats_.push_back({&robot, nullptr});
+}
+
+void Runner::run() {
+  bool has_started = false;
+  while (!are_scripts_interrupted() && session_.next()) {
+    for (Seat& seat : seats_) {
+      if (are_scripts_interrupted()) return;
+      if (!has_started) start(seat);
+      if (has_started && seat.controller) answer(seat);
+    }
+    has_started = true;
+  }
+  if (!are_scripts_interrupted()) finish();
+}
+
+void Runner::start(Seat& seat) {
+  const FoundScript script = options_.script
+                                 ? FoundScript{*options_.script, {}}
+                                 : find_script(seat.robot->script(), seat.robot->params());
+  if (script.path.empty()) return fail(seat, script.fault);
+  try {
+    seat.controller = std::make_unique<Controller>(
+        describe(*seat.robot),
+        ControllerOptions{script.path, session_.seed(), options_.max_memory});
+  } catch (const std::bad_alloc&) {
+    return fail(seat, "no memory for a Lua state");
+  }
+  sense(*seat.robot, seat.controller->robot());
+  const Failure failure = seat.controller->start();
+  hand_over(seat);
+  if (failure) fail(seat, *failure);
+}
+
+void Runner::answer(Seat& seat) {
+  sense(*seat.robot, seat.controller->robot());
+  const Failure failure = call(*seat.controller);
+  hand_over(seat);
+  if (failure) fail(seat, *failure);
+}
+
+Failure Runner::call(Controller& controller) {
+  if (session_.event() == ziggurat::Event::reset) return controller.reset(session_.seed());
+  return controller.step(session_.tick());
+}
+
+void Runner::finish() {
+  for (Seat& seat : seats_) {
+    if (are_scripts_interrupted()) return;
+    if (!seat.controller) continue;
+    const Failure failure = seat.controller->destroy(session_.tick());
+    // No robot can fail any more: the run is over. The message still goes to the server's log.
+    if (failure) seat.controller->robot().log.add(true, *failure);
+    hand_over(seat);
+    if (failure) fail(seat, *failure);
+  }
+}
+
+void Runner::hand_over(Seat& seat) {
+  ScriptedRobot& scripted = seat.controller->robot();
+  if (options_.echo) echo(seat, scripted.log);
+  act(scripted, *seat.robot);
+  if (!hand_over_log(scripted, *seat.robot)) {
+    std::fprintf(stderr, "ziggurat-lua: tick %llu: too many log lines for one message; dropped\n",
+                 static_cast<unsigned long long>(session_.tick()));
+  }
+}
+
+// A script that a signal ended has not failed.
+void Runner::fail(Seat& seat, const std::string& message) {
+  seat.controller.reset();
+  if (are_scripts_interrupted()) return;
+  ++failures_;
+  seat.robot->fail(message);
+  if (options_.quiet) return;  // the server prints it
+  std::fprintf(stderr, "robot '%s': %s\n", seat.robot->id().c_str(), message.c_str());
+}
+
+void Runner::echo(const Seat& seat, const LogLines& log) const {
+  for (const LogLine& line : log.lines) {
+    std::FILE* const to = line.is_error ? stderr : stdout;
+    std::fprintf(to, "[%llu %s] ", static_cast<unsigned long long>(session_.tick()),
+                 seat.robot->id().c_str());
+    std::fwrite(line.text.data(), 1, line.text.size(), to);
+    std::fputc('\n', to);
+  }
+}
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,47 @@
+#pragma once
+// Runs the scripts of a session's robots from its first tick to its end.
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "program/options.h"
+#include "script/controller.h"
+#include "ziggurat/session.h"
+
+namespace ziggurat::lua {
+
+class Runner {
+ public:
+  /// @param session  freshly opened; outlives the runner
+  Runner(ziggurat::Session& session, const ProgramOptions& options);
+
+  /// Until the run is over or a signal interrupts it.
+  /// @throws ConnectionError, ProtocolError
+  void run();
+
+  bool has_failures() const { return failures_ > 0; }
+
+ private:
+  struct Seat {
+    ziggurat::Robot* robot = nullptr;
+    std::unique_ptr<Controller> controller;  ///< null once it failed
+  };
+
+  void start(Seat& seat);
+  void answer(Seat& seat);
+  void finish();
+  Failure call(Controller& controller);
+  void hand_over(Seat& seat);
+  void fail(Seat& seat, const std::string& message);
+  void echo(const Seat& seat, const LogLines& log) const;
+
+  ziggurat::Session& session_;
+  const ProgramOptions& options_;
+  std::vector<Seat> seats_;  ///< as the session's robots
+  std::size_t failures_ = 0;
+};
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,75 @@
+#pragma once
+// One robot's script: its Lua state and its life cycle.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "script/environment.h"
+#include "script/memory.h"
+#include "script/scripted_robot.h"
+
+namespace ziggurat::lua {
+
+struct ControllerOptions {
+  std::filesystem::path script;
+  std::uint64_t seed = 1;                          ///< of the run
+  std::size_t max_memory = std::size_t{1} << 30;   ///< of the script's Lua state [bytes]
+};
+
+/// How a script failed: `scenes/x.lua:12: attempt to … (in step 37)`, a line feed, and Lua's
+/// traceback. The script is not to be called again.
+using Failure = std::optional<std::string>;
+
+/// Runs the script of one robot. Whatever the script does wrong is a Failure, never an exception.
+class Controller {
+ public:
+  /// @throws std::bad_alloc if max_memory does not hold an empty state
+  Controller(ScriptedRobot robot, const ControllerOptions& options);
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+
+  /// Readings are written here before a call; targets and log lines are taken from here after it,
+  /// also after one that failed.
+  ScriptedRobot& robot() { return robot_; }
+
+  /// At tick 0: makes `robot` and `log`, runs the script's chunk, then init().
+  Failure start();
+  /// @param tick  >= 1
+  Failure step(std::uint64_t tick);
+  /// The world went back to tick 0; random streams begin anew. Does nothing more if the script
+  /// has no reset().
+  /// @param seed  of the new run
+  Failure reset(std::uint64_t seed);
+  /// After the last tick. Does nothing if the script has no destroy().
+  Failure destroy(std::uint64_t last_tick);
+
+  std::size_t used_memory() const { return state_.used_bytes(); }  ///< [bytes]
+
+ private:
+  struct Wanted {
+    const char* name = nullptr;  // of a function of the script
+    bool is_required = false;
+  };
+  static int build(lua_State* state);
+  static int load(lua_State* state);
+  static int prepare(lua_State* state);
+
+  Failure run_chunk();
+  Failure call(const char* function, bool is_required, const std::string& moment);
+  Failure call_prepared(const std::string& moment);
+  void push_protected(int (*function)(lua_State*));
+  std::string describe_error(const std::string& moment);
+
+  ScriptedRobot robot_;
+  RandomStreams random_;
+  std::size_t max_memory_;
+  std::string script_;               // as it shall appear in messages
+  std::string folder_;               // of the script
+  Wanted wanted_;                    // by prepare()
+  BoundedState state_;               // last: its finalizers may use the others
+};
+
+}  // namespace ziggurat::lua

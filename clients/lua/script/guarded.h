@@ -1,0 +1,40 @@
+#pragma once
+// Functions that Lua calls. Lua's errors are jumps over our frames and ours are exceptions that
+// must not pass Lua's, so:
+//  - every function given to Lua is guarded<function>;
+//  - no object with a destructor lives across a call of the Lua API that may raise an error.
+
+#include <exception>
+#include <lua.hpp>
+
+namespace ziggurat::lua {
+
+/// An exception that leaves `body` becomes a Lua error that says the same.
+template <int (*body)(lua_State*)>
+int guarded(lua_State* state) {
+  try {
+    return body(state);
+  } catch (const std::exception& error) {
+    luaL_where(state, 1);
+    lua_pushstring(state, error.what());
+  }
+  lua_concat(state, 2);
+  return lua_error(state);
+}
+
+/// What a closure's n-th upvalue (from 1), a light userdata, points to.
+template <typename T>
+T& upvalue(lua_State* state, int n = 1) {
+  return *static_cast<T*>(lua_touserdata(state, lua_upvalueindex(n)));
+}
+
+/// Sets field `name` of the table on top to a closure over `subject`, which must outlive the
+/// state: scripts may keep the function for as long as they live.
+template <int (*body)(lua_State*)>
+void set_function(lua_State* state, const char* name, void* subject) {
+  lua_pushlightuserdata(state, subject);
+  lua_pushcclosure(state, guarded<body>, 1);
+  lua_setfield(state, -2, name);
+}
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,29 @@
+#pragma once
+// What a script logged at one tick.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace ziggurat::lua {
+
+struct LogLine {
+  bool is_error = false;  ///< from logerr()
+  std::string text;       ///< any bytes; no line feed at the end
+};
+
+/// Lines of one robot at one tick. Bounded: a script that logs in an endless loop must neither
+/// fill the memory nor block the session's other robots.
+struct LogLines {
+  static constexpr std::size_t max_bytes = std::size_t{1} << 20;
+  static constexpr std::size_t overhead = 64;  ///< that a line counts besides its text [bytes]
+
+  std::vector<LogLine> lines;
+  std::size_t bytes = 0;
+  bool is_full = false;  ///< lines were dropped; the last one says so
+
+  void add(bool is_error, std::string text);
+  void clear();  ///< keeps its memory for the next tick
+};
+
+}  // namespace ziggurat::lua

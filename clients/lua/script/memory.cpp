@@ -1,0 +1,30 @@
+#include "script/memory.h"
+
+#include <cstdlib>
+#include <new>
+
+namespace ziggurat::lua {
+
+BoundedState::BoundedState(std::size_t max_bytes)
+    : budget_{0, max_bytes}, state_(lua_newstate(&allocate, &budget_)) {
+  if (!state_) throw std::bad_alloc();
+}
+
+void* BoundedState::allocate(void* budget_of_state, void* block, std::size_t old_size,
+                             std::size_t new_size) {
+  auto& budget = *static_cast<Budget*>(budget_of_state);
+  if (block == nullptr) old_size = 0;  // it was the kind of the new object
+  if (new_size == 0) {
+    std::free(block);
+    budget.used -= old_size;
+    return nullptr;
+  }
+  // Lua relies on shrinking to succeed.
+  if (new_size > old_size && new_size - old_size > budget.max - budget.used) return nullptr;
+  void* const moved = std::realloc(block, new_size);
+  if (moved == nullptr) return new_size <= old_size ? block : nullptr;
+  budget.used = budget.used - old_size + new_size;
+  return moved;
+}
+
+}  // namespace ziggurat::lua

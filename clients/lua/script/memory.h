@@ -1,0 +1,36 @@
+#pragma once
+// The memory of one Lua state.
+
+#include <cstddef>
+#include <lua.hpp>
+#include <memory>
+
+namespace ziggurat::lua {
+
+/// A Lua state with an upper bound on its memory: a script that asks for more gets Lua's error
+/// "not enough memory", and other scripts don't notice.
+class BoundedState {
+ public:
+  /// @throws std::bad_alloc if not even an empty state fits
+  explicit BoundedState(std::size_t max_bytes);
+  BoundedState(const BoundedState&) = delete;
+  BoundedState& operator=(const BoundedState&) = delete;
+
+  lua_State* get() const { return state_.get(); }
+  std::size_t used_bytes() const { return budget_.used; }
+
+ private:
+  struct Budget {
+    std::size_t used;
+    std::size_t max;
+  };
+  struct Close {
+    void operator()(lua_State* state) const { lua_close(state); }
+  };
+  static void* allocate(void* budget, void* block, std::size_t old_size, std::size_t new_size);
+
+  Budget budget_;
+  std::unique_ptr<lua_State, Close> state_;
+};
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,37 @@
+#include "script/random_stream.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/poisson_distribution.hpp>
+#include <cmath>
+
+namespace ziggurat::lua {
+
+// The standard library's distributions are not specified: ours or Boost's.
+
+RandomStream::RandomStream(std::uint64_t seed, std::string_view purpose)
+    : engine_(XXH64(purpose.data(), purpose.size(), seed)) {}
+
+double RandomStream::unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+
+double RandomStream::uniform(double min, double max) {
+  constexpr double largest = static_cast<double>((1ULL << 53) - 1);
+  const double part = static_cast<double>(engine_() >> 11) / largest;
+  // Not min + (max - min) * part: the difference may overflow.
+  return std::clamp(min * (1 - part) + max * part, min, max);
+}
+
+double RandomStream::exponential(double mean) { return -std::log(1 - unit()) * mean; }
+
+double RandomStream::gaussian(double standard_deviation, double mean) {
+  return mean + standard_deviation * boost::random::normal_distribution<double>()(engine_);
+}
+
+std::int64_t RandomStream::poisson(double mean) {
+  if (mean <= 0) return 0;
+  return boost::random::poisson_distribution<std::int64_t, double>(mean)(engine_);
+}
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,31 @@
+#pragma once
+// A robot's own stream of random numbers. Which process runs the robot, and what other robots
+// draw, never changes what it draws.
+
+#include <cstdint>
+#include <random>
+#include <string_view>
+
+namespace ziggurat::lua {
+
+class RandomStream {
+ public:
+  /// @param seed     of the run
+  /// @param purpose  names the stream among those of the run, for example "lua/robot0"
+  RandomStream(std::uint64_t seed, std::string_view purpose);
+
+  std::uint64_t bits() { return engine_(); }  ///< 64 independent bits
+  double unit();                              ///< uniform in [0, 1), 53 bits
+  double uniform(double min, double max);     ///< uniform in [min, max], both inclusive
+  double exponential(double mean);
+  double gaussian(double standard_deviation, double mean);
+  /// @param mean  in [0, max_poisson_mean]
+  std::int64_t poisson(double mean);
+
+  static constexpr double max_poisson_mean = 1e15;
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace ziggurat::lua
