@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "app/scripts.h"
 #include "recording/output_file.h"
 
 namespace ziggurat::app {
@@ -58,7 +59,7 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
   std::vector<std::vector<std::size_t>> others(scene.controllers.size());
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
     const std::size_t controller = layout.robots[r].controller;
-    if (!scene.controllers[controller].lua) {
+    if (!runs_script(scene.controllers[controller])) {
       others[controller].push_back(r);
     } else if (!scripts[r].empty()) {
       lua.push_back(r);

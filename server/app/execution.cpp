@@ -10,6 +10,7 @@
 #include "app/loading.h"
 #include "app/private_folder.h"
 #include "app/recorders.h"
+#include "app/scripts.h"
 #include "app/signals.h"
 #include "app/summary.h"
 #include "app/version.h"
@@ -55,7 +56,7 @@ std::vector<std::size_t> undriven_robots(const scene::Scene& scene, const world:
                                          const std::vector<std::string>& scripts) {
   std::vector<std::size_t> robots;
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
-    if (scene.controllers[layout.robots[r].controller].lua && scripts[r].empty()) {
+    if (runs_script(scene.controllers[layout.robots[r].controller]) && scripts[r].empty()) {
       robots.push_back(r);
     }
   }

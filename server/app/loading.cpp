@@ -15,7 +15,8 @@
 namespace ziggurat::app {
 namespace {
 
-// `--controller ID=CMD`: the scene as if it said <external_controller id="ID" command="CMD">.
+// `--controller ID=CMD`. A Lua controller stays one for whoever connects: its command may well be
+// ziggurat-lua under a debugger.
 void override_controllers(const Options& options, scene::Scene& scene) {
   for (const auto& [id, command] : options.controllers) {
     const auto found = std::ranges::find(scene.controllers, id, &scene::Controller::id);
@@ -27,7 +28,6 @@ void override_controllers(const Options& options, scene::Scene& scene) {
           fmt::format("--controller names '{}', which the scene doesn't have{}", id,
                       suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?"));
     }
-    found->lua = false;
     found->command = command;
   }
 }
@@ -85,7 +85,7 @@ std::vector<std::string> script_paths(const scene::Scene& scene, const world::La
   std::vector<std::string> paths;
   for (const auto& robot : layout.robots) {
     const auto script = script_of(robot.params);
-    const bool lua = scene.controllers[robot.controller].type == "lua_controller";
+    const bool lua = scene.controllers[robot.controller].lua;
     const auto found = lua && !script.empty() ? find_script(script, scene_path) : std::nullopt;
     paths.push_back(found ? found->string() : std::string());
   }

@@ -19,10 +19,11 @@ struct Use {
 std::vector<Use> uses(const scene::Scene& scene) {
   std::vector<Use> result;
   for (const auto& controller : scene.controllers) {
-    if (controller.lua) result.push_back({&controller.params, controller.params_where});
+    if (runs_script(controller)) result.push_back({&controller.params, controller.params_where});
   }
   const auto add = [&](const scene::Entity& entity) {
-    if (entity.controller && entity.overrides_params && scene.controllers[*entity.controller].lua) {
+    if (entity.controller && entity.overrides_params &&
+        runs_script(scene.controllers[*entity.controller])) {
       result.push_back({&entity.params, entity.where});
     }
   };
@@ -69,6 +70,10 @@ std::string script_of(const std::vector<std::pair<std::string, std::string>>& pa
     if (name == "script") return value;
   }
   return {};
+}
+
+bool runs_script(const scene::Controller& controller) {
+  return controller.lua && controller.command.empty();
 }
 
 std::vector<scene::Problem> check_scripts(const scene::Scene& scene, const fs::path& scene_file) {

@@ -23,7 +23,10 @@ std::optional<std::string> compile_error(const std::filesystem::path& script);
 /// The value of `script` among these; empty if there is none.
 std::string script_of(const std::vector<std::pair<std::string, std::string>>& params);
 
-/// A fault for each script of a Lua controller that is missing or doesn't compile, with the line
+/// Whether ziggurat-lua drives its robots: it is a Lua controller that no command replaces.
+bool runs_script(const scene::Controller& controller);
+
+/// A fault for each script that would run and is missing or doesn't compile, with the line
 /// of its <params>; a notice for each that names none.
 std::vector<scene::Problem> check_scripts(const scene::Scene& scene,
                                           const std::filesystem::path& scene_file);

@@ -10,11 +10,6 @@ from harness import (BIN, CONTROLLER_FAILED, FINISHED, INTERRUPTED, LUA, SceneTe
 ENDLESS = ("--duration", "0")
 
 
-def lua_command(*arguments):
-    """ziggurat-lua as the command of a controller."""
-    return " ".join([str(LUA), "--connect", "$ZIGGURAT_ENDPOINT", *arguments])
-
-
 class Vanishing(SceneTest):
     def vanishes(self, outcome, robots):
         self.assertEqual(outcome.code, CONTROLLER_FAILED, outcome.err)
@@ -38,9 +33,8 @@ class Vanishing(SceneTest):
     def test_one_of_several(self):
         process = self.start("run", self.scene, *ENDLESS, "--lua-processes", 0)
         self.read_until(process.stdout, r"^\[20 r2\]")
-        ids = self.lua_processes(3)
-        robots = {i: open(f"/proc/{i}/cmdline").read() for i in ids}
-        victim = next(i for i, text in robots.items() if "robots-1" in text)
+        self.lua_processes(3)
+        [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
         os.kill(victim, signal.SIGKILL)
         self.vanishes(self.finish(process), "robot r1")
 
@@ -152,11 +146,8 @@ class OtherControllers(SceneTest):
         self.assertIn("exit code 5", outcome.err)
 
     def test_command_drives(self):
-        robots = self.write("robots", "r0\nr1\nr2\n")
-        by_lua = self.hash_of()
-        by_command = self.hash_of(
-            "--controller", f"swing=exec {lua_command('--robots-file', str(robots), '--quiet')}")
-        self.assertEqual(by_command, by_lua)
+        by_command = self.hash_of("--controller", f"swing=exec {LUA} --quiet")
+        self.assertEqual(by_command, self.hash_of())
 
     def test_without_command_it_says_whom_it_waits_for(self):
         self.make_external("")

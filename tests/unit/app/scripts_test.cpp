@@ -89,9 +89,11 @@ TEST_F(Scripts, BytecodeIsRefused) {
 }
 
 TEST_F(Scripts, OtherControllersHaveNone) {
-  auto scene = naming("nowhere.lua");
-  scene.controllers[0].lua = false;
-  EXPECT_TRUE(check_scripts(scene, "a.argos").empty());
+  auto external = naming("nowhere.lua"), replaced = naming("nowhere.lua");
+  external.controllers[0].lua = false;
+  replaced.controllers[0].command = "./drive";
+  EXPECT_TRUE(check_scripts(external, "a.argos").empty());
+  EXPECT_TRUE(check_scripts(replaced, "a.argos").empty());
 }
 
 }  // namespace
