@@ -1,0 +1,60 @@
+#pragma once
+// Two ways to run the same lock-step ticks over the same bytes: with our server, and with bare
+// ZeroMQ. Each owns its controller processes.
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ziggurat::bench {
+
+struct Setup {
+  std::size_t processes = 1;
+  std::size_t robots = 1;  ///< per process
+  std::string transport = "ipc";
+  std::string client;  ///< path of bench_lockstep_client
+};
+
+/// Bytes of a tick's messages on the wire, for one session.
+struct Bytes {
+  std::size_t observation = 0;
+  std::size_t command = 0;
+};
+
+/// Processes that end with it.
+class Processes {
+ public:
+  void start(const std::string& program, const std::vector<std::string>& arguments);
+  ~Processes();
+
+ private:
+  std::vector<pid_t> pids_;
+};
+
+class Ours {
+ public:
+  explicit Ours(const Setup& setup);
+  ~Ours();
+  void tick();
+  Bytes bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+class Bare {
+ public:
+  Bare(const Setup& setup, const Bytes& bytes);
+  ~Bare();
+  void tick();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace ziggurat::bench
