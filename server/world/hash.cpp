@@ -1,11 +1,53 @@
 #include "world/state.h"
 
+#include <span>
+#include <string_view>
+
 namespace ziggurat::world {
 namespace {
 
 void add(math::Hash& hash, const math::Pose& pose) {
   hash.add(std::span(pose.position.data(), 3));
   hash.add(std::span(pose.orientation.coeffs().data(), 4));
+}
+
+void add(math::Hash& hash, const std::vector<Color>& colors) {
+  for (const Color color : colors) hash.add(std::uint64_t{color});
+}
+
+void add(math::Hash& hash, std::span<const std::uint8_t> bytes) {
+  hash.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+void add_visible(math::Hash& hash, const State& state) {
+  add(hash, state.led_colors);
+  add(hash, state.directional_led_colors);
+  for (const std::string& payload : state.tag_payloads) hash.add(std::string_view(payload));
+  for (const math::Vector3& field : state.magnet_fields) hash.add(std::span(field.data(), 3));
+  add(hash, state.range_and_bearing_data);
+}
+
+void add_sensed(math::Hash& hash, const Observations& observations) {
+  hash.add(std::uint64_t{observations.radio_messages.entries.size()});
+  for (const RadioMessages::Entry& entry : observations.radio_messages.entries) {
+    hash.add(std::uint64_t{entry.radio});
+    add(hash, observations.radio_messages.payload(entry));
+  }
+  hash.add(observations.proximity);
+  hash.add(std::uint64_t{observations.range_and_bearing.size()});
+  for (const RangeAndBearingPacket& packet : observations.range_and_bearing) {
+    hash.add(std::uint64_t{packet.receiver});
+    hash.add(packet.range);
+    hash.add(packet.horizontal_bearing);
+    hash.add(packet.vertical_bearing);
+    add(hash, std::span(observations.range_and_bearing_data)
+                  .subspan(packet.data.begin, packet.data.count));
+  }
+  for (const math::Pose& pose : observations.positioning) add(hash, pose);
+  for (const BatteryReading& battery : observations.batteries) {
+    hash.add(battery.available_charge);
+    hash.add(battery.time_left);
+  }
 }
 
 }  // namespace
@@ -20,6 +62,8 @@ std::uint64_t hash(const State& state, const Observations& observations) {
     hash.add(std::span(link.angular_velocity.data(), 3));
   }
   hash.add(observations.joint_readings);
+  add_visible(hash, state);
+  add_sensed(hash, observations);
   return hash.digest();
 }
 

@@ -3,9 +3,13 @@
 // Observations and Commands is indexed by. Fixed for the life of a simulation.
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "math/pose.h"
 
 namespace ziggurat::world {
 
@@ -42,7 +46,85 @@ struct JointActuatorLayout {
   double max_impulse = 0;  ///< per substep as written in the scene [N s, N m s]
 };
 
-/// An entity with a controller.
+/// A colour as 0xRRGGBB. 0 is off: nothing sees it.
+using Color = std::uint32_t;
+
+/// Where a device is fixed.
+struct Mount {
+  std::size_t entity = 0;           ///< into Layout::entities and State::origins
+  std::optional<std::size_t> link;  ///< into State::links; none: the entity's origin frame
+  math::Pose pose;                  ///< X_AD of the device in that frame
+};
+
+/// A radio of a robot whose controller enables radios.
+struct RadioLayout {
+  std::string id;
+  Mount mount;
+  double range = 0;        ///< of sending [m]; who is strictly closer hears
+  std::size_t medium = 0;  ///< into scene::Scene::media
+  bool sends = false;      ///< its controller has the actuator
+  bool receives = false;   ///< its controller has the sensor
+  bool shows_links = false;
+};
+
+/// An LED of any entity.
+struct LedLayout {
+  std::string id;
+  Mount mount;
+  std::size_t medium = 0;
+  Color color = 0;  ///< at the start
+};
+
+/// A directional LED of any entity; +z of its frame is the direction of emission.
+struct DirectionalLedLayout {
+  std::string id;
+  Mount mount;
+  std::size_t medium = 0;
+  double observable_angle = 0;  ///< half-angle about +z [rad]
+  Color color = 0;              ///< at the start
+};
+
+/// A tag of any entity; +z of its frame is the normal.
+struct TagLayout {
+  std::string id;
+  Mount mount;
+  std::size_t medium = 0;
+  double observable_angle = 0;  ///< half-angle about +z [rad]
+  double side_length = 0;       ///< [m]
+  std::string payload;          ///< at the start
+};
+
+/// A magnet of any entity. Its field is passive_field + current * active_field.
+struct MagnetLayout {
+  std::string id;
+  Mount mount;
+  math::Vector3 passive_field = math::Vector3::Zero();  ///< anchor frame, the dialect's unit
+  math::Vector3 active_field = math::Vector3::Zero();   ///< per unit of current
+};
+
+/// A ray of a robot whose controller enables proximity.
+struct ProximityLayout {
+  Mount mount;                                      ///< its origin is the start of the ray
+  math::Vector3 direction = math::Vector3::UnitX(); ///< unit, in the anchor frame
+  double range = 0;                                 ///< length of the ray [m]
+};
+
+/// A range-and-bearing device of any entity: at most one each.
+struct RangeAndBearingLayout {
+  Mount mount;             ///< bearings are relative to its frame
+  double range = 0;        ///< of sending [m]; who is strictly closer receives
+  std::size_t medium = 0;
+  Range data;              ///< its bytes in State::, Commands::range_and_bearing_data
+  bool sends = false;      ///< its controller has the actuator; without, it sends zeros
+  bool receives = false;   ///< its controller has the sensor
+};
+
+/// A battery of a robot whose controller has the sensor.
+struct BatteryLayout {
+  std::size_t entity = 0;
+};
+
+/// An entity with a controller. Each range is empty unless the controller enables the device.
 struct RobotLayout {
   std::string id;
   std::size_t entity = 0;      ///< into Layout::entities
@@ -50,6 +132,15 @@ struct RobotLayout {
   std::vector<std::pair<std::string, std::string>> params;
   Range joint_sensors;    ///< into Layout::joint_sensors and Observations::joint_readings
   Range joint_actuators;  ///< into Layout::joint_actuators and Commands::joint_targets
+  Range radios;           ///< into Layout::radios: actuator, sensor or both are enabled
+  Range leds;             ///< into Layout::leds and Commands::led_colors
+  Range directional_leds; ///< into Layout::directional_leds and Commands::directional_led_colors
+  Range tags;             ///< into Layout::tags and Commands::tag_payloads
+  Range magnets;          ///< into Layout::magnets and Commands::magnet_currents
+  Range proximity;        ///< into Layout::proximity and Observations::proximity
+  Range range_and_bearing;  ///< 0 or 1 of Layout::range_and_bearing: actuator, sensor or both
+  Range positioning;        ///< 0 or 1 of Observations::positioning
+  Range batteries;          ///< 0 or 1 of Layout::batteries and Observations::batteries
 };
 
 struct Layout {
@@ -58,6 +149,15 @@ struct Layout {
   std::vector<RobotLayout> robots;
   std::vector<JointSensorLayout> joint_sensors;
   std::vector<JointActuatorLayout> joint_actuators;
+  std::vector<RadioLayout> radios;
+  std::vector<LedLayout> leds;
+  std::vector<DirectionalLedLayout> directional_leds;
+  std::vector<TagLayout> tags;
+  std::vector<MagnetLayout> magnets;
+  std::vector<ProximityLayout> proximity;
+  std::vector<RangeAndBearingLayout> range_and_bearing;
+  std::vector<std::size_t> positioning;  ///< the entity of each sensor
+  std::vector<BatteryLayout> batteries;
 };
 
 }  // namespace ziggurat::world

@@ -1,7 +1,10 @@
 #pragma once
 // What is true at one tick, what robots are told of it, and what they answered.
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "math/hash.h"
@@ -16,11 +19,72 @@ struct LinkState {
   math::Vector3 angular_velocity = math::Vector3::Zero();     ///< in W [rad/s]
 };
 
+/// A segment that a device tested, or a link between two devices; only of devices that ask for
+/// it (`show_rays`).
+struct Ray {
+  enum class Kind : std::uint8_t {
+    proximity,          ///< from the sensor to the end of its range, or to what it met
+    radio,              ///< from the sender to the receiver of at least one message
+    range_and_bearing,  ///< from the sender to the receiver of a packet, or to what was in between
+  };
+  Kind kind = Kind::proximity;
+  std::size_t robot = 0;     ///< into Layout::robots: whose device it is; the receiver's
+  math::Vector3 start, end;  ///< in W [m]
+  bool hit = false;          ///< proximity, range_and_bearing: an entity was met at `end`
+};
+
 struct State {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;            ///< simulated: round(tick * 1e9 / ticks_per_second)
   std::vector<math::Pose> origins;     ///< X_WE per entity
   std::vector<LinkState> links;        ///< of all entities, in scene order
+
+  // What others can perceive; each as long as its list in Layout.
+  std::vector<Color> led_colors;
+  std::vector<Color> directional_led_colors;
+  std::vector<std::string> tag_payloads;               ///< any bytes
+  std::vector<math::Vector3> magnet_fields;            ///< anchor frame, the dialect's unit
+  std::vector<std::uint8_t> range_and_bearing_data;    ///< as RangeAndBearingLayout::data says
+
+  std::vector<Ray> rays;  ///< not part of the hash
+};
+
+/// Messages of radios. Their bytes stand in one buffer, and may be shared by several messages.
+struct RadioMessages {
+  struct Entry {
+    std::size_t radio = 0;  ///< into Layout::radios
+    std::size_t begin = 0;  ///< into `bytes`
+    std::size_t size = 0;   ///< [bytes], may be 0
+  };
+  std::vector<Entry> entries;
+  std::vector<std::uint8_t> bytes;
+
+  std::span<const std::uint8_t> payload(const Entry& entry) const {
+    return std::span(bytes).subspan(entry.begin, entry.size);
+  }
+  void add(std::size_t radio, std::span<const std::uint8_t> payload) {
+    entries.push_back({radio, bytes.size(), payload.size()});
+    bytes.insert(bytes.end(), payload.begin(), payload.end());
+  }
+  void clear() {  ///< keeps the memory
+    entries.clear();
+    bytes.clear();
+  }
+};
+
+/// A packet that a range-and-bearing device received.
+struct RangeAndBearingPacket {
+  std::size_t receiver = 0;       ///< into Layout::range_and_bearing
+  double range = 0;               ///< distance between the two devices, with the sensor's noise [m]
+  double horizontal_bearing = 0;  ///< about +z of the receiver's frame from +x, (-pi, pi] [rad]
+  double vertical_bearing = 0;    ///< above its xy plane, [-pi/2, pi/2] [rad]
+  Range data;                     ///< into Observations::range_and_bearing_data; the receiver's
+                                  ///< own number of bytes
+};
+
+struct BatteryReading {
+  double available_charge = 1;  ///< share of the full charge, 0 ... 1
+  double time_left = 0;         ///< at the rate of the last tick [s]; infinite if nothing is drawn
 };
 
 /// What all robots sense at one tick, packed in scene order.
@@ -28,12 +92,33 @@ struct Observations {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;
   std::vector<double> joint_readings;  ///< [m], [rad], [m/s] or [rad/s] as the sensor's mode says
+  RadioMessages radio_messages;        ///< received since the last tick: entries ascend by receiving
+                                       ///< radio; for each, by sending radio, then as sent
+  std::vector<double> proximity;       ///< 0 (nothing) ... 1, or what the response says
+  std::vector<RangeAndBearingPacket> range_and_bearing;  ///< ascending by receiver, then by sender
+  std::vector<std::uint8_t> range_and_bearing_data;
+  std::vector<math::Pose> positioning;                   ///< X_WE, with the sensor's noise
+  std::vector<BatteryReading> batteries;
 };
 
-/// What all robots want, packed in scene order. Values persist until changed.
+/// What all robots want, packed in scene order. Values persist until changed; what the scene says
+/// is there before anything was commanded. Entries of entities that no robot may set stay.
 struct Commands {
   std::vector<double> joint_targets;  ///< [m], [rad], [m/s] or [rad/s] as the actuator's mode says
+  std::vector<Color> led_colors;              ///< at most 0xFFFFFF
+  std::vector<Color> directional_led_colors;  ///< at most 0xFFFFFF
+  std::vector<std::string> tag_payloads;      ///< any bytes, up to most_tag_payload_bytes
+  std::vector<double> magnet_currents;        ///< finite, any sign
+  std::vector<std::uint8_t> range_and_bearing_data;
+  /// To be sent at the start of the next tick, which empties it: entries of one radio in the order
+  /// of sending, those of different radios in any. Only radios that send.
+  RadioMessages radio_messages;
 };
+
+/// X_WD of a device.
+math::Pose pose_of(const State& state, const Mount& mount);
+/// Of a device's origin, in W [m].
+math::Vector3 position_of(const State& state, const Mount& mount);
 
 /// Hash of a state and what was sensed in it: equal for equal runs, whatever the transport.
 std::uint64_t hash(const State& state, const Observations& observations);

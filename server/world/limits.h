@@ -1,0 +1,14 @@
+#pragma once
+// What a robot may ask for in one tick. More is an error of whoever asks.
+
+#include <cstddef>
+
+namespace ziggurat::world {
+
+inline constexpr std::size_t most_radio_message_bytes = std::size_t{1} << 20;
+inline constexpr std::size_t most_radio_bytes_per_robot = std::size_t{16} << 20;  ///< and tick
+/// An empty message costs no byte: their number is bounded too, per robot and tick.
+inline constexpr std::size_t most_radio_messages_per_robot = std::size_t{1} << 16;
+inline constexpr std::size_t most_tag_payload_bytes = std::size_t{64} << 10;
+
+}  // namespace ziggurat::world
