@@ -28,9 +28,16 @@ std::size_t padded(std::size_t count) { return (count + 3) / 4 * 4; }
 /// Of the points, then of the centre.
 std::vector<double> padded_weights(const Rule& rule) {
   std::vector<double> weights = rule.weights;
+  weights.resize(padded(weights.size()), 0);  // so that the centre may be left out
   weights.push_back(rule.centre_weight);
   weights.resize(padded(weights.size()), 0);
   return weights;
+}
+
+/// Without the centre.
+Points shell(Points points, const Rule& rule) {
+  points.count = padded(rule.points.size());
+  return points;
 }
 
 Vector3 at(const Points& points, std::size_t k) { return {points.x[k], points.y[k], points.z[k]}; }
@@ -144,9 +151,10 @@ Interaction ShapedMagnets::beyond_dipoles(const Kernel& kernel, const Dipoles& d
       result = between(pair, a(false), b(false));
       break;
     case Level::mixed:
-      // Fine against centre both ways, less one of the two shares of the centres.
-      result = mixed(pair, a(true), b(true));
-      dipoles_taken = 2;
+      // Fine against dipole both ways, less the dipoles that are now there twice. The centres of
+      // the fine rules are a share of them.
+      result = mixed(pair, shell(a(true), first_class.fine), shell(b(true), second_class.fine));
+      dipoles_taken = 2 - first_class.fine.centre_weight - second_class.fine.centre_weight;
       break;
     case Level::fine:
       result = between(pair, a(true), b(true));

@@ -145,9 +145,10 @@ static Row field_at(const Dipoles& dipoles, std::size_t dipole, const std::uint3
              : sum_field_at<false>(dipoles, dipole, partners, count, range);
 }
 
-/// The four lanes of a sum, always in the same order.
-ZIGGURAT_INLINE double total(const Lanes& lanes) {
-  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+/// The sums over the lanes of each of four registers, always in the same order.
+ZIGGURAT_INLINE Lanes totals(Columns lanes) {
+  transpose(lanes.x, lanes.y, lanes.z, lanes.w);
+  return (lanes.x + lanes.y) + (lanes.z + lanes.w);
 }
 
 static PointResult points(const Row& moment, const Row& source, const Row& separation,
@@ -177,14 +178,12 @@ static PointResult points(const Row& moment, const Row& source, const Row& separ
     accumulate(radial, columns(c * r.x, c * r.y, c * r.z));
     accumulate(along, columns(a * r.x, a * r.y, a * r.z));
   }
-  const double a = total(first);
-  const double b = total(second);
-  const double c = total(cubes);
+  const Lanes coefficients = totals({first, second, cubes, zero});
+  const Lanes a = all(coefficients[0]);
+  const Lanes b = all(coefficients[1]);
+  const Lanes c = all(coefficients[2]);
   PointResult result;
-  result.force = {3 * K * (a * moment.x + b * source.x + total(radial.x)),
-                  3 * K * (a * moment.y + b * source.y + total(radial.y)),
-                  3 * K * (a * moment.z + b * source.z + total(radial.z)), 0};
-  result.field = {K * (3 * total(along.x) - c * source.x), K * (3 * total(along.y) - c * source.y),
-                  K * (3 * total(along.z) - c * source.z), 0};
+  store(result.force, (3 * K) * ((a * load(moment) + b * load(source)) + totals(radial)));
+  store(result.field, K * (3 * totals(along) - c * load(source)));
   return result;
 }

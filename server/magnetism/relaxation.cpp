@@ -54,11 +54,15 @@ Quaternion shortest_rotation(const Vector3& from, const Vector3& to) {
 }
 
 Vector3 tilted(const Vector3& direction, std::size_t index) {
-  // A low-discrepancy sequence from the plastic number's cubic relative: no two alike.
-  const auto n = static_cast<double>(index % (1U << 20)) + 1;
-  const auto fraction = [n](double step) { return n * step - std::floor(n * step) - 0.5; };
-  const Vector3 random(fraction(0.8191725133961645), fraction(0.6710436067037893),
-                       fraction(0.5497004779019703));
+  // Bits well mixed (the finaliser of SplitMix64): no two indices alike.
+  std::uint64_t bits = (static_cast<std::uint64_t>(index) + 1) * 0x9e3779b97f4a7c15ULL;
+  bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9ULL;
+  bits = (bits ^ bits >> 27) * 0x94d049bb133111ebULL;
+  bits ^= bits >> 31;
+  const auto part = [bits](int shift) {
+    return static_cast<double>(bits >> shift & 0x1fffff) / 0x1fffff - 0.5;
+  };
+  const Vector3 random(part(0), part(21), part(42));
   Vector3 across = random - random.dot(direction) * direction;
   if (across.norm() < 1e-6) across = perpendicular(direction);
   return (direction + 1e-3 * across.normalized()).normalized();

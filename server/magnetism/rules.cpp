@@ -96,41 +96,41 @@ Rule full_rule(const Shape& shape) {
   return rule;
 }
 
-double legendre(int order, double x) {
-  double before = 1;
-  double now = x;
-  if (order == 0) return 1;
-  for (int l = 1; l < order; ++l) {
-    const double next = ((2 * l + 1) * x * now - l * before) / (l + 1);
-    before = now;
-    now = next;
-  }
-  return now;
-}
+/// Directions of one octant; the shapes and rules are the same in all.
+constexpr int directions = 26;
 
-double moment(const Rule& rule, int order, const Vector3& direction) {
-  double sum = order == 0 ? rule.centre_weight : 0;
-  for (std::size_t k = 0; k < rule.points.size(); ++k) {
-    const double distance = rule.points[k].norm();
-    if (distance == 0) {
-      sum += order == 0 ? rule.weights[k] : 0;
-      continue;
+using MomentTable = std::array<Moments, directions>;
+
+/// Moments of even orders along every direction, Legendre's polynomials by their recurrence.
+MomentTable table(const Rule& rule) {
+  MomentTable result{};
+  for (int d = 0; d < directions; ++d) {
+    const int code = d + 1;
+    const Vector3 direction = Vector3(code % 3, code / 3 % 3, code / 9).normalized();
+    result[d][0] = rule.centre_weight;
+    for (std::size_t k = 0; k < rule.points.size(); ++k) {
+      // r^l P_l(x / r) = R_l:  (l + 1) R_{l+1} = (2 l + 1) x R_l - l r^2 R_{l-1}.
+      const double along = rule.points[k].dot(direction);
+      const double squared = rule.points[k].squaredNorm();
+      double before = 1;
+      double now = along;
+      for (int l = 0; l <= 8; ++l) {
+        if (l % 2 == 0) result[d][l / 2] += rule.weights[k] * before;
+        const double next = ((2 * l + 3) * along * now - (l + 1) * squared * before) / (l + 2);
+        before = now;
+        now = next;
+      }
     }
-    sum += rule.weights[k] * std::pow(distance, order) *
-           legendre(order, rule.points[k].dot(direction) / distance);
   }
-  return sum;
+  return result;
 }
 
 /// Largest over directions of the difference of two rules' moments.
-Moments difference(const Rule& a, const Rule& b) {
+Moments difference(const MomentTable& a, const MomentTable& b) {
   Moments result{};
-  for (int k = 0; k < 125; ++k) {
-    const Vector3 v(k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2);
-    if (v.norm() == 0) continue;
-    for (int half = 0; half < 5; ++half) {
-      const double d = moment(a, 2 * half, v.normalized()) - moment(b, 2 * half, v.normalized());
-      result[half] = std::max(result[half], std::fabs(d));
+  for (int d = 0; d < directions; ++d) {
+    for (std::size_t half = 0; half < result.size(); ++half) {
+      result[half] = std::max(result[half], std::fabs(a[d][half] - b[d][half]));
     }
   }
   return result;
@@ -227,13 +227,13 @@ Rule fine_rule(const Shape& shape) {
 }
 
 Moments moments(const Shape& shape) {
-  Moments result = difference(full_rule(shape), point_rule());
+  Moments result = difference(table(full_rule(shape)), table(point_rule()));
   result[0] = 1;
   return result;
 }
 
 Moments residual(const Rule& rule, const Shape& shape) {
-  return difference(rule, full_rule(shape));
+  return difference(table(rule), table(full_rule(shape)));
 }
 
 Reach reach(const Shape& shape, double tolerance) {

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double remanence = 1.3;  // [T]
 // From 5 % of the magnet's size to twenty sizes.
-const std::vector<double> gaps = {0.05, 0.07, 0.1, 0.14, 0.2, 0.3, 0.45, 0.65, 0.9, 1.1,
-                                  1.3,  1.6,  2,   2.5,  3,   4,   6,    9,    14,  20};
+// (bench/magnetism_accuracy goes through more gaps, shapes and poses.)
+const std::vector<double> gaps = {0.05, 0.14, 0.45, 0.9, 1.1, 1.6, 2.5, 4, 20};
 
 struct Pose2 {
   const char* name;
@@ -32,13 +32,9 @@ Quaternion turned_by(double y, double x) {
 const std::vector<Pose2> poses = {
     {"axial", {0, 0, 1}, {0, 0, 0}, turned_by(0, 0)},
     {"offset", {0, 0, 1}, {0.5, 0, 0}, turned_by(0, 0)},
-    {"offset twice", {0, 0, 1}, {0.3, 0.2, 0}, turned_by(0, 0)},
-    {"side by side", {1, 0, 0}, {0, 0, 0}, turned_by(0, 0)},
     {"side by side, shifted", {1, 0, 0}, {0, 0, 0.4}, turned_by(0, 0)},
-    {"rotated", {0, 0, 1}, {0, 0, 0}, turned_by(30, 20)},
     {"rotated, offset", {0, 0, 1}, {0.4, 0.1, 0}, turned_by(-25, 35)},
     {"perpendicular", {0, 0, 1}, {0, 0, 0}, turned_by(90, 0)},
-    {"opposite", {0, 0, 1}, {0.2, 0, 0}, turned_by(180, 0)},
 };
 
 /// Half the extent of a rotated shape along a direction (both unit axes' sense): its support.
@@ -112,8 +108,8 @@ void expect_within(const Shape& a, const Shape& b, double tolerance, const Vecto
   for (const Pose2& pose : poses) {
     for (const double gap : gaps) {
       const Arrangement two = arrange(a, b, pose, gap, magnetised);
-      const Errors e =
-          errors(by_field(two, tolerance), charge_pair(two.first, two.second, tolerance / 30), side);
+      const Errors e = errors(by_field(two, tolerance),
+                              charge_pair(two.first, two.second, tolerance / 10), side);
       EXPECT_LE(e.force, tolerance) << label << " " << pose.name << " gap " << gap << " sides";
       EXPECT_LE(e.torque, tolerance) << label << " " << pose.name << " gap " << gap << " sides";
     }
@@ -190,7 +186,7 @@ TEST(Adaptive, CubesMatchAkounAndYonnetAtEveryGap) {
   const Shape cube = Box{Vector3::Constant(0.01)};
   const Vector3 size = Vector3::Constant(0.01);
   for (const double tolerance : {0.1, 0.01, 0.001}) {
-    for (const int pose : {0, 1, 2, 3, 4}) {
+    for (const int pose : {0, 1, 2}) {
       for (const double gap : gaps) {
         const Arrangement two = arrange(cube, cube, poses[pose], gap, along_z);
         const Vector3 exact =
@@ -203,10 +199,123 @@ TEST(Adaptive, CubesMatchAkounAndYonnetAtEveryGap) {
   }
 }
 
-TEST(Adaptive, CubesStayWithinOnePercent) {
+TEST(Adaptive, CubesStayWithinTheTolerance) {
   const Shape cube = Box{Vector3::Constant(0.01)};
   expect_within(cube, cube, 0.01, along_z, "cube");
   expect_within(cube, cube, 0.1, skew, "skew cube");
+}
+
+TEST(Adaptive, ForceAndTorqueStepByLessThanTheToleranceBetweenLevels) {
+  const double tolerance = 0.01;
+  for (const Shape& shape : {Shape(Box{Vector3::Constant(0.01)}), Shape(Box{{0.01, 0.01, 0.005}}),
+                             Shape(Cylinder{0.005, 0.01})}) {
+    const Reach at = reach(shape, 0.8 * tolerance);
+    for (const double distance : {at.point, at.coarse, at.mixed, at.fine}) {
+      for (const Pose2& pose : poses) {
+        // Along the line of centres, just inside and just outside.
+        const Vector3 line = (pose.direction + 0.3 * pose.side_shift).normalized();
+        Arrangement two = arrange(shape, shape, pose, 1, along_z);
+        two.first.position = (distance - 1e-9) * line;
+        const Interaction inside = by_field(two, tolerance);
+        two.first.position = (distance + 1e-9) * line;
+        const Errors step = errors(inside, by_field(two, tolerance), longest_side(shape));
+        EXPECT_LE(step.force, tolerance) << pose.name << " at " << distance;
+        EXPECT_LE(step.torque, tolerance) << pose.name << " at " << distance;
+      }
+    }
+  }
+}
+
+TEST(Adaptive, ASphereIsExactlyOneDipole) {
+  const Shape sphere = Sphere{0.003};
+  const double m = moment_of_remanence(along_z, volume(sphere)).z();
+  std::vector<Magnet> magnets(2);
+  magnets[0] = {.body = 0, .passive_moment = {0, 0, m}, .shape = sphere};
+  magnets[1] = {.body = 1, .passive_moment = {m, 0, 0}, .shape = sphere};
+  Options options;
+  options.precision = Precision::adaptive;
+  Field field(magnets, 2, options);
+  const std::vector<Pose> bodies = {{}, {{0.002, 0.001, 0.007}, Quaternion::Identity()}};
+  const std::vector<double> currents = {0, 0};
+  std::vector<Wrench> wrenches(2);
+  field.evaluate(0, bodies, currents, wrenches);
+  const auto pair = dipole_pair({0, 0, m}, {m, 0, 0}, -bodies[1].position);
+  EXPECT_LE((wrenches[0].force - pair.force_on_first).norm(), 1e-14 * pair.force_on_first.norm());
+}
+
+TEST(Adaptive, ADipoleNearABoxFeelsItsExactField) {
+  const Vector3 size(0.02, 0.01, 0.01);
+  std::vector<Magnet> magnets(2);
+  magnets[0] = {
+      .body = 0, .passive_moment = moment_of_remanence(along_z, 2e-6), .shape = Box{size}};
+  magnets[1] = {.body = 1, .passive_moment = {0.02, 0.01, 0.03}};
+  Options options;
+  options.precision = Precision::adaptive;
+  Field field(magnets, 2, options);
+  const std::vector<double> currents = {0, 0};
+  const Vector3 magnetisation = along_z / vacuum_permeability;
+  for (const double height : {0.0055, 0.007, 0.012, 0.03, 0.2}) {
+    const Vector3 at(0.004, 0.003, height);
+    const std::vector<Pose> bodies = {{}, {at, Quaternion::Identity()}};
+    std::vector<Wrench> wrenches(2);
+    field.evaluate(0, bodies, currents, wrenches);
+    const Vector3& m = magnets[1].passive_moment;
+    const Vector3 torque = m.cross(box_field(size, magnetisation, at));
+    Vector3 force;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3 shift = 1e-6 * Vector3::Unit(axis);
+      force[axis] = m.dot(box_field(size, magnetisation, at + shift) -
+                          box_field(size, magnetisation, at - shift)) /
+                    2e-6;
+    }
+    EXPECT_LE((wrenches[1].force - force).norm(), 0.01 * force.norm()) << height;
+    EXPECT_LE((wrenches[1].torque - torque).norm(), 0.01 * torque.norm()) << height;
+  }
+}
+
+TEST(Adaptive, HasTheSameBitsOnEveryInstructionSetAndWithoutAList) {
+  math::RandomStream random(12, "adaptive");
+  std::vector<Magnet> magnets;
+  std::vector<Pose> bodies;
+  const Shape shapes[] = {Box{Vector3::Constant(0.006)}, Cylinder{0.003, 0.004},
+                          Box{{0.01, 0.005, 0.004}}, Sphere{0.003}, PointShape{}};
+  for (int i = 0; i < 60; ++i) {
+    const Vector3 moment(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 0.1);
+    magnets.push_back({.body = static_cast<std::uint32_t>(i),
+                       .passive_moment = moment,
+                       .shape = shapes[i % 5],
+                       .freely_turning = i % 5 == 3});
+    const double x = random.uniform(0, 0.08);
+    const double y = random.uniform(0, 0.08);
+    bodies.push_back(
+        {{x, y, random.uniform(0, 0.08)}, turned_by(random.uniform(0, 90), random.uniform(0, 90))});
+  }
+  Options options;
+  options.precision = Precision::adaptive;
+  options.max_distance = 0.04;
+  std::vector<std::vector<Wrench>> results;
+  for (const Kernel* kernel : {&baseline_kernel(), &best_kernel()}) {
+    for (const std::size_t idle : {0, 2000}) {  // so many idle ones that a list does not pay
+      options.kernel = kernel;
+      auto all = magnets;
+      auto where = bodies;
+      for (std::size_t k = 0; k < idle; ++k) {
+        all.push_back({.body = static_cast<std::uint32_t>(where.size())});
+        where.emplace_back();
+      }
+      std::vector<Wrench> wrenches(where.size());
+      Field field(all, where.size(), options);
+      field.evaluate(0.01, where, std::vector<double>(where.size(), 0), wrenches);
+      wrenches.resize(60);
+      results.push_back(wrenches);
+    }
+  }
+  for (const auto& result : results) {
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      EXPECT_EQ(result[i].force, results[0][i].force);
+      EXPECT_EQ(result[i].torque, results[0][i].torque);
+    }
+  }
 }
 
 TEST(Adaptive, CuboidsStayWithinOnePercent) {
