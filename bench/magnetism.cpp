@@ -241,8 +241,9 @@ void compare(std::size_t dipoles, double max_distance, const magnetism::Shape& c
 
 int main(int argc, char**) {
   std::printf("kernel: %s\n", magnetism::best_kernel().name);
-  std::printf("%6s  %9s  %9s  %10s  %7s  %5s  %9s %9s  %7s  %7s  %7s  %7s\n", "N", "cut-off m", "pairs",
-              "us/step", "ns/pair", "lists", "plain", "placed", "cubes", "drift", "free", "SSE2");
+  std::printf("%6s  %9s  %9s  %10s  %7s  %5s  %9s %9s  %7s  %7s  %7s  %7s\n", "N", "cut-off m",
+              "pairs", "us/step", "ns/pair", "lists", "plain", "placed", "cubes", "drift", "free",
+              "SSE2");
   const magnetism::Box cube{Vector3::Constant(0.006)};
   if (argc < 2)
     for (const std::size_t n : {20, 160, 1600, 6400, 25600}) compare(n, 0.04, cube);
