@@ -11,6 +11,12 @@
 namespace ziggurat::physics {
 
 class Solver final : public btMultiBodyConstraintSolver {
+ public:
+  /// @param sweeps_per_body  limits the sweeps of an island of single bodies to so many for each
+  ///                         of them: a lone box settles with few, a tower needs more; islands
+  ///                         with a robot always get btContactSolverInfo::m_numIterations
+  explicit Solver(int sweeps_per_body) : sweeps_per_body_(sweeps_per_body) {}
+
  protected:
   btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
                                 btPersistentManifold** manifolds, int manifold_count,
@@ -22,9 +28,12 @@ class Solver final : public btMultiBodyConstraintSolver {
 
   btScalar speed_change(const Row& row) const;
   void apply(const Row& row, btScalar impulse);
+  void warm_start();
   btScalar solve_row(const Row& row);
   btScalar solve_friction(const Row& first, const Row& second, btScalar limit);
   btScalar solve_friction(btMultiBodyConstraintArray& rows);
+
+  int sweeps_per_body_;
 };
 
 }  // namespace ziggurat::physics

@@ -13,11 +13,15 @@
 namespace ziggurat::physics {
 namespace {
 
+// By measurement: the four-wheeled vehicle's encoders stay within 1 % at 50 sweeps and not at
+// 20; a loose body comes to rest as well with 10 as with 50.
 constexpr unsigned default_solver_iterations = 50;
+constexpr int default_sweeps_per_body = 10;
 
 void configure(btContactSolverInfo& info, const scene::Physics& physics) {
   info.m_numIterations = static_cast<int>(physics.solver_iterations.value_or(default_solver_iterations));
   info.m_solverMode = SOLVER_SIMD | SOLVER_USE_WARMSTARTING | SOLVER_USE_2_FRICTION_DIRECTIONS;
+  info.m_warmstartingFactor = 0.5;  // at Bullet's 0.85 stacks tremble
   info.m_splitImpulse = false;  // its threshold is in raw metres, and multi-bodies ignore it
   info.m_erp = info.m_erp2 = 0.2;
   info.m_frictionERP = 0.2;
@@ -38,6 +42,8 @@ struct World::Parts {
         configuration(contact::construction_info()),
         dispatcher(&configuration),
         algorithms(contact::register_algorithms(dispatcher)),
+        solver(physics.solver_iterations ? static_cast<int>(*physics.solver_iterations)
+                                        : default_sweeps_per_body),
         dynamics(dispatcher, broadphase, solver, configuration) {
     configure(dynamics.getSolverInfo(), physics);
     gDeactivationTime = 0.5;  // the one global of Bullet that we set; the same for every world [s]

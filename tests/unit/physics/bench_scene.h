@@ -1,0 +1,77 @@
+#pragma once
+// Small worlds for physics tests, built without a scene file.
+
+#include <string>
+#include <vector>
+
+#include "physics/world.h"
+#include "scene/scene.h"
+
+namespace ziggurat::physics::testing {
+
+inline math::Quaternion about(const math::Vector3& axis, double angle) {
+  return math::Quaternion(Eigen::AngleAxisd(angle, axis.normalized()));
+}
+
+inline scene::Physics with_gravity(double g) {
+  scene::Physics physics;
+  physics.gravity = g;
+  return physics;
+}
+
+inline scene::Physics with_floor(double g) {
+  scene::Physics physics = with_gravity(g);
+  physics.floor = scene::Floor{};
+  return physics;
+}
+
+/// A link of a prototype; undamped unless a test says otherwise.
+inline scene::Link link(const std::string& id, const scene::Geometry& geometry, double mass,
+                        const math::Pose& offset = {}) {
+  scene::Link link;
+  link.id = id;
+  link.geometry = geometry;
+  link.mass = mass;
+  link.offset = offset;
+  return link;
+}
+
+inline scene::Entity prototype(const std::string& id, const math::Pose& pose, bool movable,
+                               std::vector<scene::Link> links) {
+  scene::Entity entity;
+  entity.id = id;
+  entity.kind = scene::EntityKind::prototype;
+  entity.movable = movable;
+  entity.pose = pose;
+  entity.links = std::move(links);
+  return entity;
+}
+
+inline scene::Entity single(scene::EntityKind kind, const math::Pose& pose, bool movable,
+                            const scene::Geometry& geometry, double mass) {
+  scene::Entity entity = prototype("single", pose, movable, {link("", geometry, mass)});
+  entity.kind = kind;
+  entity.links[0].surface.rolling_friction = 2e-4;  // the scene reader's default
+  return entity;
+}
+
+inline scene::Joint joint(scene::JointType type, const math::Vector3& axis,
+                          const math::Pose& parent_frame, const math::Pose& child_frame) {
+  scene::Joint joint;
+  joint.id = "joint";
+  joint.type = type;
+  joint.axis = axis;
+  joint.parent = 0;
+  joint.child = 1;
+  joint.parent_frame = parent_frame;
+  joint.child_frame = child_frame;
+  return joint;
+}
+
+inline world::State state_of(const World& world) {
+  world::State state;
+  world.read(state);
+  return state;
+}
+
+}  // namespace ziggurat::physics::testing
