@@ -162,7 +162,7 @@ Interaction ShapedMagnets::beyond_dipoles(const Kernel& kernel, const Dipoles& d
     case Level::charges:
       result = charge_pair(placed(dipoles, first, first_class.shape, first_rotation),
                            placed(dipoles, second, second_class.shape, second_rotation),
-                           share * tolerance_);
+                           share / 2 * tolerance_);
       break;
   }
   const Interaction dipole =

@@ -11,6 +11,9 @@ namespace {
 
 constexpr int most_nodes = 6;
 constexpr int deepest = 12;  // halvings of a patch, both directions together
+/// Gaps below this share of the source's longest side are resolved like this one: it bounds the
+/// cost of magnets that touch or overlap.
+constexpr double closest_share = 0.03;
 /// A patch's quadrature error falls as rho^-2k for k nodes; what is asked of it, as a multiple of
 /// the tolerance. Only the strip next to an edge of the source comes near the bound, so that the
 /// whole is far better (docs/magnetism.md).
@@ -106,6 +109,7 @@ void integrate(Integration& integration, const Surface& surface, const Patch& pa
                                                                patch.v + j * patch.half_v)));
     }
   }
+  nearest = std::max(nearest, closest_share * longest_side(*integration.source));
   const double goal = -logarithm(patch_share * integration.tolerance);
   int nodes_u = nodes_for(patch.half_u * patch.metre_u, nearest, goal);
   int nodes_v = nodes_for(patch.half_v * patch.metre_v, nearest, goal);

@@ -138,7 +138,7 @@ Moments difference(const MomentTable& a, const MomentTable& b) {
 
 /// How much larger the worst error over orientations and of the torque is than that of the coaxial
 /// force; measured over random poses (docs/magnetism.md).
-constexpr double orientation_factor = 2.0;
+constexpr double orientation_factor = 2.3;
 
 /// Relative error of the coaxial force from the product of a moment of order l that is wrong and
 /// one of order m, at distance 1: C(l+m, m) (l+m+1)(l+m+2)(l+m+3) / 6.

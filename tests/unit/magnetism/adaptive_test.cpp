@@ -285,10 +285,10 @@ TEST(Adaptive, HasTheSameBitsOnEveryInstructionSetAndWithoutAList) {
                        .passive_moment = moment,
                        .shape = shapes[i % 5],
                        .freely_turning = i % 5 == 3});
-    const double x = random.uniform(0, 0.08);
-    const double y = random.uniform(0, 0.08);
-    bodies.push_back(
-        {{x, y, random.uniform(0, 0.08)}, turned_by(random.uniform(0, 90), random.uniform(0, 90))});
+    const Vector3 place(i % 4, i / 4 % 4, i / 16);
+    const double x = random.uniform(0, 0.002);
+    bodies.push_back({0.015 * place + Vector3(x, 0, 0),
+                      turned_by(random.uniform(0, 90), random.uniform(0, 90))});
   }
   Options options;
   options.precision = Precision::adaptive;
