@@ -1,11 +1,14 @@
 #include "app/console.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace ziggurat::app {
 namespace {
@@ -23,6 +26,12 @@ void write_all(int descriptor, std::string_view text) {
     }
     text.remove_prefix(static_cast<std::size_t>(count));
   }
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
 }
 
 // A JSON text even if what a peer said is not UTF-8.
@@ -89,7 +98,7 @@ void Console::report(std::string_view text) {
 void Console::progress(std::string_view text) {
   if (!shows_progress_) return;
   flush();
-  write_all(STDERR_FILENO, fmt::format("{}{}", erase_line, text));
+  write_all(STDERR_FILENO, fmt::format("{}{}", erase_line, text.substr(0, terminal_width() - 1)));
   progress_shown_ = true;
 }
 

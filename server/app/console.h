@@ -25,8 +25,8 @@ class Console {
   };
   explicit Console(Style style);
 
-  /// Wherever a program's end has to be reported and no command has begun.
   Console() : Console(Style{}) {}
+  ~Console() { erase_progress(); }
 
   /// A line that a controller logged: `[<tick> <robot>] <text>`, on stdout, an error on stderr.
   /// A text of several lines becomes several such lines.
@@ -43,7 +43,7 @@ class Console {
   /// Text of several lines on stderr, unless quiet.
   void report(std::string_view text);
 
-  /// The line that is overwritten by the next one; only on a terminal.
+  /// The line that is overwritten by the next one; only on a terminal, cut to its width.
   void progress(std::string_view text);
   bool shows_progress() const { return shows_progress_; }
 

@@ -129,7 +129,6 @@ void conclude(const Options& options, const Summary& summary, Console& console) 
 }  // namespace
 
 int execute(const Options& options, Service service) {
-  Signals signals;
   Console console({options.quiet, options.json});
   const auto& path = only_scene(options);
   const auto scene = load_scene(path, options, console);
@@ -138,6 +137,8 @@ int execute(const Options& options, Service service) {
   simulation::Simulation simulation(scene, {seed, options.clock});
   const auto scripts = script_paths(scene, simulation.layout(), path);
 
+  // Until here Ctrl-C just ends the program; from here on there is something to clean up.
+  Signals signals;
   const PrivateFolder folder;
   const auto run = wire_run(scene, simulation, scripts, seed);
   network::Server server(network_config(options, service, folder), run);

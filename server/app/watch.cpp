@@ -20,6 +20,7 @@ constexpr milliseconds last_words{250};   // of a process that ended: still unde
 constexpr milliseconds noticeable{500};   // a wait that the progress line names
 constexpr milliseconds long_wait{5000};   // a wait that is worth a line of its own
 constexpr milliseconds farewell{2000};    // for controllers to answer the end
+constexpr int most_peer_notices = 1000;   // a hostile peer shall not fill a log
 constexpr int patience_ms = 1000;         // for processes to end after that
 
 }  // namespace
@@ -71,6 +72,7 @@ std::optional<Ending> Watch::until(const Step& step) {
     if (!ending && !complete) ending = disappearance();
     if (ending || complete) {
       print_log();
+      said_.clear();
       if (progress_.due()) progress_.show(tick_, "");
       return ending;
     }
@@ -114,7 +116,10 @@ std::optional<Ending> Watch::disappearance() {
 // Lines wait for the end of their tick: then their order depends on nobody's speed.
 void Watch::take_report() {
   auto report = watched_.server.take_report();
-  for (const auto& notice : report.notices) watched_.console.notice(notice);
+  for (const auto& notice : report.notices) {
+    if (++peer_notices_ <= most_peer_notices) watched_.console.notice(notice);
+    if (peer_notices_ == most_peer_notices) watched_.console.notice("no more is said of peers");
+  }
   std::ranges::move(report.log, std::back_inserter(log_));
   for (auto& failure : report.failures) {
     const auto& robot = watched_.layout.robots[failure.robot];

@@ -83,7 +83,8 @@ class Watch {
   std::string vanished_;
   std::optional<clock::time_point> suspected_since_;  ///< that a controller vanished
   clock::time_point waiting_since_{};
-  std::string said_;  ///< who was awaited, as last printed
+  std::string said_;      ///< who is awaited, as last printed
+  int peer_notices_ = 0;  ///< printed so far
 };
 
 }  // namespace ziggurat::app

@@ -45,7 +45,19 @@ class Serve(SceneTest):
         self.connect(endpoint, "r1")
         self.assertEqual(self.finish(process).code, FINISHED)
 
-    def test_default_endpoint_is_plain_text(self):
+    def test_killed_controller_may_come_back(self):
+        process, endpoint = self.serve("--duration", 0, "--real-time", 4)
+        first = self.connect(endpoint)
+        self.read_until(process.stderr, r"waiting for robots r0, r1, r2")
+        self.read_until(process.stdout, r"^\[5 r2\]")
+        first.kill()
+        self.read_until(process.stderr, r"waiting for robots r0, r1, r2")
+        self.connect(endpoint)
+        self.read_until(process.stdout, r"^\[\d+ r2\] step 3")  # a new process counts anew
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_endpoint_is_plain_text_without_json(self):
         process = self.start("serve", self.scene, "--endpoint", f"ipc://{self.folder}/s")
         self.assertEqual(process.stdout.readline(), f"endpoint ipc://{self.folder}/s\n")
         self.interrupt(process)
