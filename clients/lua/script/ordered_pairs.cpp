@@ -8,7 +8,7 @@ namespace {
 // Like Lua's: honours __pairs, and fields may be changed or cleared, but not added, on the way.
 constexpr std::string_view source = R"lua(
 local next, type, error, select = next, type, error, select
-local rawget, sort, metatable_of = rawget, rawlen, table.sort, debug.getmetatable
+local rawget, sort, metatable_of = rawget, table.sort, debug.getmetatable
 
 local function comes_before(a, b)
   local kind_a, kind_b = type(a), type(b)
