@@ -11,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import threading
 import time
 import unittest
 
@@ -77,6 +78,9 @@ class SceneTest(unittest.TestCase):
             stdin=subprocess.DEVNULL, stdout=options.pop("stdout", subprocess.PIPE),
             stderr=options.pop("stderr", subprocess.PIPE), text=True, errors="replace", **options)
         self.started.append(process)
+        limit = threading.Timer(2 * LIMIT, process.kill)  # so that nobody reads for ever
+        limit.start()
+        self.addCleanup(limit.cancel)
         return process
 
     def finish(self, process):

@@ -47,8 +47,8 @@ class Serve(SceneTest):
 
     def test_killed_controller_may_come_back(self):
         process, endpoint = self.serve("--duration", 0, "--real-time", 4)
-        first = self.connect(endpoint)
         self.read_until(process.stderr, r"waiting for robots r0, r1, r2")
+        first = self.connect(endpoint)
         self.read_until(process.stdout, r"^\[5 r2\]")
         first.kill()
         self.read_until(process.stderr, r"waiting for robots r0, r1, r2")
