@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "wire/fault.h"
+#include "wire/zero.h"
 
 namespace ziggurat::network {
 
@@ -211,8 +212,7 @@ void Barrier::probe() {
 void Barrier::zero_gone(world::Commands& commands) const {
   for (std::size_t i = 0; i < seats_.size(); ++i) {
     if (!seats_[i].gone) continue;
-    const world::Range& range = run_.layout.robots[i].joint_actuators;
-    std::fill_n(commands.joint_targets.data() + range.begin, range.count, 0.0);
+    wire::zero(run_.layout, i, commands);
   }
 }
 

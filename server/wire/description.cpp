@@ -10,6 +10,76 @@ v1::JointDescription::Mode mode_of(bool disabled, bool velocity) {
   return velocity ? v1::JointDescription::VELOCITY : v1::JointDescription::POSITION;
 }
 
+void describe_joints(const world::Layout& all, const world::RobotLayout& robot,
+                     v1::RobotDescription& description) {
+  for (std::size_t i = robot.joint_sensors.begin; i < robot.joint_sensors.end(); ++i) {
+    const world::JointSensorLayout& sensor = all.joint_sensors[i];
+    v1::JointDescription& joint = *description.add_joint_sensors();
+    joint.set_id(v1::valid_utf8(sensor.id));
+    joint.set_mode(mode_of(sensor.disabled, sensor.velocity));
+  }
+  for (std::size_t i = robot.joint_actuators.begin; i < robot.joint_actuators.end(); ++i) {
+    const world::JointActuatorLayout& actuator = all.joint_actuators[i];
+    v1::JointDescription& joint = *description.add_joint_actuators();
+    joint.set_id(v1::valid_utf8(actuator.id));
+    joint.set_mode(mode_of(actuator.disabled, actuator.velocity));
+    joint.set_max_impulse(actuator.max_impulse);
+  }
+}
+
+void describe_radios(const world::Layout& all, const world::RobotLayout& robot,
+                     v1::RobotDescription& description) {
+  for (std::size_t i = robot.radios.begin; i < robot.radios.end(); ++i) {
+    v1::RadioDescription& radio = *description.add_radios();
+    radio.set_id(v1::valid_utf8(all.radios[i].id));
+    radio.set_range(all.radios[i].range);
+    radio.set_sends(all.radios[i].sends);
+    radio.set_receives(all.radios[i].receives);
+  }
+  if (robot.range_and_bearing.count == 0) return;
+  const world::RangeAndBearingLayout& device = all.range_and_bearing[robot.range_and_bearing.begin];
+  v1::RangeAndBearingDescription& to = *description.mutable_range_and_bearing();
+  to.set_range(device.range);
+  to.set_data_size(static_cast<std::uint32_t>(device.data.count));
+  to.set_sends(device.sends);
+  to.set_receives(device.receives);
+}
+
+void describe_lights_and_tags(const world::Layout& all, const world::RobotLayout& robot,
+                              v1::RobotDescription& description) {
+  for (std::size_t i = robot.leds.begin; i < robot.leds.end(); ++i) {
+    v1::LedDescription& led = *description.add_leds();
+    led.set_id(v1::valid_utf8(all.leds[i].id));
+    led.set_color(all.leds[i].color);
+  }
+  for (std::size_t i = robot.directional_leds.begin; i < robot.directional_leds.end(); ++i) {
+    v1::LedDescription& led = *description.add_directional_leds();
+    led.set_id(v1::valid_utf8(all.directional_leds[i].id));
+    led.set_color(all.directional_leds[i].color);
+  }
+  for (std::size_t i = robot.tags.begin; i < robot.tags.end(); ++i) {
+    v1::TagDescription& tag = *description.add_tags();
+    tag.set_id(v1::valid_utf8(all.tags[i].id));
+    tag.set_payload(all.tags[i].payload);
+  }
+}
+
+std::string anchor_of(const world::Layout& all, const world::Mount& mount) {
+  return mount.link ? v1::valid_utf8(all.links[*mount.link].id) : "origin";
+}
+
+void describe_proximity(const world::Layout& all, const world::RobotLayout& robot,
+                        v1::RobotDescription& description) {
+  for (std::size_t i = robot.proximity.begin; i < robot.proximity.end(); ++i) {
+    const world::ProximityLayout& sensor = all.proximity[i];
+    v1::ProximityDescription& to = *description.add_proximity_sensors();
+    to.set_anchor(anchor_of(all, sensor.mount));
+    for (const double value : sensor.mount.pose.position) to.add_position(value);
+    for (const double value : sensor.direction) to.add_direction(value);
+    to.set_range(sensor.range);
+  }
+}
+
 }  // namespace
 
 void describe(const Run& run, std::size_t robot, v1::RobotDescription& description) {
@@ -22,19 +92,15 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
     parameter.set_value(v1::valid_utf8(value));
   }
   if (robot < run.scripts.size()) description.set_script(v1::valid_utf8(run.scripts[robot]));
-  for (std::size_t i = layout.joint_sensors.begin; i < layout.joint_sensors.end(); ++i) {
-    const world::JointSensorLayout& sensor = run.layout.joint_sensors[i];
-    v1::JointDescription& joint = *description.add_joint_sensors();
-    joint.set_id(v1::valid_utf8(sensor.id));
-    joint.set_mode(mode_of(sensor.disabled, sensor.velocity));
+  describe_joints(run.layout, layout, description);
+  describe_radios(run.layout, layout, description);
+  describe_lights_and_tags(run.layout, layout, description);
+  describe_proximity(run.layout, layout, description);
+  for (std::size_t i = layout.magnets.begin; i < layout.magnets.end(); ++i) {
+    description.add_magnets()->set_id(v1::valid_utf8(run.layout.magnets[i].id));
   }
-  for (std::size_t i = layout.joint_actuators.begin; i < layout.joint_actuators.end(); ++i) {
-    const world::JointActuatorLayout& actuator = run.layout.joint_actuators[i];
-    v1::JointDescription& joint = *description.add_joint_actuators();
-    joint.set_id(v1::valid_utf8(actuator.id));
-    joint.set_mode(mode_of(actuator.disabled, actuator.velocity));
-    joint.set_max_impulse(actuator.max_impulse);
-  }
+  description.set_positioning(layout.positioning.count > 0);
+  description.set_battery(layout.batteries.count > 0);
 }
 
 }  // namespace ziggurat::wire

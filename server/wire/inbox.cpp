@@ -13,6 +13,18 @@ struct Inbox::Message {
   Kind kind = Kind::malformed;
   v1::Command command;        // the tick path: long-lived
   v1::ClientMessage message;  // everything else
+
+  // What protobuf keeps for reuse is as large as the largest of each part ever was. Peers decide
+  // on that, so now and then both messages begin anew.
+  std::size_t parsed = 0;  // [bytes] since they last did
+  void forget(std::size_t size) {
+    constexpr std::size_t enough = std::size_t{64} << 20;
+    parsed += size;
+    if (parsed < enough) return;
+    parsed = size;
+    v1::Command().Swap(&command);
+    v1::ClientMessage().Swap(&message);
+  }
 };
 
 Inbox::Inbox() : message_(std::make_unique<Message>()) {}
@@ -22,6 +34,7 @@ Inbox::Kind Inbox::parse(std::string_view bytes) {
   Message& in = *message_;
   in.kind = Kind::malformed;
   if (bytes.size() > std::numeric_limits<int>::max()) return in.kind;
+  in.forget(bytes.size());
   if (const auto content = v1::sole_field(bytes, v1::ClientMessage::kCommandFieldNumber)) {
     if (in.command.ParseFromArray(content->data(), static_cast<int>(content->size()))) {
       in.kind = Kind::command;

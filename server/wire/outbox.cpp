@@ -1,6 +1,7 @@
 #include "wire/outbox.h"
 
 #include "wire/description.h"
+#include "wire/observation.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -85,13 +86,7 @@ void Outbox::refusal(const Refusal& from) {
 void Outbox::observation(const Roster& roster, const world::Observations& observations) {
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();
-  observation.set_tick(observations.tick);
-  observation.set_time_ns(observations.time_ns);
-  auto& readings = *observation.mutable_joint_readings();
-  for (const Packing::Stretch& piece : roster.joint_sensors.stretches) {
-    const double* begin = observations.joint_readings.data() + piece.flat;
-    readings.Add(begin, begin + piece.count);
-  }
+  fill(roster, observations, observation);
   finish();
 }
 

@@ -23,6 +23,8 @@ struct Packing {
   std::size_t count = 0;           ///< of all values
 
   void append(const world::Range& flat);
+  /// The robot, as a position in the session, that the value at `packed` < count belongs to.
+  std::size_t owner(std::size_t packed) const;
 };
 
 /// Positions are fixed for the life of a session; robots may leave.
@@ -32,6 +34,16 @@ struct Roster {
   std::size_t gone_count = 0;
   Packing joint_sensors;
   Packing joint_actuators;
+  Packing radios;
+  Packing leds;
+  Packing directional_leds;
+  Packing tags;
+  Packing magnets;
+  Packing proximity;
+  Packing range_and_bearing;       ///< devices: 0 or 1 of each robot
+  Packing range_and_bearing_data;  ///< bytes that these robots may set
+  Packing positioning;
+  Packing batteries;
 
   bool empty() const { return gone_count == robots.size(); }  ///< all have left
   void leave(std::size_t position);                           ///< no effect if gone already

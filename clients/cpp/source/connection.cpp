@@ -64,8 +64,8 @@ void Connection::send(const v1::ClientMessage& message) {
   }
 }
 
-std::optional<Connection::Kind> Connection::receive(
-    std::optional<milliseconds> timeout, const std::function<bool()>& is_interrupted) {
+std::optional<Connection::Kind> Connection::receive(std::optional<milliseconds> timeout,
+                                                    const std::function<bool()>& is_interrupted) {
   const auto end = Clock::now() + timeout.value_or(milliseconds{0});
   milliseconds rest = timeout.value_or(slice);
   for (;;) {
@@ -107,11 +107,22 @@ bool Connection::was_closed() {
   return is_closed_;
 }
 
+/// What protobuf keeps for reuse is as large as the largest of each part ever was: now and then
+/// the observation begins anew.
+void Connection::forget(std::size_t size) {
+  constexpr std::size_t enough = std::size_t{64} << 20;
+  parsed_ += size;
+  if (parsed_ < enough) return;
+  parsed_ = size;
+  v1::Observation().Swap(&observation_);
+}
+
 Connection::Kind Connection::parse() {
   const std::string_view bytes(static_cast<const char*>(zmq_msg_data(&frame_)),
                                zmq_msg_size(&frame_));
   const auto observation = v1::sole_field(bytes, v1::ServerMessage::kObservationFieldNumber);
   const std::string_view content = observation.value_or(bytes);
+  if (observation) forget(content.size());
   google::protobuf::MessageLite& message =
       observation ? static_cast<google::protobuf::MessageLite&>(observation_) : message_;
   if (zmq_msg_more(&frame_) != 0 ||

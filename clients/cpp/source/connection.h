@@ -50,6 +50,7 @@ class Connection {
   bool receive_frame(std::chrono::milliseconds timeout);
   bool was_closed();
   Kind parse();
+  void forget(std::size_t size);
 
   std::string endpoint_;
   void* context_ = nullptr;
@@ -60,6 +61,7 @@ class Connection {
   bool is_closed_ = false;
   zmq_msg_t frame_;
   v1::Observation observation_;
+  std::size_t parsed_ = 0;  // [bytes] of observations since observation_ last began anew
   v1::ServerMessage message_;
 };
 

@@ -1,24 +1,39 @@
 #include "ziggurat/robot.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat {
 
-Joint& Robot::joint(std::string_view id) {
-  const auto found =
-      std::find_if(joints_.begin(), joints_.end(), [&](const Joint& j) { return j.id() == id; });
-  if (found != joints_.end()) return *found;
-  std::string message = "robot '" + id_ + "' has no joint '" + std::string(id) + "' with an " +
-                        "encoder or a motor; it has ";
-  if (joints_.empty()) message += "none";
-  for (const Joint& joint : joints_) {
-    message += (&joint == joints_.data() ? "'" : ", '") + joint.id() + "'";
+namespace {
+
+/// @throws std::out_of_range, naming those there are
+template <typename Device>
+Device& find(std::vector<Device>& devices, std::string_view id, const std::string& robot,
+             const std::string& kind) {
+  for (Device& device : devices) {
+    if (device.id() == id) return device;
+  }
+  std::string message = "robot '" + robot + "' has no " + kind + " '" + std::string(id) +
+                        "' that its controller senses or sets; it has ";
+  if (devices.empty()) message += "none";
+  for (const Device& device : devices) {
+    message += (&device == devices.data() ? "'" : ", '") + device.id() + "'";
   }
   throw std::out_of_range(message);
 }
+
+}  // namespace
+
+Joint& Robot::joint(std::string_view id) { return find(joints_, id, id_, "joint"); }
+Radio& Robot::radio(std::string_view id) { return find(radios_, id, id_, "radio"); }
+Led& Robot::led(std::string_view id) { return find(leds_, id, id_, "LED"); }
+Led& Robot::directional_led(std::string_view id) {
+  return find(directional_leds_, id, id_, "directional LED");
+}
+Tag& Robot::tag(std::string_view id) { return find(tags_, id, id_, "tag"); }
+Magnet& Robot::magnet(std::string_view id) { return find(magnets_, id, id_, "magnet"); }
 
 void Robot::log(std::string_view text) { add_line(false, text); }
 void Robot::log_error(std::string_view text) { add_line(true, text); }

@@ -52,10 +52,12 @@ void Session::State::answer() {
   command.Clear();
   command.set_tick(tick);
   if (changed) command.mutable_joint_targets()->Add(targets.begin(), targets.end());
+  devices->write(command);
   move_log_to(*command.mutable_log());
   changed = false;
   owes = false;
   connection.send(outgoing);
+  devices->sent(command);
 }
 
 void Session::State::send_failures() {
@@ -120,6 +122,11 @@ void Session::State::read(const v1::Observation& observation) {
                           std::to_string(observation.joint_readings_size()) +
                           " joint readings; it had announced " + std::to_string(readings.size()));
   }
+  try {
+    devices->read(observation);
+  } catch (const std::runtime_error& error) {
+    throw ConnectionError(options.endpoint + ": " + error.what());
+  }
   std::copy(observation.joint_readings().begin(), observation.joint_readings().end(),
             readings.begin());
   tick = observation.tick();
@@ -142,6 +149,7 @@ void Session::State::read(const v1::Reset& reset) {
   is_reset = true;
   std::fill(targets.begin(), targets.end(), 0.0);
   changed = false;
+  devices->reset();
 }
 
 void Session::leave() { state_->leave(v1::Leave::DONE, {}); }

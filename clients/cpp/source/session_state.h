@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "connection.h"
+#include "session_devices.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 
@@ -34,9 +35,10 @@ struct Session::State {
   int exceptions = std::uncaught_exceptions();  // when the session began
 
   std::vector<Robot> robots;
-  std::vector<double> readings;  // packed, over all robots
-  std::vector<double> targets;   // packed, over all robots
-  bool changed = false;          // some target, since the last answer
+  std::vector<double> readings;    // packed, over all robots
+  std::vector<double> targets;     // packed, over all robots
+  bool changed = false;            // some target, since the last answer
+  std::optional<Devices> devices;  // all others; there once the server welcomed us
   Robot::Log log;
   v1::ClientMessage outgoing;  // long-lived: keeps its memory
 

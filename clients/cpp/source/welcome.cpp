@@ -74,7 +74,7 @@ void Session::State::read(const v1::Welcome& welcome) {
   seed = welcome.seed();
   scene_hash = welcome.scene_hash();
   server_version = welcome.server_version();
-  log.max_bytes = std::max<std::size_t>(welcome.max_message_bytes() / 2, std::size_t{1} << 16);
+  log.max_bytes = std::max<std::size_t>(welcome.max_message_bytes() / 4, std::size_t{1} << 16);
   std::size_t reading_count = 0;
   std::size_t target_count = 0;
   for (const v1::RobotDescription& robot : welcome.robots()) {
@@ -100,6 +100,8 @@ void Session::State::read(const v1::Welcome& welcome) {
     robot.log_ = &log;
     add_joints(description, robot, reading, target);
   }
+  devices.emplace(welcome, robots);
+  devices->traffic.max_bytes = welcome.max_message_bytes() / 2;
 }
 
 /// Sensors and actuators of the same id are one joint.

@@ -4,31 +4,135 @@
 
 namespace ziggurat::lua {
 
-ScriptedRobot describe(ziggurat::Robot& robot) {
-  ScriptedRobot scripted;
-  scripted.id = robot.id();
-  scripted.params = robot.params();
+namespace {
+
+void describe_joints(ziggurat::Robot& robot, ScriptedRobot& scripted) {
   for (const ziggurat::Joint& from : robot.joints()) {
     Joint& joint = scripted.joints.emplace_back();
     joint.id = from.id();
     joint.has_encoder = from.has_encoder();
     joint.has_motor = from.has_motor();
   }
+}
+
+void describe_radios(ziggurat::Robot& robot, ScriptedRobot& scripted) {
+  scripted.radio_limits = {ziggurat::Radio::max_message_bytes, ziggurat::Radio::max_bytes_per_robot,
+                           ziggurat::Radio::max_messages_per_robot};
+  for (const ziggurat::Radio& from : robot.radios()) {
+    Radio& radio = scripted.radios.emplace_back();
+    radio.id = from.id();
+    radio.has_receiver = from.receives();
+    radio.has_transmitter = from.sends();
+  }
+  if (const ziggurat::RangeAndBearing* from = robot.range_and_bearing()) {
+    RangeAndBearing& device = scripted.range_and_bearing.emplace();
+    device.has_receiver = from->receives();
+    device.has_transmitter = from->sends();
+  }
+}
+
+void sense_radios(ziggurat::Robot& from, ScriptedRobot& to) {
+  auto radio = to.radios.begin();
+  for (const ziggurat::Radio& sensed : from.radios()) (radio++)->received = sensed.received();
+  const ziggurat::RangeAndBearing* const device = from.range_and_bearing();
+  if (device == nullptr) return;
+  to.range_and_bearing->packets.clear();
+  for (const auto& packet : device->packets()) {
+    to.range_and_bearing->packets.push_back(
+        {packet.range, packet.horizontal_bearing, packet.vertical_bearing, packet.data});
+  }
+  // A reset of the world changes it.
+  to.range_and_bearing->data.value.assign(device->data().begin(), device->data().end());
+}
+
+void send(Outgoing& from, ziggurat::Radio& to) {
+  const Bytes all(from.bytes);
+  std::size_t begin = 0;
+  for (const std::size_t end : from.ends) {
+    to.send(all.subspan(begin, end - begin));
+    begin = end;
+  }
+}
+
+void act_radios(ScriptedRobot& from, ziggurat::Robot& to) {
+  auto radio = to.radios().begin();
+  for (Radio& commanded : from.radios) {
+    send(commanded.sent, *radio++);
+    commanded.sent.clear();
+  }
+  if (!from.range_and_bearing || !from.range_and_bearing->data.is_fresh) return;
+  to.range_and_bearing()->set_data(from.range_and_bearing->data.value);
+  from.range_and_bearing->data.is_fresh = false;
+}
+
+/// Hands over what is fresh; the lists stand in the same order.
+template <typename Commanded, typename Devices, typename Set>
+void act_settings(Commanded& commanded, Devices devices, Set set) {
+  auto device = devices.begin();
+  for (auto& setting : commanded) {
+    if (setting.is_fresh) set(*device, setting.value);
+    setting.is_fresh = false;
+    ++device;
+  }
+}
+
+}  // namespace
+
+ScriptedRobot describe(ziggurat::Robot& robot) {
+  ScriptedRobot scripted;
+  scripted.id = robot.id();
+  scripted.params = robot.params();
+  describe_joints(robot, scripted);
+  describe_radios(robot, scripted);
+  scripted.leds.resize(robot.leds().size());
+  scripted.directional_leds.resize(robot.directional_leds().size());
+  scripted.tags.resize(robot.tags().size());
+  for (const ziggurat::Magnet& from : robot.magnets()) scripted.magnets.push_back({from.id(), {}});
+  scripted.proximity.resize(robot.proximity_sensors().size());
+  if (robot.positioning() != nullptr) scripted.positioning.emplace();
+  if (robot.battery() != nullptr) scripted.battery.emplace();
   return scripted;
 }
 
 void sense(ziggurat::Robot& from, ScriptedRobot& to) {
   auto joint = to.joints.begin();
   for (const ziggurat::Joint& sensed : from.joints()) (joint++)->encoder = sensed.encoder();
+  sense_radios(from, to);
+  auto reading = to.proximity.begin();
+  for (const auto& sensor : from.proximity_sensors()) *reading++ = sensor.reading();
+  if (const auto* sensor = from.positioning())
+    *to.positioning = {sensor->position, sensor->orientation};
+  if (const auto* sensor = from.battery())
+    *to.battery = {sensor->available_charge, sensor->time_left};
 }
 
-void act(ScriptedRobot& from, ziggurat::Robot& to) {
+Failure act(ScriptedRobot& from, ziggurat::Robot& to) {
   auto commanded = to.joints().begin();
   for (Joint& joint : from.joints) {
     if (joint.is_target_fresh) commanded->set_target(joint.target);
     joint.is_target_fresh = false;
     ++commanded;
   }
+  const auto set_color = [](ziggurat::Led& led, const Color& color) {
+    led.set_color({color.red, color.green, color.blue});
+  };
+  act_settings(from.leds, to.leds(), set_color);
+  act_settings(from.directional_leds, to.directional_leds(), set_color);
+  act_settings(from.tags, to.tags(),
+               [](ziggurat::Tag& tag, const std::string& payload) { tag.set_payload(payload); });
+  auto magnet = to.magnets().begin();
+  for (Magnet& set : from.magnets) {
+    if (set.current.is_fresh) magnet->set_current(set.current.value);
+    set.current.is_fresh = false;
+    ++magnet;
+  }
+  try {
+    act_radios(from, to);
+  } catch (const std::length_error& error) {
+    // All robots of the session together send too much.
+    return error.what();
+  }
+  return std::nullopt;
 }
 
 bool hand_over_log(ScriptedRobot& from, ziggurat::Robot& to) {

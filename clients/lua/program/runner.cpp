@@ -71,11 +71,12 @@ void Runner::finish() {
 void Runner::hand_over(Seat& seat) {
   ScriptedRobot& scripted = seat.controller->robot();
   if (options_.echo) echo(seat, scripted.log);
-  act(scripted, *seat.robot);
+  const Failure failure = act(scripted, *seat.robot);
   if (!hand_over_log(scripted, *seat.robot)) {
     std::fprintf(stderr, "ziggurat-lua: tick %llu: too many log lines for one message; dropped\n",
                  static_cast<unsigned long long>(session_.tick()));
   }
+  if (failure) fail(seat, *failure);
 }
 
 // A script that a signal ended has not failed.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "script/bytes.h"
+
 namespace ziggurat::lua {
 namespace {
 
@@ -36,5 +38,32 @@ lua_Integer check_floored(lua_State* state, int index) {
   }
   return floored;
 }
+
+std::size_t check_position(lua_State* state, int index, std::size_t count, const char* devices) {
+  const double position = std::trunc(check_number(state, index));
+  if (position >= 1 && position <= static_cast<double>(count)) {
+    return static_cast<std::size_t>(position) - 1;
+  }
+  lua_pushvalue(state, index);
+  const char* message =
+      lua_pushfstring(state, "there is none at %s: this robot has %d %s, counted from 1",
+                      lua_tostring(state, -1), static_cast<int>(count), devices);
+  luaL_argerror(state, index, message);
+  return 0;  // not reached
+}
+
+std::uint8_t check_byte(lua_State* state, int index) {
+  check_number(state, index);
+  return *to_byte(state, index);
+}
+
+std::string_view check_text(lua_State* state, int index) {
+  check_type(state, index, LUA_TSTRING);
+  std::size_t size = 0;
+  const char* const text = lua_tolstring(state, index, &size);
+  return {text, size};
+}
+
+void check_table(lua_State* state, int index) { check_type(state, index, LUA_TTABLE); }
 
 }  // namespace ziggurat::lua

@@ -2,11 +2,13 @@
 // A robot as its script sees it: plain values. Whoever runs the script writes what is sensed
 // before a call and takes what was commanded and logged after it; no network in here.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "script/log_lines.h"
+#include "script/scripted_devices.h"
 
 namespace ziggurat::lua {
 
@@ -26,6 +28,18 @@ struct ScriptedRobot {
   std::string id;
   std::vector<std::pair<std::string, std::string>> params;  ///< attributes of <params>
   std::vector<Joint> joints;                                ///< ids are unique
+
+  // Devices that the controller has no sensor or actuator for are not there.
+  RadioLimits radio_limits;
+  std::vector<Radio> radios;         ///< ids are unique
+  std::vector<Setting<Color>> leds;  ///< all in scene order
+  std::vector<Setting<Color>> directional_leds;
+  std::vector<Setting<std::string>> tags;  ///< payloads, any bytes
+  std::vector<Magnet> magnets;             ///< ids are unique
+  std::vector<double> proximity;           ///< readings in [0, 1]
+  std::optional<Positioning> positioning;
+  std::optional<RangeAndBearing> range_and_bearing;
+  std::optional<Battery> battery;
   LogLines log;
 };
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,12 @@
 #include <vector>
 
 #include "ziggurat/joint.h"
+#include "ziggurat/led.h"
+#include "ziggurat/magnet.h"
+#include "ziggurat/radio.h"
+#include "ziggurat/range_and_bearing.h"
+#include "ziggurat/sensors.h"
+#include "ziggurat/tag.h"
 
 namespace ziggurat {
 
@@ -32,6 +39,28 @@ class Robot {
   std::span<Joint> joints() noexcept { return joints_; }
   /// @throws std::out_of_range, naming the joints there are
   Joint& joint(std::string_view id);
+
+  // The other devices, if the controller has a sensor or an actuator for them, in scene order. By
+  // id they throw std::out_of_range, naming those there are.
+  std::span<Radio> radios() noexcept { return radios_; }
+  Radio& radio(std::string_view id);
+  std::span<Led> leds() noexcept { return leds_; }
+  Led& led(std::string_view id);
+  std::span<Led> directional_leds() noexcept { return directional_leds_; }
+  Led& directional_led(std::string_view id);
+  std::span<Tag> tags() noexcept { return tags_; }
+  Tag& tag(std::string_view id);
+  std::span<Magnet> magnets() noexcept { return magnets_; }
+  Magnet& magnet(std::string_view id);
+  std::span<const ProximitySensor> proximity_sensors() const noexcept { return proximity_; }
+  /// Null without such a device, as are the next two.
+  RangeAndBearing* range_and_bearing() noexcept {
+    return range_and_bearing_ ? &*range_and_bearing_ : nullptr;
+  }
+  const Positioning* positioning() const noexcept {
+    return positioning_ ? &*positioning_ : nullptr;
+  }
+  const Battery* battery() const noexcept { return battery_ ? &*battery_ : nullptr; }
 
   /// A line for the server's log, without a line feed at its end; sent with the answer to this
   /// tick. `log` goes to the server's standard output, `log_error` to its standard error.
@@ -63,6 +92,15 @@ class Robot {
   std::vector<std::pair<std::string, std::string>> params_;
   std::string script_;
   std::vector<Joint> joints_;
+  std::vector<Radio> radios_;
+  std::vector<Led> leds_;
+  std::vector<Led> directional_leds_;
+  std::vector<Tag> tags_;
+  std::vector<Magnet> magnets_;
+  std::vector<ProximitySensor> proximity_;
+  std::optional<RangeAndBearing> range_and_bearing_;
+  std::optional<Positioning> positioning_;
+  std::optional<Battery> battery_;
   std::uint32_t position_ = 0;  // in the session
   bool failed_ = false;
   std::string failure_;  // not yet sent; empty if none

@@ -101,6 +101,7 @@ class Session {
   void leave_failed(std::string_view message);
 
  private:
+  struct Devices;
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -3,5 +3,11 @@
 
 #include "ziggurat/error.h"
 #include "ziggurat/joint.h"
+#include "ziggurat/led.h"
+#include "ziggurat/magnet.h"
+#include "ziggurat/radio.h"
+#include "ziggurat/range_and_bearing.h"
 #include "ziggurat/robot.h"
+#include "ziggurat/sensors.h"
 #include "ziggurat/session.h"
+#include "ziggurat/tag.h"

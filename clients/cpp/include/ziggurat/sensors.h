@@ -1,0 +1,45 @@
+#pragma once
+// What a robot senses of its surroundings and itself. Readings belong to the session's tick.
+
+#include <array>
+#include <string>
+
+namespace ziggurat {
+
+/// A ray that meets what is in front of it. A handle into its session, valid as long as that
+/// lives.
+class ProximitySensor {
+ public:
+  /// Of its mounting: id of a link, or `origin`.
+  const std::string& anchor() const noexcept { return anchor_; }
+  /// Start of the ray in the anchor's frame: x, y, z [m].
+  const std::array<double, 3>& position() const noexcept { return position_; }
+  /// Of the ray in the anchor's frame: x, y, z, of length 1.
+  const std::array<double, 3>& direction() const noexcept { return direction_; }
+  double range() const noexcept { return range_; }  ///< length of the ray [m]
+
+  /// From 0, nothing in range, to 1, contact; exp(-distance in metres) unless the scene says
+  /// otherwise.
+  double reading() const noexcept { return *reading_; }
+
+ private:
+  friend class Session;
+  std::string anchor_;
+  std::array<double, 3> position_{};
+  std::array<double, 3> direction_{};
+  double range_ = 0;
+  const double* reading_ = nullptr;  // into the session's packed observation
+};
+
+/// Where the robot is: the pose of its origin in the world.
+struct Positioning {
+  std::array<double, 3> position{};               ///< x, y, z [m]
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z, robot to world
+};
+
+struct Battery {
+  double available_charge = 0;  ///< share of the full charge, in [0, 1]
+  double time_left = 0;         ///< at the rate of the last tick [s]; may be infinite
+};
+
+}  // namespace ziggurat

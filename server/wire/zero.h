@@ -1,0 +1,16 @@
+#pragma once
+// What becomes of the commands of a robot that left.
+
+#include <cstddef>
+
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::wire {
+
+/// Joint targets, currents of magnets and data of range and bearing become 0. LEDs and tags stay
+/// as they are.
+/// @param robot  into the layout's robots
+void zero(const world::Layout& layout, std::size_t robot, world::Commands& commands);
+
+}  // namespace ziggurat::wire
