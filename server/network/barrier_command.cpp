@@ -22,7 +22,16 @@ void Barrier::publish(const world::Observations& observations) {
 
 /// Sends a session what it senses at the published tick. False if it can't be reached.
 bool Barrier::observe(Session& session) {
-  session.observation.observation(session.roster, *observations_);
+  if (!session.observation.observation(session.roster, *observations_)) {
+    auto fault = make_fault(ErrorCode::too_large, "radio_messages",
+                            "The radios of this session's robots heard more at this tick than a "
+                            "message can hold; share the robots among more sessions.");
+    fault.severity = wire::Severity::fatal;
+    fault.tick = observations_->tick;
+    outbox_.error(fault);
+    send_(session.peer, outbox_);
+    return false;
+  }
   session.state = SessionState::stepping;
   session.tick = observations_->tick;
   if (!session.owes) ++owing_;

@@ -77,6 +77,14 @@ void add_poses(const Packing& packing, const std::vector<math::Pose>& flat,
 
 }  // namespace
 
+std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messages) {
+  std::size_t bytes = 0;
+  for_each(
+      roster.radios, messages.entries, [](const auto& entry) { return entry.radio; },
+      [&](const world::RadioMessages::Entry& entry, std::size_t) { bytes += entry.size; });
+  return bytes;
+}
+
 void fill(const Roster& roster, const world::Observations& from, v1::Observation& to) {
   to.set_tick(from.tick);
   to.set_time_ns(from.time_ns);

@@ -1,11 +1,16 @@
 #pragma once
 // world::Observations -> Observation.
 
+#include <cstddef>
+
 #include "wire/roster.h"
 #include "world/state.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
+
+/// Bytes that radios of the session's robots received.
+std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messages);
 
 /// Writes what a session's robots sense; `to` is clear.
 void fill(const Roster& roster, const world::Observations& from, v1::Observation& to);

@@ -40,6 +40,17 @@ v1::End::Reason reason_of(EndReason reason) {
 struct Outbox::Message {
   v1::ServerMessage message;
   std::size_t size = 0;
+
+  // What protobuf keeps for reuse is as large as the largest of each part ever was: now and then
+  // it begins anew.
+  std::size_t filled = 0;  // [bytes] that radios heard, since it last did
+  void forget(std::size_t heard) {
+    constexpr std::size_t enough = std::size_t{64} << 20;
+    filled += heard;
+    if (filled < enough) return;
+    filled = heard;
+    v1::ServerMessage().Swap(&message);
+  }
 };
 
 Outbox::Outbox() : message_(std::make_unique<Message>()) {}
@@ -83,11 +94,15 @@ void Outbox::refusal(const Refusal& from) {
   finish();
 }
 
-void Outbox::observation(const Roster& roster, const world::Observations& observations) {
+bool Outbox::observation(const Roster& roster, const world::Observations& observations) {
+  const std::size_t heard = radio_bytes(roster, observations.radio_messages);
+  if (heard > max_observation_bytes) return false;
+  message_->forget(heard);
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();
   fill(roster, observations, observation);
   finish();
+  return message_->size <= max_observation_bytes;
 }
 
 void Outbox::end(const End& from) {

@@ -12,6 +12,9 @@
 
 namespace ziggurat::wire {
 
+/// A protobuf message has less than 2 GiB. Radios of many robots in one session could hear more.
+inline constexpr std::size_t max_observation_bytes = std::size_t{1} << 30;
+
 /// Holds one message at a time and keeps its memory: filling it with observation after
 /// observation allocates nothing once it has grown.
 class Outbox {
@@ -24,7 +27,8 @@ class Outbox {
   /// @param minor  of the protocol, as agreed with the client
   void welcome(const Run& run, const Roster& roster, std::string_view token, std::uint32_t minor);
   void refusal(const Refusal& refusal);
-  void observation(const Roster& roster, const world::Observations& observations);
+  /// False if it would have more than max_observation_bytes; then nothing is in hand.
+  bool observation(const Roster& roster, const world::Observations& observations);
   void end(const End& end);
   void error(const Fault& fault);
   void heartbeat(std::uint64_t sequence);

@@ -1,0 +1,93 @@
+#pragma once
+// A run of robots that carry a different number of each device, for tests that need no scene.
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "wire/messages.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::wire {
+
+/// Robots "a" (everything once, radios twice), "b" (nothing) and "c" (everything twice, one radio
+/// that only sends, one that only receives). Everything of c comes after that of a, and LED,
+/// magnet and tag 1 belong to somebody who is no robot.
+class EquippedRun {
+ public:
+  EquippedRun() {
+    controllers_.resize(1);
+    layout_.links.push_back({"base", 0});
+    layout_.leds.resize(4);
+    layout_.directional_leds.resize(3);
+    layout_.tags.resize(4);
+    layout_.magnets.resize(4);
+    layout_.proximity.resize(3);
+    layout_.radios.resize(4);
+    layout_.positioning = {0, 2};
+    layout_.batteries.resize(3);
+    layout_.range_and_bearing.resize(3);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::string number = std::to_string(i);
+      layout_.leds[i].id = "led" + number;
+      layout_.leds[i].color = 0x010203 * static_cast<world::Color>(i);
+      layout_.tags[i].id = "tag" + number;
+      layout_.tags[i].payload = "payload" + number;
+      layout_.magnets[i].id = "magnet" + number;
+      layout_.radios[i].id = "radio" + number;
+      layout_.radios[i].range = 0.5;
+      layout_.radios[i].sends = i != 3;
+      layout_.radios[i].receives = i != 2;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      layout_.directional_leds[i].id = "directional" + std::to_string(i);
+      layout_.range_and_bearing[i] = {{}, 3.0, 0, {4 * i, 4}, i != 1, true};
+      layout_.proximity[i].range = 0.1 * static_cast<double>(i + 1);
+    }
+    layout_.proximity[0].mount.link = 0;
+    world::RobotLayout a, b, c;
+    a.id = "a", b.id = "b", c.id = "c";
+    a.radios = {0, 2}, c.radios = {2, 2};
+    a.leds = {0, 1}, c.leds = {2, 2};
+    a.directional_leds = {0, 1}, c.directional_leds = {1, 2};
+    a.tags = {0, 1}, c.tags = {2, 2};
+    a.magnets = {0, 1}, c.magnets = {2, 2};
+    a.proximity = {0, 1}, c.proximity = {1, 2};
+    a.range_and_bearing = {0, 1}, c.range_and_bearing = {2, 1};
+    a.positioning = {0, 1}, c.positioning = {1, 1};
+    a.batteries = {0, 1}, c.batteries = {2, 1};
+    layout_.robots = {a, b, c};
+  }
+
+  const world::Layout& layout() const { return layout_; }
+  Run run() const {
+    return {layout_, controllers_, {}, 42, 100'000'000, 10, "0123456789abcdef", "0.1.0"};
+  }
+
+  /// As the scene says.
+  world::Commands commands() const {
+    world::Commands commands;
+    for (const auto& led : layout_.leds) commands.led_colors.push_back(led.color);
+    commands.directional_led_colors.resize(3);
+    for (const auto& tag : layout_.tags) commands.tag_payloads.push_back(tag.payload);
+    commands.magnet_currents.resize(4);
+    commands.range_and_bearing_data.resize(12);
+    return commands;
+  }
+
+  /// What nobody senses, but of the right size.
+  world::Observations observations() const {
+    world::Observations observations;
+    observations.proximity.resize(3);
+    observations.positioning.resize(2);
+    observations.batteries.resize(3);
+    return observations;
+  }
+
+ private:
+  world::Layout layout_;
+  std::vector<scene::Controller> controllers_;
+};
+
+}  // namespace ziggurat::wire
