@@ -48,7 +48,7 @@ Ending drive(const Plan& plan, simulation::Simulation& simulation, network::Serv
     const auto stopped = watch.collect(simulation.commands(), now.tick);
     laps.charge(summary.exchange_s);
     if (stopped) return *stopped;
-    recorders.exchange(simulation.observations(), simulation.commands());
+    recorders.exchange(simulation.state(), simulation.observations(), simulation.commands());
     laps.charge(summary.recording_s);
     if (now.tick == plan.ticks) return Ending::finished;
 

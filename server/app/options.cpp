@@ -55,7 +55,7 @@ po::options_description output_options() {
       ("hash-file", text("FILE"), "such a line for every tick")                                //
       ("trace", text("FILE.csv"), "world poses of everything at every tick")                   //
       ("readings", text("FILE.jsonl"), "what robots sensed and answered at every tick")        //
-      ("rays", text("FILE.jsonl"), "tested rays; no device casts any yet: the file is empty")  //
+      ("rays", text("FILE.jsonl"), "tested rays and radio links of devices with show_rays")  //
       ("images", text("DIR"), "camera images; no camera takes any yet: the folder is empty")   //
       ("summary", text("FILE.json"), "the summary for machines");
   return options;

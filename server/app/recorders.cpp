@@ -12,7 +12,7 @@ Recorders::Recorders(const Options& options, const world::Layout& layout) {
   if (!options.hash_file.empty()) hashes_.emplace(options.hash_file);
   if (!options.readings.empty()) readings_.emplace(options.readings, layout);
   if (!options.summary.empty()) summary_.emplace(options.summary);
-  if (!options.rays.empty()) recording::OutputFile(options.rays).close();
+  if (!options.rays.empty()) rays_.emplace(options.rays, layout);
   if (!options.images.empty()) {
     std::error_code error;
     std::filesystem::create_directories(options.images, error);
@@ -26,10 +26,12 @@ Recorders::Recorders(const Options& options, const world::Layout& layout) {
 void Recorders::tick(const simulation::Simulation& simulation) {
   if (trace_) trace_->write(simulation.state());
   if (hashes_) hashes_->write(simulation.state().tick, simulation.hash());
+  if (rays_) rays_->write(simulation.state());
 }
 
-void Recorders::exchange(const world::Observations& observations, const world::Commands& commands) {
-  if (readings_) readings_->write(observations, commands);
+void Recorders::exchange(const world::State& state, const world::Observations& observations,
+                         const world::Commands& commands) {
+  if (readings_) readings_->write(state, observations, commands);
 }
 
 void Recorders::close() {
@@ -45,6 +47,7 @@ void Recorders::close() {
   close(trace_);
   close(hashes_);
   close(readings_);
+  close(rays_);
   if (first) std::rethrow_exception(first);
 }
 

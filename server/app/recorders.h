@@ -6,6 +6,7 @@
 #include "app/options.h"
 #include "app/summary.h"
 #include "recording/hash_file.h"
+#include "recording/rays.h"
 #include "recording/readings.h"
 #include "recording/trace.h"
 #include "simulation/simulation.h"
@@ -22,7 +23,8 @@ class Recorders {
   void tick(const simulation::Simulation& simulation);
 
   /// What robots sensed and answered at a tick. @throws recording::WriteError
-  void exchange(const world::Observations& observations, const world::Commands& commands);
+  void exchange(const world::State& state, const world::Observations& observations,
+                const world::Commands& commands);
 
   /// Completes every file but the summary, also when one of them fails.
   /// @throws recording::WriteError
@@ -35,6 +37,7 @@ class Recorders {
   std::optional<recording::Trace> trace_;
   std::optional<recording::HashFile> hashes_;
   std::optional<recording::Readings> readings_;
+  std::optional<recording::Rays> rays_;
   std::optional<recording::OutputFile> summary_;
 };
 

@@ -16,8 +16,9 @@ class Readings {
   /// Keeps a reference to `layout`. @throws WriteError
   Readings(std::string path, const world::Layout& layout);
 
-  /// What was observed at a tick, and the commands that answered it. @throws WriteError
-  void write(const world::Observations& observations, const world::Commands& commands);
+  /// What was true and observed at a tick, and the commands that answered it. @throws WriteError
+  void write(const world::State& state, const world::Observations& observations,
+             const world::Commands& commands);
   void close() { file_.close(); }
 
  private:

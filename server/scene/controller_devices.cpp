@@ -1,6 +1,7 @@
 // <actuators> and <sensors>: a table of all names of the dialect, and what each may say.
 
 #include <array>
+#include <numbers>
 #include <span>
 
 #include "scene/reading.h"
@@ -103,11 +104,39 @@ void enable_proximity(const Enabling& e) {
   e.devices.proximity_sensor = true;
   e.devices.proximity_show_rays = e.element.optional("show_rays", boolean, false);
   e.devices.proximity_noise = e.element.optional("noise_level", non_negative, 0.0);
+  e.devices.proximity_sees_floor = e.element.optional("floor", boolean, false);
+  e.devices.proximity_response = e.element.optional("response", response);
 }
 
 void enable_cameras(const Enabling& e) {
   e.devices.cameras_show_frustum = e.element.optional("show_frustum", boolean, false);
   e.devices.cameras = read_cameras(e.reading, e.element, e.use);
+}
+
+void enable_positioning(const Enabling& e) {
+  const auto noise = [&](const char* name, double unit) {
+    const auto [min, max] = e.element.optional(name, range, {0.0, 0.0});
+    return NoiseRange{min * unit, max * unit};
+  };
+  e.devices.positioning_sensor = true;
+  e.devices.position_noise = noise("pos_noise_range", 1);
+  e.devices.angle_noise = noise("angle_noise_range", std::numbers::pi / 180);
+  e.devices.axis_noise = noise("axis_noise_range", 1);
+}
+
+void enable_battery(const Enabling& e) { e.devices.battery_sensor = true; }
+
+void enable_range_and_bearing_actuator(const Enabling& e) {
+  e.devices.range_and_bearing_actuator = true;
+}
+
+void enable_range_and_bearing_sensor(const Enabling& e) {
+  e.devices.range_and_bearing_sensor = true;
+  e.devices.range_and_bearing_medium =
+      read_medium(e.reading, e.element, MediumKind::range_and_bearing);
+  e.devices.range_and_bearing_noise = e.element.optional("noise_std_dev", non_negative, 0.0);
+  e.devices.range_and_bearing_loss = e.element.optional("packet_drop_prob", probability, 0.0);
+  e.devices.range_and_bearing_show_rays = e.element.optional("show_rays", boolean, false);
 }
 
 // --- devices that are only checked so far -------------------------------------------------------
@@ -133,19 +162,6 @@ void enable_wheel_encoders(const Enabling& e) {
   e.element.optional("dist_noise_range", range);
 }
 
-void enable_positioning(const Enabling& e) {
-  for (const char* name : {"pos_noise_range", "angle_noise_range", "axis_noise_range"}) {
-    e.element.optional(name, range);
-  }
-}
-
-void enable_range_and_bearing_sensor(const Enabling& e) {
-  read_medium(e.reading, e.element, MediumKind::range_and_bearing);
-  e.element.optional("noise_std_dev", non_negative);
-  e.element.optional("packet_drop_prob", probability);
-  e.element.optional("show_rays", boolean);
-}
-
 void enable_blob_camera(const Enabling& e) {
   read_medium(e.reading, e.element, MediumKind::led);
   e.element.optional("noise_std_dev", non_negative);
@@ -156,14 +172,14 @@ void enable_blob_camera(const Enabling& e) {
 
 constexpr std::array<DeviceRow, 14> actuator_rows{{
     {"joints", "default", "", enable_joint_actuators},
-    {"radios", "default", "radios", enable_radios_actuator},
-    {"leds", "default", "LEDs", enable_leds},
-    {"directional_leds", "default", "directional LEDs", enable_directional_leds},
-    {"tags", "default", "tags", enable_tags},
+    {"radios", "default", "", enable_radios_actuator},
+    {"leds", "default", "", enable_leds},
+    {"directional_leds", "default", "", enable_directional_leds},
+    {"tags", "default", "", enable_tags},
     {"magnets", "default", "magnets and <magnetism>", enable_magnets},
     {"differential_steering", "default", "differential_steering devices", enable_wheels},
     {"gripper", "default", "gripper devices", enable_plain},
-    {"range_and_bearing", "default", "range-and-bearing devices", enable_plain},
+    {"range_and_bearing", "default", "", enable_range_and_bearing_actuator},
     {"quadrotor_position", "default", "quadrotor_position devices", enable_plain},
     {"quadrotor_speed", "default", "quadrotor_speed devices", enable_plain},
     {"footbot_turret", "default", "footbot_turret devices", enable_plain},
@@ -173,15 +189,15 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
 
 constexpr std::array<DeviceRow, 18> sensor_rows{{
     {"joints", "default", "", enable_joint_sensors},
-    {"radios", "default", "radios", enable_radios_sensor},
+    {"radios", "default", "", enable_radios_sensor},
     {"cameras", "default", "cameras", enable_cameras},
-    {"proximity", "default", "proximity sensors", enable_proximity},
-    {"positioning", "default", "positioning sensors", enable_positioning},
+    {"proximity", "default", "", enable_proximity},
+    {"positioning", "default", "", enable_positioning},
     {"differential_steering", "default", "differential_steering devices", enable_wheel_encoders},
-    {"battery", "default", "battery sensors", enable_plain},
+    {"battery", "default", "", enable_battery},
     {"ground", "rot_z_only", "ground sensors", enable_plain},
     {"light", "default", "light sensors", enable_plain},
-    {"range_and_bearing", "medium", "range-and-bearing devices", enable_range_and_bearing_sensor},
+    {"range_and_bearing", "medium", "", enable_range_and_bearing_sensor},
     {"colored_blob_omnidirectional_camera", "rot_z_only", "coloured-blob cameras",
      enable_blob_camera},
     {"colored_blob_perspective_camera", "default", "coloured-blob cameras", enable_blob_camera},

@@ -79,7 +79,7 @@ struct Component {
   std::string_view element;  ///< that would give the entity one
 };
 
-constexpr std::array<Component, 6> components{{
+constexpr std::array<Component, 8> components{{
     {"radios", [](const Entity& e) { return !e.devices.radios.empty(); }, "<radios>"},
     {"leds", [](const Entity& e) { return !e.devices.leds.empty(); }, "<leds>"},
     {"directional_leds", [](const Entity& e) { return !e.devices.directional_leds.empty(); },
@@ -88,6 +88,9 @@ constexpr std::array<Component, 6> components{{
     {"magnets", [](const Entity& e) { return !e.devices.magnets.empty(); }, "<magnets>"},
     {"proximity", [](const Entity& e) { return !e.devices.proximity_sensors.empty(); },
      "<proximity_sensors>"},
+    {"range_and_bearing", [](const Entity& e) { return e.devices.range_and_bearing.has_value(); },
+     "<range_and_bearing>"},
+    {"battery", [](const Entity& e) { return e.devices.battery.has_value(); }, "<battery>"},
 }};
 
 /// What an entity lacks for a device, or nothing.

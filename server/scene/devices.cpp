@@ -10,6 +10,8 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr unsigned most_ring_sensors = 1000;
+constexpr std::size_t most_proximity_sensors = 10'000;  // of a robot
+constexpr unsigned most_data_bytes = 65'536;            // of a range-and-bearing packet
 
 /// The id of a device: as written, or `<stem>_<N>`.
 std::string read_device_id(Element& device, std::string_view stem, Ids& ids) {
@@ -42,7 +44,6 @@ std::vector<Device> read_container(Element& container, std::string_view name, Re
 
 void read_directional_leds(Reading& reading, Element& container, Entity& entity) {
   Devices& devices = entity.devices;
-  reading.document.no_effect_yet(container.where(), "directional LEDs");
   devices.directional_led_medium = read_medium(reading, container, MediumKind::directional_led);
   devices.directional_leds = read_container<DirectionalLed>(
       container, "directional_led", [&reading](Element& element, std::string id) {
@@ -56,7 +57,6 @@ void read_directional_leds(Reading& reading, Element& container, Entity& entity)
 }
 
 void read_tags(Reading& reading, Element& container, Entity& entity) {
-  reading.document.no_effect_yet(container.where(), "tags");
   entity.devices.tag_medium = read_medium(reading, container, MediumKind::tag);
   entity.devices
       .tags = read_container<Tag>(container, "tag", [&reading](Element& element, std::string id) {
@@ -71,13 +71,12 @@ void read_tags(Reading& reading, Element& container, Entity& entity) {
 }
 
 void read_radios(Reading& reading, Element& container, Entity& entity) {
-  reading.document.no_effect_yet(container.where(), "radios");
   entity.devices.radio_medium = read_medium(reading, container, MediumKind::radio);
   entity.devices.radios =
       read_container<Radio>(container, "radio", [&reading](Element& element, std::string id) {
         const Anchor anchor = read_anchor(reading, element);
         element.without_effect("orientation", orientation, "radios reach equally far all around");
-        element.without_effect("duplex_mode", text, "radios send and receive in the same tick");
+        element.without_effect("duplex_mode", text, "a radio that sends in a tick receives nothing in it");
         const math::Vector3 at = element.required("position", position);
         return Radio{std::move(id), anchor, at, element.required("range", positive, 1.0), {}};
       });
@@ -99,13 +98,37 @@ void read_magnets(Reading& reading, Element& container, Entity& entity) {
       });
 }
 
-void read_proximity_sensor(Reading& reading, Element& element, Entity& entity) {
+/// What a sensor perceives of what is there; whoever is silent leaves it to the next farther out.
+struct Perception {
+  std::optional<bool> sees_floor;
+  std::optional<Response> response;
+};
+
+Perception read_perception(Element& element, const Perception& usual) {
+  Perception perception = usual;
+  if (const auto floor = element.optional("floor", boolean)) perception.sees_floor = floor;
+  if (auto table = element.optional("response", response)) perception.response = std::move(table);
+  return perception;
+}
+
+bool may_add(std::size_t sensors, const Element& element, const Entity& entity) {
+  if (entity.devices.proximity_sensors.size() + sensors <= most_proximity_sensors) return true;
+  element.fault(fmt::format("is one too many; a robot has at most {} proximity sensors",
+                            most_proximity_sensors));
+  return false;
+}
+
+void read_proximity_sensor(Reading& reading, Element& element, const Perception& usual,
+                           Entity& entity) {
   const Anchor anchor = read_anchor(reading, element);
   const math::Vector3 offset = element.required("offset", position);
   const math::Vector3 along = element.required("direction", direction, math::Vector3::UnitX());
   const double reach = element.required("range", length, 1.0);
+  const Perception perception = read_perception(element, usual);
   element.done();
-  entity.devices.proximity_sensors.push_back({anchor, offset, along, reach, element.where()});
+  if (!may_add(1, element, entity)) return;
+  entity.devices.proximity_sensors.push_back({anchor, offset, along, reach, perception.sees_floor,
+                                              perception.response, element.where()});
 }
 
 struct RingDefaults {
@@ -131,7 +154,8 @@ T required_or(Element& element, const char* name, Read read, const std::optional
   return element.required(name, read, fallback);
 }
 
-void read_ring(Reading& reading, Element& ring, const RingDefaults& usual, Entity& entity) {
+void read_ring(Reading& reading, Element& ring, const RingDefaults& usual,
+               const Perception& usual_perception, Entity& entity) {
   const Anchor anchor = read_anchor(reading, ring);
   const math::Vector3 center =
       ring.optional("center", position, usual.center.value_or(math::Vector3::Zero()));
@@ -140,30 +164,33 @@ void read_ring(Reading& reading, Element& ring, const RingDefaults& usual, Entit
   const double reach = required_or(ring, "range", length, usual.range, 1.0);
   const unsigned number_of_sensors =
       required_or(ring, "num_sensors", positive_count, usual.num_sensors, 1u);
+  const Perception perception = read_perception(ring, usual_perception);
   ring.done();
   if (number_of_sensors > most_ring_sensors) {
     ring.fault_at("num_sensors", fmt::format("is too many; write at most {}", most_ring_sensors));
     return;
   }
+  if (!may_add(number_of_sensors, ring, entity)) return;
   for (unsigned i = 0; i < number_of_sensors; ++i) {
     const double turn = start + 2.0 * std::numbers::pi * i / number_of_sensors;
     const math::Vector3 outward(std::cos(turn), std::sin(turn), 0.0);
     entity.devices.proximity_sensors.push_back(
-        {anchor, center + radius * outward, outward, reach, ring.where()});
+        {anchor, center + radius * outward, outward, reach, perception.sees_floor,
+         perception.response, ring.where()});
   }
 }
 
 void read_proximity_sensors(Reading& reading, Element& container, Entity& entity) {
   constexpr std::array<std::string_view, 2> known{"sensor", "ring"};
-  reading.document.no_effect_yet(container.where(), "proximity sensors");
   const RingDefaults usual = read_ring_defaults(container);
+  const Perception perception = read_perception(container, {});
   std::vector<Element> children = container.children();
   if (children.empty()) container.fault("has no sensor; write <sensor …> or <ring …> in it");
   for (Element& child : children) {
     if (child.name() == "sensor") {
-      read_proximity_sensor(reading, child, entity);
+      read_proximity_sensor(reading, child, perception, entity);
     } else if (child.name() == "ring") {
-      read_ring(reading, child, usual, entity);
+      read_ring(reading, child, usual, perception, entity);
     } else {
       child.unknown_in(container.name(), known);
     }
@@ -171,18 +198,35 @@ void read_proximity_sensors(Reading& reading, Element& container, Entity& entity
   container.done();
 }
 
+void read_range_and_bearing(Reading& reading, Element& element, Entity& entity) {
+  entity.devices.range_and_bearing_medium =
+      read_medium(reading, element, MediumKind::range_and_bearing);
+  const Anchor anchor = read_anchor(reading, element);
+  const math::Pose pose = read_pose(element);
+  const double reach = element.optional("range", positive, 3.0);
+  const unsigned bytes = element.optional("data_size", Whole{0, most_data_bytes}, 10u);
+  element.done();
+  entity.devices.range_and_bearing = RangeAndBearing{anchor, pose, reach, bytes, element.where()};
+}
+
+void read_battery_container(Reading&, Element& element, Entity& entity) {
+  entity.devices.battery = read_battery(element);
+}
+
 struct Container {
   std::string_view name;
   void (*read)(Reading&, Element&, Entity&);
 };
 
-constexpr std::array<Container, 6> containers{{
+constexpr std::array<Container, 8> containers{{
     {"leds", read_leds},
     {"directional_leds", read_directional_leds},
     {"tags", read_tags},
     {"radios", read_radios},
     {"magnets", read_magnets},
     {"proximity_sensors", read_proximity_sensors},
+    {"range_and_bearing", read_range_and_bearing},
+    {"battery", read_battery_container},
 }};
 
 void read_device_container(Reading& reading, Element& element, Entity& entity) {
@@ -213,7 +257,6 @@ std::vector<std::string> anchor_names(const Reading& reading) {
 }
 
 void read_leds(Reading& reading, Element& container, Entity& entity) {
-  reading.document.no_effect_yet(container.where(), "LEDs");
   entity.devices.led_medium = read_medium(reading, container, MediumKind::led);
   entity.devices.leds =
       read_container<Led>(container, "led", [&reading](Element& element, std::string id) {
@@ -221,6 +264,33 @@ void read_leds(Reading& reading, Element& container, Entity& entity) {
         const math::Vector3 offset = element.required("offset", position);
         return Led{std::move(id), anchor, offset, element.required("color", color), {}};
       });
+}
+
+Battery read_battery(Element& element) {
+  enum class Model { time, motion, time_motion };
+  const Model model = element.optional("discharge_model",
+                                       OneOf<Model>{{"time", Model::time},
+                                                    {"motion", Model::motion},
+                                                    {"time_motion", Model::time_motion}},
+                                       Model::time);
+  Battery battery;
+  battery.where = element.where();
+  battery.full_charge = element.optional("full_charge", positive, 1.0);
+  battery.start_charge = element.optional("start_charge", non_negative, battery.full_charge);
+  const double factor = element.optional("factor", non_negative, 0.0);
+  const double time = element.optional("time_factor", non_negative, factor);
+  const double metre = element.optional("pos_factor", non_negative, 0.0);
+  const double radian = element.optional("orient_factor", non_negative, 0.0);
+  if (battery.start_charge > battery.full_charge) {
+    element.fault_at("start_charge", "is more than full_charge; write at most that");
+  }
+  if (model != Model::motion) battery.per_second = time;
+  if (model != Model::time) {
+    battery.per_metre = metre;
+    battery.per_radian = radian;
+  }
+  element.done();
+  return battery;
 }
 
 void read_devices(Reading& reading, Element& element, Entity& entity) {

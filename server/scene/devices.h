@@ -68,11 +68,43 @@ struct Magnet {
   Location where;
 };
 
+/// What a proximity sensor reads at a distance, as its data sheet says: straight lines between
+/// the points, level outside of them.
+struct Response {
+  struct Point {
+    double distance;  ///< [m], >= 0
+    double reading;   ///< in the sensor's own unit
+  };
+  std::vector<Point> points;  ///< ascending by distance; at least one
+};
+
 struct ProximitySensor {
   Anchor anchor;
   math::Vector3 offset;     ///< start of the ray in the anchor frame [m]
   math::Vector3 direction;  ///< unit, in the anchor frame
   double range;             ///< length of the ray [m]
+  std::optional<bool> sees_floor;    ///< none: as the controller's sensor says
+  std::optional<Response> response;  ///< none: as the controller's sensor says
+  Location where;
+};
+
+/// Tells others in line of sight where it is and some bytes, and hears the same of them.
+struct RangeAndBearing {
+  Anchor anchor;
+  math::Pose pose;     ///< in the anchor frame; bearings are relative to it
+  double range;        ///< of sending [m]
+  unsigned data_size;  ///< [bytes] of every packet; only equal sizes hear each other
+  Location where;
+};
+
+/// Loses charge with time, with motion of the entity's origin, or with both. It is counted in any
+/// unit; what robots see is its share of full_charge.
+struct Battery {
+  double full_charge = 1;   ///< > 0
+  double start_charge = 1;  ///< 0 ... full_charge
+  double per_second = 0;    ///< lost per second of simulated time
+  double per_metre = 0;     ///< lost per metre of displacement in a tick
+  double per_radian = 0;    ///< lost per radian of rotation in a tick
   Location where;
 };
 
@@ -89,6 +121,9 @@ struct Devices {
   std::optional<std::size_t> radio_medium;
   std::vector<Magnet> magnets;
   std::vector<ProximitySensor> proximity_sensors;
+  std::optional<RangeAndBearing> range_and_bearing;
+  std::optional<std::size_t> range_and_bearing_medium;
+  std::optional<Battery> battery;
 };
 
 enum class JointMode { disabled, position, velocity };
@@ -125,6 +160,11 @@ struct Camera {
   Location where;
 };
 
+/// An offset drawn uniformly from [min, max].
+struct NoiseRange {
+  double min = 0, max = 0;
+};
+
 /// What a controller's <actuators> and <sensors> enable.
 struct ControllerDevices {
   std::vector<JointActuator> joint_actuators;
@@ -140,6 +180,19 @@ struct ControllerDevices {
   bool proximity_sensor = false;
   bool proximity_show_rays = false;
   double proximity_noise = 0;  ///< uniform in ± this, >= 0
+  bool proximity_sees_floor = false;           ///< of sensors that don't say
+  std::optional<Response> proximity_response;  ///< of sensors that don't say; none: exp(-distance)
+  bool range_and_bearing_actuator = false;
+  bool range_and_bearing_sensor = false;
+  std::optional<std::size_t> range_and_bearing_medium;  ///< the sensor assigns the device to it
+  bool range_and_bearing_show_rays = false;
+  double range_and_bearing_noise = 0;  ///< standard deviation of each coordinate of the other [m]
+  double range_and_bearing_loss = 0;   ///< probability that a packet is lost, 0 ... 1
+  bool positioning_sensor = false;
+  NoiseRange position_noise;  ///< of each coordinate [m]
+  NoiseRange angle_noise;     ///< of the angle of rotation [rad]
+  NoiseRange axis_noise;      ///< of each coordinate of the unit axis of rotation
+  bool battery_sensor = false;
   bool cameras_show_frustum = false;
   std::vector<Camera> cameras;
 };

@@ -55,15 +55,6 @@ void read_prototype(Reading& reading, Element& element, Entity& entity, Placemen
   read_controller_of(reading, element, entity);
 }
 
-void read_battery(Element battery) {
-  battery.optional("discharge_model", Words{"time", "motion", "time_motion"});
-  for (const char* name :
-       {"start_charge", "full_charge", "factor", "pos_factor", "orient_factor", "time_factor"}) {
-    battery.optional(name, non_negative);
-  }
-  battery.done();
-}
-
 void read_steering_limits(Element engine) {
   if (auto steering = engine.child("differential_steering")) {
     steering->optional("max_force", positive);

@@ -9,8 +9,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> medium_names{"led", "directional_led", "tag", "radio",
                                                        "range_and_bearing"};
-constexpr std::array<std::string_view, 5> subjects{"LEDs", "directional LEDs", "tags", "radios",
-                                                   "range-and-bearing devices"};
 
 std::optional<MediumKind> kind_of(std::string_view name) {
   for (std::size_t i = 0; i < medium_names.size(); ++i) {
@@ -20,11 +18,12 @@ std::optional<MediumKind> kind_of(std::string_view name) {
 }
 
 void read_medium_element(Reading& reading, Element& element, MediumKind kind) {
-  reading.document.no_effect_yet(element.where(), subjects[static_cast<std::size_t>(kind)]);
-  Medium medium{element.required("id", identifier), kind, element.where()};
+  Medium medium{element.required("id", identifier), kind, true, element.where()};
   element.optional("index", Words{"grid"});
   element.without_effect("grid_size", cells, "media need no grid, and devices may leave the arena");
-  if (kind == MediumKind::range_and_bearing) element.optional("check_occlusions", boolean);
+  if (kind == MediumKind::range_and_bearing) {
+    medium.checks_occlusions = element.optional("check_occlusions", boolean, true);
+  }
   element.done();
   if (medium.id.empty()) return;
   if (!reading.media.emplace(medium.id, reading.scene.media.size()).second) {

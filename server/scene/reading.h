@@ -102,6 +102,9 @@ void order_joints(Document& document, Entity& entity);
 /// Reads <devices> of a prototype.
 void read_devices(Reading& reading, Element& element, Entity& entity);
 
+/// Reads <battery>.
+Battery read_battery(Element& element);
+
 /// Reads <leds> of a box, cylinder or prototype.
 void read_leds(Reading& reading, Element& container, Entity& entity);
 

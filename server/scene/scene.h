@@ -164,6 +164,7 @@ enum class MediumKind { led, directional_led, tag, radio, range_and_bearing };
 struct Medium {
   std::string id;
   MediumKind kind;
+  bool checks_occlusions = true;  ///< range_and_bearing: bodies in between stop packets
   Location where;
 };
 

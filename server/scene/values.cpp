@@ -289,6 +289,29 @@ Value<std::pair<double, double>> range(std::string_view text) {
   return std::pair(ends[0], ends[1]);
 }
 
+Value<Response> response(std::string_view text) {
+  constexpr std::size_t most_points = 1000;
+  constexpr const char* form = "write distance:reading, … with ascending distances";
+  Response result;
+  for (const std::string_view part : split(text, ',')) {
+    if (result.points.size() == most_points) {
+      return Wrong{fmt::format("has more than {} points; write fewer", most_points)};
+    }
+    const std::vector<std::string_view> pair = split(part, ':');
+    if (pair.size() != 2) return Wrong{std::string("is not a table; ") + form};
+    const auto distance = non_negative(trimmed(pair[0]));
+    const auto reading = number(trimmed(pair[1]));
+    if (const Wrong* wrong = std::get_if<Wrong>(&distance)) return *wrong;
+    if (const Wrong* wrong = std::get_if<Wrong>(&reading)) return *wrong;
+    const Response::Point point{std::get<double>(distance), std::get<double>(reading)};
+    if (!result.points.empty() && point.distance <= result.points.back().distance) {
+      return Wrong{std::string("has distances that do not ascend; ") + form};
+    }
+    result.points.push_back(point);
+  }
+  return result;
+}
+
 Value<std::pair<double, double>> positive_range(std::string_view text) {
   Value<std::pair<double, double>> value = range(text);
   if (const auto* ends = std::get_if<std::pair<double, double>>(&value)) {

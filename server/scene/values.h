@@ -62,6 +62,8 @@ Value<std::pair<double, double>> positive_range(std::string_view text);  ///< `m
 Value<std::array<unsigned, 2>> resolution(std::string_view text);        ///< `width,height`, >= 1
 Value<std::array<unsigned, 3>> cells(std::string_view text);             ///< `a,b,c`, each >= 1
 
+Value<Response> response(std::string_view text);  ///< `distance:reading, …`, distances ascending
+
 /// The rotation that `z,y,x` degrees stand for: about z first, then y, then x, all fixed axes.
 math::Quaternion orientation_from_degrees(const math::Vector3& zyx);
 

@@ -1,7 +1,12 @@
 #include "simulation/simulation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "devices/devices.h"
+#include "media/devices_index.h"
+#include "physics/ray.h"
 #include "physics/world.h"
 #include "simulation/layout.h"
 #include "simulation/place.h"
@@ -17,15 +22,11 @@ double substep_length(const scene::Scene& scene, const Options& options) {
   return slow ? tick / (iterations * iterations) : tick / iterations;
 }
 
-/// Index into Entity::joints; the reader has made sure that it is there.
-std::size_t find_joint(const scene::Entity& entity, const std::string& id) {
-  std::size_t joint = 0;
-  while (entity.joints[joint].id != id) ++joint;
-  return joint;
-}
-
-bool has_coordinate(const scene::Joint& joint) {
-  return joint.type == scene::JointType::revolute || joint.type == scene::JointType::prismatic;
+/// Whether anybody looks at what devices show.
+bool has_cameras(const scene::Scene& scene) {
+  return std::ranges::any_of(scene.controllers, [](const scene::Controller& controller) {
+    return !controller.devices.cameras.empty();
+  });
 }
 
 }  // namespace
@@ -33,65 +34,48 @@ bool has_coordinate(const scene::Joint& joint) {
 struct Simulation::Parts {
   Parts(const scene::Scene& scene, const Options& options);
 
-  void sense();
-
-  struct Sensor {
-    physics::JointIndex joint;
-    bool velocity = false;
-    bool disabled = false;
-  };
+  devices::Tick tick() {
+    return {layout, state, observations, commands, physics, rays, *index};
+  }
+  void look_around();  // rays and index take the poses of the state
 
   unsigned ticks_per_second;
   unsigned substeps;
   double substep;  // [s]
   physics::World physics;
+  physics::Rays rays;
   world::Layout layout;
   world::State state;
   world::Observations observations;
   world::Commands commands;
-  std::vector<physics::JointIndex> actuators;  // parallel to Layout::joint_actuators
-  std::vector<Sensor> sensors;                 // parallel to Layout::joint_sensors
+  std::optional<media::DevicesIndex> index;
+  std::optional<devices::Devices> devices;
 };
 
 Simulation::Parts::Parts(const scene::Scene& scene, const Options& options)
     : ticks_per_second(scene.experiment.ticks_per_second),
       substeps(scene.physics.iterations),
       substep(substep_length(scene, options)),
-      physics(scene.physics, substep) {
+      physics(scene.physics, substep),
+      rays(scene.physics) {
   const std::vector<scene::Entity> entities = place(scene, options.seed);
   layout = make_layout(scene, entities);
-  for (const scene::Entity& entity : entities) physics.add(entity);
-  for (const world::RobotLayout& robot : layout.robots) {
-    const scene::Entity& entity = entities[robot.entity];
-    const scene::ControllerDevices& devices = scene.controllers[robot.controller].devices;
-    for (const scene::JointActuator& actuator : devices.joint_actuators) {
-      actuators.push_back(physics.joint(robot.entity, find_joint(entity, actuator.joint)));
-      physics.add_motor(actuators.back(), actuator.mode, actuator.max_impulse);
-    }
-    for (const scene::JointSensor& sensor : devices.joint_sensors) {
-      const std::size_t joint = find_joint(entity, sensor.joint);
-      if (sensor.mode == scene::JointMode::disabled || !has_coordinate(entity.joints[joint])) {
-        sensors.push_back({{}, false, true});
-      } else {
-        sensors.push_back({physics.joint(robot.entity, joint),
-                           sensor.mode == scene::JointMode::velocity, false});
-      }
-    }
+  for (const scene::Entity& entity : entities) {
+    physics.add(entity);
+    rays.add(entity);
   }
-  commands.joint_targets.assign(actuators.size(), 0);
-  observations.joint_readings.assign(sensors.size(), 0);
+  index.emplace(layout, has_cameras(scene));
+  devices.emplace(
+      devices::Setting{scene, entities, layout, options.seed, 1.0 / ticks_per_second}, physics);
   physics.read(state);
+  look_around();
+  devices::Tick first = tick();
+  devices->start(first);
 }
 
-void Simulation::Parts::sense() {
-  observations.tick = state.tick;
-  observations.time_ns = state.time_ns;
-  for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const Sensor& sensor = sensors[i];
-    if (sensor.disabled) continue;
-    observations.joint_readings[i] =
-        sensor.velocity ? physics.velocity(sensor.joint) : physics.position(sensor.joint);
-  }
+void Simulation::Parts::look_around() {
+  if (devices->casts_rays()) rays.update(state);
+  if (devices->needs_index()) index->build(state);
 }
 
 Simulation::Simulation(const scene::Scene& scene, const Options& options)
@@ -105,14 +89,17 @@ world::Commands& Simulation::commands() { return parts_->commands; }
 
 void Simulation::step() {
   Parts& p = *parts_;
-  for (std::size_t i = 0; i < p.actuators.size(); ++i) {
-    p.physics.set_target(p.actuators[i], p.commands.joint_targets[i]);
-  }
+  devices::Tick tick = p.tick();
+  p.state.rays.clear();
+  p.devices->apply(tick);
   for (unsigned i = 0; i < p.substeps; ++i) p.physics.step();
   p.state.tick += 1;
   p.state.time_ns = std::llround(static_cast<long double>(p.state.tick) * 1e9L / p.ticks_per_second);
   p.physics.read(p.state);
-  p.sense();
+  p.look_around();
+  p.observations.tick = p.state.tick;
+  p.observations.time_ns = p.state.time_ns;
+  p.devices->sense(tick);
 }
 
 std::uint64_t Simulation::hash() const { return world::hash(parts_->state, parts_->observations); }

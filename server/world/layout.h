@@ -24,6 +24,9 @@ struct EntityLayout {
   std::string id;
   Range links;          ///< into State::links; every entity has at least one
   bool lists_links = false;  ///< a trace has a row per link (prototypes and robots)
+  Range leds = {};              ///< all that it carries, whoever sets them: into Layout::leds,
+  Range directional_leds = {};  ///< directional_leds
+  Range tags = {};              ///< and tags
 };
 
 struct LinkLayout {

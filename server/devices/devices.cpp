@@ -1,0 +1,35 @@
+#include "devices/devices.h"
+
+namespace ziggurat::devices {
+
+Devices::Devices(const Setting& setting, physics::World& physics)
+    : joints_(setting, physics),
+      radios_(setting),
+      proximity_(setting),
+      range_and_bearing_(setting),
+      positioning_(setting),
+      batteries_(setting) {}
+
+void Devices::start(Tick& tick) {
+  joints_.start(tick);
+  start_visible(tick);
+  proximity_.start(tick);
+  positioning_.sense(tick);
+  batteries_.start(tick);
+}
+
+void Devices::apply(Tick& tick) {
+  joints_.apply(tick);
+  apply_visible(tick);
+  radios_.apply(tick);
+}
+
+void Devices::sense(Tick& tick) {
+  joints_.sense(tick);
+  proximity_.sense(tick);
+  range_and_bearing_.sense(tick);
+  positioning_.sense(tick);
+  batteries_.sense(tick);
+}
+
+}  // namespace ziggurat::devices

@@ -1,0 +1,43 @@
+#pragma once
+// All kinds of devices, in the order in which they act and sense. To add one, write its file and
+// its lines here and in devices.cpp; docs/adding-a-device.md has the whole walk.
+
+#include "devices/battery.h"
+#include "devices/joint.h"
+#include "devices/positioning.h"
+#include "devices/proximity.h"
+#include "devices/radio.h"
+#include "devices/range_and_bearing.h"
+#include "devices/tick.h"
+#include "devices/visible.h"
+
+namespace ziggurat::devices {
+
+class Devices {
+ public:
+  /// Adds motors to the joints that have an actuator.
+  Devices(const Setting& setting, physics::World& physics);
+
+  /// Gives commands and observations of tick 0 their length and initial values, and State what is
+  /// visible of devices. Poses of tick 0 are due.
+  void start(Tick& tick);
+
+  /// Before physics: what was commanded takes effect, at the poses of the last tick.
+  void apply(Tick& tick);
+
+  /// After physics, with rays and index at the new poses.
+  void sense(Tick& tick);
+
+  bool casts_rays() const { return proximity_.casts_rays() || range_and_bearing_.casts_rays(); }
+  bool needs_index() const { return radios_.needs_index() || range_and_bearing_.needs_index(); }
+
+ private:
+  Joints joints_;
+  Radios radios_;
+  Proximity proximity_;
+  RangeAndBearing range_and_bearing_;
+  Positioning positioning_;
+  Batteries batteries_;
+};
+
+}  // namespace ziggurat::devices

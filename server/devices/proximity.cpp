@@ -1,0 +1,77 @@
+#include "devices/proximity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ziggurat::devices {
+
+double proximity_reading(double distance, const scene::Response* response) {
+  if (!response) return std::exp(-distance);
+  const auto& points = response->points;
+  const auto next = std::ranges::upper_bound(points, distance, {}, &scene::Response::Point::distance);
+  if (next == points.begin()) return points.front().reading;
+  if (next == points.end()) return points.back().reading;
+  const scene::Response::Point &near = *(next - 1), &far = *next;
+  const double share = (distance - near.distance) / (far.distance - near.distance);
+  return near.reading + share * (far.reading - near.reading);
+}
+
+Proximity::Proximity(const Setting& setting) {
+  for (std::size_t r = 0; r < setting.layout.robots.size(); ++r) {
+    const world::RobotLayout& robot = setting.layout.robots[r];
+    if (robot.proximity.count == 0) continue;
+    const scene::ControllerDevices& enabled = setting.enabled(robot);
+    robots_.push_back({r, enabled.proximity_noise, enabled.proximity_show_rays,
+                       math::RandomStream(setting.seed, "proximity/" + robot.id)});
+    for (const auto& from : setting.entities[robot.entity].devices.proximity_sensors) {
+      Sensor sensor;
+      sensor.response = from.response ? from.response : enabled.proximity_response;
+      sensor.sees_floor = from.sees_floor.value_or(enabled.proximity_sees_floor);
+      if (sensor.response) {
+        sensor.most = 0;
+        for (const auto& point : sensor.response->points) {
+          sensor.least = std::min(sensor.least, point.reading);
+          sensor.most = std::max(sensor.most, point.reading);
+        }
+      }
+      sensors_.push_back(std::move(sensor));
+    }
+  }
+}
+
+void Proximity::start(Tick& tick) const {
+  tick.observations.proximity.assign(sensors_.size(), 0);
+}
+
+void Proximity::sense(Tick& tick) {
+  for (Robot& robot : robots_) sense(tick, robot);
+}
+
+void Proximity::sense(Tick& tick, Robot& robot) {
+  const world::RobotLayout& layout = tick.layout.robots[robot.index];
+  const std::array own{layout.entity};
+  for (std::size_t i = layout.proximity.begin; i < layout.proximity.end(); ++i) {
+    const world::ProximityLayout& ray = tick.layout.proximity[i];
+    const Sensor& sensor = sensors_[i];
+    const math::Pose start = world::pose_of(tick.state, ray.mount);
+    const math::Vector3 way = start.orientation * ray.direction;
+    const math::Vector3 end = start.position + ray.range * way;
+    const auto hit = tick.rays.cast({start.position, end, own, sensor.sees_floor});
+    double reading = 0;
+    if (hit) {
+      reading = proximity_reading(hit->distance, sensor.response ? &*sensor.response : nullptr);
+    }
+    if (robot.noise > 0) {
+      reading += robot.random.uniform(-robot.noise, robot.noise);
+      reading = std::clamp(reading, sensor.least, sensor.most);
+    }
+    tick.observations.proximity[i] = reading;
+    if (!robot.shows_rays) continue;
+    const math::Vector3 seen = hit ? math::Vector3(start.position + hit->distance * way) : end;
+    tick.state.rays.push_back(
+        {world::Ray::Kind::proximity, robot.index, start.position, seen, hit.has_value()});
+  }
+}
+
+}  // namespace ziggurat::devices

@@ -1,0 +1,43 @@
+#pragma once
+// Radios: a message reaches every other radio of the medium that is strictly closer than the
+// sender's range, through everything. A radio that sends in a tick receives nothing in it.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "media/devices_index.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::media {
+
+/// From a radio that sent to one that received.
+struct RadioLink {
+  std::size_t sender = 0, receiver = 0;  ///< into Layout::radios
+};
+
+class RadioMedium {
+ public:
+  /// Delivers what was sent. Who hears whom is decided after everything is known, so the result
+  /// depends neither on the order of `sent` (between radios) nor on that of robots.
+  /// @param index     of the poses that the messages leave at
+  /// @param sent      emptied
+  /// @param received  replaced: ascending by receiver, then sender, then as sent
+  void deliver(const world::Layout& layout, const DevicesIndex& index, world::RadioMessages& sent,
+               world::RadioMessages& received);
+
+  /// Of the last delivery, one per pair, ascending by sender, then receiver.
+  const std::vector<RadioLink>& links() const { return links_; }
+
+ private:
+  void sort(const world::RadioMessages& sent, std::size_t radios);
+
+  std::vector<std::uint32_t> starts_;  // per radio: its first place in order_; one more at the end
+  std::vector<std::uint32_t> order_;   // into sent.entries: by radio, then as sent
+  std::vector<std::size_t> places_;    // per receiver: where its next message goes
+  std::vector<std::size_t> found_;
+  std::vector<RadioLink> links_;
+};
+
+}  // namespace ziggurat::media

@@ -1,0 +1,40 @@
+#pragma once
+// Range and bearing: each device sends its data at every tick; who is strictly closer than the
+// sender's range, sends packets of the same size and is in sight learns where the sender is.
+
+#include <cstddef>
+#include <vector>
+
+#include "media/devices_index.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::media {
+
+/// A sender within reach of a receiver; whether anything is in between is not looked at.
+struct Sighting {
+  std::size_t sender = 0, receiver = 0;  ///< into Layout::range_and_bearing
+};
+
+class RangeAndBearingMedium {
+ public:
+  /// All pairs, ascending by receiver, then sender; valid until the next call.
+  const std::vector<Sighting>& sight(const world::Layout& layout, const DevicesIndex& index);
+
+ private:
+  std::vector<Sighting> by_sender_, by_receiver_;
+  std::vector<std::size_t> places_;
+  std::vector<std::size_t> found_;
+};
+
+/// Where a point is seen from a frame.
+struct Bearing {
+  double range = 0;       ///< [m]
+  double horizontal = 0;  ///< about +z from +x, (-pi, pi] [rad]
+  double vertical = 0;    ///< above the xy plane, [-pi/2, pi/2] [rad]
+};
+
+/// @param point  in the frame [m]
+Bearing bearing_of(const math::Vector3& point);
+
+}  // namespace ziggurat::media

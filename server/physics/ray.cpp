@@ -1,0 +1,226 @@
+#include "physics/ray.h"
+
+#include <BulletCollision/BroadphaseCollision/btDbvt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <variant>
+#include <vector>
+
+#include "physics/convert.h"
+
+namespace ziggurat::physics {
+namespace {
+
+using math::Vector3;
+
+constexpr double skin = 1e-4;           // [m]
+constexpr double volume_margin = 1e-3;  // bounding volumes are larger by this, against rounding [m]
+
+/// Shares of the segment between which it is inside of something.
+struct Stay {
+  double from = -std::numeric_limits<double>::infinity();
+  double to = std::numeric_limits<double>::infinity();
+  void cut(double begin, double end) {
+    from = std::max(from, begin);
+    to = std::min(to, end);
+  }
+  void never() { cut(1, 0); }
+};
+
+/// Keeps where start + t * way lies between low and high.
+void cut_slab(Stay& stay, double start, double way, double low, double high) {
+  if (way == 0) {
+    if (start < low || start > high) stay.never();
+    return;
+  }
+  const double first = (low - start) / way, second = (high - start) / way;
+  stay.cut(std::min(first, second), std::max(first, second));
+}
+
+/// Keeps where |start + t * way| <= radius.
+template <class Vector>
+void cut_round(Stay& stay, const Vector& start, const Vector& way, double radius) {
+  const double a = way.squaredNorm();
+  if (a == 0) {
+    if (start.squaredNorm() > radius * radius) stay.never();
+    return;
+  }
+  // About the point closest to the centre, where nothing cancels.
+  const double closest = -start.dot(way) / a;
+  const double room = radius * radius - (start + closest * way).squaredNorm();
+  if (room < 0) return stay.never();
+  const double half = std::sqrt(room / a);
+  stay.cut(closest - half, closest + half);
+}
+
+Stay stay_in(const scene::Box& box, const Vector3& start, const Vector3& way) {
+  Stay stay;
+  cut_slab(stay, start.x(), way.x(), -box.size.x() / 2, box.size.x() / 2);
+  cut_slab(stay, start.y(), way.y(), -box.size.y() / 2, box.size.y() / 2);
+  cut_slab(stay, start.z(), way.z(), 0, box.size.z());
+  return stay;
+}
+
+Stay stay_in(const scene::Cylinder& cylinder, const Vector3& start, const Vector3& way) {
+  Stay stay;
+  cut_slab(stay, start.z(), way.z(), 0, cylinder.height);
+  cut_round(stay, math::Vector2(start.head<2>()), math::Vector2(way.head<2>()), cylinder.radius);
+  return stay;
+}
+
+Stay stay_in(const scene::Sphere& sphere, const Vector3& start, const Vector3& way) {
+  Stay stay;
+  cut_round(stay, Vector3(start - Vector3(0, 0, sphere.radius)), way, sphere.radius);
+  return stay;
+}
+
+/// Half extents along the frame's axes, and the centre, of the box that holds a shape.
+struct Extents {
+  Vector3 half, center;
+};
+
+Extents extents(const scene::Geometry& geometry) {
+  if (const auto* box = std::get_if<scene::Box>(&geometry)) {
+    return {box->size / 2, Vector3(0, 0, box->size.z() / 2)};
+  }
+  if (const auto* cylinder = std::get_if<scene::Cylinder>(&geometry)) {
+    return {Vector3(cylinder->radius, cylinder->radius, cylinder->height / 2),
+            Vector3(0, 0, cylinder->height / 2)};
+  }
+  const double radius = std::get<scene::Sphere>(geometry).radius;
+  return {Vector3::Constant(radius), Vector3(0, 0, radius)};
+}
+
+}  // namespace
+
+std::optional<double> enter(const scene::Geometry& geometry, const Vector3& start,
+                            const Vector3& end, double skin) {
+  const Vector3 way = end - start;
+  const double length = way.norm();
+  if (!(length > 0)) return std::nullopt;
+  const Stay stay =
+      std::visit([&](const auto& shape) { return stay_in(shape, start, way); }, geometry);
+  // A stay of no length is a touch from outside; the end of the segment is not part of it.
+  if (!(stay.from <= stay.to) || stay.from >= 1 || stay.to <= 0) return std::nullopt;
+  if (stay.from < -skin / length) return std::nullopt;
+  return stay.from;
+}
+
+struct Rays::Parts {
+  /// A collider, as the tree refers to it.
+  struct Solid {
+    scene::Geometry geometry;
+    std::size_t entity = 0;
+    std::size_t link = 0;  // into State::links
+    math::Pose pose;       // X_WL of the last update
+    btDbvtNode* leaf = nullptr;
+  };
+
+  bool has_floor = false;
+  std::size_t entities = 0;
+  std::size_t links = 0;
+  std::vector<Solid> solids;
+  btDbvt tree;
+  mutable btAlignedObjectArray<const btDbvtNode*> stack;
+};
+
+namespace {
+
+btDbvtVolume volume(const scene::Geometry& geometry, const math::Pose& pose) {
+  const Extents own = extents(geometry);
+  const Vector3 half = pose.orientation.toRotationMatrix().cwiseAbs() * own.half +
+                       Vector3::Constant(volume_margin);
+  const Vector3 center = pose * own.center;
+  return btDbvtVolume::FromCE(to_bullet(center), to_bullet(half));
+}
+
+bool same(const math::Pose& a, const math::Pose& b) {
+  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
+}  // namespace
+
+Rays::Rays(const scene::Physics& physics) : parts_(std::make_unique<Parts>()) {
+  parts_->has_floor = physics.floor.has_value();
+}
+Rays::~Rays() = default;
+
+void Rays::add(const scene::Entity& entity) {
+  Parts& p = *parts_;
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    const scene::Link& link = entity.links[i];
+    if (link.collides) p.solids.push_back({link.geometry, p.entities, p.links + i, {}, nullptr});
+  }
+  p.links += entity.links.size();
+  p.entities += 1;
+}
+
+void Rays::update(const world::State& state) {
+  Parts& p = *parts_;
+  for (std::size_t i = 0; i < p.solids.size(); ++i) {
+    Parts::Solid& solid = p.solids[i];
+    const math::Pose& pose = state.links[solid.link].pose;
+    if (solid.leaf && same(pose, solid.pose)) continue;
+    if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) continue;
+    solid.pose = pose;
+    btDbvtVolume bounds = volume(solid.geometry, pose);
+    if (solid.leaf) {
+      p.tree.update(solid.leaf, bounds);
+    } else {
+      solid.leaf = p.tree.insert(bounds, nullptr);
+      solid.leaf->dataAsInt = static_cast<int>(i);
+    }
+  }
+  p.tree.optimizeIncremental(1 + static_cast<int>(p.solids.size() / 64));
+}
+
+std::optional<RayHit> Rays::cast(const RayQuery& query) const {
+  const Parts& p = *parts_;
+  const Vector3 way = query.end - query.start;
+  const double length = way.norm();
+  if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
+
+  // The closest; of equally close ones the first in scene order.
+  struct Policy : btDbvt::ICollide {
+    const Parts& parts;
+    const RayQuery& query;
+    double share = 1;
+    const Parts::Solid* met = nullptr;
+
+    Policy(const Parts& parts_in, const RayQuery& query_in) : parts(parts_in), query(query_in) {}
+    void Process(const btDbvtNode* leaf) override {
+      const Parts::Solid& solid = parts.solids[static_cast<std::size_t>(leaf->dataAsInt)];
+      if (std::ranges::find(query.ignored, solid.entity) != query.ignored.end()) return;
+      const math::Pose into = math::inverse(solid.pose);
+      const auto at = enter(solid.geometry, into * query.start, into * query.end, skin);
+      if (!at) return;
+      if (*at < share || (*at == share && met && solid.link < met->link)) {
+        share = *at;
+        met = &solid;
+      }
+    }
+  } policy(p, query);
+
+  btVector3 inverse_way;
+  unsigned signs[3];
+  const btVector3 unit = to_bullet(Vector3(way / length));
+  for (int i = 0; i < 3; ++i) {
+    inverse_way[i] = std::abs(unit[i]) < 1e-30 ? btScalar(BT_LARGE_FLOAT) : 1 / unit[i];
+    signs[i] = inverse_way[i] < 0;
+  }
+  const btVector3 start = to_bullet(query.start), end = to_bullet(query.end), zero(0, 0, 0);
+  p.tree.rayTestInternal(p.tree.m_root, start, end, inverse_way, signs, length, zero, zero, p.stack,
+                         policy);
+
+  std::optional<RayHit> hit;
+  if (policy.met) hit = RayHit{std::max(0.0, policy.share) * length, policy.met->entity};
+  if (query.sees_floor && p.has_floor && query.start.z() >= -skin && way.z() < 0) {
+    const double distance = std::max(0.0, query.start.z()) / -way.z() * length;
+    if (distance < length && (!hit || distance < hit->distance)) hit = RayHit{distance, {}};
+  }
+  return hit;
+}
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,55 @@
+#pragma once
+// What stands between two points: ray casts against all colliders and the floor, for proximity
+// sensors and lines of sight. Works on published poses, so its answers belong to a tick.
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "scene/scene.h"
+#include "world/state.h"
+
+namespace ziggurat::physics {
+
+struct RayHit {
+  double distance = 0;                ///< from the start [m]
+  std::optional<std::size_t> entity;  ///< in order of adding; none: the floor
+};
+
+/// A segment in W, and what it does not see.
+struct RayQuery {
+  math::Vector3 start, end;              ///< [m]
+  std::span<const std::size_t> ignored;  ///< entities that it passes through
+  bool sees_floor = false;
+};
+
+class Rays {
+ public:
+  explicit Rays(const scene::Physics& physics);
+  ~Rays();
+
+  /// Adds an entity; its links take the next places of State::links.
+  void add(const scene::Entity& entity);
+
+  /// Takes the poses of a tick; due before casts.
+  void update(const world::State& state);
+
+  /// The closest entity that the segment meets before its end. A body in which the segment starts
+  /// does not stop it, unless it starts within 0.1 mm below the surface on its way in: what
+  /// touches is met at 0. The floor is met from above only.
+  std::optional<RayHit> cast(const RayQuery& query) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Where a segment enters a shape: the share of the segment's length, at least -skin / length and
+/// less than 1. Nothing if it starts inside or misses.
+/// @param start, end  in the shape's bottom-centre frame [m]
+/// @param skin  depth below the surface that still counts as outside on the way in [m]
+std::optional<double> enter(const scene::Geometry& geometry, const math::Vector3& start,
+                            const math::Vector3& end, double skin);
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,28 @@
+#pragma once
+// What was tested and who was reached: `--rays`.
+
+#include <string>
+
+#include "recording/output_file.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::recording {
+
+/// One line per ray or link of a tick: ziggurat.v1.RayLine as protobuf JSON. Only devices that ask
+/// for it (`show_rays`) have any.
+class Rays {
+ public:
+  /// Keeps a reference to `layout`. @throws WriteError
+  Rays(std::string path, const world::Layout& layout);
+
+  /// @throws WriteError
+  void write(const world::State& state);
+  void close() { file_.close(); }
+
+ private:
+  const world::Layout& layout_;
+  OutputFile file_;
+};
+
+}  // namespace ziggurat::recording

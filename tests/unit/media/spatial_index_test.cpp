@@ -1,0 +1,96 @@
+#include "media/spatial_index.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+namespace ziggurat::media {
+namespace {
+
+using math::Vector3;
+
+std::vector<std::size_t> search(const std::vector<Vector3>& points, const Vector3& center,
+                                double radius) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if ((points[i] - center).norm() < radius) found.push_back(i);
+  }
+  return found;
+}
+
+void expect_same_as_search(const std::vector<Vector3>& points, const std::vector<double>& radii) {
+  SpatialIndex index;
+  index.build(points, radii);
+  std::vector<std::size_t> found;
+  std::size_t total = 0;
+  for (std::size_t i = 0; i < points.size(); i += 7) {
+    const double radius = radii[i % radii.size()];
+    index.find(points[i], radius, 0, points.size(), found);
+    ASSERT_EQ(found, search(points, points[i], radius)) << "around point " << i;
+    total += found.size();
+  }
+  EXPECT_GT(total, 0u);
+}
+
+std::vector<Vector3> scatter(std::size_t count, const Vector3& extents, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Vector3> points(count);
+  for (Vector3& point : points) {
+    for (int i = 0; i < 3; ++i) {
+      point[i] = (static_cast<double>(random()) / 4294967296.0 - 0.5) * extents[i];
+    }
+  }
+  return points;
+}
+
+TEST(SpatialIndex, FindsWhatASearchFinds) {
+  expect_same_as_search(scatter(700, {4, 4, 4}, 1), {0.5});
+  expect_same_as_search(scatter(700, {40, 40, 0}, 2), {1, 3});
+  expect_same_as_search(scatter(700, {0, 0, 9}, 3), {0.1});
+}
+
+TEST(SpatialIndex, StaysRightWhereRangesOrPlacesDiffer) {
+  auto points = scatter(500, {2, 2, 0.1}, 4);
+  points[10] = {1e6, -1e6, 1e6};
+  points[20] = points[21] = points[22] = {0.3, 0.3, 0};
+  expect_same_as_search(points, {0.01, 0.5, 3e6});
+}
+
+TEST(SpatialIndex, NeverFindsPointsThatAreNowhere) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Vector3> points{{nan, 0, 0}, {0, 0, 0}, {0, INFINITY, 0}};
+  SpatialIndex index;
+  index.build(points, {});
+  std::vector<std::size_t> found;
+  index.find({0, 0, 0}, 1e9, 0, 3, found);
+  EXPECT_EQ(found, std::vector<std::size_t>{1});
+  index.find({nan, 0, 0}, 1e9, 0, 3, found);
+  EXPECT_TRUE(found.empty());
+  index.build({}, {});
+  index.find({0, 0, 0}, 1, 0, 0, found);
+  EXPECT_TRUE(found.empty());
+}
+
+TEST(SpatialIndex, FindsOnlyTheWantedStretch) {
+  const std::vector<Vector3> points(6, Vector3(1, 1, 1));
+  SpatialIndex index;
+  index.build(points, {});
+  std::vector<std::size_t> found;
+  index.find({1, 1, 1.5}, 1, 2, 4, found);
+  EXPECT_EQ(found, (std::vector<std::size_t>{2, 3}));
+}
+
+TEST(SpatialIndex, KeepsCellsOfTheOrderOfTheSpacing) {
+  // Two that are far away don't make one cell of everything, nor does one long range.
+  auto points = scatter(10'000, {100, 100, 0}, 5);
+  points[0] = {0, 0, -1e5};
+  std::vector<double> radii(points.size(), 1.0);
+  radii[1] = 1e6;
+  SpatialIndex index;
+  index.build(points, radii);
+  EXPECT_LT(index.cell(), 3);
+}
+
+}  // namespace
+}  // namespace ziggurat::media
