@@ -27,7 +27,7 @@ using math::Vector3;
 
 constexpr double substep = 0.01;   // [s]
 constexpr double speed = 0.05;     // [m/s]
-constexpr double circle = 0.0025;  // radius of each block's motion [m]
+constexpr double circle = 0.002;   // radius of each block's motion [m]
 constexpr double pitch = 0.06;     // of the lattice [m]
 constexpr double corner = 0.0225;  // of a dipole from the block's centre, per axis [m]
 constexpr double moment = 0.1726;  // a dialect field of 65 [A m^2]

@@ -25,38 +25,61 @@ bool same_shape(const Shape& a, const Shape& b) {
 
 std::size_t padded(std::size_t count) { return (count + 3) / 4 * 4; }
 
-/// Of the points, then of the centre.
-std::vector<double> padded_weights(const Rule& rule) {
-  std::vector<double> weights = rule.weights;
-  weights.resize(padded(weights.size()), 0);  // so that the centre may be left out
-  weights.push_back(rule.centre_weight);
-  weights.resize(padded(weights.size()), 0);
-  return weights;
+PaddedRule pad(const Rule& rule) {
+  PaddedRule result{{}, {}, {}, {}, padded(rule.points.size()), rule.centre_weight};
+  const auto add = [&result](const Vector3& point, double weight) {
+    result.x.push_back(point.x());
+    result.y.push_back(point.y());
+    result.z.push_back(point.z());
+    result.weight.push_back(weight);
+  };
+  for (std::size_t k = 0; k < rule.points.size(); ++k) add(rule.points[k], rule.weights[k]);
+  while (result.x.size() < result.shell) add(Vector3::Zero(), 0);
+  add(Vector3::Zero(), rule.centre_weight);
+  while (result.x.size() % 4 != 0) add(Vector3::Zero(), 0);
+  return result;
 }
 
-/// Without the centre.
-Points shell(Points points, const Rule& rule) {
-  points.count = padded(rule.points.size());
-  return points;
+Points points(const PaddedRule& rule, std::size_t count, const Eigen::Matrix3d& axes) {
+  return {rule.x.data(),
+          rule.y.data(),
+          rule.z.data(),
+          rule.weight.data(),
+          count,
+          {axes(0, 0), axes(0, 1), axes(0, 2), axes(1, 0), axes(1, 1), axes(1, 2), axes(2, 0),
+           axes(2, 1), axes(2, 2)}};
 }
 
-Vector3 at(const Points& points, std::size_t k) { return {points.x[k], points.y[k], points.z[k]}; }
+/// With the centre.
+Points whole(const PaddedRule& rule, const Eigen::Matrix3d& axes) {
+  return points(rule, rule.x.size(), axes);
+}
+
+/// Without it.
+Points shell(const PaddedRule& rule, const Eigen::Matrix3d& axes) {
+  return points(rule, rule.shell, axes);
+}
+
+Vector3 at(const Points& p, std::size_t k) {
+  return {p.axes[0] * p.x[k] + p.axes[1] * p.y[k] + p.axes[2] * p.z[k],
+          p.axes[3] * p.x[k] + p.axes[4] * p.y[k] + p.axes[5] * p.z[k],
+          p.axes[6] * p.x[k] + p.axes[7] * p.y[k] + p.axes[8] * p.z[k]};
+}
 
 }  // namespace
 
 ShapedMagnets::ShapedMagnets(const std::vector<Shape>& shapes,
                              const std::vector<math::Quaternion>& orientations, double tolerance)
-    : tolerance_(tolerance), coarse_(shapes.size()), fine_(shapes.size()) {
+    : tolerance_(tolerance) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    auto found = std::find_if(classes_.begin(), classes_.end(), [&](const ShapeClass& known) {
+    const auto found = std::find_if(classes_.begin(), classes_.end(), [&](const ShapeClass& known) {
       return same_shape(known.shape, shapes[i]);
     });
     class_of_.push_back(static_cast<std::uint32_t>(found - classes_.begin()));
     turned_.push_back(orientations[i].toRotationMatrix());
+    is_turned_.push_back(turned_.back() != Eigen::Matrix3d::Identity());
     if (found != classes_.end()) continue;
-    const Rule coarse = coarse_rule(shapes[i]);
-    const Rule fine = fine_rule(shapes[i]);
-    classes_.push_back({shapes[i], coarse, fine, padded_weights(coarse), padded_weights(fine),
+    classes_.push_back({shapes[i], pad(coarse_rule(shapes[i])), pad(fine_rule(shapes[i])),
                         magnetism::reach(shapes[i], share * tolerance)});
     reach_ = std::max(reach_, classes_.back().reach.point);
   }
@@ -72,25 +95,9 @@ Level ShapedMagnets::level(std::size_t first, std::size_t second, double distanc
   return Level::charges;
 }
 
-Points ShapedMagnets::cloud(std::size_t magnet, const Eigen::Matrix3d& rotation, bool fine) {
-  const ShapeClass& kind = classes_[class_of_[magnet]];
-  const Rule& rule = fine ? kind.fine : kind.coarse;
-  const std::vector<double>& weights = fine ? kind.fine_weights : kind.coarse_weights;
-  Placed& placed = fine ? fine_[magnet] : coarse_[magnet];
-  if (placed.substep != substep_) {
-    placed.substep = substep_;
-    placed.x.resize(weights.size(), 0);
-    placed.y.resize(weights.size(), 0);
-    placed.z.resize(weights.size(), 0);
-    const Eigen::Matrix3d whole = rotation * turned_[magnet];
-    for (std::size_t k = 0; k < rule.points.size(); ++k) {
-      const Vector3 point = whole * rule.points[k];
-      placed.x[k] = point.x();
-      placed.y[k] = point.y();
-      placed.z[k] = point.z();
-    }
-  }
-  return {placed.x.data(), placed.y.data(), placed.z.data(), weights.data(), weights.size()};
+Eigen::Matrix3d ShapedMagnets::axes(std::size_t magnet, const Eigen::Matrix3d& rotation) const {
+  if (is_turned_[magnet] == 0) return rotation;
+  return rotation * turned_[magnet];
 }
 
 Interaction ShapedMagnets::between(const Pair& pair, const Points& first,
@@ -125,9 +132,9 @@ Interaction ShapedMagnets::mixed(const Pair& pair, const Points& first,
           -torques - pair.separation.cross(force1)};
 }
 
-PlacedShape ShapedMagnets::placed(const Dipoles& dipoles, std::size_t magnet, const Shape& shape,
-                                  const Eigen::Matrix3d& rotation) const {
-  return {&shape, vector(dipoles.positions[magnet]), rotation * turned_[magnet],
+PlacedShape ShapedMagnets::placed(const Dipoles& dipoles, std::size_t magnet,
+                                  const Eigen::Matrix3d& axes) const {
+  return {&classes_[class_of_[magnet]].shape, vector(dipoles.positions[magnet]), axes,
           vector(dipoles.moments[magnet])};
 }
 
@@ -135,35 +142,29 @@ Interaction ShapedMagnets::beyond_dipoles(const Kernel& kernel, const Dipoles& d
                                           std::size_t first, std::size_t second,
                                           const Eigen::Matrix3d& first_rotation,
                                           const Eigen::Matrix3d& second_rotation,
-                                          double minimum_distance) {
+                                          double minimum_distance) const {
   const Vector3 r = vector(dipoles.positions[first]) - vector(dipoles.positions[second]);
+  const Level used = level(first, second, r.norm());
+  if (used == Level::point) return {};
   const Pair pair{kernel, dipoles.moments[first], dipoles.moments[second], r};
-  const auto a = [&](bool fine) { return cloud(first, first_rotation, fine); };
-  const auto b = [&](bool fine) { return cloud(second, second_rotation, fine); };
-  const ShapeClass& first_class = classes_[class_of_[first]];
-  const ShapeClass& second_class = classes_[class_of_[second]];
+  const ShapeClass& a = classes_[class_of_[first]];
+  const ShapeClass& b = classes_[class_of_[second]];
+  const Eigen::Matrix3d first_axes = axes(first, first_rotation);
+  const Eigen::Matrix3d second_axes = axes(second, second_rotation);
   Interaction result;
   double dipoles_taken = 1;
-  switch (level(first, second, r.norm())) {
-    case Level::point:
-      return result;
-    case Level::coarse:
-      result = between(pair, a(false), b(false));
-      break;
-    case Level::mixed:
-      // Fine against dipole both ways, less the dipoles that are now there twice. The centres of
-      // the fine rules are a share of them.
-      result = mixed(pair, shell(a(true), first_class.fine), shell(b(true), second_class.fine));
-      dipoles_taken = 2 - first_class.fine.centre_weight - second_class.fine.centre_weight;
-      break;
-    case Level::fine:
-      result = between(pair, a(true), b(true));
-      break;
-    case Level::charges:
-      result = charge_pair(placed(dipoles, first, first_class.shape, first_rotation),
-                           placed(dipoles, second, second_class.shape, second_rotation),
-                           share / 2 * tolerance_);
-      break;
+  if (used == Level::coarse) {
+    result = between(pair, whole(a.coarse, first_axes), whole(b.coarse, second_axes));
+  } else if (used == Level::mixed) {
+    // Fine against dipole both ways, less the dipoles that are now there twice. The centres of the
+    // fine rules are a share of them.
+    result = mixed(pair, shell(a.fine, first_axes), shell(b.fine, second_axes));
+    dipoles_taken = 2 - a.fine.centre_weight - b.fine.centre_weight;
+  } else if (used == Level::fine) {
+    result = between(pair, whole(a.fine, first_axes), whole(b.fine, second_axes));
+  } else {
+    result = charge_pair(placed(dipoles, first, first_axes), placed(dipoles, second, second_axes),
+                         share / 2 * tolerance_);
   }
   const Interaction dipole =
       dipole_pair(vector(pair.first_moment), vector(pair.second_moment), r, minimum_distance);
@@ -174,16 +175,15 @@ Interaction ShapedMagnets::beyond_dipoles(const Kernel& kernel, const Dipoles& d
 }
 
 Vector3 ShapedMagnets::field(const Kernel& kernel, const Dipoles& dipoles, std::size_t magnet,
-                             const Eigen::Matrix3d& rotation, const Vector3& point) {
+                             const Eigen::Matrix3d& rotation, const Vector3& point) const {
   const Vector3 r = point - vector(dipoles.positions[magnet]);
   const ShapeClass& kind = classes_[class_of_[magnet]];
-  const Vector3 moment = vector(dipoles.moments[magnet]);
+  const Eigen::Matrix3d turn = axes(magnet, rotation);
   if (r.norm() >= kind.reach.fine) {
-    const Points fine = cloud(magnet, rotation, true);
-    return vector(kernel.points({}, dipoles.moments[magnet], row(r), fine).field);
+    return vector(kernel.points({}, dipoles.moments[magnet], row(r), whole(kind.fine, turn)).field);
   }
-  const Eigen::Matrix3d axes = rotation * turned_[magnet];
-  return axes * shape_field(kind.shape, axes.transpose() * moment, axes.transpose() * r,
+  const Vector3 moment = vector(dipoles.moments[magnet]);
+  return turn * shape_field(kind.shape, turn.transpose() * moment, turn.transpose() * r,
                             1e-2 * tolerance_);
 }
 

@@ -20,11 +20,17 @@ enum class Level {
   charges,  ///< exact field over pole charges
 };
 
+/// A rule as the kernel wants it: its points padded to a multiple of four, then the centre, padded.
+struct PaddedRule {
+  std::vector<double> x, y, z, weight;
+  std::size_t shell;  ///< entries without the centre
+  double centre_weight;
+};
+
 /// Shared by all magnets of one shape.
 struct ShapeClass {
   Shape shape;
-  Rule coarse, fine;
-  std::vector<double> coarse_weights, fine_weights;  ///< of the points, the centre; padded
+  PaddedRule coarse, fine;
   Reach reach;
 };
 
@@ -39,9 +45,6 @@ class ShapedMagnets {
   double reach() const { return reach_; }
   double reach(std::size_t magnet) const { return classes_[class_of_[magnet]].reach.point; }
 
-  /// New poses: forgets the points placed for the last ones.
-  void begin_substep() { ++substep_; }
-
   Level level(std::size_t first, std::size_t second, double distance) const;
 
   /// What the two do to each other less what their dipoles do; positions and moments are the
@@ -50,18 +53,13 @@ class ShapedMagnets {
   /// @param minimum_distance  of the dipoles [m]
   Interaction beyond_dipoles(const Kernel& kernel, const Dipoles& dipoles, std::size_t first,
                              std::size_t second, const Eigen::Matrix3d& first_rotation,
-                             const Eigen::Matrix3d& second_rotation, double minimum_distance);
+                             const Eigen::Matrix3d& second_rotation, double minimum_distance) const;
 
   /// Flux density of one magnet at a point [T].
   Vector3 field(const Kernel& kernel, const Dipoles& dipoles, std::size_t magnet,
-                const Eigen::Matrix3d& rotation, const Vector3& point);
+                const Eigen::Matrix3d& rotation, const Vector3& point) const;
 
  private:
-  /// A rule's points and centre in world axes, padded for the kernel.
-  struct Placed {
-    std::uint64_t substep = 0;
-    std::vector<double> x, y, z;
-  };
   struct Pair {
     const Kernel& kernel;
     const Row& first_moment;
@@ -69,22 +67,21 @@ class ShapedMagnets {
     Vector3 separation;  // first minus second centre
   };
 
-  Points cloud(std::size_t magnet, const Eigen::Matrix3d& rotation, bool fine);
+  void add_class(const Shape& shape);
+  Eigen::Matrix3d axes(std::size_t magnet, const Eigen::Matrix3d& rotation) const;
   /// Every point of the first against all of the second. Only the first's side is summed; the
   /// torque on the second follows from the conservation law.
   Interaction between(const Pair& pair, const Points& first, const Points& second) const;
   /// The centre of each against the points of the other, likewise.
   Interaction mixed(const Pair& pair, const Points& first, const Points& second) const;
-  PlacedShape placed(const Dipoles& dipoles, std::size_t magnet, const Shape& shape,
-                     const Eigen::Matrix3d& rotation) const;
+  PlacedShape placed(const Dipoles& dipoles, std::size_t magnet, const Eigen::Matrix3d& axes) const;
 
   double tolerance_;
   double reach_ = 0;
   std::vector<ShapeClass> classes_;
   std::vector<std::uint32_t> class_of_;  // of every magnet
   std::vector<Eigen::Matrix3d> turned_;  // shape axes to body axes, of every magnet
-  std::vector<Placed> coarse_, fine_;    // of every magnet
-  std::uint64_t substep_ = 1;
+  std::vector<char> is_turned_;          // whether it is not the identity
 };
 
 }  // namespace ziggurat::magnetism

@@ -1,10 +1,37 @@
 #include "magnetism/elementary.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
 namespace ziggurat::magnetism {
+
+namespace {
+
+/// 1/3, 1/5, 1/7 ...: the series of the arc tangent and of the logarithm.
+template <int count>
+constexpr std::array<double, count> odd_reciprocals() {
+  std::array<double, count> result{};
+  for (int k = 0; k < count; ++k) result[k] = 1.0 / (2 * k + 3);
+  return result;
+}
+
+/// Sum over k of c[k] x^k, by halves: a chain of multiplications is slow.
+template <int count>
+double polynomial(const std::array<double, count>& c, double x) {
+  const double square = x * x;
+  double even = c[count - 2];
+  double odd = c[count - 1];
+#pragma GCC unroll 16
+  for (int k = count - 4; k >= 0; k -= 2) {
+    even = even * square + c[k];
+    odd = odd * square + c[k + 1];
+  }
+  return even + odd * x;
+}
+
+}  // namespace
 
 double decay(double x) {
   if (!(x < 700)) return 0;
@@ -30,8 +57,8 @@ double logarithm(double x) {
   }
   const double s = (mantissa - 1) / (mantissa + 1);
   const double square = s * s;
-  double sum = 0;
-  for (int k = 23; k > 1; k -= 2) sum = (sum + 1.0 / k) * square;
+  static constexpr auto coefficients = odd_reciprocals<12>();
+  const double sum = square * polynomial<12>(coefficients, square);
   const auto e = static_cast<double>(exponent);
   return e * 0.693147180369123816490 + (2 * (s + s * sum) + e * 1.90821492927058770002e-10);
 }
@@ -46,8 +73,8 @@ double angle(double y, double x) {
   const bool upper = t > 0.41421356237309503;  // tan(pi / 8)
   if (upper) t = (t - 1) / (t + 1);
   const double square = t * t;
-  double sum = 0;
-  for (int k = 39; k > 1; k -= 2) sum = -(sum + 1.0 / k) * square;
+  static constexpr auto coefficients = odd_reciprocals<20>();
+  const double sum = -square * polynomial<20>(coefficients, -square);
   double result = t + t * sum;
   if (upper) result += quarter;
   if (ay > ax) result = 2 * quarter - result;

@@ -36,6 +36,7 @@ Field::Field(std::vector<Magnet> magnets, std::size_t bodies, const Options& opt
   external_.resize(rows);
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
     assert(magnets_[i].body < bodies);
+    body_of_.push_back(magnets_[i].body);
     if (magnets_[i].freely_turning) free_.push_back(static_cast<std::uint32_t>(i));
     positions_[i].w = core_radius(magnets_[i]);
     // Pairs of one group are left out: magnets fixed to the same body, whose forces and torques on
@@ -89,7 +90,6 @@ void Field::evaluate(double dt, std::span<const Pose> bodies, std::span<const do
   assert(currents.size() == magnets_.size());
   place(bodies, currents);
   neighbours_.update(dipoles());
-  if (shapes_) shapes_->begin_substep();
   if (dt > 0 && !free_.empty()) turn(dt);
   std::fill(forces_.begin(), forces_.end(), Row{});
   std::fill(fields_.begin(), fields_.end(), Row{});
@@ -146,8 +146,8 @@ void Field::add_interaction_of_shapes(std::size_t first, std::size_t second) {
   const Vector3 r = vector(positions_[first]) - vector(positions_[second]);
   const double minimum = std::max(range_.minimum, positions_[first].w + positions_[second].w);
   const Interaction extra =
-      shapes_->beyond_dipoles(kernel_, dipoles(), first, second, rotations_[magnets_[first].body],
-                              rotations_[magnets_[second].body], minimum);
+      shapes_->beyond_dipoles(kernel_, dipoles(), first, second, rotations_[body_of_[first]],
+                              rotations_[body_of_[second]], minimum);
   const double factor = fade(r.norm());
   const auto add = [factor](Row& to, const Vector3& term) {
     to = row(vector(to) + factor * term, to.w);

@@ -112,6 +112,7 @@ class Field {
   std::optional<ShapedMagnets> shapes_;
   std::optional<Neighbours> near_;  // where neighbours_ keeps no list
   std::vector<Row> torques_;
+  std::vector<std::uint32_t> body_of_;  // of every magnet
 };
 
 }  // namespace ziggurat::magnetism

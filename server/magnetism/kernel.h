@@ -55,14 +55,15 @@ struct Pairs {
   std::size_t count;  ///< with padding
 };
 
-/// Weighted points that stand for one magnet, as seen from its centre in world axes; arrays padded
-/// to a multiple of four with zero weights.
+/// Weighted points that stand for one magnet, in its shape's axes from its centre; arrays padded to
+/// a multiple of four with zero weights.
 struct Points {
   const double* x;  ///< [m]
   const double* y;
   const double* z;
   const double* weight;  ///< share of the moment
   std::size_t count;     ///< with padding
+  double axes[9];        ///< rotation from the shape's axes to the world, row by row
 };
 
 /// One dipole in the field of a magnet made of points: x y z of Row.

@@ -161,9 +161,14 @@ static PointResult points(const Row& moment, const Row& source, const Row& separ
   Lanes cubes = zero, first = zero, second = zero;
   Columns radial = columns(zero, zero, zero);
   Columns along = radial;
+  const double* axes = set.axes;
   for (std::size_t k = 0; k < set.count; k += 4) {
-    const Columns r = columns(separation.x - load(set.x + k), separation.y - load(set.y + k),
-                              separation.z - load(set.z + k));
+    const Lanes x = load(set.x + k);
+    const Lanes y = load(set.y + k);
+    const Lanes z = load(set.z + k);
+    const Columns r = columns(separation.x - (axes[0] * x + axes[1] * y + axes[2] * z),
+                              separation.y - (axes[3] * x + axes[4] * y + axes[5] * z),
+                              separation.z - (axes[6] * x + axes[7] * y + axes[8] * z));
     const Lanes inverse = 1 / square_root(larger(dot(r, r), all(1e-24)));
     const Lanes square = inverse * inverse;
     const Lanes cube = load(set.weight + k) * (square * inverse);

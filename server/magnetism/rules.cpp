@@ -136,9 +136,14 @@ Moments difference(const MomentTable& a, const MomentTable& b) {
   return result;
 }
 
-/// How much larger the worst error over orientations and of the torque is than that of the coaxial
-/// force; measured over random poses (docs/magnetism.md).
-constexpr double orientation_factor = 2.3;
+/// How much larger the worst error over orientations, and of the torque, is than that of the
+/// coaxial force; it grows with the distance in sides, since the torque is measured by the side.
+/// Measured over random poses (docs/magnetism.md).
+double orientation_factor(double distance, double side) {
+  return std::clamp(0.45 * distance / side, 2.3, 3.5);
+}
+/// The same where only products of errors are left: cubes, and shapes with second moments.
+constexpr double mixed_factors[] = {1.5, 2.7};
 
 /// Relative error of the coaxial force from the product of a moment of order l that is wrong and
 /// one of order m, at distance 1: C(l+m, m) (l+m+1)(l+m+2)(l+m+3) / 6.
@@ -158,7 +163,7 @@ double error(const Moments& wrong, const Moments& other, double distance) {
              std::pow(distance, l + m);
     }
   }
-  return orientation_factor * sum;
+  return sum;
 }
 
 /// The least distance, not below the bound, from which on the error stays within the tolerance.
@@ -244,7 +249,9 @@ Reach reach(const Shape& shape, double tolerance) {
   const Moments coarse = residual(coarse_rule(shape), shape);
   const Moments fine = residual(fine_rule(shape), shape);
   const auto both = [&](const Moments& wrong) {
-    return [&](double d) { return 2 * error(wrong, body, d); };
+    return [&](double d) {
+      return 2 * orientation_factor(d, longest_side(shape)) * error(wrong, body, d);
+    };
   };
   // What the mixed form misses: products of what both points get wrong.
   const auto mixed = [&](double d) {
@@ -254,7 +261,8 @@ Reach reach(const Shape& shape, double tolerance) {
         both_wrong += amplification(l, m) * point[l / 2] * point[m / 2] / std::pow(d, l + m);
       }
     }
-    return 2 * error(fine, Moments{}, d) + orientation_factor * both_wrong;
+    return mixed_factors[coarse_rule(shape).points.empty() ? 0 : 1] *
+           (2 * error(fine, Moments{}, d) + both_wrong);
   };
   const double bound = size;
   return {least_distance(bound, tolerance, both(point)),
