@@ -58,10 +58,12 @@ def target_of(header, root, including):
     """The module that provides a header of ours, or None for a header from elsewhere."""
     if header.endswith(".pb.h"):
         return "protocol"
-    bases = [root / "server", root / "protocol", root / "clients/cpp/include",
-             root / "clients/cpp", root / "clients/lua"]
-    if root / "clients" in including.parents:
-        bases.append(including.parent)
+    servers = [root / "server", root / "protocol"]
+    clients = [root / "clients/cpp/include", root / "clients/cpp", root / "clients/lua"]
+    if root / "clients" in including.parents:  # whose folders may be called as the server's
+        bases = [including.parent, *clients, *servers]
+    else:
+        bases = [*servers, *clients]
     for base in bases:
         found = base / header
         if found.is_file():
