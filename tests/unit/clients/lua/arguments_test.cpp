@@ -1,0 +1,93 @@
+// Devices' functions check what they are given, and can be kept.
+
+#include <limits>
+
+#include "script_fixture.h"
+
+namespace ziggurat::lua {
+namespace {
+
+class Arguments : public ScriptTest {};
+
+TEST_F(Arguments, BothNumberSubtypesAreNumbers) {
+  ASSERT_EQ(start("robot.joints.both.set_target(2) robot.joints.motor.set_target(0.5)"),
+            std::nullopt);
+  EXPECT_EQ(joint(0).target, 2);
+  EXPECT_EQ(joint(2).target, 0.5);
+  EXPECT_TRUE(joint(0).is_target_fresh);
+  EXPECT_FALSE(joint(1).is_target_fresh);
+}
+
+TEST_F(Arguments, WrongOnesAreErrorsThatScriptsCanCatch) {
+  const std::string script = R"(
+    for _, argument in ipairs{{}, {1, 2}, {"1"}, {"x"}, {true}, {{}}, {1/0}, {-1/0}, {0/0}} do
+      local ok, message = pcall(robot.joints.both.set_target, table.unpack(argument))
+      log(ok, " ", (message:gsub("^.*set_target", "set_target")))
+    end
+    local ok, message = pcall(robot.joints.both.set_target, nil)
+    log(ok, " ", (message:gsub("^.*set_target", "set_target"))))";
+  const auto lines = logged(script);
+  ASSERT_EQ(lines.size(), 10u) << lines[0];
+  EXPECT_EQ(lines[0], "0 set_target(target) expected, got 0");
+  EXPECT_EQ(lines[1], "0 set_target(target) expected, got 2");
+  EXPECT_NE(lines[2].find("number expected, got string"), std::string::npos) << lines[2];
+  EXPECT_NE(lines[4].find("number expected, got boolean"), std::string::npos) << lines[4];
+  for (int i : {6, 7, 8}) {
+    EXPECT_NE(lines[i].find("finite number expected"), std::string::npos) << lines[i];
+  }
+  EXPECT_NE(lines[9].find("number expected, got nil"), std::string::npos) << lines[9];
+  EXPECT_FALSE(joint(0).is_target_fresh);
+  EXPECT_EQ(joint(0).target, 0);
+}
+
+TEST_F(Arguments, OnesTypedWrongNameTheLineOfTheScript) {
+  const auto failure = start("\n\nrobot.joints.both.set_target('fast')");
+  ASSERT_TRUE(failure);
+  EXPECT_NE(failure->find("main.lua:3: bad argument #1 to 'set_target' "
+                          "(number expected, got string)"),
+            std::string::npos)
+      << *failure;
+}
+
+TEST_F(Arguments, SensorAndActuatorShareATable) {
+  EXPECT_EQ(logged("local j = robot.joints "
+                   "log(j.both.encoder, type(j.both.set_target)) "
+                   "log(j.sensor.encoder, type(j.sensor.set_target)) "
+                   "log(j.motor.encoder, type(j.motor.set_target))"),
+            (Lines{"0function", "0nil", "nilfunction"}));
+}
+
+TEST_F(Arguments, KeptTablesAndFunctionsStayGood) {
+  ASSERT_EQ(start("local both, set = robot.joints.both, robot.joints.motor.set_target "
+                  "robot.joints = nil robot = nil collectgarbage() "
+                  "function step() set(both.encoder * 2) end"),
+            std::nullopt);
+  for (int tick = 1; tick <= 3; ++tick) {
+    joint(0).encoder = tick;
+    ASSERT_EQ(controller().step(tick), std::nullopt);
+    EXPECT_EQ(joint(2).target, 2 * tick);
+  }
+}
+
+TEST_F(Arguments, AScriptThatSpoilsItsTablesHurtsNobody) {
+  ASSERT_EQ(start("robot.joints.both.encoder = nil robot.joints.sensor = 5 "
+                  "function step() log(robot.joints.both.encoder) end"),
+            std::nullopt);
+  joint(0).encoder = 0.5;
+  ASSERT_EQ(controller().step(1), std::nullopt);
+  EXPECT_EQ(controller().robot().log.lines.at(0).text, "0.5");
+}
+
+TEST_F(Arguments, WritingReadingsAllocatesNothing) {
+  ASSERT_EQ(start("function step() end"), std::nullopt);
+  ASSERT_EQ(controller().step(1), std::nullopt);
+  const auto before = controller().used_memory();
+  for (int tick = 2; tick < 1000; ++tick) {
+    joint(0).encoder = 0.1 * tick;
+    ASSERT_EQ(controller().step(tick), std::nullopt);
+  }
+  EXPECT_EQ(controller().used_memory(), before);
+}
+
+}  // namespace
+}  // namespace ziggurat::lua

@@ -1,0 +1,117 @@
+// The command line of ziggurat-lua, and where it finds scripts.
+
+#include <cstdlib>
+
+#include "program/find_script.h"
+#include "program/options.h"
+#include "script_fixture.h"
+
+namespace ziggurat::lua {
+namespace {
+
+Request read(std::vector<const char*> arguments, bool is_terminal = false) {
+  arguments.insert(arguments.begin(), "ziggurat-lua");
+  return read_arguments(static_cast<int>(arguments.size()), arguments.data(), is_terminal);
+}
+
+std::string fault_of(std::vector<const char*> arguments) {
+  try {
+    read(std::move(arguments));
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+class Program : public ScriptTest {
+ protected:
+  Program() {
+    ::unsetenv("ZIGGURAT_ENDPOINT");
+    ::unsetenv("ZIGGURAT_CONTROLLER");
+  }
+  ~Program() override {
+    ::unsetenv("ZIGGURAT_ENDPOINT");
+    ::unsetenv("ZIGGURAT_CONTROLLER");
+  }
+};
+
+TEST_F(Program, ReadsItsArguments) {
+  const auto options = read({"--connect", "tcp://a:1", "--robot", "a*", "--robot", "b", "--script",
+                             "x.lua", "--controller", "c", "--name", "n", "--max-memory", "2"})
+                           .options;
+  EXPECT_EQ(options.endpoint, "tcp://a:1");
+  EXPECT_EQ(options.robots, (std::vector<std::string>{"a*", "b"}));
+  EXPECT_EQ(options.script, "x.lua");
+  EXPECT_EQ(options.controller, "c");
+  EXPECT_EQ(options.name, "n");
+  EXPECT_EQ(options.max_memory, std::size_t{2} << 20);
+  EXPECT_FALSE(options.echo);
+}
+
+TEST_F(Program, TakesFromTheEnvironmentWhatIsLeftOpen) {
+  ::setenv("ZIGGURAT_ENDPOINT", "tcp://e:1", 1);
+  ::setenv("ZIGGURAT_CONTROLLER", "drive", 1);
+  EXPECT_EQ(read({}).options.endpoint, "tcp://e:1");
+  EXPECT_EQ(read({}).options.controller, "drive");
+  EXPECT_EQ(read({"--connect", "tcp://a:1"}).options.endpoint, "tcp://a:1");
+  EXPECT_EQ(read({"--robot", "r0"}).options.controller, "");
+}
+
+TEST_F(Program, EchoesOnATerminalUnlessQuiet) {
+  EXPECT_TRUE(read({"--connect", "x"}, true).options.echo);
+  EXPECT_FALSE(read({"--connect", "x", "--quiet"}, true).options.echo);
+  EXPECT_TRUE(read({"--connect", "x", "--echo"}).options.echo);
+}
+
+TEST_F(Program, ReadsRobotsFromAFile) {
+  write("robots", "r0\n\n  r1 \r\nr2");
+  const auto path = (folder() / "robots").string();
+  EXPECT_EQ(read({"--connect", "x", "--robots-file", path.c_str()}).options.robots,
+            (std::vector<std::string>{"r0", "r1", "r2"}));
+  write("robots", "\n");
+  EXPECT_NE(fault_of({"--connect", "x", "--robots-file", path.c_str()}).find("no robot"),
+            std::string::npos);
+  EXPECT_NE(fault_of({"--connect", "x", "--robots-file", "/no/such"}).find("can't be read"),
+            std::string::npos);
+}
+
+TEST_F(Program, SaysWhatIsWrong) {
+  EXPECT_NE(fault_of({}).find("--connect is missing"), std::string::npos);
+  EXPECT_NE(fault_of({"--connect", "x", "--bogus"}).find("bogus"), std::string::npos);
+  EXPECT_NE(fault_of({"--connect", "x", "stray"}).find("--help"), std::string::npos);
+  for (const char* memory : {"0", "-1", "x", "1x", "", "99999999999999999999"}) {
+    EXPECT_NE(fault_of({"--connect", "x", "--max-memory", memory}), "") << memory;
+  }
+}
+
+TEST_F(Program, TeachesWithHelp) {
+  const auto text = read({"--help"}).text;
+  for (const char* part : {"--connect", "--robots-file", "Exit codes", "ziggurat serve"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(read({"--version"}).text.substr(0, 13), "ziggurat-lua ");
+}
+
+TEST_F(Program, FindsTheScriptThatTheServerNames) {
+  write("main.lua", "");
+  const auto path = (folder() / "main.lua").string();
+  EXPECT_EQ(find_script(path, {{"script", "other.lua"}}).path, path);
+}
+
+TEST_F(Program, FindsTheScriptFromTheWorkingDirectory) {
+  write("main.lua", "");
+  const auto relative = std::filesystem::proximate(folder() / "main.lua").string();
+  EXPECT_EQ(find_script("/elsewhere/main.lua", {{"speed", "1"}, {"script", relative}}).path,
+            relative);
+}
+
+TEST_F(Program, SaysWhereItLookedForAScript) {
+  const auto found = find_script("/elsewhere/main.lua", {{"script", "no/main.lua"}});
+  EXPECT_TRUE(found.path.empty());
+  EXPECT_NE(found.fault.find("/elsewhere/main.lua"), std::string::npos);
+  EXPECT_NE(found.fault.find("'no/main.lua'"), std::string::npos);
+  EXPECT_NE(find_script("", {}).fault.find("--script"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ziggurat::lua
