@@ -91,7 +91,7 @@ void SpatialIndex::build(std::span<const Vector3> points, std::span<const double
   items_.resize(finite);
   for (std::size_t i = points.size(); i-- > 0;) {
     if (!points[i].allFinite()) continue;
-    items_[--starts_[buckets_[i]]] = {points[i], cell_of(points[i]), i};
+    items_[--starts_[buckets_[i]]] = {points[i], static_cast<std::uint32_t>(i)};
   }
 }
 
@@ -121,14 +121,17 @@ void SpatialIndex::find(const Vector3& center, double radius, std::size_t first,
           const std::size_t bucket = bucket_of(cell);
           for (std::size_t i = starts_[bucket]; i < starts_[bucket + 1]; ++i) {
             const Item& item = items_[i];
-            if (item.index < first || item.index >= last || item.cell != cell) continue;
+            if (item.index < first || item.index >= last) continue;
             if ((item.point - center).norm() < radius) found.push_back(item.index);
           }
         }
       }
     }
   }
+  // Cells that share a bucket bring its items twice.
   std::ranges::sort(found);
+  const auto repeated = std::ranges::unique(found);
+  found.erase(repeated.begin(), repeated.end());
 }
 
 }  // namespace ziggurat::media

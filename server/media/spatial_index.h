@@ -31,8 +31,7 @@ class SpatialIndex {
 
   struct Item {
     math::Vector3 point;
-    Cell cell;
-    std::size_t index;
+    std::uint32_t index;
   };
 
   double choose_cell(std::span<const math::Vector3> points, std::span<const double> radii);

@@ -146,6 +146,7 @@ Rays::Rays(const scene::Physics& physics) : parts_(std::make_unique<Parts>()) {
   parts_->has_floor = physics.floor.has_value();
 }
 Rays::~Rays() = default;
+Rays::Rays(Rays&&) noexcept = default;
 
 void Rays::add(const scene::Entity& entity) {
   Parts& p = *parts_;

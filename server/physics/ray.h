@@ -28,6 +28,7 @@ class Rays {
  public:
   explicit Rays(const scene::Physics& physics);
   ~Rays();
+  Rays(Rays&&) noexcept;
 
   /// Adds an entity; its links take the next places of State::links.
   void add(const scene::Entity& entity);
