@@ -48,7 +48,7 @@ ZIGGURAT_INLINE void accumulate(Columns& sum, const Columns& term) {
 }
 
 /// The four rows from begin on: their pairs among themselves, then with all later rows.
-template <bool tapered>
+template <bool tapered, bool open>
 ZIGGURAT_INLINE void add_block(const Dipoles& dipoles, std::size_t begin, const Range& range,
                                const Sums& sums) {
   const Row* p = dipoles.positions;
@@ -67,19 +67,31 @@ ZIGGURAT_INLINE void add_block(const Dipoles& dipoles, std::size_t begin, const 
     accumulate(force, four.force);
     accumulate(field, four.first_field);
   }
-  for (std::size_t j = begin + 4; j < dipoles.count; ++j) {
-    const Columns m2 = same(m[j]);
-    FourPairs four = four_pairs<tapered>(p1, m1, same(p[j]), m2, range, m1.w != m2.w);
-    accumulate(force, four.force);
-    accumulate(field, four.first_field);
-    Columns& back = four.force;
-    Columns& second = four.second_field;
-    transpose(back.x, back.y, back.z, back.w);
-    transpose(second.x, second.y, second.z, second.w);
-    Row& force2 = sums.forces[j];
-    Row& field2 = sums.fields[j];
-    store(force2, load(force2) - back.x - back.y - back.z - back.w);
-    store(field2, load(field2) + second.x + second.y + second.z + second.w);
+  // Roots and divisions first, for a few rows together: one row's wait for them would else hold up
+  // the next row's arithmetic.
+  constexpr std::size_t ahead = 16;
+  Lanes inverses[ahead];
+  for (std::size_t from = begin + 4; from < dipoles.count; from += ahead) {
+    const std::size_t rows = from + ahead < dipoles.count ? ahead : dipoles.count - from;
+    for (std::size_t k = 0; k < rows; ++k) {
+      inverses[k] = inverse_distance<open>(p1, same(p[from + k]), range);
+    }
+    for (std::size_t k = 0; k < rows; ++k) {
+      const std::size_t j = from + k;
+      const Columns m2 = same(m[j]);
+      FourPairs four = four_pairs<tapered, open>(p1, m1, same(p[j]), m2, inverses[k], range,
+                                                 m1.w != m2.w);
+      accumulate(force, four.force);
+      accumulate(field, four.first_field);
+      Columns& back = four.force;
+      Columns& second = four.second_field;
+      transpose(back.x, back.y, back.z, back.w);
+      transpose(second.x, second.y, second.z, second.w);
+      Row& force2 = sums.forces[j];
+      Row& field2 = sums.fields[j];
+      store(force2, load(force2) - back.x - back.y - back.z - back.w);
+      store(field2, load(field2) + second.x + second.y + second.z + second.w);
+    }
   }
   transpose(force.x, force.y, force.z, force.w);
   transpose(field.x, field.y, field.z, field.w);
@@ -91,10 +103,10 @@ ZIGGURAT_INLINE void add_block(const Dipoles& dipoles, std::size_t begin, const 
   }
 }
 
-template <bool tapered>
+template <bool tapered, bool open>
 static void add_all_pairs(const Dipoles& dipoles, const Range& range, const Sums& sums) {
   for (std::size_t begin = 0; begin < dipoles.count; begin += 4) {
-    add_block<tapered>(dipoles, begin, range, sums);
+    add_block<tapered, open>(dipoles, begin, range, sums);
   }
 }
 
@@ -107,11 +119,21 @@ static void pairs(const Dipoles& dipoles, const Pairs& list, const Range& range,
   }
 }
 
+static bool is_open(const Dipoles& dipoles, const Range& range) {
+  if (range.maximum <= 1.7976931348623157e308) return false;
+  for (std::size_t i = 0; i < dipoles.count; ++i) {
+    if (dipoles.positions[i].w != 0) return false;
+  }
+  return true;
+}
+
 static void all_pairs(const Dipoles& dipoles, const Range& range, const Sums& sums) {
   if (range.taper_start < range.maximum) {
-    add_all_pairs<true>(dipoles, range, sums);
+    add_all_pairs<true, false>(dipoles, range, sums);
+  } else if (is_open(dipoles, range)) {
+    add_all_pairs<false, true>(dipoles, range, sums);
   } else {
-    add_all_pairs<false>(dipoles, range, sums);
+    add_all_pairs<false, false>(dipoles, range, sums);
   }
 }
 

@@ -107,16 +107,25 @@ ZIGGURAT_INLINE Fade fade(const Lanes& distance, const Range& range) {
   return {1 - u * u * u * (10 - 15 * u + 6 * (u * u)), (-30 / width) * (u * u) * (rest * rest)};
 }
 
+/// One over the distance, or over the least distance that counts.
+/// @tparam open  no cores and no maximum: the same bits with less to do
+template <bool open>
+ZIGGURAT_INLINE Lanes inverse_distance(const Columns& p1, const Columns& p2, const Range& range) {
+  const Columns r = columns(p1.x - p2.x, p1.y - p2.y, p1.z - p2.z);
+  const Lanes closest = open ? all(range.minimum) : larger(p1.w + p2.w, all(range.minimum));
+  return 1 / square_root(larger(dot(r, r), closest * closest));
+}
+
+/// @param inverse  inverse_distance() of the same
 /// @param allowed  lanes that count, before the range is looked at
-template <bool tapered>
+template <bool tapered, bool open = false>
 ZIGGURAT_INLINE FourPairs four_pairs(const Columns& p1, const Columns& m1, const Columns& p2,
-                                     const Columns& m2, const Range& range, const Mask& allowed) {
+                                     const Columns& m2, const Lanes& inverse, const Range& range,
+                                     const Mask& allowed) {
   constexpr double K = 1e-7;
   const Columns r = columns(p1.x - p2.x, p1.y - p2.y, p1.z - p2.z);
-  const Lanes squared = dot(r, r);
-  const Lanes closest = larger(p1.w + p2.w, all(range.minimum));
-  const Lanes inverse = 1 / square_root(larger(squared, closest * closest));
-  const Mask mask = allowed & (squared <= range.maximum * range.maximum);
+  Mask mask = allowed;
+  if constexpr (!open) mask &= dot(r, r) <= range.maximum * range.maximum;
   const Lanes square = inverse * inverse;
   const Lanes along1 = dot(m1, r);
   const Lanes along2 = dot(m2, r);
@@ -138,4 +147,11 @@ ZIGGURAT_INLINE FourPairs four_pairs(const Columns& p1, const Columns& m1, const
                   toward1 * r.z - cube * m2.z),
           columns(toward2 * r.x - cube * m1.x, toward2 * r.y - cube * m1.y,
                   toward2 * r.z - cube * m1.z)};
+}
+
+template <bool tapered>
+ZIGGURAT_INLINE FourPairs four_pairs(const Columns& p1, const Columns& m1, const Columns& p2,
+                                     const Columns& m2, const Range& range, const Mask& allowed) {
+  const Lanes inverse = inverse_distance<false>(p1, p2, range);
+  return four_pairs<tapered>(p1, m1, p2, m2, inverse, range, allowed);
 }
