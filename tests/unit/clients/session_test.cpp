@@ -1,14 +1,11 @@
 // The client against a server that says exactly what the test wants.
 
 #include <gtest/gtest.h>
-#include <zmq.h>
 
-#include <array>
 #include <cstdlib>
-#include <functional>
 #include <limits>
-#include <thread>
 
+#include "fake_server.h"
 #include "ziggurat/v1/protocol.pb.h"
 #include "ziggurat/ziggurat.h"
 
@@ -16,106 +13,6 @@ namespace ziggurat {
 namespace {
 
 using std::chrono::milliseconds;
-
-/// Runs `script` in a thread beside the test.
-class FakeServer {
- public:
-  explicit FakeServer(std::function<void(FakeServer&)> script)
-      : context_(zmq_ctx_new()), router_(zmq_socket(context_, ZMQ_ROUTER)) {
-    constexpr int patience_ms = 5000;
-    constexpr int linger_ms = 500;
-    zmq_setsockopt(router_, ZMQ_RCVTIMEO, &patience_ms, sizeof(patience_ms));
-    zmq_setsockopt(router_, ZMQ_LINGER, &linger_ms, sizeof(linger_ms));
-    zmq_bind(router_, "tcp://127.0.0.1:*");
-    std::array<char, 100> address{};
-    std::size_t size = address.size();
-    zmq_getsockopt(router_, ZMQ_LAST_ENDPOINT, address.data(), &size);
-    endpoint = address.data();
-    thread_ = std::thread([this, script] {
-      script(*this);
-      zmq_close(router_);
-    });
-  }
-  ~FakeServer() {
-    thread_.join();
-    zmq_ctx_term(context_);
-  }
-
-  /// The client's next message; empty if none comes.
-  v1::ClientMessage heard() {
-    std::array<char, 64> peer{};
-    const int size = zmq_recv(router_, peer.data(), peer.size(), 0);
-    if (size < 0) return {};
-    peer_.assign(peer.data(), static_cast<std::size_t>(size));
-    zmq_msg_t frame;
-    zmq_msg_init(&frame);
-    zmq_msg_recv(&frame, router_, 0);
-    v1::ClientMessage message;
-    EXPECT_TRUE(
-        message.ParseFromArray(zmq_msg_data(&frame), static_cast<int>(zmq_msg_size(&frame))));
-    zmq_msg_close(&frame);
-    return message;
-  }
-  void say(const v1::ServerMessage& message) { say_bytes(message.SerializeAsString()); }
-  void say_bytes(const std::string& bytes) {
-    zmq_send(router_, peer_.data(), peer_.size(), ZMQ_SNDMORE);
-    zmq_send(router_, bytes.data(), bytes.size(), 0);
-  }
-
-  /// Two robots "a" and "b", each with joint "slide" (encoder) and "hinge" (encoder and motor).
-  void welcome() {
-    EXPECT_TRUE(heard().has_hello());
-    v1::ServerMessage message;
-    v1::Welcome& welcome = *message.mutable_welcome();
-    welcome.set_seed(7);
-    welcome.set_tick_ns(50'000'000);
-    welcome.set_max_message_bytes(1 << 20);
-    for (const char* id : {"a", "b"}) {
-      v1::RobotDescription& robot = *welcome.add_robots();
-      robot.set_id(id);
-      auto& param = *robot.add_params();
-      param.set_name("speed");
-      param.set_value("3");
-      robot.add_joint_sensors()->set_id("slide");
-      auto& sensor = *robot.add_joint_sensors();
-      sensor.set_id("hinge");
-      sensor.set_mode(v1::JointDescription::POSITION);
-      auto& actuator = *robot.add_joint_actuators();
-      actuator.set_id("hinge");
-      actuator.set_mode(v1::JointDescription::VELOCITY);
-      actuator.set_max_impulse(0.5);
-    }
-    say(message);
-  }
-  void observe(std::uint64_t tick, std::vector<double> readings) {
-    v1::ServerMessage message;
-    message.mutable_observation()->set_tick(tick);
-    message.mutable_observation()->set_time_ns(static_cast<std::int64_t>(tick) * 50'000'000);
-    message.mutable_observation()->mutable_joint_readings()->Add(readings.begin(), readings.end());
-    say(message);
-  }
-  void end() {
-    v1::ServerMessage message;
-    message.mutable_end()->set_reason(v1::End::FINISHED);
-    say(message);
-  }
-
-  std::string endpoint;
-
- private:
-  void* context_;
-  void* router_;
-  std::string peer_;
-  std::thread thread_;
-};
-
-Options options_for(const FakeServer& server) {
-  Options options;
-  options.endpoint = server.endpoint;
-  options.connect_timeout = milliseconds{3000};
-  options.wait_timeout = milliseconds{3000};
-  return options;
-}
 
 TEST(Session, DevicesAreFoundByNameOnce) {
   FakeServer server([](FakeServer& self) {

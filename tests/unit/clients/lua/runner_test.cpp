@@ -1,0 +1,148 @@
+// Scripts against a real server: what reaches the world, and when.
+
+#include "program/runner.h"
+
+#include <thread>
+
+#include "network/server.h"
+#include "network/small_run.h"
+#include "script/interrupt.h"
+#include "script_fixture.h"
+
+namespace ziggurat::lua {
+namespace {
+
+using network::Outcome;
+using network::SmallRun;
+using std::chrono::milliseconds;
+
+constexpr network::Wait patience{milliseconds{5000}, {}};
+
+/// Robots robot0 … robot2 with a joint `hinge` each that reads 100 * tick + i, all run by one
+/// script; ticks 0 to 4.
+class RunnerTest : public ScriptTest {
+ protected:
+  RunnerTest() : server_({.endpoints = {"tcp://127.0.0.1:*"}}, small_.run()) {}
+  ~RunnerTest() override { allow_scripts(); }
+
+  void run(const std::string& script) {
+    write("main.lua", script);
+    std::thread client([&] { has_failures_ = run_client(); });
+    serve();
+    client.join();
+  }
+
+  /// Log lines of tick `tick`; 5 is what came after the end.
+  std::string logged_at(std::size_t tick) const {
+    std::string text;
+    for (const auto& line : reports_.at(tick).log) {
+      text += std::to_string(line.robot) + (line.error ? "! " : ": ") + line.text + "\n";
+    }
+    return text;
+  }
+
+  const SmallRun small_{3};
+  network::Server server_;
+  world::Commands commands_ = small_.commands();
+  std::vector<network::Report> reports_;
+  bool has_failures_ = false;
+
+ private:
+  bool run_client() {
+    ProgramOptions program;
+    program.script = folder() / "main.lua";
+    program.quiet = true;
+    ziggurat::Options options;
+    options.endpoint = server_.endpoints().front();
+    options.robots = {"*"};
+    options.wait_timeout = milliseconds{5000};
+    options.is_interrupted = are_scripts_interrupted;
+    ziggurat::Session session(options);
+    Runner runner(session, program);
+    runner.run();
+    session.leave();
+    return runner.has_failures();
+  }
+
+  void serve() {
+    ASSERT_EQ(server_.gather(patience), Outcome::complete);
+    for (std::uint64_t tick = 0; tick <= 4; ++tick) {
+      server_.publish(small_.observations(tick));
+      ASSERT_EQ(server_.collect(commands_, patience), Outcome::complete);
+      reports_.push_back(server_.take_report());
+    }
+    server_.finish({wire::EndReason::finished, "", 4});
+    EXPECT_EQ(server_.drain(patience), Outcome::complete);
+    reports_.push_back(server_.take_report());
+  }
+};
+
+TEST_F(RunnerTest, ReadingsComeInAndTargetsAndLinesGoOut) {
+  run("function init() log('init ', robot.joints.hinge.encoder) end "
+      "function step() local hinge = robot.joints.hinge "
+      "  log('step ', hinge.encoder) hinge.set_target(hinge.encoder / 2) end "
+      "function destroy() logerr('destroy') end");
+  EXPECT_FALSE(has_failures_);
+  EXPECT_EQ(logged_at(0), "0: init 0\n1: init 1\n2: init 2\n");
+  EXPECT_EQ(logged_at(1), "0: step 100\n1: step 101\n2: step 102\n");
+  EXPECT_EQ(logged_at(5), "0! destroy\n1! destroy\n2! destroy\n");
+  EXPECT_EQ(commands_.joint_targets, (std::vector<double>{200, 200.5, 201}));
+}
+
+TEST_F(RunnerTest, AFailureEndsOnlyItsRobot) {
+  run("function init() robot.joints.hinge.set_target(3) end\n"
+      "function step() n = (n or 0) + 1\n"
+      "  if robot.id == 'robot1' and n == 2 then log('last words') nothing.x = 1 end end\n"
+      "function destroy() log('destroy') end");
+  EXPECT_TRUE(has_failures_);
+  ASSERT_EQ(reports_[2].failures.size(), 1u);
+  EXPECT_EQ(reports_[2].failures[0].robot, 1u);
+  EXPECT_EQ(reports_[2].failures[0].tick, 2u);
+  const std::string& message = reports_[2].failures[0].message;
+  EXPECT_NE(message.find("main.lua:3: attempt to index a nil value (global 'nothing') (in step 2)\n"
+                         "stack traceback:"),
+            std::string::npos)
+      << message;
+  EXPECT_EQ(logged_at(2), "1: last words\n");
+  EXPECT_EQ(logged_at(5), "0: destroy\n2: destroy\n");
+  EXPECT_EQ(commands_.joint_targets, (std::vector<double>{3, 0, 3}));
+}
+
+TEST_F(RunnerTest, AllMayFailAndTheRunGoesOn) {
+  run("function init() error('no') end");
+  EXPECT_TRUE(has_failures_);
+  EXPECT_EQ(reports_[0].failures.size(), 3u);
+  EXPECT_EQ(reports_.size(), 6u);
+}
+
+TEST_F(RunnerTest, AFailureInDestroyIsLogged) {
+  run("function init() end function step() end function destroy() error('late') end");
+  EXPECT_TRUE(has_failures_);
+  EXPECT_NE(logged_at(5).find("main.lua:1: late (in destroy, after tick 4)"), std::string::npos)
+      << logged_at(5);
+}
+
+TEST_F(RunnerTest, LinesThatAreNoTextAndTooManyLinesDisturbNobody) {
+  run("function init() end function step() if robot.id == 'robot0' then "
+      "log('\\xff\\0\\x80') for i = 1, 100 do log(('x'):rep(100000)) end end "
+      "log('here') end");
+  EXPECT_FALSE(has_failures_);
+  for (std::size_t tick = 1; tick <= 4; ++tick) {
+    EXPECT_NE(logged_at(tick).find("1: here\n2: here\n"), std::string::npos);
+  }
+}
+
+TEST_F(RunnerTest, AnInterruptLeavesWithoutFailure) {
+  std::thread interrupter([] {
+    std::this_thread::sleep_for(milliseconds(100));
+    interrupt_scripts();
+  });
+  run("function init() end function step() while robot.id == 'robot1' do end end");
+  interrupter.join();
+  EXPECT_FALSE(has_failures_);
+  for (const auto& report : reports_) EXPECT_TRUE(report.failures.empty());
+  EXPECT_EQ(commands_.joint_targets, (std::vector<double>{0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace ziggurat::lua

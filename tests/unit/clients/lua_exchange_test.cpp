@@ -1,0 +1,144 @@
+// From a session to a script and back: every device, against a server that says exactly what the
+// test wants.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "equipped_robots.h"
+#include "fake_server.h"
+#include "program/runner.h"
+
+namespace ziggurat::lua {
+namespace {
+
+/// Runs one script for all robots of a session.
+class Exchange : public ::testing::Test {
+ protected:
+  Exchange() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::path(::testing::TempDir()) /
+            (std::string("exchange_") + test->name() + ".lua");
+  }
+  ~Exchange() override { std::filesystem::remove(path_); }
+
+  bool runs(const FakeServer& server, const std::string& script) {
+    std::ofstream(path_) << script;
+    ziggurat::Session session(options_for(server));
+    ProgramOptions options;
+    options.script = path_;
+    options.quiet = true;
+    Runner runner(session, options);
+    runner.run();
+    return !runner.has_failures();
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST_F(Exchange, WhatIsSensedReachesTheScript) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome(welcome());
+    self.say(observation(0));
+    self.heard();
+    auto message = observation(1);
+    hear(message, 2, std::string("\0\xff", 2));
+    hear(message, 2, "");
+    v1::RangeAndBearingPacket& packet = *message.mutable_observation()->add_range_and_bearing();
+    packet.set_robot(2);
+    packet.set_range(0.5);
+    packet.set_data("xy");
+    self.say(message);
+    const auto answer = self.heard();
+    EXPECT_TRUE(answer.has_command()) << answer.ShortDebugString();
+    self.end();
+    self.heard();
+  });
+  EXPECT_TRUE(runs(server, R"lua(
+    function init()
+      if robot.id == "a" then
+        assert(not (robot.radios or robot.proximity or robot.positioning or robot.battery))
+      else
+        assert(#robot.radios.ears.rx_data == 0 and robot.radios.mouth.rx_data == nil)
+      end
+    end
+    function step()
+      if robot.id ~= "c" then return end
+      local heard = robot.radios.ears.rx_data
+      assert(#heard == 2 and heard[1][1] == 0 and heard[1][2] == 255 and #heard[2] == 0)
+      assert(robot.proximity[1] == 0.75 and #robot.proximity == 1)
+      assert(robot.positioning.position.x == 7 and robot.positioning.position.z == 9)
+      assert(robot.battery.available_charge == 0.5 and robot.battery.time_left == 50)
+      local packet = robot.range_and_bearing[1]
+      assert(packet.range == 50 and packet.data[2] == 121 and #robot.range_and_bearing == 1)
+    end
+  )lua"));
+}
+
+TEST_F(Exchange, WhatIsCommandedReachesTheServer) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome(welcome());
+    self.say(observation(0));
+    const auto command = self.heard().command();
+    EXPECT_EQ(command.led_colors_size(), 4);
+    EXPECT_EQ(command.led_colors(3), 0xFF0000U);
+    EXPECT_EQ(command.led_colors(1), 0x010203U) << "the scene's color";
+    EXPECT_EQ(command.directional_led_colors(1), 0x010203U);
+    EXPECT_EQ(command.tag_payloads(0), "start");
+    EXPECT_EQ(command.tag_payloads(1), "new");
+    EXPECT_EQ(command.magnet_currents(1), -1);
+    EXPECT_EQ(command.range_and_bearing_data(), std::string("\0\0\0\7", 4));
+    ASSERT_EQ(command.radio_messages_size(), 2);
+    EXPECT_EQ(command.radio_messages(0).radio(), 3U);
+    EXPECT_EQ(command.radio_messages(0).payload(), "\xff\x02");
+    EXPECT_EQ(command.radio_messages(1).payload(), "");
+    self.say(observation(1));
+    const auto second = self.heard().command();
+    EXPECT_EQ(second.radio_messages_size() + second.led_colors_size(), 0);
+    self.end();
+    self.heard();
+  });
+  EXPECT_TRUE(runs(server, R"lua(
+    function init()
+      if robot.id ~= "c" then return end
+      robot.leds.set_single_color(2, "red")
+      robot.directional_leds.set_all_colors(1, 2, 3)
+      robot.tags.set_all_payloads("new")
+      robot.magnets.magnet_0.set_current(-1)
+      robot.range_and_bearing.set_data(2, 7)
+      robot.radios.mouth.tx_data({-1, 258})
+      robot.radios.mouth.tx_data({})
+    end
+    function step() end
+  )lua"));
+}
+
+TEST_F(Exchange, ASessionThatSendsTooMuchLosesTheRobotThatDoes) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome(welcome());  // a session may send 4 MiB at a tick
+    self.say(observation(0));
+    const auto leave = self.heard().leave();
+    ASSERT_EQ(leave.robots_size(), 1);
+    EXPECT_EQ(leave.robots(0), 2U);
+    EXPECT_EQ(leave.reason(), v1::Leave::FAILED);
+    EXPECT_NE(leave.message().find("this session sends by radio"), std::string::npos);
+    EXPECT_GE(self.heard().command().radio_messages_size(), 3);
+    self.end();
+    self.heard();
+  });
+  EXPECT_FALSE(runs(server, R"lua(
+    function init()
+      if robot.id ~= "c" then return end
+      local long = {}
+      for i = 1, 1 << 20 do long[i] = 0 end
+      for i = 1, 5 do robot.radios.mouth.tx_data(long) end
+    end
+    function step() end
+  )lua"));
+}
+
+}  // namespace
+}  // namespace ziggurat::lua
