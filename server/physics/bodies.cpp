@@ -1,8 +1,11 @@
 #include "physics/bodies.h"
 
+#include <algorithm>
+
 #include "physics/assembly.h"
 #include "physics/convert.h"
 #include "physics/geometry.h"
+#include "physics/turning_magnets.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -55,12 +58,17 @@ void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose
   body.links.push_back(part);
 }
 
-/// A multi-body's links must be numbered from the root outwards; joints already are.
-std::vector<int> number_links(const scene::Entity& entity) {
-  std::vector<int> numbers(entity.links.size(), -1);
+/// A multi-body's links must be numbered from the root outwards; joints already are. Carried
+/// links have their carrier's number.
+void number_links(std::vector<LinkBody>& links, const scene::Entity& entity) {
   int next = 0;
-  for (const scene::Joint& joint : entity.joints) numbers[joint.child] = next++;
-  return numbers;
+  for (const scene::Joint& joint : entity.joints) {
+    LinkBody& child = links[joint.child];
+    if (child.carrier == LinkBody::carries_itself) child.index = next++;
+  }
+  for (LinkBody& link : links) {
+    if (link.carrier != LinkBody::carries_itself) link.index = links[link.carrier].index;
+  }
 }
 
 void set_up_joint(btMultiBody& multi, int index, const scene::Joint& joint, const LinkBody& parent,
@@ -90,8 +98,8 @@ void set_up_joint(btMultiBody& multi, int index, const scene::Joint& joint, cons
 
 void add_link_colliders(Body& body, const scene::Entity& entity) {
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
-    if (!entity.links[i].collides) continue;
     const LinkBody& part = body.links[i];
+    if (!entity.links[i].collides || part.carrier != LinkBody::carries_itself) continue;
     auto collider = std::make_unique<btMultiBodyLinkCollider>(body.multi.get(), part.index);
     furnish(body, *collider, entity.links[i], part.transform());
     if (part.index < 0) {
@@ -115,21 +123,26 @@ bool same_damping(const scene::Entity& entity) {
   return true;
 }
 
-void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
-  const std::vector<int> numbers = number_links(entity);
+void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed,
+                 bool magnetism) {
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     const bool moves = entity.movable || i != entity.reference_link;
     body.links.push_back(link_body(entity.links[i], moves, placed[i]));
-    body.links.back().index = numbers[i];
   }
+  if (magnetism) carry_turning_magnets(body.links, entity, placed);
+  number_links(body.links, entity);
   const LinkBody& base = body.links[entity.reference_link];
-  body.multi = std::make_unique<btMultiBody>(static_cast<int>(entity.joints.size()), base.mass,
+  const auto carried = std::count_if(body.links.begin(), body.links.end(), [](const LinkBody& link) {
+    return link.carrier != LinkBody::carries_itself;
+  });
+  body.multi = std::make_unique<btMultiBody>(static_cast<int>(entity.joints.size() - carried), base.mass,
                                              to_bullet(base.inertia), !entity.movable, false);
   btMultiBody& multi = *body.multi;
   for (LinkBody& part : body.links) part.multi = &multi;
   for (const scene::Joint& joint : entity.joints) {
-    set_up_joint(multi, numbers[joint.child], joint, body.links[joint.parent],
-                 body.links[joint.child], numbers[joint.parent]);
+    const LinkBody& child = body.links[joint.child];
+    if (child.carrier != LinkBody::carries_itself) continue;
+    set_up_joint(multi, child.index, joint, body.links[joint.parent], child, body.links[joint.parent].index);
   }
   multi.finalizeMultiDof();
   multi.setHasSelfCollision(false);
@@ -156,8 +169,14 @@ void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose
 
 btTransform LinkBody::transform() const {
   if (rigid) return rigid->getWorldTransform();
-  if (index < 0) return multi->getBaseWorldTransform();
-  return multi->getLink(index).m_cachedWorldTransform;
+  btTransform pose = multi->getBaseWorldTransform();
+  if (index >= 0) {
+    // Bullet moves colliders with each substep, the cached pose only when the next one begins.
+    const btMultibodyLink& link = multi->getLink(index);
+    pose = link.m_collider ? link.m_collider->getWorldTransform() : link.m_cachedWorldTransform;
+  }
+  if (carrier == carries_itself) return pose;
+  return pose * btTransform(to_bullet(turn) * in_carrier.getRotation(), in_carrier.getOrigin());
 }
 
 void LinkBody::apply_force(const btVector3& force) const {
@@ -193,15 +212,21 @@ void Body::motions(std::vector<Motion>& out) const {
   velocity.resize(count);
   multi->compTreeLinkVelocities(&omega[0], &velocity[0]);
   for (std::size_t i = 0; i < links.size(); ++i) {
-    const btMatrix3x3 basis = links[i].transform().getBasis();
-    out[i] = {basis * velocity[links[i].index + 1], basis * omega[links[i].index + 1]};
+    const LinkBody& link = links[i];
+    const bool carried = link.carrier != LinkBody::carries_itself;
+    const btMatrix3x3 basis = (carried ? links[link.carrier] : link).transform().getBasis();
+    out[i] = {basis * velocity[link.index + 1], basis * omega[link.index + 1]};
+    if (carried) {
+      out[i].velocity += out[i].angular_velocity.cross(basis * link.in_carrier.getOrigin());
+    }
   }
 }
 
-Body build(const scene::Entity& entity) {
+Body build(const scene::Entity& entity, bool magnetism) {
   Body body;
   body.reference_link = entity.reference_link;
   body.placed = entity.pose;
+  body.magnets = entity.devices.magnets;
   body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
   std::vector<Pose> placed = assemble(entity);
   for (Pose& pose : placed) pose = entity.pose * pose;
@@ -209,7 +234,7 @@ Body build(const scene::Entity& entity) {
   if (single) {
     build_rigid(body, entity, placed);
   } else {
-    build_multi(body, entity, placed);
+    build_multi(body, entity, placed, magnetism);
   }
   return body;
 }

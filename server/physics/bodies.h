@@ -15,7 +15,7 @@
 
 namespace ziggurat::physics {
 
-/// A link: a rigid body, or one body of a multi-body.
+/// A link: a rigid body, one body of a multi-body, or a turning magnet that another link carries.
 struct LinkBody {
   btRigidBody* rigid = nullptr;
   btMultiBody* multi = nullptr;
@@ -26,6 +26,13 @@ struct LinkBody {
   math::Vector3 center_of_mass;    ///< in the bottom-centre frame [m]
   scene::Damping damping;
   math::Pose placed;               ///< X_WL as placed
+
+  /// A sphere that turns freely about its centre is no body of its own: its mass moves with the
+  /// link that carries it, its orientation is magnetism's affair (docs/magnetism.md).
+  static constexpr int carries_itself = -1;
+  int carrier = carries_itself;  ///< index into Body::links
+  btTransform in_carrier = btTransform::getIdentity();  ///< centre of mass in the carrier's
+  math::Quaternion turn = math::Quaternion::Identity();  ///< since the start, in the carrier
 
   btTransform transform() const;  ///< of the centre of mass, link axes
   void apply_force(const btVector3& force) const;    ///< at the centre of mass [N]
@@ -45,6 +52,7 @@ struct Body {
   std::size_t reference_link = 0;
   math::Pose origin_from_reference;  ///< X_LE: the entity's origin in the reference link
   math::Pose placed;                 ///< X_WE as placed
+  std::vector<scene::Magnet> magnets;
 
   std::unique_ptr<btRigidBody> rigid;
   std::unique_ptr<btMultiBody> multi;
@@ -58,6 +66,7 @@ struct Body {
 
 /// Builds an entity's bodies where the entity stands. A box or cylinder becomes a rigid body,
 /// everything else a multi-body with the reference link at its base.
-Body build(const scene::Entity& entity);
+/// @param magnetism  whether magnets act: then free spherical magnets are carried
+Body build(const scene::Entity& entity, bool magnetism);
 
 }  // namespace ziggurat::physics

@@ -15,7 +15,7 @@ class Floor final : public Plugin {
   Floor(const Floor&) = delete;
   Floor& operator=(const Floor&) = delete;
 
-  void before_substep(std::span<const Body>, double) override {}
+  void before_substep(std::span<Body>, double) override {}
 
  private:
   btMultiBodyDynamicsWorld& world_;

@@ -6,11 +6,11 @@
 
 namespace ziggurat::physics {
 
-void Gravity::before_substep(std::span<const Body> bodies, double) {
+void Gravity::before_substep(std::span<Body> bodies, double) {
   for (const Body& body : bodies) {
     if (body.rigid && !body.rigid->isActive()) continue;
     for (const LinkBody& link : body.links) {
-      if (link.moves) link.apply_force(btVector3(0, 0, -g_ * link.mass));
+      if (link.moves && link.mass > 0) link.apply_force(btVector3(0, 0, -g_ * link.mass));
     }
   }
 }
@@ -24,7 +24,7 @@ void ViscousDamping::body_added(const Body& body) {
 
 void ViscousDamping::body_removed(const Body& body) { std::erase(damped_, body.entity); }
 
-void ViscousDamping::before_substep(std::span<const Body> bodies, double) {
+void ViscousDamping::before_substep(std::span<Body> bodies, double) {
   for (const std::size_t entity : damped_) {
     const Body& body = bodies[entity];
     body.motions(motions_);

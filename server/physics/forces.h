@@ -9,7 +9,7 @@ namespace ziggurat::physics {
 class Gravity final : public Plugin {
  public:
   explicit Gravity(double g) : g_(g) {}  ///< @param g  downward [m/s^2]
-  void before_substep(std::span<const Body> bodies, double substep) override;
+  void before_substep(std::span<Body> bodies, double substep) override;
 
  private:
   double g_;
@@ -21,7 +21,7 @@ class ViscousDamping final : public Plugin {
  public:
   void body_added(const Body& body) override;
   void body_removed(const Body& body) override;
-  void before_substep(std::span<const Body> bodies, double substep) override;
+  void before_substep(std::span<Body> bodies, double substep) override;
 
  private:
   std::vector<std::size_t> damped_;  ///< entities with a damped link

@@ -15,7 +15,7 @@ class Plugin {
   virtual void body_removed(const Body&) {}
   /// Called before each substep with the poses at its beginning; forces last for it.
   /// @param substep  its length [s]
-  virtual void before_substep(std::span<const Body> bodies, double substep) = 0;
+  virtual void before_substep(std::span<Body> bodies, double substep) = 0;
 };
 
 }  // namespace ziggurat::physics

@@ -8,6 +8,7 @@
 #include "physics/floor.h"
 #include "physics/forces.h"
 #include "physics/joints.h"
+#include "physics/magnets.h"
 #include "physics/solver.h"
 
 namespace ziggurat::physics {
@@ -51,6 +52,11 @@ struct World::Parts {
     if (physics.floor) plugins.push_back(std::make_unique<Floor>(*physics.floor, dynamics));
     if (physics.gravity) plugins.push_back(std::make_unique<Gravity>(*physics.gravity));
     plugins.push_back(std::make_unique<ViscousDamping>());
+    if (physics.magnetism) {
+      auto plugin = std::make_unique<Magnets>(*physics.magnetism);
+      magnets = plugin.get();
+      plugins.push_back(std::move(plugin));
+    }
   }
   ~Parts();
 
@@ -73,6 +79,7 @@ struct World::Parts {
   Solver solver;
   Dynamics dynamics;
   std::vector<std::unique_ptr<Plugin>> plugins;
+  Magnets* magnets = nullptr;  // one of them, if the scene has magnetism
 };
 
 World::Parts::~Parts() {
@@ -112,7 +119,7 @@ World::~World() = default;
 
 void World::add(const scene::Entity& entity) {
   Parts& p = *parts_;
-  p.bodies.push_back(build(entity));
+  p.bodies.push_back(build(entity, p.magnets != nullptr));
   Body& body = p.bodies.back();
   body.entity = p.bodies.size() - 1;
   body.first_link = p.link_count;
@@ -160,6 +167,10 @@ double World::position(JointIndex index) const {
 double World::velocity(JointIndex index) const {
   const MovingJoint& joint = parts_->joints[index.value];
   return joint.multi->getJointVel(joint.link);
+}
+
+void World::set_current(std::size_t entity, std::size_t magnet, double current) {
+  if (parts_->magnets) parts_->magnets->set_current(entity, magnet, current);
 }
 
 void World::step() {

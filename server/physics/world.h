@@ -39,6 +39,11 @@ class World {
   double position(JointIndex joint) const;  ///< [m] or [rad]; 0 as assembled
   double velocity(JointIndex joint) const;  ///< [m/s] or [rad/s]
 
+  /// Sets the current of an entity's magnet: current times its active field is added to its
+  /// passive one. 0 at the start; without effect where the scene has no magnetism.
+  /// @param magnet  index into scene::Devices::magnets
+  void set_current(std::size_t entity, std::size_t magnet, double current);
+
   /// Advances by one substep.
   void step();
 

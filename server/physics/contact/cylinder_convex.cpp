@@ -57,7 +57,9 @@ Nearest nearest(const Body& a, const btTransform& pose_a, const Body& b,
   const auto search = [&](const btConvexShape& shape_a, const btConvexShape& shape_b) {
     Nearest found;
     btGjkEpaSolver2::sResults results;
-    const btVector3 guess = pose_a.getOrigin() - pose_b.getOrigin();
+    // Bullet takes the guess and gives the normal in A's frame, the witnesses in the world.
+    const btMatrix3x3& basis = pose_a.getBasis();
+    const btVector3 guess = basis.transpose() * (pose_a.getOrigin() - pose_b.getOrigin());
     const bool apart =
         btGjkEpaSolver2::Distance(&shape_a, pose_a, &shape_b, pose_b, guess, results) &&
         results.distance > 0;
@@ -66,7 +68,7 @@ Nearest nearest(const Body& a, const btTransform& pose_a, const Body& b,
     }
     const btScalar length = results.normal.length();
     if (!(length > SIMD_EPSILON)) return found;
-    found.b_to_a = results.normal / length;
+    found.b_to_a = basis * (results.normal / length);
     if (separation(a, b, -found.b_to_a) > separation(a, b, found.b_to_a)) found.b_to_a = -found.b_to_a;
     found.distance = separation(a, b, found.b_to_a);
     found.on_b = results.witnesses[1];

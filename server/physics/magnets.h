@@ -1,0 +1,48 @@
+#pragma once
+// Magnetism as a plug-in: collects the magnets of all bodies, asks magnetism/ what they do to each
+// other, and applies it before each substep.
+
+#include <optional>
+
+#include "magnetism/field.h"
+#include "physics/plugin.h"
+
+namespace ziggurat::physics {
+
+class Magnets final : public Plugin {
+ public:
+  explicit Magnets(const scene::Magnetism& magnetism);
+
+  void body_added(const Body& body) override;
+  void body_removed(const Body& body) override;
+  void before_substep(std::span<Body> bodies, double substep) override;
+
+  /// @param current  times the magnet's active field is added to its passive one
+  void set_current(std::size_t entity, std::size_t magnet, double current);
+
+
+ private:
+  /// A magnet, and the link it moves with.
+  struct Placed {
+    std::size_t entity = 0;
+    std::size_t link = 0;          ///< that moves and feels the force
+    std::optional<std::size_t> turning;  ///< the link that shows its orientation
+    magnetism::Magnet magnet;      ///< its body not yet numbered
+  };
+
+  Placed place(const Body& body, const scene::Magnet& magnet) const;
+  void build_field();
+
+  magnetism::Options options_;
+  double moment_per_field_;  // [A m^2] per unit of the dialect's field
+  std::vector<Placed> magnets_;
+  std::vector<double> currents_;  // parallel to magnets_
+
+  // Made when the first substep after a change begins.
+  std::optional<magnetism::Field> field_;
+  std::vector<std::pair<std::size_t, std::size_t>> carriers_;  // entity and link of each body
+  std::vector<math::Pose> poses_;
+  std::vector<magnetism::Wrench> wrenches_;
+};
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,110 @@
+#include "physics/turning_magnets.h"
+
+#include "physics/convert.h"
+
+namespace ziggurat::physics {
+namespace {
+
+using math::Vector3;
+
+constexpr double rounding = 1e-9;  // [m]
+
+bool at_centre(const LinkBody& link, const Vector3& offset) {
+  return (offset - link.center_of_mass).norm() < rounding;
+}
+
+bool has_centred_magnet(const scene::Entity& entity, std::size_t link, const LinkBody& body) {
+  bool found = false;
+  for (const scene::Magnet& magnet : entity.devices.magnets) {
+    if (magnet.anchor.link != static_cast<int>(link)) continue;
+    if (!at_centre(body, magnet.offset)) return false;
+    found = true;
+  }
+  return found;
+}
+
+bool is_leaf(const scene::Entity& entity, std::size_t link) {
+  for (const scene::Joint& joint : entity.joints) {
+    if (joint.parent == link) return false;
+  }
+  return true;
+}
+
+/// Whether a sphere lies inside a shape, both about the shape's centre.
+bool holds(const scene::Geometry& geometry, const Vector3& centre, double radius) {
+  if (const auto* box = std::get_if<scene::Box>(&geometry)) {
+    return ((box->size / 2 - centre.cwiseAbs()).array() >= radius - rounding).all();
+  }
+  if (const auto* cylinder = std::get_if<scene::Cylinder>(&geometry)) {
+    return centre.head<2>().norm() + radius <= cylinder->radius + rounding &&
+           std::abs(centre.z()) + radius <= cylinder->height / 2 + rounding;
+  }
+  return centre.norm() + radius <= std::get<scene::Sphere>(geometry).radius + rounding;
+}
+
+/// Mass and inertia of a carrier with what it carries, about its centre and axes.
+struct Load {
+  double mass;
+  Vector3 moment = Vector3::Zero();  // first moment [kg m]
+  Eigen::Matrix3d inertia;
+
+  explicit Load(const LinkBody& carrier) : mass(carrier.mass), inertia(carrier.inertia.asDiagonal()) {}
+
+  void add(double point_mass, const Vector3& at) {
+    mass += point_mass;
+    moment += point_mass * at;
+    inertia += point_mass * (at.squaredNorm() * Eigen::Matrix3d::Identity() - at * at.transpose());
+  }
+  bool balanced() const {
+    const Vector3 diagonal = inertia.diagonal();
+    const Eigen::Matrix3d rest = inertia - Eigen::Matrix3d(diagonal.asDiagonal());
+    return moment.norm() < rounding * mass && rest.norm() < 1e-9 * diagonal.norm();
+  }
+};
+
+}  // namespace
+
+void carry_turning_magnets(std::vector<LinkBody>& links, const scene::Entity& entity,
+                           const std::vector<math::Pose>& placed) {
+  std::vector<std::vector<std::size_t>> carried(links.size());
+  for (const scene::Joint& joint : entity.joints) {
+    const scene::Link& link = entity.links[joint.child];
+    const auto* sphere = std::get_if<scene::Sphere>(&link.geometry);
+    if (joint.type != scene::JointType::spherical || !sphere || !is_leaf(entity, joint.child)) continue;
+    LinkBody& child = links[joint.child];
+    if (!at_centre(child, joint.child_frame.position)) continue;
+    if (!has_centred_magnet(entity, joint.child, child)) continue;
+    const Vector3 centre = joint.parent_frame.position - links[joint.parent].center_of_mass;
+    if (holds(entity.links[joint.parent].geometry, centre, sphere->radius)) {
+      carried[joint.parent].push_back(joint.child);
+    }
+  }
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (carried[i].empty()) continue;
+    LinkBody& carrier = links[i];
+    const math::Pose carrier_centre = placed[i] * math::Pose{carrier.center_of_mass, math::Quaternion::Identity()};
+    Load load(carrier);
+    std::vector<math::Pose> poses;
+    for (const std::size_t child : carried[i]) {
+      const math::Pose centre = placed[child] * math::Pose{links[child].center_of_mass, math::Quaternion::Identity()};
+      poses.push_back(math::inverse(carrier_centre) * centre);
+      load.add(links[child].mass, poses.back().position);
+    }
+    if (!load.balanced()) continue;
+    carrier.mass = load.mass;
+    carrier.inertia = load.inertia.diagonal();
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      LinkBody& child = links[carried[i][k]];
+      child.carrier = static_cast<int>(i);
+      child.in_carrier = to_bullet(poses[k]);
+      child.mass = 0;
+      child.inertia.setZero();
+    }
+  }
+}
+
+bool turns_freely(const LinkBody& link, const scene::Magnet& magnet) {
+  return link.carrier != LinkBody::carries_itself && at_centre(link, magnet.offset);
+}
+
+}  // namespace ziggurat::physics
