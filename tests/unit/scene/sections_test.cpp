@@ -85,7 +85,7 @@ TEST(Engines, EntitiesNeedOne) {
   EXPECT_EQ(count_containing(faults(text.read()), "<physics_engines> has no engine"), 1u);
 }
 
-TEST(Media, KeepDocumentOrderAndSayOnceThatTheyComeLater) {
+TEST(Media, KeepDocumentOrder) {
   SceneText text;
   text.media =
       R"(<media><tag id="t" index="grid" grid_size="20,20,20"/><led id="l" grid_size="1,1,1"/>)"
@@ -95,7 +95,8 @@ TEST(Media, KeepDocumentOrderAndSayOnceThatTheyComeLater) {
   ASSERT_EQ(result.scene.media.size(), 4u);
   EXPECT_EQ(result.scene.media[0].kind, MediumKind::tag);
   EXPECT_EQ(result.scene.media[2].id, "m");
-  EXPECT_EQ(count_containing(notices(result), "LEDs are checked, but have no effect yet"), 1u);
+  EXPECT_TRUE(result.scene.media[0].checks_occlusions);
+  EXPECT_FALSE(result.scene.media[3].checks_occlusions);
   EXPECT_EQ(count_containing(notices(result), "grid_size of <led> has no effect"), 1u);
 }
 
@@ -178,8 +179,7 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   text.media = R"(<media><led id="leds"/><range_and_bearing id="rab"/></media>)";
   const ReadResult result = text.read();
   EXPECT_TRUE(result.ok()) << all_problems(result);
-  for (const char* subject : {"radios are", ": cameras are", "footbot_turret devices are",
-                              "positioning sensors are", "battery sensors are"}) {
+  for (const char* subject : {": cameras are", "footbot_turret devices are"}) {
     EXPECT_EQ(count_containing(notices(result), subject), 1u) << subject;
   }
 }
