@@ -18,29 +18,56 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-// Three robots with 2, 0 and 3 joint actuators; the session holds the first and the last.
+// Three robots with 2, 0 and 3 of each device; the session holds the first and the last.
 world::Layout make_layout() {
   world::Layout layout;
-  std::size_t actuators = 0;
+  std::size_t devices = 0;
   for (const std::size_t count : {2, 0, 3}) {
     world::RobotLayout robot;
     robot.id = "robot" + std::to_string(layout.robots.size());
-    robot.joint_actuators = {actuators, count};
+    for (world::Range* range : {&robot.joint_actuators, &robot.radios, &robot.leds,
+                                &robot.directional_leds, &robot.tags, &robot.magnets}) {
+      *range = {devices, count};
+    }
+    robot.range_and_bearing = {layout.range_and_bearing.size(), count == 0 ? 0U : 1U};
+    if (count > 0) layout.range_and_bearing.push_back({{}, 1, 0, {devices, count}, true, true});
     layout.robots.push_back(robot);
-    actuators += count;
+    devices += count;
   }
-  layout.joint_actuators.resize(actuators);
+  layout.joint_actuators.resize(devices);
+  layout.radios.resize(devices);
+  for (std::size_t i = 0; i < devices; ++i) layout.radios[i].sends = i != 1;
+  layout.leds.resize(devices);
+  layout.directional_leds.resize(devices);
+  layout.tags.resize(devices);
+  layout.magnets.resize(devices);
   return layout;
+}
+
+world::Commands make_commands(std::size_t devices) {
+  world::Commands commands;
+  commands.joint_targets.resize(devices);
+  commands.led_colors.resize(devices);
+  commands.directional_led_colors.resize(devices);
+  commands.tag_payloads.resize(devices);
+  commands.magnet_currents.resize(devices);
+  commands.range_and_bearing_data.resize(devices);
+  return commands;
 }
 
 void receive_command(const wire::Inbox& inbox, const wire::Roster& roster,
                      const world::Layout& layout) {
   if (inbox.check(roster, layout)) return;
-  world::Commands commands;
-  commands.joint_targets.assign(layout.joint_actuators.size(), 0.0);
+  world::Commands commands = make_commands(layout.joint_actuators.size());
   inbox.apply(roster, commands);
-  require(commands.joint_targets.size() == layout.joint_actuators.size());
   for (const double target : commands.joint_targets) require(std::isfinite(target));
+  for (const double current : commands.magnet_currents) require(std::isfinite(current));
+  for (const world::Color color : commands.led_colors) require(color <= 0xFFFFFF);
+  for (const world::Color color : commands.directional_led_colors) require(color <= 0xFFFFFF);
+  for (const auto& entry : commands.radio_messages.entries) {
+    require(entry.radio < layout.radios.size() && layout.radios[entry.radio].sends);
+    commands.radio_messages.payload(entry);
+  }
   std::vector<wire::LogLine> lines;
   inbox.append_log(roster, lines);
   for (const wire::LogLine& line : lines) require(line.robot < layout.robots.size());

@@ -1,0 +1,152 @@
+// The rules D1 … of docs/protocol.md. A test is named after the rule it holds.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "network/peers.h"
+#include "world/limits.h"
+
+namespace ziggurat::network {
+namespace {
+
+/// Three robots with a radio each; that of robot2 only receives. "p" holds robot0 and robot2 and
+/// owes tick 5, "q" holds robot1.
+struct Radios : ::testing::Test {
+  Radios() : small(3), peers(equipped()) {
+    peers.join("p", "robot[02]");
+    peers.join("q", "robot1");
+    peers.publish(5);
+    peers.inboxes.clear();
+  }
+
+  const SmallRun& equipped() {
+    world::Layout& layout = small.layout();
+    for (std::size_t i = 0; i < 3; ++i) {
+      world::RadioLayout& radio = layout.radios.emplace_back();
+      radio.id = "radio" + std::to_string(i);
+      radio.sends = i != 2;
+      radio.receives = true;
+      layout.robots[i].radios = {i, 1};
+    }
+    return small;
+  }
+  static void send(v1::ClientMessage& command, std::uint32_t radio, const std::string& payload) {
+    v1::RadioMessage& message = *command.mutable_command()->add_radio_messages();
+    message.set_radio(radio);
+    message.set_payload(payload);
+  }
+  v1::Error faulted(const v1::ClientMessage& message) {
+    peers.say("p", message);
+    const v1::ServerMessage told = peers.told("p");
+    EXPECT_TRUE(told.has_error());
+    EXPECT_EQ(told.error().severity(), v1::Error::DISCARD);
+    EXPECT_EQ(told.error().field(), "radio_messages");
+    EXPECT_EQ(told.error().tick(), 5U);
+    EXPECT_TRUE(peers.commands.radio_messages.entries.empty());
+    return told.error();
+  }
+  std::vector<std::size_t> senders() const {
+    std::vector<std::size_t> result;
+    for (const auto& entry : peers.commands.radio_messages.entries) result.push_back(entry.radio);
+    return result;
+  }
+
+  SmallRun small;
+  Peers peers;
+};
+
+TEST_F(Radios, D1_NumbersCountTheRadiosOfTheSession) {
+  auto command = Peers::command(5);
+  command.mutable_command()->add_robots(0);
+  send(command, 0, "x");
+  peers.say("p", command);
+  auto other = Peers::command(5);
+  send(other, 0, "y");
+  peers.say("q", other);
+  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_EQ(senders(), (std::vector<std::size_t>{0, 1}));
+}
+
+TEST_F(Radios, D1_RadiosThatAreNotTheSessionsToUse) {
+  for (const std::uint32_t radio : {2U, 1'000'000'000U, ~0U}) {
+    auto command = Peers::command(5);
+    send(command, 0, "fine");
+    send(command, radio, "x");
+    EXPECT_EQ(faulted(command).code(), v1::Error::UNKNOWN_DEVICE);
+  }
+  auto command = Peers::command(5);
+  send(command, 1, "x");
+  auto error = faulted(command);
+  EXPECT_EQ(error.code(), v1::Error::UNKNOWN_DEVICE);
+  EXPECT_EQ(error.robot(), "robot2") << "which has no actuator for radios";
+  command = Peers::command(5);
+  command.mutable_command()->add_robots(1);
+  send(command, 0, "x");
+  error = faulted(command);
+  EXPECT_EQ(error.code(), v1::Error::NOT_YOURS);
+  EXPECT_EQ(error.robot(), "robot0");
+  peers.say("p", Peers::command(5));
+  EXPECT_TRUE(peers.told("p").message_case() == v1::ServerMessage::MESSAGE_NOT_SET)
+      << "the session lives";
+}
+
+TEST_F(Radios, D1_MessagesOfRobotsThatLeftAreIgnored) {
+  peers.say("p", Peers::leave({0}));
+  auto command = Peers::command(5);
+  send(command, 0, "x");
+  peers.say("p", command);
+  EXPECT_TRUE(peers.inboxes["p"].empty());
+  EXPECT_TRUE(senders().empty());
+}
+
+TEST_F(Radios, D2_Limits) {
+  auto command = Peers::command(5);
+  send(command, 0, std::string(world::most_radio_message_bytes + 1, 'x'));
+  EXPECT_EQ(faulted(command).code(), v1::Error::TOO_LARGE);
+  command = Peers::command(5);
+  for (int i = 0; i < 16; ++i) send(command, 0, std::string(world::most_radio_message_bytes, 'x'));
+  send(command, 0, "x");
+  const auto error = faulted(command);
+  EXPECT_EQ(error.code(), v1::Error::TOO_LARGE);
+  EXPECT_EQ(error.robot(), "robot0");
+  command.mutable_command()->mutable_radio_messages()->RemoveLast();
+  peers.say("p", command);
+  EXPECT_EQ(senders().size(), 16U);
+}
+
+TEST_F(Radios, D3_MessagesComeInTheOrderOfTheWorld) {
+  world::Observations seen = small.observations(6);
+  const auto hear = [&](std::size_t radio, const std::string& text) {
+    seen.radio_messages.add(radio,
+                            {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  };
+  hear(0, "first");
+  hear(0, "");
+  hear(1, "for q");
+  hear(2, "last");
+  peers.barrier.publish(seen);
+  const auto messages = peers.told("p").observation().radio_messages();
+  ASSERT_EQ(messages.size(), 3);
+  EXPECT_EQ(messages[0].payload(), "first");
+  EXPECT_EQ(messages[1].payload(), "");
+  EXPECT_EQ(messages[2].payload(), "last");
+  EXPECT_EQ(messages[2].radio(), 1U);
+}
+
+TEST_F(Radios, D5_ASessionThatWouldHearTooMuchIsLost) {
+  world::Observations seen = small.observations(6);
+  const std::string text(world::most_radio_message_bytes, 'x');
+  seen.radio_messages.add(0, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  const auto entry = seen.radio_messages.entries.front();
+  seen.radio_messages.entries.assign(1025, entry);
+  peers.barrier.publish(seen);
+  const auto error = peers.told("p").error();
+  EXPECT_EQ(error.code(), v1::Error::TOO_LARGE);
+  EXPECT_EQ(error.severity(), v1::Error::FATAL);
+  EXPECT_EQ(peers.told("q").observation().tick(), 6U);
+  EXPECT_FALSE(peers.barrier.complete());
+}
+
+}  // namespace
+}  // namespace ziggurat::network

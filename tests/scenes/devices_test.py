@@ -1,0 +1,320 @@
+"""Devices from end to end: what scripts set and sense, whoever runs them."""
+
+import math
+import resource
+import textwrap
+
+from harness import CONTROLLER_FAILED, SceneTest, main
+
+# Listing 2.8 of the report, as printed.
+REPEATER = """
+function init()
+reset()
+end
+
+function step()
+robot.leds.set_all_colors(0,0,0)
+if #robot.radios.radio_rx.rx_data > 0 then
+robot.leds.set_all_colors(255,0,0)
+robot.radios.radio_tx.tx_data({robot.radios.radio_rx.rx_data[1][1] +
+
+1})
+end
+end
+
+function reset()
+-- start the passing of the token
+if robot.id == "repeater0" then
+robot.radios.radio_tx.tx_data({0})
+end
+end
+
+function destroy()
+end
+"""
+
+# And what it hears.
+LOGGED = REPEATER + """
+local repeater_step = step
+function step()
+  for _, message in ipairs(robot.radios.radio_rx.rx_data) do log(table.concat(message, " ")) end
+  repeater_step()
+end
+"""
+
+CONTROLLER = """
+    <lua_controller id="{id}">
+      <actuators>{actuators}</actuators>
+      <sensors>{sensors}</sensors>
+      <params script="{script}" />
+    </lua_controller>"""
+
+ROBOT = """
+    <prototype id="{id}" movable="true">
+      <body position="{x:.6f},{y:.6f},0" orientation="{yaw:.6f},0,0" />
+      <controller config="{controller}" />
+      <links ref="base">
+        <link id="base" geometry="box" size=".1,.04,.025" mass="0.1" />
+      </links>
+      <devices>{devices}</devices>
+    </prototype>"""
+
+SCENE = """<?xml version="1.0" ?>
+<argos-configuration>
+  <framework><experiment length="8" ticks_per_second="4" random_seed="1" /></framework>
+  <controllers>{controllers}
+  </controllers>
+  <arena size="100,100,1" center="0,0,.5">{robots}
+  </arena>
+  <physics_engines>
+    <dynamics3d id="dyn3d" iterations="{iterations}">
+      <gravity g="9.8" />
+      <floor />
+    </dynamics3d>
+  </physics_engines>
+  <media>
+    <led id="leds" index="grid" grid_size="20,20,20" />
+    <directional_led id="directional_leds" index="grid" grid_size="20,20,20" />
+    <tag id="tags" index="grid" grid_size="20,20,20" />
+    <radio id="radio" index="grid" grid_size="20,20,20" />
+  </media>
+</argos-configuration>
+"""
+
+RADIOS = '<radios implementation="default" />'
+LEDS = '<leds implementation="default" medium="leds" />'
+
+REPEATER_DEVICES = """
+        <radios medium="radio">
+          <radio id="radio_rx" anchor="base" range="0.09" position=".05,0,.0125" />
+          <radio id="radio_tx" anchor="base" range="0.09" position="-.05,0,.0125" />
+        </radios>
+        <leds medium="leds">
+          <led id="led" anchor="base" color="0,0,0,0" offset="0,0,.025" />
+        </leds>"""
+
+
+class DeviceTest(SceneTest):
+    def scene_of(self, controllers, robots, iterations=5):
+        return self.write("scene.argos", SCENE.format(
+            controllers="".join(controllers), robots="".join(robots), iterations=iterations))
+
+    def ring(self, count, script=LOGGED, iterations=5):
+        """Repeaters around a circle, each one's sender next to the next one's receiver."""
+        self.write("repeater.lua", script)
+        radius = 0.07 / math.sin(math.pi / count) if count > 4 else 0.06 * math.sqrt(2)
+        robots = []
+        for i in range(count):
+            angle = math.radians(45) + 2 * math.pi * i / count
+            robots.append(ROBOT.format(
+                id=f"repeater{i}", controller="repeater", devices=REPEATER_DEVICES,
+                x=radius * math.cos(angle), y=radius * math.sin(angle),
+                yaw=math.degrees(angle) - 90))
+        return self.scene_of([CONTROLLER.format(id="repeater", actuators=RADIOS + LEDS,
+                                                sensors=RADIOS, script="repeater.lua")], robots,
+                             iterations)
+
+    def two(self, talker, listener, actuators=RADIOS, sensors=RADIOS, devices=None):
+        """A talker and a listener whose radios, "a" and "b" on each, hear each other."""
+        self.write("talker.lua", textwrap.dedent(talker))
+        self.write("listener.lua", textwrap.dedent(listener))
+        devices = devices or """
+        <radios medium="radio">
+          <radio id="a" anchor="base" range="2" position="0,0,.0125" />
+          <radio id="b" anchor="base" range="2" position=".05,0,.0125" />
+        </radios>"""
+        return self.scene_of(
+            [CONTROLLER.format(id="talker", actuators=actuators, sensors="", script="talker.lua"),
+             CONTROLLER.format(id="listener", actuators="", sensors=sensors,
+                               script="listener.lua")],
+            [ROBOT.format(id="t", controller="talker", devices=devices, x=0, y=0, yaw=0),
+             ROBOT.format(id="l", controller="listener", devices=devices, x=1, y=0, yaw=0)])
+
+    def one(self, script, devices, actuators="", sensors=""):
+        self.write("one.lua", textwrap.dedent(script))
+        return self.scene_of(
+            [CONTROLLER.format(id="one", actuators=actuators, sensors=sensors, script="one.lua")],
+            [ROBOT.format(id="r", controller="one", devices=devices, x=0, y=0, yaw=0)])
+
+
+class Ring(DeviceTest):
+    def test_the_token_goes_round_the_same_whoever_runs_the_robots(self):
+        scene = self.ring(4)
+        expected = [f"[{tick} repeater{tick % 4}] {tick - 1}" for tick in range(1, 33)]
+        hashes = set()
+        for processes in (1, 2, 0, 0):
+            outcome = self.run_scene("--ticks", 32, "--hash", "--quiet", "--lua-processes",
+                                     processes, scene=scene)
+            self.assertEqual(outcome.lines[:-1], expected, f"{processes} processes")
+            hashes.add(outcome.lines[-1])
+        self.assertEqual(len(hashes), 1, hashes)
+
+    def test_bytes_wrap_and_the_token_is_never_lost(self):
+        outcome = self.run_scene("--ticks", 600, "--quiet", "--lua-processes", 1,
+                                 scene=self.ring(4))
+        self.assertEqual(outcome.lines, [f"[{tick} repeater{tick % 4}] {(tick - 1) % 256}"
+                                         for tick in range(1, 601)])
+
+    def test_a_large_ring_keeps_its_token(self):
+        outcome = self.run_scene("--ticks", 30, "--quiet", "--lua-processes", 2,
+                                 scene=self.ring(256, iterations=1))
+        self.assertEqual(outcome.lines, [f"[{tick} repeater{tick}] {tick - 1}"
+                                         for tick in range(1, 31)])
+
+    def test_the_listing_runs_as_printed(self):
+        outcome = self.run_scene("--ticks", 8, "--quiet", scene=self.ring(4, REPEATER))
+        self.assertEqual((outcome.out, outcome.err), ("", ""))
+
+
+class Radio(DeviceTest):
+    def test_empty_long_and_many_messages(self):
+        scene = self.two(
+            """
+            function init()
+              local long = {}
+              for i = 1, 65536 do long[i] = i end
+              robot.radios.a.tx_data({})
+              robot.radios.a.tx_data(long)
+              for i = 1, 1000 do robot.radios.b.tx_data({i, i / 256}) end
+            end
+            function step() end
+            """,
+            """
+            function init() assert(#robot.radios.a.rx_data == 0) end
+            function step()
+              for _, id in ipairs({"a", "b"}) do
+                local heard = robot.radios[id].rx_data
+                assert(#heard == 1002, #heard)
+                assert(#heard[1] == 0 and #heard[2] == 65536)
+                for i = 1, 65536 do assert(heard[2][i] == i % 256) end
+                for i = 1, 1000 do
+                  local message = heard[i + 2]
+                  assert(#message == 2 and message[1] == i % 256 and message[2] == i // 256)
+                end
+              end
+              log("all")
+              function step() assert(#robot.radios.a.rx_data == 0 and #robot.radios.b.rx_data == 0) end
+            end
+            """)
+        outcome = self.run_scene("--ticks", 3, "--quiet", scene=scene)
+        self.assertEqual(outcome.lines, ["[1 l] all"])
+
+    def test_what_nobody_takes_is_gone(self):
+        scene = self.two(
+            """
+            local text = {}
+            for i = 1, 65536 do text[i] = 7 end
+            function init() end
+            function step() for i = 1, 16 do robot.radios.a.tx_data(text) end end
+            """,
+            "function init() end function step() end", sensors="")
+        # The largest of all processes so far, in kilobytes; every tick sends 1024 of them.
+        def run(ticks):
+            self.run_scene("--ticks", ticks, "--quiet", scene=scene)
+            return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+        few = run(4)
+        self.assertLess(run(44), few + 20 * 1024)
+
+    def test_too_much_is_an_error_that_the_script_may_catch(self):
+        scene = self.two(
+            """
+            function init()
+              local text = {}
+              for i = 1, 1048577 do text[i] = 0 end
+              local ok, message = pcall(robot.radios.a.tx_data, text)
+              assert(not ok)
+              log(message)
+              robot.radios.a.tx_data({1})
+            end
+            function step() end
+            """,
+            "function init() end function step() log(#robot.radios.a.rx_data) end")
+        outcome = self.run_scene("--ticks", 1, "--quiet", scene=scene)
+        self.assertRegex(outcome.lines[0], r"^\[0 t\] .*1048577 bytes; 1048576 are the most")
+        self.assertEqual(outcome.lines[1], "[1 l] 1")
+
+
+class Errors(DeviceTest):
+    def test_a_wrong_position_ends_the_script_with_a_clear_message(self):
+        devices = """
+        <leds medium="leds">
+          <led id="led" anchor="base" color="red" offset="0,0,.025" />
+        </leds>"""
+        scene = self.one("function init() end function step() robot.leds.set_single_color(2, 'red') end",
+                         devices, actuators=LEDS)
+        outcome = self.run_scene("--ticks", 2, "--quiet", scene=scene, code=CONTROLLER_FAILED)
+        self.assert_is_sentence(outcome, r"one\.lua:1:.*set_single_color.*there is none at 2: this "
+                                         r"robot has 1 LEDs")
+
+    def test_devices_that_are_not_enabled_are_not_there(self):
+        devices = """
+        <leds medium="leds"><led anchor="base" color="red" offset="0,0,.025" /></leds>
+        <magnets><magnet anchor="base" offset="0,0,0" passive_field="0,0,1" /></magnets>"""
+        scene = self.one("""
+            function init() assert(robot.leds == nil and robot.magnets.magnet_0.set_current) end
+            function step() end
+            """, devices, actuators='<magnets implementation="default" />')
+        self.run_scene("--ticks", 1, "--quiet", scene=scene)
+
+
+class Sensors(DeviceTest):
+    def test_proximity_sees_what_is_in_front(self):
+        sensors = """
+        <proximity_sensors>
+          <sensor anchor="base" offset=".06,0,.0125" direction="1,0,0" range="2" />
+          <sensor anchor="base" offset="-.06,0,.0125" direction="-1,0,0" range="2" />
+        </proximity_sensors>"""
+        self.write("one.lua", """
+            function init() assert(#robot.proximity == 2 and robot.proximity[1] == 0) end
+            function step() log(string.format("%.4f %g", robot.proximity[1], robot.proximity[2])) end
+            """)
+        scene = self.scene_of(
+            [CONTROLLER.format(id="one", actuators="", script="one.lua",
+                               sensors='<proximity implementation="default" />')],
+            [ROBOT.format(id="r", controller="one", devices=sensors, x=0, y=0, yaw=0),
+             '<box id="wall" size=".1,1,1" movable="false">'
+             '<body position="1.11,0,0" orientation="0,0,0" /></box>'])
+        outcome = self.run_scene("--ticks", 1, "--quiet", scene=scene)
+        self.assertEqual(outcome.lines, [f"[1 r] {math.exp(-1):.4f} 0"])
+
+    def test_positioning_reads_the_pose(self):
+        self.write("one.lua", """
+            function init() assert(robot.positioning.orientation.axis.z == 1) end
+            function step()
+              local at, turned = robot.positioning.position, robot.positioning.orientation
+              log(string.format("%.2f %.2f %.2f", at.x, turned.angle, turned.axis.z))
+            end
+            """)
+        scene = self.scene_of(
+            [CONTROLLER.format(id="one", actuators="", script="one.lua",
+                               sensors='<positioning implementation="default" />')],
+            [ROBOT.format(id="r", controller="one", devices="", x=3, y=0, yaw=90)])
+        outcome = self.run_scene("--ticks", 1, "--quiet", scene=scene)
+        self.assertEqual(outcome.lines, ["[1 r] 3.00 1.57 1.00"])
+
+    def test_tags_and_lights_are_set_at_run_time(self):
+        devices = """
+        <leds medium="leds"><led anchor="base" color="red" offset="0,0,.025" /></leds>
+        <directional_leds medium="directional_leds">
+          <directional_led anchor="base" color="red" position="0,0,.03" orientation="0,0,0"
+                           observable_angle="90" />
+        </directional_leds>
+        <tags medium="tags">
+          <tag anchor="base" position="0,0,.03" orientation="0,0,0" observable_angle="90"
+               side_length=".02" payload="start" />
+        </tags>"""
+        scene = self.one("""
+            function init() end
+            function step()
+              robot.tags.set_all_payloads("new")
+              robot.directional_leds.set_single_color(1, "0,0,9,255")
+            end
+            """, devices, actuators=LEDS + """
+            <directional_leds implementation="default" /><tags implementation="default" />""")
+        changed = self.hash_of("--ticks", 3, scene=scene)
+        self.write("one.lua", "function init() end function step() end")
+        self.assertNotEqual(changed, self.hash_of("--ticks", 3, scene=scene))
+
+
+if __name__ == "__main__":
+    main()
