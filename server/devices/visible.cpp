@@ -25,6 +25,7 @@ void apply_visible(Tick& tick) {
   tick.state.tag_payloads = commands.tag_payloads;
   tick.state.range_and_bearing_data = commands.range_and_bearing_data;
   const std::vector<world::MagnetLayout>& magnets = tick.layout.magnets;
+  tick.physics.set_currents(commands.magnet_currents);
   tick.state.magnet_fields.resize(magnets.size());
   for (std::size_t i = 0; i < magnets.size(); ++i) {
     tick.state.magnet_fields[i] =

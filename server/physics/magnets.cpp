@@ -92,10 +92,8 @@ void Magnets::before_substep(std::span<Body> bodies, double substep) {
   }
 }
 
-void Magnets::set_current(std::size_t entity, std::size_t magnet, double current) {
-  std::size_t i = 0;
-  while (magnets_[i].entity != entity) ++i;
-  currents_[i + magnet] = current;
+void Magnets::set_currents(std::span<const double> currents) {
+  currents_.assign(currents.begin(), currents.end());
 }
 
 }  // namespace ziggurat::physics

@@ -17,8 +17,8 @@ class Magnets final : public Plugin {
   void body_removed(const Body& body) override;
   void before_substep(std::span<Body> bodies, double substep) override;
 
-  /// @param current  times the magnet's active field is added to its passive one
-  void set_current(std::size_t entity, std::size_t magnet, double current);
+  /// @param currents  of all magnets, in the order in which their bodies were added
+  void set_currents(std::span<const double> currents);
 
 
  private:

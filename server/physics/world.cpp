@@ -169,8 +169,8 @@ double World::velocity(JointIndex index) const {
   return joint.multi->getJointVel(joint.link);
 }
 
-void World::set_current(std::size_t entity, std::size_t magnet, double current) {
-  if (parts_->magnets) parts_->magnets->set_current(entity, magnet, current);
+void World::set_currents(std::span<const double> currents) {
+  if (parts_->magnets) parts_->magnets->set_currents(currents);
 }
 
 void World::step() {

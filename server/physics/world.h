@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "scene/scene.h"
@@ -39,10 +40,10 @@ class World {
   double position(JointIndex joint) const;  ///< [m] or [rad]; 0 as assembled
   double velocity(JointIndex joint) const;  ///< [m/s] or [rad/s]
 
-  /// Sets the current of an entity's magnet: current times its active field is added to its
+  /// Sets the currents of all magnets: current times its active field is added to a magnet's
   /// passive one. 0 at the start; without effect where the scene has no magnetism.
-  /// @param magnet  index into scene::Devices::magnets
-  void set_current(std::size_t entity, std::size_t magnet, double current);
+  /// @param currents  of the magnets of all entities, in order of adding
+  void set_currents(std::span<const double> currents);
 
   /// Advances by one substep.
   void step();

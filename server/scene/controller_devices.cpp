@@ -176,7 +176,7 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
     {"leds", "default", "", enable_leds},
     {"directional_leds", "default", "", enable_directional_leds},
     {"tags", "default", "", enable_tags},
-    {"magnets", "default", "magnets and <magnetism>", enable_magnets},
+    {"magnets", "default", "", enable_magnets},
     {"differential_steering", "default", "differential_steering devices", enable_wheels},
     {"gripper", "default", "gripper devices", enable_plain},
     {"range_and_bearing", "default", "", enable_range_and_bearing_actuator},

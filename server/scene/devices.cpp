@@ -83,7 +83,6 @@ void read_radios(Reading& reading, Element& container, Entity& entity) {
 }
 
 void read_magnets(Reading& reading, Element& container, Entity& entity) {
-  reading.document.no_effect_yet(container.where(), "magnets and <magnetism>");
   entity.devices.magnets =
       read_container<Magnet>(container, "magnet", [&reading](Element& element, std::string id) {
         const Anchor anchor = read_anchor(reading, element);

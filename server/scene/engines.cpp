@@ -26,7 +26,6 @@ void read_gravity(Reading& reading, Element gravity) {
 }
 
 void read_magnetism(Reading& reading, Element magnetism) {
-  reading.document.no_effect_yet(magnetism.where(), "magnets and <magnetism>");
   Magnetism& out = reading.scene.physics.magnetism.emplace();
   out.force_constant = magnetism.optional("force_constant", non_negative, out.force_constant);
   out.max_distance = magnetism.optional("max_distance", positive);

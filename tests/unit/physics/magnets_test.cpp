@@ -161,7 +161,9 @@ TEST(Electromagnet, LiftsHoldsAndLetsGo) {
   const JointIndex rail = world.joint(1, 0);
   world.add_motor(rail, scene::JointMode::position, 0.4);
   const auto set_current = [&](double current) {
-    for (std::size_t i = 0; i < 4; ++i) world.set_current(1, i, current);
+    std::vector<double> currents(12, 0.0);  // eight magnets of the block, then the lift's four
+    std::fill(currents.begin() + 8, currents.end(), current);
+    world.set_currents(currents);
   };
   set_current(1);
   world.set_target(rail, -0.004);  // 1 mm over the block
