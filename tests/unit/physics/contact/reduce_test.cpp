@@ -1,0 +1,141 @@
+// What is kept of a contact's points, and resting poses that are nearly degenerate.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "brute_force.h"
+#include "math/random.h"
+
+namespace ziggurat::physics::contact {
+namespace {
+
+const Box cube{{0.005, 0.005, 0.005}};
+const Cylinder can{0.005, 0.005};
+
+btTransform at(btScalar x, btScalar y, btScalar z, const btVector3& axis = {0, 0, 1}, btScalar angle = 0) {
+  return btTransform(btQuaternion(axis, angle), btVector3(x, y, z));
+}
+
+/// Twice the area that points of a contact span, as seen along z [m^2].
+btScalar area(const Contacts& contacts) {
+  btScalar twice = 0;
+  for (int i = 0; i < contacts.count; ++i) {
+    const btVector3& p = contacts.points[i].on_b;
+    const btVector3& q = contacts.points[(i + 1) % contacts.count].on_b;
+    twice += p.x() * q.y() - p.y() * q.x();
+  }
+  return std::fabs(twice);
+}
+
+TEST(Reduce, KeepsTheDeepestAndAtMostFour) {
+  math::RandomStream random(1, "reduce");
+  for (int round = 0; round < 300; ++round) {
+    Contacts contacts;
+    contacts.normal = {0, 0, 1};
+    const int count = static_cast<int>(random.uniform(1, Contacts::capacity + 0.99));
+    btScalar deepest = 1;
+    for (int i = 0; i < count; ++i) {
+      const btScalar distance = random.uniform(-1e-3, 1e-3);
+      deepest = std::min(deepest, distance);
+      contacts.add({random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), 0}, distance);
+    }
+    reduce(contacts, at(0, 0, 0));
+    EXPECT_EQ(contacts.count <= 4, true);
+    btScalar kept = 1;
+    for (int i = 0; i < contacts.count; ++i) kept = std::min(kept, contacts.points[i].distance);
+    EXPECT_NEAR(kept, deepest, 1e-9);
+  }
+}
+
+TEST(Reduce, IsNotMovedByRounding) {
+  math::RandomStream random(1, "perturb");
+  // Twelve points of a regular outline all at one depth: every choice is a tie.
+  const auto ring = [&](btScalar noise) {
+    Contacts contacts;
+    contacts.normal = {0, 0, 1};
+    for (int i = 0; i < 12; ++i) {
+      const double angle = i * std::numbers::pi / 6 + 0.05;
+      contacts.add({0.01 * std::cos(angle) + noise * random.uniform(-1, 1),
+                    0.01 * std::sin(angle) + noise * random.uniform(-1, 1), 0},
+                   noise * random.uniform(-1, 1));
+    }
+    reduce(contacts, at(0, 0, 0));
+    return contacts;
+  };
+  const Contacts exact = ring(0);
+  for (int round = 0; round < 100; ++round) {
+    const Contacts noisy = ring(1e-13);
+    ASSERT_EQ(noisy.count, exact.count);
+    for (int i = 0; i < exact.count; ++i) {
+      EXPECT_LT((noisy.points[i].on_b - exact.points[i].on_b).length(), 1e-9);
+    }
+  }
+}
+
+struct Face {
+  const char* name;
+  Shape a, b;
+  btScalar least_area;  ///< of what they share [m^2]
+};
+
+TEST(Faces, ShareAtLeastThreePointsThatSpanTheOverlap) {
+  const Face faces[] = {{"cube on cube", cube, cube, 1e-4},
+                        {"can on cube", can, cube, 2 * 25e-6},
+                        {"cube on can", cube, can, 2 * 25e-6},
+                        {"can on can", can, can, 2 * 25e-6}};
+  for (const Face& face : faces) {
+    for (const btScalar gap : {-5e-4, -1e-9, 0.0, 1e-9, 5e-4}) {
+      for (const btScalar turn : {0.0, 1e-9, 0.1, 0.7853981633974483}) {
+        Contacts contacts = find(face.a, at(0, 0, 0.01 + gap, {0, 0, 1}, turn), face.b, at(0, 0, 0), 1e-3);
+        reduce(contacts, at(0, 0, 0));
+        SCOPED_TRACE(::testing::Message() << face.name << ", gap " << gap << ", turn " << turn);
+        EXPECT_GE(contacts.count, 3);
+        EXPECT_NEAR(contacts.normal.z(), 1, 1e-6);
+        EXPECT_GT(area(contacts), 0.65 * 2 * face.least_area / 2);
+        for (int i = 0; i < contacts.count; ++i) EXPECT_NEAR(contacts.points[i].distance, gap, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Lines, ALyingCylinderTouchesAlongItsSide) {
+  const btScalar quarter = std::numbers::pi / 2;
+  const btTransform lying = at(0, 0, 0.01, {1, 0, 0}, quarter);
+  for (const Shape& below : {Shape(HalfSpace{}), Shape(cube), Shape(can)}) {
+    const bool plane = std::holds_alternative<HalfSpace>(below);
+    const Contacts contacts = find(can, lying, below, at(0, 0, plane ? 0.005 : 0), 1e-3);
+    EXPECT_GE(contacts.count, 2);
+    for (int i = 0; i < contacts.count; ++i) EXPECT_NEAR(contacts.points[i].distance, 0, 1e-9);
+  }
+  const Contacts parallel = find(can, lying, can, at(0, 0, 0, {1, 0, 0}, quarter), 1e-3);
+  EXPECT_EQ(parallel.count, 2);
+}
+
+TEST(Edges, OfCrossedBoxesTouchInOnePoint) {
+  const btScalar eighth = std::numbers::pi / 4;
+  const btScalar edge = 0.005 * std::numbers::sqrt2;
+  const Contacts contacts = find(cube, at(0, 0, 2 * edge + 1e-4, {1, 0, 0}, eighth), cube,
+                                 at(0, 0, 0, {0, 1, 0}, eighth), 1e-3);
+  ASSERT_EQ(contacts.count, 1);
+  EXPECT_NEAR(contacts.points[0].distance, 1e-4, 1e-9);
+  EXPECT_NEAR((contacts.points[0].on_b - btVector3(0, 0, edge)).length(), 0, 1e-9);
+}
+
+TEST(Concentric, BodiesStillHaveAFiniteWayOut) {
+  const Shape shapes[] = {cube, can, Sphere{0.005}, Box{{0.05, 0.02, 0.01}}};
+  for (const Shape& a : shapes) {
+    for (const Shape& b : shapes) {
+      const Contacts contacts = find(a, at(0, 0, 0), b, at(0, 0, 0), 1e-3);
+      ASSERT_GT(contacts.count, 0);
+      EXPECT_NEAR(contacts.normal.length(), 1, 1e-9);
+      for (int i = 0; i < contacts.count; ++i) {
+        EXPECT_TRUE(std::isfinite(contacts.points[i].distance));
+        EXPECT_LT(contacts.points[i].distance, 0);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ziggurat::physics::contact
