@@ -14,7 +14,7 @@ namespace ziggurat::lua {
 /// One kind of device. Tables are made once and written in place at every tick: scripts may keep
 /// them and their functions, and nothing is allocated.
 struct DeviceKind {
-  const char* name;                         ///< robot.<name>
+  const char* name;                          ///< robot.<name>
   bool (*is_present)(const ScriptedRobot&);  ///< the robot has devices of this kind
 
   /// Pushes robot.<name>, as refresh() will find it even if the script puts something else there.

@@ -29,7 +29,8 @@ FoundScript find_script(const std::string& resolved,
   std::error_code error;
   std::string fault = resolved.empty() ? written : resolved;
   fault += ": the script can't be read on this machine";
-  if (!written.empty()) fault += ", nor is '" + written + "' in " + fs::current_path(error).string();
+  if (!written.empty())
+    fault += ", nor is '" + written + "' in " + fs::current_path(error).string();
   return {{}, fault + "; --script FILE names another"};
 }
 

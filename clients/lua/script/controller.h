@@ -15,8 +15,8 @@ namespace ziggurat::lua {
 
 struct ControllerOptions {
   std::filesystem::path script;
-  std::uint64_t seed = 1;                          ///< of the run
-  std::size_t max_memory = std::size_t{1} << 30;   ///< of the script's Lua state [bytes]
+  std::uint64_t seed = 1;                         ///< of the run
+  std::size_t max_memory = std::size_t{1} << 30;  ///< of the script's Lua state [bytes]
 };
 
 /// How a script failed: `scenes/x.lua:12: attempt to … (in step 37)`, a line feed, and Lua's
@@ -66,10 +66,10 @@ class Controller {
   ScriptedRobot robot_;
   RandomStreams random_;
   std::size_t max_memory_;
-  std::string script_;               // as it shall appear in messages
-  std::string folder_;               // of the script
-  Wanted wanted_;                    // by prepare()
-  BoundedState state_;               // last: its finalizers may use the others
+  std::string script_;  // as it shall appear in messages
+  std::string folder_;  // of the script
+  Wanted wanted_;       // by prepare()
+  BoundedState state_;  // last: its finalizers may use the others
 };
 
 }  // namespace ziggurat::lua

@@ -2,6 +2,8 @@
 
 #include "program/runner.h"
 
+#include <atomic>
+#include <csignal>
 #include <thread>
 
 #include "network/server.h"
@@ -46,9 +48,11 @@ class RunnerTest : public ScriptTest {
   world::Commands commands_ = small_.commands();
   std::vector<network::Report> reports_;
   bool has_failures_ = false;
+  std::atomic<pthread_t> client_{};
 
  private:
   bool run_client() {
+    client_ = ::pthread_self();
     ProgramOptions program;
     program.script = folder() / "main.lua";
     program.quiet = true;
@@ -133,12 +137,15 @@ TEST_F(RunnerTest, LinesThatAreNoTextAndTooManyLinesDisturbNobody) {
 }
 
 TEST_F(RunnerTest, AnInterruptLeavesWithoutFailure) {
-  std::thread interrupter([] {
+  std::signal(SIGUSR1, [](int) { interrupt_scripts(); });
+  std::thread interrupter([this] {
     std::this_thread::sleep_for(milliseconds(100));
-    interrupt_scripts();
+    while (!client_) std::this_thread::yield();
+    ::pthread_kill(client_, SIGUSR1);  // as a signal: where the script runs
   });
   run("function init() end function step() while robot.id == 'robot1' do end end");
   interrupter.join();
+  std::signal(SIGUSR1, SIG_DFL);
   EXPECT_FALSE(has_failures_);
   for (const auto& report : reports_) EXPECT_TRUE(report.failures.empty());
   EXPECT_EQ(commands_.joint_targets, (std::vector<double>{0, 0, 0}));
