@@ -15,6 +15,9 @@ struct Anchor {
 
 /// Beyond this slip a contact slides and is anchored anew [m].
 constexpr btScalar slip_limit = 2e-4;
+/// Beyond this an anchor has left the surface: the body rolls, and is anchored anew. Held longer,
+/// a wheel would be pulled back against its rolling and lag behind its encoder [m].
+constexpr btScalar lift_limit = 2e-5;
 
 class Algorithm final : public btActivatingCollisionAlgorithm {
  public:
@@ -128,7 +131,9 @@ btVector3 Algorithm::slip(const btManifoldPoint& point, const Old* old, Anchor& 
   if (!old) return btVector3(0, 0, 0);
   btVector3 slip = manifold_->getBody0()->getWorldTransform() * old->anchor.on_a -
                    manifold_->getBody1()->getWorldTransform() * old->anchor.on_b;
-  slip -= point.m_normalWorldOnB * slip.dot(point.m_normalWorldOnB);
+  const btScalar apart = slip.dot(point.m_normalWorldOnB);
+  if (btFabs(apart - point.m_distance1) > lift_limit) return btVector3(0, 0, 0);
+  slip -= point.m_normalWorldOnB * apart;
   const btScalar length = slip.length();
   if (length > slip_limit) return slip * (slip_limit / length);
   anchor = old->anchor;
