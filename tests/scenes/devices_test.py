@@ -4,7 +4,7 @@ import math
 import resource
 import textwrap
 
-from harness import CONTROLLER_FAILED, SceneTest, main
+from harness import BIN, CONTROLLER_FAILED, SceneTest, main
 
 # Listing 2.8 of the report, as printed.
 REPEATER = """
@@ -148,6 +148,14 @@ class Ring(DeviceTest):
             self.assertEqual(outcome.lines[:-1], expected, f"{processes} processes")
             hashes.add(outcome.lines[-1])
         self.assertEqual(len(hashes), 1, hashes)
+
+    def test_repeaters_in_cpp_do_the_same(self):
+        scene = self.ring(4, REPEATER)
+        expected = self.hash_of("--ticks", 20, scene=scene)
+        text = scene.read_text().replace("lua_controller", "external_controller")
+        scene.write_text(text.replace('id="repeater">',
+                                      f'id="repeater" command="{BIN / "example_repeater"}">'))
+        self.assertEqual(self.hash_of("--ticks", 20, scene=scene), expected)
 
     def test_bytes_wrap_and_the_token_is_never_lost(self):
         outcome = self.run_scene("--ticks", 600, "--quiet", "--lua-processes", 1,
