@@ -6,6 +6,7 @@
 #include <new>
 
 #include "network/small_run.h"
+#include "wire/equipped_run.h"
 #include "wire/inbox.h"
 #include "wire/outbox.h"
 #include "wire/roster.h"
@@ -108,6 +109,39 @@ TEST(TickPath, AllocatesNothingOnceItHasGrown) {
   for (int i = 0; i < 100; ++i) tick();
   EXPECT_EQ(allocations, before);
   EXPECT_EQ(commands.joint_targets[63], 63);
+}
+
+TEST(TickPath, DevicesAllocateNothingEither) {
+  const EquippedRun run;
+  const std::vector<std::size_t> robots{0, 1, 2};
+  const Roster roster = make_roster(run.layout(), robots);
+  auto commands = run.commands();
+  auto observations = run.observations();
+  const std::vector<std::uint8_t> payload(100, 7);
+  for (int i = 0; i < 5; ++i) observations.radio_messages.add(3, payload);
+  v1::ClientMessage answer;
+  v1::Command& command = *answer.mutable_command();
+  for (int i = 0; i < 3; ++i) {
+    command.add_led_colors(1);
+    command.add_tag_payloads(std::string(50, 'x'));
+    v1::RadioMessage& message = *command.add_radio_messages();
+    message.set_payload(std::string(100, 'x'));
+  }
+  const std::string bytes = answer.SerializeAsString();
+  Outbox outbox;
+  Inbox inbox;
+  const auto tick = [&] {
+    commands.radio_messages.clear();
+    if (!outbox.observation(roster, observations)) std::abort();
+    if (inbox.parse(bytes) != Inbox::Kind::command) std::abort();
+    if (inbox.check(roster, run.layout())) std::abort();
+    inbox.apply(roster, commands);
+  };
+  tick();
+  const std::size_t before = allocations;
+  for (int i = 0; i < 100; ++i) tick();
+  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(commands.radio_messages.entries.size(), 3U);
 }
 
 TEST(Inbox, ASecondCommandIsNotMixedWithTheFirst) {
