@@ -424,8 +424,6 @@ constexpr Row device_rows[] = {
      R"(response="0.2" of <sensor> is not a table; write distance:reading)"},
     {"Bearing_without_medium", Part::device, R"(<range_and_bearing anchor="base"/>)",
      "<range_and_bearing> lacks the attribute medium"},
-    {"Bearing_of_too_many_bytes", Part::device,
-     R"(<range_and_bearing anchor="base" data_size="100000"/>)", "from 0 to 65536"},
     {"Overcharged", Part::device, R"(<battery full_charge="1" start_charge="2"/>)",
      "start_charge=\"2\" of <battery> is more than full_charge"},
     {"Discharge_model", Part::device, R"(<battery discharge_model="tim"/>)",

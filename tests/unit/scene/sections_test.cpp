@@ -100,6 +100,16 @@ TEST(Media, KeepDocumentOrder) {
   EXPECT_EQ(count_containing(notices(result), "grid_size of <led> has no effect"), 1u);
 }
 
+TEST(Media, BoundThePacketsOfRangeAndBearing) {
+  SceneText text;
+  text.media = R"(<media><range_and_bearing id="r"/></media>)";
+  text.arena =
+      R"(<arena size="2,2,2"><prototype id="p"><body/><links ref="l"><link id="l" mass="1" )"
+      R"(geometry="sphere" radius="1"/></links><devices><range_and_bearing medium="r" anchor="l" )"
+      R"(data_size="65537"/></devices></prototype></arena>)";
+  EXPECT_EQ(count_containing(faults(text.read()), "write a whole number from 0 to 65536"), 1u);
+}
+
 TEST(Controllers, KindsAndParams) {
   SceneText text;
   text.controllers = R"(<controllers>
