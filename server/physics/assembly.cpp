@@ -9,7 +9,8 @@ std::vector<Pose> assemble(const scene::Entity& entity) {
   std::vector<Pose> poses(entity.links.size());
   poses[entity.reference_link] = entity.links[entity.reference_link].offset;
   for (const scene::Joint& joint : entity.joints) {  // from the root outwards
-    poses[joint.child] = poses[joint.parent] * joint.parent_frame * math::inverse(joint.child_frame);
+    poses[joint.child] =
+        poses[joint.parent] * joint.parent_frame * math::inverse(joint.child_frame);
   }
   return poses;
 }

@@ -75,23 +75,28 @@ void set_up_joint(btMultiBody& multi, int index, const scene::Joint& joint, cons
                   const LinkBody& child, int parent_index) {
   const btVector3 inertia = to_bullet(child.inertia);
   // Bullet's rotation takes the parent's coordinates to the child's.
-  const btQuaternion rotation = to_bullet(math::Quaternion(
-      joint.child_frame.orientation * joint.parent_frame.orientation.conjugate()));
-  const btVector3 to_pivot = to_bullet(math::Vector3(joint.parent_frame.position - parent.center_of_mass));
-  const btVector3 from_pivot = to_bullet(math::Vector3(child.center_of_mass - joint.child_frame.position));
+  const btQuaternion rotation = to_bullet(
+      math::Quaternion(joint.child_frame.orientation * joint.parent_frame.orientation.conjugate()));
+  const btVector3 to_pivot =
+      to_bullet(math::Vector3(joint.parent_frame.position - parent.center_of_mass));
+  const btVector3 from_pivot =
+      to_bullet(math::Vector3(child.center_of_mass - joint.child_frame.position));
   const btVector3 axis = to_bullet(joint.axis);
   switch (joint.type) {
     case scene::JointType::fixed:
       multi.setupFixed(index, child.mass, inertia, parent_index, rotation, to_pivot, from_pivot);
       break;
     case scene::JointType::spherical:
-      multi.setupSpherical(index, child.mass, inertia, parent_index, rotation, to_pivot, from_pivot, true);
+      multi.setupSpherical(index, child.mass, inertia, parent_index, rotation, to_pivot, from_pivot,
+                           true);
       break;
     case scene::JointType::prismatic:
-      multi.setupPrismatic(index, child.mass, inertia, parent_index, rotation, axis, to_pivot, from_pivot, true);
+      multi.setupPrismatic(index, child.mass, inertia, parent_index, rotation, axis, to_pivot,
+                           from_pivot, true);
       break;
     case scene::JointType::revolute:
-      multi.setupRevolute(index, child.mass, inertia, parent_index, rotation, axis, to_pivot, from_pivot, true);
+      multi.setupRevolute(index, child.mass, inertia, parent_index, rotation, axis, to_pivot,
+                          from_pivot, true);
       break;
   }
 }
@@ -132,17 +137,19 @@ void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose
   if (magnetism) carry_turning_magnets(body.links, entity, placed);
   number_links(body.links, entity);
   const LinkBody& base = body.links[entity.reference_link];
-  const auto carried = std::count_if(body.links.begin(), body.links.end(), [](const LinkBody& link) {
-    return link.carrier != LinkBody::carries_itself;
-  });
-  body.multi = std::make_unique<btMultiBody>(static_cast<int>(entity.joints.size() - carried), base.mass,
-                                             to_bullet(base.inertia), !entity.movable, false);
+  const auto carried =
+      std::count_if(body.links.begin(), body.links.end(),
+                    [](const LinkBody& link) { return link.carrier != LinkBody::carries_itself; });
+  body.multi =
+      std::make_unique<btMultiBody>(static_cast<int>(entity.joints.size() - carried), base.mass,
+                                    to_bullet(base.inertia), !entity.movable, false);
   btMultiBody& multi = *body.multi;
   for (LinkBody& part : body.links) part.multi = &multi;
   for (const scene::Joint& joint : entity.joints) {
     const LinkBody& child = body.links[joint.child];
     if (child.carrier != LinkBody::carries_itself) continue;
-    set_up_joint(multi, child.index, joint, body.links[joint.parent], child, body.links[joint.parent].index);
+    set_up_joint(multi, child.index, joint, body.links[joint.parent], child,
+                 body.links[joint.parent].index);
   }
   multi.finalizeMultiDof();
   multi.setHasSelfCollision(false);
@@ -230,7 +237,8 @@ Body build(const scene::Entity& entity, bool magnetism) {
   body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
   std::vector<Pose> placed = assemble(entity);
   for (Pose& pose : placed) pose = entity.pose * pose;
-  const bool single = entity.kind == scene::EntityKind::box || entity.kind == scene::EntityKind::cylinder;
+  const bool single =
+      entity.kind == scene::EntityKind::box || entity.kind == scene::EntityKind::cylinder;
   if (single) {
     build_rigid(body, entity, placed);
   } else {

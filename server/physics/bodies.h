@@ -25,16 +25,16 @@ struct LinkBody {
   math::Vector3 inertia{0, 0, 0};  ///< principal, link axes [kg m^2]
   math::Vector3 center_of_mass;    ///< in the bottom-centre frame [m]
   scene::Damping damping;
-  math::Pose placed;               ///< X_WL as placed
+  math::Pose placed;  ///< X_WL as placed
 
   /// A sphere that turns freely about its centre is no body of its own: its mass moves with the
   /// link that carries it, its orientation is magnetism's affair (docs/magnetism.md).
   static constexpr int carries_itself = -1;
-  int carrier = carries_itself;  ///< index into Body::links
-  btTransform in_carrier = btTransform::getIdentity();  ///< centre of mass in the carrier's
+  int carrier = carries_itself;                          ///< index into Body::links
+  btTransform in_carrier = btTransform::getIdentity();   ///< centre of mass in the carrier's
   math::Quaternion turn = math::Quaternion::Identity();  ///< since the start, in the carrier
 
-  btTransform transform() const;  ///< of the centre of mass, link axes
+  btTransform transform() const;                     ///< of the centre of mass, link axes
   void apply_force(const btVector3& force) const;    ///< at the centre of mass [N]
   void apply_torque(const btVector3& torque) const;  ///< [N m]
 };
@@ -47,8 +47,8 @@ struct Motion {
 /// What an entity is made of in Bullet. Owns all of it.
 struct Body {
   std::size_t entity = 0;
-  std::size_t first_link = 0;     ///< its links' place in State::links
-  std::vector<LinkBody> links;    ///< in the order of Entity::links
+  std::size_t first_link = 0;   ///< its links' place in State::links
+  std::vector<LinkBody> links;  ///< in the order of Entity::links
   std::size_t reference_link = 0;
   math::Pose origin_from_reference;  ///< X_LE: the entity's origin in the reference link
   math::Pose placed;                 ///< X_WE as placed

@@ -22,7 +22,8 @@ btScalar surface_speed(const btCollisionObject& object, const contact::Collider&
   const btScalar moved = (now.getOrigin() - collider.previous.getOrigin()).length();
   btScalar turned = 0;
   for (int i = 0; i < 3; ++i) {
-    turned = btMax(turned, (now.getBasis().getColumn(i) - collider.previous.getBasis().getColumn(i)).length());
+    turned = btMax(
+        turned, (now.getBasis().getColumn(i) - collider.previous.getBasis().getColumn(i)).length());
   }
   return (moved + turned * radius) / length;
 }

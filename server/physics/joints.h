@@ -23,7 +23,7 @@ struct MovingJoint {
   std::size_t entity = 0;
   std::size_t index = 0;  ///< into Entity::joints
   btMultiBody* multi = nullptr;
-  int link = 0;           ///< the multi-body's number of the child link
+  int link = 0;  ///< the multi-body's number of the child link
   std::unique_ptr<btMultiBodyJointLimitConstraint> limit;
   Motor motor;
 };

@@ -22,7 +22,8 @@ Magnets::Placed Magnets::place(const Body& body, const scene::Magnet& magnet) co
   Placed placed;
   placed.entity = body.entity;
   const bool on_origin = magnet.anchor.link == scene::Anchor::origin;
-  const std::size_t anchor = on_origin ? body.reference_link : static_cast<std::size_t>(magnet.anchor.link);
+  const std::size_t anchor =
+      on_origin ? body.reference_link : static_cast<std::size_t>(magnet.anchor.link);
   const LinkBody& link = body.links[anchor];
   Pose in_link;  // of the anchor frame, seen from the link's centre of mass
   in_link.position = -link.center_of_mass;

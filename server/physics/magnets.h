@@ -20,14 +20,13 @@ class Magnets final : public Plugin {
   /// @param currents  of all magnets, in the order in which their bodies were added
   void set_currents(std::span<const double> currents);
 
-
  private:
   /// A magnet, and the link it moves with.
   struct Placed {
     std::size_t entity = 0;
-    std::size_t link = 0;          ///< that moves and feels the force
+    std::size_t link = 0;                ///< that moves and feels the force
     std::optional<std::size_t> turning;  ///< the link that shows its orientation
-    magnetism::Magnet magnet;      ///< its body not yet numbered
+    magnetism::Magnet magnet;            ///< its body not yet numbered
   };
 
   Placed place(const Body& body, const scene::Magnet& magnet) const;

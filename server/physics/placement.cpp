@@ -26,7 +26,8 @@ std::vector<Placed> colliders(const scene::Entity& entity, std::size_t number) {
     if (!link.collides) continue;
     const math::Pose centre{center_of_mass(link.geometry), math::Quaternion::Identity()};
     placed.push_back({number, contact_shape(link.geometry),
-                      to_bullet(entity.pose * assembled[i] * centre), bounding_radius(link.geometry)});
+                      to_bullet(entity.pose * assembled[i] * centre),
+                      bounding_radius(link.geometry)});
   }
   return placed;
 }

@@ -130,8 +130,8 @@ namespace {
 
 btDbvtVolume volume(const scene::Geometry& geometry, const math::Pose& pose) {
   const Extents own = extents(geometry);
-  const Vector3 half = pose.orientation.toRotationMatrix().cwiseAbs() * own.half +
-                       Vector3::Constant(volume_margin);
+  const Vector3 half =
+      pose.orientation.toRotationMatrix().cwiseAbs() * own.half + Vector3::Constant(volume_margin);
   const Vector3 center = pose * own.center;
   return btDbvtVolume::FromCE(to_bullet(center), to_bullet(half));
 }

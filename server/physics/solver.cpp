@@ -61,8 +61,8 @@ void Solver::apply(const Row& row, btScalar impulse) {
 /// @return by how much the row's velocity changed
 btScalar Solver::solve_row(const Row& row) {
   if (row.m_jacDiagABInv == 0) return 0;
-  const btScalar wanted = row.m_rhs - row.m_appliedImpulse * row.m_cfm -
-                          speed_change(row) * row.m_jacDiagABInv;
+  const btScalar wanted =
+      row.m_rhs - row.m_appliedImpulse * row.m_cfm - speed_change(row) * row.m_jacDiagABInv;
   const btScalar impulse =
       std::clamp(row.m_appliedImpulse + wanted, row.m_lowerLimit, row.m_upperLimit) -
       row.m_appliedImpulse;
@@ -100,8 +100,10 @@ btScalar Solver::solve_friction(btMultiBodyConstraintArray& rows) {
   btScalar most = 0;
   for (int i = 0; i + 1 < rows.size(); i += 2) {
     const Row& first = rows[i];
-    const btScalar normal = m_multiBodyNormalContactConstraints[first.m_frictionIndex].m_appliedImpulse;
-    most = btMax(most, solve_friction(first, rows[i + 1], first.m_friction * btMax(normal, btScalar(0))));
+    const btScalar normal =
+        m_multiBodyNormalContactConstraints[first.m_frictionIndex].m_appliedImpulse;
+    most = btMax(most,
+                 solve_friction(first, rows[i + 1], first.m_friction * btMax(normal, btScalar(0))));
   }
   return most;
 }
@@ -124,7 +126,8 @@ btScalar Solver::solveSingleIteration(int iteration, btCollisionObject** bodies,
   // A residual of nothing ends the sweeps.
   if (joints + contacts == 0 && iteration >= sweeps_per_body_ * body_count) return 0;
   const btScalar rigid = btSequentialImpulseConstraintSolver::solveSingleIteration(
-      iteration, bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, draw);
+      iteration, bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info,
+      draw);
   if (iteration == 0) warm_start();
   btScalar most = 0;
   for (int i = 0; i < joints; ++i) {

@@ -48,7 +48,8 @@ struct Load {
   Vector3 moment = Vector3::Zero();  // first moment [kg m]
   Eigen::Matrix3d inertia;
 
-  explicit Load(const LinkBody& carrier) : mass(carrier.mass), inertia(carrier.inertia.asDiagonal()) {}
+  explicit Load(const LinkBody& carrier)
+      : mass(carrier.mass), inertia(carrier.inertia.asDiagonal()) {}
 
   void add(double point_mass, const Vector3& at) {
     mass += point_mass;
@@ -70,7 +71,8 @@ void carry_turning_magnets(std::vector<LinkBody>& links, const scene::Entity& en
   for (const scene::Joint& joint : entity.joints) {
     const scene::Link& link = entity.links[joint.child];
     const auto* sphere = std::get_if<scene::Sphere>(&link.geometry);
-    if (joint.type != scene::JointType::spherical || !sphere || !is_leaf(entity, joint.child)) continue;
+    if (joint.type != scene::JointType::spherical || !sphere || !is_leaf(entity, joint.child))
+      continue;
     LinkBody& child = links[joint.child];
     if (!at_centre(child, joint.child_frame.position)) continue;
     if (!has_centred_magnet(entity, joint.child, child)) continue;
@@ -82,11 +84,13 @@ void carry_turning_magnets(std::vector<LinkBody>& links, const scene::Entity& en
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (carried[i].empty()) continue;
     LinkBody& carrier = links[i];
-    const math::Pose carrier_centre = placed[i] * math::Pose{carrier.center_of_mass, math::Quaternion::Identity()};
+    const math::Pose carrier_centre =
+        placed[i] * math::Pose{carrier.center_of_mass, math::Quaternion::Identity()};
     Load load(carrier);
     std::vector<math::Pose> poses;
     for (const std::size_t child : carried[i]) {
-      const math::Pose centre = placed[child] * math::Pose{links[child].center_of_mass, math::Quaternion::Identity()};
+      const math::Pose centre =
+          placed[child] * math::Pose{links[child].center_of_mass, math::Quaternion::Identity()};
       poses.push_back(math::inverse(carrier_centre) * centre);
       load.add(links[child].mass, poses.back().position);
     }

@@ -1,6 +1,5 @@
 #include "physics/world.h"
 
-
 #include <cmath>
 
 #include "physics/convert.h"
@@ -20,10 +19,11 @@ constexpr unsigned default_solver_iterations = 50;
 constexpr int default_sweeps_per_body = 10;
 
 void configure(btContactSolverInfo& info, const scene::Physics& physics) {
-  info.m_numIterations = static_cast<int>(physics.solver_iterations.value_or(default_solver_iterations));
+  info.m_numIterations =
+      static_cast<int>(physics.solver_iterations.value_or(default_solver_iterations));
   info.m_solverMode = SOLVER_SIMD | SOLVER_USE_WARMSTARTING | SOLVER_USE_2_FRICTION_DIRECTIONS;
   info.m_warmstartingFactor = 0.5;  // at Bullet's 0.85 stacks tremble
-  info.m_splitImpulse = false;  // its threshold is in raw metres, and multi-bodies ignore it
+  info.m_splitImpulse = false;      // its threshold is in raw metres, and multi-bodies ignore it
   info.m_erp = info.m_erp2 = 0.2;
   info.m_frictionERP = 0.2;
   // Sweeps end early once no row changes a velocity by more than this [m/s or rad/s], squared.
@@ -44,7 +44,7 @@ struct World::Parts {
         dispatcher(&configuration),
         algorithms(contact::register_algorithms(dispatcher)),
         solver(physics.solver_iterations ? static_cast<int>(*physics.solver_iterations)
-                                        : default_sweeps_per_body),
+                                         : default_sweeps_per_body),
         dynamics(dispatcher, broadphase, solver, configuration) {
     configure(dynamics.getSolverInfo(), physics);
     gDeactivationTime = 0.5;  // the one global of Bullet that we set; the same for every world [s]
@@ -97,7 +97,8 @@ World::Parts::~Parts() {
 void World::Parts::add_joints(const scene::Entity& entity, Body& body) {
   for (std::size_t i = 0; i < entity.joints.size(); ++i) {
     const scene::Joint& joint = entity.joints[i];
-    if (joint.type != scene::JointType::revolute && joint.type != scene::JointType::prismatic) continue;
+    if (joint.type != scene::JointType::revolute && joint.type != scene::JointType::prismatic)
+      continue;
     MovingJoint moving;
     moving.entity = body.entity;
     moving.index = i;
@@ -209,8 +210,7 @@ void World::read(world::State& state) const {
       out.velocity = from_bullet(motions[i].velocity) + out.angular_velocity.cross(arm);
     }
     const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
-    state.origins[body.entity] =
-        p.stepped ? reference * body.origin_from_reference : body.placed;
+    state.origins[body.entity] = p.stepped ? reference * body.origin_from_reference : body.placed;
   }
 }
 
@@ -224,7 +224,8 @@ double World::energy() const {
       if (!link.moves) continue;
       const btTransform pose = link.transform();
       const btVector3 w = pose.getBasis().transpose() * motions[i].angular_velocity;
-      total += link.mass * (motions[i].velocity.length2() / 2 + parts_->gravity * pose.getOrigin().z());
+      total +=
+          link.mass * (motions[i].velocity.length2() / 2 + parts_->gravity * pose.getOrigin().z());
       total += (to_bullet(link.inertia) * w).dot(w) / 2;
     }
   }

@@ -97,8 +97,8 @@ void add_proximity(const DeviceCarrier& carrier, RobotLayout& robot, Layout& lay
   robot.proximity.begin = layout.proximity.size();
   if (!enabled.proximity_sensor) return;
   for (const scene::ProximitySensor& sensor : entity.devices.proximity_sensors) {
-    layout.proximity.push_back({mount(carrier, sensor.anchor, sensor.offset, layout),
-                                sensor.direction, sensor.range});
+    layout.proximity.push_back(
+        {mount(carrier, sensor.anchor, sensor.offset, layout), sensor.direction, sensor.range});
   }
   robot.proximity.count = entity.devices.proximity_sensors.size();
 }
@@ -114,9 +114,8 @@ void add_range_and_bearing(const DeviceCarrier& carrier, RobotLayout& robot, Lay
                        enabled.range_and_bearing_medium.value_or(medium), data,
                        enabled.range_and_bearing_actuator, enabled.range_and_bearing_sensor});
   }
-  robot.range_and_bearing =
-      enabled_range(enabled.range_and_bearing_actuator || enabled.range_and_bearing_sensor, begin,
-                    devices);
+  robot.range_and_bearing = enabled_range(
+      enabled.range_and_bearing_actuator || enabled.range_and_bearing_sensor, begin, devices);
 }
 
 void add_state_sensors(const DeviceCarrier& carrier, RobotLayout& robot, Layout& layout) {

@@ -10,8 +10,8 @@ namespace ziggurat::simulation {
 
 struct DeviceCarrier {
   const scene::Entity& entity;
-  std::size_t index;                       ///< into Layout::entities, where it stands already
-  const scene::ControllerDevices& enabled; ///< by its controller; nothing without one
+  std::size_t index;                        ///< into Layout::entities, where it stands already
+  const scene::ControllerDevices& enabled;  ///< by its controller; nothing without one
 };
 
 /// Appends what the entity carries, as far as anything can come of it.

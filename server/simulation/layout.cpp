@@ -28,8 +28,7 @@ world::Layout make_layout(const scene::Scene& scene, const std::vector<scene::En
     const scene::Entity& entity = entities[i];
     const bool single =
         entity.kind == scene::EntityKind::box || entity.kind == scene::EntityKind::cylinder;
-    layout.entities.push_back(
-        {entity.id, {layout.links.size(), entity.links.size()}, !single});
+    layout.entities.push_back({entity.id, {layout.links.size(), entity.links.size()}, !single});
     for (const scene::Link& link : entity.links) layout.links.push_back({single ? "" : link.id, i});
     const scene::Controller* controller =
         entity.controller ? &scene.controllers[*entity.controller] : nullptr;

@@ -64,13 +64,15 @@ class Draw {
   problem.file = scene.files.empty() ? "" : scene.files[group.where.file];
   problem.where = group.where;
   problem.text =
-      grid ? fmt::format("<distribute>: '{}' overlaps '{}' in its grid cell, after {} of {} were "
-                         "placed; make 'distances' larger or move what stands in the way",
-                         id, other, placed, group.quantity)
-           : fmt::format("<distribute>: no free place for '{}' in {} attempts, after {} of {} were "
-                         "placed (the last attempt overlapped '{}'); widen the range, place fewer "
-                         "or raise 'max_trials'",
-                         id, std::size_t{group.max_trials} + 1, placed, group.quantity, other);
+      grid ? fmt::format(
+                 "<distribute>: '{}' overlaps '{}' in its grid cell, after {} of {} were "
+                 "placed; make 'distances' larger or move what stands in the way",
+                 id, other, placed, group.quantity)
+           : fmt::format(
+                 "<distribute>: no free place for '{}' in {} attempts, after {} of {} were "
+                 "placed (the last attempt overlapped '{}'); widen the range, place fewer "
+                 "or raise 'max_trials'",
+                 id, std::size_t{group.max_trials} + 1, placed, group.quantity, other);
   throw scene::SceneError({problem});
 }
 

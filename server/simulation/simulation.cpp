@@ -34,9 +34,7 @@ bool has_cameras(const scene::Scene& scene) {
 struct Simulation::Parts {
   Parts(const scene::Scene& scene, const Options& options);
 
-  devices::Tick tick() {
-    return {layout, state, observations, commands, physics, rays, *index};
-  }
+  devices::Tick tick() { return {layout, state, observations, commands, physics, rays, *index}; }
   void look_around();  // rays and index take the poses of the state
 
   unsigned ticks_per_second;
@@ -65,8 +63,8 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options)
     rays.add(entity);
   }
   index.emplace(layout, has_cameras(scene));
-  devices.emplace(
-      devices::Setting{scene, entities, layout, options.seed, 1.0 / ticks_per_second}, physics);
+  devices.emplace(devices::Setting{scene, entities, layout, options.seed, 1.0 / ticks_per_second},
+                  physics);
   physics.read(state);
   look_around();
   devices::Tick first = tick();
@@ -94,7 +92,8 @@ void Simulation::step() {
   p.devices->apply(tick);
   for (unsigned i = 0; i < p.substeps; ++i) p.physics.step();
   p.state.tick += 1;
-  p.state.time_ns = std::llround(static_cast<long double>(p.state.tick) * 1e9L / p.ticks_per_second);
+  p.state.time_ns =
+      std::llround(static_cast<long double>(p.state.tick) * 1e9L / p.ticks_per_second);
   p.physics.read(p.state);
   p.look_around();
   p.observations.tick = p.state.tick;

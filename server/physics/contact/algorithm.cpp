@@ -107,7 +107,8 @@ void Algorithm::write(const Contacts& contacts, const Collider& a, const Collide
     point.m_positionWorldOnB = contact.on_b;
     point.m_combinedFriction = a.friction * b.friction;
     // Only a point or a line of contact can roll; each carries its share of the normal force.
-    if (contacts.count <= 2) point.m_combinedRollingFriction = a.rolling_friction + b.rolling_friction;
+    if (contacts.count <= 2)
+      point.m_combinedRollingFriction = a.rolling_friction + b.rolling_friction;
 
     Old* nearest = nullptr;
     btScalar least = btScalar(25e-6);  // 5 mm apart is another contact [m^2]
@@ -165,8 +166,8 @@ void Algorithm::take_back(const std::array<btVector3, 4>& slips) {
     btManifoldPoint& point = manifold_->getContactPoint(i);
     const btVector3 arm = point.m_positionWorldOnB - middle;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
-    point.m_positionWorldOnA = point.m_positionWorldOnB + normal * point.m_distance1 + shift +
-                               normal.cross(arm) * turn;
+    point.m_positionWorldOnA =
+        point.m_positionWorldOnB + normal * point.m_distance1 + shift + normal.cross(arm) * turn;
   }
 }
 
@@ -182,7 +183,8 @@ btDefaultCollisionConstructionInfo construction_info() {
   return info;
 }
 
-std::unique_ptr<btCollisionAlgorithmCreateFunc> register_algorithms(btCollisionDispatcher& dispatcher) {
+std::unique_ptr<btCollisionAlgorithmCreateFunc> register_algorithms(
+    btCollisionDispatcher& dispatcher) {
   auto create = std::make_unique<Algorithm::Create>();
   constexpr int types[] = {BOX_SHAPE_PROXYTYPE, CYLINDER_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
                            STATIC_PLANE_PROXYTYPE};

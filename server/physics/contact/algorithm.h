@@ -28,6 +28,7 @@ btDefaultCollisionConstructionInfo construction_info();
 
 /// Makes our algorithm answer for all pairs of box, cylinder, sphere and plane. The returned
 /// object must outlive the dispatcher's use of it.
-std::unique_ptr<btCollisionAlgorithmCreateFunc> register_algorithms(btCollisionDispatcher& dispatcher);
+std::unique_ptr<btCollisionAlgorithmCreateFunc> register_algorithms(
+    btCollisionDispatcher& dispatcher);
 
 }  // namespace ziggurat::physics::contact

@@ -42,9 +42,11 @@ void clip_faces(const OrientedBox& reference, int face, const btVector3& outward
     }
   }
   const btScalar side = incident.axis[against].dot(outward) > 0 ? -1 : 1;
-  const btVector3 centre = incident.centre + incident.axis[against] * (side * incident.half[against]);
+  const btVector3 centre =
+      incident.centre + incident.axis[against] * (side * incident.half[against]);
   const int u = (against + 1) % 3, v = (against + 2) % 3;
-  const btVector3 du = incident.axis[u] * incident.half[u], dv = incident.axis[v] * incident.half[v];
+  const btVector3 du = incident.axis[u] * incident.half[u],
+                  dv = incident.axis[v] * incident.half[v];
   Polygon polygon;
   polygon.add(centre + du + dv);
   polygon.add(centre - du + dv);
@@ -69,8 +71,10 @@ void cross_edges(const OrientedBox& a, const OrientedBox& b, const Separation& e
                  Contacts& out) {
   btVector3 on_a = a.centre, on_b = b.centre;
   for (int i = 0; i < 3; ++i) {
-    if (i != edge.axis_a) on_a += a.axis[i] * (a.axis[i].dot(edge.a_to_b) > 0 ? a.half[i] : -a.half[i]);
-    if (i != edge.axis_b) on_b += b.axis[i] * (b.axis[i].dot(edge.a_to_b) > 0 ? -b.half[i] : b.half[i]);
+    if (i != edge.axis_a)
+      on_a += a.axis[i] * (a.axis[i].dot(edge.a_to_b) > 0 ? a.half[i] : -a.half[i]);
+    if (i != edge.axis_b)
+      on_b += b.axis[i] * (b.axis[i].dot(edge.a_to_b) > 0 ? -b.half[i] : b.half[i]);
   }
   const btVector3& u = a.axis[edge.axis_a];
   const btVector3& w = b.axis[edge.axis_b];
@@ -96,8 +100,7 @@ void box_box(const Box& box_a, const btTransform& pose_a, const Box& box_b,
     const btVector3& axis = i < 3 ? a.axis[i] : b.axis[i - 3];
     const btScalar along = between.dot(axis);
     const btScalar own = i < 3 ? a.half[i] : b.half[i - 3];
-    const btScalar distance =
-        btFabs(along) - own - (i < 3 ? b.extent(axis) : a.extent(axis));
+    const btScalar distance = btFabs(along) - own - (i < 3 ? b.extent(axis) : a.extent(axis));
     if (distance > reach) return;
     if (distance > face.distance + (i < 3 ? 0 : prefer_face)) {
       face = {distance, along < 0 ? -axis : axis, i < 3 ? i : -1, i < 3 ? -1 : i - 3};

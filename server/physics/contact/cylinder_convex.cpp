@@ -63,13 +63,15 @@ Nearest nearest(const Body& a, const btTransform& pose_a, const Body& b,
     const bool apart =
         btGjkEpaSolver2::Distance(&shape_a, pose_a, &shape_b, pose_b, guess, results) &&
         results.distance > 0;
-    if (!apart && !btGjkEpaSolver2::Penetration(&shape_a, pose_a, &shape_b, pose_b, guess, results)) {
+    if (!apart &&
+        !btGjkEpaSolver2::Penetration(&shape_a, pose_a, &shape_b, pose_b, guess, results)) {
       return found;
     }
     const btScalar length = results.normal.length();
     if (!(length > SIMD_EPSILON)) return found;
     found.b_to_a = basis * (results.normal / length);
-    if (separation(a, b, -found.b_to_a) > separation(a, b, found.b_to_a)) found.b_to_a = -found.b_to_a;
+    if (separation(a, b, -found.b_to_a) > separation(a, b, found.b_to_a))
+      found.b_to_a = -found.b_to_a;
     found.distance = separation(a, b, found.b_to_a);
     found.on_b = results.witnesses[1];
     if (apart) found.on_b += found.b_to_a * shape_b.getMargin();
@@ -102,11 +104,13 @@ void consider_faces(const Body& body, const Body& other, bool of_a, btScalar pre
         body.axis[i].dot(other.centre - body.centre) < 0 ? -body.axis[i] : body.axis[i];
     const btScalar distance =
         of_a ? separation(body, other, -outward) : separation(other, body, outward);
-    if (distance > best.distance + (best.axis >= 0 ? prefer : 0)) best = {of_a, i, outward, distance};
+    if (distance > best.distance + (best.axis >= 0 ? prefer : 0))
+      best = {of_a, i, outward, distance};
   }
 }
 
-btVector3 perpendicular(const btVector3& axis, const btVector3& towards, const btVector3& fallback) {
+btVector3 perpendicular(const btVector3& axis, const btVector3& towards,
+                        const btVector3& fallback) {
   btVector3 result = towards - axis * axis.dot(towards);
   if (result.length2() < btScalar(1e-12)) return fallback;
   return result.normalized();
@@ -140,8 +144,8 @@ Polygon feature(const Body& body, const btVector3& towards) {
     polygon.add(body.centre - axis * body.cylinder->half_height + rim);
     return polygon;
   }
-  const btVector3 centre = body.centre + axis * (along < 0 ? -body.cylinder->half_height
-                                                           : body.cylinder->half_height);
+  const btVector3 centre =
+      body.centre + axis * (along < 0 ? -body.cylinder->half_height : body.cylinder->half_height);
   const btVector3 across = axis.cross(rim);
   const btScalar diagonal = SIMDSQRT12;
   polygon.add(centre + rim);
@@ -166,10 +170,10 @@ void clip_to_face(Polygon& polygon, const Body& body, int face) {
     }
     return;
   }
-  static const btScalar cosines[16] = {1, .92387953251128674, SIMDSQRT12, .38268343236508978,
-                                       0, -.38268343236508978, -SIMDSQRT12, -.92387953251128674,
+  static const btScalar cosines[16] = {1,  .92387953251128674,  SIMDSQRT12,  .38268343236508978,
+                                       0,  -.38268343236508978, -SIMDSQRT12, -.92387953251128674,
                                        -1, -.92387953251128674, -SIMDSQRT12, -.38268343236508978,
-                                       0, .38268343236508978, SIMDSQRT12, .92387953251128674};
+                                       0,  .38268343236508978,  SIMDSQRT12,  .92387953251128674};
   for (int i = 0; i < 16; ++i) {
     const btVector3 normal = body.axis[0] * cosines[i] + body.axis[1] * cosines[(i + 12) % 16];
     clip(polygon, normal, normal.dot(body.centre) + body.cylinder->radius);
@@ -206,7 +210,8 @@ bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& directi
     if (btFabs(b.axis[i].dot(direction)) < btScalar(0.99)) continue;
     middle = b.centre;
     for (const int side : {(i + 1) % 3, (i + 2) % 3}) {
-      middle += b.axis[side] * (b.axis[side].dot(b_to_a) < 0 ? -b.box->half[side] : b.box->half[side]);
+      middle +=
+          b.axis[side] * (b.axis[side].dot(b_to_a) < 0 ? -b.box->half[side] : b.box->half[side]);
     }
     half_length = b.box->half[i];
     return true;

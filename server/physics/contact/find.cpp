@@ -57,7 +57,8 @@ btScalar turn(btScalar x, btScalar y) {
 btScalar bounding_radius(const Shape& shape) {
   if (const auto* box = std::get_if<Box>(&shape)) return box->half.length();
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    return btSqrt(cylinder->radius * cylinder->radius + cylinder->half_height * cylinder->half_height);
+    return btSqrt(cylinder->radius * cylinder->radius +
+                  cylinder->half_height * cylinder->half_height);
   }
   const auto* sphere = std::get_if<Sphere>(&shape);
   return sphere ? sphere->radius : 0;

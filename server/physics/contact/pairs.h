@@ -15,8 +15,8 @@ void sphere_plane(const Sphere& a, const btTransform& pose_a, const btTransform&
 
 void sphere_sphere(const Sphere& a, const btTransform& pose_a, const Sphere& b,
                    const btTransform& pose_b, btScalar reach, Contacts& out);
-void sphere_box(const Sphere& a, const btTransform& pose_a, const Box& b,
-                const btTransform& pose_b, btScalar reach, Contacts& out);
+void sphere_box(const Sphere& a, const btTransform& pose_a, const Box& b, const btTransform& pose_b,
+                btScalar reach, Contacts& out);
 void sphere_cylinder(const Sphere& a, const btTransform& pose_a, const Cylinder& b,
                      const btTransform& pose_b, btScalar reach, Contacts& out);
 

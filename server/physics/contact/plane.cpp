@@ -47,7 +47,8 @@ void cylinder_plane(const Cylinder& a, const btTransform& pose_a, const btTransf
   const btVector3 axis = pose_a.getBasis().getColumn(2);
   const btScalar up = out.normal.dot(axis);
   const btVector3 to_lower = axis * (up < 0 ? a.half_height : -a.half_height);
-  btVector3 down = axis * up - out.normal;  // in the caps, towards the plane; its length is sin(tilt)
+  btVector3 down =
+      axis * up - out.normal;  // in the caps, towards the plane; its length is sin(tilt)
   const bool flat = down.length2() < flat_tilt * flat_tilt;
   // Flat on its cap the deepest direction is noise: points fixed in the body rest quietly.
   if (flat) down = pose_a.getBasis().getColumn(0);

@@ -25,8 +25,8 @@ void sphere_sphere(const Sphere& a, const btTransform& pose_a, const Sphere& b,
   add(a, pose_b.getOrigin() + outward * b.radius, outward, length - b.radius, reach, out);
 }
 
-void sphere_box(const Sphere& a, const btTransform& pose_a, const Box& b,
-                const btTransform& pose_b, btScalar reach, Contacts& out) {
+void sphere_box(const Sphere& a, const btTransform& pose_a, const Box& b, const btTransform& pose_b,
+                btScalar reach, Contacts& out) {
   const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
   btVector3 nearest = centre;
   nearest.setMax(-b.half);

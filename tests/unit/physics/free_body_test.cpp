@@ -43,7 +43,8 @@ TEST(FreeFall, OfAPrototypeIsDampedAsTheDialectSays) {
 TEST(Damping, OfASingleBodyFollowsTheSameLaw) {
   // dv/dt = -k v (1 + v) from v0 solves v / (1 + v) = v0 / (1 + v0) exp(-k t).
   World world(with_gravity(9.8), 1e-3);
-  scene::Entity box = single(scene::EntityKind::box, {{0, 0, 100}, math::Quaternion::Identity()}, true, cube, 1);
+  scene::Entity box =
+      single(scene::EntityKind::box, {{0, 0, 100}, math::Quaternion::Identity()}, true, cube, 1);
   box.links[0].damping = {0.5, 0.5};
   world.add(box);
   for (int i = 0; i < 20000; ++i) world.step();
@@ -54,7 +55,8 @@ TEST(Damping, OfASingleBodyFollowsTheSameLaw) {
 
 TEST(Rest, ABoxStandsOnTheFloor) {
   World world(with_floor(9.8), 0.01);
-  world.add(single(scene::EntityKind::box, {{0, 0, 0.02}, math::Quaternion::Identity()}, true, cube, 0.25));
+  world.add(single(scene::EntityKind::box, {{0, 0, 0.02}, math::Quaternion::Identity()}, true, cube,
+                   0.25));
   for (int i = 0; i < 200; ++i) world.step();
   const world::State state = state_of(world);
   EXPECT_NEAR(state.origins[0].position.z(), 0, 1e-5);
@@ -64,7 +66,8 @@ TEST(Rest, ABoxStandsOnTheFloor) {
 TEST(Rest, ACylinderLiesAtItsRadius) {
   World world(with_floor(9.8), 0.01);
   const scene::Cylinder cylinder{0.005, 0.01};
-  world.add(single(scene::EntityKind::cylinder, {{0, 0, 0.02}, about({1, 0, 0}, 1.5)}, true, cylinder, 0.25));
+  world.add(single(scene::EntityKind::cylinder, {{0, 0, 0.02}, about({1, 0, 0}, 1.5)}, true,
+                   cylinder, 0.25));
   for (int i = 0; i < 400; ++i) world.step();
   const Pose pose = state_of(world).origins[0];
   EXPECT_NEAR((pose * Vector3(0, 0, 0.005)).z(), 0.005, 5e-5);
@@ -82,7 +85,8 @@ TEST(Rest, ASphereStopsAtItsRadius) {
 TEST(Rest, ATowerOfFiveBoxesStands) {
   World world(with_floor(9.8), 0.01);
   for (int i = 0; i < 5; ++i) {
-    world.add(single(scene::EntityKind::box, {{0, 0, 0.01 * i}, math::Quaternion::Identity()}, true, cube, 0.25));
+    world.add(single(scene::EntityKind::box, {{0, 0, 0.01 * i}, math::Quaternion::Identity()}, true,
+                     cube, 0.25));
   }
   for (int i = 0; i < 1000; ++i) world.step();
   const world::State state = state_of(world);
@@ -92,19 +96,19 @@ TEST(Rest, ATowerOfFiveBoxesStands) {
   }
 }
 
-
-
 /// Displacement along the slope after 0.6 s with friction 0.25 (dialect A.3).
 /// @param heading  of the fall line about the vertical [rad]
 double slide(double degrees, scene::EntityKind kind, double heading = 0) {
   World world(with_gravity(9.8), 0.01);
   const double angle = degrees * EIGEN_PI / 180;
   const math::Quaternion tilt = about({0, 0, 1}, heading) * about({0, 1, 0}, angle);
-  scene::Entity ramp = single(scene::EntityKind::box, {{0, 0, -0.1}, tilt}, false, scene::Box{{4, 1, 0.1}}, 0);
+  scene::Entity ramp =
+      single(scene::EntityKind::box, {{0, 0, -0.1}, tilt}, false, scene::Box{{4, 1, 0.1}}, 0);
   const Vector3 up = tilt * Vector3::UnitZ(), downhill = tilt * Vector3::UnitX();
   const Vector3 top = ramp.pose.position + up * 0.1;
   world.add(ramp);
-  scene::Entity box = prototype("block", {top, tilt}, true, {link("base", scene::Box{{0.05, 0.05, 0.05}}, 0.1)});
+  scene::Entity box =
+      prototype("block", {top, tilt}, true, {link("base", scene::Box{{0.05, 0.05, 0.05}}, 0.1)});
   box.kind = kind;
   world.add(box);
   for (int i = 0; i < 60; ++i) world.step();

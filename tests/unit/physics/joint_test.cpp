@@ -20,8 +20,9 @@ Pose at(double x, double y, double z) { return {{x, y, z}, math::Quaternion::Ide
 
 /// A fixed base in the air and one child on a joint.
 scene::Entity pair(const scene::Joint& joint, const scene::Geometry& child, double mass) {
-  scene::Entity entity = prototype("pair", at(0, 0, 10), false,
-                                   {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("child", child, mass)});
+  scene::Entity entity =
+      prototype("pair", at(0, 0, 10), false,
+                {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("child", child, mass)});
   entity.joints.push_back(joint);
   return entity;
 }
@@ -31,7 +32,8 @@ TEST(Revolute, APendulumSwingsInItsClosedFormPeriod) {
   const double length = 0.5, mass = 2, g = 9.8, h = 0.001;
   World world(with_gravity(g), h);
   const Pose hung = at(0, 0, 0.05 + length);  // the axis seen from the cube's bottom centre
-  scene::Joint swing = joint(scene::JointType::revolute, Vector3::UnitY(), {{0, 0, 0}, about({0, 1, 0}, 0.05)}, hung);
+  scene::Joint swing = joint(scene::JointType::revolute, Vector3::UnitY(),
+                             {{0, 0, 0}, about({0, 1, 0}, 0.05)}, hung);
   world.add(pair(swing, cube, mass));
   const JointIndex axis = world.joint(0, 0);
   // Falling from the angle at which it was assembled, q runs from 0 to -2 * 0.05 and back.
@@ -49,7 +51,8 @@ TEST(Revolute, APendulumSwingsInItsClosedFormPeriod) {
     previous = angle;
   }
   const double inertia = mass * 0.01 / 6 + mass * length * length;
-  const double period = 2 * EIGEN_PI * std::sqrt(inertia / (mass * g * length)) * (1 + 0.05 * 0.05 / 16);
+  const double period =
+      2 * EIGEN_PI * std::sqrt(inertia / (mass * g * length)) * (1 + 0.05 * 0.05 / 16);
   EXPECT_EQ(crossings, 5);
   EXPECT_NEAR((last - first) / 4, period, 0.005 * period);
 }
@@ -86,10 +89,12 @@ TEST(Prismatic, StopsAtItsLimits) {
 
 TEST(Prismatic, AMotorGivesNoMoreThanItsImpulse) {
   // Dialect A.4: 0.5 kg against 4.9 N; after one substep of 10 ms.
-  const std::pair<double, double> cases[] = {{0.0001, -0.0978}, {0.01, -0.0780}, {0.04, -0.0180}, {0.06, 0}};
+  const std::pair<double, double> cases[] = {
+      {0.0001, -0.0978}, {0.01, -0.0780}, {0.04, -0.0180}, {0.06, 0}};
   for (const auto& [impulse, velocity] : cases) {
     World world(with_gravity(9.8), 0.01);
-    world.add(pair(joint(scene::JointType::prismatic, Vector3::UnitZ(), identity, identity), cube, 0.5));
+    world.add(
+        pair(joint(scene::JointType::prismatic, Vector3::UnitZ(), identity, identity), cube, 0.5));
     const JointIndex lift = world.joint(0, 0);
     world.add_motor(lift, scene::JointMode::velocity, impulse);
     world.step();
@@ -100,7 +105,8 @@ TEST(Prismatic, AMotorGivesNoMoreThanItsImpulse) {
 TEST(Prismatic, ALiftRisesWhenStrongEnoughAndStallsWhenNot) {
   for (const double factor : {0.95, 1.05}) {
     World world(with_gravity(9.8), 0.01);
-    world.add(pair(joint(scene::JointType::prismatic, Vector3::UnitZ(), identity, identity), cube, 0.5));
+    world.add(
+        pair(joint(scene::JointType::prismatic, Vector3::UnitZ(), identity, identity), cube, 0.5));
     const JointIndex lift = world.joint(0, 0);
     world.add_motor(lift, scene::JointMode::velocity, factor * 0.5 * 9.8 * 0.01);
     world.set_target(lift, 0.1);
@@ -115,7 +121,8 @@ TEST(Prismatic, MaxSubstepSpreadsTheImpulse) {
     scene::Physics physics = with_gravity(0);
     physics.max_substep = refine;
     World world(physics, 0.01);
-    world.add(pair(joint(scene::JointType::prismatic, Vector3::UnitX(), identity, identity), cube, 0.5));
+    world.add(
+        pair(joint(scene::JointType::prismatic, Vector3::UnitX(), identity, identity), cube, 0.5));
     const JointIndex rail = world.joint(0, 0);
     world.add_motor(rail, scene::JointMode::velocity, 0.002);
     world.set_target(rail, 10);
@@ -126,7 +133,8 @@ TEST(Prismatic, MaxSubstepSpreadsTheImpulse) {
 
 TEST(PositionMode, ReachesItsTargetInOneSubstepWhenForceAllows) {
   World world(with_gravity(9.8), 0.01);
-  world.add(pair(joint(scene::JointType::prismatic, Vector3::UnitZ(), identity, identity), cube, 0.5));
+  world.add(
+      pair(joint(scene::JointType::prismatic, Vector3::UnitZ(), identity, identity), cube, 0.5));
   const JointIndex lift = world.joint(0, 0);
   world.add_motor(lift, scene::JointMode::position, 10);
   world.set_target(lift, 0.05);
@@ -138,7 +146,8 @@ TEST(PositionMode, ReachesAndHoldsItsTargetAgainstGravityWithABindingLimit) {
   // Dialect A.5's limit of 0.2 N s overshoots in the reference; ours brakes in time.
   for (const double impulse : {0.2, 0.1}) {
     World world(with_gravity(9.8), 0.01);
-    world.add(pair(joint(scene::JointType::prismatic, Vector3::UnitZ(), identity, identity), cube, 0.5));
+    world.add(
+        pair(joint(scene::JointType::prismatic, Vector3::UnitZ(), identity, identity), cube, 0.5));
     const JointIndex lift = world.joint(0, 0);
     world.add_motor(lift, scene::JointMode::position, impulse);
     world.set_target(lift, 0.05);
@@ -156,7 +165,8 @@ TEST(Fixed, StaysRigidUnderLoad) {
   // A 0.5 m arm of 1 kg welded to the world at one end.
   World world(with_gravity(9.8), 0.01);
   const scene::Box arm{{0.5, 0.02, 0.02}};
-  world.add(pair(joint(scene::JointType::fixed, Vector3::UnitZ(), identity, at(-0.25, 0, 0)), arm, 1));
+  world.add(
+      pair(joint(scene::JointType::fixed, Vector3::UnitZ(), identity, at(-0.25, 0, 0)), arm, 1));
   const Vector3 before = state_of(world).links[1].pose * Vector3(0.25, 0, 0);
   for (int n = 0; n < 1000; ++n) world.step();
   EXPECT_LT((state_of(world).links[1].pose * Vector3(0.25, 0, 0) - before).norm(), 1e-4);
@@ -165,8 +175,10 @@ TEST(Fixed, StaysRigidUnderLoad) {
 TEST(Fixed, FramesPlaceTheChild) {
   // Dialect 2.3: R_c = R_p R_P R_C^-1, p_c = p_p + R_p t_P - R_c t_C.
   World world(scene::Physics{}, 0.01);
-  const Pose parent{{0.3, -0.1, 0.2}, about({1, 0, 2}, 0.8)}, child{{0.05, 0.02, -0.4}, about({0, 3, 1}, -1.1)};
-  scene::Entity entity = prototype("pair", {{1, 2, 3}, about({0, 1, 1}, 0.4)}, true, {link("base", cube, 1), link("child", cube, 1)});
+  const Pose parent{{0.3, -0.1, 0.2}, about({1, 0, 2}, 0.8)},
+      child{{0.05, 0.02, -0.4}, about({0, 3, 1}, -1.1)};
+  scene::Entity entity = prototype("pair", {{1, 2, 3}, about({0, 1, 1}, 0.4)}, true,
+                                   {link("base", cube, 1), link("child", cube, 1)});
   entity.joints.push_back(joint(scene::JointType::fixed, Vector3::UnitZ(), parent, child));
   world.add(entity);
   const auto expect_frames_meet = [&] {
@@ -184,7 +196,8 @@ TEST(Spherical, APendulumConservesItsEnergy) {
   // A rod on a ball joint, swinging out of plane, for 10 s at 1 ms.
   World world(with_gravity(9.8), 0.001);
   const scene::Cylinder rod{0.01, 0.4};
-  scene::Joint ball = joint(scene::JointType::spherical, Vector3::UnitZ(), {{0, 0, 0}, about({1, 0.3, 0}, 2.2)}, identity);
+  scene::Joint ball = joint(scene::JointType::spherical, Vector3::UnitZ(),
+                            {{0, 0, 0}, about({1, 0.3, 0}, 2.2)}, identity);
   world.add(pair(ball, rod, 0.3));
   const double start = world.energy();
   const double range = 0.3 * 9.8 * 0.2;  // of the potential energy [J]
@@ -197,7 +210,9 @@ TEST(Spherical, APendulumConservesItsEnergy) {
 TEST(Spherical, KeepsItsPivot) {
   World world(with_gravity(9.8), 0.01);
   const scene::Cylinder rod{0.01, 0.4};
-  world.add(pair(joint(scene::JointType::spherical, Vector3::UnitZ(), {{0, 0, 0}, about({1, 0, 0}, 2)}, identity), rod, 0.3));
+  world.add(pair(joint(scene::JointType::spherical, Vector3::UnitZ(),
+                       {{0, 0, 0}, about({1, 0, 0}, 2)}, identity),
+                 rod, 0.3));
   for (int n = 0; n < 500; ++n) world.step();
   EXPECT_LT((state_of(world).links[1].pose.position - Vector3(0, 0, 10)).norm(), 1e-9);
 }

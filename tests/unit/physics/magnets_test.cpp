@@ -27,13 +27,15 @@ scene::Magnet magnet(int link, const Vector3& offset, const Vector3& field) {
 
 /// A stigmergic block: a 55 mm cube with eight spherical magnets on spherical joints.
 scene::Entity block(const std::string& id, const Pose& pose, bool movable = true) {
-  scene::Entity entity = prototype(id, pose, movable, {link("base", scene::Box{{0.055, 0.055, 0.055}}, 0.102)});
+  scene::Entity entity =
+      prototype(id, pose, movable, {link("base", scene::Box{{0.055, 0.055, 0.055}}, 0.102)});
   int index = 1;
   for (const double z : {0.005, 0.05}) {
     for (const double x : {-0.0225, 0.0225}) {
       for (const double y : {-0.0225, 0.0225}) {
         entity.links.push_back(link("sphere" + std::to_string(index), scene::Sphere{0.003}, 0.001));
-        scene::Joint ball = joint(scene::JointType::spherical, Vector3::UnitZ(), {{x, y, z}, math::Quaternion::Identity()},
+        scene::Joint ball = joint(scene::JointType::spherical, Vector3::UnitZ(),
+                                  {{x, y, z}, math::Quaternion::Identity()},
                                   {{0, 0, 0.003}, math::Quaternion::Identity()});
         ball.child = static_cast<std::size_t>(index);
         entity.joints.push_back(ball);
@@ -127,7 +129,8 @@ TEST(Blocks, ThirtyTwoTouchingBlocksStayAtRest) {
   for (int z = 0; z < 2; ++z) {
     for (int y = 0; y < 4; ++y) {
       for (int x = 0; x < 4; ++x) {
-        world.add(block("block", {{0.055 * x, 0.055 * y, 0.055 * z}, math::Quaternion::Identity()}));
+        world.add(
+            block("block", {{0.055 * x, 0.055 * y, 0.055 * z}, math::Quaternion::Identity()}));
       }
     }
   }
@@ -148,8 +151,10 @@ TEST(Electromagnet, LiftsHoldsAndLetsGo) {
   World world(physics, 0.01);
   world.add(block("block", {}));
   scene::Entity lift = prototype("lift", {{0, 0, 0.2}, math::Quaternion::Identity()}, false,
-                                 {link("mast", scene::Box{{0.02, 0.02, 0.02}}, 1), link("plate", scene::Box{{0.06, 0.06, 0.01}}, 0.1)});
-  lift.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(), {{0, 0, -0.2 + 0.06}, math::Quaternion::Identity()}, {}));
+                                 {link("mast", scene::Box{{0.02, 0.02, 0.02}}, 1),
+                                  link("plate", scene::Box{{0.06, 0.06, 0.01}}, 0.1)});
+  lift.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(),
+                              {{0, 0, -0.2 + 0.06}, math::Quaternion::Identity()}, {}));
   for (const double x : {-0.0225, 0.0225}) {
     for (const double y : {-0.0225, 0.0225}) {
       scene::Magnet electromagnet = magnet(1, {x, y, 0.005}, {0, 0, 100});

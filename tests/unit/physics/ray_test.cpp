@@ -46,8 +46,8 @@ TEST(Ray, MeetsASphereWhereTheFormulaSays) {
 }
 
 TEST(Ray, MeetsATurnedBoxWhereTheFormulaSays) {
-  const Rays rays = rays_among({solid(scene::Box{{0.2, 0.2, 1}},
-                                      {{1, 0, 0}, testing::about({0, 0, 1}, M_PI / 4)})});
+  const Rays rays = rays_among(
+      {solid(scene::Box{{0.2, 0.2, 1}}, {{1, 0, 0}, testing::about({0, 0, 1}, M_PI / 4)})});
   EXPECT_NEAR(*distance(rays, {0, 0, 0.5}, {2, 0, 0.5}), 1 - 0.1 * std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(*distance(rays, {0, 0.05, 0.5}, {2, 0.05, 0.5}), 1 - 0.1 * std::sqrt(2.0) + 0.05,
               1e-12);
@@ -77,8 +77,8 @@ TEST(Ray, IsNotStoppedByTheBodyItStartsIn) {
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->entity, 1u);
   EXPECT_DOUBLE_EQ(hit->distance, 2);
-  EXPECT_FALSE(distance(rays, {1, 0, 0}, {1.9, 0, 0}));   // from the surface outwards
-  EXPECT_EQ(*distance(rays, {-1, 0, 0}, {0, 0, 0}), 0);   // from the surface inwards: contact
+  EXPECT_FALSE(distance(rays, {1, 0, 0}, {1.9, 0, 0}));  // from the surface outwards
+  EXPECT_EQ(*distance(rays, {-1, 0, 0}, {0, 0, 0}), 0);  // from the surface inwards: contact
   EXPECT_EQ(*distance(rays, {-1 + 5e-5, 0, 0}, {0, 0, 0}), 0);
   EXPECT_FALSE(distance(rays, {-1 + 2e-4, 0, 0}, {0, 0, 0}));
 }
@@ -127,7 +127,8 @@ TEST(Ray, FindsTheClosestOfManyAsASearchDoes) {
   const Rays rays = rays_among(entities);
   int hits = 0;
   for (int i = 0; i < 200; ++i) {
-    const Vector3 start(0, 0, 0), end(std::sin(i) * 9, std::cos(i * 1.3) * 9, std::sin(i * 0.7) * 9);
+    const Vector3 start(0, 0, 0),
+        end(std::sin(i) * 9, std::cos(i * 1.3) * 9, std::sin(i * 0.7) * 9);
     std::optional<double> closest;
     for (const auto& entity : entities) {
       const auto share = enter(entity.links[0].geometry, start - entity.pose.position,
