@@ -76,24 +76,60 @@ void read_radios(Reading& reading, Element& container, Entity& entity) {
       read_container<Radio>(container, "radio", [&reading](Element& element, std::string id) {
         const Anchor anchor = read_anchor(reading, element);
         element.without_effect("orientation", orientation, "radios reach equally far all around");
-        element.without_effect("duplex_mode", text, "a radio that sends in a tick receives nothing in it");
+        element.without_effect("duplex_mode", text,
+                               "a radio that sends in a tick receives nothing in it");
         const math::Vector3 at = element.required("position", position);
         return Radio{std::move(id), anchor, at, element.required("range", positive, 1.0), {}};
       });
 }
 
+MagnetShape read_magnet_shape(Element& element) {
+  using Kind = MagnetShape::Kind;
+  MagnetShape shape;
+  shape.kind = element.required(
+      "shape",
+      OneOf<Kind>{{"box", Kind::box}, {"cylinder", Kind::cylinder}, {"sphere", Kind::sphere}},
+      Kind::sphere);
+  if (shape.kind == Kind::box) shape.size = element.required("size", size);
+  if (shape.kind != Kind::box) shape.radius = element.required("radius", length, 1.0);
+  if (shape.kind == Kind::cylinder) shape.height = element.required("height", length, 1.0);
+  shape.orientation = element.optional("orientation", orientation, math::Quaternion::Identity());
+  return shape;
+}
+
+/// A magnet says how strong it is in the dialect's unit or in SI: one of the two.
+Magnet read_magnet(Reading& reading, Element& element, std::string id) {
+  Magnet magnet;
+  magnet.id = std::move(id);
+  magnet.anchor = read_anchor(reading, element);
+  magnet.offset = element.required("offset", position);
+  if (element.has("shape")) magnet.shape = read_magnet_shape(element);
+  if (element.has("moment")) {
+    magnet.moment = element.required("moment", vector3);
+  } else if (element.has("remanence")) {
+    magnet.remanence = element.required("remanence", vector3);
+    if (!magnet.shape) {
+      element.fault_at(
+          "remanence",
+          "needs a volume; write shape=\"box\", \"cylinder\" or \"sphere\" with its lengths");
+    }
+  } else {
+    magnet.passive_field = element.required("passive_field", vector3);
+  }
+  if (element.has("passive_field") && (element.has("moment") || element.has("remanence"))) {
+    element.fault_at(
+        "passive_field",
+        "says the strength a second time; keep one of passive_field, moment and remanence");
+    element.optional("passive_field", vector3);
+  }
+  magnet.active_field = element.optional("active_field", vector3, math::Vector3::Zero());
+  return magnet;
+}
+
 void read_magnets(Reading& reading, Element& container, Entity& entity) {
   entity.devices.magnets =
       read_container<Magnet>(container, "magnet", [&reading](Element& element, std::string id) {
-        const Anchor anchor = read_anchor(reading, element);
-        const math::Vector3 offset = element.required("offset", position);
-        const math::Vector3 passive = element.required("passive_field", vector3);
-        return Magnet{std::move(id),
-                      anchor,
-                      offset,
-                      passive,
-                      element.optional("active_field", vector3, math::Vector3::Zero()),
-                      {}};
+        return read_magnet(reading, element, std::move(id));
       });
 }
 
@@ -126,8 +162,8 @@ void read_proximity_sensor(Reading& reading, Element& element, const Perception&
   const Perception perception = read_perception(element, usual);
   element.done();
   if (!may_add(1, element, entity)) return;
-  entity.devices.proximity_sensors.push_back({anchor, offset, along, reach, perception.sees_floor,
-                                              perception.response, element.where()});
+  entity.devices.proximity_sensors.push_back(
+      {anchor, offset, along, reach, perception.sees_floor, perception.response, element.where()});
 }
 
 struct RingDefaults {
@@ -173,9 +209,9 @@ void read_ring(Reading& reading, Element& ring, const RingDefaults& usual,
   for (unsigned i = 0; i < number_of_sensors; ++i) {
     const double turn = start + 2.0 * std::numbers::pi * i / number_of_sensors;
     const math::Vector3 outward(std::cos(turn), std::sin(turn), 0.0);
-    entity.devices.proximity_sensors.push_back(
-        {anchor, center + radius * outward, outward, reach, perception.sees_floor,
-         perception.response, ring.where()});
+    entity.devices.proximity_sensors.push_back({anchor, center + radius * outward, outward, reach,
+                                                perception.sees_floor, perception.response,
+                                                ring.where()});
   }
 }
 
@@ -267,11 +303,11 @@ void read_leds(Reading& reading, Element& container, Entity& entity) {
 
 Battery read_battery(Element& element) {
   enum class Model { time, motion, time_motion };
-  const Model model = element.optional("discharge_model",
-                                       OneOf<Model>{{"time", Model::time},
-                                                    {"motion", Model::motion},
-                                                    {"time_motion", Model::time_motion}},
-                                       Model::time);
+  const Model model = element.optional(
+      "discharge_model",
+      OneOf<Model>{
+          {"time", Model::time}, {"motion", Model::motion}, {"time_motion", Model::time_motion}},
+      Model::time);
   Battery battery;
   battery.where = element.where();
   battery.full_charge = element.optional("full_charge", positive, 1.0);

@@ -59,13 +59,25 @@ struct Radio {
   Location where;
 };
 
+/// The body of a magnet that is uniformly magnetised, centred on the magnet's offset.
+struct MagnetShape {
+  enum class Kind { box, cylinder, sphere } kind = Kind::sphere;
+  math::Vector3 size = math::Vector3::Zero();  ///< of a box: full extents [m]
+  double radius = 0;                           ///< of a cylinder or sphere [m]
+  double height = 0;                           ///< of a cylinder, along its z [m]
+  math::Quaternion orientation = math::Quaternion::Identity();  ///< in the anchor frame
+};
+
 struct Magnet {
   std::string id;
   Anchor anchor;
   math::Vector3 offset;         ///< in the anchor frame [m]
-  math::Vector3 passive_field;  ///< the dialect's unit (see docs/magnetism.md)
-  math::Vector3 active_field = math::Vector3::Zero();  ///< added per unit of current
+  math::Vector3 passive_field = math::Vector3::Zero();  ///< the dialect's unit (docs/magnetism.md)
+  math::Vector3 active_field = math::Vector3::Zero();   ///< added per unit of current
   Location where;
+  std::optional<MagnetShape> shape;                 ///< none: a point
+  math::Vector3 moment = math::Vector3::Zero();     ///< added to the passive one [A m^2]
+  math::Vector3 remanence = math::Vector3::Zero();  ///< likewise, times the shape's volume [T]
 };
 
 /// What a proximity sensor reads at a distance, as its data sheet says: straight lines between

@@ -29,6 +29,16 @@ void read_magnetism(Reading& reading, Element magnetism) {
   Magnetism& out = reading.scene.physics.magnetism.emplace();
   out.force_constant = magnetism.optional("force_constant", non_negative, out.force_constant);
   out.max_distance = magnetism.optional("max_distance", positive);
+  out.adaptive =
+      magnetism.optional("precision", OneOf<bool>{{"dipole", false}, {"adaptive", true}}, false);
+  out.tolerance = magnetism.optional("tolerance", positive, out.tolerance);
+  if (out.tolerance < 1e-3 || out.tolerance > 0.1) {
+    magnetism.fault_at("tolerance", "is out of range; write a number from 0.001 to 0.1");
+  }
+  out.taper = magnetism.optional("taper", non_negative, 0.0);
+  if (out.taper > 0 && (out.taper > 1 || !out.max_distance)) {
+    magnetism.fault_at("taper", "is a share of max_distance, from 0 to 1; write both");
+  }
   magnetism.done();
 }
 

@@ -145,6 +145,9 @@ struct Floor {
 struct Magnetism {
   double force_constant = 7.0500949e-13;  ///< k of the dialect's pair force
   std::optional<double> max_distance;     ///< pair cut-off [m]; none = unlimited
+  bool adaptive = false;   ///< magnets with a shape are as many sources as the tolerance asks for
+  double tolerance = 0.01; ///< relative, of the force and torque of a pair; adaptive only
+  double taper = 0;        ///< share of max_distance over which forces fade out, 0 to 1
 };
 
 struct Physics {
