@@ -41,6 +41,9 @@ Finding examine(const std::string& path, const Options& options) {
     const simulation::Simulation simulation(read.scene, {choose_seed(options, read.scene), {}});
     finding.entities = simulation.layout().entities.size();
     finding.robots = simulation.layout().robots.size();
+    for (const auto& notice : simulation.notices()) {
+      add({{Severity::notice, path, read.scene.physics.where, notice}});
+    }
   } catch (const scene::SceneError& error) {
     add(error.problems());
   }

@@ -135,6 +135,7 @@ int execute(const Options& options, Service service) {
   const auto plan = make_plan(options, scene);
   const auto seed = choose_seed(options, scene);
   simulation::Simulation simulation(scene, {seed, options.clock});
+  for (const auto& notice : simulation.notices()) console.notice(path + ": " + notice);
   const auto scripts = script_paths(scene, simulation.layout(), path);
 
   // Until here Ctrl-C just ends the program; from here on there is something to clean up.

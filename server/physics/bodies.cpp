@@ -18,6 +18,7 @@ LinkBody link_body(const scene::Link& link, bool moves, const Pose& placed) {
   body.mass = link.mass;
   body.inertia = inertia(link.geometry, link.mass);
   body.center_of_mass = center_of_mass(link.geometry);
+  body.half_extents = half_extents(link.geometry);
   body.damping = link.damping;
   body.placed = placed;
   return body;

@@ -24,6 +24,7 @@ struct LinkBody {
   double mass = 0;
   math::Vector3 inertia{0, 0, 0};  ///< principal, link axes [kg m^2]
   math::Vector3 center_of_mass;    ///< in the bottom-centre frame [m]
+  math::Vector3 half_extents;      ///< of the box about the shape, link axes [m]
   scene::Damping damping;
   math::Pose placed;  ///< X_WL as placed
 

@@ -31,6 +31,14 @@ contact::Shape contact_shape(const scene::Geometry& geometry) {
   return contact::Sphere{std::get<scene::Sphere>(geometry).radius};
 }
 
+math::Vector3 half_extents(const scene::Geometry& geometry) {
+  if (const auto* box = std::get_if<scene::Box>(&geometry)) return box->size / 2;
+  if (const auto* cylinder = std::get_if<scene::Cylinder>(&geometry)) {
+    return {cylinder->radius, cylinder->radius, cylinder->height / 2};
+  }
+  return math::Vector3::Constant(std::get<scene::Sphere>(geometry).radius);
+}
+
 double bounding_radius(const scene::Geometry& geometry) {
   if (const auto* box = std::get_if<scene::Box>(&geometry)) return box->size.norm() / 2;
   if (const auto* cylinder = std::get_if<scene::Cylinder>(&geometry)) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "magnetism/stiffness.h"
 #include "physics/convert.h"
 #include "physics/turning_magnets.h"
 
@@ -117,6 +118,22 @@ void Magnets::before_substep(std::span<Body> bodies, double substep) {
     if (!magnets_[i].turning) continue;
     bodies[magnets_[i].entity].links[*magnets_[i].turning].turn = field_->turns()[i];
   }
+}
+
+Magnets::Stiffest Magnets::stiffest_bond(std::span<const Body> bodies) {
+  Stiffest stiffest;
+  if (magnets_.empty()) return stiffest;
+  if (!field_) build_field();
+  for (std::size_t i = 0; i < carriers_.size(); ++i) {
+    const auto& [entity, link] = carriers_[i];
+    const LinkBody& body = bodies[entity].links[link];
+    if (!body.moves) continue;
+    const magnetism::BondedBody bonded{body.half_extents, Vector3::Zero(), body.mass, body.inertia};
+    const double rate =
+        magnetism::stiffest_rate(field_->magnets(), static_cast<std::uint32_t>(i), bonded);
+    if (rate > stiffest.rate) stiffest = {entity, rate};
+  }
+  return stiffest;
 }
 
 void Magnets::set_currents(std::span<const double> currents) {

@@ -20,6 +20,14 @@ class Magnets final : public Plugin {
   /// @param currents  of all magnets, in the order in which their bodies were added
   void set_currents(std::span<const double> currents);
 
+  /// The largest rate of a bond between two bodies like one of these [rad/s], and whose it is.
+  /// Explicit substeps follow it while substep * rate < magnetism::stiffest_product.
+  struct Stiffest {
+    std::size_t entity = 0;
+    double rate = 0;
+  };
+  Stiffest stiffest_bond(std::span<const Body> bodies);
+
  private:
   /// A magnet, and the link it moves with.
   struct Placed {

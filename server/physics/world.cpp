@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "magnetism/stiffness.h"
 #include "physics/convert.h"
 #include "physics/dynamics.h"
 #include "physics/floor.h"
@@ -212,6 +213,15 @@ void World::read(world::State& state) const {
     const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
     state.origins[body.entity] = p.stepped ? reference * body.origin_from_reference : body.placed;
   }
+}
+
+World::Stiffness World::stiffest_bond() const {
+  Stiffness stiffness{0, 0, parts_->length, magnetism::stiffest_product};
+  if (!parts_->magnets) return stiffness;
+  const Magnets::Stiffest stiffest = parts_->magnets->stiffest_bond(parts_->bodies);
+  stiffness.entity = stiffest.entity;
+  stiffness.product = stiffest.rate * parts_->length;
+  return stiffness;
 }
 
 double World::energy() const {

@@ -51,6 +51,16 @@ class World {
   /// Writes origins and links; tick and time are the caller's.
   void read(world::State& state) const;
 
+  /// How stiff the scene's magnetic bonds are for its substeps: the largest product of substep and
+  /// rate, and the entity it belongs to; 0 where there is no magnetism.
+  struct Stiffness {
+    std::size_t entity = 0;
+    double product = 0;    ///< explicit steps are safe up to `safe` and unstable from 2 on
+    double substep = 0;    ///< internal [s]
+    double safe = 0;
+  };
+  Stiffness stiffest_bond() const;
+
   /// Kinetic plus gravitational energy of everything that moves [J].
   double energy() const;
 

@@ -1,5 +1,7 @@
 #include "simulation/simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -102,6 +104,17 @@ void Simulation::step() {
 }
 
 std::uint64_t Simulation::hash() const { return world::hash(parts_->state, parts_->observations); }
+std::vector<std::string> Simulation::notices() const {
+  const physics::World::Stiffness bond = parts_->physics.stiffest_bond();
+  if (bond.product < bond.safe) return {};
+  return {fmt::format(
+      "two bodies like '{}' bonded by their magnets swing too fast for substeps of {:.3g} s "
+      "(substep times rate is {:.2f}; up to {} is safe, from 2 on they tremble); write more "
+      "iterations, or max_substep=\"{:.2g}\" on <dynamics3d>",
+      parts_->layout.entities[bond.entity].id, bond.substep, bond.product, bond.safe,
+      0.9 * bond.substep * bond.safe / bond.product)};
+}
+
 double Simulation::tick_length() const { return 1.0 / parts_->ticks_per_second; }
 double Simulation::physical_length() const { return parts_->substep * parts_->substeps; }
 

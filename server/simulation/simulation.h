@@ -6,6 +6,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "scene/scene.h"
 #include "world/layout.h"
@@ -35,6 +37,9 @@ class Simulation {
 
   /// Of the last tick's state and observations.
   std::uint64_t hash() const;
+
+  /// What the author of the scene should know before the run: sentences, usually none.
+  std::vector<std::string> notices() const;
 
   double tick_length() const;      ///< simulated time per tick by the clock on the wall [s]
   double physical_length() const;  ///< physical time per tick: shorter under beta50 [s]

@@ -66,5 +66,15 @@ TEST(MagneticRows, FollowTheReferenceUnderItsClock) {
   expect_orderly(run.state());
 }
 
+TEST(MagneticRows, WarnWhereTheBondIsTooStiffForTheSubstep) {
+  scene::Scene scene = rows_scene();
+  EXPECT_TRUE(Simulation(scene, {}).notices().empty());
+  scene.physics.iterations = 1;  // substeps of 0.2 s
+  const auto notices = Simulation(scene, {}).notices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_NE(notices[0].find("'magnet0'"), std::string::npos) << notices[0];
+  EXPECT_NE(notices[0].find("max_substep"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ziggurat::simulation
