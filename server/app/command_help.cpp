@@ -13,7 +13,7 @@ Ziggurat runs robots in lock-step with controllers that are programs of their ow
 
 )";
   for (const auto& command : commands()) {
-    text += fmt::format("  {:<8} {}\n", command.name, command.summary);
+    text += fmt::format("  {:<10} {}\n", command.name, command.summary);
   }
   text += R"(
   ziggurat help COMMAND    what a command does, with examples

@@ -34,12 +34,14 @@ const Command& command_named(const std::string& name);
 std::string help_run();
 std::string help_serve();
 std::string help_check();
+std::string help_magnetism();
 std::string help_help();
 
 /// Each returns an exit code and throws what main() turns into one.
 int execute_run(const Arguments& arguments);
 int execute_serve(const Arguments& arguments);
 int execute_check(const Arguments& arguments);
+int execute_magnetism(const Arguments& arguments);
 int execute_help(const Arguments& arguments);
 
 }  // namespace ziggurat::app

@@ -1,10 +1,10 @@
 #include "physics/magnets.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "magnetism/stiffness.h"
 #include "physics/convert.h"
+#include "physics/magnet_source.h"
 #include "physics/turning_magnets.h"
 
 namespace ziggurat::physics {
@@ -13,24 +13,7 @@ using math::Pose;
 using math::Quaternion;
 using math::Vector3;
 
-namespace {
-
-magnetism::Shape shape_of(const scene::MagnetShape& shape) {
-  switch (shape.kind) {
-    case scene::MagnetShape::Kind::box:
-      return magnetism::Box{shape.size};
-    case scene::MagnetShape::Kind::cylinder:
-      return magnetism::Cylinder{shape.radius, shape.height};
-    case scene::MagnetShape::Kind::sphere:
-      break;
-  }
-  return magnetism::Sphere{shape.radius};
-}
-
-}  // namespace
-
-Magnets::Magnets(const scene::Magnetism& magnetism)
-    : moment_per_field_(std::sqrt(magnetism.force_constant / 1e-7)) {
+Magnets::Magnets(const scene::Magnetism& magnetism) : settings_(magnetism) {
   if (magnetism.max_distance) options_.max_distance = *magnetism.max_distance;
   if (magnetism.adaptive) options_.precision = magnetism::Precision::adaptive;
   options_.tolerance = magnetism.tolerance;
@@ -56,15 +39,12 @@ Magnets::Placed Magnets::place(const Body& body, const scene::Magnet& magnet) co
     if (turns_freely(link, magnet)) placed.turning = anchor;
   }
   placed.magnet.position = in_mover * magnet.offset;
+  placed.magnet.shape = shape_of(magnet);
   if (magnet.shape) {
-    placed.magnet.shape = shape_of(*magnet.shape);
     placed.magnet.orientation = in_mover.orientation * magnet.shape->orientation;
   }
-  placed.magnet.passive_moment =
-      in_mover.orientation *
-      (magnet.passive_field * moment_per_field_ + magnet.moment +
-       magnetism::moment_of_remanence(magnet.remanence, volume(placed.magnet.shape)));
-  placed.magnet.active_moment = in_mover.orientation * (magnet.active_field * moment_per_field_);
+  placed.magnet.passive_moment = in_mover.orientation * passive_moment(magnet, settings_);
+  placed.magnet.active_moment = in_mover.orientation * active_moment(magnet, settings_);
   placed.magnet.freely_turning = placed.turning.has_value();
   return placed;
 }

@@ -41,7 +41,7 @@ class Magnets final : public Plugin {
   void build_field();
 
   magnetism::Options options_;
-  double moment_per_field_;  // [A m^2] per unit of the dialect's field
+  scene::Magnetism settings_;
   std::vector<Placed> magnets_;
   std::vector<double> currents_;  // parallel to magnets_
 
