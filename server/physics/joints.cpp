@@ -8,15 +8,14 @@ namespace {
 
 /// How much velocity a unit impulse on the joint gives it [1/kg] or [1/(kg m^2)]; 0 if unknown
 /// (before the first substep).
-double mobility(const MovingJoint& joint) {
+double mobility(MovingJoint& joint) {
   btMultiBody& multi = *joint.multi;
-  btAlignedObjectArray<btScalar> impulse, response, scratch_r;
-  btAlignedObjectArray<btVector3> scratch_v;
+  auto& [impulse, response, scalars, vectors] = joint.scratch;
   impulse.resize(6 + multi.getNumDofs(), 0);
   response.resize(6 + multi.getNumDofs(), 0);
   const int dof = 6 + multi.getLink(joint.link).m_dofOffset;
   impulse[dof] = 1;
-  multi.calcAccelerationDeltasMultiDof(&impulse[0], &response[0], scratch_r, scratch_v);
+  multi.calcAccelerationDeltasMultiDof(&impulse[0], &response[0], scalars, vectors);
   return std::isfinite(response[dof]) ? response[dof] : 0;
 }
 

@@ -26,6 +26,12 @@ struct MovingJoint {
   int link = 0;  ///< the multi-body's number of the child link
   std::unique_ptr<btMultiBodyJointLimitConstraint> limit;
   Motor motor;
+
+  /// Room that steer() works in, kept so that a substep allocates nothing.
+  struct Scratch {
+    btAlignedObjectArray<btScalar> impulse, response, scalars;
+    btAlignedObjectArray<btVector3> vectors;
+  } scratch;
 };
 
 /// Tells a motor what velocity to reach at the end of the coming substep.

@@ -68,6 +68,13 @@ struct World::Parts {
   double length;   // of an internal substep [s]
   bool stepped = false;
 
+  /// Room that read() works in, kept so that a tick does not allocate it.
+  struct Reading {
+    std::vector<Motion> motions;
+    btAlignedObjectArray<btQuaternion> rotations;
+    btAlignedObjectArray<btVector3> positions;
+  } reading;
+
   // Destroyed from the end: the world before what it points to.
   std::vector<Body> bodies;
   std::vector<MovingJoint> joints;
@@ -192,9 +199,7 @@ void World::read(world::State& state) const {
   Parts& p = *parts_;
   state.origins.resize(p.bodies.size());
   state.links.resize(p.link_count);
-  std::vector<Motion> motions;
-  btAlignedObjectArray<btQuaternion> rotations;
-  btAlignedObjectArray<btVector3> positions;
+  auto& [motions, rotations, positions] = p.reading;
   for (const Body& body : p.bodies) {
     if (body.multi && p.stepped) body.multi->forwardKinematics(rotations, positions);
     body.motions(motions);
