@@ -168,6 +168,7 @@ struct Camera {
   math::Vector2 focal_length;     ///< fx, fy [px]
   math::Vector2 principal_point;  ///< cx, cy [px]
   std::array<unsigned, 2> resolution{};  ///< width, height [px]
+  bool image = false;                    ///< it takes a picture at every tick
   std::vector<Detector> detectors;
   Location where;
 };
