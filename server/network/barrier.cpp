@@ -65,6 +65,10 @@ void Barrier::receive(const std::string& peer, std::string_view bytes, world::Co
       return say_leave(*session);
     case wire::Inbox::Kind::heartbeat:
       return say_heartbeat(peer);
+    case wire::Inbox::Kind::request:
+      return fail(peer, session,
+                  make_fault(ErrorCode::forbidden, {}, "A controller can't make requests."),
+                  inbox_.request_id());
     default:
       fail(peer, session,
            make_fault(ErrorCode::out_of_state, {}, "This session has had its Hello already."));
@@ -79,7 +83,9 @@ void Barrier::receive_malformed(const std::string& peer) {
 }
 
 /// Answers a bad message, and throws out whoever sends nothing else.
-void Barrier::fail(const std::string& peer, Session* session, wire::Fault fault) {
+/// @param request  the number of the request that the message was, if it was one
+void Barrier::fail(const std::string& peer, Session* session, wire::Fault fault,
+                   std::optional<std::uint64_t> request) {
   fault.tick = observations_ ? observations_->tick : 0;
   const bool is_last = session != nullptr && ++session->faults > config_.max_faults;
   if (is_last) {
@@ -88,7 +94,11 @@ void Barrier::fail(const std::string& peer, Session* session, wire::Fault fault)
         fmt::format("{} bad messages in a row; the last one: {}", session->faults, fault.message);
   }
   if (session == nullptr || is_last) fault.severity = Severity::fatal;
-  outbox_.error(fault);
+  if (request && !is_last) {
+    outbox_.response(*request, fault);
+  } else {
+    outbox_.error(fault);
+  }
   const Delivery delivery = send_(peer, outbox_);
   if (session == nullptr) {
     note(fmt::format("A peer without session was answered {}: {}", to_string(fault.code),

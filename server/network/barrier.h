@@ -70,7 +70,8 @@ class Barrier {
   };
 
   // barrier.cpp
-  void fail(const std::string& peer, Session* session, wire::Fault fault);
+  void fail(const std::string& peer, Session* session, wire::Fault fault,
+            std::optional<std::uint64_t> request = {});
   void say_leave(Session& session);
   void say_heartbeat(const std::string& peer);
   void mark_gone(Session* session, std::size_t robot);

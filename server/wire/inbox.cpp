@@ -52,6 +52,9 @@ Inbox::Kind Inbox::parse(std::string_view bytes) {
     case v1::ClientMessage::kHeartbeat:
       in.kind = Kind::heartbeat;
       break;
+    case v1::ClientMessage::kRequest:
+      in.kind = Kind::request;
+      break;
     case v1::ClientMessage::kCommand:
       in.kind = Kind::command;
       in.command.Swap(in.message.mutable_command());
@@ -87,6 +90,8 @@ Leave Inbox::leave() const {
 }
 
 std::uint64_t Inbox::heartbeat() const { return message_->message.heartbeat().sequence(); }
+
+std::uint64_t Inbox::request_id() const { return message_->message.request().id(); }
 
 std::uint64_t Inbox::command_tick() const { return message_->command.tick(); }
 

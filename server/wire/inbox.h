@@ -22,6 +22,7 @@ class Inbox {
     command,
     leave,
     heartbeat,
+    request,
   };
 
   Inbox();
@@ -34,6 +35,7 @@ class Inbox {
   Leave leave() const;
   std::uint64_t heartbeat() const;  ///< its sequence
   std::uint64_t command_tick() const;
+  std::uint64_t request_id() const;
 
   /// What is wrong with the command or leave in hand but its tick, if anything.
   std::optional<Fault> check(const Roster& roster, const world::Layout& layout) const;

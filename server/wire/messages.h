@@ -73,6 +73,8 @@ enum class ErrorCode {
   forbidden,
   too_many,
   no_such_session,
+  deadline_missed,
+  unknown_entity,
 };
 
 enum class Severity {

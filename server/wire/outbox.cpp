@@ -121,6 +121,15 @@ void Outbox::error(const Fault& fault) {
   finish();
 }
 
+void Outbox::response(std::uint64_t request, const Fault& fault) {
+  v1::Response& response = *message_->message.mutable_response();
+  response.Clear();
+  response.set_id(request);
+  response.set_tick(fault.tick);
+  fill(fault, *response.mutable_error());
+  finish();
+}
+
 void Outbox::heartbeat(std::uint64_t sequence) {
   message_->message.mutable_heartbeat()->set_sequence(sequence);
   finish();

@@ -32,6 +32,8 @@ class Outbox {
   void end(const End& end);
   void error(const Fault& fault);
   void heartbeat(std::uint64_t sequence);
+  /// That a request was not done, and why.
+  void response(std::uint64_t request, const Fault& fault);
 
   std::size_t size() const;            ///< of the message in hand [bytes]
   void write(std::uint8_t* to) const;  ///< writes size() bytes

@@ -61,6 +61,7 @@ v1::ClientMessage message_of(const std::string& name) {
   if (name == "Hello") return Peers::hello("robot*");
   if (name == "Command") return Peers::command(tick, {1});
   if (name == "Leave") return Peers::leave();
+  if (name == "Request") return Peers::request(9);
   return Peers::heartbeat(9);
 }
 
@@ -69,6 +70,10 @@ std::string verdict(Peers& peers, const std::string& message) {
   peers.say("p", message_of(message));
   const v1::ServerMessage answer = peers.told("p");
   if (answer.has_error()) return v1::Error::Code_Name(answer.error().code());
+  if (answer.has_response()) {
+    return answer.response().id() == 9 ? v1::Error::Code_Name(answer.response().error().code())
+                                       : "mixed up";
+  }
   if (answer.has_refusal()) return v1::Error::Code_Name(answer.refusal().error().code());
   if (answer.has_welcome()) return "taken";
   if (answer.has_heartbeat()) return answer.heartbeat().sequence() == 9 ? "taken" : "mixed up";
@@ -96,7 +101,7 @@ TEST(StateTable, EveryCellHolds) {
       ++tested;
     }
   }
-  EXPECT_EQ(tested, 28U);
+  EXPECT_EQ(tested, 35U);
 }
 
 TEST(ErrorTable, NamesEveryCodeOfTheProtocol) {

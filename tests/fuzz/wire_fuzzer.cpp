@@ -96,6 +96,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     case wire::Inbox::Kind::heartbeat:
       inbox.heartbeat();
       break;
+    case wire::Inbox::Kind::request:
+      inbox.request_id();
+      break;
   }
   return 0;
 }

@@ -65,6 +65,12 @@ class Peers {
     message.mutable_heartbeat()->set_sequence(sequence);
     return message;
   }
+  static v1::ClientMessage request(std::uint64_t id) {
+    v1::ClientMessage message;
+    message.mutable_request()->set_id(id);
+    message.mutable_request()->mutable_status();
+    return message;
+  }
 
   /// Welcomed with these robots.
   v1::Welcome join(const std::string& peer, const std::string& robots) {
