@@ -1,0 +1,7 @@
+"""python3 -m ziggurat_conformance"""
+
+import sys
+
+from .cli import main
+
+sys.exit(main())

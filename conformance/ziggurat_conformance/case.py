@@ -1,0 +1,69 @@
+"""What a case is, and how one goes out."""
+
+import enum
+from dataclasses import dataclass, field
+
+
+class Level(enum.Enum):
+    """Badges: a server or client has one if it passes all of its cases."""
+
+    CORE = "Core"
+    RECONNECT = "Reconnect"
+    HIL = "HIL"
+    SECURE = "Secure"
+
+
+class Verdict(enum.Enum):
+    PASS = "pass"
+    FAIL = "fail"
+    NON_STRICT = "non-strict"  # a SHOULD is not kept
+    UNIMPLEMENTED = "unimplemented"  # the peer says so itself
+    KNOWN_FAILING = "known-failing"  # listed as such, and it does fail
+    NOT_RUN = "not run"
+
+
+@dataclass(frozen=True)
+class Case:
+    """One thing that a rule asks for, as steps that are played one after the other."""
+
+    id: str  # the rule's number, a dot, a name: "S9.stale"
+    title: str
+    steps: tuple
+    level: Level = Level.CORE
+    fresh: bool = False  # needs a server of its own: it ends the run, or takes robots out of it
+    variant: str = ""  # of the server's command; empty = the plain one
+    forms: tuple = ("binary", "json")
+
+    @property
+    def rule(self) -> str:
+        return self.id.split(".")[0]
+
+
+@dataclass
+class Outcome:
+    """How a case went."""
+
+    id: str
+    title: str
+    level: Level
+    verdict: Verdict
+    seconds: float = 0.0
+    reason: str = ""
+    transcript: str = ""
+    notes: list = field(default_factory=list)
+
+
+class Failed(Exception):
+    """The peer broke a MUST."""
+
+
+class NonStrict(Exception):
+    """The peer broke a SHOULD."""
+
+
+class Unimplemented(Exception):
+    """The peer says that it does not serve this."""
+
+
+class NotRun(Exception):
+    """The case can't be played here; the text says what it takes."""

@@ -1,0 +1,77 @@
+"""Section 4: who may say what, and when. One case for each field of the table."""
+
+from ..case import Case
+from ..say import TWO, answer, hear_error, heartbeat, join, leave, observe, say_hello
+from ..steps import Hang, Hear, Interrupt, Silence, Skip
+
+# How a session "x" comes into each state. arm1, arm2 and arm3 are with "y".
+_OTHERS = join("y", "arm1", "arm2", "arm3")
+_STEPPING = (join("x", "arm0"), _OTHERS, *observe("x", "y"))
+_STATES = {
+    "NEW": (),
+    "READY": (join("x", "arm0"),),
+    "STEPPING, owing": _STEPPING,
+    "STEPPING, answered": (*_STEPPING, answer("x")),
+    "DRAINING": (*_STEPPING, Interrupt(), Skip("x", "end")),
+    "CLOSED": (*_STEPPING, leave("x")),
+}
+
+_SAID = {
+    "Hello": say_hello("x", "arm0"),
+    "Command": answer("x"),
+    "Leave": leave("x"),
+    "Heartbeat": heartbeat("x", 9),
+}
+
+_DUE = {
+    "NEW": ("welcome", "OUT_OF_STATE", "OUT_OF_STATE", "OUT_OF_STATE"),
+    "READY": ("OUT_OF_STATE", "OUT_OF_STATE", "taken", "heartbeat"),
+    "STEPPING, owing": ("OUT_OF_STATE", "taken", "taken", "heartbeat"),
+    "STEPPING, answered": ("OUT_OF_STATE", "DUPLICATE_TICK", "taken", "heartbeat"),
+    "DRAINING": ("OUT_OF_STATE", "taken", "taken", "heartbeat"),
+    "CLOSED": ("refusal", "OUT_OF_STATE", "OUT_OF_STATE", "OUT_OF_STATE"),
+}
+
+
+def _heard(state: str, due: str):
+    if due == "taken":
+        return Silence("x", 0.1)
+    if due == "heartbeat":
+        return Hear("x", "heartbeat", {"sequence": 9})
+    if due in ("welcome", "refusal"):
+        return Hear("x", due)
+    return hear_error("x", due, "FATAL" if state in ("NEW", "CLOSED") else "DISCARD")
+
+
+def _name(state: str, message: str) -> str:
+    return f"M0.{state.lower().replace(', ', '-')}-{message.lower()}"
+
+
+_table = [
+    Case(_name(state, message), f"{message} in {state}: {due}",
+         (*_STATES[state], _SAID[message], _heard(state, due)),
+         fresh=message == "Leave" or state in ("READY", "DRAINING", "CLOSED"))
+    for state, row in _DUE.items()
+    for message, due in zip(_SAID, row)
+]
+
+CASES = [
+    *_table,
+    Case("M1.command-on-its-way", "In DRAINING a Command is no error, and its lines count",
+         (join("x", "*"), *observe("x"), Interrupt(), Skip("x", "end"),
+          answer("x", log=[{"robot": 0, "text": "last"}]), Silence("x", 0.1), leave("x")), fresh=True),
+    Case("M2.lost", "After a lost connection the same robots may be had again",
+         (TWO, Hang("p"), join("x", "arm0", "arm1"), *observe("x"), answer("x"), answer("q"),
+          *observe("x", "q"))),
+    Case("M4.many-faults", "Bad messages without end are the end of the session",
+         (join("p", "*"), *observe("p"),
+          *[s for _ in range(100) for s in (answer("p", 2**63), hear_error("p", "FUTURE_TICK"))],
+          answer("p", 2**63), hear_error("p", "TOO_MANY", "FATAL"), Hang("p"), join("x", "*"),
+          *observe("x"))),
+    Case("M5.answered", "The server answers each Heartbeat with its sequence",
+         (join("p", "*"), *observe("p"), heartbeat("p", 0), Hear("p", "heartbeat", {"sequence": 0}),
+          heartbeat("p", 2**64 - 1), Hear("p", "heartbeat", {"sequence": 2**64 - 1}))),
+    Case("M5.in-between", "Heartbeats may come between a session's other messages",
+         (join("p", "*"), *observe("p"), heartbeat("p", 1), answer("p"), heartbeat("p", 2),
+          Hear("p", "heartbeat", {"sequence": 1}))),
+]

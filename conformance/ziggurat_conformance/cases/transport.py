@@ -1,0 +1,93 @@
+"""Section 1: transport."""
+
+from ..case import Case
+from ..say import ALL, answer, hear_error, heartbeat, hello, join, observe
+from ..steps import Frames, Hear, Join
+from ..wire import AtLeast
+
+_STRANGE = {
+    "text": b"hello",
+    "nothing": b"",
+    "ones": b"\xff" * 1000,
+    "cut-short": b"\x12\x7f",
+    "bad-varint": b"\x12\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff",
+    "bad-wire-type": b"\x0f\x01",
+    "http": b"GET / HTTP/1.1\r\nHost: x\r\n\r\n",
+    "nul": b"\x00" * 64,
+}
+
+# A stranger's garbage is answered, and the session beside it goes on.
+_garbage = [
+    Case(
+        f"T2.garbage-{name}",
+        f"Garbage ({name}) of a stranger is MALFORMED and disturbs nobody",
+        (ALL, Frames("stranger", (data,)), hear_error("stranger", "MALFORMED", "FATAL"), answer("p"),
+         observe("p")),
+        forms=("binary",),
+    )
+    for name, data in _STRANGE.items()
+]
+
+_garbage_in_session = [
+    Case(
+        f"T2.session-garbage-{name}",
+        f"Garbage ({name}) in a session is MALFORMED and has no effect",
+        (ALL, Frames("p", (data,)), hear_error("p", "MALFORMED"), answer("p"), observe("p")),
+        forms=("binary",),
+    )
+    for name, data in _STRANGE.items()
+]
+
+# Fields that protocol 1.0 does not have: 2000 of Command and of ClientMessage.
+_UNKNOWN_FIELD = b"\x80\x7d\x07"
+
+CASES = [
+    *_garbage,
+    *_garbage_in_session,
+    Case("T2.two-frames", "A message of two frames is MALFORMED",
+         (ALL, Frames("p", (b"", b"x")), hear_error("p", "MALFORMED"), answer("p"), observe("p"))),
+    Case("T2.many-frames", "A message of a thousand frames is MALFORMED",
+         (ALL, Frames("p", (b"x",) * 1000), hear_error("p", "MALFORMED"), answer("p"), observe("p"))),
+    Case("T2.empty-envelope", "An envelope without a message is MALFORMED",
+         (ALL, Frames("p", (_UNKNOWN_FIELD,)), hear_error("p", "MALFORMED"), answer("p"),
+          observe("p")),
+         forms=("binary",)),
+    Case("T3.order", "What is said in one go is answered in that order",
+         (ALL, *[heartbeat("p", n) for n in range(1, 30)],
+          *[Hear("p", "heartbeat", {"sequence": n}) for n in range(1, 30)])),
+    Case("T4.limit-is-told", "Welcome says how long messages may be",
+         (Join("p", hello("*"), {"max_message_bytes": AtLeast(2**20)}),)),
+    Case("T5.unknown-field", "Unknown fields are ignored",
+         (ALL, Frames("p", (b"\x22\x05\x08\x05" + _UNKNOWN_FIELD,)),
+          Hear("p", "heartbeat", {"sequence": 5}), answer("p"), observe("p")),
+         forms=("binary",)),
+    Case("T5.unknown-json-field", "Unknown fields are ignored in JSON too",
+         (ALL, Frames("p", (b'{"heartbeat": {"sequence": 5, "colour": "red"}, "later": 1}',)),
+          Hear("p", "heartbeat", {"sequence": 5})),
+         forms=("json",)),
+    Case("T5.not-utf8", "Text that is not UTF-8 is MALFORMED",
+         (ALL, Frames("stranger", (b"\x0a\x05\x1a\x03a\xff\xfe",)),
+          hear_error("stranger", "MALFORMED", "FATAL")),
+         forms=("binary",)),
+    Case("T6.json-session", "A session that begins with { goes on in JSON",
+         (ALL, answer("p"), observe("p")), forms=("json",)),
+    Case("T6.json-garbage", "Bad JSON of a stranger is MALFORMED",
+         (ALL, Frames("stranger", (b'{"hello": {"robots": [',)),
+          hear_error("stranger", "MALFORMED", "FATAL"), answer("p"), observe("p")),
+         forms=("json",)),
+    Case("T6.json-bad-type", "JSON with a value of the wrong type is MALFORMED",
+         (ALL, Frames("p", (b'{"command": {"tick": "soon"}}',)), hear_error("p", "MALFORMED"),
+          answer("p"), observe("p")), forms=("json",)),
+    Case("T6.json-deep", "JSON nested a thousand deep is MALFORMED",
+         (ALL, Frames("p", (b'{"a":' * 1000 + b"1" + b"}" * 1000,)), hear_error("p", "MALFORMED"),
+          answer("p"), observe("p")), forms=("json",)),
+    Case("T6.binary-in-json", "A binary message in a JSON session is MALFORMED",
+         (ALL, Frames("p", (b"\x22\x02\x08\x05",)), hear_error("p", "MALFORMED"), answer("p"),
+          observe("p")), forms=("json",)),
+    Case("T6.json-in-binary", "A JSON message in a binary session is MALFORMED",
+         (ALL, Frames("p", (b'{"heartbeat": {"sequence": 5}}',)), hear_error("p", "MALFORMED"),
+          answer("p"), observe("p")), forms=("binary",)),
+    Case("T6.both-forms", "A JSON and a binary session drive one world together",
+         (join("binary", "arm0", "arm1"), join("json", "arm2", "arm3"), observe("binary", "json"),
+          answer("json"), answer("binary"), observe("binary", "json")), forms=("json",)),
+]

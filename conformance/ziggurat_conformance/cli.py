@@ -1,0 +1,144 @@
+"""The command line."""
+
+import argparse
+import shlex
+import sys
+import time
+from pathlib import Path
+
+from . import chaos, client_mode, report, server_mode, wire
+from .cases import SERVER_CASES
+
+_EXAMPLES = """\
+examples:
+  ziggurat-conformance server -- ziggurat serve '{scene}' --endpoint '{endpoint}'
+      starts and restarts the server and plays all cases; the words in braces are filled in
+  ziggurat-conformance server --variant 'lease=ziggurat serve {scene} --endpoint {endpoint} --lease 2' \\
+                              -- ziggurat serve '{scene}' --endpoint '{endpoint}'
+      also plays the cases that need a server with a lease
+  ziggurat-conformance server tcp://127.0.0.1:5770
+      plays what can be played against a server that runs; it must have our scene (--scene says where)
+  ziggurat-conformance client -- ./my_controller
+      plays a server: ZIGGURAT_ENDPOINT and ZIGGURAT_CONTROLLER are in the controller's environment
+  ziggurat-conformance server --only 'S9.*' --html report.html -- …
+      some cases, and a page with the exchange of every failure
+
+Exit code: 0 if no case failed, 1 if one did, 2 for a mistake on this line or a server that does not start.
+docs/conformance.md explains verdicts, levels, and how to add a case."""
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="ziggurat-conformance", epilog=_EXAMPLES,
+        description="Proves a server or a client of the Ziggurat controller protocol right.",
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scene", action="store_true", help="print the path of our scene, and stop")
+    modes = parser.add_subparsers(dest="mode", metavar="server|client")
+    server = modes.add_parser("server", help="play controllers against a server",
+                              epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
+    server.add_argument("target", nargs="*", metavar="URL | -- COMMAND",
+                        help="where a server listens, or how to start one")
+    server.add_argument("--variant", action="append", default=[], metavar="NAME=COMMAND",
+                        help="how to start a server for the cases of this variant: lease, limits, …")
+    client = modes.add_parser("client", help="play a server against a controller program",
+                              epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
+    client.add_argument("target", nargs="*", metavar="-- COMMAND")
+    for mode in (server, client):
+        mode.add_argument("--only", action="append", default=[], metavar="GLOB",
+                          help="only cases whose id fits; may be repeated")
+        mode.add_argument("--form", choices=("binary", "json"), help="only cases in this form")
+        mode.add_argument("--list", action="store_true", help="list the cases, and stop")
+        mode.add_argument("--known-failing", type=Path, metavar="FILE",
+                          help="ids of cases that must fail, one per line; # begins a remark")
+        mode.add_argument("--patience", type=float, default=3.0, metavar="SECONDS",
+                          help="how long to wait for what is due (default: 3)")
+        mode.add_argument("--chaos", type=int, metavar="SEED",
+                          help="legal but unpleasant behaviour instead of cases, drawn from this seed")
+        mode.add_argument("--ticks", type=int, default=500, help="length of chaos (default: 500)")
+        mode.add_argument("--verbose", "-v", action="store_true", help="a line for every case")
+        mode.add_argument("--junit", type=Path, metavar="F.xml")
+        mode.add_argument("--json", type=Path, metavar="F.json")
+        mode.add_argument("--html", type=Path, metavar="F.html")
+    return parser
+
+
+def _variants(texts: list) -> dict:
+    variants = {}
+    for text in texts:
+        name, separator, command = text.partition("=")
+        if not separator:
+            raise SystemExit(f"ziggurat-conformance: --variant {text!r}: write NAME=COMMAND")
+        variants[name] = command
+    return variants
+
+
+def _known(path) -> set:
+    if path is None:
+        return set()
+    lines = (line.split("#")[0].strip() for line in path.read_text().splitlines())
+    return {line for line in lines if line}
+
+
+
+
+def _server(options, terminal):
+    if len(options.target) == 1 and "://" in options.target[0]:
+        servers = server_mode.RunningServer(options.target[0])
+    else:
+        servers = server_mode.Servers(shlex.join(options.target), _variants(options.variant),
+                                      options.patience)
+    if options.chaos is not None:
+        forms = (options.form,) if options.form else wire.FORMS
+        return chaos.play_server(servers, options.chaos, options.ticks, options.patience, forms,
+                                 terminal.outcome)
+    cases = list(server_mode.chosen(SERVER_CASES, options.only, options.form))
+    return server_mode.play(cases, servers, options.patience, terminal.outcome)
+
+
+def _client(options, terminal):
+    if options.chaos is not None:
+        return chaos.play_client(options.target, options.chaos, options.ticks, options.patience,
+                                 terminal.outcome)
+    cases = list(server_mode.chosen(client_mode.CASES, options.only, options.form))
+    return client_mode.play(cases, options.target, options.patience, terminal.outcome)
+
+
+def _print_list(options) -> None:
+    cases = SERVER_CASES if options.mode == "server" else client_mode.CASES
+    chosen = list(server_mode.chosen(cases, options.only, options.form))
+    for case in chosen:
+        print(f"{case.id:<36} {case.level.value:<10} {case.title}")
+    print(f"{len(chosen)} cases, {sum(len(case.forms) for case in chosen)} with their forms")
+
+
+def main(arguments=None) -> int:
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    if options.scene:
+        print(server_mode.SCENE)
+        return 0
+    if options.mode is None:
+        parser.print_help()
+        return 2
+    if options.list:
+        _print_list(options)
+        return 0
+    if not options.target:
+        parser.error(f"{options.mode}: say what to test: a URL or -- COMMAND (see --help)")
+    terminal = report.Terminal(options.verbose)
+    start = time.monotonic()
+    try:
+        outcomes = (_server if options.mode == "server" else _client)(options, terminal)
+    except RuntimeError as error:
+        print(f"ziggurat-conformance: {error}", file=sys.stderr)
+        return 2
+    report.judge_known(outcomes, _known(options.known_failing))
+    terminal.end(outcomes, time.monotonic() - start)
+    title = f"Conformance of a {options.mode}: {shlex.join(options.target)}"
+    if options.junit:
+        report.write_junit(options.junit, outcomes, f"conformance.{options.mode}")
+    if options.json:
+        report.write_json(options.json, outcomes)
+    if options.html:
+        report.write_html(options.html, outcomes, title)
+    return 0 if report.good(outcomes) else 1

@@ -1,0 +1,89 @@
+"""One connection to the server under test."""
+
+import time
+from typing import Optional
+
+import zmq
+
+from . import wire
+from .wire import protocol
+
+
+class Transcript:
+    """What went over all connections of a case, for the report of its failure."""
+
+    def __init__(self) -> None:
+        self.start = time.monotonic()
+        self.lines: list[tuple[float, str, str, str]] = []
+
+    def add(self, peer: str, direction: str, text: str) -> None:
+        self.lines.append((time.monotonic() - self.start, peer, direction, text))
+
+    def text(self) -> str:
+        return "\n".join(
+            f"{at:8.3f} s  {peer:>8} {direction} {text}" for at, peer, direction, text in self.lines
+        )
+
+
+class Peer:
+    """A DEALER that remembers what it was told."""
+
+    def __init__(self, name: str, endpoint: str, form: str, transcript: Transcript, keys=None):
+        self.name = name
+        self.form = form
+        self.transcript = transcript
+        self.welcome: Optional[protocol.Welcome] = None
+        self.tick = 0  # of the last observation
+        self.observation: Optional[protocol.Observation] = None
+        self.heartbeats: list[int] = []
+        self.socket = zmq.Context.instance().socket(zmq.DEALER)
+        self.socket.setsockopt(zmq.LINGER, 0)
+        self.socket.setsockopt(zmq.MAXMSGSIZE, -1)
+        if keys:
+            self.socket.curve_serverkey, self.socket.curve_publickey, self.socket.curve_secretkey = (
+                keys
+            )
+        self.socket.connect(endpoint)
+
+    def say(self, message: protocol.ClientMessage) -> None:
+        self.transcript.add(self.name, "──▶", wire.text_of(message))
+        self.socket.send(wire.encode(message, self.form))
+
+    def say_frames(self, frames: tuple[bytes, ...]) -> None:
+        shown = ", ".join(f"{len(f)} bytes {f[:24]!r}{'…' if len(f) > 24 else ''}" for f in frames)
+        self.transcript.add(self.name, "──▶", f"frames: {shown}")
+        self.socket.send_multipart(frames)
+
+    def hear(self, patience: float, heartbeats: bool = False) -> Optional[protocol.ServerMessage]:
+        """The next message, within so many seconds. Heartbeats of the server are noted and passed
+        over unless asked for."""
+        deadline = time.monotonic() + patience
+        while True:
+            left = max(0.0, deadline - time.monotonic())
+            if not self.socket.poll(int(left * 1000) + 1):
+                return None
+            message = self._receive()
+            if wire.kind_of(message) == "heartbeat" and not heartbeats:
+                self.heartbeats.append(message.heartbeat.sequence)
+                continue
+            self._remember(message)
+            return message
+
+    def close(self) -> None:
+        self.transcript.add(self.name, "───", "closes its connection")
+        self.socket.close()
+
+    def _receive(self) -> protocol.ServerMessage:
+        frames = self.socket.recv_multipart()
+        if len(frames) != 1:
+            raise ValueError(f"the server sent {len(frames)} frames; one is due (T2)")
+        message = wire.decode(protocol.ServerMessage, frames[0], self.form)
+        self.transcript.add(self.name, "◀──", wire.text_of(message))
+        return message
+
+    def _remember(self, message: protocol.ServerMessage) -> None:
+        if message.HasField("welcome"):
+            self.welcome = message.welcome
+        if message.HasField("observation"):
+            self.observation = message.observation
+            self.tick = message.observation.tick

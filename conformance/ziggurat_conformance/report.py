@@ -1,0 +1,157 @@
+"""What came out: on the terminal, as JUnit XML, as JSON, as a page."""
+
+import collections
+import html
+import json
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+from .case import Level, Outcome, Verdict
+
+_COLORS = {
+    Verdict.PASS: "32",
+    Verdict.FAIL: "31",
+    Verdict.NON_STRICT: "33",
+    Verdict.UNIMPLEMENTED: "36",
+    Verdict.KNOWN_FAILING: "33",
+    Verdict.NOT_RUN: "90",
+}
+
+
+def judge_known(outcomes: list, known: set) -> None:
+    """Cases that are listed as failing must fail; one that passes is a failure of the list."""
+    for outcome in outcomes:
+        if outcome.id not in known:
+            continue
+        if outcome.verdict in (Verdict.FAIL, Verdict.NON_STRICT):
+            outcome.verdict = Verdict.KNOWN_FAILING
+        elif outcome.verdict is Verdict.PASS:
+            outcome.verdict = Verdict.FAIL
+            outcome.reason = "it is listed as known to fail, and passes: take it off the list"
+
+
+def good(outcomes: list) -> bool:
+    return not any(outcome.verdict is Verdict.FAIL for outcome in outcomes)
+
+
+def badges(outcomes: list) -> dict:
+    """Level → None if none of its cases was run, else whether all of them passed."""
+    result = {}
+    for level in Level:
+        verdicts = [o.verdict for o in outcomes if o.level is level]
+        run = [v for v in verdicts if v is not Verdict.NOT_RUN]
+        passed = all(v in (Verdict.PASS, Verdict.NON_STRICT) for v in run)
+        result[level] = (passed and len(run) == len(verdicts)) if run else None
+    return result
+
+
+class Terminal:
+    """Lines as cases end: failures at once and in full, the rest as dots unless asked for."""
+
+    def __init__(self, verbose: bool):
+        self._verbose = verbose
+        self._colored = sys.stdout.isatty()
+        self._column = 0
+
+    def outcome(self, outcome: Outcome) -> None:
+        if outcome.verdict is Verdict.PASS and not self._verbose:
+            self._column += 1
+            print(".", end="" if self._column % 80 else "\n", flush=True)
+            return
+        if self._column % 80:
+            print()
+        self._column = 0
+        word = outcome.verdict.value
+        if self._colored:
+            word = f"\033[{_COLORS[outcome.verdict]}m{word}\033[0m"
+        print(f"{word:<14} {outcome.id}: {outcome.title}")
+        if outcome.reason and outcome.verdict is not Verdict.PASS:
+            print(f"               {outcome.reason}")
+        if outcome.transcript:
+            print("\n".join("               " + line for line in outcome.transcript.splitlines()[-30:]))
+
+    def end(self, outcomes: list, seconds: float) -> None:
+        if self._column % 80:
+            print()
+        counts = collections.Counter(outcome.verdict for outcome in outcomes)
+        parts = [f"{counts[verdict]} {verdict.value}" for verdict in Verdict if counts[verdict]]
+        print(f"{len(outcomes)} cases in {seconds:.1f} s: {', '.join(parts)}")
+        for level, reached in badges(outcomes).items():
+            word = {True: "reached", False: "not reached", None: "not tried"}[reached]
+            print(f"  {level.value:<10} {word}")
+
+
+def write_junit(path: Path, outcomes: list, suite: str) -> None:
+    root = ElementTree.Element("testsuite", name=suite, tests=str(len(outcomes)))
+    for outcome in outcomes:
+        case = ElementTree.SubElement(
+            root, "testcase", classname=f"{suite}.{outcome.level.value}", name=outcome.id,
+            time=f"{outcome.seconds:.3f}")
+        if outcome.verdict is Verdict.FAIL:
+            failure = ElementTree.SubElement(case, "failure", message=_plain(outcome.reason))
+            failure.text = _plain(outcome.transcript)
+        elif outcome.verdict is not Verdict.PASS:
+            ElementTree.SubElement(
+                case, "skipped", message=_plain(f"{outcome.verdict.value}: {outcome.reason}"))
+    root.set("failures", str(sum(o.verdict is Verdict.FAIL for o in outcomes)))
+    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def _plain(text: str) -> str:
+    """Text that XML can hold."""
+    return "".join(c if c >= " " or c in "\n\t" else "?" for c in text)
+
+
+def write_json(path: Path, outcomes: list) -> None:
+    document = {
+        "badges": {level.value: reached for level, reached in badges(outcomes).items()},
+        "cases": [
+            {"id": o.id, "title": o.title, "level": o.level.value, "verdict": o.verdict.value,
+             "seconds": round(o.seconds, 3), "reason": o.reason, "transcript": o.transcript}
+            for o in outcomes
+        ],
+    }
+    path.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n")
+
+
+_PAGE = """<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>{title}</title>
+<style>
+body {{ font: 15px/1.5 sans-serif; margin: 2em auto; max-width: 70em; padding: 0 1em; }}
+table {{ border-collapse: collapse; width: 100%; }}
+td, th {{ text-align: left; padding: .2em .6em; border-bottom: 1px solid #ddd; vertical-align: top; }}
+pre {{ background: #f4f4f4; padding: .8em; overflow-x: auto; font-size: 12px; }}
+.pass {{ color: #187a2f; }} .fail {{ color: #b3161b; font-weight: bold; }}
+.non-strict, .known-failing {{ color: #96690c; }} .unimplemented, .not {{ color: #666; }}
+.badge {{ display: inline-block; padding: .2em .8em; border-radius: 1em; margin-right: .5em;
+         border: 1px solid; }}
+</style>
+<h1>{title}</h1>
+<p>{badges}</p>
+<p>{counts}</p>
+{failures}
+<h2>All cases</h2>
+<table><tr><th>case<th>what<th>level<th>verdict</tr>
+{rows}
+</table></html>
+"""
+
+
+def write_html(path: Path, outcomes: list, title: str) -> None:
+    """One page that needs nothing else: every verdict, and the exchange of every failure."""
+    escape = html.escape
+    rows = "\n".join(
+        f"<tr><td>{escape(o.id)}<td>{escape(o.title)}<td>{o.level.value}"
+        f'<td class="{o.verdict.value}">{o.verdict.value}</tr>' for o in outcomes)
+    failures = "\n".join(
+        f"<h2>{escape(o.id)}: {escape(o.title)}</h2><p>{escape(o.reason)}</p>"
+        f"<pre>{escape(o.transcript)}</pre>" for o in outcomes if o.verdict is Verdict.FAIL)
+    words = {True: ("pass", "reached"), False: ("fail", "not reached"), None: ("not", "not tried")}
+    shown = "".join(
+        f'<span class="badge {words[reached][0]}">{level.value}: {words[reached][1]}</span>'
+        for level, reached in badges(outcomes).items())
+    counts = collections.Counter(o.verdict.value for o in outcomes)
+    path.write_text(_PAGE.format(
+        title=escape(title), badges=shown, rows=rows, failures=failures,
+        counts=", ".join(f"{count} {verdict}" for verdict, count in counts.items())))

@@ -1,0 +1,62 @@
+"""The words that cases use: messages as dicts, and steps that come often."""
+
+from .steps import Hear, Join, Say, Tick
+
+VERSION = {"major": 1, "minor": 0}
+
+
+def hello(*robots: str, **fields) -> dict:
+    """Fields of a Hello for these robots."""
+    greeting = {
+        "version": VERSION,
+        "role": "ROLE_CONTROLLER",
+        "robots": list(robots),
+        "client_name": "conformance",
+        "client_version": "1",
+    }
+    greeting.update(fields)
+    return {name: value for name, value in greeting.items() if value is not None}
+
+
+def say_hello(peer: str, *robots: str, **fields) -> Say:
+    return Say(peer, {"hello": hello(*robots, **fields)})
+
+
+def join(peer: str, *robots: str, **fields) -> Join:
+    return Join(peer, hello(*robots, **fields))
+
+
+def command(tick=Tick(), **fields) -> dict:
+    return {"command": {"tick": tick, **fields}}
+
+
+def answer(peer: str, tick=Tick(), **fields) -> Say:
+    """The command for the peer's last observation."""
+    return Say(peer, command(tick, **fields))
+
+
+def leave(peer: str, *positions: int, reason: str = "DONE", **fields) -> Say:
+    return Say(peer, {"leave": {"robots": list(positions), "reason": reason, **fields}})
+
+
+def heartbeat(peer: str, sequence: int) -> Say:
+    return Say(peer, {"heartbeat": {"sequence": sequence}})
+
+
+def hear_error(peer: str, code: str, severity: str = "DISCARD", **pattern) -> Hear:
+    return Hear(peer, "error", {"code": code, "severity": severity, **pattern})
+
+
+def hear_refusal(peer: str, code: str, retryable: bool = False, **pattern) -> Hear:
+    error = {"code": code, "severity": "FATAL", "retryable": retryable}
+    return Hear(peer, "refusal", {"error": error, **pattern})
+
+
+def observe(*peers: str) -> list:
+    return [Hear(peer, "observation") for peer in peers]
+
+
+# The scene has four arms; these are the sessions that most cases begin with. Whoever comes to a world
+# that has begun gets its tick at once, so all observations are there when the last has joined.
+TWO = [join("p", "arm0", "arm1"), join("q", "arm2", "arm3"), *observe("p", "q")]
+ALL = [join("p", "*"), *observe("p")]

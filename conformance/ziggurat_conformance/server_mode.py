@@ -1,0 +1,115 @@
+"""Plays cases against a server, and judges."""
+
+import time
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from typing import Callable, Iterator, Optional
+
+from .case import Case, Failed, NonStrict, NotRun, Outcome, Unimplemented, Verdict
+from .server_process import ServerProcess
+from .server_scene import SCENE
+from .steps import Stage
+
+
+
+
+class Servers:
+    """Gives each case the server that it needs: one for all that leave it usable, or its own."""
+
+    def __init__(self, command: str, variants: dict, patience: float):
+        self._commands = {"": command, **variants}
+        self._patience = patience
+        self._shared: dict[str, ServerProcess] = {}
+        self.own: Optional[ServerProcess] = None
+
+    def server_for(self, case: Case) -> ServerProcess:
+        command = self._commands.get(case.variant)
+        if command is None:
+            raise NotRun(f"give the server's command for it: --variant {case.variant}=…")
+        if case.fresh:
+            self.own = ServerProcess(command, SCENE, self._patience)
+            return self.own
+        shared = self._shared.get(case.variant)
+        if shared is None or not shared.runs():
+            shared = self._shared[case.variant] = ServerProcess(command, SCENE, self._patience)
+        return shared
+
+    def done(self, case: Case, usable: bool) -> None:
+        if self.own is not None:
+            self.own.stop()
+            self.own = None
+        elif not usable and case.variant in self._shared:
+            self._shared.pop(case.variant).stop()
+
+    def stop(self) -> None:
+        for server in self._shared.values():
+            server.stop()
+        self._shared.clear()
+
+
+class RunningServer:
+    """A server that somebody else started, at an endpoint."""
+
+    def __init__(self, endpoint: str):
+        self.endpoint = endpoint
+
+    def server_for(self, case: Case) -> "RunningServer":
+        if case.fresh or case.variant:
+            raise NotRun("needs a server that can be restarted: server -- COMMAND")
+        return self
+
+    def done(self, case: Case, usable: bool) -> None:
+        pass
+
+    def stop(self) -> None:
+        pass
+
+
+def play(cases: list, servers, patience: float, on_outcome: Callable) -> list:
+    """Plays all, one after the other; `on_outcome` hears of each when it is over."""
+    outcomes = []
+    try:
+        for case in cases:
+            for form in case.forms:
+                outcomes.append(_play_one(case, form, servers, patience))
+                on_outcome(outcomes[-1])
+    finally:
+        servers.stop()
+    return outcomes
+
+
+def _play_one(case: Case, form: str, servers, patience: float) -> Outcome:
+    name = case.id if form == "binary" else f"{case.id}/{form}"
+    outcome = Outcome(name, case.title, case.level, Verdict.PASS)
+    start = time.monotonic()
+    stage = None
+    try:
+        server = servers.server_for(case)
+        with Stage(server.endpoint, form, patience, server) as stage:
+            stage.play(case.steps)
+            if not case.fresh and hasattr(server, "runs") and not server.runs():
+                raise Failed(f"the server ended:\n{server.last_words()}")
+    except NotRun as reason:
+        outcome.verdict, outcome.reason = Verdict.NOT_RUN, str(reason)
+    except Unimplemented as reason:
+        outcome.verdict, outcome.reason = Verdict.UNIMPLEMENTED, str(reason)
+    except NonStrict as reason:
+        outcome.verdict, outcome.reason = Verdict.NON_STRICT, str(reason)
+    except Failed as reason:
+        outcome.verdict, outcome.reason = Verdict.FAIL, str(reason)
+    outcome.seconds = time.monotonic() - start
+    if stage is not None and outcome.verdict in (Verdict.FAIL, Verdict.NON_STRICT):
+        outcome.transcript = stage.transcript.text()
+    if outcome.verdict is not Verdict.NOT_RUN:
+        servers.done(case, outcome.verdict in (Verdict.PASS, Verdict.UNIMPLEMENTED))
+    return outcome
+
+
+def chosen(cases: list, patterns: list, form: Optional[str] = None) -> Iterator[Case]:
+    """Those whose id fits one of the globs, all if there is none; in this form, or in all."""
+    for case in cases:
+        if patterns and not any(fnmatchcase(case.id, pattern) for pattern in patterns):
+            continue
+        forms = tuple(f for f in case.forms if form in (None, f))
+        if forms:
+            yield replace(case, forms=forms)

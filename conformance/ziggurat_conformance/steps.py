@@ -1,0 +1,287 @@
+"""Steps that cases are made of: plain data, and one engine that plays them.
+
+Values in messages may be Tick(), Token(peer) or Text(…): they are filled in when the step is played.
+"""
+
+import time
+from dataclasses import dataclass, field
+from typing import Any, Callable
+
+from . import wire
+from .case import Failed, NonStrict, Unimplemented
+from .peer import Peer, Transcript
+from .wire import protocol
+
+# ---- values that are known only in play ----------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Tick:
+    """The tick of the peer's last observation, plus an offset."""
+
+    offset: int = 0
+    of: str = ""  # another peer
+
+    def __add__(self, offset: int) -> "Tick":
+        return Tick(self.offset + offset, self.of)
+
+    def __sub__(self, offset: int) -> "Tick":
+        return self + -offset
+
+
+@dataclass(frozen=True)
+class Token:
+    """The session token that a peer was given."""
+
+    of: str
+
+
+@dataclass(frozen=True)
+class Zeros:
+    """As many zeros as this peer's robots have values of a kind, times `per`; `wrong` is added."""
+
+    devices: str  # name of a list in RobotDescription
+    wrong: int = 0
+    value: Any = 0.0
+    first: Any = None  # instead of the first zero
+
+
+# ---- steps ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Say:
+    peer: str
+    message: dict  # of ClientMessage
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Bytes as they are."""
+
+    peer: str
+    frames: tuple
+
+
+@dataclass(frozen=True)
+class Hear:
+    """The next message is of this kind and as the pattern says."""
+
+    peer: str
+    kind: str
+    pattern: dict = field(default_factory=dict)
+    should: bool = False  # a SHOULD: otherwise it is a MUST
+    within: float = 0.0  # [s]; 0 = the usual patience
+
+
+@dataclass(frozen=True)
+class Skip:
+    """Messages up to one of this kind don't matter."""
+
+    peer: str
+    kind: str
+
+
+@dataclass(frozen=True)
+class Silence:
+    """Nothing but heartbeats comes."""
+
+    peer: str
+    seconds: float = 0.2
+
+
+@dataclass(frozen=True)
+class Hang:
+    """The connection is closed without a word."""
+
+    peer: str
+
+
+@dataclass(frozen=True)
+class Pause:
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Interrupt:
+    """The server is told to stop, as by Ctrl-C."""
+
+
+@dataclass(frozen=True)
+class Join:
+    """Hello, and Welcome. Patient: as long as robots are taken by a connection that just closed."""
+
+    peer: str
+    hello: dict
+    pattern: dict = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Check:
+    """What patterns can't say; returns what is wrong, or an empty text."""
+
+    title: str
+    check: Callable
+
+
+class Stage:
+    """Where a case is played: a server and the peers that talk to it."""
+
+    def __init__(self, endpoint: str, form: str, patience: float, server=None, keys=None):
+        self.endpoint = endpoint
+        self.form = form
+        self.patience = patience
+        self.server = server
+        self.keys = keys or {}
+        self.transcript = Transcript()
+        self.peers: dict[str, Peer] = {}
+        self.tokens: dict[str, bytes] = {}  # also of peers that are gone
+
+    def __enter__(self) -> "Stage":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        for peer in self.peers.values():
+            peer.socket.close()
+
+    def peer(self, name: str) -> Peer:
+        """The peer of that name, connected at its first use. "json" and "binary" speak as they say."""
+        if name not in self.peers:
+            keys = self.keys.get(name, self.keys.get("*"))
+            form = name if name in wire.FORMS else self.form
+            self.peers[name] = Peer(name, self.endpoint, form, self.transcript, keys)
+        return self.peers[name]
+
+    def play(self, steps: tuple) -> None:
+        for step in steps:
+            if isinstance(step, (list, tuple)):
+                self.play(tuple(step))
+            else:
+                _players[type(step)](self, step)
+
+    # ---- one function for each kind of step ----
+
+    def say(self, step: Say) -> None:
+        peer = self.peer(step.peer)
+        fields = _resolved(self, peer, step.message)
+        peer.say(wire.from_dict(protocol.ClientMessage, fields))
+
+    def frames(self, step: Frames) -> None:
+        self.peer(step.peer).say_frames(step.frames)
+
+    def hear(self, step: Hear) -> None:
+        peer = self.peer(step.peer)
+        due = _resolved(self, peer, step.pattern)  # before: Tick() is that of the last observation
+        message = _heard(peer, step.within or self.patience, step.kind == "heartbeat")
+        complaint = _complaint(step, due, message)
+        if complaint and step.should:
+            raise NonStrict(complaint)
+        if complaint:
+            raise Failed(complaint)
+
+    def skip(self, step: Skip) -> None:
+        peer = self.peer(step.peer)
+        deadline = time.monotonic() + self.patience
+        while time.monotonic() < deadline:
+            message = _heard(peer, deadline - time.monotonic(), False)
+            if message is not None and wire.kind_of(message) == step.kind:
+                return
+        raise Failed(f"{step.peer} heard no {step.kind} within {self.patience:g} s")
+
+    def silence(self, step: Silence) -> None:
+        message = _heard(self.peer(step.peer), step.seconds, False)
+        if message is not None:
+            raise Failed(f"{step.peer} was told {wire.kind_of(message)}; nothing is due")
+
+    def hang(self, step: Hang) -> None:
+        self.peer(step.peer).close()
+        del self.peers[step.peer]
+
+    def pause(self, step: Pause) -> None:
+        time.sleep(step.seconds)
+
+    def interrupt(self, step: Interrupt) -> None:
+        self.transcript.add("server", "───", "is interrupted")
+        self.server.interrupt()
+
+    def join(self, step: Join) -> None:
+        deadline = time.monotonic() + self.patience
+        peer = self.peer(step.peer)
+        while True:
+            self.say(Say(step.peer, {"hello": step.hello}))
+            message = _heard(peer, self.patience, False)
+            while message is not None and wire.kind_of(message) == "loading":
+                message = _heard(peer, self.patience, False)
+            taken = (
+                message is not None
+                and message.HasField("refusal")
+                and message.refusal.error.code == protocol.Error.ROBOT_TAKEN
+            )
+            if not taken or time.monotonic() > deadline:
+                break
+            time.sleep(0.02)
+        complaint = _complaint(Hear(step.peer, "welcome"), step.pattern, message)
+        if complaint:
+            raise Failed(complaint)
+        self.tokens[step.peer] = peer.welcome.session_token
+
+    def check(self, step: Check) -> None:
+        complaint = step.check(self)
+        if complaint:
+            raise Failed(f"{step.title}: {complaint}")
+
+
+_players: dict = {
+    Say: Stage.say,
+    Frames: Stage.frames,
+    Hear: Stage.hear,
+    Skip: Stage.skip,
+    Silence: Stage.silence,
+    Hang: Stage.hang,
+    Pause: Stage.pause,
+    Interrupt: Stage.interrupt,
+    Join: Stage.join,
+    Check: Stage.check,
+}
+
+
+def _heard(peer: Peer, patience: float, heartbeats: bool):
+    try:
+        return peer.hear(patience, heartbeats)
+    except ValueError as error:
+        raise Failed(f"{peer.name} was told {error}") from None
+
+
+def _complaint(step: Hear, due: dict, message) -> str:
+    """What is wrong with a message that was heard; empty if nothing."""
+    if message is None:
+        return f"{step.peer} heard nothing; {step.kind} is due"
+    kind = wire.kind_of(message)
+    told = getattr(message, kind) if kind else message
+    error = told.error if kind in ("refusal", "response") else told if kind == "error" else None
+    if error is not None and error.code == protocol.Error.UNIMPLEMENTED:
+        expected = due.get("error", due).get("code")
+        if expected != "UNIMPLEMENTED":
+            raise Unimplemented(error.message)
+    if kind != step.kind:
+        return f"{step.peer} was told {wire.text_of(message, 300)}; {step.kind} is due"
+    return "; ".join(wire.mismatches(due, told, kind))
+
+
+def _resolved(stage: Stage, peer: Peer, value: Any) -> Any:
+    """A message or pattern with the values that are known only now."""
+    if isinstance(value, dict):
+        return {name: _resolved(stage, peer, inner) for name, inner in value.items()}
+    if isinstance(value, list):
+        return [_resolved(stage, peer, inner) for inner in value]
+    if isinstance(value, Tick):
+        return (stage.peer(value.of) if value.of else peer).tick + value.offset
+    if isinstance(value, Token):
+        return stage.tokens[value.of]
+    if isinstance(value, Zeros):
+        count = sum(len(getattr(robot, value.devices)) for robot in peer.welcome.robots)
+        values = [value.value] * (count + value.wrong)
+        if value.first is not None:
+            values[0] = value.first
+        return values
+    return value

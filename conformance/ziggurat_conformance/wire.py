@@ -1,0 +1,138 @@
+"""Messages as bytes, in both forms, and patterns that messages are held against."""
+
+from dataclasses import dataclass
+from typing import Any, Iterator
+
+from google.protobuf import json_format
+from google.protobuf.message import DecodeError, Message
+
+import protocol_pb2 as protocol
+
+BINARY = "binary"
+JSON = "json"
+FORMS = (BINARY, JSON)
+
+
+def encode(message: Message, form: str) -> bytes:
+    """A message as it travels; `form` is BINARY or JSON."""
+    if form == JSON:
+        return json_format.MessageToJson(message, indent=0).encode()
+    return message.SerializeToString()
+
+
+def decode(kind: type, data: bytes, form: str) -> Message:
+    """The message of a type that bytes hold. Raises ValueError, saying what is wrong."""
+    try:
+        if form == JSON:
+            return json_format.Parse(data.decode(), kind(), ignore_unknown_fields=True)
+        return kind.FromString(data)
+    except (DecodeError, json_format.ParseError, UnicodeDecodeError) as error:
+        raise ValueError(f"not a {kind.__name__} in {form} form: {error}") from None
+
+
+def from_dict(kind: type, fields: dict) -> Message:
+    """A message from field names as in the .proto; bytes stay bytes, enums may be names."""
+    message = kind()
+    _fill(message, fields)
+    return message
+
+
+def _fill(message: Message, fields: dict) -> None:
+    for name, value in fields.items():
+        field = message.DESCRIPTOR.fields_by_name[name]
+        repeated = field.label == field.LABEL_REPEATED
+        if field.type == field.TYPE_MESSAGE:
+            if repeated:
+                for element in value:
+                    _fill(getattr(message, name).add(), element)
+            else:
+                getattr(message, name).SetInParent()
+                _fill(getattr(message, name), value)
+            continue
+        if field.type == field.TYPE_ENUM:
+            value = [_number(field, v) for v in value] if repeated else _number(field, value)
+        if repeated:
+            getattr(message, name).extend(value)
+        else:
+            setattr(message, name, value)
+
+
+def _number(field: Any, value: Any) -> int:
+    return field.enum_type.values_by_name[value].number if isinstance(value, str) else value
+
+
+# ---- patterns ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Some:
+    """Matches any value but the default one."""
+
+
+@dataclass(frozen=True)
+class Count:
+    """Matches a list of this length."""
+
+    length: int
+
+
+@dataclass(frozen=True)
+class AtLeast:
+    """Matches a number from this one on."""
+
+    least: float
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """Matches any of these."""
+
+    values: tuple
+
+
+def mismatches(pattern: Any, value: Any, path: str = "") -> Iterator[str]:
+    """Sentences on where a value is not as the pattern says. A dict speaks of the fields it names."""
+    if isinstance(pattern, dict):
+        for name, inner in pattern.items():
+            field = value.DESCRIPTOR.fields_by_name[name]
+            found = getattr(value, name)
+            if field.type == field.TYPE_ENUM and field.label != field.LABEL_REPEATED:
+                found = _name(field, found)
+            yield from mismatches(inner, found, f"{path}.{name}" if path else name)
+    elif isinstance(pattern, Some):
+        if not value:
+            yield f"{path} is empty; something is due"
+    elif isinstance(pattern, Count):
+        if len(value) != pattern.length:
+            yield f"{path} has {len(value)} elements; {pattern.length} are due"
+    elif isinstance(pattern, AtLeast):
+        if not value >= pattern.least:
+            yield f"{path} is {value!r}; at least {pattern.least} is due"
+    elif isinstance(pattern, OneOf):
+        if value not in pattern.values:
+            yield f"{path} is {value!r}; one of {', '.join(map(repr, pattern.values))} is due"
+    elif isinstance(pattern, (list, tuple)):
+        if len(pattern) != len(value):
+            yield f"{path} has {len(value)} elements; {len(pattern)} are due"
+        else:
+            for i, (inner, found) in enumerate(zip(pattern, value)):
+                yield from mismatches(inner, found, f"{path}[{i}]")
+    elif pattern != value:
+        yield f"{path} is {value!r}; {pattern!r} is due"
+
+
+def _name(field: Any, number: int) -> Any:
+    known = field.enum_type.values_by_number.get(number)
+    return known.name if known else number
+
+
+def kind_of(message: Message) -> str:
+    """Which message an envelope holds: "welcome", "observation", … or "" for none known."""
+    return message.WhichOneof("message") or ""
+
+
+def text_of(message: Message, limit: int = 2000) -> str:
+    """For people, on one line, cut where it is long."""
+    text = json_format.MessageToJson(message, indent=None, preserving_proto_field_name=True)
+    return text if len(text) <= limit else f"{text[:limit]} … ({len(text)} characters)"
+

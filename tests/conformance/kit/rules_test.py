@@ -1,0 +1,49 @@
+"""Every rule of docs/protocol.md has a case, or a reason why not."""
+
+import re
+import unittest
+from pathlib import Path
+
+from ziggurat_conformance import client_mode
+from ziggurat_conformance.cases import SERVER_CASES
+
+DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "protocol.md"
+
+# Rules that no case can hold, and why.
+REASONS = {
+    "T1": "the kit connects to the endpoint that it is told",
+    "T8": "a matter of the server's command line",
+    "D5": "it would take more than 1 GiB of messages at a tick",
+}
+
+
+def rules() -> set:
+    return set(re.findall(r"^- \*\*([A-Z]+[0-9]+)\*\*", DOCUMENT.read_text(), re.MULTILINE))
+
+
+class Rules(unittest.TestCase):
+    def test_each_has_a_case_or_a_reason(self):
+        held = {case.rule for case in [*SERVER_CASES, *client_mode.CASES]}
+        self.assertEqual(set(), rules() - held - set(REASONS))
+
+    def test_cases_name_rules_that_there_are(self):
+        held = {case.rule for case in [*SERVER_CASES, *client_mode.CASES]}
+        tables = {"M0", "D0"}  # of sections 4 and 3.1
+        self.assertEqual(set(), held - rules() - tables)
+
+    def test_reasons_are_still_needed(self):
+        held = {case.rule for case in [*SERVER_CASES, *client_mode.CASES]}
+        self.assertEqual(set(), set(REASONS) & held)
+        self.assertEqual(set(), set(REASONS) - rules())
+
+    def test_ids_are_unique(self):
+        for cases in (SERVER_CASES, client_mode.CASES):
+            ids = [case.id for case in cases]
+            self.assertEqual(sorted(set(ids)), sorted(ids))
+
+    def test_there_are_enough(self):
+        self.assertGreaterEqual(len(SERVER_CASES) + len(client_mode.CASES), 120)
+
+
+if __name__ == "__main__":
+    unittest.main()
