@@ -1,7 +1,7 @@
 """What a case is, and how one goes out."""
 
 import enum
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 
 class Level(enum.Enum):
@@ -50,7 +50,6 @@ class Outcome:
     seconds: float = 0.0
     reason: str = ""
     transcript: str = ""
-    notes: list = field(default_factory=list)
 
 
 class Failed(Exception):

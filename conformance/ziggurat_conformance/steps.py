@@ -136,6 +136,7 @@ class Stage:
         self.transcript = Transcript()
         self.peers: dict[str, Peer] = {}
         self.tokens: dict[str, bytes] = {}  # also of peers that are gone
+        self.memory: dict[str, Any] = {}  # of checks
 
     def __enter__(self) -> "Stage":
         return self

@@ -1,11 +1,12 @@
 """All cases for servers, in the order of the document's sections."""
 
-from . import hello, leaving, states, tick, transport
+from . import deadlines, hello, leaving, states, tick, transport
 
 SERVER_CASES = [
     *transport.CASES,
     *hello.CASES,
     *tick.CASES,
+    *deadlines.CASES,
     *states.CASES,
     *leaving.CASES,
 ]

@@ -1,9 +1,9 @@
 """Section 5: leaving, losing, ending."""
 
 from ..case import Case, Level
-from ..say import ALL, TWO, answer, hear_error, hear_refusal, join, leave, observe, say_hello
-from ..steps import Hang, Hear, Interrupt, Pause, Silence, Skip, Tick, Token
-from ..wire import Count
+from ..say import ALL, TWO, answer, hear_error, hear_refusal, hello, join, leave, observe, say_hello
+from ..steps import Hang, Hear, Interrupt, Join, Pause, Silence, Skip, Tick, Token
+from ..wire import Count, OneOf, Some
 
 CASES = [
     Case("L1.some", "Robots that left are not waited for",
@@ -54,6 +54,53 @@ CASES = [
          (ALL, say_hello("x", session_token=Token("p")),
           Hear("x", "refusal", {"error": {"code": "ROBOT_TAKEN"}}), Silence("p"), answer("p"),
           observe("p")), Level.RECONNECT),
+    Case("L4.takes-others-robots", "An old token is worthless once others have the robots",
+         (TWO, Hang("p"), join("z", "arm0", "arm1"), *observe("z"),
+          say_hello("x", session_token=Token("p")),
+          Hear("x", "refusal", {"error": {"code": OneOf(("ROBOT_TAKEN", "NO_SUCH_SESSION"))}})),
+         Level.RECONNECT),
+    Case("H13.takeover", "Robots may be taken over; the displaced one is told",
+         (ALL, say_hello("x", "*", takeover=True, client_name="usurper"), Hear("x", "welcome"),
+          Hear("x", "observation", {"tick": Tick(of="p")}), Hear("p", "displaced", {"by": Some()}),
+          answer("x"), observe("x"), Silence("p")), Level.RECONNECT),
+    Case("H13.some", "Robots of the displaced one that nobody asked for are free",
+         (ALL, say_hello("x", "arm1", takeover=True), Hear("x", "welcome"), Skip("p", "displaced"),
+          join("y", "arm0", "arm2", "arm3"), Skip("y", "observation"), Skip("x", "observation"),
+          answer("x"), answer("y"), observe("x", "y")), Level.RECONNECT),
+    Case("H13.free-ones", "Takeover of robots that nobody holds is a plain Hello",
+         (join("p", "arm0", takeover=True), join("q", "arm1", "arm2", "arm3", takeover=True),
+          observe("p", "q")), Level.RECONNECT),
+    Case("H13.refused", "A Hello that is refused displaces nobody",
+         (ALL, say_hello("x", "*", "nobody", takeover=True), hear_refusal("x", "UNKNOWN_ROBOT"),
+          Silence("p"), answer("p"), observe("p")), Level.RECONNECT),
+    Case("H13.version", "Nor does one of another version",
+         (ALL, say_hello("x", "*", takeover=True, version={"major": 9}),
+          hear_refusal("x", "VERSION_MISMATCH"), Silence("p"), answer("p"), observe("p")),
+         Level.RECONNECT),
+    Case("L7.lease", "While a lease runs nobody else gets the robots",
+         (TWO, Hang("p"), Pause(0.1), say_hello("x", "arm0", "arm1"),
+          hear_refusal("x", "ROBOT_TAKEN", True), join("y", session_token=Token("p")), observe("y"),
+          answer("y"), answer("q"), observe("y", "q")), Level.RECONNECT, variant="lease"),
+    Case("L7.lease-is-told", "Welcome says how long the lease is",
+         (Join("p", hello("*"), {"wall_lease_ms": Some()}),), Level.RECONNECT, variant="lease"),
+    Case("L7.lease-ends", "After the lease anybody may have them",
+         (TWO, Hang("p"), join("x", "arm0", "arm1"), observe("x"), answer("x"), answer("q"),
+          observe("x", "q")), Level.RECONNECT, variant="lease"),
+    Case("L7.takeover", "Takeover ends a lease",
+         (TWO, Hang("p"), Pause(0.1), say_hello("x", "arm0", "arm1", takeover=True),
+          Hear("x", "welcome"), observe("x"), answer("x"), answer("q"), observe("x", "q")),
+         Level.RECONNECT, variant="lease"),
+    Case("L8.token-and-takeover", "A token with takeover takes up a session that is connected",
+         (ALL, say_hello("x", session_token=Token("p"), takeover=True), Hear("x", "welcome"),
+          Hear("x", "observation", {"tick": Tick(of="p")}), Skip("p", "displaced"), answer("x"),
+          observe("x")), Level.RECONNECT),
+    Case("L9.safe-to-repeat", "A command that was taken before may be said again after coming back",
+         (TWO, answer("p"), Pause(0.05), Hang("p"), join("x", session_token=Token("p")), observe("x"),
+          answer("x"), answer("q"), observe("x", "q")), Level.RECONNECT),
+    Case("L10.token-of-the-displaced", "The token of a displaced session is good for nothing",
+         (ALL, say_hello("x", "*", takeover=True), Hear("x", "welcome"), Skip("p", "displaced"),
+          Hang("p"), say_hello("y", session_token=Token("p")),
+          hear_refusal("y", "NO_SUCH_SESSION")), Level.RECONNECT),
     Case("L5.end", "The end is told to all, with the last tick",
          (TWO, Interrupt(), Hear("p", "end", {"reason": "INTERRUPTED", "tick": Tick()}),
           Hear("q", "end", {"reason": "INTERRUPTED"})), fresh=True),
@@ -63,4 +110,9 @@ CASES = [
     Case("L5.hello-after-end", "No session begins after the end",
          (ALL, Interrupt(), Skip("p", "end"), say_hello("x", "arm0"), Hear("x", "refusal")),
          fresh=True),
+    Case("K5.comes-and-goes", "Three hundred connections that say Hello and hang up leave nothing behind",
+         (join("p", "arm1", "arm2", "arm3"), *[s for n in range(300) for s in
+                                               (say_hello(f"x{n}", "arm0"), Hang(f"x{n}"))],
+          join("q", "arm0"), observe("p", "q"), answer("p"), answer("q"), observe("p", "q")),
+         Level.SECURE),
 ]

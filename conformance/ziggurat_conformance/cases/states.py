@@ -1,8 +1,8 @@
 """Section 4: who may say what, and when. One case for each field of the table."""
 
-from ..case import Case
+from ..case import Case, Level
 from ..say import TWO, answer, hear_error, heartbeat, join, leave, observe, say_hello
-from ..steps import Hang, Hear, Interrupt, Silence, Skip
+from ..steps import Check, Hang, Hear, Interrupt, Say, Silence, Skip
 
 # How a session "x" comes into each state. arm1, arm2 and arm3 are with "y".
 _OTHERS = join("y", "arm1", "arm2", "arm3")
@@ -55,6 +55,16 @@ _table = [
     for message, due in zip(_SAID, row)
 ]
 
+def _beats(stage) -> str:
+    """Something comes within the time that Welcome names, and a half."""
+    peer = stage.peer("p")
+    promised = peer.welcome.wall_heartbeat_ms
+    if promised == 0:
+        return ""
+    message = peer.hear(1.5 * promised / 1000, heartbeats=True)
+    return "" if message is not None else f"nothing came within {1.5 * promised:g} ms"
+
+
 CASES = [
     *_table,
     Case("M1.command-on-its-way", "In DRAINING a Command is no error, and its lines count",
@@ -71,6 +81,16 @@ CASES = [
     Case("M5.answered", "The server answers each Heartbeat with its sequence",
          (join("p", "*"), *observe("p"), heartbeat("p", 0), Hear("p", "heartbeat", {"sequence": 0}),
           heartbeat("p", 2**64 - 1), Hear("p", "heartbeat", {"sequence": 2**64 - 1}))),
+    Case("M6.heartbeats", "The server is not silent for longer than it says",
+         (join("p", "*"), *observe("p"), answer("p"), *observe("p"), Check("beat", _beats))),
+    Case("M7.flood", "Who floods is thrown out, and the others are served",
+         (join("p", "arm0"), join("q", "arm1", "arm2", "arm3"), *observe("p", "q"),
+          *[heartbeat("p", n) for n in range(20000)], Skip("p", "error"), Hang("p"), join("x", "arm0"),
+          *observe("x"), answer("x"), answer("q"), *observe("x", "q")), Level.SECURE),
+    Case("M8.request", "A Request of a controller is FORBIDDEN",
+         (join("p", "*"), *observe("p"), Say("p", {"request": {"id": 5, "pause": {}}}),
+          Hear("p", "response", {"id": 5, "error": {"code": "FORBIDDEN"}}), answer("p"),
+          *observe("p")), Level.SECURE),
     Case("M5.in-between", "Heartbeats may come between a session's other messages",
          (join("p", "*"), *observe("p"), heartbeat("p", 1), answer("p"), heartbeat("p", 2),
           Hear("p", "heartbeat", {"sequence": 1}))),

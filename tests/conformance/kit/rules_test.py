@@ -13,18 +13,22 @@ DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "protocol.md"
 REASONS = {
     "T1": "the kit connects to the endpoint that it is told",
     "T8": "a matter of the server's command line",
+    "P3": "advice to clients",
+    "K4": "says what the absence of keys means",
     "D5": "it would take more than 1 GiB of messages at a tick",
 }
 
 
-def rules() -> set:
-    return set(re.findall(r"^- \*\*([A-Z]+[0-9]+)\*\*", DOCUMENT.read_text(), re.MULTILINE))
+def rules(served_only: bool = False) -> set:
+    """Rules of the document; those that begin with *Reserved:* are not served yet."""
+    found = re.findall(r"^- \*\*([A-Z]+[0-9]+)\*\* (\*Reserved:)?", DOCUMENT.read_text(), re.MULTILINE)
+    return {rule for rule, reserved in found if not (reserved and served_only)}
 
 
 class Rules(unittest.TestCase):
     def test_each_has_a_case_or_a_reason(self):
         held = {case.rule for case in [*SERVER_CASES, *client_mode.CASES]}
-        self.assertEqual(set(), rules() - held - set(REASONS))
+        self.assertEqual(set(), rules(served_only=True) - held - set(REASONS))
 
     def test_cases_name_rules_that_there_are(self):
         held = {case.rule for case in [*SERVER_CASES, *client_mode.CASES]}
