@@ -10,47 +10,70 @@ constexpr btScalar warm_start_share = 0.3;
 
 }  // namespace
 
+// The impulses of this step change a multi-body's velocities in its own vector, which Bullet adds
+// to them at the end. Bullet's second copy of it, m_deltaVelocities, is not kept up: nobody reads
+// it.
+
 /// What the impulses of this step have changed of the row's relative velocity so far.
 btScalar Solver::speed_change(const Row& row) const {
   btScalar speed = 0;
-  if (row.m_multiBodyA) {
-    const int count = row.m_multiBodyA->getNumDofs() + 6;
-    const btScalar* jacobian = &m_data.m_jacobians[row.m_jacAindex];
-    const btScalar* velocity = &m_data.m_deltaVelocities[row.m_deltaVelAindex];
+  const auto add_multi = [&](const btMultiBody& body, int jacobian_index) {
+    const int count = body.getNumDofs() + 6;
+    const btScalar* jacobian = &m_data.m_jacobians[jacobian_index];
+    const btScalar* velocity = body.getDeltaVelocityVector();
     for (int i = 0; i < count; ++i) speed += jacobian[i] * velocity[i];
+  };
+  const auto add_rigid = [&](int id, const btVector3& normal, const btVector3& arm_normal) {
+    const btSolverBody& body = m_tmpSolverBodyPool[id];
+    if (!body.m_originalBody) return;  // fixed
+    speed += normal.dot(body.m_deltaLinearVelocity) + arm_normal.dot(body.m_deltaAngularVelocity);
+  };
+  if (row.m_multiBodyA) {
+    add_multi(*row.m_multiBodyA, row.m_jacAindex);
   } else if (row.m_solverBodyIdA >= 0) {
-    const btSolverBody& body = m_tmpSolverBodyPool[row.m_solverBodyIdA];
-    speed += row.m_contactNormal1.dot(body.m_deltaLinearVelocity) +
-             row.m_relpos1CrossNormal.dot(body.m_deltaAngularVelocity);
+    add_rigid(row.m_solverBodyIdA, row.m_contactNormal1, row.m_relpos1CrossNormal);
   }
   if (row.m_multiBodyB) {
-    const int count = row.m_multiBodyB->getNumDofs() + 6;
-    const btScalar* jacobian = &m_data.m_jacobians[row.m_jacBindex];
-    const btScalar* velocity = &m_data.m_deltaVelocities[row.m_deltaVelBindex];
-    for (int i = 0; i < count; ++i) speed += jacobian[i] * velocity[i];
+    add_multi(*row.m_multiBodyB, row.m_jacBindex);
   } else if (row.m_solverBodyIdB >= 0) {
-    const btSolverBody& body = m_tmpSolverBodyPool[row.m_solverBodyIdB];
-    speed += row.m_contactNormal2.dot(body.m_deltaLinearVelocity) +
-             row.m_relpos2CrossNormal.dot(body.m_deltaAngularVelocity);
+    add_rigid(row.m_solverBodyIdB, row.m_contactNormal2, row.m_relpos2CrossNormal);
   }
   return speed;
 }
 
+/// The same for both friction rows of a contact, side by side: each sum is a chain of additions
+/// that wait for each other, so two at once cost little more than one.
+std::pair<btScalar, btScalar> Solver::speed_changes(const Row& first, const Row& second) const {
+  if (!first.m_multiBodyA || first.m_multiBodyB || first.m_solverBodyIdB < 0 ||
+      m_tmpSolverBodyPool[first.m_solverBodyIdB].m_originalBody) {
+    return {speed_change(first), speed_change(second)};
+  }
+  const int count = first.m_multiBodyA->getNumDofs() + 6;
+  const btScalar* to_first = &m_data.m_jacobians[first.m_jacAindex];
+  const btScalar* to_second = &m_data.m_jacobians[second.m_jacAindex];
+  const btScalar* velocity = first.m_multiBodyA->getDeltaVelocityVector();
+  btScalar speed_first = 0, speed_second = 0;
+  for (int i = 0; i < count; ++i) {
+    speed_first += to_first[i] * velocity[i];
+    speed_second += to_second[i] * velocity[i];
+  }
+  return {speed_first, speed_second};
+}
+
 void Solver::apply(const Row& row, btScalar impulse) {
+  if (impulse == 0) return;
   row.m_appliedImpulse += impulse;
   if (row.m_multiBodyA) {
-    btScalar* change = &m_data.m_deltaVelocitiesUnitImpulse[row.m_jacAindex];
-    applyDeltaVee(change, impulse, row.m_deltaVelAindex, row.m_multiBodyA->getNumDofs() + 6);
-    row.m_multiBodyA->applyDeltaVeeMultiDof2(change, impulse);
+    row.m_multiBodyA->applyDeltaVeeMultiDof2(&m_data.m_deltaVelocitiesUnitImpulse[row.m_jacAindex],
+                                             impulse);
   } else if (row.m_solverBodyIdA >= 0) {
     btSolverBody& body = m_tmpSolverBodyPool[row.m_solverBodyIdA];
     body.internalApplyImpulse(row.m_contactNormal1 * body.internalGetInvMass(),
                               row.m_angularComponentA, impulse);
   }
   if (row.m_multiBodyB) {
-    btScalar* change = &m_data.m_deltaVelocitiesUnitImpulse[row.m_jacBindex];
-    applyDeltaVee(change, impulse, row.m_deltaVelBindex, row.m_multiBodyB->getNumDofs() + 6);
-    row.m_multiBodyB->applyDeltaVeeMultiDof2(change, impulse);
+    row.m_multiBodyB->applyDeltaVeeMultiDof2(&m_data.m_deltaVelocitiesUnitImpulse[row.m_jacBindex],
+                                             impulse);
   } else if (row.m_solverBodyIdB >= 0) {
     btSolverBody& body = m_tmpSolverBodyPool[row.m_solverBodyIdB];
     body.internalApplyImpulse(row.m_contactNormal2 * body.internalGetInvMass(),
@@ -72,8 +95,9 @@ btScalar Solver::solve_row(const Row& row) {
 
 btScalar Solver::solve_friction(const Row& first, const Row& second, btScalar limit) {
   if (first.m_jacDiagABInv == 0 || second.m_jacDiagABInv == 0) return 0;
-  const btScalar wanted_first = first.m_rhs - speed_change(first) * first.m_jacDiagABInv;
-  const btScalar wanted_second = second.m_rhs - speed_change(second) * second.m_jacDiagABInv;
+  const auto [speed_first, speed_second] = speed_changes(first, second);
+  const btScalar wanted_first = first.m_rhs - speed_first * first.m_jacDiagABInv;
+  const btScalar wanted_second = second.m_rhs - speed_second * second.m_jacDiagABInv;
   btScalar to_first = first.m_appliedImpulse + wanted_first;
   btScalar to_second = second.m_appliedImpulse + wanted_second;
   if (to_first * to_first + to_second * to_second > limit * limit) {
