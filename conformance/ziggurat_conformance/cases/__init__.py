@@ -1,6 +1,6 @@
 """All cases for servers, in the order of the document's sections."""
 
-from . import deadlines, hello, leaving, states, tick, transport
+from . import deadlines, hello, leaving, states, supervision, tick, transport
 
 SERVER_CASES = [
     *transport.CASES,
@@ -9,4 +9,5 @@ SERVER_CASES = [
     *deadlines.CASES,
     *states.CASES,
     *leaving.CASES,
+    *supervision.CASES,
 ]

@@ -1,0 +1,195 @@
+"""Section 9: supervision."""
+
+import math
+
+from ..case import Case, Level
+from ..say import ALL, answer, hear_refusal, hello, join, observe, say_hello
+from ..steps import Check, Hear, Join, Say, Silence, Skip, Tick
+from ..wire import Count, OneOf, Some
+
+
+def _comes(peer: str = "s", role: str = "ROLE_SUPERVISOR") -> Join:
+    return Join(peer, hello(**{"role": role, "client_name": "supervisor"}), {"robots": Count(0)})
+
+
+def ask(peer: str, id: int, **request) -> Say:
+    return Say(peer, {"request": {"id": id, **request}})
+
+
+def told(peer: str, id: int, **pattern) -> Hear:
+    """The request was done."""
+    return Hear(peer, "response", {"id": id, "error": {"code": "CODE_UNSPECIFIED"}, **pattern})
+
+
+def failed(peer: str, id: int, code: str) -> Hear:
+    return Hear(peer, "response", {"id": id, "error": {"code": code, "message": Some()}})
+
+
+def _paused() -> list:
+    """s has paused the world, of which p has all robots and has answered."""
+    return [*ALL, _comes(), ask("s", 1, pause={}), answer("p"), told("s", 1), Hear("p", "paused")]
+
+
+def _resumed(first: int = 90) -> list:
+    return [ask("s", first, resume={}), told("s", first), *observe("p")]
+
+
+def _holds_up(stage) -> str:
+    """The status names p as the one that owes its answer."""
+    status = stage.memory["status"]
+    owing = [s for s in status.sessions if s.state == 2]
+    if len(owing) != 1:
+        return f"{len(owing)} sessions are OWING; one is due"
+    return "" if list(owing[0].robots) == [f"arm{i}" for i in range(4)] else "it names other robots"
+
+
+def _ask_status(stage) -> str:
+    stage.play((ask("s", 5, status={}),))
+    message = stage.peer("s").hear(stage.patience)
+    if message is None or not message.response.HasField("status"):
+        return "no status came"
+    stage.memory["status"] = message.response.status
+    return ""
+
+
+def _read(id: int, name: str):
+    def read(stage) -> str:
+        stage.play((ask("s", id, read={"entities": ["arm0"]}),))
+        message = stage.peer("s").hear(stage.patience)
+        if message is None or not message.response.HasField("states"):
+            return "no states came"
+        stage.memory[name] = message.response.states.hash
+        return ""
+
+    return Check("read", read)
+
+
+def _same(first: str, second: str) -> Check:
+    return Check("hash", lambda stage: "" if stage.memory[first] == stage.memory[second]
+                 else "the two states are not the same")
+
+
+def _moved(stage) -> str:
+    stage.play((ask("s", 8, read={"entities": ["arm0"]}),))
+    entity = stage.peer("s").hear(stage.patience).response.states.entities[0]
+    found = [round(v, 9) for v in entity.position]
+    return "" if found == [1.0, 1.0, 0.0] else f"arm0 is at {found}; 1, 1, 0 is due"
+
+
+def _v(name: str, title: str, *steps, level: Level = Level.RECONNECT, **more) -> Case:
+    return Case(name, title, tuple(steps), level, **more)
+
+
+_BOX = '<box id="crate" size="0.1,0.1,0.1" movable="false"><body position="1.5,1.5,0"/></box>'
+
+CASES = [
+    _v("V1.supervisor", "A supervisor is welcome and has no robots", _comes()),
+    _v("V1.observer", "An observer is welcome and has no robots", _comes("o", "ROLE_OBSERVER")),
+    _v("V1.robots", "A supervisor may not ask for robots",
+       say_hello("s", "arm0", role="ROLE_SUPERVISOR"), hear_refusal("s", "BAD_VALUE")),
+    _v("V1.not-in-the-barrier", "The world does not wait for supervisors",
+       *ALL, _comes(), answer("p"), *observe("p"), Silence("s")),
+    _v("V1.many", "Several supervisors and observers may be there",
+       _comes("s"), _comes("t"), _comes("o", "ROLE_OBSERVER"), _comes("u", "ROLE_OBSERVER"), *ALL,
+       answer("p"), *observe("p")),
+    _v("V2.id", "A response has its request's id", *ALL, _comes(), ask("s", 2**63, status={}),
+       told("s", 2**63, status={"tick": Tick(of="p")})),
+    _v("V2.order", "Responses come in the order of requests", *ALL, _comes(),
+       *[ask("s", n, status={}) for n in range(1, 11)], *[told("s", n) for n in range(1, 11)]),
+    _v("V2.empty", "A Request without a request is BAD_VALUE", *ALL, _comes(), ask("s", 3),
+       failed("s", 3, "BAD_VALUE")),
+    _v("V3.status", "An observer may ask for the status", *ALL, _comes("o", "ROLE_OBSERVER"),
+       ask("o", 1, status={}), told("o", 1)),
+    _v("V3.read", "An observer may read", *ALL, _comes("o", "ROLE_OBSERVER"), ask("o", 1, read={}),
+       told("o", 1, states={"entities": Count(4), "hash": Some()})),
+    *[_v(f"V3.{name}", f"An observer may not {name}", *ALL, _comes("o", "ROLE_OBSERVER"),
+         ask("o", 1, **{name: {}}), failed("o", 1, "FORBIDDEN"), answer("p"), *observe("p"),
+         level=Level.SECURE)
+      for name in ("pause", "resume", "step", "reset", "spawn", "remove", "move", "shutdown")],
+    _v("V4.pause", "Paused, no tick comes; resumed, it goes on", *_paused(), Silence("p", 0.3),
+       *_resumed(), answer("p"), *observe("p")),
+    _v("V4.twice", "Pausing a paused world is answered at once", *_paused(), ask("s", 2, pause={}),
+       told("s", 2), *_resumed()),
+    _v("V4.resume-running", "Resuming a world that runs changes nothing", *ALL, _comes(),
+       ask("s", 1, resume={}), told("s", 1), answer("p"), *observe("p")),
+    _v("V4.not-before", "Pause is answered when the tick is complete", *ALL, _comes(),
+       ask("s", 1, pause={}), Silence("s"), answer("p"), told("s", 1), *_resumed()),
+    _v("P1.told", "Sessions are told that the world is paused", *ALL, _comes(), ask("s", 1, pause={}),
+       answer("p"), Hear("p", "paused", {"tick": Tick()}), Skip("s", "response"), *_resumed()),
+    _v("P1.command", "A Command in PAUSED is DUPLICATE_TICK", *_paused(), answer("p"),
+       Hear("p", "error", {"code": "DUPLICATE_TICK"}), *_resumed()),
+    _v("P2.late", "Who comes while it is paused gets its tick, and after its answer is told",
+       join("p", "arm0", "arm1", "arm2"), join("q", "arm3"), *observe("p", "q"), _comes(),
+       ask("s", 1, pause={}), answer("p"), answer("q"), told("s", 1), Hear("p", "paused"),
+       Hear("q", "paused"), ask("s", 2, resume={}), told("s", 2), *observe("p", "q")),
+    _v("V5.step", "A step moves a paused world by its ticks", *_paused(), ask("s", 2, step={"ticks": 2}),
+       *observe("p"), answer("p"), *observe("p"), answer("p"), told("s", 2), Hear("p", "paused"),
+       Silence("p"), *_resumed()),
+    _v("V5.running", "A step of a world that runs is OUT_OF_STATE", *ALL, _comes(),
+       ask("s", 1, step={"ticks": 1}), failed("s", 1, "OUT_OF_STATE"), answer("p"), *observe("p")),
+    _v("V5.none", "A step of 0 ticks is BAD_VALUE", *_paused(), ask("s", 2, step={"ticks": 0}),
+       failed("s", 2, "BAD_VALUE"), *_resumed()),
+    _v("V6.reset", "After a reset the world is at tick 0", *ALL, _comes(), ask("s", 1, reset={}),
+       Skip("p", "reset"), Hear("p", "observation", {"tick": 0}), told("s", 1), answer("p"),
+       Hear("p", "observation", {"tick": 1}), fresh=True),
+    _v("V6.seed", "A reset may set the seed", *ALL, _comes(), ask("s", 1, reset={"seed": 99}),
+       Hear("p", "reset", {"seed": 99}), Hear("p", "observation", {"tick": 0}), told("s", 1),
+       fresh=True),
+    _v("V6.same", "States after a reset are those of before, bit for bit",
+       *ALL, answer("p"), *observe("p"), answer("p"), *observe("p"), _comes(), _read(1, "before"),
+       ask("s", 2, reset={}), Skip("p", "reset"), *observe("p"), Skip("s", "response"), answer("p"),
+       *observe("p"), answer("p"), *observe("p"), _read(3, "after"), _same("before", "after"),
+       fresh=True),
+    _v("V6.void", "What was owed before a reset is void", *ALL, _comes(), ask("s", 1, reset={}),
+       Skip("p", "reset"), *observe("p"), answer("p", 5), Hear("p", "error", {"code": "FUTURE_TICK"}),
+       answer("p"), *observe("p"), fresh=True),
+    _v("V7.all", "Read without a name gives all entities", *ALL, _comes(), ask("s", 1, read={}),
+       told("s", 1, states={"entities": Count(4)})),
+    _v("V7.some", "Read by glob, in scene order", *ALL, _comes(),
+       ask("s", 1, read={"entities": ["arm[23]", "arm0"]}),
+       told("s", 1, states={"entities": [{"id": "arm0"}, {"id": "arm2"}, {"id": "arm3"}]})),
+    _v("V7.unknown", "An entity that is not there is UNKNOWN_ENTITY", *ALL, _comes(),
+       ask("s", 1, read={"entities": ["nobody"]}), failed("s", 1, "UNKNOWN_ENTITY")),
+    _v("V8.move", "An entity may be moved", *_paused(),
+       ask("s", 2, move={"entity": "arm0", "position": [1.0, 1.0, 0.0]}), told("s", 2),
+       Check("moved", _moved), *_resumed(), fresh=True),
+    _v("V8.unknown", "Moving what is not there is UNKNOWN_ENTITY", *ALL, _comes(),
+       ask("s", 1, move={"entity": "nobody", "position": [0.0, 0.0, 0.0]}), answer("p"),
+       failed("s", 1, "UNKNOWN_ENTITY"), *observe("p")),
+    *[_v(f"V8.{name}", f"A pose that is {name} is BAD_VALUE", *_paused(),
+         ask("s", 2, move={"entity": "arm0", **pose}), failed("s", 2, "BAD_VALUE"), *_resumed())
+      for name, pose in (("short", {"position": [1.0]}), ("nan", {"position": [math.nan, 0.0, 0.0]}),
+                         ("absent", {}),
+                         ("turned-by-nothing", {"position": [0.0] * 3, "orientation": [0.0] * 4}))],
+    _v("V9.spawn", "An entity may be spawned, read and removed", *_paused(),
+       ask("s", 2, spawn={"xml": _BOX}), told("s", 2), ask("s", 3, read={"entities": ["crate"]}),
+       told("s", 3, states={"entities": [{"position": [1.5, 1.5, 0.0]}]}),
+       ask("s", 4, remove={"entity": "crate"}), told("s", 4), ask("s", 5, read={"entities": ["crate"]}),
+       failed("s", 5, "UNKNOWN_ENTITY"), *_resumed(), fresh=True),
+    _v("V9.bad-xml", "What is no entity is BAD_VALUE", *_paused(),
+       ask("s", 2, spawn={"xml": "<box id="}), failed("s", 2, "BAD_VALUE"), *_resumed()),
+    _v("V9.bad-entity", "Nor is a faulty one", *_paused(),
+       ask("s", 2, spawn={"xml": '<box id="x" movable="maybe"/>'}), failed("s", 2, "BAD_VALUE"),
+       *_resumed()),
+    _v("V9.taken-id", "Nor one whose id is taken", *_paused(),
+       ask("s", 2, spawn={"xml": _BOX.replace("crate", "arm0")}), failed("s", 2, "BAD_VALUE"),
+       *_resumed()),
+    _v("V9.remove-unknown", "Removing what is not there is UNKNOWN_ENTITY", *_paused(),
+       ask("s", 2, remove={"entity": "nobody"}), failed("s", 2, "UNKNOWN_ENTITY"), *_resumed()),
+    _v("V10.shutdown", "Shutdown is answered, and the run ends", *ALL, _comes(),
+       ask("s", 1, shutdown={}), told("s", 1), Skip("p", "end"), Skip("s", "end"), fresh=True),
+    *[_v(f"V11.{name}", f"{name} has its place and is not served",
+         *ALL, _comes(), ask("s", 1, **{name: {"name": "x"}}),
+         Hear("s", "response", {"id": 1, "error": {"code": "UNIMPLEMENTED"}}))
+      for name in ("snapshot", "restore")],
+    _v("V12.who", "The status says whom the world waits for", *ALL, _comes(),
+       Check("status", _ask_status), Check("owing", _holds_up), answer("p"), *observe("p")),
+    _v("V12.phase", "The status says that the world runs, or is paused", *ALL, _comes(),
+       ask("s", 1, status={}), told("s", 1, status={"phase": "RUNNING", "seed": 7}), answer("p"),
+       *observe("p"), ask("s", 2, pause={}), answer("p"), told("s", 2), ask("s", 3, status={}),
+       told("s", 3, status={"phase": "PAUSED"}), ask("s", 4, resume={}), told("s", 4)),
+    _v("V12.free", "The status names robots that nobody holds", join("p", "arm1"), _comes(),
+       ask("s", 1, status={}), told("s", 1, status={"phase": OneOf(("GATHERING", "RUNNING")),
+                                                    "free_robots": ["arm0", "arm2", "arm3"]}),
+       fresh=True),
+]
