@@ -34,7 +34,10 @@ std::string printable(std::string_view text) {
 Barrier::Barrier(const Config& config, const wire::Run& run, Send send)
     : config_(config),
       run_(run),
-      send_(std::move(send)),
+      send_([this, send = std::move(send)](const std::string& peer, wire::Outbox& message) {
+        message.encode(encoding_of(peer));
+        return send(peer, message);
+      }),
       seats_(run.layout.robots.size()),
       free_(seats_.size()) {
   run_.max_message_bytes = config.max_message_bytes;
@@ -44,14 +47,20 @@ void Barrier::receive(const std::string& peer, std::string_view bytes, world::Co
   const auto found = by_peer_.find(peer);
   Session* session = found == by_peer_.end() ? nullptr : found->second;
   if (session != nullptr) session->last_message = std::chrono::steady_clock::now();
+  if (session == nullptr) stranger_ = wire::encoding_of(bytes);
   if (bytes.size() > config_.max_message_bytes) {
     return fail(peer, session,
                 make_fault(ErrorCode::too_large, {},
                            fmt::format("The message has {} bytes; {} are allowed.", bytes.size(),
                                        config_.max_message_bytes)));
   }
+  if (session != nullptr && wire::encoding_of(bytes) != session->encoding) {
+    const bool is_json = session->encoding == wire::Encoding::json;
+    return say_malformed(peer, session,
+                         is_json ? "this session talks JSON" : "this session does not talk JSON");
+  }
   const auto kind = inbox_.parse(bytes);
-  if (kind == wire::Inbox::Kind::malformed) return receive_malformed(peer);
+  if (kind == wire::Inbox::Kind::malformed) return say_malformed(peer, session, inbox_.complaint());
   if (session == nullptr) {
     if (kind == wire::Inbox::Kind::hello) return say_hello(peer);
     return fail(
@@ -77,9 +86,21 @@ void Barrier::receive(const std::string& peer, std::string_view bytes, world::Co
 
 void Barrier::receive_malformed(const std::string& peer) {
   const auto found = by_peer_.find(peer);
-  fail(peer, found == by_peer_.end() ? nullptr : found->second,
+  stranger_ = wire::Encoding::binary;
+  say_malformed(peer, found == by_peer_.end() ? nullptr : found->second, {});
+}
+
+void Barrier::say_malformed(const std::string& peer, Session* session, std::string_view why) {
+  fail(peer, session,
        make_fault(ErrorCode::malformed, {},
-                  "Not a ClientMessage of ziggurat.v1: one ZeroMQ frame, one message."));
+                  fmt::format("Not a ClientMessage of ziggurat.v1: {}.",
+                              why.empty() ? "one ZeroMQ frame holds one message" : why)));
+}
+
+/// A session's form is that of its Hello; whoever has none is answered as spoken to.
+wire::Encoding Barrier::encoding_of(const std::string& peer) const {
+  const auto found = by_peer_.find(peer);
+  return found == by_peer_.end() ? stranger_ : found->second->encoding;
 }
 
 /// Answers a bad message, and throws out whoever sends nothing else.

@@ -40,6 +40,8 @@ class Barrier {
  public:
   /// What the run refers to must outlive the barrier.
   Barrier(const Config& config, const wire::Run& run, Send send);
+  Barrier(const Barrier&) = delete;
+  Barrier& operator=(const Barrier&) = delete;
 
   /// One message of a peer.
   /// @param commands  where values go while a tick is being collected; null otherwise
@@ -70,6 +72,8 @@ class Barrier {
   };
 
   // barrier.cpp
+  wire::Encoding encoding_of(const std::string& peer) const;
+  void say_malformed(const std::string& peer, Session* session, std::string_view why);
   void fail(const std::string& peer, Session* session, wire::Fault fault,
             std::optional<std::uint64_t> request = {});
   void say_leave(Session& session);
@@ -97,9 +101,10 @@ class Barrier {
 
   Config config_;
   wire::Run run_;
-  Send send_;
+  std::function<Delivery(const std::string& peer, wire::Outbox& message)> send_;  // in its form
   wire::Inbox inbox_;
   wire::Outbox outbox_;  // everything but observations
+  wire::Encoding stranger_ = wire::Encoding::binary;  // of the last peer without session
   std::vector<std::unique_ptr<Session>> sessions_;
   std::unordered_map<std::string, Session*> by_peer_;  // looked up, never walked
   std::vector<Seat> seats_;                            // per robot of the layout

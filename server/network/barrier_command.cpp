@@ -22,7 +22,10 @@ void Barrier::publish(const world::Observations& observations) {
 
 /// Sends a session what it senses at the published tick. False if it can't be reached.
 bool Barrier::observe(Session& session) {
-  if (!session.observation.observation(session.roster, *observations_)) {
+  const std::size_t limit = session.encoding == wire::Encoding::json
+                                ? wire::max_json_observation_bytes
+                                : wire::max_observation_bytes;
+  if (!session.observation.observation(session.roster, *observations_, limit)) {
     auto fault = make_fault(ErrorCode::too_large, "radio_messages",
                             "The radios of this session's robots heard more at this tick than a "
                             "message can hold; share the robots among more sessions.");

@@ -46,6 +46,7 @@ void Barrier::say_hello(const std::string& peer) {
   }
   Session& session = *std::get<Session*>(taken);
   session.peer = peer;
+  session.encoding = stranger_;
   session.client = label(hello);
   session.minor = std::min(hello.version.minor, wire::version.minor);
   session.state = SessionState::ready;

@@ -24,6 +24,7 @@ struct Session {
   std::string token;        ///< to resume with
   std::string client;       ///< name and version, for messages
   std::uint32_t minor = 0;  ///< of the protocol, as agreed
+  wire::Encoding encoding = wire::Encoding::binary;  ///< of its messages, both ways
   wire::Roster roster;
   SessionState state = SessionState::ready;
   bool owes = false;       ///< its observation is not answered yet

@@ -5,6 +5,7 @@
 #include "wire/command.h"
 #include "wire/leave.h"
 #include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
@@ -13,6 +14,7 @@ struct Inbox::Message {
   Kind kind = Kind::malformed;
   v1::Command command;        // the tick path: long-lived
   v1::ClientMessage message;  // everything else
+  std::string complaint;
 
   // What protobuf keeps for reuse is as large as the largest of each part ever was. Peers decide
   // on that, so now and then both messages begin anew.
@@ -33,6 +35,7 @@ Inbox::~Inbox() = default;
 Inbox::Kind Inbox::parse(std::string_view bytes) {
   Message& in = *message_;
   in.kind = Kind::malformed;
+  in.complaint.clear();
   if (bytes.size() > std::numeric_limits<int>::max()) return in.kind;
   in.forget(bytes.size());
   if (const auto content = v1::sole_field(bytes, v1::ClientMessage::kCommandFieldNumber)) {
@@ -41,7 +44,12 @@ Inbox::Kind Inbox::parse(std::string_view bytes) {
     }
     return in.kind;
   }
-  if (!in.message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return in.kind;
+  if (encoding_of(bytes) == Encoding::json) {
+    in.complaint = v1::from_json(bytes, in.message);
+    if (!in.complaint.empty()) return in.kind;
+  } else if (!in.message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    return in.kind;
+  }
   switch (in.message.message_case()) {
     case v1::ClientMessage::kHello:
       in.kind = Kind::hello;
@@ -64,6 +72,8 @@ Inbox::Kind Inbox::parse(std::string_view bytes) {
   }
   return in.kind;
 }
+
+const std::string& Inbox::complaint() const { return message_->complaint; }
 
 Hello Inbox::hello() const {
   const v1::Hello& from = message_->message.hello();

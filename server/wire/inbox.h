@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,7 +29,10 @@ class Inbox {
   Inbox();
   ~Inbox();
 
+  /// In either form, see encoding_of().
   Kind parse(std::string_view bytes);
+  /// What makes the message in hand malformed, for people; empty where there is no more to say.
+  const std::string& complaint() const;
 
   // Of the message in hand, if it is of that kind.
   Hello hello() const;

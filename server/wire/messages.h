@@ -5,12 +5,25 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/scene.h"
 #include "world/layout.h"
 
 namespace ziggurat::wire {
+
+/// The two forms of a message on the wire. A session has one of them from its first byte to its
+/// end.
+enum class Encoding {
+  binary,  ///< protobuf
+  json,    ///< protobuf's canonical JSON
+};
+
+/// The form of a client's message: JSON begins with `{`, which no binary message of ours does.
+inline Encoding encoding_of(std::string_view bytes) {
+  return bytes.starts_with('{') ? Encoding::json : Encoding::binary;
+}
 
 struct Version {
   std::uint32_t major = 0;

@@ -1,8 +1,11 @@
 #include "wire/outbox.h"
 
+#include <cstring>
+
 #include "wire/description.h"
 #include "wire/observation.h"
 #include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
@@ -40,6 +43,7 @@ v1::End::Reason reason_of(EndReason reason) {
 struct Outbox::Message {
   v1::ServerMessage message;
   std::size_t size = 0;
+  std::string text;  // its JSON, if that is asked for; empty otherwise
 
   // What protobuf keeps for reuse is as large as the largest of each part ever was: now and then
   // it begins anew.
@@ -58,11 +62,28 @@ Outbox::~Outbox() = default;
 Outbox::Outbox(Outbox&&) noexcept = default;
 Outbox& Outbox::operator=(Outbox&&) noexcept = default;
 
-void Outbox::finish() { message_->size = message_->message.ByteSizeLong(); }
+void Outbox::finish() {
+  message_->size = message_->message.ByteSizeLong();
+  message_->text.clear();
+}
 
-std::size_t Outbox::size() const { return message_->size; }
+void Outbox::encode(Encoding encoding) {
+  if (encoding == Encoding::binary) {
+    message_->text.clear();
+  } else if (message_->text.empty()) {
+    message_->text = v1::to_json(message_->message);
+  }
+}
+
+std::size_t Outbox::size() const {
+  return message_->text.empty() ? message_->size : message_->text.size();
+}
 
 void Outbox::write(std::uint8_t* to) const {
+  if (!message_->text.empty()) {
+    std::memcpy(to, message_->text.data(), message_->text.size());
+    return;
+  }
   message_->message.SerializeWithCachedSizesToArray(to);
 }
 
@@ -94,15 +115,16 @@ void Outbox::refusal(const Refusal& from) {
   finish();
 }
 
-bool Outbox::observation(const Roster& roster, const world::Observations& observations) {
+bool Outbox::observation(const Roster& roster, const world::Observations& observations,
+                         std::size_t limit) {
   const std::size_t heard = radio_bytes(roster, observations.radio_messages);
-  if (heard > max_observation_bytes) return false;
+  if (heard > limit) return false;
   message_->forget(heard);
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();
   fill(roster, observations, observation);
   finish();
-  return message_->size <= max_observation_bytes;
+  return message_->size <= limit;
 }
 
 void Outbox::end(const End& from) {

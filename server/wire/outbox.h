@@ -15,6 +15,10 @@ namespace ziggurat::wire {
 /// A protobuf message has less than 2 GiB. Radios of many robots in one session could hear more.
 inline constexpr std::size_t max_observation_bytes = std::size_t{1} << 30;
 
+/// The same for a session in JSON, of the binary form: in JSON an observation has up to thirteen
+/// times as many bytes (radio messages without content).
+inline constexpr std::size_t max_json_observation_bytes = max_observation_bytes / 16;
+
 /// Holds one message at a time and keeps its memory: filling it with observation after
 /// observation allocates nothing once it has grown.
 class Outbox {
@@ -27,13 +31,17 @@ class Outbox {
   /// @param minor  of the protocol, as agreed with the client
   void welcome(const Run& run, const Roster& roster, std::string_view token, std::uint32_t minor);
   void refusal(const Refusal& refusal);
-  /// False if it would have more than max_observation_bytes; then nothing is in hand.
-  bool observation(const Roster& roster, const world::Observations& observations);
+  /// False if it would have more than `limit` bytes in binary form; then nothing is in hand.
+  bool observation(const Roster& roster, const world::Observations& observations,
+                   std::size_t limit = max_observation_bytes);
   void end(const End& end);
   void error(const Fault& fault);
   void heartbeat(std::uint64_t sequence);
   /// That a request was not done, and why.
   void response(std::uint64_t request, const Fault& fault);
+
+  /// The form that size() and write() give the message in hand; binary unless asked for.
+  void encode(Encoding encoding);
 
   std::size_t size() const;            ///< of the message in hand [bytes]
   void write(std::uint8_t* to) const;  ///< writes size() bytes

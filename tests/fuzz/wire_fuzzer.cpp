@@ -1,5 +1,7 @@
-// Any bytes are read as a client's message: never a crash, and a command that passes the check
-// can be applied without leaving the robots' values or making them other than finite.
+// Any bytes are read as a client's message, in its binary form or, after `{`, as JSON: never a
+// crash, and a command that passes the check can be applied without leaving the robots' values or
+// making them other than finite. Every message that is read can be written as JSON and is read
+// again.
 
 #include <cmath>
 #include <cstdint>
@@ -9,6 +11,8 @@
 #include <vector>
 
 #include "wire/inbox.h"
+#include "ziggurat/v1/json.h"
+#include "ziggurat/v1/protocol.pb.h"
 
 namespace {
 
@@ -73,12 +77,26 @@ void receive_command(const wire::Inbox& inbox, const wire::Roster& roster,
   for (const wire::LogLine& line : lines) require(line.robot < layout.robots.size());
 }
 
+/// What is understood in one form is understood in the other, as the same kind.
+void rewrite(std::string_view bytes) {
+  v1::ClientMessage message;
+  const bool is_json = wire::encoding_of(bytes) == wire::Encoding::json;
+  if (is_json ? !v1::from_json(bytes, message).empty()
+              : !message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    return;
+  }
+  v1::ClientMessage again;
+  require(v1::from_json(v1::to_json(message), again).empty());
+  require(again.message_case() == message.message_case());
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const world::Layout layout = make_layout();
   static const std::vector<std::size_t> held{0, 2};
   static const wire::Roster roster = wire::make_roster(layout, held);
+  rewrite({reinterpret_cast<const char*>(data), size});
   static wire::Inbox inbox;  // kept, as sessions keep theirs: nothing may leak between messages
   switch (inbox.parse({reinterpret_cast<const char*>(data), size})) {
     case wire::Inbox::Kind::malformed:

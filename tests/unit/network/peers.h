@@ -1,6 +1,7 @@
 #pragma once
 // Peers of a barrier without sockets: what they say, and what they are told.
 
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <string>
@@ -8,9 +9,30 @@
 
 #include "network/barrier.h"
 #include "network/small_run.h"
+#include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::network {
+
+/// The form that peers talk: JSON if ZIGGURAT_TEST_ENCODING=json is in the environment. ctest runs
+/// the conformance tests in both.
+inline bool talks_json() {
+  const char* encoding = std::getenv("ZIGGURAT_TEST_ENCODING");
+  return encoding != nullptr && encoding == std::string("json");
+}
+
+inline std::string bytes_of(const v1::ClientMessage& message, bool json) {
+  return json ? v1::to_json(message) : message.SerializeAsString();
+}
+
+/// Told apart by the first byte, as a client may.
+inline v1::ServerMessage message_of(const std::string& bytes) {
+  v1::ServerMessage message;
+  const bool is_right = bytes.starts_with('{') ? v1::from_json(bytes, message).empty()
+                                               : message.ParseFromString(bytes);
+  if (!is_right) throw std::logic_error("not a ServerMessage: " + bytes);
+  return message;
+}
 
 class Peers {
  public:
@@ -21,12 +43,13 @@ class Peers {
           if (unreachable.contains(peer)) return Delivery::unreachable;
           std::string bytes(message.size(), '\0');
           message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
-          if (!inboxes[peer].emplace_back().ParseFromString(bytes)) throw std::logic_error("bytes");
+          inboxes[peer].push_back(message_of(bytes));
+          if (bytes.starts_with('{') != json) told_otherwise.insert(peer);
           return Delivery::sent;
         }) {}
 
   void say(const std::string& peer, const v1::ClientMessage& message) {
-    barrier.receive(peer, message.SerializeAsString(), &commands);
+    barrier.receive(peer, bytes_of(message, json), &commands);
   }
   void say_bytes(const std::string& peer, const std::string& bytes) {
     barrier.receive(peer, bytes, &commands);
@@ -83,6 +106,8 @@ class Peers {
   const SmallRun& small_;
 
  public:
+  bool json = talks_json();              ///< what say() talks
+  std::set<std::string> told_otherwise;  ///< peers that were told something in the other form
   std::map<std::string, std::vector<v1::ServerMessage>> inboxes;
   std::set<std::string> unreachable;
   world::Commands commands;

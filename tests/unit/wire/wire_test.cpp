@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <limits>
 #include <new>
 
 #include "network/small_run.h"
@@ -11,6 +12,7 @@
 #include "wire/outbox.h"
 #include "wire/roster.h"
 #include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace {
@@ -177,6 +179,70 @@ TEST(Inbox, TruncatedBytesAreMalformed) {
     EXPECT_EQ(inbox.parse(bytes.substr(0, length)), Inbox::Kind::malformed) << length;
   }
   EXPECT_EQ(inbox.parse(bytes), Inbox::Kind::command);
+}
+
+TEST(Inbox, JsonIsTheSameMessage) {
+  Inbox inbox;
+  ASSERT_EQ(inbox.parse(R"({"command":{"tick":"7","jointTargets":[1]}})"), Inbox::Kind::command);
+  EXPECT_EQ(inbox.command_tick(), 7U);
+  EXPECT_EQ(inbox.parse(R"({"heartbeat":{"sequence":"18446744073709551615"}})"),
+            Inbox::Kind::heartbeat);
+  EXPECT_EQ(inbox.heartbeat(), ~std::uint64_t{0});
+  EXPECT_EQ(inbox.complaint(), "");
+  EXPECT_EQ(inbox.parse(R"({"command":{"tick":"7","jointTargets":[1]})"), Inbox::Kind::malformed);
+  EXPECT_NE(inbox.complaint(), "");
+  EXPECT_EQ(inbox.parse(" {}"), Inbox::Kind::malformed);
+  EXPECT_EQ(inbox.complaint(), "") << "that was not JSON to begin with";
+}
+
+TEST(Inbox, TruncatedJsonIsMalformed) {
+  v1::ClientMessage message;
+  message.mutable_command()->set_tick(1000);
+  message.mutable_command()->add_log()->set_text("\" h\xc3\xa9 \\");
+  message.mutable_command()->add_tag_payloads("\xff\x01");
+  const std::string text = v1::to_json(message);
+  Inbox inbox;
+  for (std::size_t length = 0; length < text.size(); ++length) {
+    EXPECT_EQ(inbox.parse(text.substr(0, length)), Inbox::Kind::malformed) << length;
+  }
+  EXPECT_EQ(inbox.parse(text), Inbox::Kind::command);
+}
+
+TEST(Inbox, NoBinaryMessageOfOursBeginsAsJsonDoes) {
+  const auto& fields = *v1::ClientMessage::descriptor();
+  for (int i = 0; i < fields.field_count(); ++i) {
+    v1::ClientMessage message;
+    message.GetReflection()->MutableMessage(&message, fields.field(i));
+    EXPECT_NE(message.SerializeAsString()[0], '{') << fields.field(i)->name();
+  }
+}
+
+TEST(Outbox, TakesTheFormThatIsAskedFor) {
+  Outbox outbox;
+  outbox.end({EndReason::failed, "\xff \"", 9});
+  const std::string binary = bytes_of(outbox);
+  outbox.encode(Encoding::json);
+  EXPECT_EQ(bytes_of(outbox), R"({"end":{"reason":"FAILED","message":"� \"","tick":"9"}})");
+  outbox.encode(Encoding::binary);
+  EXPECT_EQ(bytes_of(outbox), binary);
+  outbox.encode(Encoding::json);
+  outbox.heartbeat(0);
+  EXPECT_EQ(bytes_of(outbox)[0], 0x3a) << "a new message is binary again";
+  outbox.encode(Encoding::json);
+  EXPECT_EQ(bytes_of(outbox), R"({"heartbeat":{"sequence":"0"}})");
+}
+
+TEST(Outbox, ChargeThatLastsForEverIsAWordInJson) {
+  const EquippedRun run;
+  const std::vector<std::size_t> robots{0, 1, 2};
+  auto observations = run.observations();
+  ASSERT_FALSE(observations.batteries.empty());
+  observations.batteries[0].time_left = std::numeric_limits<double>::infinity();
+  Outbox outbox;
+  ASSERT_TRUE(outbox.observation(make_roster(run.layout(), robots), observations));
+  outbox.encode(Encoding::json);
+  EXPECT_NE(bytes_of(outbox).find("\"Infinity\""), std::string::npos);
+  EXPECT_FALSE(outbox.observation(make_roster(run.layout(), robots), observations, 10));
 }
 
 TEST(Envelope, SoleField) {

@@ -1,0 +1,179 @@
+// Rule T6 of docs/protocol.md, the JSON twin, beyond what all other tests here hold of both forms.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "network/peers.h"
+
+namespace ziggurat::network {
+namespace {
+
+using nlohmann::json;
+
+/// A barrier whose peers talk in literal text.
+struct Twin : ::testing::Test {
+  Twin()
+      : small(2), barrier({}, small.run(), [this](const std::string& peer, const auto& message) {
+          if (peer == dead) return Delivery::unreachable;
+          std::string bytes(message.size(), '\0');
+          message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
+          inboxes[peer].push_back(bytes);
+          return Delivery::sent;
+        }) {}
+
+  void say(const std::string& peer, const std::string& bytes) {
+    barrier.receive(peer, bytes, &commands);
+  }
+  /// The last thing that the peer was told, which must be JSON.
+  json told(const std::string& peer) {
+    const auto messages = std::exchange(inboxes[peer], {});
+    return messages.empty() ? json() : json::parse(messages.back());
+  }
+  void join(const std::string& peer, const std::string& robots = "*") {
+    say(peer, R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER","robots":[")" + robots +
+                  R"("]}})");
+  }
+
+  SmallRun small;
+  std::string dead;  // a peer whose connection is gone
+  std::map<std::string, std::vector<std::string>> inboxes;
+  world::Commands commands = small.commands();
+  Barrier barrier;
+};
+
+TEST_F(Twin, T6_AWholeExchange) {
+  join("p");
+  const json welcome = told("p")["welcome"];
+  EXPECT_EQ(welcome["tickNs"], "100000000") << "64-bit integers are strings";
+  EXPECT_EQ(welcome["mode"], "MODE_LOCK_STEP") << "enumerations are names";
+  EXPECT_EQ(welcome["robots"][1]["jointActuators"][0]["maxImpulse"], 0.005);
+  EXPECT_EQ(welcome["robots"][1]["radios"], json::array()) << "empty arrays are there";
+  EXPECT_EQ(welcome["wallLeaseMs"], 0) << "zeros are there";
+  EXPECT_FALSE(welcome["robots"][1].contains("rangeAndBearing")) << "absent messages are not";
+  barrier.publish(small.observations(0));
+  const json observation = told("p")["observation"];
+  EXPECT_EQ(observation["tick"], "0");
+  EXPECT_EQ(observation["jointReadings"], (json{0.0, 1.0}));
+  say("p", R"({"command": {"tick": "0", "jointTargets": [0.5, -1e-3],
+               "log": [{"robot": 1, "text": "h\u00e9"}]}})");
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_EQ(commands.joint_targets, (std::vector<double>{0.5, -0.001}));
+  EXPECT_EQ(barrier.take_report().log.at(0).text, "h\xc3\xa9");
+  barrier.finish({});
+  EXPECT_EQ(told("p")["end"]["reason"], "FINISHED");
+}
+
+TEST_F(Twin, T6_TheTokenOfAWelcomeResumesAsItStands) {
+  join("p");
+  const std::string token = told("p")["welcome"]["sessionToken"];
+  say("q", R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER","sessionToken":")" + token +
+               R"("}})");
+  EXPECT_EQ(told("q")["refusal"]["error"]["code"], "ROBOT_TAKEN") << "the token was known";
+}
+
+TEST_F(Twin, T6_OtherSpellingsOfTheSame) {
+  join("p");
+  barrier.publish(small.observations(7));
+  // Numbers for strings, names as in the .proto, numbers of enumerations, unknown fields, null.
+  say("p", R"({"command":{"tick":7,"joint_targets":["1.5",2],"colour":[{"x":null}],"log":null}})");
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_EQ(commands.joint_targets, (std::vector<double>{1.5, 2}));
+  say("p", R"({"leave":{"reason":1}})");
+  EXPECT_TRUE(barrier.drained());
+}
+
+TEST_F(Twin, T6_MalformedTextIsAnsweredInJson) {
+  std::string deep = R"({"hello":{"x":)" + std::string(100'000, '[');
+  for (const std::string& text :
+       {std::string("{"), std::string("{}"), std::string("{}{}"), std::string(R"({"hello":)"),
+        std::string(R"({"nothing":{}})"), std::string(R"({"hello":7})"), std::string("{\0}", 3),
+        std::string(R"({"command":{"tick":-1}})"), std::string(R"({"command":{"tick":"x"}})"),
+        std::string(R"({"command":{"tick":1e30}})"),
+        std::string("{\"leave\":{\"message\":\"\xff\"}}"),
+        std::string(R"({"command":{},"leave":{}})"), deep}) {
+    SCOPED_TRACE(text.substr(0, 40));
+    say("stranger", text);
+    const json error = told("stranger")["error"];
+    EXPECT_EQ(error["code"], "MALFORMED");
+    EXPECT_EQ(error["severity"], "FATAL");
+    EXPECT_LT(error["message"].get<std::string>().size(), 500U);
+  }
+}
+
+TEST_F(Twin, T6_AMalformedMessageOfASessionIsDiscarded) {
+  join("p");
+  barrier.publish(small.observations(0));
+  say("p", R"({"command":{"tick":"0","jointTargets":[1,)");
+  EXPECT_EQ(told("p")["error"]["severity"], "DISCARD");
+  EXPECT_FALSE(barrier.complete());
+  say("p", R"({"command":{"tick":"0"}})");
+  EXPECT_TRUE(barrier.complete());
+}
+
+TEST_F(Twin, T6_FormsAreNotMixed) {
+  join("p", "robot0");
+  say("q", bytes_of(Peers::hello("robot1"), false));
+  barrier.publish(small.observations(0));
+  inboxes.clear();
+  say("p", bytes_of(Peers::command(0), false));
+  EXPECT_EQ(told("p")["error"]["code"], "MALFORMED") << "told in the session's form";
+  say("q", R"({"command":{"tick":"0"}})");
+  EXPECT_EQ(message_of(inboxes["q"].at(0)).error().code(), v1::Error::MALFORMED);
+  EXPECT_EQ(inboxes["q"].at(0)[0], 0x32) << "binary";
+  EXPECT_FALSE(barrier.complete());
+  say("p", R"({"command":{"tick":"0"}})");
+  say("q", bytes_of(Peers::command(0), false));
+  EXPECT_TRUE(barrier.complete());
+}
+
+TEST_F(Twin, T6_ABinarySessionMayResumeInJson) {
+  say("p", bytes_of(Peers::hello("*"), false));
+  const auto token = message_of(inboxes["p"].at(0)).welcome().session_token();
+  barrier.publish(small.observations(4));
+  dead = "p";
+  v1::ClientMessage hello = Peers::hello("*");
+  hello.mutable_hello()->set_session_token(token);
+  say("q", bytes_of(hello, true));
+  ASSERT_EQ(inboxes["q"].size(), 2U);
+  EXPECT_EQ(told("q")["observation"]["tick"], "4");
+  say("q", R"({"command":{"tick":"4"}})");
+  EXPECT_TRUE(barrier.complete());
+}
+
+TEST_F(Twin, S8_NumbersAreFiniteInJsonToo) {
+  join("p");
+  barrier.publish(small.observations(0));
+  for (const char* number : {"\"NaN\"", "\"Infinity\"", "\"-Infinity\""}) {
+    say("p", std::string(R"({"command":{"tick":"0","jointTargets":[0,)") + number + "]}}");
+    EXPECT_EQ(told("p")["error"]["code"], "BAD_VALUE") << number;
+  }
+  // Not JSON at all.
+  for (const char* number : {"NaN", "1e999"}) {
+    say("p", std::string(R"({"command":{"tick":"0","jointTargets":[0,)") + number + "]}}");
+    EXPECT_EQ(told("p")["error"]["code"], "MALFORMED") << number;
+  }
+}
+
+TEST(TwinOfAll, T6_EveryAnswerComesInTheFormOfTheSession) {
+  for (const bool in_json : {false, true}) {
+    const SmallRun small(2);
+    Peers peers(small);
+    peers.json = in_json;
+    peers.join("p", "*");
+    peers.publish(3);
+    peers.say("p", Peers::command(7));
+    peers.say("p", Peers::heartbeat(5));
+    peers.say("p", Peers::hello("*"));
+    peers.say("stranger", Peers::command(7));
+    peers.say("late", Peers::hello("*"));
+    peers.barrier.probe();
+    peers.barrier.finish({});
+    EXPECT_EQ(peers.inboxes["p"].size(), 7U);
+    EXPECT_EQ(peers.inboxes["late"].size(), 1U);
+    EXPECT_TRUE(peers.told_otherwise.empty());
+  }
+}
+
+}  // namespace
+}  // namespace ziggurat::network
