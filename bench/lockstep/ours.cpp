@@ -77,7 +77,7 @@ void Ours::tick() {
   State& state = *state_;
   ++state.observations.tick;
   state.observations.time_ns += 100'000'000;
-  state.server.publish(state.observations);
+  state.server.publish(state.observations, {});
   if (state.server.collect(state.commands, {std::chrono::seconds(20), {}}) !=
       network::Outcome::complete) {
     throw std::runtime_error("a tick took longer than 20 s");

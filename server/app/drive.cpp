@@ -40,7 +40,7 @@ Ending drive(const Plan& plan, simulation::Simulation& simulation, network::Serv
   const auto start = clock::now();
   for (;;) {
     // Controllers compute while we write.
-    server.publish(simulation.observations());
+    server.publish(simulation.observations(), now.tag_payloads);
     laps.charge(summary.exchange_s);
     recorders.tick(simulation);
     laps.charge(summary.recording_s);

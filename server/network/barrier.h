@@ -49,7 +49,8 @@ class Barrier {
   /// A message that is no message of the protocol: of several frames, say.
   void receive_malformed(const std::string& peer);
 
-  void publish(const world::Observations& observations);
+  /// @param tag_payloads  of the same tick, for each of Layout::tags
+  void publish(const world::Observations& observations, std::span<const std::string> tag_payloads);
   void finish(const wire::End& end);
   void remove_robots(std::span<const std::size_t> robots);
   /// Sends every session a heartbeat, to notice those whose connection is gone.
@@ -111,6 +112,7 @@ class Barrier {
   std::size_t free_ = 0;                               // robots that nobody holds
   std::size_t owing_ = 0;                              // sessions that owe an answer
   std::optional<world::Observations> observations_;    // of the published tick
+  std::vector<std::string> tag_payloads_;              // at the published tick
   bool finished_ = false;
   std::uint64_t heartbeats_ = 0;
   Report report_;

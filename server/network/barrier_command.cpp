@@ -10,8 +10,10 @@ namespace ziggurat::network {
 using wire::ErrorCode;
 using wire::make_fault;
 
-void Barrier::publish(const world::Observations& observations) {
+void Barrier::publish(const world::Observations& observations,
+                      std::span<const std::string> tag_payloads) {
   observations_ = observations;
+  tag_payloads_.assign(tag_payloads.begin(), tag_payloads.end());
   std::vector<Session*> gone;
   for (const auto& session : sessions_) {
     if (session->state == SessionState::lost || session->roster.empty()) continue;
@@ -25,10 +27,10 @@ bool Barrier::observe(Session& session) {
   const std::size_t limit = session.encoding == wire::Encoding::json
                                 ? wire::max_json_observation_bytes
                                 : wire::max_observation_bytes;
-  if (!session.observation.observation(session.roster, *observations_, limit)) {
-    auto fault = make_fault(ErrorCode::too_large, "radio_messages",
-                            "The radios of this session's robots heard more at this tick than a "
-                            "message can hold; share the robots among more sessions.");
+  if (!session.observation.observation(session.roster, *observations_, tag_payloads_, limit)) {
+    auto fault = make_fault(ErrorCode::too_large, {},
+                            "The robots of this session heard and saw more at this tick than a "
+                            "message can hold; share them among more sessions.");
     fault.severity = wire::Severity::fatal;
     fault.tick = observations_->tick;
     outbox_.error(fault);

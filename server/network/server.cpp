@@ -85,8 +85,9 @@ Outcome Server::gather(const Wait& wait) {
   return state_->wait_until([this] { return state_->barrier.gathered(); }, wait, nullptr);
 }
 
-void Server::publish(const world::Observations& observations) {
-  state_->barrier.publish(observations);
+void Server::publish(const world::Observations& observations,
+                     std::span<const std::string> tag_payloads) {
+  state_->barrier.publish(observations, tag_payloads);
   state_->pause = first_probe;
   state_->probe = Clock::now() + first_probe;
 }

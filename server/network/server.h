@@ -5,7 +5,7 @@
 //   Server server(config, run);
 //   while (server.gather(wait) != Outcome::complete) …;        // until every robot is held
 //   for each tick:
-//     server.publish(observations);
+//     server.publish(observations, tag_payloads);
 //     while (server.collect(commands, wait) != Outcome::complete) …;
 //     … server.take_report() …
 //   server.finish(end);
@@ -94,7 +94,8 @@ class Server {
 
   /// Sends what robots sense to every session: its tick begins. All sessions must have answered
   /// the tick before.
-  void publish(const world::Observations& observations);
+  /// @param tag_payloads  of the same tick, for each of Layout::tags
+  void publish(const world::Observations& observations, std::span<const std::string> tag_payloads);
 
   /// Until every robot that is not gone has answered the published tick; values are written into
   /// `commands` as they arrive, those of robots that are gone become zero. On anything but

@@ -17,6 +17,8 @@ struct Moment {
   const world::Commands& commands;
 };
 
+v1::Color color_of(world::Color packed);
+
 /// @param robot  into Layout::robots
 v1::Reading make_reading(const Moment& moment, std::size_t robot);
 

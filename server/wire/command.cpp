@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "wire/command_driving.h"
 #include "wire/command_radios.h"
 #include "wire/command_values.h"
 #include "wire/fault.h"
@@ -25,12 +26,14 @@ std::optional<Fault> check(const v1::Command& command, const Roster& roster,
                            const world::Layout& layout) {
   if (auto found = check_positions(command.robots(), roster, layout)) return found;
   if (auto found = check_values(command, roster, layout)) return found;
+  if (auto found = check_driving(command, roster, layout)) return found;
   if (auto found = check_radio_messages(command, roster, layout)) return found;
   return check(command.log(), roster);
 }
 
 void apply(const v1::Command& command, const Roster& roster, world::Commands& commands) {
   apply_values(command, roster, commands);
+  apply_driving(command, roster, commands);
   apply_radio_messages(command, roster, commands.radio_messages);
 }
 

@@ -5,52 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <string_view>
 
-#include "wire/fault.h"
+#include "wire/command_packing.h"
 #include "world/limits.h"
 
 namespace ziggurat::wire {
 namespace {
-
-/// Part of a command, in words.
-struct Field {
-  const char* name;     // in the protocol
-  const char* values;   // "joint targets"
-  const char* devices;  // that they are for
-};
-
-std::optional<Fault> check_count(const v1::Command& command, const Packing& packing,
-                                 std::size_t count, const Field& field) {
-  if (count == 0) return std::nullopt;
-  std::size_t expected = command.robots().empty() ? packing.count : 0;
-  for (const std::uint32_t position : command.robots()) {
-    expected += packing.robots[position].count;
-  }
-  if (count == expected) return std::nullopt;
-  return make_fault(ErrorCode::bad_value, field.name,
-                    fmt::format("{} {} were given; the robots of this command have {} {}.", count,
-                                field.values, expected, field.devices));
-}
-
-/// The robot of the world that the value at `index` is for, and the place of the device in the
-/// world's list.
-std::pair<const world::RobotLayout*, std::size_t> owner(const v1::Command& command,
-                                                        const Roster& roster,
-                                                        const world::Layout& layout,
-                                                        const Packing& packing, std::size_t index) {
-  if (command.robots().empty()) {
-    const std::size_t position = packing.owner(index);
-    const Packing::Stretch& robot = packing.robots[position];
-    return {&layout.robots[roster.robots[position]], robot.flat + index - robot.packed};
-  }
-  for (const std::uint32_t position : command.robots()) {
-    const Packing::Stretch& robot = packing.robots[position];
-    if (index < robot.count) return {&layout.robots[roster.robots[position]], robot.flat + index};
-    index -= robot.count;
-  }
-  return {};  // not reached: the length was checked
-}
 
 /// One rule for all values of a field: the first that breaks it is named.
 template <typename Values, typename Devices, typename IsGood, typename Sentence>

@@ -80,6 +80,47 @@ void describe_proximity(const world::Layout& all, const world::RobotLayout& robo
   }
 }
 
+void describe_cameras(const world::Layout& all, const world::RobotLayout& robot,
+                      v1::RobotDescription& description) {
+  for (std::size_t i = robot.cameras.begin; i < robot.cameras.end(); ++i) {
+    const world::CameraLayout& camera = all.cameras[i];
+    v1::CameraDescription& to = *description.add_cameras();
+    to.set_id(v1::valid_utf8(camera.id));
+    to.set_anchor(anchor_of(all, camera.mount));
+    for (const double value : camera.mount.pose.position) to.add_position(value);
+    const math::Quaternion& turned = camera.mount.pose.orientation;
+    for (const double value : {turned.w(), turned.x(), turned.y(), turned.z()}) {
+      to.add_orientation(value);
+    }
+    to.set_near(camera.near);
+    to.set_far(camera.far);
+    for (const double value : camera.focal_length) to.add_focal_length(value);
+    for (const double value : camera.principal_point) to.add_principal_point(value);
+    to.set_width(camera.resolution[0]);
+    to.set_height(camera.resolution[1]);
+    to.set_detects_leds(camera.leds.has_value());
+    to.set_detects_directional_leds(camera.directional_leds.has_value());
+    to.set_detects_tags(camera.tags.has_value());
+    to.set_image(camera.image);
+  }
+}
+
+void describe_driving(const world::Layout& all, const world::RobotLayout& robot,
+                      v1::RobotDescription& description) {
+  if (robot.wheels.count > 0) {
+    const world::WheelsLayout& wheels = all.wheels[robot.wheels.begin];
+    v1::WheelsDescription& to = *description.mutable_wheels();
+    to.set_axle_length(wheels.axle_length);
+    to.set_drives(wheels.drives);
+    to.set_measures(wheels.measures);
+  }
+  if (robot.turrets.count > 0) {
+    const world::TurretLayout& turret = all.turrets[robot.turrets.begin];
+    description.mutable_turret()->set_drives(turret.drives);
+    description.mutable_turret()->set_measures(turret.measures);
+  }
+}
+
 }  // namespace
 
 void describe(const Run& run, std::size_t robot, v1::RobotDescription& description) {
@@ -96,6 +137,8 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
   describe_radios(run.layout, layout, description);
   describe_lights_and_tags(run.layout, layout, description);
   describe_proximity(run.layout, layout, description);
+  describe_cameras(run.layout, layout, description);
+  describe_driving(run.layout, layout, description);
   for (std::size_t i = layout.magnets.begin; i < layout.magnets.end(); ++i) {
     description.add_magnets()->set_id(v1::valid_utf8(run.layout.magnets[i].id));
   }

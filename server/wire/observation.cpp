@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "wire/observation_cameras.h"
+
 namespace ziggurat::wire {
 namespace {
 
@@ -75,6 +77,18 @@ void add_poses(const Packing& packing, const std::vector<math::Pose>& flat,
   }
 }
 
+void add_wheels(const Packing& packing, const std::vector<world::WheelsReading>& flat,
+                google::protobuf::RepeatedField<double>& packed) {
+  for (const Packing::Stretch& piece : packing.stretches) {
+    for (std::size_t i = piece.flat; i < piece.flat + piece.count; ++i) {
+      packed.Add(flat[i].velocity_left);
+      packed.Add(flat[i].velocity_right);
+      packed.Add(flat[i].distance_left);
+      packed.Add(flat[i].distance_right);
+    }
+  }
+}
+
 }  // namespace
 
 std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messages) {
@@ -85,7 +99,8 @@ std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messag
   return bytes;
 }
 
-void fill(const Roster& roster, const world::Observations& from, v1::Observation& to) {
+void fill(const Roster& roster, const world::Observations& from,
+          std::span<const std::string> tag_payloads, v1::Observation& to) {
   to.set_tick(from.tick);
   to.set_time_ns(from.time_ns);
   add(roster.joint_sensors, from.joint_readings, *to.mutable_joint_readings());
@@ -99,6 +114,9 @@ void fill(const Roster& roster, const world::Observations& from, v1::Observation
       to.add_batteries(from.batteries[i].time_left);
     }
   }
+  add_cameras(roster, from, tag_payloads, to);
+  add_wheels(roster.wheel_sensors, from.wheels, *to.mutable_wheels());
+  add(roster.turret_encoders, from.turrets, *to.mutable_turret_rotations());
 }
 
 }  // namespace ziggurat::wire

@@ -2,6 +2,8 @@
 // world::Observations -> Observation.
 
 #include <cstddef>
+#include <span>
+#include <string>
 
 #include "wire/roster.h"
 #include "world/state.h"
@@ -13,6 +15,8 @@ namespace ziggurat::wire {
 std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messages);
 
 /// Writes what a session's robots sense; `to` is clear.
-void fill(const Roster& roster, const world::Observations& from, v1::Observation& to);
+/// @param tag_payloads  of the same tick, for each of Layout::tags
+void fill(const Roster& roster, const world::Observations& from,
+          std::span<const std::string> tag_payloads, v1::Observation& to);
 
 }  // namespace ziggurat::wire

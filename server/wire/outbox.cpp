@@ -4,6 +4,7 @@
 
 #include "wire/description.h"
 #include "wire/observation.h"
+#include "wire/observation_cameras.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -47,12 +48,12 @@ struct Outbox::Message {
 
   // What protobuf keeps for reuse is as large as the largest of each part ever was: now and then
   // it begins anew.
-  std::size_t filled = 0;  // [bytes] that radios heard, since it last did
-  void forget(std::size_t heard) {
+  std::size_t filled = 0;  // [bytes] of parts whose size changes, since it last did
+  void forget(std::size_t changing) {
     constexpr std::size_t enough = std::size_t{64} << 20;
-    filled += heard;
+    filled += changing;
     if (filled < enough) return;
-    filled = heard;
+    filled = changing;
     v1::ServerMessage().Swap(&message);
   }
 };
@@ -116,13 +117,14 @@ void Outbox::refusal(const Refusal& from) {
 }
 
 bool Outbox::observation(const Roster& roster, const world::Observations& observations,
-                         std::size_t limit) {
-  const std::size_t heard = radio_bytes(roster, observations.radio_messages);
-  if (heard > limit) return false;
-  message_->forget(heard);
+                         std::span<const std::string> tag_payloads, std::size_t limit) {
+  const std::size_t changing = radio_bytes(roster, observations.radio_messages) +
+                               payload_bytes(roster, observations, tag_payloads);
+  if (changing + image_bytes(roster, observations) > limit) return false;
+  message_->forget(changing);
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();
-  fill(roster, observations, observation);
+  fill(roster, observations, tag_payloads, observation);
   finish();
   return message_->size <= limit;
 }

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "wire/messages.h"
@@ -12,7 +14,8 @@
 
 namespace ziggurat::wire {
 
-/// A protobuf message has less than 2 GiB. Radios of many robots in one session could hear more.
+/// A protobuf message has less than 2 GiB. Radios and cameras of many robots in one session could
+/// have more to say.
 inline constexpr std::size_t max_observation_bytes = std::size_t{1} << 30;
 
 /// The same for a session in JSON, of the binary form: in JSON an observation has up to thirteen
@@ -32,7 +35,9 @@ class Outbox {
   void welcome(const Run& run, const Roster& roster, std::string_view token, std::uint32_t minor);
   void refusal(const Refusal& refusal);
   /// False if it would have more than `limit` bytes in binary form; then nothing is in hand.
+  /// @param tag_payloads  of the same tick, for each of Layout::tags
   bool observation(const Roster& roster, const world::Observations& observations,
+                   std::span<const std::string> tag_payloads,
                    std::size_t limit = max_observation_bytes);
   void end(const End& end);
   void error(const Fault& fault);

@@ -12,6 +12,34 @@ world::Range range_and_bearing_data(const world::Layout& layout, const world::Ro
   return device.sends ? device.data : world::Range{device.data.begin, 0};
 }
 
+/// The robot's one device, if the controller uses it so.
+world::Range only_if(bool used, const world::Range& device) {
+  return {device.begin, used ? device.count : 0};
+}
+
+void append_driving(const world::Layout& layout, const world::RobotLayout& robot, Roster& roster) {
+  const bool has_wheels = robot.wheels.count > 0;
+  const world::WheelsLayout wheels =
+      has_wheels ? layout.wheels[robot.wheels.begin] : world::WheelsLayout{};
+  roster.wheel_actuators.append(only_if(wheels.drives, robot.wheels));
+  roster.wheel_sensors.append(only_if(wheels.measures, robot.wheels));
+  const bool has_turret = robot.turrets.count > 0;
+  const world::TurretLayout turret =
+      has_turret ? layout.turrets[robot.turrets.begin] : world::TurretLayout{};
+  roster.turret_actuators.append(only_if(turret.drives, robot.turrets));
+  roster.turret_encoders.append(only_if(turret.measures, robot.turrets));
+}
+
+void append_cameras(const world::Layout& layout, const world::RobotLayout& robot, Roster& roster) {
+  for (std::size_t i = robot.cameras.begin; i < robot.cameras.end(); ++i) {
+    const world::CameraLayout& camera = layout.cameras[i];
+    if (camera.leds) roster.led_cameras.push_back(i);
+    if (camera.directional_leds) roster.directional_led_cameras.push_back(i);
+    if (camera.tags) roster.tag_cameras.push_back(i);
+    if (camera.image) roster.image_cameras.push_back(i);
+  }
+}
+
 }  // namespace
 
 void Packing::append(const world::Range& flat) {
@@ -58,6 +86,8 @@ Roster make_roster(const world::Layout& layout, std::span<const std::size_t> rob
     roster.range_and_bearing_data.append(range_and_bearing_data(layout, robot));
     roster.positioning.append(robot.positioning);
     roster.batteries.append(robot.batteries);
+    append_driving(layout, robot, roster);
+    append_cameras(layout, robot, roster);
   }
   return roster;
 }

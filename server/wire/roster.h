@@ -44,6 +44,16 @@ struct Roster {
   Packing range_and_bearing_data;  ///< bytes that these robots may set
   Packing positioning;
   Packing batteries;
+  Packing wheel_actuators;   ///< of robots that drive: 0 or 1 of each
+  Packing wheel_sensors;     ///< of robots that measure
+  Packing turret_actuators;  ///< of robots that drive
+  Packing turret_encoders;   ///< of robots that measure
+
+  // Cameras that have the detector, or take pictures: into Layout::cameras, ascending.
+  std::vector<std::size_t> led_cameras;
+  std::vector<std::size_t> directional_led_cameras;
+  std::vector<std::size_t> tag_cameras;
+  std::vector<std::size_t> image_cameras;
 
   bool empty() const { return gone_count == robots.size(); }  ///< all have left
   void leave(std::size_t position);                           ///< no effect if gone already

@@ -18,6 +18,8 @@ void zero(const world::Layout& layout, std::size_t robot, world::Commands& comma
   const world::RobotLayout& of = layout.robots[robot];
   clear(commands.joint_targets, of.joint_actuators);
   clear(commands.magnet_currents, of.magnets);
+  clear(commands.wheels, of.wheels);
+  for (std::size_t i = of.turrets.begin; i < of.turrets.end(); ++i) commands.turrets[i].speed = 0;
   if (of.range_and_bearing.count == 0) return;
   const world::RangeAndBearingLayout& device = layout.range_and_bearing[of.range_and_bearing.begin];
   if (device.sends) clear(commands.range_and_bearing_data, device.data);

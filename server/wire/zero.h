@@ -8,8 +8,8 @@
 
 namespace ziggurat::wire {
 
-/// Joint targets, currents of magnets and data of range and bearing become 0. LEDs and tags stay
-/// as they are.
+/// Joint targets, currents of magnets, speeds of wheels and turrets and data of range and bearing
+/// become 0. LEDs, tags and a turret's mode stay as they are.
 /// @param robot  into the layout's robots
 void zero(const world::Layout& layout, std::size_t robot, world::Commands& commands);
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "network/peers.h"
 #include "world/limits.h"
@@ -125,7 +127,7 @@ TEST_F(Radios, D3_MessagesComeInTheOrderOfTheWorld) {
   hear(0, "");
   hear(1, "for q");
   hear(2, "last");
-  peers.barrier.publish(seen);
+  peers.barrier.publish(seen, {});
   const auto messages = peers.told("p").observation().radio_messages();
   ASSERT_EQ(messages.size(), 3);
   EXPECT_EQ(messages[0].payload(), "first");
@@ -140,12 +142,147 @@ TEST_F(Radios, D5_ASessionThatWouldHearTooMuchIsLost) {
   seen.radio_messages.add(0, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   const auto entry = seen.radio_messages.entries.front();
   seen.radio_messages.entries.assign(1025, entry);
-  peers.barrier.publish(seen);
+  peers.barrier.publish(seen, {});
   const auto error = peers.told("p").error();
   EXPECT_EQ(error.code(), v1::Error::TOO_LARGE);
   EXPECT_EQ(error.severity(), v1::Error::FATAL);
   EXPECT_EQ(peers.told("q").observation().tick(), 6U);
   EXPECT_FALSE(peers.barrier.complete());
+}
+
+/// Two robots with wheels and turret, and a camera each that sees tags and takes pictures of
+/// 2 x 1 pixels; the second robot only measures. "p" holds both and owes tick 5.
+struct DrivingAndCameras : ::testing::Test {
+  DrivingAndCameras() : small(2), peers(equipped()) {
+    peers.commands.wheels.resize(2);
+    peers.commands.turrets.resize(2);
+    peers.join("p", "robot*");
+    peers.publish(sight(5));
+    peers.inboxes.clear();
+  }
+
+  const SmallRun& equipped() {
+    world::Layout& layout = small.layout();
+    layout.wheels = {{0, 0.14, true, true}, {1, 0.14, false, true}};
+    layout.turrets = {{0, true, true}, {1, false, true}};
+    layout.cameras.resize(2);
+    layout.tags.resize(2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      layout.cameras[i].tags.emplace();
+      layout.cameras[i].resolution = {2, 1};
+      layout.cameras[i].image = true;
+      layout.robots[i].cameras = {i, 1};
+      layout.robots[i].wheels = {i, 1};
+      layout.robots[i].turrets = {i, 1};
+    }
+    return small;
+  }
+  world::Observations sight(std::uint64_t tick) const {
+    world::Observations seen = small.observations(tick);
+    seen.wheels.resize(2);
+    seen.turrets.resize(2);
+    return seen;
+  }
+  static world::TagReading tag(std::size_t camera, std::size_t tag) {
+    world::TagReading reading{camera, tag, {10, 20}, {}};
+    reading.corners.fill({30, 40});
+    return reading;
+  }
+  v1::Error faulted(const v1::ClientMessage& message) {
+    peers.say("p", message);
+    const v1::ServerMessage told = peers.told("p");
+    EXPECT_TRUE(told.has_error());
+    EXPECT_EQ(told.error().severity(), v1::Error::DISCARD);
+    EXPECT_EQ(told.error().tick(), 5U);
+    EXPECT_EQ(peers.commands.wheels[0].left, 0);
+    EXPECT_EQ(peers.commands.turrets[0].mode, world::TurretMode::passive);
+    return told.error();
+  }
+  static v1::ClientMessage drive(std::vector<double> velocities) {
+    auto message = Peers::command(5);
+    message.mutable_command()->mutable_wheel_velocities()->Add(velocities.begin(),
+                                                               velocities.end());
+    return message;
+  }
+
+  SmallRun small;
+  Peers peers;
+};
+
+TEST_F(DrivingAndCameras, D6_TwoSpeedsPerRobotThatDrives) {
+  for (const std::vector<double>& wrong :
+       {std::vector<double>{1}, {1, 2, 3}, {1, 2, 3, 4}, {1, std::nan("")}, {1 / 0.0, 1}}) {
+    const auto error = faulted(drive(wrong));
+    EXPECT_EQ(error.code(), v1::Error::BAD_VALUE);
+    EXPECT_EQ(error.field(), "wheel_velocities");
+  }
+  peers.say("p", drive({0.5, -0.5}));
+  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_EQ(peers.commands.wheels[0].right, -0.5);
+  EXPECT_EQ(peers.commands.wheels[1].right, 0);
+}
+
+TEST_F(DrivingAndCameras, D7_TurretsTakeTheModesThereAre) {
+  const auto turn = [](std::vector<int> modes) {
+    auto message = drive({1, 1});
+    for (const int mode : modes) {
+      message.mutable_command()->add_turret_modes(static_cast<v1::TurretMode>(mode));
+    }
+    return message;
+  };
+  for (const std::vector<int>& wrong : {std::vector<int>{0}, {4}, {-1}, {2, 2}}) {
+    const auto error = faulted(turn(wrong));
+    EXPECT_EQ(error.code(), v1::Error::BAD_VALUE);
+    EXPECT_EQ(error.field(), "turret_modes");
+  }
+  auto message = turn({v1::TURRET_SPEED});
+  message.mutable_command()->add_turret_rotations(std::nan(""));
+  EXPECT_EQ(faulted(message).field(), "turret_rotations");
+  message.mutable_command()->set_turret_rotations(0, 1);
+  for (const double speed : {0.0, 1 / 0.0}) message.mutable_command()->add_turret_speeds(speed);
+  EXPECT_EQ(faulted(message).field(), "turret_speeds");
+  message.mutable_command()->mutable_turret_speeds()->RemoveLast();
+  peers.say("p", message);
+  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_EQ(peers.commands.turrets[0].mode, world::TurretMode::speed);
+}
+
+TEST_F(DrivingAndCameras, D8_DetectorsCountPerCamera) {
+  world::Observations seen = sight(6);
+  seen.tags = {tag(1, 1), tag(1, 0)};
+  seen.images = {{0, {1, 2, 3, 4, 5, 6}}, {1, {}}};
+  peers.publish(seen, {"zero", "one"});
+  const auto told = peers.told("p").observation();
+  ASSERT_EQ(told.tag_counts_size(), 2);
+  EXPECT_EQ(told.tag_counts(0), 0U);
+  EXPECT_EQ(told.tag_counts(1), 2U);
+  EXPECT_EQ(told.tag_payloads(0), "one");
+  EXPECT_EQ(told.tag_centers_size(), 4);
+  EXPECT_EQ(told.tag_corners_size(), 16);
+  ASSERT_EQ(told.camera_images_size(), 2);
+  EXPECT_EQ(told.camera_images(0).size(), 6U);
+  EXPECT_EQ(told.camera_images(1).size(), 0U);
+}
+
+TEST_F(DrivingAndCameras, D5_PicturesAndPayloadsCount) {
+  world::Observations seen = sight(6);
+  seen.tags.assign(std::size_t{1} << 14, tag(0, 0));
+  seen.images = {{0, {1, 2, 3, 4, 5, 6}}};
+  peers.publish(seen, std::vector<std::string>(2, std::string(64 << 10, 'x')));
+  const auto error = peers.told("p").error();
+  EXPECT_EQ(error.code(), v1::Error::TOO_LARGE);
+  EXPECT_EQ(error.severity(), v1::Error::FATAL);
+}
+
+TEST_F(DrivingAndCameras, L1_WhoLeavesStands) {
+  peers.commands.turrets[0].speed = 3;
+  peers.say("p", drive({0.5, 0.5}));
+  peers.publish(sight(6));
+  peers.say("p", Peers::leave({0}));
+  peers.say("p", Peers::command(6));
+  peers.barrier.zero_gone(peers.commands);
+  EXPECT_EQ(peers.commands.wheels[0].left, 0);
+  EXPECT_EQ(peers.commands.turrets[0].speed, 0);
 }
 
 }  // namespace

@@ -9,16 +9,16 @@ namespace ziggurat {
 namespace {
 
 /// @throws std::out_of_range, naming those there are
-template <typename Device>
-Device& find(std::vector<Device>& devices, std::string_view id, const std::string& robot,
-             const std::string& kind) {
-  for (Device& device : devices) {
+template <typename Devices>
+auto& find(Devices& devices, std::string_view id, const std::string& robot,
+           const std::string& kind) {
+  for (auto& device : devices) {
     if (device.id() == id) return device;
   }
   std::string message = "robot '" + robot + "' has no " + kind + " '" + std::string(id) +
                         "' that its controller senses or sets; it has ";
   if (devices.empty()) message += "none";
-  for (const Device& device : devices) {
+  for (const auto& device : devices) {
     message += (&device == devices.data() ? "'" : ", '") + device.id() + "'";
   }
   throw std::out_of_range(message);
@@ -33,6 +33,7 @@ Led& Robot::directional_led(std::string_view id) {
   return find(directional_leds_, id, id_, "directional LED");
 }
 Tag& Robot::tag(std::string_view id) { return find(tags_, id, id_, "tag"); }
+const Camera& Robot::camera(std::string_view id) const { return find(cameras_, id, id_, "camera"); }
 Magnet& Robot::magnet(std::string_view id) { return find(magnets_, id, id_, "magnet"); }
 
 void Robot::log(std::string_view text) { add_line(false, text); }

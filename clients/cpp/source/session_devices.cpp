@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "expect.h"
+
 namespace ziggurat {
 namespace {
 
 Bytes bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-void expect(std::size_t got, std::size_t announced, const char* what) {
-  if (got == announced) return;
-  throw std::runtime_error("the server sent " + std::to_string(got) + " " + what +
-                           "; it had announced " + std::to_string(announced));
 }
 
 std::array<double, 3> vector_of(const google::protobuf::RepeatedField<double>& values) {
@@ -26,7 +22,7 @@ std::array<double, 3> vector_of(const google::protobuf::RepeatedField<double>& v
 }  // namespace
 
 Session::Devices::Devices(const v1::Welcome& welcome, std::vector<Robot>& robots)
-    : robots_(robots) {
+    : robots_(robots), driving_(welcome, robots) {
   count(welcome);
   traffic.robots.resize(robots.size());
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -34,6 +30,7 @@ Session::Devices::Devices(const v1::Welcome& welcome, std::vector<Robot>& robots
     add_radios(description, robots[i]);
     add_settings(description, robots[i]);
     add_sensors(description, robots[i]);
+    cameras_.add(description, robots[i]);
   }
 }
 
@@ -135,6 +132,7 @@ void Session::Devices::reset() {
   tag_payloads_.reset();
   magnet_currents_.reset();
   range_and_bearing_data_.reset();
+  driving_.reset();
   traffic.clear();
 }
 
@@ -147,6 +145,8 @@ void Session::Devices::check(const v1::Observation& observation) const {
          "numbers of poses");
   expect(size(observation.batteries_size()), numbers_of_battery * batteries_.size(),
          "numbers of batteries");
+  cameras_.check(observation);
+  driving_.check(observation);
   for (const v1::RadioMessage& message : observation.radio_messages()) {
     if (message.radio() < radios_.size() && radios_[message.radio()]->receives()) continue;
     throw std::runtime_error("the server sent a message for radio " +
@@ -178,6 +178,8 @@ void Session::Devices::read(const v1::Observation& observation) {
   }
   read_radio_messages(observation);
   read_packets(observation);
+  cameras_.read(observation);
+  driving_.read(observation);
 }
 
 void Session::Devices::read_radio_messages(const v1::Observation& observation) {
@@ -212,6 +214,7 @@ void Session::Devices::write(v1::Command& command) {
     command.mutable_range_and_bearing_data()->assign(range_and_bearing_data_.values.begin(),
                                                      range_and_bearing_data_.values.end());
   }
+  driving_.write(command);
   command.mutable_radio_messages()->Swap(&traffic.messages);
 }
 
@@ -223,6 +226,7 @@ void Session::Devices::sent(v1::Command& command) {
   tag_payloads_.changed = false;
   magnet_currents_.changed = false;
   range_and_bearing_data_.changed = false;
+  driving_.sent();
 }
 
 }  // namespace ziggurat

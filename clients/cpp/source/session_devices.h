@@ -7,23 +7,13 @@
 #include <vector>
 
 #include "radio_traffic.h"
+#include "session_cameras.h"
+#include "session_driving.h"
+#include "settings.h"
 #include "ziggurat/session.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat {
-
-/// What is commanded of one kind of device; sent whole if some of it changed.
-template <typename T>
-struct Settings {
-  std::vector<T> values;
-  std::vector<T> initial;
-  bool changed = false;  // since the last answer
-
-  void reset() {
-    values = initial;
-    changed = false;
-  }
-};
 
 /// Built once, from Welcome; then the handles of the robots point into it.
 struct Session::Devices {
@@ -64,6 +54,8 @@ struct Session::Devices {
   std::vector<Radio*> radios_;
   std::vector<Positioning*> positioning_;
   std::vector<Battery*> batteries_;
+  Cameras cameras_;
+  Driving driving_;
 
   // While handles are made: how many have been, over the robots before.
   struct Cursors {

@@ -1,6 +1,6 @@
 #include "devices/positioning.h"
 
-#include <cmath>
+#include "script/vectors.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -8,34 +8,17 @@ namespace {
 // Its address is where the registry keeps an array of position, orientation and its axis.
 constexpr char key = 0;
 
-void set_number(lua_State* state, const char* name, double number) {
-  lua_pushnumber(state, number);
-  lua_setfield(state, -2, name);
-}
-
-void set_vector(lua_State* state, double x, double y, double z) {
-  set_number(state, "x", x);
-  set_number(state, "y", y);
-  set_number(state, "z", z);
-}
-
 /// Writes the three tables of the array on top.
 void fill(lua_State* state, const Positioning& positioning) {
-  const auto& position = positioning.position;
   lua_rawgeti(state, -1, 1);
-  set_vector(state, position[0], position[1], position[2]);
+  set_vector(state, positioning.position);
   lua_pop(state, 1);
-  const auto [w, x, y, z] = positioning.orientation;
-  const double sine = std::hypot(x, y, z);  // of half the angle
+  const AngleAxis orientation = to_angle_axis(positioning.orientation);
   lua_rawgeti(state, -1, 2);
-  set_number(state, "angle", sine == 0 ? 0 : 2 * std::atan2(sine, w));
+  set_number(state, "angle", orientation.angle);
   lua_pop(state, 1);
   lua_rawgeti(state, -1, 3);
-  if (sine == 0) {
-    set_vector(state, 0, 0, 1);
-  } else {
-    set_vector(state, x / sine, y / sine, z / sine);
-  }
+  set_vector(state, orientation.axis);
   lua_pop(state, 1);
 }
 

@@ -31,6 +31,71 @@ void describe_radios(ziggurat::Robot& robot, ScriptedRobot& scripted) {
   }
 }
 
+void describe_cameras(const ziggurat::Robot& robot, ScriptedRobot& scripted) {
+  for (const ziggurat::Camera& from : robot.cameras()) {
+    Camera& camera = scripted.cameras.emplace_back();
+    camera.id = from.id();
+    camera.anchor = from.anchor();
+    camera.position = from.position();
+    camera.orientation = from.orientation();
+    camera.near = from.near();
+    camera.far = from.far();
+    camera.focal_length = from.focal_length();
+    camera.principal_point = from.principal_point();
+    camera.resolution = {from.width(), from.height()};
+    camera.detects_leds = from.detects_leds();
+    camera.detects_directional_leds = from.detects_directional_leds();
+    camera.detects_tags = from.detects_tags();
+    camera.takes_images = from.takes_images();
+  }
+}
+
+void describe_driving(ziggurat::Robot& robot, ScriptedRobot& scripted) {
+  if (const ziggurat::Wheels* from = robot.wheels()) {
+    Wheels& wheels = scripted.wheels.emplace();
+    wheels.axle_length = from->axle_length();
+    wheels.has_sensor = from->measures();
+    wheels.has_actuator = from->drives();
+  }
+  if (const ziggurat::Turret* from = robot.turret()) {
+    Turret& turret = scripted.turret.emplace();
+    turret.has_encoder = from->measures();
+    turret.has_actuator = from->drives();
+  }
+}
+
+void sense_leds(std::span<const ziggurat::Camera::LedReading> from, std::vector<SeenLed>& to) {
+  to.clear();
+  for (const auto& led : from) {
+    to.push_back({{led.color.red, led.color.green, led.color.blue}, led.center});
+  }
+}
+
+void sense_cameras(const ziggurat::Robot& from, ScriptedRobot& to) {
+  auto camera = to.cameras.begin();
+  for (const ziggurat::Camera& sensed : from.cameras()) {
+    sense_leds(sensed.leds(), camera->leds);
+    sense_leds(sensed.directional_leds(), camera->directional_leds);
+    camera->tags.clear();
+    for (const auto& tag : sensed.tags()) {
+      camera->tags.push_back({tag.payload, tag.center, tag.corners});
+    }
+    camera->image = sensed.image();
+    ++camera;
+  }
+}
+
+void sense_driving(ziggurat::Robot& from, ScriptedRobot& to) {
+  if (const ziggurat::Wheels* sensed = from.wheels()) {
+    const ziggurat::Wheels::Reading& reading = sensed->reading();
+    to.wheels->velocity_left = reading.velocity_left;
+    to.wheels->velocity_right = reading.velocity_right;
+    to.wheels->distance_left = reading.distance_left;
+    to.wheels->distance_right = reading.distance_right;
+  }
+  if (const ziggurat::Turret* sensed = from.turret()) to.turret->rotation = sensed->rotation();
+}
+
 void sense_radios(ziggurat::Robot& from, ScriptedRobot& to) {
   auto radio = to.radios.begin();
   for (const ziggurat::Radio& sensed : from.radios()) (radio++)->received = sensed.received();
@@ -76,6 +141,38 @@ void act_settings(Commanded& commanded, Devices devices, Set set) {
   }
 }
 
+/// Hands over the setting, if it is fresh.
+template <typename T, typename Set>
+void act_setting(Setting<T>& setting, Set set) {
+  if (setting.is_fresh) set(setting.value);
+  setting.is_fresh = false;
+}
+
+ziggurat::TurretMode mode_of(TurretMode mode) {
+  switch (mode) {
+    case TurretMode::passive:
+      break;
+    case TurretMode::position:
+      return ziggurat::TurretMode::position;
+    case TurretMode::speed:
+      return ziggurat::TurretMode::speed;
+  }
+  return ziggurat::TurretMode::passive;
+}
+
+void act_driving(ScriptedRobot& from, ziggurat::Robot& to) {
+  if (from.wheels) {
+    act_setting(from.wheels->velocities, [&](const std::array<double, 2>& velocities) {
+      to.wheels()->set_velocity(velocities[0], velocities[1]);
+    });
+  }
+  if (!from.turret) return;
+  ziggurat::Turret& turret = *to.turret();
+  act_setting(from.turret->mode, [&](TurretMode mode) { turret.set_mode(mode_of(mode)); });
+  act_setting(from.turret->target, [&](double rotation) { turret.set_rotation(rotation); });
+  act_setting(from.turret->speed, [&](double speed) { turret.set_rotation_speed(speed); });
+}
+
 }  // namespace
 
 ScriptedRobot describe(ziggurat::Robot& robot) {
@@ -91,6 +188,8 @@ ScriptedRobot describe(ziggurat::Robot& robot) {
   scripted.proximity.resize(robot.proximity_sensors().size());
   if (robot.positioning() != nullptr) scripted.positioning.emplace();
   if (robot.battery() != nullptr) scripted.battery.emplace();
+  describe_cameras(robot, scripted);
+  describe_driving(robot, scripted);
   return scripted;
 }
 
@@ -104,6 +203,8 @@ void sense(ziggurat::Robot& from, ScriptedRobot& to) {
     *to.positioning = {sensor->position, sensor->orientation};
   if (const auto* sensor = from.battery())
     *to.battery = {sensor->available_charge, sensor->time_left};
+  sense_cameras(from, to);
+  sense_driving(from, to);
 }
 
 Failure act(ScriptedRobot& from, ziggurat::Robot& to) {
@@ -126,6 +227,7 @@ Failure act(ScriptedRobot& from, ziggurat::Robot& to) {
     set.current.is_fresh = false;
     ++magnet;
   }
+  act_driving(from, to);
   try {
     act_radios(from, to);
   } catch (const std::length_error& error) {

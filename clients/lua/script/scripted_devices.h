@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ziggurat::lua {
@@ -97,6 +98,68 @@ struct RangeAndBearing {
 struct Battery {
   double available_charge = 0;  ///< of a full battery, in [0, 1]
   double time_left = 0;         ///< [s]
+};
+
+using Pixel = std::array<double, 2>;  ///< from the image's top left: right, down [px]
+
+/// An LED in led_detector[i] or directional_led_detector[i] of a camera.
+struct SeenLed {
+  Color color;
+  Pixel center{};
+};
+
+/// A tag in tag_detector[i] of a camera.
+struct SeenTag {
+  std::string_view payload;  ///< any bytes; valid until the next tick
+  Pixel center{};
+  std::array<Pixel, 4> corners{};  ///< in the tag's frame (-,-), (-,+), (+,+), (+,-)
+};
+
+/// robot.cameras.<id>
+struct Camera {
+  std::string id;
+  std::string anchor;
+  std::array<double, 3> position{};               ///< in the anchor's frame: x, y, z [m]
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< camera to anchor, quaternion w, x, y, z
+  double near = 0, far = 0;                       ///< along the optical axis [m]
+  Pixel focal_length{};                           ///< fx, fy
+  Pixel principal_point{};                        ///< cx, cy
+  std::array<std::uint32_t, 2> resolution{};      ///< width, height [px]
+
+  bool detects_leds = false;
+  bool detects_directional_leds = false;
+  bool detects_tags = false;
+  bool takes_images = false;
+
+  std::vector<SeenLed> leds;  ///< at this tick
+  std::vector<SeenLed> directional_leds;
+  std::vector<SeenTag> tags;
+  Bytes image;  ///< red, green, blue; rows from the top; valid until the next tick
+};
+
+/// robot.wheels
+struct Wheels {
+  double axle_length = 0;  ///< [m]
+
+  bool has_sensor = false;
+  double velocity_left = 0, velocity_right = 0;  ///< [m/s]
+  double distance_left = 0, distance_right = 0;  ///< in the last tick [m]
+
+  bool has_actuator = false;
+  Setting<std::array<double, 2>> velocities;  ///< left, right [m/s]
+};
+
+enum class TurretMode { passive, position, speed };
+
+/// robot.turret
+struct Turret {
+  bool has_encoder = false;
+  double rotation = 0;  ///< relative to the robot [rad]
+
+  bool has_actuator = false;
+  Setting<TurretMode> mode;
+  Setting<double> target;  ///< relative to the robot [rad]
+  Setting<double> speed;   ///< relative to the robot [rad/s]
 };
 
 }  // namespace ziggurat::lua

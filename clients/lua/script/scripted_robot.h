@@ -40,6 +40,9 @@ struct ScriptedRobot {
   std::optional<Positioning> positioning;
   std::optional<RangeAndBearing> range_and_bearing;
   std::optional<Battery> battery;
+  std::vector<Camera> cameras;  ///< ids are unique
+  std::optional<Wheels> wheels;
+  std::optional<Turret> turret;
   LogLines log;
 };
 

@@ -1,62 +1,17 @@
 // What scripts find below `robot`, table by table. A script's fault fails its assert.
 
+#include "lua_devices.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
-#include <memory>
 
 #include "script/colors.h"
-#include "script/controller.h"
 
 namespace ziggurat::lua {
 namespace {
-
-const std::string prelude = R"lua(
-function init() end
-function refused(pattern, f, ...)
-  local ok, message = pcall(f, ...)
-  assert(not ok, "was not refused")
-  assert(message:find(pattern), message)
-end
-)lua";
-
-/// A robot whose script runs against values of the test's.
-class Devices : public ::testing::Test {
- protected:
-  Devices() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(::testing::TempDir()) /
-            (std::string("devices_") + test->name() + ".lua");
-    robot_.id = "robot";
-  }
-  ~Devices() override { std::filesystem::remove(path_); }
-
-  /// Runs the chunk and its init().
-  Failure start(const std::string& script) {
-    std::ofstream(path_) << prelude << script;
-    controller_ = std::make_unique<Controller>(robot_, ControllerOptions{path_});
-    return controller_->start();
-  }
-  Failure step() { return controller_->step(++tick_); }
-  ScriptedRobot& robot() { return controller_->robot(); }
-
-  ScriptedRobot robot_;  ///< that start() begins with
-
- private:
-  std::filesystem::path path_;
-  std::unique_ptr<Controller> controller_;
-  std::uint64_t tick_ = 0;
-};
-
-#define EXPECT_RUNS(call)                          \
-  do {                                             \
-    const Failure failure = call;                  \
-    EXPECT_FALSE(failure) << failure.value_or(""); \
-  } while (false)
 
 std::vector<std::vector<int>> messages_of(const Outgoing& sent) {
   std::vector<std::vector<int>> messages;
@@ -396,6 +351,9 @@ TEST_F(Devices, TablesAreMadeOnce) {
   robot_.proximity.resize(24);
   robot_.positioning.emplace();
   robot_.battery.emplace();
+  add_driving(robot_);
+  robot_.cameras.resize(1);
+  robot_.cameras[0].detects_tags = true;
   EXPECT_RUNS(start(R"lua(
     collectgarbage("stop")
     function step()

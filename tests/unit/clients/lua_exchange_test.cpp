@@ -51,6 +51,14 @@ TEST_F(Exchange, WhatIsSensedReachesTheScript) {
     packet.set_robot(2);
     packet.set_range(0.5);
     packet.set_data("xy");
+    v1::Observation& seen = *message.mutable_observation();
+    seen.set_led_counts(1, 1);
+    add_led(seen, 0xFF8001, 1, 2);
+    seen.set_directional_led_counts(0, 1);
+    add_directional_led(seen, 0x0000FF, 3, 4);
+    seen.set_tag_counts(3, 1);
+    add_tag(seen, "42", 5, 6, 10);
+    seen.set_camera_images(1, "123456");
     self.say(message);
     const auto answer = self.heard();
     EXPECT_TRUE(answer.has_command()) << answer.ShortDebugString();
@@ -61,11 +69,16 @@ TEST_F(Exchange, WhatIsSensedReachesTheScript) {
     function init()
       if robot.id == "a" then
         assert(not (robot.radios or robot.proximity or robot.positioning or robot.battery))
+        assert(not (robot.cameras or robot.wheels or robot.turret))
       else
         assert(#robot.radios.ears.rx_data == 0 and robot.radios.mouth.rx_data == nil)
       end
     end
     function step()
+      if robot.id == "b" then
+        assert(robot.cameras.eye.directional_led_detector[1].color.blue == 255)
+        assert(#robot.cameras.eye.led_detector == 0 and robot.cameras.eye.image == "")
+      end
       if robot.id ~= "c" then return end
       local heard = robot.radios.ears.rx_data
       assert(#heard == 2 and heard[1][1] == 0 and heard[1][2] == 255 and #heard[2] == 0)
@@ -74,6 +87,15 @@ TEST_F(Exchange, WhatIsSensedReachesTheScript) {
       assert(robot.battery.available_charge == 0.5 and robot.battery.time_left == 50)
       local packet = robot.range_and_bearing[1]
       assert(packet.range == 50 and packet.data[2] == 121 and #robot.range_and_bearing == 1)
+      local eye, lens = robot.cameras.eye, robot.cameras.lens
+      assert(#eye.led_detector == 1 and eye.led_detector[1].color.green == 128)
+      assert(eye.led_detector[1].center.y == 2 and #eye.tag_detector == 0)
+      assert(lens.tag_detector[1].payload == "42" and lens.tag_detector[1].corners[4].y == 17)
+      assert(eye.image == "123456" and lens.image == nil and lens.led_detector == nil)
+      assert(eye.anchor == "turret" and eye.resolution.x == 2 and eye.focal_length.y == 900)
+      assert(math.abs(robot.wheels.velocity_left - 4) < 1e-12)
+      assert(math.abs(robot.wheels.distance_right - 7) < 1e-12)
+      assert(math.abs(robot.wheels.axis_length - 14) < 1e-12 and robot.turret.rotation == -3)
     end
   )lua"));
 }
@@ -95,9 +117,19 @@ TEST_F(Exchange, WhatIsCommandedReachesTheServer) {
     EXPECT_EQ(command.radio_messages(0).radio(), 3U);
     EXPECT_EQ(command.radio_messages(0).payload(), "\xff\x02");
     EXPECT_EQ(command.radio_messages(1).payload(), "");
+    ASSERT_EQ(command.wheel_velocities_size(), 4);
+    EXPECT_EQ(command.wheel_velocities(2), 0.05);
+    EXPECT_EQ(command.wheel_velocities(3), -0.1);
+    ASSERT_EQ(command.turret_modes_size(), 2);
+    EXPECT_EQ(command.turret_modes(0), v1::TURRET_PASSIVE);
+    EXPECT_EQ(command.turret_modes(1), v1::TURRET_POSITION);
+    EXPECT_EQ(command.turret_rotations(1), 1.5);
+    EXPECT_NEAR(command.turret_speeds(1), 0.2094395, 1e-6);
     self.say(observation(1));
     const auto second = self.heard().command();
-    EXPECT_EQ(second.radio_messages_size() + second.led_colors_size(), 0);
+    EXPECT_EQ(second.radio_messages_size() + second.led_colors_size() +
+                  second.wheel_velocities_size() + second.turret_modes_size(),
+              0);
     self.end();
     self.heard();
   });
@@ -111,6 +143,10 @@ TEST_F(Exchange, WhatIsCommandedReachesTheServer) {
       robot.range_and_bearing.set_data(2, 7)
       robot.radios.mouth.tx_data({-1, 258})
       robot.radios.mouth.tx_data({})
+      robot.wheels.set_velocity(5, -10)
+      robot.turret.set_position_control_mode()
+      robot.turret.set_rotation(1.5)
+      robot.turret.set_rotation_speed(2.9)
     end
     function step() end
   )lua"));

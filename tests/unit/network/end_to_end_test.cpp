@@ -36,7 +36,7 @@ void serve(Server& server, const SmallRun& small, std::uint64_t last, world::Com
            std::vector<Report>* reports = nullptr) {
   ASSERT_EQ(server.gather(patience), Outcome::complete);
   for (std::uint64_t tick = 0; tick <= last; ++tick) {
-    server.publish(small.observations(tick));
+    server.publish(small.observations(tick), {});
     ASSERT_EQ(server.collect(commands, patience), Outcome::complete);
     if (reports != nullptr) reports->push_back(server.take_report());
   }
@@ -169,7 +169,7 @@ TEST(EndToEnd, ALostRobotIsTakenAgainAtTheSameTick) {
     ::_exit(0);
   }
   ASSERT_EQ(server.gather(patience), Outcome::complete);
-  server.publish(small.observations(0));
+  server.publish(small.observations(0), {});
   EXPECT_EQ(server.collect(commands, {milliseconds{300}, {}}), Outcome::timed_out);
   auto status = server.status();
   EXPECT_FALSE(status[0].awaited);

@@ -100,7 +100,10 @@ class Peers {
     say(peer, hello(robots));
     return told(peer).welcome();
   }
-  void publish(std::uint64_t tick) { barrier.publish(small_.observations(tick)); }
+  void publish(std::uint64_t tick) { publish(small_.observations(tick)); }
+  void publish(const world::Observations& seen, const std::vector<std::string>& tag_payloads = {}) {
+    barrier.publish(seen, tag_payloads);
+  }
 
  private:
   const SmallRun& small_;

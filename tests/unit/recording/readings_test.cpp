@@ -149,6 +149,69 @@ TEST(Readings, NamesEveryDevice) {
   EXPECT_EQ(read[1].observation().led_colors_size(), 0);
 }
 
+TEST(Readings, NamesWhatCamerasSee) {
+  const auto path = scratch("jsonl");
+  auto robots = layout();
+  robots.robots[0].cameras = {0, 1};
+  robots.robots[1].cameras = {1, 2};
+  robots.cameras.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) robots.cameras[i].id = "camera" + std::to_string(i);
+  World world = joints_only(1, {0, 0, 0}, {0, 0});
+  world.observations.leds = {{0, 0xFF0010, {1, 2}}, {2, 0x0000FF, {3, 4}}, {2, 0x00FF00, {5, 6}}};
+  world.observations.directional_leds = {{2, 0x010203, {7, 8}}};
+  world.observations.tags = {{1, 0, {9, 10}, {{{1, 2}, {3, 4}, {5, 6}, {7, 8}}}}};
+  Readings readings(path, robots);
+  readings.write(world.state, world.observations, world.commands);
+  readings.close();
+  const auto read = read_back(text_of(path));
+  ASSERT_EQ(read.size(), 2u);
+  ASSERT_EQ(read[0].observation().cameras().size(), 1u);
+  const v1::CameraReading& first = read[0].observation().cameras().at("camera0");
+  ASSERT_EQ(first.leds_size(), 1);
+  EXPECT_EQ(first.leds(0).color().blue(), 16u);
+  EXPECT_EQ(first.leds(0).center().v(), 2);
+  const auto& others = read[1].observation().cameras();
+  ASSERT_EQ(others.size(), 2u);
+  ASSERT_EQ(others.at("camera1").tags_size(), 1);
+  const v1::SeenTag& tag = others.at("camera1").tags(0);
+  EXPECT_EQ(tag.payload().substr(0, 5), "block");
+  EXPECT_EQ(tag.center().u(), 9);
+  ASSERT_EQ(tag.corners_size(), 4);
+  EXPECT_EQ(tag.corners(3).u(), 7);
+  EXPECT_EQ(others.at("camera2").leds_size(), 2);
+  EXPECT_EQ(others.at("camera2").leds(1).center().u(), 5);
+  EXPECT_EQ(others.at("camera2").directional_leds(0).color().red(), 1u);
+  EXPECT_EQ(others.at("camera2").tags_size(), 0);
+}
+
+TEST(Readings, NamesWheelsAndTurrets) {
+  const auto path = scratch("jsonl");
+  auto robots = layout();
+  robots.robots[0].wheels = robots.robots[0].turrets = {0, 1};
+  robots.robots[1].wheels = robots.robots[1].turrets = {1, 1};
+  robots.wheels = {{0, 0.14, true, false}, {1, 0.14, false, true}};
+  robots.turrets = {{0, true, false}, {1, false, true}};
+  World world = joints_only(1, {0, 0, 0}, {0, 0});
+  world.observations.wheels = {{}, {1, 2, 3, 4}};
+  world.observations.turrets = {9, -0.5};
+  world.commands.wheels = {{0.25, -0.5}, {}};
+  world.commands.turrets = {{world::TurretMode::speed, 1, 2}, {}};
+  Readings readings(path, robots);
+  readings.write(world.state, world.observations, world.commands);
+  readings.close();
+  const auto read = read_back(text_of(path));
+  ASSERT_EQ(read.size(), 2u);
+  EXPECT_FALSE(read[0].observation().has_wheels() || read[0].observation().has_turret_rotation());
+  EXPECT_EQ(read[0].command().wheels().left(), 0.25);
+  EXPECT_EQ(read[0].command().wheels().right(), -0.5);
+  EXPECT_EQ(read[0].command().turret().mode(), "speed");
+  EXPECT_EQ(read[0].command().turret().rotation(), 1);
+  EXPECT_EQ(read[0].command().turret().speed(), 2);
+  EXPECT_EQ(read[1].observation().wheels().distance_right(), 4);
+  EXPECT_EQ(read[1].observation().turret_rotation(), -0.5);
+  EXPECT_FALSE(read[1].command().has_wheels() || read[1].command().has_turret());
+}
+
 TEST(Readings, ReadBackAsTheSameMessage) {
   const auto path = scratch("jsonl");
   const auto robots = layout();

@@ -13,7 +13,9 @@ namespace ziggurat::wire {
 
 /// Robots "a" (everything once, radios twice), "b" (nothing) and "c" (everything twice, one radio
 /// that only sends, one that only receives). Everything of c comes after that of a, and LED,
-/// magnet and tag 1 belong to somebody who is no robot.
+/// magnet and tag 1 belong to somebody who is no robot. a's camera sees LEDs and tags and takes
+/// pictures of 2 x 1 pixels, c's first sees tags and directional LEDs, c's second all but takes no
+/// pictures. a drives wheels and turret and measures neither; c does both.
 class EquippedRun {
  public:
   EquippedRun() {
@@ -46,6 +48,9 @@ class EquippedRun {
       layout_.proximity[i].range = 0.1 * static_cast<double>(i + 1);
     }
     layout_.proximity[0].mount.link = 0;
+    add_cameras();
+    layout_.wheels = {{0, 0.14, true, false}, {1, 0.1, false, true}, {2, 0.053, true, true}};
+    layout_.turrets = {{0, true, false}, {2, true, true}};
     world::RobotLayout a, b, c;
     a.id = "a", b.id = "b", c.id = "c";
     a.radios = {0, 2}, c.radios = {2, 2};
@@ -57,6 +62,9 @@ class EquippedRun {
     a.range_and_bearing = {0, 1}, c.range_and_bearing = {2, 1};
     a.positioning = {0, 1}, c.positioning = {1, 1};
     a.batteries = {0, 1}, c.batteries = {2, 1};
+    a.cameras = {0, 1}, c.cameras = {1, 2};
+    a.wheels = {0, 1}, c.wheels = {2, 1};
+    a.turrets = {0, 1}, c.turrets = {1, 1};
     layout_.robots = {a, b, c};
   }
 
@@ -73,6 +81,8 @@ class EquippedRun {
     for (const auto& tag : layout_.tags) commands.tag_payloads.push_back(tag.payload);
     commands.magnet_currents.resize(4);
     commands.range_and_bearing_data.resize(12);
+    commands.wheels.resize(3);
+    commands.turrets.resize(2);
     return commands;
   }
 
@@ -82,10 +92,31 @@ class EquippedRun {
     observations.proximity.resize(3);
     observations.positioning.resize(2);
     observations.batteries.resize(3);
+    observations.wheels.resize(3);
+    observations.turrets.resize(2);
     return observations;
   }
 
  private:
+  void add_cameras() {
+    layout_.cameras.resize(3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      world::CameraLayout& camera = layout_.cameras[i];
+      camera.id = "camera" + std::to_string(i);
+      camera.tags.emplace();
+      if (i != 1) camera.leds.emplace();
+      if (i != 0) camera.directional_leds.emplace();
+    }
+    world::CameraLayout& first = layout_.cameras[0];
+    first.mount = {0, 0, {{1, 2, 3}, math::Quaternion(0.5, -0.5, 0.5, -0.5)}};
+    first.near = 0.1;
+    first.far = 2;
+    first.focal_length = {800, 900};
+    first.principal_point = {320, 240};
+    first.resolution = {2, 1};
+    first.image = true;
+  }
+
   world::Layout layout_;
   std::vector<scene::Controller> controllers_;
 };

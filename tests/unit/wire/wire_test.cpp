@@ -64,7 +64,7 @@ TEST(Outbox, ObservationBytes) {
   const std::vector<std::size_t> robots{1};
   const auto run = small.run();
   Outbox outbox;
-  outbox.observation(make_roster(run.layout, robots), small.observations(3));
+  outbox.observation(make_roster(run.layout, robots), small.observations(3), {});
   v1::ServerMessage message;
   ASSERT_TRUE(message.ParseFromString(bytes_of(outbox)));
   EXPECT_EQ(message.observation().tick(), 3U);
@@ -100,7 +100,7 @@ TEST(TickPath, AllocatesNothingOnceItHasGrown) {
   Inbox inbox;
   std::string buffer(10'000, '\0');
   const auto tick = [&] {
-    outbox.observation(roster, observations);
+    outbox.observation(roster, observations, {});
     outbox.write(reinterpret_cast<std::uint8_t*>(buffer.data()));
     if (inbox.parse(bytes) != Inbox::Kind::command) std::abort();
     if (inbox.check(roster, run.layout)) std::abort();
@@ -121,6 +121,12 @@ TEST(TickPath, DevicesAllocateNothingEither) {
   auto observations = run.observations();
   const std::vector<std::uint8_t> payload(100, 7);
   for (int i = 0; i < 5; ++i) observations.radio_messages.add(3, payload);
+  const std::vector<std::string> tags(4, std::string(50, 'x'));
+  observations.leds.assign(3, {0, 0xFF, {1, 2}});
+  world::TagReading tag{2, 3, {1, 2}, {}};
+  tag.corners.fill({3, 4});
+  observations.tags.assign(5, tag);
+  observations.images = {{0, std::vector<std::uint8_t>(6)}};
   v1::ClientMessage answer;
   v1::Command& command = *answer.mutable_command();
   for (int i = 0; i < 3; ++i) {
@@ -129,12 +135,14 @@ TEST(TickPath, DevicesAllocateNothingEither) {
     v1::RadioMessage& message = *command.add_radio_messages();
     message.set_payload(std::string(100, 'x'));
   }
+  for (int i = 0; i < 4; ++i) command.add_wheel_velocities(i);
+  for (int i = 0; i < 2; ++i) command.add_turret_modes(v1::TURRET_SPEED);
   const std::string bytes = answer.SerializeAsString();
   Outbox outbox;
   Inbox inbox;
   const auto tick = [&] {
     commands.radio_messages.clear();
-    if (!outbox.observation(roster, observations)) std::abort();
+    if (!outbox.observation(roster, observations, tags)) std::abort();
     if (inbox.parse(bytes) != Inbox::Kind::command) std::abort();
     if (inbox.check(roster, run.layout())) std::abort();
     inbox.apply(roster, commands);

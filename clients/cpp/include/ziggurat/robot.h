@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ziggurat/camera.h"
 #include "ziggurat/joint.h"
 #include "ziggurat/led.h"
 #include "ziggurat/magnet.h"
@@ -17,6 +18,8 @@
 #include "ziggurat/range_and_bearing.h"
 #include "ziggurat/sensors.h"
 #include "ziggurat/tag.h"
+#include "ziggurat/turret.h"
+#include "ziggurat/wheels.h"
 
 namespace ziggurat {
 
@@ -53,7 +56,9 @@ class Robot {
   std::span<Magnet> magnets() noexcept { return magnets_; }
   Magnet& magnet(std::string_view id);
   std::span<const ProximitySensor> proximity_sensors() const noexcept { return proximity_; }
-  /// Null without such a device, as are the next two.
+  std::span<const Camera> cameras() const noexcept { return cameras_; }
+  const Camera& camera(std::string_view id) const;
+  /// Null without such a device, as are those that follow.
   RangeAndBearing* range_and_bearing() noexcept {
     return range_and_bearing_ ? &*range_and_bearing_ : nullptr;
   }
@@ -61,6 +66,8 @@ class Robot {
     return positioning_ ? &*positioning_ : nullptr;
   }
   const Battery* battery() const noexcept { return battery_ ? &*battery_ : nullptr; }
+  Wheels* wheels() noexcept { return wheels_ ? &*wheels_ : nullptr; }
+  Turret* turret() noexcept { return turret_ ? &*turret_ : nullptr; }
 
   /// A line for the server's log, without a line feed at its end; sent with the answer to this
   /// tick. `log` goes to the server's standard output, `log_error` to its standard error.
@@ -98,9 +105,12 @@ class Robot {
   std::vector<Tag> tags_;
   std::vector<Magnet> magnets_;
   std::vector<ProximitySensor> proximity_;
+  std::vector<Camera> cameras_;
   std::optional<RangeAndBearing> range_and_bearing_;
   std::optional<Positioning> positioning_;
   std::optional<Battery> battery_;
+  std::optional<Wheels> wheels_;
+  std::optional<Turret> turret_;
   std::uint32_t position_ = 0;  // in the session
   bool failed_ = false;
   std::string failure_;  // not yet sent; empty if none

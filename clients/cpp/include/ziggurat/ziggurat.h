@@ -1,6 +1,7 @@
 #pragma once
 // The Ziggurat controller library: everything a controller needs. See docs/cpp-client.md.
 
+#include "ziggurat/camera.h"
 #include "ziggurat/error.h"
 #include "ziggurat/joint.h"
 #include "ziggurat/led.h"
@@ -11,3 +12,5 @@
 #include "ziggurat/sensors.h"
 #include "ziggurat/session.h"
 #include "ziggurat/tag.h"
+#include "ziggurat/turret.h"
+#include "ziggurat/wheels.h"

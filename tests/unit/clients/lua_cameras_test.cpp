@@ -1,0 +1,257 @@
+// robot.cameras, robot.wheels and robot.turret as scripts find them.
+
+#include <array>
+#include <numbers>
+
+#include "lua_devices.h"
+
+namespace ziggurat::lua {
+namespace {
+
+Camera eye() {
+  Camera camera;
+  camera.id = "eye";
+  camera.anchor = "turret";
+  camera.position = {0.1, 0.2, 0.3};
+  camera.orientation = {0.5, -0.5, 0.5, -0.5};
+  camera.near = 0.125;
+  camera.far = 2;
+  camera.focal_length = {800, 900};
+  camera.principal_point = {320, 240.5};
+  camera.resolution = {640, 480};
+  camera.detects_leds = camera.detects_directional_leds = camera.detects_tags = true;
+  return camera;
+}
+
+// ---- cameras ------------------------------------------------------------------------------------
+
+TEST_F(Devices, CamerasHaveTheDetectorsThatTheSceneGives) {
+  robot_.cameras = {eye(), {}};
+  robot_.cameras[1].id = "blind eye";
+  EXPECT_RUNS(start(R"lua(
+    local function keys(of)
+      local names = {}
+      for name in pairs(of) do names[#names + 1] = name end
+      return table.concat(names, " ")
+    end
+    local common = "anchor %sfar focal_length %snear orientation position principal_point resolution"
+    assert(keys(robot.cameras["blind eye"]) == common:format("", ""))
+    assert(keys(robot.cameras.eye) ==
+           common:format("directional_led_detector ", "led_detector ") .. " tag_detector")
+    for _, detector in ipairs{"led_detector", "directional_led_detector", "tag_detector"} do
+      local readings = robot.cameras.eye[detector]
+      assert(type(readings) == "table" and next(readings) == nil, detector)
+    end
+    assert(keys(robot.cameras) == "blind eye eye")
+  )lua"));
+}
+
+TEST_F(Devices, CamerasTellWhereAndHowTheyLook) {
+  robot_.cameras = {eye()};
+  EXPECT_RUNS(start(R"lua(
+    local eye = robot.cameras.eye
+    assert(eye.anchor == "turret" and eye.near == 0.125 and eye.far == 2)
+    assert(eye.position.x == 0.1 and eye.position.y == 0.2 and eye.position.z == 0.3)
+    assert(math.abs(eye.orientation.angle - 2 * math.pi / 3) < 1e-12)
+    local axis = eye.orientation.axis
+    assert(math.abs(axis.x + 3^-0.5) < 1e-12 and math.abs(axis.y - 3^-0.5) < 1e-12)
+    assert(eye.focal_length.x == 800 and eye.focal_length.y == 900)
+    assert(eye.principal_point.x == 320 and eye.principal_point.y == 240.5)
+    assert(eye.resolution.x .. "x" .. eye.resolution.y == "640x480", "integers")
+  )lua"));
+}
+
+TEST_F(Devices, CameraReadingsReplaceThoseBeforeAndMayBeKept) {
+  robot_.cameras = {eye(), eye()};
+  robot_.cameras[1].id = "lens";
+  EXPECT_RUNS(start(R"lua(
+    eye, lens = robot.cameras.eye, robot.cameras.lens
+    tags, leds = eye.tag_detector, eye.led_detector
+    function step()
+      assert(tags == robot.cameras.eye.tag_detector and leds == eye.led_detector, "same arrays")
+      expect()
+    end
+    function expect()
+      assert(#leds == 1 and #tags == 2 and #eye.directional_led_detector == 1)
+      assert(#lens.tag_detector == 0 and #lens.led_detector == 0)
+      local led = leds[1]
+      assert(led.color.red == 255 and led.color.green == 128 and led.color.blue == 1)
+      assert(math.type(led.color.red) == "integer")
+      assert(led.center.x == 10.5 and led.center.y == 20)
+      assert(eye.directional_led_detector[1].center.y == -4)
+      local tag = tags[1]
+      assert(tag.payload == "a\0b" and tag.center.x == 1 and tag.center.y == 2)
+      assert(#tag.corners == 4 and tag.corners[1].x == 3 and tag.corners[4].y == 10)
+      assert(tags[2].payload == "")
+      kept = tag
+      function expect()
+        assert(#leds == 0 and #tags == 1 and tags[2] == nil)
+        assert(tags[1].payload == "next" and tags[1].corners[2].x == 0)
+        assert(kept.payload == "a\0b" and kept.corners[4].y == 10, "may be kept")
+        robot.cameras = nil
+        function expect() end
+      end
+    end
+  )lua"));
+  Camera& camera = robot().cameras[0];
+  camera.leds = {{{255, 128, 1}, {10.5, 20}}};
+  camera.directional_leds = {{{0, 255, 0}, {3, -4}}};
+  camera.tags = {{{"a\0b", 3}, {1, 2}, {{{3, 4}, {5, 6}, {7, 8}, {9, 10}}}}, {}};
+  EXPECT_RUNS(step());
+  camera.leds.clear();
+  camera.tags = {{"next", {}, {}}};
+  EXPECT_RUNS(step());
+}
+
+TEST_F(Devices, CameraReadingsOutliveWhatAScriptDoesToRobot) {
+  robot_.cameras = {eye()};
+  EXPECT_RUNS(start(R"lua(
+    tags = robot.cameras.eye.tag_detector
+    robot.cameras.eye.tag_detector = nil
+    robot.cameras = "gone"
+    tags[7] = "mine"
+    function step() assert(#tags == 1 and tags[1].payload == "x") end
+  )lua"));
+  robot().cameras[0].tags = {{"x", {}, {}}};
+  EXPECT_RUNS(step());
+}
+
+TEST_F(Devices, CameraImagesAreStrings) {
+  robot_.cameras = {eye(), eye()};
+  robot_.cameras[0].takes_images = true;
+  robot_.cameras[1].id = "lens";
+  EXPECT_RUNS(start(R"lua(
+    eye = robot.cameras.eye
+    assert(eye.image == "" and robot.cameras.lens.image == nil)
+    function step()
+      assert(#eye.image == 6 and eye.image:byte(1) == 0 and eye.image:byte(6) == 255)
+      assert(robot.cameras.lens.image == nil)
+    end
+  )lua"));
+  const std::array<std::uint8_t, 6> image{0, 1, 2, 3, 4, 255};
+  robot().cameras[0].image = image;
+  EXPECT_RUNS(step());
+}
+
+// ---- wheels -------------------------------------------------------------------------------------
+
+TEST_F(Devices, WheelsAreInCentimetres) {
+  add_driving(robot_);
+  EXPECT_RUNS(start(R"lua(
+    wheels = robot.wheels
+    assert(wheels.velocity_left == 0 and wheels.velocity_right == 0)
+    assert(wheels.distance_left == 0 and wheels.distance_right == 0)
+    assert(math.abs(wheels.axis_length - 14) < 1e-12)
+    wheels.set_velocity(5, -2.5)
+    function step()
+      assert(wheels == robot.wheels)
+      assert(wheels.velocity_left == 25 and wheels.velocity_right == -50)
+      assert(wheels.distance_left == 2.5 and wheels.distance_right == -5)
+    end
+  )lua"));
+  EXPECT_TRUE(robot().wheels->velocities.is_fresh);
+  EXPECT_EQ(robot().wheels->velocities.value, (std::array<double, 2>{0.05, -0.025}));
+  Wheels& wheels = *robot().wheels;
+  wheels.velocity_left = 0.25;
+  wheels.velocity_right = -0.5;
+  wheels.distance_left = 0.025;
+  wheels.distance_right = -0.05;
+  EXPECT_RUNS(step());
+}
+
+TEST_F(Devices, WheelsRefuseWhatIsNoSpeed) {
+  add_driving(robot_);
+  EXPECT_RUNS(start(R"lua(
+    local set = robot.wheels.set_velocity
+    refused("set_velocity%(left, right%) expected, got 1", set, 1)
+    refused("got 3$", set, 1, 2, 3)
+    refused("finite number expected", set, 1, 0/0)
+    refused("finite number expected", set, math.huge, 1)
+    refused("number expected, got string", set, "1", 1)
+    refused("number expected, got nil", set, 1, nil)
+  )lua"));
+  EXPECT_FALSE(robot().wheels->velocities.is_fresh);
+}
+
+TEST_F(Devices, WheelsAndTurretHaveWhatIsEnabled) {
+  add_driving(robot_);
+  robot_.wheels->has_sensor = false;
+  robot_.turret->has_actuator = false;
+  EXPECT_RUNS(start(R"lua(
+    assert(robot.wheels.set_velocity and not robot.wheels.velocity_left)
+    assert(not robot.wheels.axis_length)
+    assert(robot.turret.rotation == 0 and not robot.turret.set_rotation)
+    assert(not robot.turret.set_passive_mode)
+    function step() assert(robot.wheels.velocity_left == nil and robot.turret.rotation == -2) end
+  )lua"));
+  robot().turret->rotation = -2;
+  EXPECT_RUNS(step());
+}
+
+// ---- turret -------------------------------------------------------------------------------------
+
+TEST_F(Devices, TurretSpeedsAreWholeTurnsPerMinute) {
+  add_driving(robot_);
+  EXPECT_RUNS(start(R"lua(
+    local turret = robot.turret
+    turret.set_speed_control_mode()
+    turret.set_rotation_speed(2.9)
+    function step()
+      if not backward then
+        turret.set_rotation_speed(-2.9)
+        backward = true
+        return
+      end
+      turret.set_rotation_speed(0.99)
+    end
+  )lua"));
+  Turret& turret = *robot().turret;
+  EXPECT_TRUE(turret.mode.is_fresh && turret.speed.is_fresh);
+  EXPECT_FALSE(turret.target.is_fresh);
+  EXPECT_EQ(turret.mode.value, TurretMode::speed);
+  EXPECT_DOUBLE_EQ(turret.speed.value, 2 * std::numbers::pi / 30);
+  EXPECT_RUNS(step());
+  EXPECT_DOUBLE_EQ(turret.speed.value, -2 * std::numbers::pi / 30);
+  EXPECT_RUNS(step());
+  EXPECT_EQ(turret.speed.value, 0);
+}
+
+TEST_F(Devices, TurretModesAndRotation) {
+  add_driving(robot_);
+  EXPECT_RUNS(start(R"lua(
+    turret = robot.turret
+    assert(turret.rotation == 0)
+    turret.set_position_control_mode()
+    turret.set_rotation(-1.5)
+    function step()
+      assert(turret.rotation == 0.75)
+      turret.set_passive_mode()
+    end
+  )lua"));
+  EXPECT_EQ(robot().turret->mode.value, TurretMode::position);
+  EXPECT_EQ(robot().turret->target.value, -1.5);
+  robot().turret->rotation = 0.75;
+  EXPECT_RUNS(step());
+  EXPECT_EQ(robot().turret->mode.value, TurretMode::passive);
+}
+
+TEST_F(Devices, TurretRefusesWrongArguments) {
+  add_driving(robot_);
+  EXPECT_RUNS(start(R"lua(
+    local turret = robot.turret
+    refused("set_rotation%(angle%) expected, got 0", turret.set_rotation)
+    refused("finite number expected", turret.set_rotation, 0/0)
+    refused("number expected, got string", turret.set_rotation, "1")
+    refused("set_rotation_speed%(turns_per_minute%) expected, got 2",
+            turret.set_rotation_speed, 1, 2)
+    refused("finite number expected", turret.set_rotation_speed, math.huge)
+    refused("set_passive_mode%(%) expected, got 1", turret.set_passive_mode, turret)
+    refused("set_speed_control_mode%(%) expected, got 1", turret.set_speed_control_mode, 1)
+    refused("set_position_control_mode%(%) expected, got 1", turret.set_position_control_mode, 1)
+  )lua"));
+  EXPECT_FALSE(robot().turret->mode.is_fresh || robot().turret->target.is_fresh ||
+               robot().turret->speed.is_fresh);
+}
+
+}  // namespace
+}  // namespace ziggurat::lua
