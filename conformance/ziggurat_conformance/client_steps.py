@@ -211,7 +211,16 @@ def command_faults(robots: list, command: protocol.Command) -> list:
         due = sum(len(getattr(robot, devices)) for robot in spoken_for)
         if len(values) not in (0, due):
             faults.append(f"{name} has {len(values)} values; none or {due} are due (S6)")
-    for name in ("joint_targets", "magnet_currents"):
+    driven = sum(robot.wheels.drives for robot in spoken_for)
+    turrets = sum(robot.turret.drives for robot in spoken_for)
+    for name, due in (("wheel_velocities", 2 * driven), ("turret_modes", turrets),
+                      ("turret_rotations", turrets), ("turret_speeds", turrets)):
+        if len(getattr(command, name)) not in (0, due):
+            faults.append(f"{name} is not as long as its robots' devices (S6, D6, D7)")
+    if any(mode not in (1, 2, 3) for mode in command.turret_modes):
+        faults.append("a turret mode that there is not (D7)")
+    for name in ("joint_targets", "magnet_currents", "wheel_velocities", "turret_rotations",
+                 "turret_speeds"):
         if any(value != value or abs(value) == float("inf") for value in getattr(command, name)):
             faults.append(f"{name} are not finite (S8)")
     radios = sum(len(robot.radios) for robot in robots)

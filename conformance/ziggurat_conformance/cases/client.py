@@ -27,6 +27,33 @@ def robot(id: str) -> dict:
     }
 
 
+def rover(id: str) -> dict:
+    """An arm on wheels, with a turret and a camera that has all detectors and takes pictures."""
+    return {
+        **robot(id),
+        "cameras": [{"id": "eye", "anchor": "origin", "position": [0.1, 0.0, 0.2],
+                     "orientation": [0.5, -0.5, 0.5, -0.5], "near": 0.1, "far": 2.0,
+                     "focal_length": [800.0, 800.0], "principal_point": [2.0, 1.0], "width": 4,
+                     "height": 2, "detects_leds": True, "detects_directional_leds": True,
+                     "detects_tags": True, "image": True}],
+        "wheels": {"axle_length": 0.14, "drives": True, "measures": True},
+        "turret": {"drives": True, "measures": True},
+    }
+
+
+def sights(led: int = 0, directional_led: int = 0, tag: int = 0, image: bytes = b"") -> dict:
+    """What two rovers read: the first sees nothing, the second so many of each."""
+    seen = {"wheels": [0.1, 0.2, 0.01, 0.02] * 2, "turret_rotations": [0.5, -0.5],
+            "tag_payloads": [b"\0\xff"] * tag, "tag_corners": [0.5] * 8 * tag,
+            "camera_images": [b"", image]}
+    for name, count in (("led", led), ("directional_led", directional_led), ("tag", tag)):
+        seen[f"{name}_counts"] = [0, count]
+        seen[f"{name}_centers"] = [1.5, -2.5] * count
+    for name, count in (("led", led), ("directional_led", directional_led)):
+        seen[f"{name}_colors"] = [0xFF8001] * count
+    return seen
+
+
 def welcome(*robots: dict, **fields) -> Tell:
     told = {
         "version": {"major": 1, "minor": 0}, "session_token": b"0123456789abcdef",
@@ -129,6 +156,10 @@ CLIENT_CASES = [
          (*BEGUN, observation(1, range_and_bearing=[
              {"robot": 0, "range": 0.5, "horizontal_bearing": 1.0, "vertical_bearing": 0.1,
               "data": b"\x01\x02"}] * 30), answered(1), *ticks(2, 2))),
+    Case("D8.cameras", "Cameras see anything in any number, with pictures and without",
+         (HELLO, welcome(rover("rover0"), rover("rover1")), *ticks(0, 0, **sights()),
+          *ticks(1, 2, **sights(3, 2, 1)), *ticks(3, 4, **sights(0, 1, 40, bytes(24))),
+          *ticks(5, 5, **sights(1000, 0, 0, b"\xff" * 24)), *ticks(6, 6, **sights()))),
     Case("T5.unknown-kind", "Messages of a kind that it does not know are ignored",
          (*BEGUN, _UNKNOWN_KIND, Quiet(0.2, should=True), *ticks(1, 2))),
     Case("M5.heartbeats-unanswered", "It does not answer heartbeats",

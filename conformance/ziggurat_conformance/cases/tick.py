@@ -171,6 +171,12 @@ CASES = [
           Hear("p", "observation", {"range_and_bearing": Count(12)}),
           Check("data", lambda stage: "" if stage.peer("p").observation.range_and_bearing[0].data
                 == b"\x02\x03" else "arm0 does not hear arm1's two bytes first"))),
+    _bad("D6", "no-wheels", "BAD_VALUE", "Speeds of wheels that no robot has", "wheel_velocities",
+         wheel_velocities=[0.1, 0.1]),
+    *[_bad("D7", f"no-{name.replace('_', '-')}", "BAD_VALUE", f"{name} of a turret that no robot has",
+           name, **{name: [value]})
+      for name, value in (("turret_modes", "TURRET_SPEED"), ("turret_rotations", 0.5),
+                          ("turret_speeds", 0.5))],
     _bad("D1", "radio-beyond", "UNKNOWN_DEVICE", "A radio beyond the session's", radio_messages=[
         _message(4)]),
     _bad("D1", "radio-huge", "UNKNOWN_DEVICE", "The largest radio there can be", radio_messages=[

@@ -71,7 +71,7 @@ class RunnerTest : public ScriptTest {
   void serve() {
     ASSERT_EQ(server_.gather(patience), Outcome::complete);
     for (std::uint64_t tick = 0; tick <= 4; ++tick) {
-      server_.publish(small_.observations(tick));
+      server_.publish(small_.observations(tick), {});
       ASSERT_EQ(server_.collect(commands_, patience), Outcome::complete);
       reports_.push_back(server_.take_report());
     }
