@@ -51,7 +51,7 @@ TEST_F(Twin, T6_AWholeExchange) {
   EXPECT_EQ(welcome["robots"][1]["radios"], json::array()) << "empty arrays are there";
   EXPECT_EQ(welcome["wallLeaseMs"], 0) << "zeros are there";
   EXPECT_FALSE(welcome["robots"][1].contains("rangeAndBearing")) << "absent messages are not";
-  barrier.publish(small.observations(0));
+  barrier.publish(small.observations(0), {});
   const json observation = told("p")["observation"];
   EXPECT_EQ(observation["tick"], "0");
   EXPECT_EQ(observation["jointReadings"], (json{0.0, 1.0}));
@@ -74,7 +74,7 @@ TEST_F(Twin, T6_TheTokenOfAWelcomeResumesAsItStands) {
 
 TEST_F(Twin, T6_OtherSpellingsOfTheSame) {
   join("p");
-  barrier.publish(small.observations(7));
+  barrier.publish(small.observations(7), {});
   // Numbers for strings, names as in the .proto, numbers of enumerations, unknown fields, null.
   say("p", R"({"command":{"tick":7,"joint_targets":["1.5",2],"colour":[{"x":null}],"log":null}})");
   EXPECT_TRUE(barrier.complete());
@@ -103,7 +103,7 @@ TEST_F(Twin, T6_MalformedTextIsAnsweredInJson) {
 
 TEST_F(Twin, T6_AMalformedMessageOfASessionIsDiscarded) {
   join("p");
-  barrier.publish(small.observations(0));
+  barrier.publish(small.observations(0), {});
   say("p", R"({"command":{"tick":"0","jointTargets":[1,)");
   EXPECT_EQ(told("p")["error"]["severity"], "DISCARD");
   EXPECT_FALSE(barrier.complete());
@@ -114,7 +114,7 @@ TEST_F(Twin, T6_AMalformedMessageOfASessionIsDiscarded) {
 TEST_F(Twin, T6_FormsAreNotMixed) {
   join("p", "robot0");
   say("q", bytes_of(Peers::hello("robot1"), false));
-  barrier.publish(small.observations(0));
+  barrier.publish(small.observations(0), {});
   inboxes.clear();
   say("p", bytes_of(Peers::command(0), false));
   EXPECT_EQ(told("p")["error"]["code"], "MALFORMED") << "told in the session's form";
@@ -130,7 +130,7 @@ TEST_F(Twin, T6_FormsAreNotMixed) {
 TEST_F(Twin, T6_ABinarySessionMayResumeInJson) {
   say("p", bytes_of(Peers::hello("*"), false));
   const auto token = message_of(inboxes["p"].at(0)).welcome().session_token();
-  barrier.publish(small.observations(4));
+  barrier.publish(small.observations(4), {});
   dead = "p";
   v1::ClientMessage hello = Peers::hello("*");
   hello.mutable_hello()->set_session_token(token);
@@ -143,7 +143,7 @@ TEST_F(Twin, T6_ABinarySessionMayResumeInJson) {
 
 TEST_F(Twin, S8_NumbersAreFiniteInJsonToo) {
   join("p");
-  barrier.publish(small.observations(0));
+  barrier.publish(small.observations(0), {});
   for (const char* number : {"\"NaN\"", "\"Infinity\"", "\"-Infinity\""}) {
     say("p", std::string(R"({"command":{"tick":"0","jointTargets":[0,)") + number + "]}}");
     EXPECT_EQ(told("p")["error"]["code"], "BAD_VALUE") << number;

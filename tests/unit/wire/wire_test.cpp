@@ -247,10 +247,10 @@ TEST(Outbox, ChargeThatLastsForEverIsAWordInJson) {
   ASSERT_FALSE(observations.batteries.empty());
   observations.batteries[0].time_left = std::numeric_limits<double>::infinity();
   Outbox outbox;
-  ASSERT_TRUE(outbox.observation(make_roster(run.layout(), robots), observations));
+  ASSERT_TRUE(outbox.observation(make_roster(run.layout(), robots), observations, {}));
   outbox.encode(Encoding::json);
   EXPECT_NE(bytes_of(outbox).find("\"Infinity\""), std::string::npos);
-  EXPECT_FALSE(outbox.observation(make_roster(run.layout(), robots), observations, 10));
+  EXPECT_FALSE(outbox.observation(make_roster(run.layout(), robots), observations, {}, 10));
 }
 
 TEST(Envelope, SoleField) {
