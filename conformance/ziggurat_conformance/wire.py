@@ -16,7 +16,10 @@ FORMS = (BINARY, JSON)
 def encode(message: Message, form: str) -> bytes:
     """A message as it travels; `form` is BINARY or JSON."""
     if form == JSON:
-        return json_format.MessageToJson(message, indent=0).encode()
+        # T6: a server leaves no numbers, texts and arrays out; a client may.
+        whole = isinstance(message, protocol.ServerMessage)
+        return json_format.MessageToJson(message, indent=0,
+                                         including_default_value_fields=whole).encode()
     return message.SerializeToString()
 
 

@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""Drives the four-wheeled vehicle of scenes/dynamics3d_multi_body_test.argos.
+
+    ziggurat serve scenes/dynamics3d_multi_body_test.argos &
+    vehicle.py [ENDPOINT]
+
+A scene can start it, too: as the command of an <external_controller>.
+"""
+
+import os
+import sys
+
+import ziggurat
+
+WHEELS = ("base_wheel_bl", "base_wheel_fl", "base_wheel_br", "base_wheel_fr")
+
+
+def main():
+    endpoint = os.environ.get("ZIGGURAT_ENDPOINT", "tcp://127.0.0.1:5770")
+    endpoint = sys.argv[1] if len(sys.argv) > 1 else endpoint
+    with ziggurat.connect(endpoint, controller=os.environ.get("ZIGGURAT_CONTROLLER", ""),
+                          name="vehicle.py") as session:
+        vehicle = session.robots[0]
+        wheels = [vehicle.joints[name] for name in WHEELS]  # looked up once
+        for tick in session:
+            if tick.event is ziggurat.Event.STEP:
+                speeds = ", ".join(f"{wheel.encoder:.2f}" for wheel in wheels)
+                vehicle.log(f"wheel velocities: {speeds}")
+            else:  # INIT, or RESET: the world stands at tick 0
+                for wheel in wheels:
+                    wheel.target = 1.0  # [rad/s]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,20 @@
+"""Controllers for robots of a Ziggurat simulation server; docs/python-client.md tells how.
+
+    with ziggurat.connect("tcp://127.0.0.1:5770", robots="*") as session:
+        for tick in session:
+            for robot in session.robots:
+                robot.joints["left"].target = 1.0
+"""
+
+from .connection import Curve
+from .devices import OFF, Battery, Camera, Color, Joint, Led, LedReading, Magnet, Packet, Pose, \
+    ProximitySensor, Radio, RangeAndBearing, Tag, TagReading, Turret, Wheels
+from .errors import ConnectionLost, Displaced, ProtocolError, Refused, Timeout, ZigguratError
+from .parallel import ParallelEnv, all_readings, joint_targets, parallel_env
+from .robot import Named, Robot
+from .server import Server
+from .session import Deadline, Ending, Event, Session, Tick, connect, resume
+from .supervisor import EntityState, LinkState, SessionStatus, States, Status, Supervisor, supervise
+
+__version__ = "0.1.0"
+__all__ = [name for name in dir() if not name.startswith("_")]

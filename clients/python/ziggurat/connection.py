@@ -1,0 +1,103 @@
+"""One DEALER: messages out and in, time-outs, and the end of the connection."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Optional
+
+import zmq
+import zmq.utils.monitor
+
+from . import protocol_pb2 as v1
+from .errors import ConnectionLost, Refused, Timeout
+
+VERSION = v1.Version(major=1, minor=0)
+LINGER_MS = 1000  # what is under way when a session is closed may take this long
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Keys of an encrypted connection, each 40 characters of Z85."""
+
+    server_key: str
+    public_key: str
+    secret_key: str
+
+
+class Connection:
+    """Connects at once, in the background; the server need not be there yet."""
+
+    def __init__(self, endpoint: str, curve: Optional[Curve] = None):
+        self.endpoint = endpoint
+        self.socket = zmq.Context.instance().socket(zmq.DEALER)
+        self.socket.setsockopt(zmq.IPV6, endpoint.startswith("tcp://["))
+        if curve is not None:
+            self.socket.curve_serverkey = curve.server_key.encode()
+            self.socket.curve_publickey = curve.public_key.encode()
+            self.socket.curve_secretkey = curve.secret_key.encode()
+        # A connection that comes back on its own would be a stranger to the server: its end has to
+        # be seen.
+        self.monitor = self.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)
+        self.poller = zmq.Poller()
+        self.poller.register(self.socket, zmq.POLLIN)
+        self.poller.register(self.monitor, zmq.POLLIN)
+        try:
+            self.socket.connect(endpoint)
+        except zmq.ZMQError as error:
+            self.close()
+            raise ValueError(f"endpoint {endpoint!r}: {error}") from None
+
+    def close(self, linger_ms: int = LINGER_MS) -> None:
+        if self.socket.closed:
+            return
+        self.socket.disable_monitor()
+        self.monitor.close(linger=0)
+        self.socket.close(linger=linger_ms)
+
+    @property
+    def closed(self) -> bool:
+        return self.socket.closed
+
+    def send(self, message: v1.ClientMessage) -> None:
+        self.socket.send(message.SerializeToString())
+
+    def receive(self, timeout: Optional[float]) -> v1.ServerMessage:
+        """The next message. `timeout` is wall time [s]; None waits for ever.
+
+        Raises Timeout, and ConnectionLost once all that had arrived before is read.
+        """
+        if self.closed:
+            raise ConnectionLost("the session is closed")
+        end = None if timeout is None else time.monotonic() + timeout
+        while True:
+            rest = None if end is None else max(0, int(1000 * (end - time.monotonic())))
+            ready = dict(self.poller.poll(rest))
+            if self.socket in ready:
+                return v1.ServerMessage.FromString(self.socket.recv())
+            if self.monitor in ready:
+                zmq.utils.monitor.recv_monitor_message(self.monitor)
+                if self.socket.poll(0):
+                    continue
+                self.close()
+                raise ConnectionLost(f"the connection to {self.endpoint} is gone")
+            if end is not None and time.monotonic() >= end:
+                raise Timeout(f"{self.endpoint}: no message for {timeout:g} s")
+
+    def begin(self, hello: v1.Hello, connect_timeout: float) -> v1.Welcome:
+        """Says Hello and waits for the Welcome, as long as the server says that it is loading."""
+        hello.version.CopyFrom(VERSION)
+        self.send(v1.ClientMessage(hello=hello))
+        while True:
+            try:
+                message = self.receive(connect_timeout)
+            except Timeout:
+                raise ConnectionLost(
+                    f"nobody welcomed us at {self.endpoint} within {connect_timeout:g} s") from None
+            kind = message.WhichOneof("message")
+            if kind == "welcome":
+                return message.welcome
+            if kind == "refusal":
+                raise Refused(message.refusal)
+            if kind == "error":
+                raise Refused(v1.Refusal(error=message.error))

@@ -1,0 +1,95 @@
+"""The packed arrays of a session: what handles of devices read from and write to."""
+
+from __future__ import annotations
+
+from itertools import accumulate
+from typing import Any, Dict, List, Set, Tuple
+
+from . import protocol_pb2 as v1
+
+# Fields of Command that hold a value per device; handles name them.
+FIELDS = ("joint_targets", "led_colors", "directional_led_colors", "tag_payloads",
+          "magnet_currents", "wheel_velocities", "turret_modes", "turret_rotations",
+          "turret_speeds")
+
+
+class Exchange:
+    """Values of all robots of a session, in Welcome's order."""
+
+    def __init__(self) -> None:
+        self.seen = v1.Observation()  # of the last tick
+        self.heard: Dict[int, List[bytes]] = {}  # by radio
+        self.packets: Dict[int, List[Any]] = {}  # by robot
+        self.begins: Dict[str, List[int]] = {}  # by kind of detector: first reading of each camera
+        self.values: Dict[str, List[Any]] = {field: [] for field in FIELDS}
+        self.data = bytearray()  # of all range-and-bearing actuators
+        self.messages: List[Tuple[int, bytes]] = []
+        self.log: List[v1.LogLine] = []
+        self._initial: Dict[str, List[Any]] = {}
+        self._new: Set[str] = set()  # fields that changed since the last command
+        self._used: Set[str] = set()  # fields that ever did
+
+    def add(self, field: str, value: Any) -> int:
+        """Lays out one more device; returns its place."""
+        self.values[field].append(value)
+        return len(self.values[field]) - 1
+
+    def begin(self) -> None:
+        """Everything is laid out."""
+        self._initial = {field: list(values) for field, values in self.values.items()}
+
+    def reset(self) -> None:
+        """The world is as at the start, and so are all commands."""
+        for field, values in self._initial.items():
+            self.values[field][:] = values
+        self.data[:] = bytes(len(self.data))
+        self.messages.clear()
+        self._new.clear()
+        self._used.clear()
+
+    def repeat(self) -> None:
+        """The last command may be lost: the next one says everything again."""
+        self._new |= self._used
+
+    def set(self, field: str, place: int, value: Any) -> None:
+        self.values[field][place] = value
+        self._new.add(field)
+
+    def set_data(self, begin: int, data: bytes) -> None:
+        self.data[begin:begin + len(data)] = data
+        self._new.add("data")
+
+    def observe(self, observation: v1.Observation) -> None:
+        self.seen = observation
+        self.heard = {}
+        for message in observation.radio_messages:
+            self.heard.setdefault(message.radio, []).append(message.payload)
+        self.packets = {}
+        for packet in observation.range_and_bearing:
+            self.packets.setdefault(packet.robot, []).append(packet)
+        for kind in ("led", "directional_led", "tag"):
+            counts = getattr(observation, kind + "_counts")
+            self.begins[kind] = [0, *accumulate(counts)]
+
+    def command(self, tick: int) -> v1.ClientMessage:
+        """What was set since the last command."""
+        message = v1.ClientMessage()
+        command = message.command
+        command.SetInParent()
+        command.tick = tick
+        for field in FIELDS:
+            if field in self._new:
+                getattr(command, field).extend(self.values[field])
+        if "data" in self._new:
+            command.range_and_bearing_data = bytes(self.data)
+        for radio, payload in self.messages:
+            command.radio_messages.add(radio=radio, payload=payload)
+        command.log.extend(self.log)
+        return message
+
+    def sent(self) -> None:
+        """The command is on its way."""
+        self._used |= self._new
+        self._new.clear()
+        self.messages.clear()
+        self.log.clear()

@@ -1,0 +1,168 @@
+"""An environment for multi-agent learning with the methods of PettingZoo's ParallelEnv, which is
+not needed for it: agents are robots, a step is a tick."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+
+from .errors import ProtocolError
+from .robot import Robot
+from .server import Server
+from .session import Session, connect
+from .supervisor import Supervisor
+
+Observe = Callable[[Robot], Any]
+Act = Callable[[Robot, Any], None]
+
+
+def all_readings(robot: Robot) -> List[float]:
+    """Encoders, proximity, pose (7 numbers) and available charge, of the devices that there are."""
+    values = [joint.encoder for joint in robot.joints if joint.sensor_mode is not None]
+    values.extend(robot.proximity)
+    if robot.pose is not None:
+        values.extend((*robot.pose.position, *robot.pose.orientation))
+    if robot.battery is not None:
+        values.append(robot.battery.available_charge)
+    return values
+
+
+def joint_targets(robot: Robot, action: Sequence[float]) -> None:
+    """A target for each motor of the robot, in order."""
+    motors = [joint for joint in robot.joints if joint.actuator_mode is not None]
+    if len(action) != len(motors):
+        raise ValueError(f"{robot.id}: {len(motors)} targets are due, not {len(action)}")
+    for motor, target in zip(motors, action):
+        motor.target = target
+
+
+def parallel_env(scene: Optional[str] = None, **options: Any) -> "ParallelEnv":
+    """A ParallelEnv; options are those of the class."""
+    return ParallelEnv(scene, **options)
+
+
+class ParallelEnv:
+    """Starts a server for `scene`, or attaches to the one at `endpoint`.
+
+    observe     what an agent sees of its robot; default all_readings
+    act         carries out an action; default joint_targets
+    reward      of an agent, after each tick; default 0
+    terminated  whether an agent's task is over; default never
+    max_ticks   truncates episodes; by default they are as long as the scene
+    command     the server's program; arguments: its further options
+
+    Robots whose agents are terminated keep what they were last commanded until the next reset.
+    """
+
+    metadata = {"name": "ziggurat", "render_modes": []}
+
+    def __init__(self, scene: Optional[str] = None, *, endpoint: Optional[str] = None,
+                 robots: Union[str, Sequence[str]] = "*", observe: Observe = all_readings,
+                 act: Act = joint_targets, reward: Callable[[Robot], float] = lambda robot: 0.0,
+                 terminated: Callable[[Robot], bool] = lambda robot: False,
+                 max_ticks: Optional[int] = None, command: str = "ziggurat",
+                 arguments: Sequence[str] = (), observation_spaces: Optional[Dict] = None,
+                 action_spaces: Optional[Dict] = None):
+        if (scene is None) == (endpoint is None):
+            raise ValueError("either a scene or an endpoint is due")
+        self._scene, self._endpoint = scene, endpoint
+        self._robots = robots
+        self._observe, self._act = observe, act
+        self._reward, self._terminated = reward, terminated
+        self._max_ticks = max_ticks
+        self._command, self._arguments = command, list(arguments)
+        self.observation_spaces = observation_spaces or {}
+        self.action_spaces = action_spaces or {}
+        self._server: Optional[Server] = None
+        self._session: Optional[Session] = None
+        self._supervisor: Optional[Supervisor] = None
+        self.possible_agents: List[str] = []  # known after the first reset
+        self.agents: List[str] = []
+
+    def observation_space(self, agent: str) -> Any:
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> Any:
+        return self.action_spaces[agent]
+
+    @property
+    def session(self) -> Session:
+        """The session beneath, for devices that actions and observations do not cover."""
+        if self._session is None:
+            raise RuntimeError("reset() comes first")
+        return self._session
+
+    def reset(self, seed: Optional[int] = None,
+              options: Optional[Dict] = None) -> Tuple[Dict[str, Any], Dict[str, Dict]]:
+        """Back to tick 0: observations and infos by agent. Without a seed, the one before."""
+        if not self._reset_world(seed):
+            self._start(seed)
+        next(self.session)
+        self.possible_agents = [robot.id for robot in self.session.robots]
+        self.agents = list(self.possible_agents)
+        return self._observations(), self._infos()
+
+    def step(self, actions: Dict[str, Any]) -> Tuple[Dict, Dict, Dict, Dict, Dict]:
+        """One tick: observations, rewards, terminations, truncations and infos by agent."""
+        for agent, action in actions.items():
+            self._act(self.session.robots[agent], action)
+        is_over = next(self.session, None) is None
+        tick = self.session.tick.number
+        is_over = is_over or (self._max_ticks is not None and tick >= self._max_ticks)
+        robots = [self.session.robots[agent] for agent in self.agents]
+        observations, infos = self._observations(), self._infos()
+        rewards = {robot.id: float(self._reward(robot)) for robot in robots}
+        terminations = {robot.id: bool(self._terminated(robot)) for robot in robots}
+        truncations = {robot.id: is_over for robot in robots}
+        self.agents = [] if is_over else [a for a in self.agents if not terminations[a]]
+        return observations, rewards, terminations, truncations, infos
+
+    def _observations(self) -> Dict[str, Any]:
+        return {agent: self._observe(self.session.robots[agent]) for agent in self.agents}
+
+    def _infos(self) -> Dict[str, Dict]:
+        return {agent: {"tick": self.session.tick.number} for agent in self.agents}
+
+    def _reset_world(self, seed: Optional[int]) -> bool:
+        """By the supervisor, if the run is not over and there is such a role."""
+        if self._session is None or self._session.ending is not None:
+            return False
+        try:
+            if self._supervisor is None:
+                self._supervisor = Supervisor(self._session.endpoint, name="parallel_env")
+            self._supervisor.reset(seed)
+        except ProtocolError as error:
+            if error.code not in ("UNIMPLEMENTED", "FORBIDDEN") or self._server is None:
+                raise
+            return False
+        return True
+
+    def _start(self, seed: Optional[int]) -> None:
+        """A fresh server, or a first session with the one that is there."""
+        if self._session is not None and self._scene is None:
+            raise RuntimeError("the run is over, and its server is not ours to start again")
+        seed = seed if seed is not None or self._session is None else self._session.seed
+        self.close()
+        if self._scene is not None:
+            seeds = [] if seed is None else ["--seed", str(seed)]
+            self._server = Server(self._scene, command=self._command,
+                                  arguments=[*self._arguments, *seeds])
+            self._session = connect(self._server.endpoint, self._robots)
+        else:
+            self._session = connect(self._endpoint, self._robots)
+            if seed is not None and seed != self._session.seed:
+                self._session_reset_at_start(seed)
+
+    def _session_reset_at_start(self, seed: int) -> None:
+        next(self.session)
+        if not self._reset_world(seed):
+            raise RuntimeError(f"the server runs with seed {self.session.seed} and can't be reset")
+
+    def render(self) -> None:
+        """There is nothing to see here."""
+
+    def close(self) -> None:
+        for part in (self._session, self._supervisor, self._server):
+            if part is not None:
+                part.close()
+        self._session = self._supervisor = self._server = None
+        self.agents = []

@@ -1,0 +1,196 @@
+"""The run from above: pausing, stepping, resetting, moving and reading. Not part of the tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, List, Optional, Sequence, Tuple, Union
+
+from . import protocol_pb2 as v1
+from .connection import Connection, Curve
+from .devices import Color, Quaternion, Vector, _color
+from .errors import ConnectionLost, ProtocolError
+from .session import Ending
+
+
+@dataclass(frozen=True)
+class SessionStatus:
+    client: str
+    role: str  # "controller", "supervisor" or "observer"
+    state: str  # "ready", "owing", "answered", "paused", "draining" or "lost"
+    robots: Tuple[str, ...]
+    tick: int  # of its last observation
+    wall_waiting: float  # how long the barrier has waited for it [s]
+    wall_last_message: float  # since it was last heard of [s]
+    wall_latency: Tuple[float, float, float]  # median, 99th percentile, longest [s]
+    misses: int
+
+
+@dataclass(frozen=True)
+class Status:
+    tick: int
+    time_ns: int  # simulated
+    phase: str  # "gathering", "running", "paused" or "ending"
+    seed: int
+    scene: str
+    scene_hash: str
+    last_tick: int  # 0: until somebody stops it
+    sessions: Tuple[SessionStatus, ...]
+    free_robots: Tuple[str, ...]  # whom the world waits for, without controller
+    gone_robots: Tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class LinkState:
+    """In the world: centre of the link's bottom."""
+
+    id: str
+    position: Vector  # [m]
+    orientation: Quaternion
+    velocity: Vector  # [m/s]
+    angular_velocity: Vector  # [rad/s]
+
+
+@dataclass(frozen=True)
+class EntityState:
+    id: str
+    position: Vector  # of the origin in the world [m]
+    orientation: Quaternion
+    links: Tuple[LinkState, ...]
+    led_colors: Tuple[Color, ...]
+
+
+@dataclass(frozen=True)
+class States:
+    tick: int
+    hash: str  # of the whole state, 16 hexadecimal digits
+    entities: Tuple[EntityState, ...]
+
+    def __getitem__(self, id: str) -> EntityState:
+        for entity in self.entities:
+            if entity.id == id:
+                return entity
+        raise KeyError(id)
+
+
+def supervise(endpoint: str, **options: Any) -> "Supervisor":
+    """A Supervisor of the server at this endpoint; options are those of the class."""
+    return Supervisor(endpoint, **options)
+
+
+class Supervisor:
+    """Each call waits for the server's answer, and what it asked for is true then. All but status
+    and read raise ProtocolError with FORBIDDEN for an observer.
+
+    connect_timeout, wait_timeout  wall time [s]; None waits for ever
+    """
+
+    def __init__(self, endpoint: str, *, observer: bool = False, name: str = "python",
+                 version: str = "", curve: Optional[Curve] = None, connect_timeout: float = 10.0,
+                 wait_timeout: Optional[float] = None):
+        role = v1.ROLE_OBSERVER if observer else v1.ROLE_SUPERVISOR
+        self._wait_timeout = wait_timeout
+        self._next_id = 0
+        self.ending: Optional[Ending] = None  # of the run, once it is over
+        self._connection = Connection(endpoint, curve)
+        try:
+            self.welcome = self._connection.begin(
+                v1.Hello(role=role, client_name=name, client_version=version), connect_timeout)
+        except BaseException:
+            self._connection.close()
+            raise
+
+    def _ask(self, **request: Any) -> v1.Response:
+        self._next_id += 1
+        self._connection.send(
+            v1.ClientMessage(request=v1.Request(id=self._next_id, **request)))
+        while True:
+            message = self._connection.receive(self._wait_timeout)
+            kind = message.WhichOneof("message")
+            if kind == "response" and message.response.id == self._next_id:
+                if message.response.HasField("error"):
+                    raise ProtocolError(message.response.error)
+                return message.response
+            if kind == "error":
+                raise ProtocolError(message.error)
+            if kind == "end":
+                self.ending = Ending(v1.End.Reason.Name(message.end.reason).lower(),
+                                     message.end.message, message.end.tick)
+                raise ConnectionLost(f"the run is over: {self.ending.reason}")
+
+    def status(self) -> Status:
+        """Who holds the tick, and since when."""
+        return _status(self._ask(status=v1.StatusRequest()).status)
+
+    def pause(self) -> int:
+        """The world stands when this returns; the tick that it stands at."""
+        return self._ask(pause=v1.PauseRequest()).tick
+
+    def resume(self) -> int:
+        """Lets a paused world go on."""
+        return self._ask(resume=v1.ResumeRequest()).tick
+
+    def step(self, ticks: int = 1) -> int:
+        """Moves a paused world by so many ticks; the tick that it stands at then."""
+        return self._ask(step=v1.StepRequest(ticks=ticks)).tick
+
+    def reset(self, seed: Optional[int] = None) -> int:
+        """Builds the world anew, with the same seed if none is given."""
+        return self._ask(reset=v1.ResetRequest(seed=seed)).tick
+
+    def spawn(self, xml: str) -> int:
+        """Adds one element as it may stand in <arena>."""
+        return self._ask(spawn=v1.SpawnRequest(xml=xml)).tick
+
+    def remove(self, entity: str) -> int:
+        return self._ask(remove=v1.RemoveRequest(entity=entity)).tick
+
+    def move(self, entity: str, position: Sequence[float],
+             orientation: Sequence[float] = ()) -> int:
+        """To rest with its origin at a position in the world [m]; orientation w, x, y, z."""
+        return self._ask(move=v1.MoveRequest(entity=entity, position=position,
+                                             orientation=orientation)).tick
+
+    def read(self, entities: Union[str, Sequence[str]] = ()) -> States:
+        """Of the entities that these ids or globs mean; without any, of all."""
+        wanted = [entities] if isinstance(entities, str) else list(entities)
+        response = self._ask(read=v1.ReadRequest(entities=wanted))
+        return States(response.tick, response.states.hash,
+                      tuple(map(_entity, response.states.entities)))
+
+    def shutdown(self) -> int:
+        """Ends the run, as Ctrl-C does."""
+        return self._ask(shutdown=v1.ShutdownRequest()).tick
+
+    def close(self) -> None:
+        if not self._connection.closed:
+            self._connection.send(v1.ClientMessage(leave=v1.Leave(reason=v1.Leave.DONE)))
+            self._connection.close()
+
+    def __enter__(self) -> "Supervisor":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+
+def _status(given: v1.Status) -> Status:
+    return Status(given.tick, given.time_ns, v1.Status.Phase.Name(given.phase).lower(), given.seed,
+                  given.scene, given.scene_hash, given.last_tick,
+                  tuple(map(_session, given.sessions)), tuple(given.free_robots),
+                  tuple(given.gone_robots))
+
+
+def _session(given: v1.SessionStatus) -> SessionStatus:
+    latency = given.wall_latency
+    return SessionStatus(given.client, v1.Role.Name(given.role)[len("ROLE_"):].lower(),
+                         v1.SessionStatus.State.Name(given.state).lower(), tuple(given.robots),
+                         given.tick, given.wall_waiting_s, given.wall_last_message_s,
+                         (latency.p50, latency.p99, latency.max), given.misses)
+
+
+def _entity(given: v1.States.Entity) -> EntityState:
+    links: List[LinkState] = [
+        LinkState(link.id, tuple(link.position), tuple(link.orientation), tuple(link.velocity),
+                  tuple(link.angular_velocity)) for link in given.links]
+    return EntityState(given.id, tuple(given.position), tuple(given.orientation), tuple(links),
+                       tuple(map(_color, given.led_colors)))

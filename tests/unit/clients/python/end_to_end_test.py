@@ -1,0 +1,129 @@
+"""The package against the real server, whose program is in ZIGGURAT."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import unittest
+
+import ziggurat
+
+ROOT = pathlib.Path(__file__).resolve().parents[4]
+PROGRAM = os.environ["ZIGGURAT"]
+VEHICLE = ROOT / "scenes" / "dynamics3d_multi_body_test.argos"
+DEVICES = ROOT / "scenes" / "devices_test.argos"
+
+
+def serve(scene, *arguments):
+    # Scripts stand in the scene relative to the root of the checkout.
+    os.chdir(ROOT)
+    return ziggurat.Server(scene, command=PROGRAM, arguments=arguments)
+
+
+class EndToEnd(unittest.TestCase):
+    def test_the_vehicle_goes_as_its_script_drives_it(self):
+        with serve(VEHICLE, "--ticks", "100") as server:
+            with ziggurat.connect(server.endpoint) as session:
+                wheels = list(session.robots["vehicle"].joints)
+                for tick in session:
+                    if tick.event is ziggurat.Event.INIT:
+                        for wheel in wheels:
+                            wheel.target = 1.0
+                self.assertEqual(tick.number, 100)
+                for wheel in wheels:
+                    self.assertAlmostEqual(wheel.encoder, 1.0, delta=0.03)
+            self.assertEqual(server.wait(10), 0)
+
+    def test_the_example(self):
+        example = ROOT / "clients" / "python" / "examples" / "vehicle.py"
+        with serve(VEHICLE, "--ticks", "20") as server:
+            subprocess.run([sys.executable, example, server.endpoint], check=True, timeout=30)
+            self.assertEqual(server.wait(10), 0)
+
+    def test_the_json_client(self):
+        controller = ROOT / "clients" / "json" / "controller.py"
+        with serve(VEHICLE, "--ticks", "20") as server:
+            subprocess.run([sys.executable, controller, server.endpoint], check=True, timeout=30)
+            output, _ = server.process.communicate(timeout=10)
+            self.assertEqual(server.process.returncode, 0)
+        lines = [line for line in output.splitlines() if line.startswith("[")]
+        self.assertEqual(len(lines), 20, output)
+        self.assertRegex(lines[-1], r"^\[20 vehicle\] (0\.9[89]|1\.0[0-2])$")
+
+    def test_devices(self):
+        with serve(DEVICES, "--ticks", "20") as server:
+            with ziggurat.connect(server.endpoint) as session:
+                robots = list(session.robots)
+                for _ in session:
+                    for robot in robots:
+                        for led in (*robot.leds, *robot.directional_leds):
+                            led.color = (0, 0, 255)
+                        for radio in robot.radios:
+                            if radio.sends:
+                                radio.send(b"hello")
+                        if robot.range_and_bearing is not None and robot.range_and_bearing.sends:
+                            size = robot.range_and_bearing.data_size
+                            robot.range_and_bearing.data = bytes(range(size))
+                poses = [robot.pose for robot in robots if robot.pose is not None]
+                self.assertTrue(poses)
+                for pose in poses:
+                    self.assertAlmostEqual(sum(part ** 2 for part in pose.orientation), 1)
+            self.assertEqual(server.wait(10), 0)
+
+    def test_a_lost_session_is_taken_up_at_the_same_tick(self):
+        with serve(VEHICLE, "--ticks", "10") as server:
+            session = ziggurat.connect(server.endpoint)
+            for tick in session:
+                if tick.number == 4:
+                    break
+            session.abandon()
+            with ziggurat.resume(server.endpoint, session.token) as again:
+                numbers = [tick.number for tick in again]
+            self.assertEqual(numbers, list(range(4, 11)))
+            self.assertEqual(server.wait(10), 0)
+
+    def test_a_server_that_is_killed_is_noticed(self):
+        with serve(VEHICLE) as server:
+            session = ziggurat.connect(server.endpoint)
+            next(session)
+            server.process.send_signal(signal.SIGKILL)
+            with self.assertRaises(ziggurat.ConnectionLost):
+                for _ in session:
+                    pass
+
+    def test_a_robot_that_is_taken(self):
+        with serve(VEHICLE) as server:
+            with ziggurat.connect(server.endpoint, name="first"):
+                with self.assertRaises(ziggurat.Refused) as caught:
+                    ziggurat.connect(server.endpoint)
+                self.assertEqual(caught.exception.code, "ROBOT_TAKEN")
+                self.assertEqual(caught.exception.holder, "first")
+
+    def test_an_environment_for_learning(self):
+        os.chdir(ROOT)
+        env = ziggurat.parallel_env(str(VEHICLE), command=PROGRAM, max_ticks=5,
+                                    reward=lambda robot: robot.joints[0].encoder)
+        self.addCleanup(env.close)
+        episodes = []
+        for _ in range(2):
+            observations, infos = env.reset(seed=3)
+            self.assertEqual(env.agents, ["vehicle"])
+            self.assertEqual(infos, {"vehicle": {"tick": 0}})
+            episode = [observations["vehicle"]]
+            while env.agents:
+                result = env.step({agent: [1.0] * 4 for agent in env.agents})
+                observations, rewards, terminations, truncations, _ = result
+                episode.append(observations["vehicle"])
+                self.assertFalse(terminations["vehicle"])
+                self.assertEqual(rewards["vehicle"], observations["vehicle"][0])
+            self.assertTrue(truncations["vehicle"])
+            self.assertEqual(len(episode), 6)
+            self.assertGreater(rewards["vehicle"], 0.5)
+            episodes.append(episode)
+        self.assertEqual(episodes[0], episodes[1], "a reset world is a fresh one")
+        self.assertEqual(env.session.seed, 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
