@@ -22,13 +22,15 @@ MODULES = {
     "physics": ["scene", "world", "magnetism", "math"],
     "media": ["scene", "world", "math"],
     "camera": ["scene", "world", "media", "math"],
+    "render": ["scene", "world", "math"],
     "devices": ["scene", "world", "physics", "media", "camera", "math"],
-    "simulation": ["scene", "world", "magnetism", "physics", "media", "camera", "devices", "math"],
+    "simulation": ["scene", "world", "magnetism", "physics", "media", "camera", "render", "devices",
+                   "math"],
     "wire": ["scene", "world", "protocol", "math"],
     "recording": ["scene", "world", "simulation", "wire", "protocol", "math"],
     "network": ["scene", "world", "wire", "protocol"],
-    "app": ["scene", "world", "magnetism", "physics", "media", "camera", "devices", "simulation",
-            "wire", "recording", "network", "math"],
+    "app": ["scene", "world", "magnetism", "physics", "media", "camera", "render", "devices",
+            "simulation", "wire", "recording", "network", "math"],
     "clients/cpp": ["protocol"],
     "clients/lua": ["clients/cpp"],
 }
@@ -40,6 +42,8 @@ LIBRARIES = {
     "Bullet": (r"bullet/|bt[A-Z]\w*\.h$|Bullet\w*/|LinearMath/", ["physics"]),
     "protobuf": (r"google/protobuf/", ["protocol", "wire", "recording", "network", "clients/cpp"]),
     "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "app", "clients/cpp"]),
+    "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
+    "libpng": (r"png\.h$", ["recording"]),
     "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua", "app"]),
 }
 

@@ -10,6 +10,7 @@
 #include "app/loading.h"
 #include "app/options.h"
 #include "app/scripts.h"
+#include "scene/tag_pattern.h"
 #include "simulation/simulation.h"
 
 namespace ziggurat::app {
@@ -28,6 +29,22 @@ struct Finding {
   }
 };
 
+// What pictures can't show.
+void add_plain_tags(const scene::Scene& scene, std::vector<scene::Problem>& problems) {
+  const auto add = [&](const scene::Entity& entity) {
+    for (const auto& tag : entity.devices.tags) {
+      if (scene::tag_pattern(tag.payload)) continue;
+      problems.push_back({Severity::notice, scene.files[tag.where.file], tag.where,
+                          fmt::format("tag '{}' of '{}' is a plain white square in pictures; a "
+                                      "payload that is an integer 0 to 586 is drawn as that "
+                                      "pattern of AprilTag 36h11",
+                                      tag.id, entity.id)});
+    }
+  };
+  for (const auto& entity : scene.entities) add(entity);
+  for (const auto& distribution : scene.distributions) add(distribution.entity);
+}
+
 // Reads the file, compiles the scripts and, if all is well so far, places everything.
 Finding examine(const std::string& path, const Options& options) {
   auto read = scene::read_file(path, options.reading);
@@ -37,6 +54,7 @@ Finding examine(const std::string& path, const Options& options) {
   };
   add(check_scripts(read.scene, path));
   if (finding.count(Severity::fault) > 0) return finding;
+  add_plain_tags(read.scene, finding.problems);
   try {
     const simulation::Simulation simulation(read.scene, {choose_seed(options, read.scene), {}});
     finding.entities = simulation.layout().entities.size();

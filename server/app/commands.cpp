@@ -13,6 +13,7 @@ constexpr Command table[] = {
     {"run", "run a scene with its controllers", help_run, execute_run},
     {"serve", "run a scene for controllers that connect from outside", help_serve, execute_serve},
     {"check", "report every fault and notice of scene files", help_check, execute_check},
+    {"render", "draw a scene at given times", help_render, execute_render},
     {"magnetism", "plot what two magnets of a scene do to each other", help_magnetism,
      execute_magnetism},
     {"help", "explain a command", help_help, execute_help},

@@ -34,6 +34,7 @@ const Command& command_named(const std::string& name);
 std::string help_run();
 std::string help_serve();
 std::string help_check();
+std::string help_render();
 std::string help_magnetism();
 std::string help_help();
 
@@ -41,6 +42,7 @@ std::string help_help();
 int execute_run(const Arguments& arguments);
 int execute_serve(const Arguments& arguments);
 int execute_check(const Arguments& arguments);
+int execute_render(const Arguments& arguments);
 int execute_magnetism(const Arguments& arguments);
 int execute_help(const Arguments& arguments);
 

@@ -45,18 +45,23 @@ wire::Run wire_run(const scene::Scene& scene, const simulation::Simulation& simu
 
 Plan make_plan(const Options& options, const scene::Scene& scene) {
   Plan plan;
-  plan.ticks = tick_count(options, scene);
+  plan.ticks = options.pictures ? last_tick(*options.pictures, scene.experiment)
+                                : tick_count(options, scene);
   plan.real_time = options.real_time;
-  if (!plan.real_time && scene.experiment.real_time) plan.real_time = 1;
+  if (!plan.real_time && !options.pictures && scene.experiment.real_time) plan.real_time = 1;
   return plan;
 }
 
-// Robots whose Lua controller names no script: nobody drives them, nobody waits for them.
+// Nobody drives them, nobody waits for them: robots whose Lua controller names no script, or all if
+// controllers are not wanted.
 std::vector<std::size_t> undriven_robots(const scene::Scene& scene, const world::Layout& layout,
-                                         const std::vector<std::string>& scripts) {
+                                         const std::vector<std::string>& scripts,
+                                         bool with_controllers) {
   std::vector<std::size_t> robots;
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
-    if (runs_script(scene.controllers[layout.robots[r].controller]) && scripts[r].empty()) {
+    if (!with_controllers) {
+      robots.push_back(r);
+    } else if (runs_script(scene.controllers[layout.robots[r].controller]) && scripts[r].empty()) {
       robots.push_back(r);
     }
   }
@@ -143,16 +148,19 @@ int execute(const Options& options, Service service) {
   const PrivateFolder folder;
   const auto run = wire_run(scene, simulation, scripts, seed);
   network::Server server(network_config(options, service, folder), run);
-  const auto undriven = undriven_robots(scene, simulation.layout(), scripts);
+  // A picture of tick 0 is taken before anybody had a say.
+  const bool with_controllers =
+      !options.without_controllers && !(options.pictures && plan.ticks == 0);
+  const auto undriven = undriven_robots(scene, simulation.layout(), scripts, with_controllers);
   server.remove_robots(undriven);
-  Recorders recorders(options, simulation.layout());
+  Recorders recorders(options, scene, seed, simulation.layout());
   if (options.seed.value_or(scene.experiment.random_seed) == 0) {
     console.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", seed));
   }
   if (service == Service::serve) announce(options, server, console);
 
   std::vector<ControllerProcess> processes;
-  if (service == Service::run) {
+  if (service == Service::run && with_controllers) {
     const Surroundings surroundings{server.endpoints().front(), folder.path(), find_lua_runner(),
                                     options.lua_processes};
     processes = start_all(plan_controllers(scene, simulation.layout(), scripts, surroundings),
@@ -181,6 +189,7 @@ int execute(const Options& options, Service service) {
   watch.wind_down(end_message(summary));
   summary.failures = watch.failures();
   recorders.write_summary(summary);
+  for (const auto& picture : recorders.pictures()) console.result(picture);
   conclude(options, summary, console);
   return exit_code_of(summary);
 }

@@ -26,17 +26,19 @@ po::options_description reading_options() {
   return options;
 }
 
+constexpr const char* seed_help = "random seed; 0 draws one from the system and prints it";
+constexpr const char* clock_help =
+    "physical time per tick: 1/ticks_per_second, or the slow clock of ARGoS 3.0.0-beta50";
+
 po::options_description world_options() {
   po::options_description options("The run", width);
   options.add_options()                                                  //
       ("ticks", text("N"), "N ticks, whatever the scene's length says")  //
       ("duration", text("S"),
        "S simulated seconds, whatever the scene's length says; "
-       "0 is until Ctrl-C")                                                          //
-      ("seed", text("N"), "random seed; 0 draws one from the system and prints it")  //
-      ("clock", text("nominal|beta50"),
-       "physical time per tick: 1/ticks_per_second, or the "
-       "slow clock of ARGoS 3.0.0-beta50")  //
+       "0 is until Ctrl-C")                          //
+      ("seed", text("N"), seed_help)                 //
+      ("clock", text("nominal|beta50"), clock_help)  //
       ("real-time", po::value<std::string>()->implicit_value("1")->value_name("FACTOR"),
        "pace to the wall clock, FACTOR times as fast (1 if left out)")  //
       ("endpoint", texts("URL"),
@@ -48,16 +50,38 @@ po::options_description world_options() {
 
 po::options_description output_options() {
   po::options_description options("What comes out", width);
-  options.add_options()                                                                        //
-      ("quiet", "no progress, notices and summary on stderr")                                  //
-      ("json", "messages for machines: one JSON object a line")                                //
-      ("hash", "last line of stdout: hash TICK DIGITS of the final state")                     //
-      ("hash-file", text("FILE"), "such a line for every tick")                                //
-      ("trace", text("FILE.csv"), "world poses of everything at every tick")                   //
-      ("readings", text("FILE.jsonl"), "what robots sensed and answered at every tick")        //
-      ("rays", text("FILE.jsonl"), "tested rays and radio links of devices with show_rays")  //
-      ("images", text("DIR"), "camera images; no camera takes any yet: the folder is empty")   //
+  options.add_options()                                                                       //
+      ("quiet", "no progress, notices and summary on stderr")                                 //
+      ("json", "messages for machines: one JSON object a line")                               //
+      ("hash", "last line of stdout: hash TICK DIGITS of the final state")                    //
+      ("hash-file", text("FILE"), "such a line for every tick")                               //
+      ("trace", text("FILE.csv"), "world poses of everything at every tick")                  //
+      ("readings", text("FILE.jsonl"), "what robots sensed and answered at every tick")       //
+      ("rays", text("FILE.jsonl"), "tested rays and radio links of devices with show_rays")   //
+      ("images", text("DIR"), "camera images; no camera takes any yet: the folder is empty")  //
       ("summary", text("FILE.json"), "the summary for machines");
+  return options;
+}
+
+po::options_description controller_options() {
+  po::options_description options("Controllers", width);
+  options.add_options()  //
+      ("lua-processes", text("N"),
+       "share the Lua robots among N processes; 1 if left out, "
+       "0 is one for each robot")  //
+      ("controller", texts("ID=CMD"), "the scene's controller ID is CMD, whatever the scene says");
+  return options;
+}
+
+po::options_description picture_options() {
+  po::options_description options("The picture", width);
+  options.add_options()                                                                      //
+      ("out", text("FILE.png"), "where to; of several pictures, %03d in it is the number")   //
+      ("at", text("S,S,..."), "simulated seconds, of a picture each; 0 if left out")         //
+      ("eye", text("X,Y,Z"), "from where [m]; so that the whole arena is seen if left out")  //
+      ("look-at", text("X,Y,Z"), "to where [m]; the middle of the arena if left out")        //
+      ("size", text("WxH"), "pixels; 1280x720 if left out")                                  //
+      ("fov", text("DEGREES"), "angle from the left edge to the right; 46 if left out");
   return options;
 }
 
@@ -84,12 +108,7 @@ std::pair<std::string, std::string> to_controller(const std::string& value) {
 }  // namespace
 
 po::options_description run_options() {
-  po::options_description processes("Controllers", width);
-  processes.add_options()  //
-      ("lua-processes", text("N"),
-       "share the Lua robots among N processes; 1 if left out, "
-       "0 is one for each robot")  //
-      ("controller", texts("ID=CMD"), "the scene's controller ID is CMD, whatever the scene says");
+  const po::options_description processes = controller_options();
   po::options_description options("", width);
   options.add(world_options()).add(processes).add(output_options()).add(reading_options());
   return options;
@@ -105,6 +124,18 @@ po::options_description check_options() {
   po::options_description options("", width);
   options.add(reading_options())
       .add_options()("json", "the report as JSON on stdout")("quiet", "faults only");
+  return options;
+}
+
+po::options_description render_options() {
+  po::options_description run("The run", width);
+  run.add_options()                                  //
+      ("seed", text("N"), seed_help)                 //
+      ("clock", text("nominal|beta50"), clock_help)  //
+      ("without-controllers", "nobody drives the robots")("quiet", "no notices and no summary")(
+          "json", "messages for machines: one JSON object a line");
+  po::options_description options("", width);
+  options.add(picture_options()).add(run).add(controller_options()).add(reading_options());
   return options;
 }
 
@@ -141,6 +172,7 @@ Options parse_options(const Arguments& arguments, const po::options_description&
   }
   for (const auto& each : list("controller")) options.controllers.push_back(to_controller(each));
   options.endpoints = list("endpoint");
+  options.without_controllers = flag("without-controllers");
   options.insecure = flag("insecure");
   options.quiet = flag("quiet");
   options.json = flag("json");

@@ -1,5 +1,5 @@
 #pragma once
-// What the command line of `run`, `serve` and `check` may say, as plain data.
+// What the command line of `run`, `serve`, `check` and `render` may say, as plain data.
 
 #include <boost/program_options/options_description.hpp>
 #include <cstddef>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/pictures.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
 
@@ -28,18 +29,21 @@ struct Options {
   unsigned lua_processes = 1;                                    ///< 0 = one per robot
   std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command
   std::vector<std::string> endpoints;
-  bool insecure = false;  ///< endpoints may be reached from other machines
+  bool without_controllers = false;  ///< nobody drives the robots
+  bool insecure = false;             ///< endpoints may be reached from other machines
 
   bool quiet = false;
   bool json = false;
   bool hash = false;
   std::string hash_file, trace, readings, rays, images, summary;  ///< paths; empty = none
+  std::optional<PictureOptions> pictures;  ///< the run ends with the last of them
 };
 
 /// What each command understands, in groups with headings as its help prints them.
 boost::program_options::options_description run_options();
 boost::program_options::options_description serve_options();
 boost::program_options::options_description check_options();
+boost::program_options::options_description render_options();
 
 /// @throws UsageError
 Options parse_options(const Arguments& arguments,

@@ -5,14 +5,20 @@
 #include <exception>
 #include <filesystem>
 
+#include "simulation/place.h"
+
 namespace ziggurat::app {
 
-Recorders::Recorders(const Options& options, const world::Layout& layout) {
+Recorders::Recorders(const Options& options, const scene::Scene& scene, std::uint64_t seed,
+                     const world::Layout& layout) {
   if (!options.trace.empty()) trace_.emplace(options.trace, layout);
   if (!options.hash_file.empty()) hashes_.emplace(options.hash_file);
   if (!options.readings.empty()) readings_.emplace(options.readings, layout);
   if (!options.summary.empty()) summary_.emplace(options.summary);
   if (!options.rays.empty()) rays_.emplace(options.rays, layout);
+  if (options.pictures) {
+    pictures_.emplace(*options.pictures, scene, simulation::place(scene, seed), layout);
+  }
   if (!options.images.empty()) {
     std::error_code error;
     std::filesystem::create_directories(options.images, error);
@@ -27,6 +33,7 @@ void Recorders::tick(const simulation::Simulation& simulation) {
   if (trace_) trace_->write(simulation.state());
   if (hashes_) hashes_->write(simulation.state().tick, simulation.hash());
   if (rays_) rays_->write(simulation.state());
+  if (pictures_) pictures_->tick(simulation.state());
 }
 
 void Recorders::exchange(const world::State& state, const world::Observations& observations,
@@ -49,6 +56,10 @@ void Recorders::close() {
   close(readings_);
   close(rays_);
   if (first) std::rethrow_exception(first);
+}
+
+std::span<const std::string> Recorders::pictures() const {
+  return pictures_ ? std::span(pictures_->taken()) : std::span<const std::string>();
 }
 
 void Recorders::write_summary(const Summary& summary) {

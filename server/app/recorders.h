@@ -1,9 +1,13 @@
 #pragma once
 // The files that a run leaves behind, as the command line asks for them.
 
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 
 #include "app/options.h"
+#include "app/pictures.h"
 #include "app/summary.h"
 #include "recording/hash_file.h"
 #include "recording/rays.h"
@@ -17,7 +21,11 @@ class Recorders {
  public:
   /// Creates all files, so that a path that can't be written is known before the run.
   /// @throws recording::WriteError
-  Recorders(const Options& options, const world::Layout& layout);
+  /// @param scene, layout  have to outlive this
+  /// @param seed  the one that the simulation was made with
+  /// @throws render::RenderError if pictures are wanted and can't be had
+  Recorders(const Options& options, const scene::Scene& scene, std::uint64_t seed,
+            const world::Layout& layout);
 
   /// After a tick, and once for tick 0. @throws recording::WriteError
   void tick(const simulation::Simulation& simulation);
@@ -30,6 +38,9 @@ class Recorders {
   /// @throws recording::WriteError
   void close();
 
+  /// The paths of the pictures that were taken so far.
+  std::span<const std::string> pictures() const;
+
   /// @throws recording::WriteError
   void write_summary(const Summary& summary);
 
@@ -39,6 +50,7 @@ class Recorders {
   std::optional<recording::Readings> readings_;
   std::optional<recording::Rays> rays_;
   std::optional<recording::OutputFile> summary_;
+  std::optional<Pictures> pictures_;
 };
 
 }  // namespace ziggurat::app

@@ -1,0 +1,15 @@
+#pragma once
+// Pictures as PNG files.
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace ziggurat::recording {
+
+/// @param rgb  width * height * 3 bytes, rows from top to bottom
+/// @throws WriteError
+void write_png(const std::string& path, unsigned width, unsigned height,
+               std::span<const std::uint8_t> rgb);
+
+}  // namespace ziggurat::recording

@@ -1,0 +1,51 @@
+#pragma once
+// Draws arrays with OpenGL, and gives the pixels back.
+
+#include <cstdint>
+#include <vector>
+
+#include "render/drawing.h"
+#include "render/opengl.h"
+
+namespace ziggurat::render {
+
+/// Each pixel of a picture is the mean of so many by so many rendered ones, and each of these has
+/// four samples for the outlines of things.
+constexpr unsigned oversampling = 2;
+
+class Canvas {
+ public:
+  /// @throws RenderError
+  explicit Canvas(const Meshes& meshes);
+
+  /// @throws RenderError if OpenGL fails
+  void draw(const Drawing& drawing, const Model& model, const View& view, Picture& picture);
+
+ private:
+  struct Tile {
+    unsigned x, y, width, height;  ///< [px] of the picture
+  };
+
+  void make_programs();
+  void make_body_arrays(const Meshes& meshes);
+  void make_mark_arrays();
+  void make_shadow_map();
+  void make_target(unsigned width, unsigned height);
+  void set_frame(const Drawing& drawing, const Model& model, const View& view, const Tile& tile);
+  void draw_shadows(const Drawing& drawing);
+  void draw_tile(const Drawing& drawing, const Tile& tile, Picture& picture);
+  void draw_bodies(const Drawing& drawing, bool with_hidden);
+  void check() const;
+
+  Context context_;
+  GLuint body_program_ = 0, shadow_program_ = 0, surroundings_program_ = 0, mark_program_ = 0;
+  GLuint body_arrays_ = 0, mark_arrays_ = 0, no_arrays_ = 0;
+  GLuint body_instances_ = 0, mark_instances_ = 0, frame_ = 0;
+  GLuint shadow_map_ = 0, shadow_target_ = 0;
+  GLuint sampled_ = 0, resolved_ = 0;              // framebuffers: four samples per pixel, and one
+  GLuint buffers_[3]{};                            // theirs
+  unsigned target_width_ = 0, target_height_ = 0;  // of these [rendered px]
+  std::vector<std::uint8_t> pixels_;               // read back: RGBA, top row first
+};
+
+}  // namespace ziggurat::render

@@ -1,0 +1,83 @@
+#pragma once
+// One view of a state as the arrays that are drawn, in the camera's frame. No OpenGL here.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "render/meshes.h"
+#include "render/model.h"
+#include "render/view.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::render {
+
+using Float3 = std::array<float, 3>;
+using Matrix4 = std::array<float, 16>;  ///< column by column
+
+/// A link. Camera frame: +z forward, +x right, +y down [m].
+struct BodyInstance {
+  std::array<Float3, 3> axes;  ///< of the link's frame, as long as the mesh's axes stand for [m]
+  Float3 position;
+  Float3 size;   ///< full extents along the link's axes [m]
+  Float3 color;  ///< linear light
+};
+
+/// A tag or LED: a flat square, or the disc in it.
+struct MarkInstance {
+  enum Kind : std::uint32_t { pattern, plain, disc };
+  Float3 center;
+  Float3 x, y;   ///< half sides, along the axes of its frame [m]; seen from x cross y
+  Float3 color;  ///< sRGB; of discs
+  std::array<std::uint32_t, 3> code;  ///< kind; a pattern's bits 0 to 31, and 32 to 35
+};
+
+/// Links that are drawn as one mesh: first those in view, then those that only throw shadows.
+struct Batch {
+  Mesh mesh;
+  std::size_t first = 0;             ///< into Drawing::bodies
+  std::size_t visible = 0, all = 0;  ///< counts
+};
+
+struct Drawing {
+  std::vector<BodyInstance> bodies;
+  std::vector<Batch> batches;
+  std::vector<MarkInstance> marks;
+  Float3 sun;               ///< unit, towards the sun
+  Float3 right, ahead, up;  ///< world's x, y and z
+  Matrix4
+      light_from_camera;    ///< to 0 ... 1 in x and y on the shadow map, and in z away from the sun
+  double shadow_texel = 0;  ///< side of a texel of the shadow map [m]; 0: no shadows
+};
+
+/// The side of the shadow map [texels].
+constexpr unsigned shadow_size = 2048;
+
+/// Fills a drawing anew; keeps its memory.
+class Draftsman {
+ public:
+  Draftsman(Model model, const world::Layout& layout);
+
+  const Meshes& meshes() const { return meshes_; }
+  const Model& model() const { return model_; }
+  void draw(const world::State& state, const View& view, Drawing& drawing);
+
+ private:
+  struct Bucket {
+    std::vector<BodyInstance> visible, hidden;
+  };
+  Bucket& bucket_for(const Body& body, double pixels);
+  void add_bodies(const world::State& state, const View& view, Drawing& drawing);
+  void add_marks(const world::State& state, const View& view, Drawing& drawing) const;
+
+  Model model_;
+  const world::Layout& layout_;
+  Meshes meshes_;
+  std::vector<Mesh> mesh_of_bucket_;
+  std::vector<Bucket> buckets_;
+};
+
+}  // namespace ziggurat::render

@@ -1,0 +1,40 @@
+#pragma once
+// The three shapes of links as triangles, in sizes of one, standing on their bottom centre.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ziggurat::render {
+
+struct Vertex {
+  std::array<float, 3> position;  ///< of a unit box, or of a cylinder or sphere of radius 1
+  std::array<float, 3> normal;    ///< unit, outwards
+  /// Where the face's edges are: the vertex' coordinate along each axis with edges at -1 and 1.
+  std::array<float, 3> edge;
+};
+
+/// A part of the arrays of Meshes. Triangles are counterclockwise seen from outside.
+struct Mesh {
+  std::uint32_t first_index = 0, indices = 0;
+  std::int32_t base_vertex = 0;
+};
+
+/// How finely a round shape is cut: number of straight pieces around it.
+constexpr std::array<unsigned, 5> roundness{16, 32, 64, 128, 256};
+
+struct Meshes {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+
+  Mesh box;
+  std::array<Mesh, roundness.size()> cylinders, spheres;  ///< by place in `roundness`
+};
+
+Meshes make_meshes();
+
+/// Place in `roundness` for a radius of so many pixels, so that straight pieces can't be told.
+std::size_t roundness_for(double radius);
+
+}  // namespace ziggurat::render

@@ -1,0 +1,30 @@
+#pragma once
+// What a scene looks like, as far as it stays the same: the surfaces of its links, and its floor.
+
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace ziggurat::render {
+
+/// Red, green, blue, 0 to 1, linear light.
+using Rgb = Eigen::Vector3f;
+
+/// The surface of a link.
+struct Body {
+  scene::Geometry geometry;  ///< stands on its bottom centre
+  Rgb color;
+};
+
+struct Model {
+  std::vector<Body> bodies;                               ///< one per link, as State::links
+  bool has_floor = false;                                 ///< at z = 0
+  double tile = 0;                                        ///< side of the squares on the floor [m]
+  math::Vector2 arena_center = math::Vector2::Zero();     ///< [m]
+  math::Vector2 arena_half_size = math::Vector2::Zero();  ///< [m]
+};
+
+/// @param entities  all of them, placed, in scene order
+Model make_model(const scene::Scene& scene, const std::vector<scene::Entity>& entities);
+
+}  // namespace ziggurat::render

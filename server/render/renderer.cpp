@@ -1,0 +1,36 @@
+#include "render/renderer.h"
+
+#include <optional>
+
+#include "render/canvas.h"
+#include "render/drawing.h"
+#include "render/model.h"
+
+namespace ziggurat::render {
+
+struct Renderer::Parts {
+  Parts(Model model, const world::Layout& layout) : draftsman(std::move(model), layout) {}
+
+  Draftsman draftsman;
+  Drawing drawing;
+  std::optional<Canvas> canvas;
+};
+
+Renderer::Renderer(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
+                   const world::Layout& layout)
+    : parts_(std::make_unique<Parts>(make_model(scene, entities), layout)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+
+void Renderer::prepare() {
+  if (!parts_->canvas) parts_->canvas.emplace(parts_->draftsman.meshes());
+}
+
+void Renderer::draw(const world::State& state, const View& view, Picture& picture) {
+  prepare();
+  Parts& p = *parts_;
+  p.draftsman.draw(state, view, p.drawing);
+  p.canvas->draw(p.drawing, p.draftsman.model(), view, picture);
+}
+
+}  // namespace ziggurat::render

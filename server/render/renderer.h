@@ -1,0 +1,39 @@
+#pragma once
+// Pictures of a state, on the CPU, without a display.
+
+#include <memory>
+#include <vector>
+
+#include "render/opengl.h"
+#include "render/view.h"
+#include "scene/scene.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::render {
+
+/// Draws links, the floor, tags and LEDs as anybody would see them. Nothing is loaded or made
+/// before the first picture. The same state and view give the same bytes on one machine.
+class Renderer {
+ public:
+  /// @param entities  all of them, placed, in scene order
+  /// @param layout    has to outlive this
+  Renderer(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
+           const world::Layout& layout);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+
+  /// Loads and makes what pictures need, so that what is missing is known before the first.
+  /// @throws RenderError
+  void prepare();
+
+  /// Everything in view at any distance, whatever a camera's range is.
+  /// @throws RenderError
+  void draw(const world::State& state, const View& view, Picture& picture);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace ziggurat::render

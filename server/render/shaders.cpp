@@ -1,0 +1,221 @@
+#include "render/shaders.h"
+
+namespace ziggurat::render::shaders {
+
+// Everything is in the camera's frame: z forward, x right, y down. Depth is near / z, with 1 at the
+// near plane and 0 at infinity: in floating point it is equally fine, relatively, at all distances.
+const char* const common = R"(#version 450 core
+layout(std140, binding = 0) uniform Frame {
+  mat4 clip_from_camera;
+  mat4 light_from_camera;
+  vec4 sun;    // towards it; w: side of a texel of the shadow map [m], 0: no shadows
+  vec4 right;  // world's x, y and z; w: the eye's coordinate along them, less the origin of tiles
+  vec4 ahead;
+  vec4 up;
+  vec4 ground;  // side of a tile [m], whether there is a floor, near plane [m], unused
+  vec4 arena;   // centre less the origin of tiles, half size [m]
+};
+layout(binding = 0) uniform sampler2DShadow shadow_map;
+
+const vec3 horizon = vec3(0.74, 0.79, 0.84);
+const vec3 zenith = vec3(0.30, 0.45, 0.66);
+
+float sunlight(vec3 position, vec3 normal) {
+  float facing = dot(normal, sun.xyz);
+  if (facing <= 0.0) return 0.0;
+  if (sun.w == 0.0) return facing;
+  vec4 place = light_from_camera * vec4(position + normal * (1.5 * sun.w), 1.0);
+  float sum = 0.0;
+  const float texel = 1.0 / textureSize(shadow_map, 0).x;
+  for (int i = -1; i <= 1; ++i)
+    for (int j = -1; j <= 1; ++j)
+      sum += texture(shadow_map, vec3(place.xy + texel * vec2(i, j), min(place.z, 1.0)));
+  return facing * sum / 9.0;
+}
+
+vec3 shaded(vec3 albedo, vec3 position, vec3 normal) {
+  vec3 ambient = mix(vec3(0.30, 0.28, 0.26), vec3(0.46, 0.50, 0.56), 0.5 + 0.5 * dot(normal, up.xyz));
+  float sunny = sunlight(position, normal);
+  vec3 halfway = normalize(sun.xyz - normalize(position));
+  float gloss = 0.10 * pow(max(dot(normal, halfway), 0.0), 40.0) * sunny;
+  return albedo * (ambient + vec3(0.72, 0.68, 0.62) * sunny) + gloss;
+}
+
+vec4 shown(vec3 light) { return vec4(pow(clamp(light, 0.0, 1.0), vec3(1.0 / 2.2)), 1.0); }
+)";
+
+const char* const body_vertex = R"(
+layout(location = 0) in vec3 vertex;
+layout(location = 1) in vec3 vertex_normal;
+layout(location = 2) in vec3 vertex_edge;
+layout(location = 3) in mat3 axes;
+layout(location = 6) in vec3 origin;
+layout(location = 7) in vec3 full_size;
+layout(location = 8) in vec3 albedo;
+out vec3 position;
+out vec3 normal;
+out vec3 edge;
+flat out vec3 size;
+flat out vec3 color;
+
+void main() {
+  position = axes * vertex + origin;
+  normal = mat3(normalize(axes[0]), normalize(axes[1]), normalize(axes[2])) * vertex_normal;
+  edge = vertex_edge;
+  size = full_size;
+  color = albedo;
+  gl_Position = clip_from_camera * vec4(position, 1.0);
+}
+)";
+
+// Edges are drawn a little darker, so that blocks on blocks can be told apart.
+const char* const body_fragment = R"(
+in vec3 position;
+in vec3 normal;
+in vec3 edge;
+flat in vec3 size;
+flat in vec3 color;
+layout(location = 0) out vec4 pixel;
+
+void main() {
+  vec3 distances = abs(1.0 - abs(edge)) * 0.5 * size;
+  float distance_to_edge = min(distances.x, min(distances.y, distances.z));
+  float smallest = min(size.x, min(size.y, size.z));
+  float footprint = max(fwidth(distance_to_edge), 1e-9);
+  float width = max(0.012 * smallest, 0.8 * footprint);
+  float line = clamp((width - distance_to_edge) / footprint + 0.5, 0.0, 1.0);
+  line *= clamp(smallest / (24.0 * footprint), 0.0, 1.0);
+  pixel = shown(shaded(color * (1.0 - 0.45 * line), position, normalize(normal)));
+}
+)";
+
+const char* const shadow_vertex = R"(
+layout(location = 0) in vec3 vertex;
+layout(location = 3) in mat3 axes;
+layout(location = 6) in vec3 origin;
+
+void main() {
+  vec4 place = light_from_camera * vec4(axes * vertex + origin, 1.0);
+  gl_Position = vec4(2.0 * place.xy - 1.0, place.z, 1.0);
+}
+)";
+
+const char* const shadow_fragment = R"(
+void main() {}
+)";
+
+const char* const surroundings_vertex = R"(
+out vec2 at;
+
+void main() {
+  at = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  gl_Position = vec4(at, 0.0, 1.0);
+}
+)";
+
+// Sky, and the floor as a plane without end that fades into the horizon.
+const char* const surroundings_fragment = R"(
+in vec2 at;
+layout(location = 0) out vec4 pixel;
+
+// Mean of a checkerboard over a pixel's footprint: -1 to 1.
+float checks(vec2 place, vec2 footprint) {
+  vec2 w = max(footprint, 1e-6);
+  vec2 low = abs(fract((place - 0.5 * w) * 0.5) - 0.5);
+  vec2 high = abs(fract((place + 0.5 * w) * 0.5) - 0.5);
+  vec2 mean = 2.0 * (low - high) / w;
+  return mean.x * mean.y;
+}
+
+void main() {
+  vec3 ray = vec3((at.x - clip_from_camera[2][0]) / clip_from_camera[0][0],
+                  (at.y - clip_from_camera[2][1]) / clip_from_camera[1][1], 1.0);
+  float steepness = dot(up.xyz, ray);
+  float slope = steepness / length(ray);
+  vec3 sky = mix(horizon, zenith, pow(clamp(abs(slope), 0.0, 1.0), 0.7));
+  float forward = steepness == 0.0 ? -1.0 : -up.w / steepness;
+
+  vec3 position = ray * forward;
+  vec2 place = vec2(dot(right.xyz, position) + right.w, dot(ahead.xyz, position) + ahead.w);
+  vec2 footprint = fwidth(place);
+  if (ground.y == 0.0 || forward <= 0.0) {
+    pixel = shown(sky);
+    gl_FragDepth = 0.0;
+    return;
+  }
+  float contrast = 0.035 * checks(place / ground.x, footprint / ground.x);
+  vec2 beyond = (abs(place - arena.xy) - arena.zw) / max(footprint, 1e-6);
+  float inside = clamp(0.5 - max(beyond.x, beyond.y), 0.0, 1.0);
+  vec3 albedo = mix(vec3(0.40, 0.41, 0.42), vec3(0.56, 0.57, 0.58), inside) * (1.0 + contrast);
+  vec3 normal = up.w >= 0.0 ? up.xyz : -up.xyz;
+  float extent = length(arena.zw) + abs(up.w);
+  float haze = 1.0 - exp(-max(length(position) - 2.0 * extent, 0.0) / (6.0 * extent));
+  pixel = shown(mix(shaded(albedo, position, normal), horizon, haze));
+  gl_FragDepth = ground.z / forward;
+}
+)";
+
+// Tags and LEDs have their own colours, whatever the light: so they are always legible.
+const char* const mark_vertex = R"(
+layout(location = 0) in vec3 center;
+layout(location = 1) in vec3 half_x;
+layout(location = 2) in vec3 half_y;
+layout(location = 3) in vec3 disc_color;
+layout(location = 4) in uvec3 instance_code;
+out vec2 at;
+flat out vec3 color;
+flat out uvec3 code;
+
+void main() {
+  at = vec2((gl_VertexID & 1) == 0 ? -1.0 : 1.0, (gl_VertexID & 2) == 0 ? -1.0 : 1.0);
+  color = disc_color;
+  code = instance_code;
+  gl_Position = clip_from_camera * vec4(center + half_x * at.x + half_y * at.y, 1.0);
+  gl_Position.z *= 1.0003;  // in front of the surface that it is mounted on
+}
+)";
+
+const char* const mark_fragment = R"(
+in vec2 at;
+flat in vec3 color;
+flat in uvec3 code;
+layout(location = 0) out vec4 pixel;
+
+const uint pattern = 0u, plain = 1u;
+const float white = 0.95, black = 0.06;
+
+// 10 x 10 modules; up is +x, right is -y.
+float tag(vec2 place) {
+  ivec2 module = ivec2(floor(vec2(0.5 - 0.5 * place.y, 0.5 - 0.5 * place.x) * 10.0));
+  if (any(lessThan(module, ivec2(1))) || any(greaterThan(module, ivec2(8)))) return white;
+  module -= 2;
+  if (any(lessThan(module, ivec2(0))) || any(greaterThan(module, ivec2(5)))) return black;
+  int bit = 35 - (module.y * 6 + module.x);
+  uint bits = bit < 32 ? code.y >> bit : code.z >> (bit - 32);
+  return (bits & 1u) == 0u ? black : white;
+}
+
+void main() {
+  if (code.x == plain) {
+    pixel = vec4(vec3(white), 1.0);
+    return;
+  }
+  // The mean over a pixel's footprint.
+  vec2 across = dFdx(at), down = dFdy(at);
+  vec4 sum = vec4(0.0);
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      vec2 place = at + across * (0.25 * float(i) - 0.375) + down * (0.25 * float(j) - 0.375);
+      if (code.x == pattern) {
+        sum += vec4(vec3(tag(place)), 1.0);
+      } else if (dot(place, place) <= 1.0) {
+        sum += vec4(dot(place, place) > 0.72 ? 0.55 * color : color, 1.0);
+      }
+    }
+  }
+  if (sum.w == 0.0) discard;
+  pixel = vec4(sum.rgb / sum.w, sum.w / 16.0);
+}
+)";
+
+}  // namespace ziggurat::render::shaders

@@ -1,0 +1,18 @@
+#pragma once
+// The programs that run per vertex and per pixel, in GLSL.
+
+namespace ziggurat::render::shaders {
+
+/// What all of them share: the uniforms, and the light. Goes before each of the others.
+extern const char* const common;
+
+extern const char* const body_vertex;
+extern const char* const body_fragment;
+extern const char* const shadow_vertex;
+extern const char* const shadow_fragment;
+extern const char* const surroundings_vertex;
+extern const char* const surroundings_fragment;
+extern const char* const mark_vertex;
+extern const char* const mark_fragment;
+
+}  // namespace ziggurat::render::shaders
