@@ -66,7 +66,7 @@ double median(std::vector<double>& values) {
 
 void measure(std::size_t count, bool flat) {
   Crowd crowd = make_crowd(count, flat);
-  media::DevicesIndex index(crowd.layout, false);
+  media::DevicesIndex index(crowd.layout);
   media::RadioMedium medium;
   world::RadioMessages sent, received;
   const std::vector<std::uint8_t> payload(8, 42);

@@ -8,7 +8,8 @@ Devices::Devices(const Setting& setting, physics::World& physics)
       proximity_(setting),
       range_and_bearing_(setting),
       positioning_(setting),
-      batteries_(setting) {}
+      batteries_(setting),
+      cameras_(setting) {}
 
 void Devices::start(Tick& tick) {
   joints_.start(tick);
@@ -30,6 +31,7 @@ void Devices::sense(Tick& tick) {
   range_and_bearing_.sense(tick);
   positioning_.sense(tick);
   batteries_.sense(tick);
+  cameras_.sense(tick);
 }
 
 }  // namespace ziggurat::devices

@@ -3,6 +3,7 @@
 // its lines here and in devices.cpp; docs/adding-a-device.md has the whole walk.
 
 #include "devices/battery.h"
+#include "devices/camera.h"
 #include "devices/joint.h"
 #include "devices/positioning.h"
 #include "devices/proximity.h"
@@ -28,8 +29,12 @@ class Devices {
   /// After physics, with rays and index at the new poses.
   void sense(Tick& tick);
 
-  bool casts_rays() const { return proximity_.casts_rays() || range_and_bearing_.casts_rays(); }
-  bool needs_index() const { return radios_.needs_index() || range_and_bearing_.needs_index(); }
+  bool casts_rays() const {
+    return proximity_.casts_rays() || range_and_bearing_.casts_rays() || cameras_.detects();
+  }
+  bool needs_index() const {
+    return radios_.needs_index() || range_and_bearing_.needs_index() || cameras_.detects();
+  }
 
  private:
   Joints joints_;
@@ -38,6 +43,7 @@ class Devices {
   RangeAndBearing range_and_bearing_;
   Positioning positioning_;
   Batteries batteries_;
+  Cameras cameras_;
 };
 
 }  // namespace ziggurat::devices

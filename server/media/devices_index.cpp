@@ -1,5 +1,8 @@
 #include "media/devices_index.h"
 
+#include <algorithm>
+#include <span>
+
 namespace ziggurat::media {
 namespace {
 
@@ -14,32 +17,68 @@ world::Range append(const List& list, bool wanted, std::vector<world::Mount>& mo
   return range;
 }
 
+/// Half the length of what a camera sees, or of its width or height if that is more [m].
+double reach(const world::CameraLayout& camera) {
+  double longest = camera.far - camera.near;
+  for (int axis = 0; axis < 2; ++axis) {
+    longest = std::max(longest, camera.resolution[axis] / camera.focal_length[axis] * camera.far);
+  }
+  return longest / 2;
+}
+
 }  // namespace
 
 bool reaches(double range, double distance) { return distance < range - rounding; }
 
-DevicesIndex::DevicesIndex(const world::Layout& layout, bool with_visible) {
+DevicesIndex::DevicesIndex(const world::Layout& layout) {
+  const auto detected = [&](auto detector) {
+    return std::ranges::any_of(layout.cameras, [&](const world::CameraLayout& camera) {
+      return (camera.*detector).has_value();
+    });
+  };
+  using Camera = world::CameraLayout;
   radios = append(layout.radios, true, mounts_);
   range_and_bearing = append(layout.range_and_bearing, true, mounts_);
-  leds = append(layout.leds, with_visible, mounts_);
-  directional_leds = append(layout.directional_leds, with_visible, mounts_);
-  tags = append(layout.tags, with_visible, mounts_);
+  senders_ = mounts_.size();
+  leds = append(layout.leds, detected(&Camera::leds), mounts_);
+  directional_leds = append(layout.directional_leds, detected(&Camera::directional_leds), mounts_);
+  tags = append(layout.tags, detected(&Camera::tags), mounts_);
   positions_.resize(mounts_.size());
   for (const auto& radio : layout.radios) ranges_.push_back(radio.range);
   for (const auto& device : layout.range_and_bearing) ranges_.push_back(device.range);
+  // Cells of what cameras see are as large as a usual view, however far apart devices are: then
+  // those in other places cost a view nothing.
+  std::vector<double> reaches;
+  for (const Camera& camera : layout.cameras) reaches.push_back(reach(camera));
+  std::ranges::sort(reaches);
+  if (!reaches.empty()) visible_cell_ = reaches[reaches.size() / 2];
 }
 
 void DevicesIndex::build(const world::State& state) {
+  bool moved[2] = {!built_, !built_};
   for (std::size_t i = 0; i < mounts_.size(); ++i) {
-    positions_[i] = world::position_of(state, mounts_[i]);
+    const math::Vector3 position = world::position_of(state, mounts_[i]);
+    if (position == positions_[i]) continue;
+    positions_[i] = position;
+    moved[i >= senders_] = true;
   }
-  index_.build(positions_, ranges_);
+  built_ = true;
+  const std::span all(positions_);
+  if (moved[0]) sending_.build(all.first(senders_), ranges_);
+  if (moved[1]) visible_.build(all.subspan(senders_), visible_cell_);
 }
 
 void DevicesIndex::find(const world::Range& kind, const math::Vector3& center, double radius,
                         std::vector<std::size_t>& found) const {
-  index_.find(center, radius, kind.begin, kind.end(), found);
+  sending_.find(center, radius, kind.begin, kind.end(), found);
   for (std::size_t& device : found) device -= kind.begin;
+}
+
+void DevicesIndex::find(const world::Range& kind, const math::Vector3& low,
+                        const math::Vector3& high, std::vector<std::size_t>& found) const {
+  const std::size_t begin = kind.begin - senders_;
+  visible_.find(low, high, begin, begin + kind.count, found);
+  for (std::size_t& device : found) device -= begin;
 }
 
 }  // namespace ziggurat::media

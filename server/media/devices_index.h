@@ -1,6 +1,6 @@
 #pragma once
-// Where the devices of all media are at one tick, found by place: one index for all of them, built
-// once per tick.
+// Where the devices of all media are at one tick, found by place: one index for those that send
+// to others and one for what cameras see, built anew where something moved.
 
 #include <cstddef>
 #include <vector>
@@ -13,32 +13,38 @@ namespace ziggurat::media {
 
 class DevicesIndex {
  public:
-  /// Keeps a reference to `layout`.
-  /// @param with_visible  also LEDs, directional LEDs and tags: somebody looks at them
-  DevicesIndex(const world::Layout& layout, bool with_visible);
+  /// LEDs, directional LEDs and tags are indexed if some camera detects them.
+  explicit DevicesIndex(const world::Layout& layout);
 
   /// Takes the poses of a tick.
   void build(const world::State& state);
 
-  // Each kind's stretch in `positions`; empty if nobody asks for it.
+  // Each kind's stretch of all devices; empty if nobody asks for it.
   world::Range radios, range_and_bearing, leds, directional_leds, tags;
 
-  /// Of all devices that are indexed, in W [m].
-  const std::vector<math::Vector3>& positions() const { return positions_; }
+  /// In W [m].
   const math::Vector3& position(const world::Range& kind, std::size_t device) const {
     return positions_[kind.begin + device];
   }
 
-  /// Devices of a kind strictly closer to `center` than `radius`, ascending.
+  /// Radios or range-and-bearing devices strictly closer to `center` than `radius`, ascending.
   /// @param found  emptied before; positions in the kind's list in Layout
   void find(const world::Range& kind, const math::Vector3& center, double radius,
             std::vector<std::size_t>& found) const;
 
+  /// LEDs, directional LEDs or tags in the box from `low` to `high`, its surface included; as
+  /// above.
+  void find(const world::Range& kind, const math::Vector3& low, const math::Vector3& high,
+            std::vector<std::size_t>& found) const;
+
  private:
-  std::vector<world::Mount> mounts_;  // of all devices
-  std::vector<double> ranges_;        // of those that send [m]
+  std::vector<world::Mount> mounts_;  // of all devices: those that send, then what is seen
+  std::size_t senders_ = 0;
+  std::vector<double> ranges_;  // of those that send [m]
+  double visible_cell_ = 1;     // [m]
+  bool built_ = false;
   std::vector<math::Vector3> positions_;
-  SpatialIndex index_;
+  SpatialIndex sending_, visible_;
 };
 
 /// Whether a receiver at this distance hears a sender of this range [m]: strictly closer. Less than

@@ -42,13 +42,15 @@ double SpatialIndex::choose_cell(std::span<const Vector3> points, std::span<cons
   // The middle of the points decides, so that a few that are far away change nothing.
   std::array<double, 3> extents{};
   for (int axis = 0; axis < 3; ++axis) {
-    sample(points.size(), [&](std::size_t i) { return points[i][axis]; }, sample_);
+    sample(
+        points.size(), [&](std::size_t i) { return points[i][axis]; }, sample_);
     if (sample_.empty()) continue;
     const std::size_t tenth = sample_.size() / 10;
     extents[axis] = sample_[sample_.size() - 1 - tenth] - sample_[tenth];
   }
   const double apart = spacing(extents, 0.8 * static_cast<double>(points.size()) + 1);
-  sample(radii.size(), [&](std::size_t i) { return radii[i]; }, sample_);
+  sample(
+      radii.size(), [&](std::size_t i) { return radii[i]; }, sample_);
   const double usual = sample_.empty() ? 0 : sample_[sample_.size() / 2];
   return std::max({apart, usual, smallest_cell});
 }
@@ -73,7 +75,11 @@ std::size_t SpatialIndex::bucket_of(const Cell& cell) const {
 }
 
 void SpatialIndex::build(std::span<const Vector3> points, std::span<const double> radii) {
-  cell_ = choose_cell(points, radii);
+  build(points, choose_cell(points, radii));
+}
+
+void SpatialIndex::build(std::span<const Vector3> points, double cell) {
+  cell_ = std::max(cell, smallest_cell);
   std::size_t buckets = 1;
   while (buckets < points.size()) buckets *= 2;
   mask_ = buckets - 1;
@@ -95,43 +101,63 @@ void SpatialIndex::build(std::span<const Vector3> points, std::span<const double
   }
 }
 
-void SpatialIndex::find_everywhere(const Vector3& center, double radius, std::size_t first,
-                                   std::size_t last, std::vector<std::size_t>& found) const {
-  for (const Item& item : items_) {
-    if (item.index < first || item.index >= last) continue;
-    if ((item.point - center).norm() < radius) found.push_back(item.index);
+/// Calls look(item) for every item of the cells that a box touches: once, or more often where
+/// cells share a bucket. A box of more cells than there are items gets all items.
+template <class Visit>
+void SpatialIndex::visit(const Vector3& low_point, const Vector3& high_point, Visit look) const {
+  const Cell low = cell_of(low_point), high = cell_of(high_point);
+  double cells = 1;
+  for (int i = 0; i < 3; ++i) cells *= static_cast<double>(high[i] - low[i]) + 1;
+  if (cells > static_cast<double>(items_.size())) {
+    for (const Item& item : items_) look(item);
+    return;
+  }
+  Cell cell;
+  for (cell[2] = low[2]; cell[2] <= high[2]; ++cell[2]) {
+    for (cell[1] = low[1]; cell[1] <= high[1]; ++cell[1]) {
+      for (cell[0] = low[0]; cell[0] <= high[0]; ++cell[0]) {
+        const std::size_t bucket = bucket_of(cell);
+        for (std::size_t i = starts_[bucket]; i < starts_[bucket + 1]; ++i) look(items_[i]);
+      }
+    }
   }
 }
+
+namespace {
+
+/// Cells that share a bucket bring its items twice.
+void tidy(std::vector<std::size_t>& found) {
+  std::ranges::sort(found);
+  const auto repeated = std::ranges::unique(found);
+  found.erase(repeated.begin(), repeated.end());
+}
+
+}  // namespace
 
 void SpatialIndex::find(const Vector3& center, double radius, std::size_t first, std::size_t last,
                         std::vector<std::size_t>& found) const {
   found.clear();
   if (items_.empty() || !center.allFinite() || !(radius > 0)) return;
-  const Cell low = cell_of(center - Vector3::Constant(radius));
-  const Cell high = cell_of(center + Vector3::Constant(radius));
-  double cells = 1;
-  for (int i = 0; i < 3; ++i) cells *= static_cast<double>(high[i] - low[i]) + 1;
-  if (cells > static_cast<double>(items_.size())) {
-    find_everywhere(center, radius, first, last, found);
-  } else {
-    Cell cell;
-    for (cell[2] = low[2]; cell[2] <= high[2]; ++cell[2]) {
-      for (cell[1] = low[1]; cell[1] <= high[1]; ++cell[1]) {
-        for (cell[0] = low[0]; cell[0] <= high[0]; ++cell[0]) {
-          const std::size_t bucket = bucket_of(cell);
-          for (std::size_t i = starts_[bucket]; i < starts_[bucket + 1]; ++i) {
-            const Item& item = items_[i];
-            if (item.index < first || item.index >= last) continue;
-            if ((item.point - center).norm() < radius) found.push_back(item.index);
-          }
-        }
-      }
+  const Vector3 reach = Vector3::Constant(radius);
+  visit(center - reach, center + reach, [&](const Item& item) {
+    if (item.index < first || item.index >= last) return;
+    if ((item.point - center).norm() < radius) found.push_back(item.index);
+  });
+  tidy(found);
+}
+
+void SpatialIndex::find(const Vector3& low, const Vector3& high, std::size_t first,
+                        std::size_t last, std::vector<std::size_t>& found) const {
+  found.clear();
+  if (items_.empty() || low.hasNaN() || high.hasNaN()) return;
+  visit(low, high, [&](const Item& item) {
+    if (item.index < first || item.index >= last) return;
+    if ((item.point.array() < low.array()).any() || (item.point.array() > high.array()).any()) {
+      return;
     }
-  }
-  // Cells that share a bucket bring its items twice.
-  std::ranges::sort(found);
-  const auto repeated = std::ranges::unique(found);
-  found.erase(repeated.begin(), repeated.end());
+    found.push_back(item.index);
+  });
+  tidy(found);
 }
 
 }  // namespace ziggurat::media

@@ -17,8 +17,26 @@ const char* name_of(world::Ray::Kind kind) {
       return "radio";
     case world::Ray::Kind::range_and_bearing:
       return "range_and_bearing";
+    case world::Ray::Kind::camera:
+      return "camera";
   }
   return "";
+}
+
+v1::RayLine line_of(const world::State& state, const char* kind, const std::string& robot) {
+  v1::RayLine line;
+  line.set_tick(state.tick);
+  line.set_time_s(static_cast<double>(state.time_ns) / 1e9);
+  line.set_kind(kind);
+  line.set_robot(v1::valid_utf8(robot));
+  return line;
+}
+
+const std::string& robot_with(std::size_t camera, const world::Layout& layout) {
+  for (const world::RobotLayout& robot : layout.robots) {
+    if (camera < robot.cameras.end()) return robot.id;
+  }
+  return layout.robots.back().id;
 }
 
 }  // namespace
@@ -28,18 +46,26 @@ Rays::Rays(std::string path, const world::Layout& layout)
 
 void Rays::write(const world::State& state) {
   for (const world::Ray& ray : state.rays) {
-    v1::RayLine line;
-    line.set_tick(state.tick);
-    line.set_time_s(static_cast<double>(state.time_ns) / 1e9);
-    line.set_kind(name_of(ray.kind));
-    line.set_robot(v1::valid_utf8(layout_.robots[ray.robot].id));
+    v1::RayLine line = line_of(state, name_of(ray.kind), layout_.robots[ray.robot].id);
     line.mutable_start()->Add(ray.start.begin(), ray.start.end());
     line.mutable_end()->Add(ray.end.begin(), ray.end.end());
     line.set_hit(ray.hit);
-    file_.buffer().append(to_json(line));
-    file_.buffer().push_back('\n');
-    file_.written();
+    write(line);
   }
+  for (const world::Frustum& frustum : state.frusta) {
+    v1::RayLine line = line_of(state, "frustum", robot_with(frustum.camera, layout_));
+    line.set_camera(v1::valid_utf8(layout_.cameras[frustum.camera].id));
+    for (const math::Vector3& corner : frustum.corners) {
+      line.mutable_corners()->Add(corner.begin(), corner.end());
+    }
+    write(line);
+  }
+}
+
+void Rays::write(const v1::RayLine& line) {
+  file_.buffer().append(to_json(line));
+  file_.buffer().push_back('\n');
+  file_.written();
 }
 
 }  // namespace ziggurat::recording

@@ -7,10 +7,14 @@
 #include "world/layout.h"
 #include "world/state.h"
 
+namespace ziggurat::v1 {
+class RayLine;
+}
+
 namespace ziggurat::recording {
 
-/// One line per ray or link of a tick: ziggurat.v1.RayLine as protobuf JSON. Only devices that ask
-/// for it (`show_rays`) have any.
+/// One line per ray, link or frustum of a tick: ziggurat.v1.RayLine as protobuf JSON. Only devices
+/// that ask for it (`show_rays`, `show_frustum`) have any.
 class Rays {
  public:
   /// Keeps a reference to `layout`. @throws WriteError
@@ -21,6 +25,8 @@ class Rays {
   void close() { file_.close(); }
 
  private:
+  void write(const v1::RayLine& line);
+
   const world::Layout& layout_;
   OutputFile file_;
 };

@@ -51,6 +51,7 @@ Camera read_camera(Reading& reading, Element& element) {
   camera.focal_length = element.required("focal_length", positive_vector2, math::Vector2::Ones());
   camera.principal_point = read_principal_point(element);
   camera.resolution = element.required("resolution", resolution, {1, 1});
+  camera.image = element.optional("image", boolean, false);
   for (Element& child : last_of_each_name(element)) {
     if (const auto detector = read_detector(reading, child)) camera.detectors.push_back(*detector);
   }

@@ -190,7 +190,7 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
 constexpr std::array<DeviceRow, 18> sensor_rows{{
     {"joints", "default", "", enable_joint_sensors},
     {"radios", "default", "", enable_radios_sensor},
-    {"cameras", "default", "cameras", enable_cameras},
+    {"cameras", "default", "", enable_cameras},
     {"proximity", "default", "", enable_proximity},
     {"positioning", "default", "", enable_positioning},
     {"differential_steering", "default", "differential_steering devices", enable_wheel_encoders},

@@ -118,6 +118,47 @@ void add_range_and_bearing(const DeviceCarrier& carrier, RobotLayout& robot, Lay
       enabled.range_and_bearing_actuator || enabled.range_and_bearing_sensor, begin, devices);
 }
 
+world::CameraLayout camera_layout(const DeviceCarrier& carrier, const scene::Camera& from,
+                                  const Layout& layout) {
+  scene::Anchor anchor;
+  for (std::size_t i = 0; i < carrier.entity.links.size(); ++i) {
+    if (carrier.entity.links[i].id == from.anchor) anchor.link = static_cast<int>(i);
+  }
+  world::CameraLayout camera;
+  camera.id = from.id;
+  camera.mount = mount(carrier, anchor, from.pose, layout);
+  camera.near = from.near;
+  camera.far = from.far;
+  camera.focal_length = from.focal_length;
+  camera.principal_point = from.principal_point;
+  camera.resolution = from.resolution;
+  for (const scene::Detector& detector : from.detectors) {
+    const world::DetectorLayout looks{detector.medium, detector.show_rays};
+    switch (detector.kind) {
+      case scene::Detector::Kind::led:
+        camera.leds = looks;
+        break;
+      case scene::Detector::Kind::directional_led:
+        camera.directional_leds = looks;
+        break;
+      case scene::Detector::Kind::tag:
+        camera.tags = looks;
+        break;
+    }
+  }
+  camera.shows_frustum = carrier.enabled.cameras_show_frustum;
+  camera.image = from.image;
+  return camera;
+}
+
+void add_cameras(const DeviceCarrier& carrier, RobotLayout& robot, Layout& layout) {
+  robot.cameras.begin = layout.cameras.size();
+  for (const scene::Camera& camera : carrier.enabled.cameras) {
+    layout.cameras.push_back(camera_layout(carrier, camera, layout));
+  }
+  robot.cameras.count = carrier.enabled.cameras.size();
+}
+
 void add_state_sensors(const DeviceCarrier& carrier, RobotLayout& robot, Layout& layout) {
   robot.positioning = {layout.positioning.size(), carrier.enabled.positioning_sensor ? 1u : 0u};
   if (carrier.enabled.positioning_sensor) layout.positioning.push_back(carrier.index);
@@ -136,6 +177,7 @@ void add_devices(const DeviceCarrier& carrier, RobotLayout& robot, Layout& layou
   add_magnets(carrier, robot, layout);
   add_proximity(carrier, robot, layout);
   add_range_and_bearing(carrier, robot, layout);
+  add_cameras(carrier, robot, layout);
   add_state_sensors(carrier, robot, layout);
 }
 

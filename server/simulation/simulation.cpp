@@ -24,13 +24,6 @@ double substep_length(const scene::Scene& scene, const Options& options) {
   return slow ? tick / (iterations * iterations) : tick / iterations;
 }
 
-/// Whether anybody looks at what devices show.
-bool has_cameras(const scene::Scene& scene) {
-  return std::ranges::any_of(scene.controllers, [](const scene::Controller& controller) {
-    return !controller.devices.cameras.empty();
-  });
-}
-
 }  // namespace
 
 struct Simulation::Parts {
@@ -64,7 +57,7 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options)
     physics.add(entity);
     rays.add(entity);
   }
-  index.emplace(layout, has_cameras(scene));
+  index.emplace(layout);
   devices.emplace(devices::Setting{scene, entities, layout, options.seed, 1.0 / ticks_per_second},
                   physics);
   physics.read(state);
@@ -91,6 +84,7 @@ void Simulation::step() {
   Parts& p = *parts_;
   devices::Tick tick = p.tick();
   p.state.rays.clear();
+  p.state.frusta.clear();
   p.devices->apply(tick);
   for (unsigned i = 0; i < p.substeps; ++i) p.physics.step();
   p.state.tick += 1;

@@ -50,6 +50,27 @@ void add_sensed(math::Hash& hash, const Observations& observations) {
   }
 }
 
+void add(math::Hash& hash, const std::vector<LedReading>& readings) {
+  hash.add(std::uint64_t{readings.size()});
+  for (const LedReading& reading : readings) {
+    hash.add(std::uint64_t{reading.camera});
+    hash.add(std::uint64_t{reading.color});
+    hash.add(std::span(reading.center.data(), 2));
+  }
+}
+
+void add_detected(math::Hash& hash, const State& state, const Observations& observations) {
+  add(hash, observations.leds);
+  add(hash, observations.directional_leds);
+  hash.add(std::uint64_t{observations.tags.size()});
+  for (const TagReading& reading : observations.tags) {
+    hash.add(std::uint64_t{reading.camera});
+    hash.add(std::string_view(state.tag_payloads[reading.tag]));
+    hash.add(std::span(reading.center.data(), 2));
+    for (const math::Vector2& corner : reading.corners) hash.add(std::span(corner.data(), 2));
+  }
+}
+
 }  // namespace
 
 std::uint64_t hash(const State& state, const Observations& observations) {
@@ -64,6 +85,7 @@ std::uint64_t hash(const State& state, const Observations& observations) {
   hash.add(observations.joint_readings);
   add_visible(hash, state);
   add_sensed(hash, observations);
+  add_detected(hash, state, observations);
   return hash.digest();
 }
 

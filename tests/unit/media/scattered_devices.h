@@ -42,7 +42,7 @@ struct Scattered {
   }
 
   DevicesIndex index() const {
-    DevicesIndex index(layout, false);
+    DevicesIndex index(layout);
     index.build(state);
     return index;
   }

@@ -1,0 +1,219 @@
+// Cameras in a scene: real bodies are in the way.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <sstream>
+
+#include "../simulation/small_scene.h"
+
+namespace ziggurat::camera {
+namespace {
+
+using simulation::Simulation;
+using simulation::testing::robot;
+using simulation::testing::SmallScene;
+
+constexpr const char* all_detectors =
+    R"(<led_detector medium="leds"/><directional_led_detector medium="beams"/>)"
+    R"(<tag_detector medium="tags"/>)";
+
+/// A camera 1 cm in front of the robot's base, 5 cm up, that looks along +x.
+std::string camera(const std::string& more = "", const std::string& detectors = all_detectors,
+                   const std::string& id = "front", const std::string& position = "0.06,0,0.05") {
+  return "<camera id=\"" + id + R"(" anchor="base" position=")" + position +
+         R"(" orientation="-90,90,0" range="0.02:2" focal_length="800,800" )" +
+         R"(principal_point="320,240" resolution="640,480" )" + more + ">" + detectors +
+         "</camera>";
+}
+
+std::string cameras(const std::string& list, const std::string& more = "") {
+  return R"(<cameras implementation="default" )" + more + ">" + list + "</cameras>";
+}
+
+std::string box(const std::string& position, const std::string& size) {
+  return R"(<box id="box at )" + position + "\" size=\"" + size +
+         R"(" movable="false"><body position=")" + position + R"("/></box>)";
+}
+
+/// Things without a controller on a box of 4 cm whose near face is at x = 0.48, z from 0.03 on.
+std::string carrier(const std::string& devices, const std::string& position = "0.5,0,0.03") {
+  return R"(<prototype id="carrier" movable="false"><body position=")" + position +
+         R"("/><links ref="b"><link id="b" geometry="box" size=".04,.04,.04" mass="1"/></links>)" +
+         "<devices>" + devices + "</devices></prototype>";
+}
+
+std::string tag(double x, const std::string& orientation = "0,-90,0") {
+  std::ostringstream text;
+  text << R"(<tags medium="tags"><tag anchor="b" payload="7" side_length="0.02" )"
+       << R"(observable_angle="80" position=")" << x << R"(,0,0.02" orientation=")" << orientation
+       << R"("/></tags>)";
+  return text.str();
+}
+
+std::string led(double x) {
+  std::ostringstream text;
+  text << R"(<leds medium="leds"><led anchor="b" color="red" offset=")" << x
+       << R"(,0,0.02"/></leds>)";
+  return text.str();
+}
+
+std::unique_ptr<Simulation> looked(const std::string& arena,
+                                   const std::string& sensors = cameras(camera())) {
+  const SmallScene scene{"", sensors, robot("r", "0,0,0", "") + arena, ""};
+  auto simulation = std::make_unique<Simulation>(scene.read(), simulation::Options{});
+  EXPECT_TRUE(simulation->observations().tags.empty());
+  simulation->step();
+  return simulation;
+}
+
+std::size_t tags_seen(const std::string& arena) {
+  return looked(arena)->observations().tags.size();
+}
+std::size_t leds_seen(const std::string& arena) {
+  return looked(arena)->observations().leds.size();
+}
+
+TEST(Cameras, SeeTheReferencesTagAtTheReferencesPixels) {
+  // Of beta50: a tag of 2 cm at x = 0.4495, seen from x = 0.06.
+  const auto simulation = looked(carrier(tag(-0.0205), "0.47,0,0.03"));
+  ASSERT_EQ(simulation->observations().tags.size(), 1u);
+  const world::TagReading& reading = simulation->observations().tags[0];
+  EXPECT_EQ(simulation->state().tag_payloads[reading.tag], "7");
+  const math::Vector2 corners[4] = {
+      {340.539, 260.539}, {299.461, 260.539}, {299.461, 219.461}, {340.539, 219.461}};
+  for (int i = 0; i < 4; ++i) EXPECT_LT((reading.corners[i] - corners[i]).norm(), 1e-3) << i;
+  EXPECT_LT((reading.center - math::Vector2(320, 240)).norm(), 1e-9);
+}
+
+TEST(Cameras, SeeDevicesThatAreMountedFlush) {
+  EXPECT_EQ(tags_seen(carrier(tag(-0.02))), 1u);
+  EXPECT_EQ(leds_seen(carrier(led(-0.02))), 1u);
+  // Less than 0.1 mm below the surface still counts as on it.
+  EXPECT_EQ(leds_seen(carrier(led(-0.01995))), 1u);
+  EXPECT_EQ(leds_seen(carrier(led(-0.0198))), 0u);
+}
+
+TEST(Cameras, SeeNothingOnTheFarSideOfItsCarrier) {
+  EXPECT_EQ(tags_seen(carrier(tag(0.021, "0,90,0"))), 0u);  // it looks away as well
+  EXPECT_EQ(tags_seen(carrier(tag(0.021, "0,-90,0"))), 0u);
+  EXPECT_EQ(leds_seen(carrier(led(0.021))), 0u);
+  EXPECT_EQ(leds_seen(carrier(led(-0.021))), 1u);
+}
+
+TEST(Cameras, SeeNoTagThatIsHalfHidden) {
+  const std::string target = carrier(tag(-0.021));
+  EXPECT_EQ(tags_seen(target + box("0.3,0.55,0", "0.01,1,0.2")), 1u);
+  EXPECT_EQ(tags_seen(target + box("0.3,0.5,0", "0.01,1,0.2")), 0u);        // its left half
+  EXPECT_EQ(tags_seen(target + box("0.3,0,0", "0.01,1,0.05")), 0u);         // its lower half
+  EXPECT_EQ(tags_seen(target + box("0.3,0,0.052", "0.01,0.003,0.2")), 1u);  // no corner
+}
+
+TEST(Cameras, SeeNoLedBehindAThinWall) {
+  const std::string target = carrier(led(-0.021));
+  EXPECT_EQ(leds_seen(target), 1u);
+  EXPECT_EQ(leds_seen(target + box("0.3,0,0", "0.0001,1,0.2")), 0u);
+  EXPECT_EQ(leds_seen(target + box("0.3,0,0", "0.0001,1,0.04")), 1u);  // it looks over it
+  EXPECT_EQ(leds_seen(target + box("0.7,0,0", "0.0001,1,0.2")), 1u);   // it is behind
+}
+
+TEST(Cameras, AreBlockedByTheirOwnRobotUnlessInsideOfIt) {
+  const auto seen_from = [](const std::string& position) {
+    return looked(carrier(led(-0.021)), cameras(camera("", all_detectors, "c", position)))
+        ->observations()
+        .leds.size();
+  };
+  EXPECT_EQ(seen_from("0.06,0,0.05"), 1u);
+  EXPECT_EQ(seen_from("-0.06,0,0.05"), 0u);
+  EXPECT_EQ(seen_from("0,0,0.05"), 1u);
+}
+
+TEST(Cameras, LookThroughTheFloor) {
+  Simulation simulation =
+      SmallScene{"", cameras(camera()),
+                 robot("r", "0,0,0.0", "") + carrier(led(-0.021), "0.5,0,-0.06"), "<floor/>"}
+          .run();
+  simulation.step();
+  EXPECT_EQ(simulation.observations().leds.size(), 1u);
+}
+
+TEST(Cameras, ListSixteenOnARobotInOrder) {
+  std::string list;
+  for (int i = 0; i < 16; ++i) {
+    const std::string y = std::to_string(0.001 * i);
+    list += camera("", all_detectors, "c" + std::to_string(i), "0.06," + y + ",0.05");
+  }
+  const auto simulation = looked(carrier(led(-0.021) + tag(-0.021)), cameras(list));
+  const auto& leds = simulation->observations().leds;
+  const auto& tags = simulation->observations().tags;
+  ASSERT_EQ(leds.size(), 16u);
+  ASSERT_EQ(tags.size(), 16u);
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_EQ(leds[i].camera, i);
+    EXPECT_EQ(tags[i].camera, i);
+    // A camera that is further left sees the same further to the right.
+    EXPECT_NEAR(leds[i].center.x(), 320 + 800 * 0.001 * static_cast<double>(i) / 0.419, 1e-6);
+  }
+}
+
+TEST(Cameras, HaveADetectorOnEachMedium) {
+  std::string devices = led(-0.021) + tag(-0.021) +
+                        R"(<directional_leds medium="beams"><directional_led anchor="b" )"
+                        R"(position="-0.021,0.005,0.02" orientation="0,-90,0" )"
+                        R"(observable_angle="90" color="blue"/></directional_leds>)";
+  {
+    const auto simulation = looked(carrier(devices));
+    EXPECT_EQ(simulation->observations().leds.at(0).color, 0xFF0000u);
+    EXPECT_EQ(simulation->observations().directional_leds.at(0).color, 0xFFu);
+    EXPECT_EQ(simulation->observations().tags.size(), 1u);
+  }
+  const std::string only_beams =
+      cameras(camera("", R"(<directional_led_detector medium="beams"/>)"));
+  const auto simulation = looked(carrier(devices), only_beams);
+  EXPECT_TRUE(simulation->observations().leds.empty());
+  EXPECT_EQ(simulation->observations().directional_leds.size(), 1u);
+  EXPECT_TRUE(simulation->observations().tags.empty());
+}
+
+TEST(Cameras, PublishFrustaAndRaysIfAsked) {
+  const std::string arena = carrier(led(-0.021) + tag(-0.021)) + box("0.3,0,0", "0.01,1,0.05");
+  const auto silent = looked(arena);
+  EXPECT_TRUE(silent->state().rays.empty());
+  EXPECT_TRUE(silent->state().frusta.empty());
+  const std::string detectors =
+      R"(<led_detector medium="leds" show_rays="true"/><tag_detector medium="tags"/>)";
+  const auto shown = looked(arena, cameras(camera("", detectors), "show_frustum=\"true\""));
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(shown->state().frusta.size(), 1u);
+    EXPECT_NEAR(shown->state().frusta[0].corners[0].x(), 0.08, 1e-9);
+    EXPECT_NEAR(shown->state().frusta[0].corners[6].x(), 2.06, 1e-9);
+    EXPECT_NEAR(shown->state().frusta[0].corners[6].y(), -0.8, 1e-9);
+    EXPECT_NEAR(shown->state().frusta[0].corners[6].z(), 0.05 - 0.6, 1e-9);
+    ASSERT_EQ(shown->state().rays.size(), 1u);
+    const world::Ray& ray = shown->state().rays[0];
+    EXPECT_EQ(ray.kind, world::Ray::Kind::camera);
+    EXPECT_EQ(ray.robot, 0u);
+    EXPECT_TRUE(ray.hit);  // where it meets the edge of the wall's top
+    EXPECT_NEAR(ray.end.x(), 0.295, 1e-9);
+    shown->step();
+  }
+}
+
+TEST(Cameras, ReadingsAreHashedAndFollowWhatShines) {
+  const std::string arena = carrier(led(-0.021) + tag(-0.021));
+  const auto with = looked(arena);
+  const auto without = looked(arena, cameras(camera("", "")));
+  EXPECT_NE(with->hash(), without->hash());
+  EXPECT_EQ(with->hash(), looked(arena)->hash());
+  ASSERT_EQ(with->observations().leds.size(), 1u);
+  with->commands().led_colors.at(0) = 0;
+  with->step();
+  EXPECT_TRUE(with->observations().leds.empty());
+  with->commands().led_colors.at(0) = 0x00FF00;
+  with->step();
+  EXPECT_EQ(with->observations().leds.at(0).color, 0x00FF00u);
+}
+
+}  // namespace
+}  // namespace ziggurat::camera
