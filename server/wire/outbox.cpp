@@ -101,6 +101,7 @@ void Outbox::welcome(const Run& run, const Roster& roster, std::string_view toke
   welcome.set_scene_hash(run.scene_hash);
   welcome.set_max_message_bytes(run.max_message_bytes);
   welcome.set_server_version(run.server_version);
+  welcome.set_role(v1::ROLE_CONTROLLER);
   welcome.mutable_deadline_policy()->set_action(v1::DeadlinePolicy::WAIT);
   for (const std::size_t robot : roster.robots) describe(run, robot, *welcome.add_robots());
   finish();
