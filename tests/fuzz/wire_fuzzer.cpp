@@ -22,7 +22,8 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-// Three robots with 2, 0 and 3 of each device; the session holds the first and the last.
+// Three robots with 2, 0 and 3 of each device; the session holds the first and the last. Each of
+// these drives wheels and a turret; wheels and turret 1 are only measured, by nobody.
 world::Layout make_layout() {
   world::Layout layout;
   std::size_t devices = 0;
@@ -35,6 +36,14 @@ world::Layout make_layout() {
     }
     robot.range_and_bearing = {layout.range_and_bearing.size(), count == 0 ? 0U : 1U};
     if (count > 0) layout.range_and_bearing.push_back({{}, 1, 0, {devices, count}, true, true});
+    if (count > 0) {
+      robot.wheels = robot.turrets = {layout.wheels.size(), 1};
+      layout.wheels.push_back({0, 0.14, true, true});
+      layout.turrets.push_back({0, true, true});
+    } else {
+      layout.wheels.push_back({0, 0.14, false, true});
+      layout.turrets.push_back({0, false, true});
+    }
     layout.robots.push_back(robot);
     devices += count;
   }
@@ -56,6 +65,8 @@ world::Commands make_commands(std::size_t devices) {
   commands.tag_payloads.resize(devices);
   commands.magnet_currents.resize(devices);
   commands.range_and_bearing_data.resize(devices);
+  commands.wheels.resize(3);
+  commands.turrets.resize(3);
   return commands;
 }
 
@@ -68,6 +79,14 @@ void receive_command(const wire::Inbox& inbox, const wire::Roster& roster,
   for (const double current : commands.magnet_currents) require(std::isfinite(current));
   for (const world::Color color : commands.led_colors) require(color <= 0xFFFFFF);
   for (const world::Color color : commands.directional_led_colors) require(color <= 0xFFFFFF);
+  for (const auto& [left, right] : commands.wheels) {
+    require(std::isfinite(left) && std::isfinite(right));
+  }
+  for (const world::TurretCommand& turret : commands.turrets) {
+    require(turret.mode <= world::TurretMode::speed);
+    require(std::isfinite(turret.rotation) && std::isfinite(turret.speed));
+  }
+  require(commands.wheels[1].left == 0 && commands.turrets[1].speed == 0);
   for (const auto& entry : commands.radio_messages.entries) {
     require(entry.radio < layout.radios.size() && layout.radios[entry.radio].sends);
     commands.radio_messages.payload(entry);
