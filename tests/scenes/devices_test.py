@@ -324,5 +324,54 @@ class Sensors(DeviceTest):
         self.assertNotEqual(changed, self.hash_of("--ticks", 3, scene=scene))
 
 
+class Cameras(DeviceTest):
+    # 0.889 m from the camera to both: a centimetre to the side is 9.0 pixels.
+    DEVICES = """
+        <leds medium="leds"><led anchor="base" color="red" offset=".051,.01,.0225" /></leds>
+        <tags medium="tags">
+          <tag anchor="base" position=".051,0,.0125" orientation="0,90,0" observable_angle="75"
+               side_length=".02" payload="start" />
+        </tags>"""
+    CAMERA = """
+        <cameras implementation="default">
+          <camera id="eye" anchor="base" position="-.06,0,.0125" orientation="90,-90,0"
+                  range=".1:2" resolution="640,480" focal_length="800,800"
+                  principle_point="320,240">
+            <led_detector medium="leds" />
+            <tag_detector medium="tags" />
+          </camera>
+        </cameras>"""
+
+    def test_what_one_robot_shows_the_other_sees(self):
+        scene = self.two("""
+            function init() end
+            function step()
+              robot.leds.set_all_colors("green")
+              robot.tags.set_all_payloads("a\\0b")
+            end
+            """, """
+            function init()
+              eye = robot.cameras.eye
+              leds, tags = eye.led_detector, eye.tag_detector
+              assert(#leds == 0 and #tags == 0 and eye.directional_led_detector == nil)
+            end
+            function step()
+              assert(#leds == 1 and #tags == 1 and tags == robot.cameras.eye.tag_detector)
+              local led, tag = leds[1], tags[1]
+              local seen = {led.center, tag.center, tag.corners[1], tag.corners[3]}
+              for i, pixel in ipairs(seen) do
+                seen[i] = string.format("%.1f,%.1f", pixel.x, pixel.y)
+              end
+              log(led.color.red, ",", led.color.green, " ", #tag.payload, " ",
+                  table.concat(seen, " "))
+            end
+            """, actuators=LEDS + '<tags implementation="default" />', sensors=self.CAMERA,
+            devices=self.DEVICES)
+        outcome = self.run_scene("--ticks", 3, "--quiet", scene=scene)
+        places = "329.0,231.0 320.0,240.0 311.0,231.0 329.0,249.0"
+        self.assertEqual(outcome.lines, [f"[1 l] 255,0 5 {places}", f"[2 l] 0,255 3 {places}",
+                                         f"[3 l] 0,255 3 {places}"], outcome.err)
+
+
 if __name__ == "__main__":
     main()
