@@ -71,6 +71,25 @@ def _heard_in_order(stage) -> str:
     return "" if heard == due else f"heard {heard}; due is {due}"
 
 
+def _sights_add_up(stage) -> str:
+    """A count per camera that has the detector, and as many readings as they count."""
+    peer = stage.peer("p")
+    seen = peer.observation
+    cameras = [camera for robot in peer.welcome.robots for camera in robot.cameras]
+    per_reading = {"led": {"colors": 1, "centers": 2}, "directional_led": {"colors": 1, "centers": 2},
+                   "tag": {"payloads": 1, "centers": 2, "corners": 8}}
+    for kind, values in per_reading.items():
+        counts = getattr(seen, f"{kind}_counts")
+        due = sum(getattr(camera, f"detects_{kind}s") for camera in cameras)
+        if len(counts) != due:
+            return f"{kind}_counts has {len(counts)} values; {due} are due"
+        for name, per in values.items():
+            found = len(getattr(seen, f"{kind}_{name}"))
+            if found != per * sum(counts):
+                return f"{kind}_{name} has {found} values; {per * sum(counts)} are due"
+    return "" if sum(seen.led_counts) else "no camera sees a lamp"
+
+
 def _time_is_the_tick(stage) -> str:
     observation = stage.peer("p").observation
     due = observation.tick * 100_000_000
@@ -177,6 +196,9 @@ CASES = [
            name, **{name: [value]})
       for name, value in (("turret_modes", "TURRET_SPEED"), ("turret_rotations", 0.5),
                           ("turret_speeds", 0.5))],
+    Case("D8.counts", "What cameras see is counted per camera",
+         (ALL, answer("p", led_colors=Zeros("leds", 0, 0xFF0000)), observe("p"),
+          Check("sights", _sights_add_up))),
     _bad("D1", "radio-beyond", "UNKNOWN_DEVICE", "A radio beyond the session's", radio_messages=[
         _message(4)]),
     _bad("D1", "radio-huge", "UNKNOWN_DEVICE", "The largest radio there can be", radio_messages=[
