@@ -1,11 +1,12 @@
 #include "devices/cameras.h"
 
+#include "devices/kept.h"
 #include "script/vectors.h"
 
 namespace ziggurat::lua {
 namespace {
 
-// Its address is where the registry keeps an array with the table of each camera, and the arrays
+// What is kept under its address: an array with the table of each camera, and the arrays
 // that it fills, as refresh() finds them whatever the script does with robot.cameras.
 constexpr char key = 0;
 
@@ -131,11 +132,11 @@ void push_cameras(lua_State* state, ScriptedRobot& robot) {
     lua_rawset(state, -4);
     first += slots;
   }
-  lua_rawsetp(state, LUA_REGISTRYINDEX, &key);
+  keep(state, &key, robot);
 }
 
 void refresh_cameras(lua_State* state, const ScriptedRobot& robot) {
-  lua_rawgetp(state, LUA_REGISTRYINDEX, &key);
+  push_kept(state, &key, robot);
   int first = 1;
   for (const Camera& camera : robot.cameras) {
     if (camera.detects_leds) fill_slot(state, first + leds, camera.leds);

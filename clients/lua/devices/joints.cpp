@@ -1,12 +1,13 @@
 #include "devices/joints.h"
 
+#include "devices/kept.h"
 #include "script/arguments.h"
 #include "script/guarded.h"
 
 namespace ziggurat::lua {
 namespace {
 
-// Its address is where the registry keeps the array of the joints' tables.
+// What is kept under its address: the array of the joints' tables.
 constexpr char key = 0;
 
 int set_target(lua_State* state) {
@@ -40,11 +41,11 @@ void push_joints(lua_State* state, ScriptedRobot& robot) {
     lua_rawset(state, -3);
   }
   lua_insert(state, -2);
-  lua_rawsetp(state, LUA_REGISTRYINDEX, &key);
+  keep(state, &key, robot);
 }
 
 void refresh_joints(lua_State* state, const ScriptedRobot& robot) {
-  lua_rawgetp(state, LUA_REGISTRYINDEX, &key);
+  push_kept(state, &key, robot);
   lua_Integer i = 0;
   for (const Joint& joint : robot.joints) {
     ++i;

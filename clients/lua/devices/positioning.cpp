@@ -1,11 +1,12 @@
 #include "devices/positioning.h"
 
+#include "devices/kept.h"
 #include "script/vectors.h"
 
 namespace ziggurat::lua {
 namespace {
 
-// Its address is where the registry keeps an array of position, orientation and its axis.
+// What is kept under its address: an array of position, orientation and its axis.
 constexpr char key = 0;
 
 /// Writes the three tables of the array on top.
@@ -42,11 +43,11 @@ void push_positioning(lua_State* state, ScriptedRobot& robot) {
   lua_rawseti(state, -3, 2);
   lua_setfield(state, -3, "orientation");
   fill(state, *robot.positioning);
-  lua_rawsetp(state, LUA_REGISTRYINDEX, &key);
+  keep(state, &key, robot);
 }
 
 void refresh_positioning(lua_State* state, const ScriptedRobot& robot) {
-  lua_rawgetp(state, LUA_REGISTRYINDEX, &key);
+  push_kept(state, &key, robot);
   fill(state, *robot.positioning);
   lua_pop(state, 1);
 }

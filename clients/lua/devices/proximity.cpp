@@ -1,9 +1,11 @@
 #include "devices/proximity.h"
 
+#include "devices/kept.h"
+
 namespace ziggurat::lua {
 namespace {
 
-// Its address is where the registry keeps the table.
+// What is kept under its address: the table.
 constexpr char key = 0;
 
 void fill(lua_State* state, const ScriptedRobot& robot) {
@@ -22,11 +24,11 @@ void push_proximity(lua_State* state, ScriptedRobot& robot) {
   lua_createtable(state, static_cast<int>(robot.proximity.size()), 0);
   fill(state, robot);
   lua_pushvalue(state, -1);
-  lua_rawsetp(state, LUA_REGISTRYINDEX, &key);
+  keep(state, &key, robot);
 }
 
 void refresh_proximity(lua_State* state, const ScriptedRobot& robot) {
-  lua_rawgetp(state, LUA_REGISTRYINDEX, &key);
+  push_kept(state, &key, robot);
   fill(state, robot);
   lua_pop(state, 1);
 }

@@ -1,5 +1,6 @@
 #include "devices/radios.h"
 
+#include "devices/kept.h"
 #include "script/arguments.h"
 #include "script/bytes.h"
 #include "script/guarded.h"
@@ -7,7 +8,7 @@
 namespace ziggurat::lua {
 namespace {
 
-// Its address is where the registry keeps the array of the radios' rx_data.
+// What is kept under its address: the array of the radios' rx_data.
 constexpr char key = 0;
 
 /// Raises an error if a further message of `size` bytes is too much.
@@ -88,11 +89,11 @@ void push_radios(lua_State* state, ScriptedRobot& robot) {
     lua_rawset(state, -3);
   }
   lua_insert(state, -2);
-  lua_rawsetp(state, LUA_REGISTRYINDEX, &key);
+  keep(state, &key, robot);
 }
 
 void refresh_radios(lua_State* state, const ScriptedRobot& robot) {
-  lua_rawgetp(state, LUA_REGISTRYINDEX, &key);
+  push_kept(state, &key, robot);
   lua_Integer i = 0;
   for (const Radio& radio : robot.radios) {
     ++i;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "devices/kept.h"
 #include "script/arguments.h"
 #include "script/bytes.h"
 #include "script/guarded.h"
@@ -9,7 +10,7 @@
 namespace ziggurat::lua {
 namespace {
 
-// Its address is where the registry keeps the table.
+// What is kept under its address: the table.
 constexpr char key = 0;
 
 constexpr double centimetres = 100;  // in a metre
@@ -89,12 +90,12 @@ void push_range_and_bearing(lua_State* state, ScriptedRobot& robot) {
   }
   if (from.has_receiver) fill(state, from);
   lua_pushvalue(state, -1);
-  lua_rawsetp(state, LUA_REGISTRYINDEX, &key);
+  keep(state, &key, robot);
 }
 
 void refresh_range_and_bearing(lua_State* state, const ScriptedRobot& robot) {
   if (!robot.range_and_bearing->has_receiver) return;
-  lua_rawgetp(state, LUA_REGISTRYINDEX, &key);
+  push_kept(state, &key, robot);
   fill(state, *robot.range_and_bearing);
   lua_pop(state, 1);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "devices/kept.h"
 #include "script/arguments.h"
 #include "script/guarded.h"
 #include "script/vectors.h"
@@ -10,7 +11,7 @@
 namespace ziggurat::lua {
 namespace {
 
-// Its address is where the registry keeps the table.
+// What is kept under its address: the table.
 constexpr char key = 0;
 
 constexpr double radians_per_second = std::numbers::pi / 30;  // in a turn per minute
@@ -62,12 +63,12 @@ void push_turret(lua_State* state, ScriptedRobot& robot) {
   }
   if (turret.has_encoder) set_number(state, "rotation", turret.rotation);
   lua_pushvalue(state, -1);
-  lua_rawsetp(state, LUA_REGISTRYINDEX, &key);
+  keep(state, &key, robot);
 }
 
 void refresh_turret(lua_State* state, const ScriptedRobot& robot) {
   if (!robot.turret->has_encoder) return;
-  lua_rawgetp(state, LUA_REGISTRYINDEX, &key);
+  push_kept(state, &key, robot);
   set_number(state, "rotation", robot.turret->rotation);
   lua_pop(state, 1);
 }

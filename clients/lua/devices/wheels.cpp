@@ -1,5 +1,6 @@
 #include "devices/wheels.h"
 
+#include "devices/kept.h"
 #include "script/arguments.h"
 #include "script/guarded.h"
 #include "script/vectors.h"
@@ -7,7 +8,7 @@
 namespace ziggurat::lua {
 namespace {
 
-// Its address is where the registry keeps the table.
+// What is kept under its address: the table.
 constexpr char key = 0;
 
 constexpr double centimetres = 100;  // in a metre
@@ -40,12 +41,12 @@ void push_wheels(lua_State* state, ScriptedRobot& robot) {
     fill(state, wheels);
   }
   lua_pushvalue(state, -1);
-  lua_rawsetp(state, LUA_REGISTRYINDEX, &key);
+  keep(state, &key, robot);
 }
 
 void refresh_wheels(lua_State* state, const ScriptedRobot& robot) {
   if (!robot.wheels->has_sensor) return;
-  lua_rawgetp(state, LUA_REGISTRYINDEX, &key);
+  push_kept(state, &key, robot);
   fill(state, *robot.wheels);
   lua_pop(state, 1);
 }

@@ -59,31 +59,32 @@ void push_params(lua_State* state, const ScriptedRobot& robot) {
   }
 }
 
-void set_robot(lua_State* state, const Environment& environment) {
-  ScriptedRobot& robot = environment.robot;
+}  // namespace
+
+void push_robot(lua_State* state, ScriptedRobot& robot) {
   lua_newtable(state);
   lua_pushlstring(state, robot.id.data(), robot.id.size());
   lua_setfield(state, -2, "id");
   push_params(state, robot);
   lua_setfield(state, -2, "params");
-  push_robot_random(state, environment.random.robot_random);
-  lua_setfield(state, -2, "random");
   for (const DeviceKind& kind : device_kinds()) {
     if (!kind.is_present(robot)) continue;
     kind.push(state, robot);
     lua_setfield(state, -2, kind.name);
   }
-  lua_setglobal(state, "robot");
 }
-
-}  // namespace
 
 void set_up(lua_State* state, const Environment& environment) {
   luaL_openlibs(state);
   confine_libraries(state, environment.random.math_random);
   prepend_to_package_path(state, environment.folder);
+  lua_pushglobaltable(state);
   set_log_functions(state, environment.robot.log);
-  set_robot(state, environment);
+  lua_pop(state, 1);
+  push_robot(state, environment.robot);
+  push_robot_random(state, environment.random.robot_random);
+  lua_setfield(state, -2, "random");
+  lua_setglobal(state, "robot");
 }
 
 void refresh(lua_State* state, const ScriptedRobot& robot) {

@@ -29,6 +29,10 @@ struct Environment {
 /// Opens the libraries and sets the globals. May raise a Lua error.
 void set_up(lua_State* state, const Environment& environment);
 
+/// Pushes a table with the robot's id, params and devices. The robot outlives the state and does
+/// not move; a state may have several. May raise a Lua error.
+void push_robot(lua_State* state, ScriptedRobot& robot);
+
 /// Writes what the robot senses into its tables. May raise a Lua error.
 void refresh(lua_State* state, const ScriptedRobot& robot);
 

@@ -53,10 +53,8 @@ int add_line(lua_State* state) {
 }  // namespace
 
 void set_log_functions(lua_State* state, LogLines& log) {
-  lua_pushglobaltable(state);
   set_function<add_line<false>>(state, "log", &log);
   set_function<add_line<true>>(state, "logerr", &log);
-  lua_pop(state, 1);
 }
 
 }  // namespace ziggurat::lua

@@ -7,7 +7,8 @@
 
 namespace ziggurat::lua {
 
-/// Sets the globals `log` and `logerr`, which add lines to `log`.
+/// Sets fields `log` and `logerr` of the table on top, which add lines to `log`; that must outlive
+/// the state.
 void set_log_functions(lua_State* state, LogLines& log);
 
 }  // namespace ziggurat::lua

@@ -1,0 +1,19 @@
+-- Drives the four-wheeled vehicle of scenes/dynamics3d_multi_body_test.argos from a Lua of one's own:
+--
+--   ziggurat serve scenes/dynamics3d_multi_body_test.argos &
+--   lua5.3 vehicle.lua tcp://127.0.0.1:5770
+local ziggurat = require "ziggurat"
+
+local session = ziggurat.connect{endpoint = arg[1], name = "vehicle.lua"}
+local vehicle = session.robots[1]
+
+for tick, event in session.next do
+   for _, joint in pairs(vehicle.joints) do
+      if event ~= "step" then joint.set_target(1) end -- [rad/s]
+   end
+   if event == "step" then
+      vehicle.log(("wheel velocity: %.2f"):format(vehicle.joints.base_wheel_fl.encoder))
+   end
+end
+session:close()
+print("the run is over: " .. session.ending())

@@ -1,0 +1,191 @@
+// require "ziggurat": sessions for programs that bring their own Lua 5.3. docs/lua-module.md has
+// the functions; robots are the tables that scripts of ziggurat-lua find as `robot`.
+
+#include <lua.hpp>
+#include <memory>
+#include <vector>
+
+#include "module/options.h"
+#include "program/exchange.h"
+#include "script/arguments.h"
+#include "script/environment.h"
+#include "script/guarded.h"
+#include "script/log_functions.h"
+
+namespace ziggurat::lua {
+namespace {
+
+struct Seat {
+  ziggurat::Robot* robot = nullptr;
+  ScriptedRobot scripted;
+};
+
+/// A session and its robots as Lua sees them; neither moves, because closures point to them.
+struct Connected {
+  std::unique_ptr<ziggurat::Session> session;
+  std::vector<std::unique_ptr<Seat>> seats;
+};
+
+/// All sessions of a Lua state. They live as long as the state: scripts may keep any function of
+/// theirs. Made when the module is loaded, so that it is collected after what uses it.
+using Sessions = std::vector<std::unique_ptr<Connected>>;
+
+/// A signal handler of the interpreter (Ctrl-C) does its work in a hook, which runs as soon as we
+/// return: one that was not there when the wait began ends the wait.
+std::function<bool()> interruption(lua_State* state) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, LUA_RIDX_MAINTHREAD);
+  lua_State* const main = lua_tothread(state, -1);
+  lua_pop(state, 1);
+  return [main, before = lua_gethook(main)] { return lua_gethook(main) != before; };
+}
+
+void sense_all(Connected& connected) {
+  for (const auto& seat : connected.seats) sense(*seat->robot, seat->scripted);
+}
+
+/// Hands over what was set and logged.
+void act_all(Connected& connected) {
+  for (const auto& seat : connected.seats) {
+    const Failure failure = act(seat->scripted, *seat->robot);
+    const bool fits = hand_over_log(seat->scripted, *seat->robot);
+    if (failure) throw std::length_error(*failure);
+    if (!fits) throw std::length_error("more log lines at one tick than a message can hold");
+  }
+}
+
+const char* name_of(Event event) {
+  switch (event) {
+    case Event::init:
+      return "init";
+    case Event::step:
+      return "step";
+    case Event::reset:
+      return "reset";
+  }
+  return "step";
+}
+
+const char* name_of(Ending::Reason reason) {
+  switch (reason) {
+    case Ending::Reason::finished:
+      return "finished";
+    case Ending::Reason::interrupted:
+      return "interrupted";
+    case Ending::Reason::failed:
+      return "failed";
+  }
+  return "failed";
+}
+
+/// Answers the tick and waits for the next: its number and event, or nothing after the last.
+int next(lua_State* state) {
+  auto& connected = upvalue<Connected>(state);
+  act_all(connected);
+  if (!connected.session->next()) return 0;
+  sense_all(connected);
+  for (const auto& seat : connected.seats) refresh(state, seat->scripted);
+  lua_pushinteger(state, static_cast<lua_Integer>(connected.session->tick()));
+  lua_pushstring(state, name_of(connected.session->event()));
+  return 2;
+}
+
+/// Why there are no more ticks: reason, message, tick; nothing while there are.
+int ending(lua_State* state) {
+  const auto& ending = upvalue<Connected>(state).session->ending();
+  if (!ending) return 0;
+  lua_pushstring(state, name_of(ending->reason));
+  lua_pushlstring(state, ending->message.data(), ending->message.size());
+  lua_pushinteger(state, static_cast<lua_Integer>(ending->tick));
+  return 3;
+}
+
+/// Leaves: as done, or as failed with a message.
+int close(lua_State* state) {
+  auto& connected = upvalue<Connected>(state);
+  const int last = lua_gettop(state);  // session.close(m) and session:close(m) alike
+  const bool has_message = last > 0 && lua_type(state, last) == LUA_TSTRING;
+  act_all(connected);
+  if (has_message) {
+    connected.session->leave_failed(check_text(state, last));
+  } else {
+    connected.session->leave();
+  }
+  return 0;
+}
+
+/// Takes one robot out of the run for good.
+int fail(lua_State* state) {
+  check_count(state, 1, 1, "fail(message)");
+  upvalue<Seat>(state).robot->fail(check_text(state, 1));
+  return 0;
+}
+
+void push_robots(lua_State* state, Connected& connected) {
+  lua_createtable(state, static_cast<int>(connected.seats.size()), 0);
+  lua_Integer place = 0;
+  for (const auto& seat : connected.seats) {
+    push_robot(state, seat->scripted);
+    set_log_functions(state, seat->scripted.log);
+    set_function<fail>(state, "fail", seat.get());
+    lua_pushlstring(state, seat->scripted.id.data(), seat->scripted.id.size());
+    lua_pushvalue(state, -2);
+    lua_rawset(state, -4);
+    lua_rawseti(state, -2, ++place);
+  }
+}
+
+void push_session(lua_State* state, Connected& connected) {
+  lua_newtable(state);
+  set_function<next>(state, "next", &connected);
+  set_function<ending>(state, "ending", &connected);
+  set_function<close>(state, "close", &connected);
+  lua_pushnumber(state, std::chrono::duration<double>(connected.session->tick_length()).count());
+  lua_setfield(state, -2, "tick_length");
+  lua_pushinteger(state, static_cast<lua_Integer>(connected.session->seed()));
+  lua_setfield(state, -2, "seed");
+  push_robots(state, connected);
+  lua_setfield(state, -2, "robots");
+}
+
+Connected& open_session(lua_State* state, Sessions& sessions) {
+  Options options = take_options(state);
+  options.is_interrupted = interruption(state);
+  auto connected = std::make_unique<Connected>();
+  connected->session = std::make_unique<ziggurat::Session>(options);
+  for (ziggurat::Robot& robot : connected->session->robots()) {
+    connected->seats.push_back(std::make_unique<Seat>());
+    connected->seats.back()->robot = &robot;
+    connected->seats.back()->scripted = describe(robot);
+  }
+  sessions.push_back(std::move(connected));
+  return *sessions.back();
+}
+
+int connect(lua_State* state) {
+  check_options(state);
+  push_session(state, open_session(state, upvalue<Sessions>(state)));
+  return 1;
+}
+
+int end_sessions(lua_State* state) {
+  static_cast<Sessions*>(lua_touserdata(state, 1))->~Sessions();
+  return 0;
+}
+
+}  // namespace
+}  // namespace ziggurat::lua
+
+extern "C" __attribute__((visibility("default"))) int luaopen_ziggurat(lua_State* state) {
+  using namespace ziggurat::lua;
+  luaL_checkversion(state);
+  lua_newtable(state);
+  void* const memory = lua_newuserdata(state, sizeof(Sessions));
+  auto* const sessions = new (memory) Sessions();
+  lua_createtable(state, 0, 1);
+  lua_pushcfunction(state, guarded<end_sessions>);
+  lua_setfield(state, -2, "__gc");
+  lua_setmetatable(state, -2);
+  lua_rawsetp(state, LUA_REGISTRYINDEX, sessions);
+  set_function<connect>(state, "connect", sessions);
+  return 1;
+}
