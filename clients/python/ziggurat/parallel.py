@@ -130,6 +130,7 @@ class ParallelEnv:
             if self._supervisor is None:
                 self._supervisor = Supervisor(self._session.endpoint, name="parallel_env")
             self._supervisor.reset(seed)
+            self._session.expect_reset()
         except ProtocolError as error:
             if error.code not in ("UNIMPLEMENTED", "FORBIDDEN") or self._server is None:
                 raise

@@ -12,8 +12,9 @@ from .errors import Displaced, ProtocolError
 from .exchange import Exchange
 from .robot import Named, Places, Robot
 
-# Errors that say that a command came late or twice: harmless, the next observation is on its way.
-_LATE = (v1.Error.STALE_TICK, v1.Error.DUPLICATE_TICK)
+# Errors that say that a command came late or twice, or met a reset on its way (which makes its tick a
+# future one): harmless, the next observation is there or on its way.
+_LATE = (v1.Error.STALE_TICK, v1.Error.DUPLICATE_TICK, v1.Error.FUTURE_TICK)
 
 
 class Event(enum.Enum):
@@ -159,6 +160,10 @@ class Session:
                                      message.end.message, message.end.tick)
                 raise StopIteration
             self._take(kind, message)
+
+    def expect_reset(self) -> None:
+        """The tick in hand is not answered: somebody resets the world, and awaits no answer."""
+        self._owes = None
 
     def _take(self, kind: Optional[str], message: v1.ServerMessage) -> None:
         """What is neither tick nor end; kinds that are not known are nothing."""

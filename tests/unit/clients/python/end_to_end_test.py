@@ -71,6 +71,15 @@ class EndToEnd(unittest.TestCase):
                     self.assertAlmostEqual(sum(part ** 2 for part in pose.orientation), 1)
             self.assertEqual(server.wait(10), 0)
 
+    def test_the_camera_example(self):
+        example = ROOT / "clients" / "python" / "examples" / "camera.py"
+        with serve(ROOT / "conformance" / "scene" / "conformance.argos", "--ticks", "2") as server:
+            subprocess.run([sys.executable, example, server.endpoint], check=True, timeout=30)
+            output, _ = server.process.communicate(timeout=10)
+        # Each arm's eye looks at the lit lamp on the same arm.
+        for robot in ("arm0", "arm1", "arm2", "arm3"):
+            self.assertRegex(output, rf"\[2 {robot}\] eye: LED \(255, 0, 0\) at 320\.0, ")
+
     def test_a_lost_session_is_taken_up_at_the_same_tick(self):
         with serve(VEHICLE, "--ticks", "10") as server:
             session = ziggurat.connect(server.endpoint)

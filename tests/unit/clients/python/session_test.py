@@ -3,6 +3,8 @@
 import threading
 import unittest
 
+import zmq
+
 import ziggurat
 from ziggurat import protocol_pb2 as v1
 
@@ -110,6 +112,26 @@ class Beginning(SessionCase):
             ziggurat.connect("nonsense")
 
 
+class Security(SessionCase):
+    def setUp(self):
+        self.public_key, secret_key = zmq.curve_keypair()
+        self.server = FakeServer(secret_key)
+        self.addCleanup(self.server.close)
+
+    def keys(self, server_key):
+        public_key, secret_key = (key.decode() for key in zmq.curve_keypair())
+        return ziggurat.Curve(server_key.decode(), public_key, secret_key)
+
+    def test_keys(self):
+        self.play(open_with, lambda: self.connect(curve=self.keys(self.public_key)).abandon())
+
+    def test_another_servers_key_or_none(self):
+        other, _ = zmq.curve_keypair()
+        for curve in (None, self.keys(other)):
+            with self.assertRaises(ziggurat.ConnectionLost):
+                self.connect(curve=curve, connect_timeout=0.3)
+
+
 class Ticks(SessionCase):
     def test_a_run(self):
         def part(server):
@@ -189,8 +211,9 @@ class Ticks(SessionCase):
             server.say(reset=v1.Reset(seed=7))  # what is owed is void
             server.observe(0)
             command = server.hear()
-            if command.tick == 1:  # it was on its way
-                command = server.hear()
+            self.assertEqual(command.tick, 1, "it was on its way")
+            server.say(error=v1.Error(code=v1.Error.FUTURE_TICK, severity=v1.Error.DISCARD))
+            command = server.hear()
             self.assertEqual(command.tick, 0)
             self.assertEqual(list(command.joint_targets), [])
             server.say(end=v1.End())
