@@ -1,5 +1,7 @@
 #include "wire/inbox.h"
 
+#include <google/protobuf/stubs/logging.h>
+
 #include <limits>
 
 #include "wire/command.h"
@@ -29,7 +31,10 @@ struct Inbox::Message {
   }
 };
 
-Inbox::Inbox() : message_(std::make_unique<Message>()) {}
+Inbox::Inbox() : message_(std::make_unique<Message>()) {
+  // protobuf would print a line for text that is no UTF-8: a peer's to send, and ours to answer.
+  google::protobuf::SetLogHandler(nullptr);
+}
 Inbox::~Inbox() = default;
 
 Inbox::Kind Inbox::parse(std::string_view bytes) {

@@ -203,6 +203,14 @@ TEST(Inbox, JsonIsTheSameMessage) {
   EXPECT_EQ(inbox.complaint(), "") << "that was not JSON to begin with";
 }
 
+TEST(Inbox, TextThatIsNoUtf8IsMalformedWithoutAWord) {
+  Inbox inbox;
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(inbox.parse("\x0a\x03\x22\x01\xff"), Inbox::Kind::malformed);
+  EXPECT_EQ(inbox.parse("{\"hello\":{\"controller\":\"\xff\"}}"), Inbox::Kind::malformed);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "peers do not write on our terminal";
+}
+
 TEST(Inbox, TruncatedJsonIsMalformed) {
   v1::ClientMessage message;
   message.mutable_command()->set_tick(1000);
