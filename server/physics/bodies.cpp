@@ -173,6 +173,20 @@ void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose
   add_link_colliders(body, entity);
 }
 
+/// A prototype of one link costs less than half as a rigid body, and nothing while it sleeps.
+/// With magnets it stays a multi-body: stacks of magnets come to rest only in those.
+bool is_single_body(const scene::Entity& entity) {
+  switch (entity.kind) {
+    case scene::EntityKind::box:
+    case scene::EntityKind::cylinder:
+      return true;
+    case scene::EntityKind::prototype:
+      return entity.links.size() == 1 && entity.links[0].collides && entity.devices.magnets.empty();
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 btTransform LinkBody::transform() const {
@@ -238,9 +252,7 @@ Body build(const scene::Entity& entity, bool magnetism) {
   body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
   std::vector<Pose> placed = assemble(entity);
   for (Pose& pose : placed) pose = entity.pose * pose;
-  const bool single =
-      entity.kind == scene::EntityKind::box || entity.kind == scene::EntityKind::cylinder;
-  if (single) {
+  if (is_single_body(entity)) {
     build_rigid(body, entity, placed);
   } else {
     build_multi(body, entity, placed, magnetism);

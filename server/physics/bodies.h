@@ -65,8 +65,9 @@ struct Body {
   void motions(std::vector<Motion>& out) const;
 };
 
-/// Builds an entity's bodies where the entity stands. A box or cylinder becomes a rigid body,
-/// everything else a multi-body with the reference link at its base.
+/// Builds an entity's bodies where the entity stands. A box, a cylinder, or a prototype of one link
+/// without magnets becomes a rigid body, everything else a multi-body with the reference link at
+/// its base.
 /// @param magnetism  whether magnets act: then free spherical magnets are carried
 Body build(const scene::Entity& entity, bool magnetism);
 
