@@ -3,15 +3,16 @@
 namespace ziggurat::devices {
 namespace {
 
-constexpr double at_target = 1e-4;  // devices may be mounted flush [m]
+constexpr double at_target = 1e-4;         // devices may be mounted flush [m]
+constexpr std::size_t few_colliders = 32;  // more are left to the tree
 
 }  // namespace
 
-bool line_of_sight(const physics::Rays& rays, const math::Vector3& eye, const math::Vector3& target,
-                   std::size_t robot, std::vector<world::Ray>* shown) {
+bool Sight::clear(const math::Vector3& eye, const math::Vector3& target) const {
   const math::Vector3 way = target - eye;
   const double length = way.norm();
-  const auto hit = rays.cast({eye, target, {}, false});
+  const physics::RayQuery ray{eye, target, {}, false};
+  const auto hit = few ? rays.cast(ray, colliders) : rays.cast(ray);
   const bool blocked = hit && hit->distance < length - at_target;
   if (shown) {
     const math::Vector3 end =
@@ -41,15 +42,14 @@ void Cameras::sense(Tick& tick, std::size_t robot, std::size_t camera) {
   const world::CameraLayout& lens = tick.layout.cameras[camera];
   const camera::View view(tick.layout, tick.state, tick.index, camera);
   if (lens.shows_frustum) tick.state.frusta.push_back({camera, view.corners});
-  struct Sight {
-    const physics::Rays& rays;
-    std::size_t robot;
-    std::vector<world::Ray>* shown = nullptr;
-  } sight{tick.rays, robot};
+  // All rays of a camera lie in the box of its eye and its frustum.
+  tick.rays.find(view.bounds.low.cwiseMin(view.pose.position),
+                 view.bounds.high.cwiseMax(view.pose.position), colliders_);
+  Sight sight{tick.rays, robot, nullptr, colliders_, colliders_.size() <= few_colliders};
   // One reference: a function that holds more would allocate.
   const camera::LineOfSight clear = [&sight](const math::Vector3& eye,
                                              const math::Vector3& target) {
-    return line_of_sight(sight.rays, eye, target, sight.robot, sight.shown);
+    return sight.clear(eye, target);
   };
   const auto showing = [&](const std::optional<world::DetectorLayout>& detector) {
     return detector && detector->shows_rays ? &tick.state.rays : nullptr;

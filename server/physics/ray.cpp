@@ -15,8 +15,11 @@ namespace {
 
 using math::Vector3;
 
-constexpr double skin = 1e-4;           // [m]
-constexpr double volume_margin = 1e-3;  // bounding volumes are larger by this, against rounding [m]
+constexpr double skin = 1e-4;  // [m]
+// Bounding volumes are larger than bodies by the first when they are made [m], and made anew once
+// less than the second is left: what trembles at rest leaves the tree alone.
+constexpr double volume_margin = 1e-3;
+constexpr double rounding_margin = 1e-4;
 
 /// Shares of the segment between which it is inside of something.
 struct Stay {
@@ -128,10 +131,10 @@ struct Rays::Parts {
 
 namespace {
 
-btDbvtVolume volume(const scene::Geometry& geometry, const math::Pose& pose) {
+btDbvtVolume volume(const scene::Geometry& geometry, const math::Pose& pose, double margin) {
   const Extents own = extents(geometry);
   const Vector3 half =
-      pose.orientation.toRotationMatrix().cwiseAbs() * own.half + Vector3::Constant(volume_margin);
+      pose.orientation.toRotationMatrix().cwiseAbs() * own.half + Vector3::Constant(margin);
   const Vector3 center = pose * own.center;
   return btDbvtVolume::FromCE(to_bullet(center), to_bullet(half));
 }
@@ -160,68 +163,119 @@ void Rays::add(const scene::Entity& entity) {
 
 void Rays::update(const world::State& state) {
   Parts& p = *parts_;
+  bool grown = false;
   for (std::size_t i = 0; i < p.solids.size(); ++i) {
     Parts::Solid& solid = p.solids[i];
     const math::Pose& pose = state.links[solid.link].pose;
     if (solid.leaf && same(pose, solid.pose)) continue;
     if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) continue;
     solid.pose = pose;
-    btDbvtVolume bounds = volume(solid.geometry, pose);
+    if (solid.leaf && solid.leaf->volume.Contain(volume(solid.geometry, pose, rounding_margin))) {
+      continue;
+    }
+    btDbvtVolume bounds = volume(solid.geometry, pose, volume_margin);
     if (solid.leaf) {
       p.tree.update(solid.leaf, bounds);
     } else {
+      grown = true;
       solid.leaf = p.tree.insert(bounds, nullptr);
       solid.leaf->dataAsInt = static_cast<int>(i);
     }
   }
+
+  if (grown) return p.tree.optimizeTopDown();
   p.tree.optimizeIncremental(1 + static_cast<int>(p.solids.size() / 64));
 }
 
+/// One ray on its way: the closest of what it meets; of equally close ones the first in scene
+/// order.
+struct Rays::Flight : btDbvt::ICollide {
+  Flight(const Parts& parts_in, const RayQuery& query_in)
+      : parts(parts_in), query(query_in), way(query.end - query.start), length(way.norm()) {
+    valid = length > 0 && std::isfinite(length);
+    if (!valid) return;
+    const btVector3 unit = to_bullet(Vector3(way / length));
+    for (int i = 0; i < 3; ++i) {
+      inverse_way[i] = std::abs(unit[i]) < 1e-30 ? btScalar(BT_LARGE_FLOAT) : 1 / unit[i];
+      signs[i] = inverse_way[i] < 0;
+    }
+    start = to_bullet(query.start);
+  }
+
+  void Process(const btDbvtNode* leaf) override {
+    const Parts::Solid& solid = parts.solids[static_cast<std::size_t>(leaf->dataAsInt)];
+    if (std::ranges::find(query.ignored, solid.entity) != query.ignored.end()) return;
+    const math::Pose into = math::inverse(solid.pose);
+    const auto at = enter(solid.geometry, into * query.start, into * query.end, skin);
+    if (!at) return;
+    if (*at < share || (*at == share && met && solid.link < met->link)) {
+      share = *at;
+      met = &solid;
+    }
+  }
+
+  bool passes(const btDbvtVolume& volume) const {
+    const btVector3 bounds[2] = {volume.Mins(), volume.Maxs()};
+    btScalar from = 1;
+    return btRayAabb2(start, inverse_way, signs, bounds, from, 0, length);
+  }
+
+  std::optional<RayHit> end() const {
+    std::optional<RayHit> hit;
+    if (met) hit = RayHit{std::max(0.0, share) * length, met->entity};
+    if (query.sees_floor && parts.has_floor && query.start.z() >= -skin && way.z() < 0) {
+      const double distance = std::max(0.0, query.start.z()) / -way.z() * length;
+      if (distance < length && (!hit || distance < hit->distance)) hit = RayHit{distance, {}};
+    }
+    return hit;
+  }
+
+  const Parts& parts;
+  const RayQuery& query;
+  Vector3 way;
+  double length;  // [m]
+  bool valid = false;
+  btVector3 start, inverse_way;
+  unsigned signs[3];
+  double share = 1;
+  const Parts::Solid* met = nullptr;
+};
+
 std::optional<RayHit> Rays::cast(const RayQuery& query) const {
   const Parts& p = *parts_;
-  const Vector3 way = query.end - query.start;
-  const double length = way.norm();
-  if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
+  Flight flight(p, query);
+  if (!flight.valid) return std::nullopt;
+  const btVector3 zero(0, 0, 0);
+  p.tree.rayTestInternal(p.tree.m_root, flight.start, to_bullet(query.end), flight.inverse_way,
+                         flight.signs, flight.length, zero, zero, p.stack, flight);
+  return flight.end();
+}
 
-  // The closest; of equally close ones the first in scene order.
+void Rays::find(const Vector3& low, const Vector3& high,
+                std::vector<std::size_t>& colliders) const {
   struct Policy : btDbvt::ICollide {
-    const Parts& parts;
-    const RayQuery& query;
-    double share = 1;
-    const Parts::Solid* met = nullptr;
-
-    Policy(const Parts& parts_in, const RayQuery& query_in) : parts(parts_in), query(query_in) {}
+    std::vector<std::size_t>& found;
+    explicit Policy(std::vector<std::size_t>& found_in) : found(found_in) {}
     void Process(const btDbvtNode* leaf) override {
-      const Parts::Solid& solid = parts.solids[static_cast<std::size_t>(leaf->dataAsInt)];
-      if (std::ranges::find(query.ignored, solid.entity) != query.ignored.end()) return;
-      const math::Pose into = math::inverse(solid.pose);
-      const auto at = enter(solid.geometry, into * query.start, into * query.end, skin);
-      if (!at) return;
-      if (*at < share || (*at == share && met && solid.link < met->link)) {
-        share = *at;
-        met = &solid;
-      }
+      found.push_back(static_cast<std::size_t>(leaf->dataAsInt));
     }
-  } policy(p, query);
+  } policy(colliders);
+  colliders.clear();
+  const Parts& p = *parts_;
+  p.tree.collideTVNoStackAlloc(p.tree.m_root, btDbvtVolume::FromMM(to_bullet(low), to_bullet(high)),
+                               p.stack, policy);
+}
 
-  btVector3 inverse_way;
-  unsigned signs[3];
-  const btVector3 unit = to_bullet(Vector3(way / length));
-  for (int i = 0; i < 3; ++i) {
-    inverse_way[i] = std::abs(unit[i]) < 1e-30 ? btScalar(BT_LARGE_FLOAT) : 1 / unit[i];
-    signs[i] = inverse_way[i] < 0;
+std::optional<RayHit> Rays::cast(const RayQuery& query,
+                                 std::span<const std::size_t> colliders) const {
+  const Parts& p = *parts_;
+  Flight flight(p, query);
+  if (!flight.valid) return std::nullopt;
+  for (const std::size_t collider : colliders) {
+    const btDbvtNode* leaf = p.solids[collider].leaf;
+    if (flight.passes(leaf->volume)) flight.Process(leaf);
   }
-  const btVector3 start = to_bullet(query.start), end = to_bullet(query.end), zero(0, 0, 0);
-  p.tree.rayTestInternal(p.tree.m_root, start, end, inverse_way, signs, length, zero, zero, p.stack,
-                         policy);
-
-  std::optional<RayHit> hit;
-  if (policy.met) hit = RayHit{std::max(0.0, policy.share) * length, policy.met->entity};
-  if (query.sees_floor && p.has_floor && query.start.z() >= -skin && way.z() < 0) {
-    const double distance = std::max(0.0, query.start.z()) / -way.z() * length;
-    if (distance < length && (!hit || distance < hit->distance)) hit = RayHit{distance, {}};
-  }
-  return hit;
+  return flight.end();
 }
 
 }  // namespace ziggurat::physics

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "scene/scene.h"
 #include "world/state.h"
@@ -41,8 +42,17 @@ class Rays {
   /// touches is met at 0. The floor is met from above only.
   std::optional<RayHit> cast(const RayQuery& query) const;
 
+  /// Colliders that may reach into a box, for many rays in one place.
+  /// @param low, high  corners of the box in W [m];  @param colliders  emptied before
+  void find(const math::Vector3& low, const math::Vector3& high,
+            std::vector<std::size_t>& colliders) const;
+
+  /// The same as cast(query) for a segment inside the box of find(); faster where they are few.
+  std::optional<RayHit> cast(const RayQuery& query, std::span<const std::size_t> colliders) const;
+
  private:
   struct Parts;
+  struct Flight;
   std::unique_ptr<Parts> parts_;
 };
 

@@ -144,5 +144,44 @@ TEST(Ray, FindsTheClosestOfManyAsASearchDoes) {
   EXPECT_GT(hits, 20);
 }
 
+TEST(Ray, MeetsTheSameAmongTheCollidersOfABoxAboutIt) {
+  std::vector<scene::Entity> entities;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3 at(std::sin(i * 1.7) * 5, std::cos(i * 2.3) * 5, std::sin(i * 0.9) * 5);
+    entities.push_back(solid(scene::Box{{0.3, 0.2, 0.4}}, {at, testing::about({1, 0, 0}, i)}));
+  }
+  const Rays rays = rays_among(entities);
+  std::vector<std::size_t> near;
+  int hits = 0;
+  std::size_t found = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Vector3 start(std::sin(i * 2.1) * 5, std::cos(i * 0.3) * 5, std::sin(i * 1.1) * 5);
+    const Vector3 end = start + 3 * Vector3(std::sin(i), std::cos(i * 1.3), std::sin(i * 0.7));
+    rays.find(start.cwiseMin(end), start.cwiseMax(end), near);
+    found += near.size();
+    const RayQuery ray{start, end, {}, false};
+    const auto among_all = rays.cast(ray), among_near = rays.cast(ray, near);
+    ASSERT_EQ(among_all.has_value(), among_near.has_value()) << i;
+    if (!among_all) continue;
+    EXPECT_EQ(among_all->distance, among_near->distance);
+    EXPECT_EQ(among_all->entity, among_near->entity);
+    ++hits;
+  }
+  EXPECT_GT(hits, 20);
+  EXPECT_LT(found, 500u * 60);
+}
+
+TEST(Ray, FollowsWhatMovesLessThanItsMargin) {
+  Rays rays(scene::Physics{});
+  rays.add(solid(scene::Box{{0.2, 0.2, 0.2}}, {}));
+  world::State state;
+  state.links.resize(1);
+  for (int tick = 0; tick < 200; ++tick) {
+    state.links[0].pose.position = {1 + 1e-4 * tick, 0, 0};
+    rays.update(state);
+    EXPECT_NEAR(*distance(rays, {0, 0, 0.1}, {3, 0, 0.1}), 0.9 + 1e-4 * tick, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::physics
