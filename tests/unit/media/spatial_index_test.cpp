@@ -57,6 +57,26 @@ TEST(SpatialIndex, StaysRightWhereRangesOrPlacesDiffer) {
   expect_same_as_search(points, {0.01, 0.5, 3e6});
 }
 
+TEST(SpatialIndex, FindsWhatIsInABoxWithItsSurface) {
+  const auto points = scatter(700, {4, 4, 1}, 5);
+  std::vector<std::size_t> found;
+  for (const double cell : {0.01, 0.5, 100.0}) {
+    SpatialIndex index;
+    index.build(points, cell);
+    for (std::size_t i = 0; i + 1 < points.size(); i += 7) {
+      const Vector3 low = points[i].cwiseMin(points[i + 1]),
+                    high = points[i].cwiseMax(points[i + 1]);
+      std::vector<std::size_t> expected;
+      for (std::size_t k = 100; k < 600; ++k) {
+        const auto at = points[k].array();
+        if ((at >= low.array()).all() && (at <= high.array()).all()) expected.push_back(k);
+      }
+      index.find(low, high, 100, 600, found);
+      ASSERT_EQ(found, expected) << "cells of " << cell << ", box " << i;
+    }
+  }
+}
+
 TEST(SpatialIndex, NeverFindsPointsThatAreNowhere) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Vector3> points{{nan, 0, 0}, {0, 0, 0}, {0, INFINITY, 0}};
