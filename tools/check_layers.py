@@ -23,7 +23,7 @@ MODULES = {
     "media": ["scene", "world", "math"],
     "camera": ["scene", "world", "media", "math"],
     "render": ["scene", "world", "math"],
-    "devices": ["scene", "world", "physics", "media", "camera", "math"],
+    "devices": ["scene", "world", "physics", "media", "camera", "render", "math"],
     "simulation": ["scene", "world", "magnetism", "physics", "media", "camera", "render", "devices",
                    "math"],
     "wire": ["scene", "world", "protocol", "math"],

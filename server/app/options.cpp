@@ -50,15 +50,15 @@ po::options_description world_options() {
 
 po::options_description output_options() {
   po::options_description options("What comes out", width);
-  options.add_options()                                                                       //
-      ("quiet", "no progress, notices and summary on stderr")                                 //
-      ("json", "messages for machines: one JSON object a line")                               //
-      ("hash", "last line of stdout: hash TICK DIGITS of the final state")                    //
-      ("hash-file", text("FILE"), "such a line for every tick")                               //
-      ("trace", text("FILE.csv"), "world poses of everything at every tick")                  //
-      ("readings", text("FILE.jsonl"), "what robots sensed and answered at every tick")       //
-      ("rays", text("FILE.jsonl"), "tested rays and radio links of devices with show_rays")   //
-      ("images", text("DIR"), "camera images; no camera takes any yet: the folder is empty")  //
+  options.add_options()                                                                      //
+      ("quiet", "no progress, notices and summary on stderr")                                //
+      ("json", "messages for machines: one JSON object a line")                              //
+      ("hash", "last line of stdout: hash TICK DIGITS of the final state")                   //
+      ("hash-file", text("FILE"), "such a line for every tick")                              //
+      ("trace", text("FILE.csv"), "world poses of everything at every tick")                 //
+      ("readings", text("FILE.jsonl"), "what robots sensed and answered at every tick")      //
+      ("rays", text("FILE.jsonl"), "tested rays and radio links of devices with show_rays")  //
+      ("images", text("DIR"), "PNG per tick and camera with image: ROBOT.CAMERA.TICK.png")   //
       ("summary", text("FILE.json"), "the summary for machines");
   return options;
 }

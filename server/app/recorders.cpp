@@ -1,9 +1,6 @@
 #include "app/recorders.h"
 
-#include <fmt/format.h>
-
 #include <exception>
-#include <filesystem>
 
 #include "simulation/place.h"
 
@@ -19,20 +16,14 @@ Recorders::Recorders(const Options& options, const scene::Scene& scene, std::uin
   if (options.pictures) {
     pictures_.emplace(*options.pictures, scene, simulation::place(scene, seed), layout);
   }
-  if (!options.images.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(options.images, error);
-    if (error) {
-      throw recording::WriteError(
-          fmt::format("{}: cannot be made: {}", options.images, error.message()));
-    }
-  }
+  if (!options.images.empty()) images_.emplace(options.images, layout);
 }
 
 void Recorders::tick(const simulation::Simulation& simulation) {
   if (trace_) trace_->write(simulation.state());
   if (hashes_) hashes_->write(simulation.state().tick, simulation.hash());
   if (rays_) rays_->write(simulation.state());
+  if (images_) images_->write(simulation.observations());
   if (pictures_) pictures_->tick(simulation.state());
 }
 

@@ -10,6 +10,7 @@
 #include "app/pictures.h"
 #include "app/summary.h"
 #include "recording/hash_file.h"
+#include "recording/images.h"
 #include "recording/rays.h"
 #include "recording/readings.h"
 #include "recording/trace.h"
@@ -50,6 +51,7 @@ class Recorders {
   std::optional<recording::Readings> readings_;
   std::optional<recording::Rays> rays_;
   std::optional<recording::OutputFile> summary_;
+  std::optional<recording::Images> images_;
   std::optional<Pictures> pictures_;
 };
 

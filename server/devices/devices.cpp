@@ -9,7 +9,8 @@ Devices::Devices(const Setting& setting, physics::World& physics)
       range_and_bearing_(setting),
       positioning_(setting),
       batteries_(setting),
-      cameras_(setting) {}
+      cameras_(setting),
+      pictures_(setting) {}
 
 void Devices::start(Tick& tick) {
   joints_.start(tick);
@@ -17,6 +18,7 @@ void Devices::start(Tick& tick) {
   proximity_.start(tick);
   positioning_.sense(tick);
   batteries_.start(tick);
+  pictures_.start(tick);
 }
 
 void Devices::apply(Tick& tick) {
@@ -32,6 +34,7 @@ void Devices::sense(Tick& tick) {
   positioning_.sense(tick);
   batteries_.sense(tick);
   cameras_.sense(tick);
+  pictures_.sense(tick);
 }
 
 }  // namespace ziggurat::devices

@@ -5,6 +5,7 @@
 #include "devices/battery.h"
 #include "devices/camera.h"
 #include "devices/joint.h"
+#include "devices/picture.h"
 #include "devices/positioning.h"
 #include "devices/proximity.h"
 #include "devices/radio.h"
@@ -44,6 +45,7 @@ class Devices {
   Positioning positioning_;
   Batteries batteries_;
   Cameras cameras_;
+  Pictures pictures_;
 };
 
 }  // namespace ziggurat::devices

@@ -31,10 +31,10 @@ GLsizeiptr bytes(std::span<const T> list) {
   return static_cast<GLsizeiptr>(list.size_bytes());
 }
 
-/// The mean of each oversampling x oversampling pixels of RGBA, as RGB.
+/// The mean of each n x n pixels of RGBA, as RGB.
 /// @param stride  of `from`, in pixels
-void shrink(const std::uint8_t* from, std::size_t stride, std::size_t width, std::uint8_t* to) {
-  constexpr unsigned n = oversampling;
+void shrink(const std::uint8_t* from, std::size_t stride, std::size_t width, unsigned n,
+            std::uint8_t* to) {
   for (std::size_t x = 0; x < width; ++x) {
     for (std::size_t channel = 0; channel < 3; ++channel) {
       unsigned sum = n * n / 2;
@@ -171,7 +171,8 @@ void Canvas::draw_shadows(const Drawing& drawing) {
   gl.disable(GL_POLYGON_OFFSET_FILL);
 }
 
-void Canvas::draw_tile(const Drawing& drawing, const Tile& tile, Picture& picture) {
+void Canvas::draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversampling,
+                       Picture& picture) {
   const OpenGl& gl = context_.gl();
   const auto w = static_cast<GLsizei>(tile.width * oversampling);
   const auto h = static_cast<GLsizei>(tile.height * oversampling);
@@ -205,7 +206,7 @@ void Canvas::draw_tile(const Drawing& drawing, const Tile& tile, Picture& pictur
   gl.read_pixels(0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, pixels_.data());
   for (std::size_t row = 0; row < tile.height; ++row) {
     const std::size_t stride = std::size_t{tile.width} * oversampling;
-    shrink(pixels_.data() + 4 * row * oversampling * stride, stride, tile.width,
+    shrink(pixels_.data() + 4 * row * oversampling * stride, stride, tile.width, oversampling,
            picture.rgb.data() + 3 * ((tile.y + row) * picture.width + tile.x));
   }
 }
@@ -216,8 +217,8 @@ void Canvas::draw(const Drawing& drawing, const Model& model, const View& view, 
   picture.rgb.resize(std::size_t{3} * view.width * view.height);
   context_.make_current();
   const OpenGl& gl = context_.gl();
-  make_target(std::min(view.width, largest_tile) * oversampling,
-              std::min(view.height, largest_tile) * oversampling);
+  make_target(std::min(view.width, largest_tile) * view.oversampling,
+              std::min(view.height, largest_tile) * view.oversampling);
   gl.named_buffer_data(body_instances_, bytes(std::span(drawing.bodies)), drawing.bodies.data(),
                        GL_DYNAMIC_DRAW);
   gl.named_buffer_data(mark_instances_, bytes(std::span(drawing.marks)), drawing.marks.data(),
@@ -229,7 +230,7 @@ void Canvas::draw(const Drawing& drawing, const Model& model, const View& view, 
       const Tile tile{x, y, std::min(largest_tile, view.width - x),
                       std::min(largest_tile, view.height - y)};
       set_frame(drawing, model, view, tile);
-      draw_tile(drawing, tile, picture);
+      draw_tile(drawing, tile, view.oversampling, picture);
     }
   }
   check();

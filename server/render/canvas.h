@@ -9,10 +9,6 @@
 
 namespace ziggurat::render {
 
-/// Each pixel of a picture is the mean of so many by so many rendered ones, and each of these has
-/// four samples for the outlines of things.
-constexpr unsigned oversampling = 2;
-
 class Canvas {
  public:
   /// @throws RenderError
@@ -33,7 +29,7 @@ class Canvas {
   void make_target(unsigned width, unsigned height);
   void set_frame(const Drawing& drawing, const Model& model, const View& view, const Tile& tile);
   void draw_shadows(const Drawing& drawing);
-  void draw_tile(const Drawing& drawing, const Tile& tile, Picture& picture);
+  void draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversampling, Picture& picture);
   void draw_bodies(const Drawing& drawing, bool with_hidden);
   void check() const;
 

@@ -21,6 +21,9 @@ struct View {
   math::Vector2 focal_length;      ///< fx, fy [px], > 0
   math::Vector2 principal_point;   ///< cx, cy [px]
   unsigned width = 0, height = 0;  ///< [px], > 0
+  /// Each pixel is the mean of so many by so many rendered ones, >= 1. Each of these has four
+  /// samples for the outlines of things in any case, and tags have more.
+  unsigned oversampling = 2;
 };
 
 /// The pose X_WC of a camera at `eye` that looks at `target` and has world's z up in its picture;

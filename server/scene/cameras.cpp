@@ -1,5 +1,6 @@
 // The cameras of a controller: where they sit, their lenses, and what they detect.
 
+#include <algorithm>
 #include <array>
 
 #include "scene/reading.h"
@@ -13,6 +14,8 @@ constexpr std::array<MediumKind, 3> detector_media{MediumKind::led, MediumKind::
                                                    MediumKind::tag};
 constexpr std::array<Detector::Kind, 3> detector_kinds{
     Detector::Kind::led, Detector::Kind::directional_led, Detector::Kind::tag};
+
+constexpr unsigned most_picture_pixels = 4096;  // along a side
 
 std::optional<Detector> read_detector(Reading& reading, Element& element) {
   for (std::size_t i = 0; i < detector_names.size(); ++i) {
@@ -52,6 +55,11 @@ Camera read_camera(Reading& reading, Element& element) {
   camera.principal_point = read_principal_point(element);
   camera.resolution = element.required("resolution", resolution, {1, 1});
   camera.image = element.optional("image", boolean, false);
+  if (camera.image && std::ranges::max(camera.resolution) > most_picture_pixels) {
+    element.fault_at("resolution", fmt::format("is too large for image=\"true\"; write at most "
+                                               "{0},{0}",
+                                               most_picture_pixels));
+  }
   for (Element& child : last_of_each_name(element)) {
     if (const auto detector = read_detector(reading, child)) camera.detectors.push_back(*detector);
   }

@@ -67,6 +67,41 @@ class RenderTest(SceneTest):
         self.assertNotEqual((self.folder / "with.png").read_bytes(),
                             (self.folder / "without.png").read_bytes())
 
+    def test_cameras_that_ask_take_a_picture_at_every_tick(self):
+        self.change("</sensors>", """
+          <cameras implementation="default">
+            <camera id="eye/1" anchor="origin" position="0,0,1" orientation="0,0,180"
+                    range="0.1:2" focal_length="50,50" principal_point="24,16"
+                    resolution="48,32" image="true" />
+            <camera id="blind" anchor="origin" position="0,0,1" orientation="0,0,180"
+                    range="0.1:2" focal_length="50,50" principal_point="24,16"
+                    resolution="48,32" />
+          </cameras></sensors>""", 1)
+        pictures, again = self.folder / "pictures", self.folder / "again"
+        plain = self.hash_of("--ticks", 3)
+        self.assertEqual(self.hash_of("--ticks", 3, "--images", pictures), plain)
+        self.hash_of("--ticks", 3, "--images", again)
+        names = sorted(path.name for path in pictures.iterdir())
+        self.assertTrue(names and len(names) % 3 == 0, names)
+        self.assertTrue(names[0].endswith(".eye%2F1.000001.png"), names)
+        self.assertFalse([name for name in names if "blind" in name])
+        for name in names:
+            self.assertEqual((pictures / name).read_bytes(), (again / name).read_bytes())
+        width, height, rows = read_png(pictures / names[0])
+        self.assertEqual((width, height), (48, 32))
+        self.assertGreater(len({row[i:i + 3] for row in rows for i in range(0, 144, 3)}), 10)
+
+    def test_a_picture_has_a_largest_size(self):
+        self.change("</sensors>", """
+          <cameras implementation="default">
+            <camera id="eye" anchor="origin" position="0,0,1" orientation="0,0,180"
+                    range="0.1:2" focal_length="50,50" principal_point="24,16"
+                    resolution="99999,32" image="true" />
+          </cameras></sensors>""", 1)
+        outcome = self.ziggurat("check", self.scene)
+        self.assertEqual(outcome.code, FAULT)
+        self.assertRegex(outcome.out + outcome.err, r"resolution=.99999,32. .*4096,4096")
+
     def test_says_what_is_wrong_with_its_options(self):
         for options, words in [
                 (["--size", "0x4", "--out", "x.png"], "--size"),
