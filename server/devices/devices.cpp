@@ -4,6 +4,8 @@ namespace ziggurat::devices {
 
 Devices::Devices(const Setting& setting, physics::World& physics)
     : joints_(setting, physics),
+      wheels_(setting),
+      turrets_(setting),
       radios_(setting),
       proximity_(setting),
       range_and_bearing_(setting),
@@ -14,6 +16,8 @@ Devices::Devices(const Setting& setting, physics::World& physics)
 
 void Devices::start(Tick& tick) {
   joints_.start(tick);
+  wheels_.start(tick);
+  turrets_.start(tick);
   start_visible(tick);
   proximity_.start(tick);
   positioning_.sense(tick);
@@ -23,12 +27,16 @@ void Devices::start(Tick& tick) {
 
 void Devices::apply(Tick& tick) {
   joints_.apply(tick);
+  wheels_.apply(tick);
+  turrets_.apply(tick);
   apply_visible(tick);
   radios_.apply(tick);
 }
 
 void Devices::sense(Tick& tick) {
   joints_.sense(tick);
+  wheels_.sense(tick);
+  turrets_.sense(tick);
   proximity_.sense(tick);
   range_and_bearing_.sense(tick);
   positioning_.sense(tick);

@@ -11,7 +11,9 @@
 #include "devices/radio.h"
 #include "devices/range_and_bearing.h"
 #include "devices/tick.h"
+#include "devices/turret.h"
 #include "devices/visible.h"
+#include "devices/wheels.h"
 
 namespace ziggurat::devices {
 
@@ -39,6 +41,8 @@ class Devices {
 
  private:
   Joints joints_;
+  Wheels wheels_;
+  Turrets turrets_;
   Radios radios_;
   Proximity proximity_;
   RangeAndBearing range_and_bearing_;

@@ -17,6 +17,13 @@ double proximity_reading(double distance, const scene::Response* response) {
   return near.reading + share * (far.reading - near.reading);
 }
 
+double footbot_proximity_reading(double distance) {
+  constexpr double saturated = 0.009889556;                       // [m]
+  constexpr double strength = 0.0100527, offset = 0.000163144;    // [m]
+  if (distance < saturated) return 1;
+  return std::min(1.0, strength / (distance + offset));
+}
+
 Proximity::Proximity(const Setting& setting) {
   for (std::size_t r = 0; r < setting.layout.robots.size(); ++r) {
     const world::RobotLayout& robot = setting.layout.robots[r];
@@ -26,6 +33,7 @@ Proximity::Proximity(const Setting& setting) {
                        math::RandomStream(setting.seed, "proximity/" + robot.id)});
     for (const auto& from : setting.entities[robot.entity].devices.proximity_sensors) {
       Sensor sensor;
+      sensor.footbot = enabled.footbot_proximity;
       sensor.response = from.response ? from.response : enabled.proximity_response;
       sensor.sees_floor = from.sees_floor.value_or(enabled.proximity_sees_floor);
       if (sensor.response) {
@@ -60,7 +68,9 @@ void Proximity::sense(Tick& tick, Robot& robot) {
     const auto hit = tick.rays.cast({start.position, end, own, sensor.sees_floor});
     double reading = 0;
     if (hit) {
-      reading = proximity_reading(hit->distance, sensor.response ? &*sensor.response : nullptr);
+      reading = sensor.footbot ? footbot_proximity_reading(hit->distance)
+                               : proximity_reading(hit->distance,
+                                                   sensor.response ? &*sensor.response : nullptr);
     }
     if (robot.noise > 0) {
       reading += robot.random.uniform(-robot.noise, robot.noise);

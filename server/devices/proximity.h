@@ -11,6 +11,9 @@ namespace ziggurat::devices {
 /// What a sensor reads of something at a distance [m]; exp(-distance) without a response.
 double proximity_reading(double distance, const scene::Response* response);
 
+/// What the foot-bot's own sensor reads of it.
+double footbot_proximity_reading(double distance);
+
 class Proximity {
  public:
   explicit Proximity(const Setting& setting);
@@ -23,6 +26,7 @@ class Proximity {
  private:
   struct Sensor {
     std::optional<scene::Response> response;
+    bool footbot = false;  // has the foot-bot's own response
     bool sees_floor = false;
     double least = 0, most = 1;  // of readings with noise
   };

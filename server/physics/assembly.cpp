@@ -6,8 +6,8 @@ using math::Pose;
 using math::Vector3;
 
 std::vector<Pose> assemble(const scene::Entity& entity) {
-  std::vector<Pose> poses(entity.links.size());
-  poses[entity.reference_link] = entity.links[entity.reference_link].offset;
+  std::vector<Pose> poses;
+  for (const scene::Link& link : entity.links) poses.push_back(link.offset);  // frames stay there
   for (const scene::Joint& joint : entity.joints) {  // from the root outwards
     poses[joint.child] =
         poses[joint.parent] * joint.parent_frame * math::inverse(joint.child_frame);

@@ -1,6 +1,7 @@
 #include "physics/bodies.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "physics/assembly.h"
 #include "physics/convert.h"
@@ -43,7 +44,54 @@ void furnish(Body& body, btCollisionObject& object, const scene::Link& link,
 constexpr double sleeping_velocity = 4e-3;         // [m/s]
 constexpr double sleeping_angular_velocity = 0.4;  // [rad/s]
 
-void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
+/// The plane that an entity stands on, if there is one.
+const scene::Plane* plane_of(const scene::Entity& entity, const scene::Physics& physics) {
+  constexpr double tolerance = 1e-6;  // [m]
+  for (const scene::Plane& plane : physics.planes) {
+    if (std::abs(entity.pose.position.z() - plane.elevation) < tolerance) return &plane;
+  }
+  return nullptr;
+}
+
+/// What holds a body to the ground, unless it is loose.
+std::optional<scene::Traction> traction_of(const scene::Entity& entity,
+                                           const scene::Physics& physics) {
+  if (!entity.movable || entity.traction) return entity.traction;
+  if (entity.kind == scene::EntityKind::prototype) return std::nullopt;
+  const scene::Plane* plane = physics.flat ? plane_of(entity, physics) : nullptr;
+  if (!plane) return std::nullopt;
+  return entity.kind == scene::EntityKind::box ? plane->box : plane->cylinder;
+}
+
+/// Frames without body move with the first link.
+void add_frames(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
+  const Pose into = math::inverse(placed[0] * Pose{body.links[0].center_of_mass,
+                                                   math::Quaternion::Identity()});
+  for (std::size_t i = 1; i < entity.links.size(); ++i) {
+    LinkBody frame = link_body(entity.links[i], true, placed[i]);
+    frame.rigid = body.rigid.get();
+    frame.carrier = 0;
+    frame.in_carrier = to_bullet(into * placed[i]);
+    body.links.push_back(frame);
+  }
+  body.turret = entity.turret;
+}
+
+/// A body with traction stays upright, and keeps its height on a plane.
+void add_drive(Body& body, const scene::Entity& entity, const scene::Physics& physics) {
+  const auto traction = traction_of(entity, physics);
+  if (!traction) return;
+  body.colliders[0]->rolls = true;
+  body.drive = std::make_unique<Drive>(*body.rigid, *traction);
+  if (!entity.movable) return;
+  body.rigid->setFlags(0);  // no gyroscopic torque: it does not tilt
+  body.rigid->setAngularFactor(btVector3(0, 0, 1));
+  if (plane_of(entity, physics)) body.rigid->setLinearFactor(btVector3(1, 1, 0));
+  if (entity.axle_length) body.rigid->setActivationState(DISABLE_DEACTIVATION);
+}
+
+void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed,
+                 const scene::Physics& physics) {
   const scene::Link& link = entity.links[0];
   LinkBody part = link_body(link, entity.movable, placed[0]);
   const btTransform transform =
@@ -57,6 +105,8 @@ void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose
   body.rigid->setSleepingThresholds(sleeping_velocity, sleeping_angular_velocity);
   part.rigid = body.rigid.get();
   body.links.push_back(part);
+  add_frames(body, entity, placed);
+  add_drive(body, entity, physics);
 }
 
 /// A multi-body's links must be numbered from the root outwards; joints already are. Carried
@@ -190,8 +240,7 @@ bool is_single_body(const scene::Entity& entity) {
 }  // namespace
 
 btTransform LinkBody::transform() const {
-  if (rigid) return rigid->getWorldTransform();
-  btTransform pose = multi->getBaseWorldTransform();
+  btTransform pose = rigid ? rigid->getWorldTransform() : multi->getBaseWorldTransform();
   if (index >= 0) {
     // Bullet moves colliders with each substep, the cached pose only when the next one begins.
     const btMultibodyLink& link = multi->getLink(index);
@@ -224,7 +273,12 @@ void LinkBody::apply_torque(const btVector3& torque) const {
 void Body::motions(std::vector<Motion>& out) const {
   out.resize(links.size());
   if (rigid) {
-    out[0] = {rigid->getLinearVelocity(), rigid->getAngularVelocity()};
+    const btTransform& pose = rigid->getWorldTransform();
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      const btVector3 arm = links[i].transform().getOrigin() - pose.getOrigin();
+      out[i] = {rigid->getVelocityInLocalPoint(arm),
+                rigid->getAngularVelocity() + pose.getBasis().getColumn(2) * links[i].spin};
+    }
     return;
   }
   // Bullet's tree velocities come in each link's own frame, the base first.
@@ -244,7 +298,7 @@ void Body::motions(std::vector<Motion>& out) const {
   }
 }
 
-Body build(const scene::Entity& entity, bool magnetism) {
+Body build(const scene::Entity& entity, const scene::Physics& physics) {
   Body body;
   body.reference_link = entity.reference_link;
   body.placed = entity.pose;
@@ -252,10 +306,10 @@ Body build(const scene::Entity& entity, bool magnetism) {
   body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
   std::vector<Pose> placed = assemble(entity);
   for (Pose& pose : placed) pose = entity.pose * pose;
-  if (is_single_body(entity)) {
-    build_rigid(body, entity, placed);
+  if (is_single_body(entity) || entity.traction) {
+    build_rigid(body, entity, placed, physics);
   } else {
-    build_multi(body, entity, placed, magnetism);
+    build_multi(body, entity, placed, physics.magnetism.has_value());
   }
   return body;
 }

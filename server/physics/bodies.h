@@ -7,15 +7,18 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "math/pose.h"
 #include "physics/contact/algorithm.h"
+#include "physics/drive.h"
 #include "scene/scene.h"
 
 namespace ziggurat::physics {
 
-/// A link: a rigid body, one body of a multi-body, or a turning magnet that another link carries.
+/// A link: a rigid body, one body of a multi-body, or what another link carries: a turning magnet,
+/// or a frame of a robot on wheels.
 struct LinkBody {
   btRigidBody* rigid = nullptr;
   btMultiBody* multi = nullptr;
@@ -29,11 +32,13 @@ struct LinkBody {
   math::Pose placed;  ///< X_WL as placed
 
   /// A sphere that turns freely about its centre is no body of its own: its mass moves with the
-  /// link that carries it, its orientation is magnetism's affair (docs/magnetism.md).
+  /// link that carries it, its orientation is magnetism's affair (docs/magnetism.md). Frames have
+  /// no mass at all.
   static constexpr int carries_itself = -1;
   int carrier = carries_itself;                          ///< index into Body::links
   btTransform in_carrier = btTransform::getIdentity();   ///< centre of mass in the carrier's
   math::Quaternion turn = math::Quaternion::Identity();  ///< since the start, in the carrier
+  double spin = 0;  ///< of a turret, about the carrier's z [rad/s]
 
   btTransform transform() const;                     ///< of the centre of mass, link axes
   void apply_force(const btVector3& force) const;    ///< at the centre of mass [N]
@@ -57,6 +62,8 @@ struct Body {
 
   std::unique_ptr<btRigidBody> rigid;
   std::unique_ptr<btMultiBody> multi;
+  std::unique_ptr<Drive> drive;  ///< of a rigid body with traction
+  std::optional<std::size_t> turret;  ///< into links
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   std::vector<std::unique_ptr<contact::Collider>> colliders;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> link_colliders;
@@ -65,10 +72,10 @@ struct Body {
   void motions(std::vector<Motion>& out) const;
 };
 
-/// Builds an entity's bodies where the entity stands. A box, a cylinder, or a prototype of one link
-/// without magnets becomes a rigid body, everything else a multi-body with the reference link at
-/// its base.
-/// @param magnetism  whether magnets act: then free spherical magnets are carried
-Body build(const scene::Entity& entity, bool magnetism);
+/// Builds an entity's bodies where the entity stands. A box, a cylinder, a robot on wheels, or a
+/// prototype of one link without magnets becomes a rigid body, everything else a multi-body with
+/// the reference link at its base.
+/// @param physics  whether magnets act: then free spherical magnets are carried; what planes hold
+Body build(const scene::Entity& entity, const scene::Physics& physics);
 
 }  // namespace ziggurat::physics

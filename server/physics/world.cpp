@@ -36,7 +36,8 @@ void configure(btContactSolverInfo& info, const scene::Physics& physics) {
 
 struct World::Parts {
   Parts(const scene::Physics& physics, double substep)
-      : gravity(physics.gravity.value_or(0)),
+      : settings(physics),
+        gravity(physics.gravity.value_or(0)),
         splits(physics.max_substep && substep > *physics.max_substep
                    ? static_cast<int>(std::ceil(substep / *physics.max_substep))
                    : 1),
@@ -63,6 +64,7 @@ struct World::Parts {
 
   void add_joints(const scene::Entity& entity, Body& body);
 
+  scene::Physics settings;
   double gravity;  // [m/s^2]
   int splits;      // internal substeps per substep
   double length;   // of an internal substep [s]
@@ -79,6 +81,7 @@ struct World::Parts {
   std::vector<Body> bodies;
   std::vector<MovingJoint> joints;
   std::vector<std::size_t> motors;  // into joints
+  std::vector<std::size_t> driven;  // into bodies
   std::size_t link_count = 0;
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher;
@@ -96,10 +99,22 @@ World::Parts::~Parts() {
     if (joint.motor.constraint) dynamics.removeMultiBodyConstraint(joint.motor.constraint.get());
   }
   for (Body& body : bodies) {
+    if (body.drive) dynamics.removeConstraint(body.drive.get());
     for (auto& collider : body.link_colliders) dynamics.removeCollisionObject(collider.get());
     if (body.multi) dynamics.removeMultiBody(body.multi.get());
     if (body.rigid) dynamics.removeRigidBody(body.rigid.get());
   }
+}
+
+/// Puts the turret where the drive has it.
+void pose_turret(Body& body) {
+  if (!body.turret) return;
+  const Drive& drive = *body.drive;
+  LinkBody& turret = body.links[*body.turret];
+  turret.turn = Eigen::AngleAxisd(drive.turret_angle, math::Vector3::UnitZ());
+  turret.spin = drive.turret_follows ? 0
+                                     : drive.angular_velocity + drive.turret_speed -
+                                           body.rigid->getAngularVelocity().z();
 }
 
 void World::Parts::add_joints(const scene::Entity& entity, Body& body) {
@@ -128,12 +143,16 @@ World::~World() = default;
 
 void World::add(const scene::Entity& entity) {
   Parts& p = *parts_;
-  p.bodies.push_back(build(entity, p.magnets != nullptr));
+  p.bodies.push_back(build(entity, p.settings));
   Body& body = p.bodies.back();
   body.entity = p.bodies.size() - 1;
   body.first_link = p.link_count;
   p.link_count += body.links.size();
   if (body.rigid) p.dynamics.addRigidBody(body.rigid.get());
+  if (body.drive) {
+    p.driven.push_back(body.entity);
+    if (entity.movable) p.dynamics.addConstraint(body.drive.get());
+  }
   if (body.multi) p.dynamics.addMultiBody(body.multi.get());
   for (auto& collider : body.link_colliders) {
     const bool fixed = collider->isStaticObject();
@@ -178,6 +197,22 @@ double World::velocity(JointIndex index) const {
   return joint.multi->getJointVel(joint.link);
 }
 
+void World::set_velocity(std::size_t entity, double velocity, double angular_velocity) {
+  Drive& drive = *parts_->bodies[entity].drive;
+  drive.velocity = velocity;
+  drive.angular_velocity = angular_velocity;
+}
+
+void World::set_turret(std::size_t entity, std::optional<double> speed) {
+  Body& body = parts_->bodies[entity];
+  body.drive->turret_follows = !speed;
+  body.drive->turret_speed = speed.value_or(0);
+}
+
+double World::turret(std::size_t entity) const {
+  return parts_->bodies[entity].drive->turret_angle;
+}
+
 void World::set_currents(std::span<const double> currents) {
   if (parts_->magnets) parts_->magnets->set_currents(currents);
 }
@@ -191,8 +226,11 @@ void World::step() {
       MovingJoint& joint = p.joints[motor];
       steer(joint, p.length, joint.motor.max_impulse / p.splits);
     }
+    for (const std::size_t body : p.driven) p.bodies[body].drive->before_substep(p.length);
     p.dynamics.substep(p.length);
+    for (const std::size_t body : p.driven) p.bodies[body].drive->after_substep(p.length);
   }
+  for (const std::size_t body : p.driven) pose_turret(p.bodies[body]);
 }
 
 void World::read(world::State& state) const {

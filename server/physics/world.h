@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,15 @@ class World {
 
   double position(JointIndex joint) const;  ///< [m] or [rad]; 0 as assembled
   double velocity(JointIndex joint) const;  ///< [m/s] or [rad/s]
+
+  /// What a robot on wheels is to do over the ground. 0 and 0 at the start.
+  /// @param entity  one with a traction, in order of adding
+  /// @param velocity  along its x axis [m/s];  @param angular_velocity  about z [rad/s]
+  void set_velocity(std::size_t entity, double velocity, double angular_velocity);
+  /// @param speed  by which its turret turns more than the robot is to turn [rad/s]; none: the
+  ///               turret turns with the robot, as at the start
+  void set_turret(std::size_t entity, std::optional<double> speed);
+  double turret(std::size_t entity) const;  ///< of the turret in the robot, [-pi, pi] [rad]
 
   /// Sets the currents of all magnets: current times its active field is added to a magnet's
   /// passive one. 0 at the start; without effect where the scene has no magnetism.

@@ -100,7 +100,17 @@ void enable_tags(const Enabling& e) {
 
 void enable_magnets(const Enabling& e) { e.devices.magnets_actuator = true; }
 
+/// Both sensors make the same table of a robot.
+void note_second_proximity(const Enabling& e, std::string_view other) {
+  if (!e.devices.proximity_sensor) return;
+  e.reading.document.notice(e.element.where(),
+                            fmt::format("<{}> replaces <{}>: both make robot.proximity",
+                                        e.element.name(), other));
+}
+
 void enable_proximity(const Enabling& e) {
+  note_second_proximity(e, "footbot_proximity");
+  e.devices.footbot_proximity = false;
   e.devices.proximity_sensor = true;
   e.devices.proximity_show_rays = e.element.optional("show_rays", boolean, false);
   e.devices.proximity_noise = e.element.optional("noise_level", non_negative, 0.0);
@@ -139,27 +149,58 @@ void enable_range_and_bearing_sensor(const Enabling& e) {
   e.devices.range_and_bearing_show_rays = e.element.optional("show_rays", boolean, false);
 }
 
+// --- devices of robots on wheels ----------------------------------------------------------------
+
+/// What is said of the left and of the right wheel, or of both.
+template <class Read>
+std::array<double, 2> read_sides(Element& element, std::array<const char*, 3> names, Read read,
+                                 double usual) {
+  const double both = element.optional(names[0], read, usual);
+  return {element.optional(names[1], read, both), element.optional(names[2], read, both)};
+}
+
+void enable_wheels(const Enabling& e) {
+  e.devices.wheels_actuator = true;
+  const auto bias_mean = read_sides(
+      e.element, {"bias_avg", "bias_avg_left", "bias_avg_right"}, number, 0);
+  const auto bias_deviation = read_sides(
+      e.element, {"bias_stddev", "bias_stddev_left", "bias_stddev_right"}, non_negative, 0);
+  const auto factor_mean = read_sides(
+      e.element, {"factor_avg", "factor_avg_left", "factor_avg_right"}, number, 1);
+  const auto factor_deviation = read_sides(
+      e.element, {"factor_stddev", "factor_stddev_left", "factor_stddev_right"}, non_negative, 0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    e.devices.wheel_noise[i] = {bias_mean[i], bias_deviation[i], factor_mean[i],
+                                factor_deviation[i]};
+  }
+}
+
+NoiseRange read_noise(Element& element, const char* name) {
+  const auto [min, max] = element.optional(name, range, {0.0, 0.0});
+  return {min, max};
+}
+
+void enable_wheel_encoders(const Enabling& e) {
+  e.devices.wheels_sensor = true;
+  e.devices.wheel_velocity_noise = read_noise(e.element, "vel_noise_range");
+  e.devices.wheel_distance_noise = read_noise(e.element, "dist_noise_range");
+}
+
+void enable_turret(const Enabling& e) { e.devices.turret_actuator = true; }
+void enable_turret_encoder(const Enabling& e) { e.devices.turret_encoder = true; }
+
+void enable_footbot_proximity(const Enabling& e) {
+  note_second_proximity(e, "proximity");
+  e.devices.proximity_sensor = e.devices.footbot_proximity = true;
+  e.devices.proximity_show_rays = e.element.optional("show_rays", boolean, false);
+  e.devices.proximity_noise = e.element.optional("noise_level", non_negative, 0.0);
+}
+
 // --- devices that are only checked so far -------------------------------------------------------
 
 void enable_plain(const Enabling& e) {
   e.element.optional("show_rays", boolean);
   e.element.optional("noise_level", non_negative);
-}
-
-void enable_wheels(const Enabling& e) {
-  for (const char* name : {"bias_avg", "bias_avg_left", "bias_avg_right", "factor_avg",
-                           "factor_avg_left", "factor_avg_right"}) {
-    e.element.optional(name, number);
-  }
-  for (const char* name : {"bias_stddev", "bias_stddev_left", "bias_stddev_right", "factor_stddev",
-                           "factor_stddev_left", "factor_stddev_right"}) {
-    e.element.optional(name, non_negative);
-  }
-}
-
-void enable_wheel_encoders(const Enabling& e) {
-  e.element.optional("vel_noise_range", range);
-  e.element.optional("dist_noise_range", range);
 }
 
 void enable_blob_camera(const Enabling& e) {
@@ -177,12 +218,12 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
     {"directional_leds", "default", "", enable_directional_leds},
     {"tags", "default", "", enable_tags},
     {"magnets", "default", "", enable_magnets},
-    {"differential_steering", "default", "differential_steering devices", enable_wheels},
+    {"differential_steering", "default", "", enable_wheels},
     {"gripper", "default", "gripper devices", enable_plain},
     {"range_and_bearing", "default", "", enable_range_and_bearing_actuator},
     {"quadrotor_position", "default", "quadrotor_position devices", enable_plain},
     {"quadrotor_speed", "default", "quadrotor_speed devices", enable_plain},
-    {"footbot_turret", "default", "footbot_turret devices", enable_plain},
+    {"footbot_turret", "default", "", enable_turret},
     {"footbot_gripper", "default", "footbot_gripper devices", enable_plain},
     {"footbot_distance_scanner", "default", "footbot_distance_scanner devices", enable_plain},
 }};
@@ -193,7 +234,7 @@ constexpr std::array<DeviceRow, 18> sensor_rows{{
     {"cameras", "default", "", enable_cameras},
     {"proximity", "default", "", enable_proximity},
     {"positioning", "default", "", enable_positioning},
-    {"differential_steering", "default", "differential_steering devices", enable_wheel_encoders},
+    {"differential_steering", "default", "", enable_wheel_encoders},
     {"battery", "default", "", enable_battery},
     {"ground", "rot_z_only", "ground sensors", enable_plain},
     {"light", "default", "light sensors", enable_plain},
@@ -201,11 +242,11 @@ constexpr std::array<DeviceRow, 18> sensor_rows{{
     {"colored_blob_omnidirectional_camera", "rot_z_only", "coloured-blob cameras",
      enable_blob_camera},
     {"colored_blob_perspective_camera", "default", "coloured-blob cameras", enable_blob_camera},
-    {"footbot_proximity", "default", "footbot_proximity sensors", enable_plain},
+    {"footbot_proximity", "default", "", enable_footbot_proximity},
     {"footbot_light", "rot_z_only", "footbot_light sensors", enable_plain},
     {"footbot_base_ground", "rot_z_only", "footbot_base_ground sensors", enable_plain},
     {"footbot_motor_ground", "rot_z_only", "footbot_motor_ground sensors", enable_plain},
-    {"footbot_turret_encoder", "default", "footbot_turret_encoder sensors", enable_plain},
+    {"footbot_turret_encoder", "default", "", enable_turret_encoder},
     {"footbot_distance_scanner", "rot_z_only", "footbot_distance_scanner devices", enable_plain},
 }};
 

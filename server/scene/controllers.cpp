@@ -93,16 +93,44 @@ constexpr std::array<Component, 8> components{{
     {"battery", [](const Entity& e) { return e.devices.battery.has_value(); }, "<battery>"},
 }};
 
+constexpr std::array<Component, 6> robot_components{{
+    {"differential_steering", [](const Entity& e) { return e.axle_length.has_value(); }, ""},
+    {"footbot_turret", [](const Entity& e) { return e.turret.has_value(); }, ""},
+    {"footbot_turret_encoder", [](const Entity& e) { return e.turret.has_value(); }, ""},
+    {"gripper", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
+    {"quadrotor_position", [](const Entity&) { return false; }, ""},
+    {"quadrotor_speed", [](const Entity&) { return false; }, ""},
+}};
+
+/// Whether a robot that comes as it is has a device that is in no table of components.
+bool comes_with(const Entity& entity, std::string_view device) {
+  for (const Component& component : robot_components) {
+    if (component.device == device) return component.is_carried(entity);
+  }
+  return entity.kind == EntityKind::foot_bot || !device.starts_with("footbot_");
+}
+
+std::string_view kind_of(const Entity& entity) {
+  if (entity.kind == EntityKind::foot_bot) return "foot-bot";
+  return entity.kind == EntityKind::e_puck ? "e-puck" : "prototype";
+}
+
 /// What an entity lacks for a device, or nothing.
 std::optional<std::string> lacking(const Entity& entity, const DeviceUse& use) {
   if (use.name == "joints" || use.name == "cameras" || use.name == "positioning") return {};
-  for (const Component& component : components) {
-    if (component.device != use.name) continue;
-    if (component.is_carried(entity)) return {};
-    return fmt::format("has none; write {} into its <devices>, or remove the device",
-                       component.element);
+  const bool prototype = entity.kind == EntityKind::prototype;
+  const auto component = std::ranges::find(components, use.name, &Component::device);
+  if (component != components.end()) {
+    if (component->is_carried(entity)) return {};
+    if (prototype || use.name == "battery") {
+      return fmt::format("has none; write {} into {}, or remove the device", component->element,
+                         prototype ? "its <devices>" : "it");
+    }
+  } else if (!prototype && comes_with(entity, use.name)) {
+    return {};
   }
-  return "is a prototype and has none; remove the device, or use another controller";
+  return fmt::format("is of kind {} and has none; remove the device, or use another controller",
+                     kind_of(entity));
 }
 
 /// One device of a controller against one entity at a time.
@@ -123,17 +151,17 @@ struct Check {
     if (found == joints.end()) {
       std::vector<std::string> known;
       for (const Joint& joint : entity.joints) known.push_back(joint.id);
-      blame(where, fmt::format("joint {} does not exist in prototype {}; {}", in_quotes(id),
-                               in_quotes(entity.id), advice(id, known)));
+      blame(where, fmt::format("joint {} does not exist in {} {}; {}", in_quotes(id),
+                               kind_of(entity), in_quotes(entity.id), advice(id, known)));
       return;
     }
     const JointType type = found->second->type;
     if (type == JointType::prismatic || type == JointType::revolute) return;
     const std::string_view is = type == JointType::fixed ? "fixed" : "spherical";
     if (actuated) {
-      blame(where, fmt::format("joint {} of prototype {} is {}; only prismatic and revolute joints "
+      blame(where, fmt::format("joint {} of {} {} is {}; only prismatic and revolute joints "
                                "have an actuator",
-                               in_quotes(id), in_quotes(entity.id), is));
+                               in_quotes(id), kind_of(entity), in_quotes(entity.id), is));
     } else {
       reading.document.notice(where, fmt::format("the sensor of joint {} always reads 0: the joint "
                                                  "is {}",
@@ -155,8 +183,8 @@ struct Check {
       const std::string& anchor = devices.cameras[i].anchor;
       if (anchor.empty() || anchor == "origin" || reading.anchors.contains(anchor)) continue;
       blame(use.camera_anchors[i],
-            fmt::format("anchor {} of camera {} does not exist in prototype {}; {}",
-                        in_quotes(anchor), in_quotes(devices.cameras[i].id), in_quotes(entity.id),
+            fmt::format("anchor {} of camera {} does not exist in {} {}; {}", in_quotes(anchor),
+                        in_quotes(devices.cameras[i].id), kind_of(entity), in_quotes(entity.id),
                         advice(anchor, anchor_names(reading))));
     }
   }
@@ -192,7 +220,7 @@ void check_use(Reading& reading, const Entity& entity) {
   const Controller& controller = reading.scene.controllers[*entity.controller];
   ControllerUse& use = reading.uses[*entity.controller];
   check_sections(reading, controller, entity, use);
-  if (entity.kind != EntityKind::prototype || use.faults > most_faults_with_entities) return;
+  if (use.faults > most_faults_with_entities) return;
   const Check check{reading, entity, use};
   check.check_joints(controller.devices);
   check.check_cameras(controller.devices);

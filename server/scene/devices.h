@@ -178,6 +178,12 @@ struct NoiseRange {
   double min = 0, max = 0;
 };
 
+/// A wheel that does not do as it is told: it runs at factor * (speed + bias).
+struct WheelNoise {
+  double bias_mean = 0, bias_deviation = 0;      ///< drawn once per robot [m/s]
+  double factor_mean = 1, factor_deviation = 0;  ///< drawn at every tick
+};
+
 /// What a controller's <actuators> and <sensors> enable.
 struct ControllerDevices {
   std::vector<JointActuator> joint_actuators;
@@ -191,6 +197,7 @@ struct ControllerDevices {
   bool tags_actuator = false;
   bool magnets_actuator = false;
   bool proximity_sensor = false;
+  bool footbot_proximity = false;  ///< that sensor is the foot-bot's own: its response, with angles
   bool proximity_show_rays = false;
   double proximity_noise = 0;  ///< uniform in ± this, >= 0
   bool proximity_sees_floor = false;           ///< of sensors that don't say
@@ -206,6 +213,13 @@ struct ControllerDevices {
   NoiseRange angle_noise;     ///< of the angle of rotation [rad]
   NoiseRange axis_noise;      ///< of each coordinate of the unit axis of rotation
   bool battery_sensor = false;
+  bool wheels_actuator = false;
+  std::array<WheelNoise, 2> wheel_noise;  ///< left, right
+  bool wheels_sensor = false;
+  NoiseRange wheel_velocity_noise;  ///< [m/s]
+  NoiseRange wheel_distance_noise;  ///< [m]
+  bool turret_actuator = false;
+  bool turret_encoder = false;
   bool cameras_show_frustum = false;
   std::vector<Camera> cameras;
 };

@@ -1,6 +1,7 @@
 // <physics_engines>: one three-dimensional world. Its defaults for surfaces and damping are read
 // before any body is.
 
+#include <algorithm>
 #include <array>
 
 #include "scene/reading.h"
@@ -11,7 +12,7 @@ namespace {
 constexpr unsigned most_iterations = 1'000'000;  // substeps of a tick
 constexpr unsigned most_solver_iterations = 10'000;
 constexpr double usual_gravity = 10.0;  // [m/s^2], the dialect's default of `g`
-constexpr std::array<std::string_view, 2> engine_names{"dynamics3d", "dynamics2d"};
+constexpr std::array<std::string_view, 3> engine_names{"dynamics3d", "dynamics2d", "pointmass3d"};
 
 void read_floor(Reading& reading, Element floor) {
   Floor& out = reading.scene.physics.floor.emplace();
@@ -60,15 +61,46 @@ void read_dynamics3d(Reading& reading, Element& engine) {
   engine.done();
 }
 
+/// How much force and torque the ground of a <dynamics2d> brakes with.
+void read_ground(Element friction, Plane& plane) {
+  plane.box.max_force =
+      friction.optional("box_linear_friction", non_negative, plane.box.max_force);
+  plane.box.max_torque =
+      friction.optional("box_angular_friction", non_negative, plane.box.max_torque);
+  plane.cylinder.max_force =
+      friction.optional("cylinder_linear_friction", non_negative, plane.cylinder.max_force);
+  plane.cylinder.max_torque =
+      friction.optional("cylinder_angular_friction", non_negative, plane.cylinder.max_torque);
+  friction.done();
+}
+
+void note_one_world(Reading& reading, const Element& engine) {
+  reading.document.notice(
+      engine.where(),
+      fmt::format("<{}> runs in the same 3D world as everything else", engine.name()));
+}
+
 void read_dynamics2d(Reading& reading, Element& engine) {
-  constexpr std::string_view why = "two-dimensional robots live in the same 3D world";
-  reading.document.notice(engine.where(),
-                          "<dynamics2d> runs in the same 3D world as everything else");
-  engine.without_effect("elevation", number, why);
-  engine.child_without_effect("friction", why);
-  engine.child_without_effect("spatial_hash", why);
-  engine.child_without_effect("boundaries", why);
+  note_one_world(reading, engine);
+  Plane plane;
+  plane.elevation = engine.optional("elevation", number, 0.0);
+  if (auto friction = engine.child("friction")) read_ground(*friction, plane);
+  engine.child_without_effect("spatial_hash", "bodies are found by their place anyway");
+  engine.child_without_effect("boundaries", "the world is one and unbounded");
   engine.done();
+  reading.scene.physics.planes.push_back(plane);
+}
+
+void read_pointmass3d(Reading& reading, Element& engine) {
+  note_one_world(reading, engine);
+  engine.child_without_effect("boundaries", "the world is one and unbounded");
+  engine.done();
+}
+
+void read_engine(Reading& reading, Element& engine) {
+  if (engine.name() == "dynamics3d") return read_dynamics3d(reading, engine);
+  if (engine.name() == "dynamics2d") return read_dynamics2d(reading, engine);
+  read_pointmass3d(reading, engine);
 }
 
 }  // namespace
@@ -95,7 +127,7 @@ void read_engines(Reading& reading, Element& root) {
   bool has_dynamics3d = false;
   for (Element& engine : engines->children()) {
     const bool three = engine.name() == "dynamics3d";
-    if (!three && engine.name() != "dynamics2d") {
+    if (std::ranges::find(engine_names, engine.name()) == engine_names.end()) {
       engine.unknown_in(engines->name(), engine_names);
       continue;
     }
@@ -115,8 +147,9 @@ void read_engines(Reading& reading, Element& root) {
     }
     reading.has_engine = true;
     has_dynamics3d |= three;
-    three ? read_dynamics3d(reading, engine) : read_dynamics2d(reading, engine);
+    read_engine(reading, engine);
   }
+  physics.flat = !physics.planes.empty() && !has_dynamics3d;
   engines->done();
 }
 

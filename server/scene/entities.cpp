@@ -1,4 +1,4 @@
-// The elements of an arena: <box>, <cylinder>, <prototype>, and the robots still to come.
+// The elements of an arena: <box>, <cylinder>, <prototype>; robots are read in robots/.
 
 #include <array>
 
@@ -53,35 +53,6 @@ void read_prototype(Reading& reading, Element& element, Entity& entity, Placemen
   read_joints(reading, element, entity, rooted);
   read_devices(reading, element, entity);
   read_controller_of(reading, element, entity);
-}
-
-void read_steering_limits(Element engine) {
-  if (auto steering = engine.child("differential_steering")) {
-    steering->optional("max_force", positive);
-    steering->optional("max_torque", positive);
-    steering->done();
-  }
-  engine.done();
-}
-
-/// Checks what a foot-bot or e-puck says. Their links, joints and devices are still to come.
-void read_robot(Reading& reading, Element& element, Entity& entity, Placement placement) {
-  entity.pose = read_body(element, placement);
-  entity.links.emplace_back().where = element.where();
-  element.optional("rab_range", positive);
-  element.optional("rab_data_size", count);
-  if (entity.kind == EntityKind::foot_bot) {
-    element.optional("omnidirectional_camera_aperture", half_angle);
-    element.optional("perspective_camera_front", boolean);
-  }
-  element.optional("perspective_camera_aperture", half_angle);
-  element.optional("perspective_camera_focal_length", positive);
-  element.optional("perspective_camera_range", positive);
-  if (auto battery = element.child("battery")) read_battery(*battery);
-  if (auto engine = element.child("dynamics2d")) read_steering_limits(*engine);
-  element.required_child("controller");
-  read_controller_of(reading, element, entity);
-  element.fault("is not supported yet; model the robot as a <prototype>");
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ constexpr std::size_t most_compared = 256;    // candidates
 
 using Reasons = std::span<const std::pair<std::string_view, std::string_view>>;
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 18> element_reasons{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 17> element_reasons{{
     {"loop_functions", "user libraries are not loaded into the server; connect a controller"},
     {"include", "files are not included yet; write the elements into this file"},
     {"eye-bot", "its flight model does not exist here; model it as a <prototype>"},
@@ -28,7 +28,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 18> element_
     {"builderbot", "model it as a <prototype>"},
     {"drone", "model it as a <prototype>"},
     {"block", "model it as a <prototype>"},
-    {"pointmass3d", "use <dynamics3d>"},
     {"physx", "use <dynamics3d>"},
     {"srocs", "use <magnetism>"},
     {"simple_radio", "use <radio>"},

@@ -79,6 +79,9 @@ enum class Placement { explicit_pose, distributed };
 Entity read_entity(Reading& reading, Element& element, Placement placement);
 bool is_entity(std::string_view name);
 
+/// Reads a <foot-bot> or <e-puck> into an entity that knows its kind.
+void read_robot(Reading& reading, Element& element, Entity& entity, Placement placement);
+
 /// Reads <light>, whose effects are still to come; returns its id.
 std::string read_light(Reading& reading, Element& element, Placement placement);
 

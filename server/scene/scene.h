@@ -66,7 +66,7 @@ struct Damping {
 struct Link {
   std::string id;       ///< also the name of the link's anchor
   Geometry geometry;
-  bool collides = true; ///< false: a frame without collider (a foot-bot's turret)
+  bool collides = true; ///< false: a frame without body (a foot-bot's turret), its shape a point
   double mass = 0;      ///< [kg]; > 0 unless the link is static
   math::Pose offset;    ///< X_EL as written: only the reference link's decides where it stands,
                         ///< joints place all others
@@ -96,6 +96,13 @@ struct Joint {
 
 enum class EntityKind { box, cylinder, prototype, foot_bot, e_puck };
 
+/// What holds a body upright and to a motion over the ground: driven wheels, or the friction of
+/// the ground in a two-dimensional engine, which only brakes.
+struct Traction {
+  double max_force = 0;   ///< along its x axis, and as much across it [N]
+  double max_torque = 0;  ///< about z [N m]
+};
+
 /// Anything that stands in the arena. A `<box>` is an entity with one unnamed link.
 struct Entity {
   std::string id;
@@ -106,6 +113,9 @@ struct Entity {
   std::size_t reference_link = 0;  ///< index into links: the root of the tree
   std::vector<Joint> joints;       ///< ordered from the root outwards: a joint's parent link is
                                    ///< the reference link or the child of an earlier joint
+  std::optional<Traction> traction;      ///< robots on wheels; their body is the reference link
+  std::optional<double> axle_length;     ///< distance between its two driven wheels [m]
+  std::optional<std::size_t> turret;     ///< index into links: a frame that turns about its z
   Devices devices;
   std::optional<std::size_t> controller;  ///< index into Scene::controllers
   std::vector<std::pair<std::string, std::string>> params;  ///< the entity's own <params>, if
@@ -150,6 +160,13 @@ struct Magnetism {
   double taper = 0;        ///< share of max_distance over which forces fade out, 0 to 1
 };
 
+/// A `<dynamics2d>`: what stands at its elevation keeps that height.
+struct Plane {
+  double elevation = 0;                 ///< [m]
+  Traction box{1.49, 1.49};             ///< how its ground brakes boxes
+  Traction cylinder{1.49, 1.49};        ///< and cylinders
+};
+
 struct Physics {
   std::string id;
   unsigned iterations = 10;  ///< substeps per tick, >= 1
@@ -159,6 +176,8 @@ struct Physics {
   std::optional<Floor> floor;
   std::optional<double> gravity;             ///< downward acceleration [m/s^2]
   std::optional<Magnetism> magnetism;
+  std::vector<Plane> planes;  ///< in document order
+  bool flat = false;          ///< there are planes only: they hold boxes and cylinders, too
   Location where;
 };
 

@@ -1,5 +1,7 @@
 #include "simulation/device_layout.h"
 
+#include <cmath>
+
 namespace ziggurat::simulation {
 namespace {
 
@@ -98,7 +100,9 @@ void add_proximity(const DeviceCarrier& carrier, RobotLayout& robot, Layout& lay
   if (!enabled.proximity_sensor) return;
   for (const scene::ProximitySensor& sensor : entity.devices.proximity_sensors) {
     layout.proximity.push_back(
-        {mount(carrier, sensor.anchor, sensor.offset, layout), sensor.direction, sensor.range});
+        {mount(carrier, sensor.anchor, sensor.offset, layout), sensor.direction, sensor.range, {}});
+    if (!enabled.footbot_proximity) continue;
+    layout.proximity.back().angle = std::atan2(sensor.direction.y(), sensor.direction.x());
   }
   robot.proximity.count = entity.devices.proximity_sensors.size();
 }
@@ -167,6 +171,19 @@ void add_state_sensors(const DeviceCarrier& carrier, RobotLayout& robot, Layout&
   if (battery) layout.batteries.push_back({carrier.index});
 }
 
+void add_wheels_and_turret(const DeviceCarrier& carrier, RobotLayout& robot, Layout& layout) {
+  const auto& [entity, index, enabled] = carrier;
+  const bool wheels = entity.axle_length && (enabled.wheels_actuator || enabled.wheels_sensor);
+  robot.wheels = {layout.wheels.size(), wheels ? 1u : 0u};
+  if (wheels) {
+    layout.wheels.push_back(
+        {index, *entity.axle_length, enabled.wheels_actuator, enabled.wheels_sensor});
+  }
+  const bool turret = entity.turret && (enabled.turret_actuator || enabled.turret_encoder);
+  robot.turrets = {layout.turrets.size(), turret ? 1u : 0u};
+  if (turret) layout.turrets.push_back({index, enabled.turret_actuator, enabled.turret_encoder});
+}
+
 }  // namespace
 
 void add_devices(const DeviceCarrier& carrier, RobotLayout& robot, Layout& layout) {
@@ -179,6 +196,7 @@ void add_devices(const DeviceCarrier& carrier, RobotLayout& robot, Layout& layou
   add_range_and_bearing(carrier, robot, layout);
   add_cameras(carrier, robot, layout);
   add_state_sensors(carrier, robot, layout);
+  add_wheels_and_turret(carrier, robot, layout);
 }
 
 }  // namespace ziggurat::simulation

@@ -48,6 +48,13 @@ void add_sensed(math::Hash& hash, const Observations& observations) {
     hash.add(battery.available_charge);
     hash.add(battery.time_left);
   }
+  for (const WheelsReading& wheels : observations.wheels) {
+    hash.add(wheels.velocity_left);
+    hash.add(wheels.velocity_right);
+    hash.add(wheels.distance_left);
+    hash.add(wheels.distance_right);
+  }
+  hash.add(observations.turrets);
 }
 
 void add(math::Hash& hash, const std::vector<LedReading>& readings) {

@@ -111,6 +111,8 @@ struct ProximityLayout {
   Mount mount;                                       ///< its origin is the start of the ray
   math::Vector3 direction = math::Vector3::UnitX();  ///< unit, in the anchor frame
   double range = 0;                                  ///< length of the ray [m]
+  std::optional<double> angle;  ///< about +z from +x, (-pi, pi] [rad]; of foot-bots' own sensor,
+                                ///< which tells it with each reading
 };
 
 /// A range-and-bearing device of any entity: at most one each.

@@ -83,6 +83,12 @@ class Algorithm final : public btActivatingCollisionAlgorithm {
   std::array<Anchor, 4> anchors_;
 };
 
+/// Whether a contact is one of a wheeled body's lower or upper face.
+bool rolls_on(const Collider& collider, const btTransform& pose, const btVector3& normal) {
+  constexpr btScalar face = btScalar(0.7);  // cosine of the steepest such contact
+  return collider.rolls && btFabs(pose.getBasis().getColumn(2).dot(normal)) > face;
+}
+
 /// Replaces the manifold's points, carrying impulses and anchors over to the nearest new ones.
 void Algorithm::write(const Contacts& contacts, const Collider& a, const Collider& b,
                       btScalar reach) {
@@ -97,6 +103,7 @@ void Algorithm::write(const Contacts& contacts, const Collider& a, const Collide
 
   const btTransform& pose_a = manifold_->getBody0()->getWorldTransform();
   const btTransform& pose_b = manifold_->getBody1()->getWorldTransform();
+  const bool rolls = rolls_on(a, pose_a, contacts.normal) || rolls_on(b, pose_b, contacts.normal);
   std::array<btVector3, 4> slips;
   for (int i = 0; i < contacts.count; ++i) {
     const Point& contact = contacts.points[i];
@@ -105,7 +112,7 @@ void Algorithm::write(const Contacts& contacts, const Collider& a, const Collide
                           contact.distance);
     point.m_positionWorldOnA = on_a;
     point.m_positionWorldOnB = contact.on_b;
-    point.m_combinedFriction = a.friction * b.friction;
+    point.m_combinedFriction = rolls ? 0 : a.friction * b.friction;
     // Only a point or a line of contact can roll; each carries its share of the normal force.
     if (contacts.count <= 2)
       point.m_combinedRollingFriction = a.rolling_friction + b.rolling_friction;

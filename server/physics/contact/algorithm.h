@@ -16,6 +16,7 @@ struct Collider {
   Shape shape;
   btScalar friction = 0.5;        ///< Coulomb coefficient; two surfaces combine by product
   btScalar rolling_friction = 0;  ///< [m]; two surfaces combine by sum
+  bool rolls = false;             ///< has wheels: does not rub on what is below or above it
   btScalar reach = 0;             ///< how far ahead this body is looked for, this substep [m]
   btTransform previous = btTransform::getIdentity();  ///< pose one substep ago
 };

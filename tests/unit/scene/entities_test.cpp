@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "scene_text.h"
@@ -290,14 +291,74 @@ TEST(Distribute, TwoGroupsMayNotMakeTheSameIds) {
   EXPECT_EQ(count_containing(faults(text.read()), "makes a copy called \"b10\""), 1u);
 }
 
-TEST(Robots, AreCheckedAndNotSupportedYet) {
+TEST(Robots, FootBotHasTheDialectsGeometryAndDevices) {
   SceneText text = driven("", "");
   text.arena = arena_with(
-      R"(<foot-bot id="f" rab_range="-1" omnidirectional_camera_aperture="80"><body/><controller config="c"/></foot-bot>)");
+      R"(<foot-bot id="f" rab_range="2" rab_data_size="4"><body position="1,2,0"/>)"
+      R"(<battery start_charge="0.5"/><controller config="c"/><dynamics2d>)"
+      R"(<differential_steering max_force="7"/></dynamics2d></foot-bot>)");
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.problems.empty()) << all_problems(result);
+  const Entity& robot = result.scene.entities.at(0);
+  EXPECT_EQ(std::get<Cylinder>(robot.links.at(0).geometry).radius, 0.085036758);
+  EXPECT_EQ(robot.links.at(1).id, "turret");
+  EXPECT_EQ(robot.turret, 1u);
+  EXPECT_EQ(robot.links.at(2).id, "perspective_camera");
+  EXPECT_FALSE(robot.links[2].collides);
+  EXPECT_EQ(robot.axle_length, 0.14);
+  EXPECT_EQ(robot.traction->max_force, 7);
+  EXPECT_EQ(robot.traction->max_torque, 150);
+  ASSERT_EQ(robot.devices.leds.size(), 13u);
+  EXPECT_EQ(robot.devices.leds[0].anchor.link, 1);
+  EXPECT_NEAR(robot.devices.leds[3].offset.x(), 0.090036758 * std::cos(105 * std::numbers::pi / 180), 1e-15);
+  EXPECT_EQ(robot.devices.leds[12].offset, math::Vector3(0, 0, 0.174249733));
+  ASSERT_EQ(robot.devices.proximity_sensors.size(), 24u);
+  EXPECT_NEAR(robot.devices.proximity_sensors[1].direction.y(), std::sin(22.5 * std::numbers::pi / 180), 1e-15);
+  EXPECT_EQ(robot.devices.range_and_bearing->range, 2);
+  EXPECT_EQ(robot.devices.range_and_bearing->data_size, 4u);
+  EXPECT_EQ(robot.devices.battery->start_charge, 0.5);
+}
+
+TEST(Robots, EPuckHasWhatItsDataSheetSays) {
+  SceneText text = driven("", "");
+  text.arena = arena_with(R"(<e-puck id="e"><body/><controller config="c"/></e-puck>)");
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.problems.empty()) << all_problems(result);
+  const Entity& robot = result.scene.entities.at(0);
+  EXPECT_EQ(std::get<Cylinder>(robot.links.at(0).geometry).radius, 0.035);
+  EXPECT_EQ(robot.axle_length, 0.053);
+  EXPECT_FALSE(robot.turret);
+  EXPECT_EQ(robot.devices.leds.size(), 8u);
+  ASSERT_EQ(robot.devices.proximity_sensors.size(), 8u);
+  EXPECT_LT(robot.devices.proximity_sensors[0].direction.y(), 0);  // PS0 is on the right
+  EXPECT_GT(robot.devices.proximity_sensors[7].direction.y(), 0);
+}
+
+TEST(Robots, AreCheckedWhole) {
+  SceneText text = driven("", "");
+  text.arena = arena_with(
+      R"(<foot-bot id="f" rab_range="-1" omnidirectional_camera_aperture="80"><body/>)"
+      R"(<dynamics2d><differential_steering max_force="0"/></dynamics2d></foot-bot>)");
   const auto said = faults(text.read());
-  ASSERT_EQ(said.size(), 2u);
-  EXPECT_EQ(count_containing(said, "<foot-bot> is not supported yet"), 1u);
+  EXPECT_EQ(said.size(), 3u);
   EXPECT_EQ(count_containing(said, "rab_range=\"-1\""), 1u);
+  EXPECT_EQ(count_containing(said, "max_force=\"0\""), 1u);
+  EXPECT_EQ(count_containing(said, "<foot-bot> lacks"), 1u);
+}
+
+TEST(Robots, HaveOnlyTheirOwnDevices) {
+  const auto lacks = [](const std::string& device, const std::string& robot) {
+    SceneText text = driven("<" + device + R"( implementation="default"/>)", "");
+    text.arena = arena_with("<" + robot + R"( id="r"><body/><controller config="c"/></)" + robot + ">");
+    return count_containing(faults(text.read()), "are enabled for entity \"r\"");
+  };
+  EXPECT_EQ(lacks("differential_steering", "foot-bot"), 0u);
+  EXPECT_EQ(lacks("differential_steering", "e-puck"), 0u);
+  EXPECT_EQ(lacks("footbot_turret", "foot-bot"), 0u);
+  EXPECT_EQ(lacks("footbot_turret", "e-puck"), 1u);
+  EXPECT_EQ(lacks("radios", "foot-bot"), 1u);
+  EXPECT_EQ(lacks("quadrotor_speed", "foot-bot"), 1u);
+  EXPECT_EQ(lacks("gripper", "foot-bot"), 0u);
 }
 
 TEST(Arena, LightsAndGroundsComeLater) {

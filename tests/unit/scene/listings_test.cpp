@@ -254,7 +254,9 @@ TEST(Listings, Repeater) {
 
 TEST(Listings, FootBotControllerAndTarget) {
   SceneText text;
-  text.arena = arena_with(target);
+  text.arena = arena_with(
+      std::string(target) +
+      R"(<foot-bot id="fb"><body position="0,0,0" orientation="0,0,0"/><controller config="fb"/></foot-bot>)");
   text.controllers = foot_bot_controller;
   text.media = all_media;
   const ReadResult result = text.read();
@@ -270,6 +272,10 @@ TEST(Listings, FootBotControllerAndTarget) {
   EXPECT_EQ(cameras[0].detectors[2].kind, Detector::Kind::tag);
   const math::Vector3 forward = cameras[0].pose.orientation * math::Vector3::UnitZ();
   EXPECT_NEAR((forward + math::Vector3::UnitX()).norm(), 0, 1e-12);  // looks back
+  const Entity& foot_bot = result.scene.entities.at(1);
+  EXPECT_EQ(foot_bot.links.at(*foot_bot.turret).id, cameras[1].anchor);
+  const ControllerDevices& enabled = result.scene.controllers[0].devices;
+  EXPECT_TRUE(enabled.turret_actuator && enabled.wheels_actuator && enabled.wheels_sensor);
   const Devices& devices = result.scene.entities.at(0).devices;
   EXPECT_EQ(devices.directional_leds.at(0).id, "directional_led_0");
   EXPECT_EQ(devices.directional_leds.at(0).color, (Color{255, 0, 0}));

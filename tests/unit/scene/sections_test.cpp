@@ -189,7 +189,7 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   text.media = R"(<media><led id="leds"/><range_and_bearing id="rab"/></media>)";
   const ReadResult result = text.read();
   EXPECT_TRUE(result.ok()) << all_problems(result);
-  for (const char* subject : {": light sensors are", "footbot_turret devices are"}) {
+  for (const char* subject : {": light sensors are", "quadrotor_speed devices are"}) {
     EXPECT_EQ(count_containing(notices(result), subject), 1u) << subject;
   }
 }

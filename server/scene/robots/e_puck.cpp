@@ -1,0 +1,60 @@
+// The e-puck. Diameter, axle and wheels: e-puck.org, "Mechanics of the e-puck" (EPFL): 70 mm,
+// 53 mm, and 41 mm wheels that turn once a second at most. Height, mass, and reach and bearings of
+// the infrared sensors: Webots User Guide, "Using the e-puck robot", tables 8.1 and 8.4: 45 mm,
+// 150 g, 4 cm. Range and bearing: the board of Gutierrez et al. (ICRA 2009), two bytes to 0.8 m.
+// Nobody states heights of sensors and LEDs, nor forces: those are ours.
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "scene/robots/robots.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr double body_radius = 0.035;  // [m]
+constexpr double body_height = 0.045;  // [m]
+constexpr double body_mass = 0.15;     // [kg]
+constexpr double axle_length = 0.053;  // [m]
+/// A tenth of the foot-bot's, as its mass is.
+constexpr Traction traction{1.5, 15};  // [N], [N m]
+
+/// PS0 ... PS7, clockwise from the right of the front, seen from above [rad].
+constexpr std::array<double, 8> proximity_bearings{5.98, 5.48, 4.71, 3.64, 2.64, 1.57, 0.80, 0.30};
+constexpr double proximity_height = 0.03;  // [m]
+constexpr double proximity_range = 0.04;   // [m]
+
+/// LED0 in front, the others clockwise.
+constexpr unsigned leds = 8;
+constexpr double led_radius = 0.0355;  // just outside of the body [m]
+constexpr double led_height = 0.03;    // [m]
+
+constexpr double range_and_bearing_height = 0.045;  // [m]
+constexpr double range_and_bearing_range = 0.8;     // [m]
+constexpr unsigned range_and_bearing_bytes = 2;
+
+}  // namespace
+
+void equip_e_puck(Entity& entity) {
+  entity.links.push_back(wheeled_body(body_radius, body_height, body_mass));
+  entity.traction = traction;
+  entity.axle_length = axle_length;
+  for (unsigned i = 0; i < leds; ++i) {
+    const double bearing = -2 * std::numbers::pi * i / leds;
+    const math::Vector3 offset(led_radius * std::cos(bearing), led_radius * std::sin(bearing),
+                               led_height);
+    entity.devices.leds.push_back({"led_" + std::to_string(i + 1), {}, offset, Color{}, {}});
+  }
+  for (const double bearing : proximity_bearings) {
+    entity.devices.proximity_sensors.push_back(
+        outward_sensor(bearing, proximity_height, body_radius, proximity_range));
+  }
+  const math::Pose antenna{math::Vector3(0, 0, range_and_bearing_height),
+                           math::Quaternion::Identity()};
+  entity.devices.range_and_bearing =
+      RangeAndBearing{{}, antenna, range_and_bearing_range, range_and_bearing_bytes, {}};
+}
+
+}  // namespace ziggurat::scene

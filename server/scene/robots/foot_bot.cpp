@@ -1,0 +1,73 @@
+// The foot-bot of the dialect: its geometry, its anchors, and the devices that exist here.
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "scene/robots/robots.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+constexpr double body_radius = 0.085036758;  // [m]
+constexpr double body_height = 0.146899733;  // [m]
+constexpr double body_mass = 1.6;            // [kg]
+constexpr double axle_length = 0.14;         // [m]
+constexpr Traction traction{15, 150};        // [N], [N m]
+
+constexpr double perspective_camera_x = 0.085036758;  // [m]
+constexpr double perspective_camera_z = 0.174249733;  // [m]
+
+constexpr unsigned ring_leds = 12;               // from 15 degrees on, evenly
+constexpr double led_ring_radius = 0.090036758;  // [m]
+constexpr double led_ring_height = 0.085;        // [m]
+constexpr double beacon_height = 0.174249733;    // [m]
+
+constexpr unsigned proximity_sensors = 24;  // from 7.5 degrees on, evenly
+constexpr double proximity_height = 0.06;   // [m]
+constexpr double proximity_range = 0.1;     // [m]
+
+constexpr double range_and_bearing_height = 0.1;  // [m]
+constexpr double range_and_bearing_range = 3;     // [m]
+constexpr unsigned range_and_bearing_bytes = 10;
+
+Led led(unsigned number, int anchor, const math::Vector3& offset) {
+  return {"led_" + std::to_string(number), {anchor}, offset, Color{}, {}};
+}
+
+void add_leds(Entity& entity, int turret) {
+  for (unsigned i = 0; i < ring_leds; ++i) {
+    const double bearing = (15 + 360.0 / ring_leds * i) * degree;
+    entity.devices.leds.push_back(led(i + 1, turret,
+                                      {led_ring_radius * std::cos(bearing),
+                                       led_ring_radius * std::sin(bearing), led_ring_height}));
+  }
+  entity.devices.leds.push_back(led(ring_leds + 1, turret, {0, 0, beacon_height}));
+}
+
+}  // namespace
+
+void equip_foot_bot(Entity& entity) {
+  entity.links.push_back(wheeled_body(body_radius, body_height, body_mass));
+  entity.turret = entity.links.size();
+  entity.links.push_back(frame("turret", {}));
+  entity.links.push_back(
+      frame("perspective_camera", {math::Vector3(perspective_camera_x, 0, perspective_camera_z),
+                                   math::Quaternion::Identity()}));
+  entity.traction = traction;
+  entity.axle_length = axle_length;
+  add_leds(entity, static_cast<int>(*entity.turret));
+  for (unsigned i = 0; i < proximity_sensors; ++i) {
+    const double bearing = (7.5 + 360.0 / proximity_sensors * i) * degree;
+    entity.devices.proximity_sensors.push_back(
+        outward_sensor(bearing, proximity_height, body_radius, proximity_range));
+  }
+  const math::Pose antenna{math::Vector3(0, 0, range_and_bearing_height),
+                           math::Quaternion::Identity()};
+  entity.devices.range_and_bearing =
+      RangeAndBearing{{}, antenna, range_and_bearing_range, range_and_bearing_bytes, {}};
+}
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,42 @@
+// What robots on wheels are made of.
+
+#include <cmath>
+
+#include "scene/robots/robots.h"
+
+namespace ziggurat::scene {
+namespace {
+
+/// Of two-dimensional robots in the dialect. What is under a robot does not rub: its wheels roll.
+constexpr Surface body_surface{0.7, 0.0};
+
+}  // namespace
+
+Link wheeled_body(double radius, double height, double mass) {
+  Link link;
+  link.id = "base";
+  link.geometry = Cylinder{radius, height};
+  link.mass = mass;
+  link.surface = body_surface;
+  return link;
+}
+
+Link frame(std::string id, const math::Pose& offset) {
+  Link link;
+  link.id = std::move(id);
+  link.geometry = Sphere{0};
+  link.collides = false;
+  link.offset = offset;
+  return link;
+}
+
+ProximitySensor outward_sensor(double bearing, double height, double radius, double range) {
+  const math::Vector3 outward(std::cos(bearing), std::sin(bearing), 0);
+  ProximitySensor sensor;
+  sensor.offset = radius * outward + math::Vector3(0, 0, height);
+  sensor.direction = outward;
+  sensor.range = range;
+  return sensor;
+}
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,64 @@
+// <foot-bot> and <e-puck>: what a scene may say of a robot that comes as it is.
+
+#include "scene/reading.h"
+
+#include "scene/robots/robots.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr unsigned most_data_bytes = 65'536;  // of a range-and-bearing packet
+
+void read_steering_limits(Element engine, Traction& traction) {
+  if (auto steering = engine.child("differential_steering")) {
+    traction.max_force = steering->optional("max_force", positive, traction.max_force);
+    traction.max_torque = steering->optional("max_torque", positive, traction.max_torque);
+    steering->done();
+  }
+  engine.done();
+}
+
+/// The first medium of a kind: where devices are that the scene does not give one.
+std::optional<std::size_t> first_medium(const Scene& scene, MediumKind kind) {
+  for (std::size_t i = 0; i < scene.media.size(); ++i) {
+    if (scene.media[i].kind == kind) return i;
+  }
+  return std::nullopt;
+}
+
+/// Attributes of the coloured-blob cameras, which are still to come.
+void check_blob_cameras(Element& element, EntityKind kind) {
+  if (kind == EntityKind::foot_bot) {
+    element.optional("omnidirectional_camera_aperture", half_angle);
+    element.optional("perspective_camera_front", boolean);
+  }
+  element.optional("perspective_camera_aperture", half_angle);
+  element.optional("perspective_camera_focal_length", positive);
+  element.optional("perspective_camera_range", positive);
+}
+
+}  // namespace
+
+void read_robot(Reading& reading, Element& element, Entity& entity, Placement placement) {
+  entity.kind == EntityKind::foot_bot ? equip_foot_bot(entity) : equip_e_puck(entity);
+  entity.movable = element.optional("movable", boolean, true);
+  entity.pose = read_body(element, placement);
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    entity.links[i].where = element.where();
+    reading.anchors.emplace(entity.links[i].id, i);
+  }
+  Devices& devices = entity.devices;
+  RangeAndBearing& antenna = *devices.range_and_bearing;
+  antenna.range = element.optional("rab_range", positive, antenna.range);
+  antenna.data_size =
+      element.optional("rab_data_size", Whole{0, most_data_bytes}, antenna.data_size);
+  devices.range_and_bearing_medium = first_medium(reading.scene, MediumKind::range_and_bearing);
+  devices.led_medium = first_medium(reading.scene, MediumKind::led);
+  check_blob_cameras(element, entity.kind);
+  if (auto battery = element.child("battery")) devices.battery = read_battery(*battery);
+  if (auto engine = element.child("dynamics2d")) read_steering_limits(*engine, *entity.traction);
+  element.required_child("controller");
+  read_controller_of(reading, element, entity);
+}
+
+}  // namespace ziggurat::scene

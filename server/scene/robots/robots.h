@@ -1,0 +1,27 @@
+#pragma once
+// The robots that the dialect has by name. Each file has one robot's table of constants and
+// writes them into an entity: links, wheels, devices. Settings of a scene come on top.
+
+#include "scene/scene.h"
+
+namespace ziggurat::scene {
+
+/// A foot-bot: anchors `base`, `turret` and `perspective_camera`, two wheels, a turret, 13 LEDs,
+/// 24 proximity sensors, range and bearing.
+void equip_foot_bot(Entity& entity);
+
+/// An e-puck: anchor `base`, two wheels, 8 LEDs, 8 proximity sensors, range and bearing.
+void equip_e_puck(Entity& entity);
+
+/// A body that is an upright cylinder on the floor: the link `base`.
+Link wheeled_body(double radius, double height, double mass);
+
+/// A frame that moves with the body: it has no collider and no mass.
+/// @param offset  X_EL
+Link frame(std::string id, const math::Pose& offset);
+
+/// A sensor on the surface of the body that looks outward, level.
+/// @param bearing  about +z from +x [rad];  @param height, radius, range  [m]
+ProximitySensor outward_sensor(double bearing, double height, double radius, double range);
+
+}  // namespace ziggurat::scene
