@@ -1,0 +1,202 @@
+-- What the construction robot's controllers share: its measures, wheels, lift, proximity sensors,
+-- and how it docks at a block by the camera. Distances in m, times in s, angles in rad; positions
+-- in the robot's frame are {forward, left} of the point between the four wheels.
+
+local here = (...):match("^(.*%.)") or ""
+local tag_pose = require(here .. "tag_pose")
+
+local builder = {}
+
+-- The robot's own measures, which its maker knows. None of them says where anything stands.
+builder.tick = 0.1                -- s between two steps
+builder.block = 0.055             -- edge of a block
+builder.tag_side = 0.024
+builder.face_height = 0.0555      -- of the end effector's face above the floor, lift at 0
+builder.reach = 0.080             -- from the robot's middle to the face of a block it holds
+local wheel_radius, half_track = 0.025, 0.052
+-- Skidding wheels turn the robot this much less than they roll: without a block, and with one,
+-- whose weight takes load off the rear wheels.
+local slip = {[false] = 1.32, [true] = 1.08}
+builder.loaded = false            -- for those who reckon their way: whether it carries a block
+local front_sensor = 0.065        -- where the front proximity sensors sit
+local camera_forward = 0.0055     -- where the camera sits
+local camera = {focal_length = {884, 884}, principal_point = {320, 180}}
+
+--------------------------------------------------------------------------------------- wheels, lift
+
+-- Speed [m/s] and turn to the left [rad/s].
+function builder.drive(speed, turn)
+  local skid = turn * half_track * slip[builder.loaded]
+  local left, right = (speed - skid) / wheel_radius, (speed + skid) / wheel_radius
+  robot.joints.base_wheel_fl.set_target(left)
+  robot.joints.base_wheel_bl.set_target(left)
+  robot.joints.base_wheel_fr.set_target(right)
+  robot.joints.base_wheel_br.set_target(right)
+end
+
+function builder.stop() builder.drive(0, 0) end
+
+-- Where dead reckoning has the robot: {x, y, yaw} in a frame of the robot's own choice.
+builder.pose = {x = 0, y = 0, yaw = 0}
+
+-- Moves that on by what the wheels rolled; to be called at every step, first.
+function builder.reckon()
+  local joints, pose = robot.joints, builder.pose
+  local left = (joints.base_wheel_fl.encoder + joints.base_wheel_bl.encoder) / 2
+  local right = (joints.base_wheel_fr.encoder + joints.base_wheel_br.encoder) / 2
+  local way = (left + right) / 2 * wheel_radius * builder.tick
+  local turn = (right - left) / 2 * wheel_radius * builder.tick / half_track / slip[builder.loaded]
+  pose.x = pose.x + way * math.cos(pose.yaw + turn / 2)
+  pose.y = pose.y + way * math.sin(pose.yaw + turn / 2)
+  pose.yaw = pose.yaw + turn
+end
+
+-- An angle's equal within half a turn of 0.
+function builder.wrapped(angle) return math.atan(math.sin(angle), math.cos(angle)) end
+
+local lift = {height = 0, speed = 0, now = 0}
+
+-- Sends the lift to a height at up to this speed. True once it is there.
+function builder.lift_to(height, speed)
+  lift.height, lift.speed = height, speed
+  return math.abs(height - robot.joints.lift.encoder) < 3e-4
+end
+
+-- Moves the lift on, or holds it; to be called at every step, last. It starts and stops gently.
+function builder.move_lift()
+  local wanted = 3 * (lift.height - robot.joints.lift.encoder)
+  wanted = math.max(-lift.speed, math.min(lift.speed, wanted))
+  local change = 0.015  -- m/s in a step
+  lift.now = math.max(lift.now - change, math.min(lift.now + change, wanted))
+  robot.joints.lift.set_target(lift.now)
+end
+
+-- -1 cancels the end effector's permanent magnets, 0 leaves them, +1 doubles them.
+function builder.current(current)
+  for _, magnet in pairs(robot.magnets) do magnet.set_current(current) end
+end
+
+----------------------------------------------------------------------------------------- proximity
+
+-- The sensors' calibration: distance [m] and counts.
+local counts = {{0.0035, 65535}, {0.005, 32000}, {0.0075, 14222}, {0.01, 8000}, {0.015, 3556},
+                {0.02, 2000}, {0.03, 889}, {0.04, 500}, {0.06, 222}, {0.08, 125}, {0.1, 80},
+                {0.15, 36}, {0.2, 20}}
+
+-- What a sensor's reading means [m]; infinity if it sees nothing.
+function builder.distance(sensor)
+  local reading = robot.proximity[sensor]
+  for i = 2, #counts do
+    if reading >= counts[i][2] then
+      local near, far = counts[i - 1], counts[i]
+      local share = (near[2] - math.min(reading, near[2])) / (near[2] - far[2])
+      return near[1] + share * (far[1] - near[1])
+    end
+  end
+  return math.huge
+end
+
+-- From the robot's middle to the nearest thing in front of the deck; infinity beyond 0.2 m of it.
+function builder.ahead()
+  local nearest = math.min(builder.distance(1), builder.distance(2), builder.distance(12))
+  return front_sensor + nearest
+end
+
+-- From the end effector's face down to what is below; the sensor sits 4 mm inside.
+function builder.below() return builder.distance(13) - 0.004 end
+
+-- Whether a block hangs at the end effector: all three sensors that look down touch it.
+function builder.holds()
+  return math.max(builder.distance(13), builder.distance(15), builder.distance(16)) < 0.0045
+end
+
+-------------------------------------------------------------------------------------------- camera
+
+-- The colour of the LEDs around a tag, as {red, green, blue}; nil if they are off.
+local function color_around(centre, normal)
+  local along = centre[1] * normal[1] + centre[2] * normal[2] + centre[3] * normal[3]
+  for _, led in ipairs(robot.cameras.camera.directional_led_detector) do
+    local x = (led.center.x - camera.principal_point[1]) / camera.focal_length[1]
+    local y = (led.center.y - camera.principal_point[2]) / camera.focal_length[2]
+    local depth = along / (x * normal[1] + y * normal[2] + normal[3])  -- the ray meets the face
+    local dx, dy, dz = x * depth - centre[1], y * depth - centre[2], depth - centre[3]
+    if dx * dx + dy * dy + dz * dz < 0.032 ^ 2 then return led.color end
+  end
+end
+
+-- All faces that stand upright and are seen, nearest first: {forward, left, up, heading, payload,
+-- color}. up counts from the camera, heading is the direction into the face.
+function builder.faces()
+  local found = {}
+  for _, tag in ipairs(robot.cameras.camera.tag_detector) do
+    local centre, normal = tag_pose.solve(tag.corners, camera, builder.tag_side)
+    if centre and math.abs(normal[2]) < 0.3 then
+      found[#found + 1] = {
+        forward = centre[3] + camera_forward, left = -centre[1], up = -centre[2],
+        heading = math.atan(normal[1], -normal[3]), payload = tag.payload,
+        color = color_around(centre, normal)}
+    end
+  end
+  table.sort(found, function(a, b)
+    if a.forward ~= b.forward then return a.forward < b.forward end
+    return a.left < b.left
+  end)
+  return found
+end
+
+-- The nearest face at floor level that looks towards the robot; nil if none is seen.
+function builder.nearest_face()
+  for _, face in ipairs(builder.faces()) do
+    if math.abs(face.up) < 0.02 and math.abs(face.heading) < 0.7 then return face end
+  end
+end
+
+-- How far the robot stands to the left of the line through a face's middle, at right angles to it.
+function builder.offset(face)
+  return face.forward * math.sin(face.heading) - face.left * math.cos(face.heading)
+end
+
+-- Turn rate that brings the robot onto that line within a few of these lengths, forwards or back.
+local function steer(face, speed)
+  local settle = 0.03
+  local wanted = math.max(-0.25, math.min(0.25, builder.offset(face) / (2 * settle)))
+  return math.abs(speed) * 2 / settle * (face.heading - (speed > 0 and wanted or -wanted))
+end
+
+-- Drives up to a face; to be called at every step with where it is by then. Returns "docked" once
+-- it stands under the end effector, "askew" if it came close without being in line. With `touch`
+-- the proximity sensors say how far it is at last.
+function builder.dock_at(face, fastest, touch)
+  local to_go = math.min(face.forward, touch and builder.ahead() or math.huge) - builder.reach
+  if to_go < 0.03 and (math.abs(builder.offset(face)) > 0.006 or math.abs(face.heading) > 0.12) then
+    builder.stop()
+    return "askew"
+  end
+  if to_go < 0.0005 then
+    builder.stop()
+    return "docked"
+  end
+  local speed = math.max(0.008, math.min(fastest, 1.2 * to_go))
+  builder.drive(speed, steer(face, speed))
+end
+
+local unseen = 0  -- steps since a face was seen
+
+-- Drives up to the nearest face, as above; "lost" if there is none to drive up to.
+function builder.dock(fastest)
+  local face = builder.nearest_face()
+  unseen = face and 0 or unseen + 1
+  if face then return builder.dock_at(face, fastest, true) end
+  builder.stop()
+  if unseen > 5 then return "lost" end
+end
+
+-- Backs away along the line before the nearest face; to be called at every step. How far away that
+-- face is, 0 if none is seen.
+function builder.back_away(speed)
+  local face = builder.nearest_face()
+  builder.drive(-speed, face and steer(face, -speed) or 0)
+  return face and face.forward or 0
+end
+
+return builder

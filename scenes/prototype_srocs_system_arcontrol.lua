@@ -1,0 +1,128 @@
+-- Stacks the first block it meets on top of the second (section 3.3 of the report).
+--
+-- A state machine that knows proximity, camera, radio and joint encoders, and nothing of where it
+-- or the blocks are. Each state is a function, called at every tick; it returns the name of the next.
+
+local builder = require "construction.builder"
+
+local clearance = 0.03      -- of the end effector's face over a block on the floor, on approach
+local gap = 0.003           -- over the block when the magnets are energised
+local carrying = builder.block + 0.017  -- lift, with a block carried over another one
+local placed = builder.block - 0.0002  -- lift, with the carried block on top of another
+
+local states = {}
+local state, since = "start", 0  -- and how many ticks ago it began
+local blocks_met = 0
+
+local function seconds() return since * builder.tick end
+
+function states.start()
+  builder.current(-1)
+  if builder.lift_to(clearance, 0.05) then return "approach" end
+end
+
+function states.approach()
+  local height = blocks_met == 0 and clearance or carrying
+  builder.lift_to(height, 0.05)
+  local outcome = builder.dock(0.05)
+  if outcome == "docked" then
+    blocks_met = blocks_met + 1
+    return blocks_met == 1 and "lower" or "place"
+  end
+  if outcome == "askew" then return "retreat" end
+  if outcome == "lost" then return "search" end
+end
+
+-- Backs away for another approach.
+function states.retreat()
+  if builder.back_away(0.04) > 0.2 or seconds() > 4 then
+    builder.stop()
+    return "approach"
+  end
+end
+
+-- Turns to and fro, each time farther, until a face is seen.
+function states.search()
+  builder.drive(0, seconds() % 8 < 2 and 0.2 or (seconds() % 8 < 6 and -0.2 or 0.2))
+  if builder.nearest_face() then
+    builder.stop()
+    return "approach"
+  end
+end
+
+function states.lower()
+  if builder.lift_to(gap - 0.0005, 0.03) then return "energise" end
+end
+
+-- The current rises slowly: before the block jumps, it loses weight and slides into line.
+function states.energise()
+  builder.current(math.min(1, -1 + seconds()))
+  if seconds() > 2.5 then return builder.holds() and "raise" or "let_go" end
+end
+
+function states.raise()
+  if builder.lift_to(carrying, 0.03) then return builder.holds() and "signal" or "let_go" end
+end
+
+-- Tells the block that it is held. The permanent magnets hold it from now on.
+function states.signal()
+  builder.current(0)
+  robot.radios.nfc.tx_data({1})
+  if seconds() >= 1 then return "leave_gap" end
+end
+
+-- What was in the way is gone; look for the next block.
+function states.leave_gap()
+  if builder.nearest_face() then return "approach" end
+  builder.drive(0.03, 0)
+  if seconds() > 3 then
+    builder.stop()
+    return "search"
+  end
+end
+
+function states.let_go()
+  builder.current(-1)
+  builder.lift_to(clearance, 0.03)
+  if seconds() > 3 then
+    blocks_met = 0
+    return "retreat"
+  end
+end
+
+-- Slowly: the lower block, pulled by the carried one, slides into line under it.
+function states.place()
+  if builder.lift_to(placed, 0.008) then return "release" end
+end
+
+function states.release()
+  builder.current(math.max(-1, -2 * seconds()))
+  if seconds() > 1.5 then return "rise" end
+end
+
+function states.rise()
+  if builder.lift_to(carrying + 0.02, 0.02) then return "back_off" end
+end
+
+function states.back_off()
+  builder.drive(-0.04, 0)
+  if seconds() > 2.5 then return "done" end
+end
+
+function states.done() builder.stop() end
+
+function init() log("start") end
+
+function step()
+  since = since + 1
+  local next_state = states[state]()
+  if next_state then
+    state, since = next_state, 0
+    log(state)
+  end
+  builder.move_lift()
+end
+
+function reset()
+  state, since, blocks_met = "start", 0, 0
+end
