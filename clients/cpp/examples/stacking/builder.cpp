@@ -1,0 +1,138 @@
+#include "builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tag_pose.h"
+
+namespace stacking {
+namespace {
+
+// The robot's own measures [m]. None of them says where anything stands.
+constexpr double reach = 0.080;  // from its middle to the face of a block under the end effector
+constexpr double wheel_radius = 0.025, half_track = 0.052;
+constexpr double slip = 1.32;           // skidding wheels turn it this much less than they rolled
+constexpr double front_sensor = 0.065;  // where the front proximity sensors sit
+constexpr double tag_side = 0.024;
+constexpr double settle = 0.03;  // in a few of these it comes into line [m]
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// The proximity sensors' calibration: distance [m] and counts.
+struct Point {
+  double distance, counts;
+};
+constexpr Point calibration[] = {{0.0035, 65535}, {0.005, 32000}, {0.0075, 14222}, {0.01, 8000},
+                                 {0.015, 3556},   {0.02, 2000},   {0.03, 889},     {0.04, 500},
+                                 {0.06, 222},     {0.08, 125},    {0.1, 80},       {0.15, 36},
+                                 {0.2, 20}};
+
+/// Turn rate that brings the robot onto the line before a face, forwards or back [rad/s].
+double steer(const Face& face, double speed) {
+  const double wanted = std::clamp(face.offset() / (2 * settle), -0.25, 0.25);
+  return std::abs(speed) * 2 / settle * (face.heading - (speed > 0 ? wanted : -wanted));
+}
+
+}  // namespace
+
+double Face::offset() const { return forward * std::sin(heading) - left * std::cos(heading); }
+
+Builder::Builder(ziggurat::Robot& robot)
+    : camera_(robot.camera("camera")),
+      left_wheels_{&robot.joint("base_wheel_fl"), &robot.joint("base_wheel_bl")},
+      right_wheels_{&robot.joint("base_wheel_fr"), &robot.joint("base_wheel_br")},
+      lift_(robot.joint("lift")),
+      radio_(robot.radio("nfc")),
+      magnets_(robot.magnets()),
+      proximity_(robot.proximity_sensors()) {}
+
+void Builder::drive(double speed, double turn) {
+  const double skid = turn * half_track * slip;
+  for (ziggurat::Joint* wheel : left_wheels_) wheel->set_target((speed - skid) / wheel_radius);
+  for (ziggurat::Joint* wheel : right_wheels_) wheel->set_target((speed + skid) / wheel_radius);
+}
+
+bool Builder::lift_to(double height, double speed) {
+  lift_height_ = height;
+  lift_speed_limit_ = speed;
+  return std::abs(height - lift_.encoder()) < 3e-4;
+}
+
+void Builder::move_lift() {
+  constexpr double change = 0.015;  // in a step [m/s]
+  const double wanted =
+      std::clamp(3 * (lift_height_ - lift_.encoder()), -lift_speed_limit_, lift_speed_limit_);
+  lift_speed_ = std::clamp(wanted, lift_speed_ - change, lift_speed_ + change);
+  lift_.set_target(lift_speed_);
+}
+
+void Builder::set_current(double current) {
+  for (ziggurat::Magnet& magnet : magnets_) magnet.set_current(current);
+}
+
+/// @param sensor  from 1, as the scene's comments and the Lua script count them
+double Builder::distance(std::size_t sensor) const {
+  const double reading = proximity_[sensor - 1].reading();
+  for (std::size_t i = 1; i < std::size(calibration); ++i) {
+    const Point near = calibration[i - 1], far = calibration[i];
+    if (reading < far.counts) continue;
+    const double share =
+        (near.counts - std::min(reading, near.counts)) / (near.counts - far.counts);
+    return near.distance + share * (far.distance - near.distance);
+  }
+  return infinity;
+}
+
+/// From the robot's middle to the nearest thing in front of the deck.
+double Builder::ahead() const {
+  return front_sensor + std::min({distance(1), distance(2), distance(12)});
+}
+
+bool Builder::holds() const {
+  return std::max({distance(13), distance(15), distance(16)}) < 0.0045;
+}
+
+void Builder::send(std::uint8_t byte) { radio_.send({&byte, 1}); }
+
+std::optional<Face> Builder::nearest_face() const {
+  std::optional<Face> nearest;
+  for (const ziggurat::Camera::TagReading& tag : camera_.tags()) {
+    const std::optional<TagPose> pose = tag_pose(tag.corners, camera_, tag_side);
+    if (!pose || std::abs(pose->normal[1]) > 0.3 || std::abs(pose->centre[1]) > 0.02) continue;
+    const Face face{pose->centre[2] + camera_.position()[0], -pose->centre[0],
+                    std::atan2(pose->normal[0], -pose->normal[2])};
+    if (std::abs(face.heading) > 0.7) continue;
+    if (!nearest || face.forward < nearest->forward) nearest = face;
+  }
+  return nearest;
+}
+
+Docking Builder::dock(double fastest) {
+  const std::optional<Face> face = nearest_face();
+  unseen_ = face ? 0 : unseen_ + 1;
+  if (!face) {
+    stop();
+    return unseen_ > 5 ? Docking::lost : Docking::under_way;
+  }
+  const double to_go = std::min(face->forward, ahead()) - reach;
+  if (to_go < 0.03 && (std::abs(face->offset()) > 0.006 || std::abs(face->heading) > 0.12)) {
+    stop();
+    return Docking::askew;
+  }
+  if (to_go < 0.0005) {
+    stop();
+    return Docking::docked;
+  }
+  const double speed = std::max(0.008, std::min(fastest, 1.2 * to_go));
+  drive(speed, steer(*face, speed));
+  return Docking::under_way;
+}
+
+double Builder::back_away(double speed) {
+  const std::optional<Face> face = nearest_face();
+  drive(-speed, face ? steer(*face, -speed) : 0);
+  return face ? face->forward : 0;
+}
+
+}  // namespace stacking
