@@ -1,0 +1,210 @@
+"""Shapes and poses of a construction scene: how deep they overlap, how far joints drift."""
+
+import dataclasses
+import itertools
+import math
+import pathlib
+import xml.etree.ElementTree as ElementTree
+
+
+class Pose:
+    """Of a link: its bottom centre and its rotation as three rows."""
+
+    __slots__ = ("position", "quaternion", "_rows")
+
+    def __init__(self, position, quaternion):
+        self.position, self.quaternion, self._rows = position, quaternion, None
+
+    @property
+    def rows(self):
+        if self._rows is None:
+            w, x, y, z = self.quaternion
+            self._rows = (
+                (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+                (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+                (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)))
+        return self._rows
+
+    def column(self, i):
+        return tuple(row[i] for row in self.rows)
+
+    def apply(self, point):
+        return tuple(p + dot(row, point) for p, row in zip(self.position, self.rows))
+
+    def into(self, point):
+        """A world point in this frame."""
+        away = tuple(a - b for a, b in zip(point, self.position))
+        return tuple(dot(self.column(i), away) for i in range(3))
+
+
+@dataclasses.dataclass
+class Link:
+    kind: str          # box, cylinder, sphere
+    half: tuple        # extents [m]; of a cylinder radius, radius, height / 2
+    mass: float        # [kg]
+
+
+@dataclasses.dataclass
+class Scene:
+    links: dict        # (entity, link): Link
+    joints: list       # (entity, id, type, parent, child, frame in parent, frame in child)
+    blocks: list       # (entity, link) of the blocks' bodies
+    robots: list       # entities with an end effector
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def vector(text):
+    return tuple(float(part) for part in text.split(","))
+
+
+def centre(pose, half_height=0.0275):
+    """The middle of a block, or of another link of that half height."""
+    return pose.apply((0, 0, half_height))
+
+
+# --- the scene ------------------------------------------------------------------------------------
+
+
+def shape(link):
+    kind = link.get("geometry")
+    mass = float(link.get("mass"))
+    if kind == "box":
+        return Link(kind, tuple(side / 2 for side in vector(link.get("size"))), mass)
+    radius = float(link.get("radius"))
+    height = float(link.get("height")) / 2 if kind == "cylinder" else radius
+    return Link(kind, (radius, radius, height), mass)
+
+
+def prototypes(path, root):
+    """Every prototype of the file with its definition: its own, or that of the model it names."""
+    models = {}
+    for include in root.iter("include"):
+        included = ElementTree.parse(pathlib.Path(path).parent / include.get("file")).getroot()
+        for element in [included, *included.iter("prototype")]:
+            if element.get("id"):
+                models.setdefault(element.get("id"), element)
+    for element in root.find("arena").iter("prototype"):
+        yield element, models.get(element.get("model"), element)
+
+
+def read_scene(path):
+    root = ElementTree.parse(path).getroot()
+    scene = Scene({}, [], [], [])
+    for element, model in prototypes(path, root):
+        entity = element.get("id")
+        for link in model.find("links"):
+            scene.links[entity, link.get("id")] = shape(link)
+        for joint in model.find("joints"):
+            parent, child = joint.find("parent"), joint.find("child")
+            scene.joints.append((entity, joint.get("id"), joint.get("type"), parent.get("link"),
+                                 child.get("link"), vector(parent.get("position", "0,0,0")),
+                                 vector(child.get("position", "0,0,0"))))
+        if (entity, "end_effector") in scene.links:
+            scene.robots.append(entity)
+        else:
+            scene.blocks.append((entity, "base"))
+    return scene
+
+
+# --- overlaps -------------------------------------------------------------------------------------
+
+
+def below_floor(link, pose):
+    """How deep the lowest point of a link is under z = 0 [m]; negative above."""
+    middle = pose.apply((0, 0, link.half[2]))
+    row = pose.rows[2]
+    if link.kind == "box":
+        reach = sum(abs(row[i]) * link.half[i] for i in range(3))
+    elif link.kind == "cylinder":
+        reach = math.hypot(row[0], row[1]) * link.half[0] + abs(row[2]) * link.half[2]
+    else:
+        reach = link.half[0]
+    return reach - middle[2]
+
+
+def box_overlap(a, pose_a, b, pose_b):
+    """Smallest overlap of two boxes over the fifteen axes [m]; negative if they are apart."""
+    between = tuple(q - p for p, q in zip(pose_a.apply((0, 0, a.half[2])),
+                                          pose_b.apply((0, 0, b.half[2]))))
+    axes_a = [pose_a.column(i) for i in range(3)]
+    axes_b = [pose_b.column(i) for i in range(3)]
+    least = math.inf
+    for axis in itertools.chain(axes_a, axes_b,
+                                (cross(p, q) for p in axes_a for q in axes_b)):
+        length = math.sqrt(dot(axis, axis))
+        if length < 1e-6:
+            continue
+        reach = (sum(abs(dot(axis, axes_a[i])) * a.half[i] for i in range(3)) +
+                 sum(abs(dot(axis, axes_b[i])) * b.half[i] for i in range(3)))
+        least = min(least, (reach - abs(dot(axis, between))) / length)
+        if least < 0:
+            return least
+    return least
+
+
+def deepest_overlap(scene, poses):
+    """(depth, names) of the deepest overlap with the floor or of two entities' links. Cylinders
+    count against other links as the boxes around them; spheres are inside their blocks."""
+    deepest, who = 0.0, ""
+    solid = [(key, link) for key, link in scene.links.items() if link.kind != "sphere"]
+    for key, link in solid:
+        depth = below_floor(link, poses[key])
+        if depth > deepest:
+            deepest, who = depth, f"{'.'.join(key)} in the floor"
+    for block in scene.blocks:
+        link, pose = scene.links[block], poses[block]
+        for key, other in solid:
+            if key[0] == block[0] or (key in scene.blocks and key < block):
+                continue
+            reach = math.dist((0, 0, 0), link.half) + math.dist((0, 0, 0), other.half)
+            if math.dist(centre(pose), centre(poses[key], other.half[2])) > reach:
+                continue
+            depth = box_overlap(link, pose, other, poses[key])
+            if depth > deepest:
+                deepest, who = depth, f"{'.'.join(block)} and {'.'.join(key)}"
+    return deepest, who
+
+
+# --- joints and motion ----------------------------------------------------------------------------
+
+
+class Joints:
+    """How far the two ends of each joint come apart. A prismatic joint's may along one line: that
+    of the parent's z axis, as the lift's."""
+
+    def __init__(self, scene, start):
+        self.joints = scene.joints
+        self.start = {(entity, joint): start[entity, parent].into(start[entity, child].apply(at))
+                      for entity, joint, _, parent, child, _, at in scene.joints}
+
+    def drift(self, poses):
+        most, who = 0.0, ""
+        for entity, joint, kind, parent, child, _, at in self.joints:
+            now = poses[entity, parent].into(poses[entity, child].apply(at))
+            apart = [a - b for a, b in zip(now, self.start[entity, joint])]
+            if kind == "prismatic":
+                apart[2] = 0
+            if math.dist((0, 0, 0), apart) > most:
+                most, who = math.dist((0, 0, 0), apart), f"{entity}.{joint}"
+        return most, who
+
+
+def fastest(scene, before, now, seconds):
+    """(energy, name) of the link that moved with most kinetic energy between two ticks [J]."""
+    most, who = 0.0, ""
+    for key, link in scene.links.items():
+        if link.kind == "sphere" or key not in now:
+            continue
+        speed = math.dist(centre(before[key], link.half[2]),
+                          centre(now[key], link.half[2])) / seconds
+        energy = link.mass * speed * speed / 2
+        if energy > most:
+            most, who = energy, ".".join(key)
+    return most, who

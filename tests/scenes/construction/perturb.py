@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""Runs a construction scene many times, each time set up differently, and judges every run.
+
+    tests/scenes/construction/perturb.py --runs 100
+    tests/scenes/construction/perturb.py --staircase --runs 20 --least 0.8
+
+Perturbation number K always is the same one. Of the stacking scene: the robot up to 3 cm farther
+back and turned by up to 3 degrees, both blocks up to 1 cm off in x and in y and turned by up to 3
+degrees, another seed, and half, once or twice the iterations. Of the staircase: the robot up to 2 cm
+off and turned by up to 5 degrees, every block up to 1.5 cm off and turned by up to 8 degrees, another
+seed.
+"""
+
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+
+import judge
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+STACKING = ROOT / "scenes/prototype_srocs_system.argos"
+STAIRCASE = ROOT / "scenes/construction/staircase.argos"
+BIN = pathlib.Path(os.environ.get("ZIGGURAT_BIN", ROOT / "build/release/bin"))
+
+
+def move(body, x=0.0, y=0.0, turn=0.0):
+    """Moves a <body> in the plane [m] and turns it about z [degrees]."""
+    place = [float(part) for part in body.get("position", "0,0,0").split(",")]
+    turns = [float(part) for part in body.get("orientation", "0,0,0").split(",")]
+    body.set("position", f"{place[0] + x:.6f},{place[1] + y:.6f},{place[2]:.6f}")
+    body.set("orientation", f"{turns[0] + turn:.4f},{turns[1]},{turns[2]}")
+
+
+def perturb(tree, number):
+    """Sets the scene up for a perturbation; 0 is the scene as it stands. Says what it did."""
+    if number == 0:
+        return "as it stands"
+    draw = random.Random(number)
+    said = []
+    for entity in tree.getroot().find("arena").iter("prototype"):
+        if entity.get("id").startswith("robot"):
+            back, turn = draw.uniform(0, 0.03), draw.uniform(-3, 3)
+            move(entity.find("body"), x=-back, turn=turn)
+            said.append(f"robot {1000 * back:.0f} mm back, {turn:+.1f} deg")
+        else:
+            x, y, turn = draw.uniform(-0.01, 0.01), draw.uniform(-0.01, 0.01), draw.uniform(-3, 3)
+            move(entity.find("body"), x, y, turn)
+            said.append(f"block {1000 * x:+.0f}, {1000 * y:+.0f} mm, {turn:+.1f} deg")
+    tree.find("framework/experiment").set("random_seed", str(1000 + number))
+    engine = tree.find("physics_engines/dynamics3d")
+    factor = draw.choice([0.5, 1, 2])
+    engine.set("iterations", str(round(factor * int(engine.get("iterations")))))
+    said.append(f"iterations x {factor:g}")
+    return "; ".join(said)
+
+
+def perturb_staircase(tree, number):
+    if number == 0:
+        return "as it stands"
+    draw = random.Random(number)
+    for entity in tree.getroot().find("arena").iter("prototype"):
+        off, turn = (0.02, 5) if entity.get("id").startswith("robot") else (0.015, 8)
+        move(entity.find("body"), draw.uniform(-off, off), draw.uniform(-off, off),
+             draw.uniform(-turn, turn))
+    tree.find("framework/experiment").set("random_seed", str(1000 + number))
+    return f"perturbation {number}"
+
+
+def run(number, options=(), staircase=False, keep=None):
+    """Runs and judges one perturbation: (verdict, what was done, lines that controllers logged)."""
+    scene = STAIRCASE if staircase else STACKING
+    with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
+        shutil.copytree(ROOT / "scenes", pathlib.Path(folder) / "scenes")
+        copy = pathlib.Path(folder) / scene.relative_to(ROOT)
+        tree = ElementTree.parse(copy)
+        said = (perturb_staircase if staircase else perturb)(tree, number)
+        tree.write(copy)
+        trace, readings = (pathlib.Path(folder) / name for name in ("trace.csv", "readings.jsonl"))
+        outcome = subprocess.run(
+            [BIN / "ziggurat", "run", copy, "--trace", trace, *options,
+             *([] if staircase else ["--readings", readings])],
+            capture_output=True, text=True, timeout=3600,
+            env=dict(os.environ, XDG_RUNTIME_DIR=folder))
+        if outcome.returncode != 0:
+            verdict = judge.Verdict([f"exit code {outcome.returncode}: {outcome.stderr[-500:]}"])
+        else:
+            verdict = (judge.judge_stairs if staircase else judge.judge)(copy, trace, readings)
+        log = outcome.stdout.splitlines()
+        if log and not log[-1].split("] ")[-1].startswith("done"):
+            verdict.faults.append(f"the last it said was: {log[-1]}")
+        if keep and not verdict.good:
+            shutil.copytree(folder, pathlib.Path(keep) / str(number), dirs_exist_ok=True)
+            (pathlib.Path(keep) / str(number) / "log").write_text(outcome.stdout)
+        return verdict, said, log
+
+
+def table_line(number, verdict, said):
+    return (f"{number:3d} {'good' if verdict.good else 'BAD '} "
+            f"aside {1000 * verdict.aside:5.2f} mm, step {1000 * verdict.height:+.3f} mm, "
+            f"moved {1000 * verdict.moved:.3f} mm, depth {1000 * verdict.depth:.3f} mm, "
+            f"drift {1000 * verdict.drift:.4f} mm, energy {1000 * verdict.energy:.2f} mJ | {said}"
+            + "".join(f"\n      {fault}" for fault in verdict.faults))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", type=int, default=100)
+    parser.add_argument("--first", type=int, default=1, help="number of the first perturbation")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--least", type=float, default=0.95, help="share that has to be good")
+    parser.add_argument("--staircase", action="store_true", help="the staircase, not the stack")
+    parser.add_argument("--controller", action="append", default=[], metavar="ID=CMD",
+                        help="handed on to ziggurat run")
+    parser.add_argument("--keep", metavar="DIR", help="keep scene and trace of runs that are bad")
+    arguments = parser.parse_args()
+    options = [f"--controller={controller}" for controller in arguments.controller]
+    numbers = range(arguments.first, arguments.first + arguments.runs)
+    good = 0
+    worst = judge.Verdict([], 0, 0, 0)
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        runs = pool.map(
+            lambda number: run(number, options, arguments.staircase, arguments.keep), numbers)
+        for number, (verdict, said, _) in zip(numbers, runs):
+            print(table_line(number, verdict, said), flush=True)
+            good += verdict.good
+            if verdict.good:
+                for name in ("aside", "height", "moved", "depth", "drift", "energy"):
+                    setattr(worst, name, max(getattr(worst, name), abs(getattr(verdict, name))))
+    print(f"{good} of {len(numbers)} good; worst of these:")
+    print(table_line(0, worst, "").split("|")[0].replace("  0 good ", ""))
+    return 0 if good >= arguments.least * len(numbers) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
