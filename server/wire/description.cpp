@@ -77,6 +77,7 @@ void describe_proximity(const world::Layout& all, const world::RobotLayout& robo
     for (const double value : sensor.mount.pose.position) to.add_position(value);
     for (const double value : sensor.direction) to.add_direction(value);
     to.set_range(sensor.range);
+    if (sensor.angle) to.set_angle(*sensor.angle);
   }
 }
 

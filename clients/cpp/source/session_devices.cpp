@@ -120,6 +120,7 @@ void Session::Devices::add_sensors(const v1::RobotDescription& description, Robo
     sensor.position_ = vector_of(from.position());
     sensor.direction_ = vector_of(from.direction());
     sensor.range_ = from.range();
+    if (from.has_angle()) sensor.angle_ = from.angle();
     sensor.reading_ = &proximity_[made_.proximity++];
   }
   if (description.positioning()) positioning_.push_back(&robot.positioning_.emplace());

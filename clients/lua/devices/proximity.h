@@ -1,5 +1,5 @@
 #pragma once
-// robot.proximity[i]
+// robot.proximity[i]: a number, or {value, angle} if the sensors tell their angles
 
 #include <lua.hpp>
 

@@ -1,5 +1,6 @@
 #include "program/exchange.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace ziggurat::lua {
@@ -48,6 +49,14 @@ void describe_cameras(const ziggurat::Robot& robot, ScriptedRobot& scripted) {
     camera.detects_tags = from.detects_tags();
     camera.takes_images = from.takes_images();
   }
+}
+
+void describe_proximity(const ziggurat::Robot& robot, ScriptedRobot& scripted) {
+  const auto sensors = robot.proximity_sensors();
+  scripted.proximity.resize(sensors.size());
+  const auto tells_angle = [](const auto& sensor) { return sensor.angle().has_value(); };
+  if (!std::ranges::all_of(sensors, tells_angle)) return;
+  for (const auto& sensor : sensors) scripted.proximity_angles.push_back(*sensor.angle());
 }
 
 void describe_driving(ziggurat::Robot& robot, ScriptedRobot& scripted) {
@@ -185,7 +194,7 @@ ScriptedRobot describe(ziggurat::Robot& robot) {
   scripted.directional_leds.resize(robot.directional_leds().size());
   scripted.tags.resize(robot.tags().size());
   for (const ziggurat::Magnet& from : robot.magnets()) scripted.magnets.push_back({from.id(), {}});
-  scripted.proximity.resize(robot.proximity_sensors().size());
+  describe_proximity(robot, scripted);
   if (robot.positioning() != nullptr) scripted.positioning.emplace();
   if (robot.battery() != nullptr) scripted.battery.emplace();
   describe_cameras(robot, scripted);

@@ -37,6 +37,7 @@ struct ScriptedRobot {
   std::vector<Setting<std::string>> tags;  ///< payloads, any bytes
   std::vector<Magnet> magnets;             ///< ids are unique
   std::vector<double> proximity;           ///< readings in [0, 1]
+  std::vector<double> proximity_angles;    ///< of sensors that tell it, one each [rad]; else empty
   std::optional<Positioning> positioning;
   std::optional<RangeAndBearing> range_and_bearing;
   std::optional<Battery> battery;

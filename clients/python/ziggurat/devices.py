@@ -185,6 +185,7 @@ class ProximitySensor:
     position: Vector  # start of the ray in the anchor's frame [m]
     direction: Vector  # in the anchor's frame, of length 1
     range: float  # [m]
+    angle: Optional[float] = None  # about +z from +x [rad], of foot-bots' own sensors
 
 
 class Packet(NamedTuple):

@@ -88,7 +88,8 @@ class Robot:
             [Magnet(exchange, magnet) for magnet in given.magnets], "magnet")
         self.proximity_sensors: List[ProximitySensor] = [
             ProximitySensor(sensor.anchor, tuple(sensor.position), tuple(sensor.direction),
-                            sensor.range) for sensor in given.proximity_sensors]
+                            sensor.range,
+                            sensor.angle if sensor.HasField("angle") else None) for sensor in given.proximity_sensors]
         first = [places.take("proximity") for _ in self.proximity_sensors][:1]
         self._proximity = first[0] if first else 0
         self.range_and_bearing: Optional[RangeAndBearing] = None

@@ -59,6 +59,7 @@ inline v1::ServerMessage welcome() {
     for (const double value : {1.0, 2.0, 3.0}) ray.add_position(value);
     for (const double value : {0.0, 0.0, 1.0}) ray.add_direction(value);
     ray.set_range(0.25);
+    if (robot.id() == "c") ray.set_angle(-0.5);
     robot.mutable_range_and_bearing()->set_range(3);
     robot.mutable_range_and_bearing()->set_data_size(2);
     robot.mutable_range_and_bearing()->set_sends(true);

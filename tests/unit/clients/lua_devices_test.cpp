@@ -267,6 +267,23 @@ TEST_F(Devices, ProximityIsAnArray) {
   EXPECT_RUNS(step());
 }
 
+TEST_F(Devices, ProximityThatTellsItsAnglesIsAnArrayOfTables) {
+  robot_.proximity = {0, 0, 0};
+  robot_.proximity_angles = {0.5, 1.5, -3};
+  EXPECT_RUNS(start(R"lua(
+    local all = robot.proximity
+    local second, third = all[2], all[3]
+    assert(#all == 3 and second.value == 0 and second.angle == 1.5 and third.angle == -3)
+    all[1] = nil
+    function step()
+      assert(second.value == 0.25 and second.angle == 1.5 and third.value == 1)
+      assert(robot.proximity == all and all[2] == second and all[1] == nil)
+    end
+  )lua"));
+  robot().proximity = {0.75, 0.25, 1};
+  EXPECT_RUNS(step());
+}
+
 TEST_F(Devices, PositioningIsPositionAngleAndAxis) {
   robot_.positioning.emplace();
   EXPECT_RUNS(start(R"lua(

@@ -78,11 +78,13 @@ TEST_F(Exchange, WhatIsSensedReachesTheScript) {
       if robot.id == "b" then
         assert(robot.cameras.eye.directional_led_detector[1].color.blue == 255)
         assert(#robot.cameras.eye.led_detector == 0 and robot.cameras.eye.image == "")
+        assert(robot.proximity[1] == 0.25, "a sensor that does not tell its angle")
       end
       if robot.id ~= "c" then return end
       local heard = robot.radios.ears.rx_data
       assert(#heard == 2 and heard[1][1] == 0 and heard[1][2] == 255 and #heard[2] == 0)
-      assert(robot.proximity[1] == 0.75 and #robot.proximity == 1)
+      assert(robot.proximity[1].value == 0.75 and robot.proximity[1].angle == -0.5)
+      assert(#robot.proximity == 1)
       assert(robot.positioning.position.x == 7 and robot.positioning.position.z == 9)
       assert(robot.battery.available_charge == 0.5 and robot.battery.time_left == 50)
       local packet = robot.range_and_bearing[1]

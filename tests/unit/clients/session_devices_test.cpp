@@ -41,6 +41,8 @@ TEST(Devices, AreDescribed) {
   EXPECT_EQ(c.proximity_sensors()[0].position()[2], 3);
   EXPECT_EQ(c.proximity_sensors()[0].direction()[2], 1);
   EXPECT_EQ(c.proximity_sensors()[0].range(), 0.25);
+  EXPECT_EQ(c.proximity_sensors()[0].angle(), -0.5);
+  EXPECT_FALSE(session.robot("b").proximity_sensors()[0].angle());
   EXPECT_EQ(c.range_and_bearing()->data_size(), 2U);
   EXPECT_EQ(text_of(c.range_and_bearing()->data()), std::string(2, '\0'));
   try {

@@ -267,6 +267,8 @@ TEST_F(DeviceWire, WelcomeDescribesThem) {
   EXPECT_EQ(a.proximity_sensors(0).direction_size(), 3);
   EXPECT_EQ(c.proximity_sensors(0).anchor(), "origin");
   EXPECT_EQ(c.proximity_sensors(0).range(), 0.2);
+  EXPECT_FALSE(a.proximity_sensors(0).has_angle());
+  EXPECT_EQ(c.proximity_sensors(0).angle(), -2.5);
   EXPECT_EQ(a.range_and_bearing().data_size(), 4U);
   EXPECT_TRUE(a.range_and_bearing().sends() && a.range_and_bearing().receives());
   EXPECT_TRUE(a.positioning() && a.battery());

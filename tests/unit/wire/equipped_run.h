@@ -48,6 +48,7 @@ class EquippedRun {
       layout_.proximity[i].range = 0.1 * static_cast<double>(i + 1);
     }
     layout_.proximity[0].mount.link = 0;
+    layout_.proximity[1].angle = -2.5;
     add_cameras();
     layout_.wheels = {{0, 0.14, true, false}, {1, 0.1, false, true}, {2, 0.053, true, true}};
     layout_.turrets = {{0, true, false}, {2, true, true}};

@@ -2,6 +2,7 @@
 // What a robot senses of its surroundings and itself. Readings belong to the session's tick.
 
 #include <array>
+#include <optional>
 #include <string>
 
 namespace ziggurat {
@@ -17,6 +18,9 @@ class ProximitySensor {
   /// Of the ray in the anchor's frame: x, y, z, of length 1.
   const std::array<double, 3>& direction() const noexcept { return direction_; }
   double range() const noexcept { return range_; }  ///< length of the ray [m]
+  /// Of the ray about the robot's +z from +x, in (-pi, pi] [rad]; of foot-bots' own sensors, which
+  /// are told with it.
+  std::optional<double> angle() const noexcept { return angle_; }
 
   /// From 0, nothing in range, to 1, contact; exp(-distance in metres) unless the scene says
   /// otherwise.
@@ -28,6 +32,7 @@ class ProximitySensor {
   std::array<double, 3> position_{};
   std::array<double, 3> direction_{};
   double range_ = 0;
+  std::optional<double> angle_;
   const double* reading_ = nullptr;  // into the session's packed observation
 };
 

@@ -94,6 +94,7 @@ class Devices(unittest.TestCase):
                  turret_rotations=[0.5, -0.5])
         self.assertEqual(list(self.two.proximity), [0.3, 0.4])
         self.assertEqual(self.two.proximity_sensors[0].position, (1, 2, 3))
+        self.assertEqual([sensor.angle for sensor in self.two.proximity_sensors], [0, None])
         self.assertEqual(self.two.pose.position, (7, 8, 9))
         self.assertEqual(self.two.pose.orientation, (10, 11, 12, 13))
         self.assertEqual(self.one.battery, (1, 10))

@@ -58,7 +58,8 @@ def equipped(id, **fields):
         tags=[v1.TagDescription(id="tag", payload=b"7")],
         magnets=[v1.MagnetDescription(id="coil")],
         proximity_sensors=[v1.ProximityDescription(anchor="base", position=[1, 2, 3],
-                                                   direction=[0, 0, 1], range=0.1)] * 2,
+                                                   direction=[0, 0, 1], range=0.1, angle=angle)
+                           for angle in (0, None)],
         range_and_bearing=v1.RangeAndBearingDescription(range=3, data_size=2, sends=True,
                                                         receives=True),
         positioning=True, battery=True,
