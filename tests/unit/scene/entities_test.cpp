@@ -231,6 +231,26 @@ TEST(Uses, CameraAnchorsMustExist) {
   EXPECT_EQ(count_containing(said, "anchor \"turret\" of camera \"k\" does not exist"), 1u);
 }
 
+TEST(Uses, CameraAnchorsMustExistOnRobotsThatComeAsTheyAre) {
+  SceneText text = driven("", R"(<cameras implementation="default"><camera id="k" range="0.1:1")"
+                              R"( anchor="gripper" position="0,0,0" orientation="0,0,0")"
+                              R"( focal_length="1,1" principle_point="1,1" resolution="10,10"/>)"
+                              R"(</cameras>)");
+  const std::string controller = R"(<body/><controller config="c"/>)";
+  text.arena = arena_with(R"(<foot-bot id="f">)" + controller + "</foot-bot>");
+  auto said = faults(text.read());
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(count_containing(said, "anchor \"gripper\" of camera \"k\" does not exist in foot-bot"),
+            1u);
+  for (const char* anchor : {"origin", "base", "turret", "perspective_camera"}) {
+    EXPECT_EQ(count_containing(said, anchor), 1u) << said[0];
+  }
+  text.arena = arena_with(R"(<e-puck id="e">)" + controller + "</e-puck>");
+  said = faults(text.read());
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(count_containing(said, "does not exist in e-puck \"e\""), 1u);
+}
+
 TEST(Uses, SectionsMustExist) {
   SceneText text = driven("", "");
   text.controllers = "<controllers><lua_controller id=\"c\"/></controllers>";
