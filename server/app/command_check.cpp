@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "app/arguments.h"
@@ -11,6 +12,7 @@
 #include "app/options.h"
 #include "app/scripts.h"
 #include "scene/tag_pattern.h"
+#include "scene/values.h"
 #include "simulation/simulation.h"
 
 namespace ziggurat::app {
@@ -18,8 +20,15 @@ namespace {
 
 using Severity = scene::Problem::Severity;
 
+// A model of the scene and the number of entities that are of it.
+struct ModelUse {
+  std::string id;
+  std::size_t entities = 0;
+};
+
 struct Finding {
   std::vector<scene::Problem> problems;
+  std::vector<ModelUse> models;
   std::size_t entities = 0;  ///< of the world that was built; 0 if it could not be
   std::size_t robots = 0;
 
@@ -29,26 +38,41 @@ struct Finding {
   }
 };
 
-// What pictures can't show.
+// What pictures can't show; of a model once.
 void add_plain_tags(const scene::Scene& scene, std::vector<scene::Problem>& problems) {
+  std::set<scene::Location> seen;
   const auto add = [&](const scene::Entity& entity) {
     for (const auto& tag : entity.devices.tags) {
-      if (scene::tag_pattern(tag.payload)) continue;
+      if (scene::tag_pattern(tag.payload) || !seen.insert(tag.where).second) continue;
+      const auto owner = entity.model ? fmt::format("model '{}'", scene.models[*entity.model].id)
+                                      : fmt::format("'{}'", entity.id);
       problems.push_back({Severity::notice, scene.files[tag.where.file], tag.where,
-                          fmt::format("tag '{}' of '{}' is a plain white square in pictures; a "
+                          fmt::format("tag '{}' of {} is a plain white square in pictures; a "
                                       "payload that is an integer 0 to 586 is drawn as that "
                                       "pattern of AprilTag 36h11",
-                                      tag.id, entity.id)});
+                                      tag.id, owner)});
     }
   };
   for (const auto& entity : scene.entities) add(entity);
   for (const auto& distribution : scene.distributions) add(distribution.entity);
 }
 
+std::vector<ModelUse> uses_of_models(const scene::Scene& scene) {
+  std::vector<ModelUse> uses;
+  for (const auto& model : scene.models) uses.push_back({model.id});
+  for (const auto& entity : scene.entities) {
+    if (entity.model) ++uses[*entity.model].entities;
+  }
+  for (const auto& group : scene.distributions) {
+    if (group.entity.model) uses[*group.entity.model].entities += group.quantity;
+  }
+  return uses;
+}
+
 // Reads the file, compiles the scripts and, if all is well so far, places everything.
 Finding examine(const std::string& path, const Options& options) {
   auto read = scene::read_file(path, options.reading);
-  Finding finding{std::move(read.problems)};
+  Finding finding{std::move(read.problems), uses_of_models(read.scene)};
   const auto add = [&](const std::vector<scene::Problem>& more) {
     finding.problems.insert(finding.problems.end(), more.begin(), more.end());
   };
@@ -77,10 +101,15 @@ nlohmann::ordered_json to_json(const std::string& path, const Finding& finding) 
                         {"column", problem.where.column},
                         {"text", problem.text}});
   }
+  auto models = nlohmann::ordered_json::array();
+  for (const auto& model : finding.models) {
+    models.push_back({{"id", model.id}, {"entities", model.entities}});
+  }
   return {{"scene", path},
           {"ok", finding.count(Severity::fault) == 0},
           {"entities", finding.entities},
           {"robots", finding.robots},
+          {"models", models},
           {"problems", problems}};
 }
 
@@ -92,9 +121,15 @@ std::string verdict(const std::string& path, const Finding& finding) {
   if (faults > 0) {
     return fmt::format("{}: {}, {}", path, counted(faults, "fault"), counted(notices, "notice"));
   }
+  std::string models;
+  for (const auto& model : finding.models) {
+    models += fmt::format("{}{} of model {}", models.empty() ? " (" : ", ", model.entities,
+                          scene::in_quotes(model.id));
+  }
+  if (!models.empty()) models += ")";
   return fmt::format(
-      "{}: good; {}, {} with a controller; {}", path,
-      finding.entities == 1 ? "1 entity" : fmt::format("{} entities", finding.entities),
+      "{}: good; {}{}, {} with a controller; {}", path,
+      finding.entities == 1 ? "1 entity" : fmt::format("{} entities", finding.entities), models,
       finding.robots, counted(notices, "notice"));
 }
 

@@ -32,6 +32,15 @@ void override_controllers(const Options& options, scene::Scene& scene) {
   }
 }
 
+// What the scene says of an entity of the layout: both have scene order, a pattern for its copies.
+const scene::Entity& as_written(const scene::Scene& scene, std::size_t entity) {
+  if (entity < scene.entities.size()) return scene.entities[entity];
+  entity -= scene.entities.size();
+  auto group = scene.distributions.begin();
+  for (; entity >= group->quantity; ++group) entity -= group->quantity;
+  return group->entity;
+}
+
 }  // namespace
 
 scene::Scene load_scene(const std::string& path, const Options& options, Console& console) {
@@ -86,7 +95,11 @@ std::vector<std::string> script_paths(const scene::Scene& scene, const world::La
   for (const auto& robot : layout.robots) {
     const auto script = script_of(robot.params);
     const bool lua = scene.controllers[robot.controller].lua;
-    const auto found = lua && !script.empty() ? find_script(script, scene_path) : std::nullopt;
+    std::optional<std::filesystem::path> found;
+    if (lua && !script.empty()) {
+      const auto naming = file_of_params(scene, as_written(scene, robot.entity));
+      found = find_script(script, naming, scene_path);
+    }
     paths.push_back(found ? found->string() : std::string());
   }
   return paths;

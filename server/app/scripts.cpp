@@ -24,7 +24,7 @@ std::vector<Use> uses(const scene::Scene& scene) {
   const auto add = [&](const scene::Entity& entity) {
     if (entity.controller && entity.overrides_params &&
         runs_script(scene.controllers[*entity.controller])) {
-      result.push_back({&entity.params, entity.where});
+      result.push_back({&entity.params, entity.params_where});
     }
   };
   for (const auto& entity : scene.entities) add(entity);
@@ -32,12 +32,17 @@ std::vector<Use> uses(const scene::Scene& scene) {
   return result;
 }
 
-std::optional<std::string> fault(const std::string& script, const fs::path& scene_file) {
-  const auto path = find_script(script, scene_file);
+std::string file_of(const scene::Scene& scene, scene::Location where) {
+  return where.file < scene.files.size() ? scene.files[where.file] : std::string();
+}
+
+std::optional<std::string> fault(const std::string& script, const fs::path& naming_file,
+                                 const fs::path& scene_file) {
+  const auto path = find_script(script, naming_file, scene_file);
   if (!path) {
     return fmt::format(
-        "script '{}' is not there; it may stand in the working directory, beside "
-        "the scene file or in a folder above it",
+        "script '{}' is not there; it may stand in the working directory, beside this file or the "
+        "scene file, or in a folder above that",
         script);
   }
   if (auto error = compile_error(*path)) return "script does not compile: " + *error;
@@ -46,12 +51,15 @@ std::optional<std::string> fault(const std::string& script, const fs::path& scen
 
 }  // namespace
 
-std::optional<fs::path> find_script(const std::string& script, const fs::path& scene_file) {
+std::optional<fs::path> find_script(const std::string& script, const fs::path& naming_file,
+                                    const fs::path& scene_file) {
   std::error_code error;
   const auto there = [&](const fs::path& path) { return fs::is_regular_file(path, error); };
   const fs::path relative(script);
   if (there(relative)) return fs::absolute(relative).lexically_normal();
   if (relative.is_absolute()) return std::nullopt;
+  const auto beside = fs::absolute(naming_file).parent_path() / relative;
+  if (there(beside)) return beside.lexically_normal();
   for (auto folder = fs::absolute(scene_file).lexically_normal().parent_path();;
        folder = folder.parent_path()) {
     if (there(folder / relative)) return (folder / relative).lexically_normal();
@@ -76,17 +84,22 @@ bool runs_script(const scene::Controller& controller) {
   return controller.lua && controller.command.empty();
 }
 
+std::string file_of_params(const scene::Scene& scene, const scene::Entity& entity) {
+  return file_of(scene, entity.overrides_params
+                            ? entity.params_where
+                            : scene.controllers[*entity.controller].params_where);
+}
+
 std::vector<scene::Problem> check_scripts(const scene::Scene& scene, const fs::path& scene_file) {
   using Severity = scene::Problem::Severity;
   std::vector<scene::Problem> problems;
   for (const Use& use : uses(scene)) {
-    const auto file =
-        use.where.file < scene.files.size() ? scene.files[use.where.file] : scene_file.string();
+    const auto file = file_of(scene, use.where);
     const auto script = script_of(*use.params);
     if (script.empty()) {
       problems.push_back({Severity::notice, file, use.where,
                           "no script is named in <params>: its robots do nothing"});
-    } else if (auto text = fault(script, scene_file)) {
+    } else if (auto text = fault(script, file, scene_file)) {
       problems.push_back({Severity::fault, file, use.where, *text});
     }
   }

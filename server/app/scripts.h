@@ -12,9 +12,11 @@
 
 namespace ziggurat::app {
 
-/// Looks in the working directory, then in the scene file's folder and its parents.
+/// Looks in the working directory, beside the file that names the script, then in the scene file's
+/// folder and its parents.
 /// @returns an absolute path
 std::optional<std::filesystem::path> find_script(const std::string& script,
+                                                 const std::filesystem::path& naming_file,
                                                  const std::filesystem::path& scene_file);
 
 /// Lua's own `file:line: message` if the text doesn't compile or can't be read; else nothing.
@@ -25,6 +27,9 @@ std::string script_of(const std::vector<std::pair<std::string, std::string>>& pa
 
 /// Whether ziggurat-lua drives its robots: it is a Lua controller that no command replaces.
 bool runs_script(const scene::Controller& controller);
+
+/// The file that says the params of an entity with a controller.
+std::string file_of_params(const scene::Scene& scene, const scene::Entity& entity);
 
 /// A fault for each script that would run and is missing or doesn't compile, with the line
 /// of its <params>; a notice for each that names none.

@@ -12,7 +12,7 @@ constexpr std::array<std::string_view, 8> arena_names{
 
 /// The coloured floor that ground sensors see; the floor that bodies stand on is the engine's.
 void read_ground(Reading& reading, Element element) {
-  reading.document.no_effect_yet(element.where(), "ground colours (<floor> of the arena)");
+  reading.report.no_effect_yet(element.where(), "ground colours (<floor> of the arena)");
   const std::string id = element.required("id", identifier);
   const std::string source = element.required("source", Words{"image", "loop_functions"});
   if (source == "image") element.required("path", path);
@@ -35,7 +35,7 @@ void add_entity(Reading& reading, Element& element) {
 }
 
 void read_placed(Reading& reading, Element& element) {
-  if (is_entity(element.name())) {
+  if (entity_kind(element.name())) {
     add_entity(reading, element);
   } else if (element.name() == "light") {
     const std::string id = read_light(reading, element, Placement::explicit_pose);

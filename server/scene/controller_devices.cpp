@@ -103,9 +103,9 @@ void enable_magnets(const Enabling& e) { e.devices.magnets_actuator = true; }
 /// Both sensors make the same table of a robot.
 void note_second_proximity(const Enabling& e, std::string_view other) {
   if (!e.devices.proximity_sensor) return;
-  e.reading.document.notice(e.element.where(),
-                            fmt::format("<{}> replaces <{}>: both make robot.proximity",
-                                        e.element.name(), other));
+  e.reading.report.notice(
+      e.element.where(),
+      fmt::format("<{}> replaces <{}>: both make robot.proximity", e.element.name(), other));
 }
 
 void enable_proximity(const Enabling& e) {
@@ -161,12 +161,12 @@ std::array<double, 2> read_sides(Element& element, std::array<const char*, 3> na
 
 void enable_wheels(const Enabling& e) {
   e.devices.wheels_actuator = true;
-  const auto bias_mean = read_sides(
-      e.element, {"bias_avg", "bias_avg_left", "bias_avg_right"}, number, 0);
+  const auto bias_mean =
+      read_sides(e.element, {"bias_avg", "bias_avg_left", "bias_avg_right"}, number, 0);
   const auto bias_deviation = read_sides(
       e.element, {"bias_stddev", "bias_stddev_left", "bias_stddev_right"}, non_negative, 0);
-  const auto factor_mean = read_sides(
-      e.element, {"factor_avg", "factor_avg_left", "factor_avg_right"}, number, 1);
+  const auto factor_mean =
+      read_sides(e.element, {"factor_avg", "factor_avg_left", "factor_avg_right"}, number, 1);
   const auto factor_deviation = read_sides(
       e.element, {"factor_stddev", "factor_stddev_left", "factor_stddev_right"}, non_negative, 0);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -252,7 +252,7 @@ constexpr std::array<DeviceRow, 18> sensor_rows{{
 
 void read_device(const Enabling& e, const DeviceRow& row) {
   e.element.required("implementation", Words{row.implementation});
-  if (!row.subject.empty()) e.reading.document.no_effect_yet(e.element.where(), row.subject);
+  if (!row.subject.empty()) e.reading.report.no_effect_yet(e.element.where(), row.subject);
   e.use.devices.push_back({std::string(row.name), e.element.where()});
   row.enable(e);
   e.element.done();
@@ -287,10 +287,10 @@ std::vector<Element> last_of_each_name(Element& list) {
       result.push_back(element);
       continue;
     }
-    list.document().notice(result[position->second].where(),
-                           fmt::format("this <{}> has no effect: a later one in the same <{}> "
-                                       "replaces it",
-                                       element.name(), list.name()));
+    list.report().notice(result[position->second].where(),
+                         fmt::format("this <{}> has no effect: a later one in the same <{}> "
+                                     "replaces it",
+                                     element.name(), list.name()));
     result[position->second] = element;
   }
   return result;

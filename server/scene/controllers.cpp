@@ -13,9 +13,9 @@ constexpr std::size_t longest_type = 100;
 
 void note_children_of_params(Element& params) {
   for (const Element& child : params.children()) {
-    params.document().notice(child.where(),
-                             "elements in <params> have no effect here: its attributes reach the "
-                             "controller");
+    params.report().notice(child.where(),
+                           "elements in <params> have no effect here: its attributes reach the "
+                           "controller");
   }
 }
 
@@ -30,20 +30,33 @@ void note_type(Reading& reading, const Element& element) {
   if (element.name() == "lua_controller" || element.name() == "external_controller") return;
   constexpr std::array<std::string_view, 2> own{"lua_controller", "external_controller"};
   const auto meant = nearest(element.name(), own);
-  reading.document.notice(
+  reading.report.notice(
       element.where(),
       fmt::format("<{}> is taken as an external controller: somebody connects and drives it{}",
                   element.name(), meant ? fmt::format("; or did you mean <{}>?", *meant) : ""));
 }
 
-void read_controller(Reading& reading, Element& element) {
+void take_id(Reading& reading, const Element& element, const Controller& controller) {
+  if (controller.id.empty()) return;
+  const auto [earlier, fresh] =
+      reading.controllers.emplace(controller.id, reading.scene.controllers.size());
+  if (fresh) return;
+  const Location where = reading.scene.controllers[earlier->second].where;
+  const bool near = where.file == controller.where.file;
+  element.fault_at("id", fmt::format("is the id of {}; give each its own",
+                                     near ? "an earlier controller"
+                                          : "the controller at " + reading.report.place(where)));
+}
+
+void read_controller(Reading& reading, Element& element, bool included) {
   Controller controller;
   ControllerUse use;
+  if (included) reading.lacks = &use.lacks;
   controller.where = element.where();
   controller.type = element.name();
   controller.lua = element.name() == "lua_controller";
   controller.id = element.required("id", identifier);
-  reading.document.subject = fmt::format("controller {}", in_quotes(controller.id));
+  reading.report.subject = fmt::format("controller {}", in_quotes(controller.id));
   element.without_effect("library", text, "no libraries are loaded into the server");
   if (controller.type == "external_controller") {
     controller.command = element.optional("command", text, "");
@@ -61,12 +74,10 @@ void read_controller(Reading& reading, Element& element) {
     read_params(*params, controller);
   }
   element.done();
-  reading.document.subject.clear();
+  reading.lacks = nullptr;
+  reading.report.subject.clear();
   note_type(reading, element);
-  const std::size_t index = reading.scene.controllers.size();
-  if (!controller.id.empty() && !reading.controllers.emplace(controller.id, index).second) {
-    element.fault_at("id", "is the id of an earlier controller; give each its own");
-  }
+  take_id(reading, element, controller);
   reading.scene.controllers.push_back(std::move(controller));
   reading.uses.push_back(std::move(use));
 }
@@ -140,9 +151,9 @@ struct Check {
   ControllerUse& use;
 
   void blame(Location where, std::string text) const {
-    if (!reading.blamed.emplace(where.line, where.column).second) return;
+    if (!reading.blamed.insert(where).second) return;
     ++use.faults;
-    reading.document.fault(where, std::move(text));
+    reading.report.fault(where, std::move(text));
   }
 
   void check_joint(const std::string& id, Location where, bool actuated,
@@ -163,9 +174,9 @@ struct Check {
                                "have an actuator",
                                in_quotes(id), kind_of(entity), in_quotes(entity.id), is));
     } else {
-      reading.document.notice(where, fmt::format("the sensor of joint {} always reads 0: the joint "
-                                                 "is {}",
-                                                 in_quotes(id), is));
+      reading.report.notice(where, fmt::format("the sensor of joint {} always reads 0: the joint "
+                                               "is {}",
+                                               in_quotes(id), is));
     }
   }
 
@@ -203,9 +214,9 @@ struct Check {
 void check_sections(const Reading& reading, const Controller& controller, const Entity& entity,
                     ControllerUse& use) {
   const auto lacks = [&](const char* name) {
-    reading.document.fault(controller.where,
-                           fmt::format("controller {} lacks the element <{}>; write <{}/> in it",
-                                       in_quotes(controller.id), name, name));
+    reading.report.fault(controller.where,
+                         fmt::format("controller {} lacks the element <{}>; write <{}/> in it",
+                                     in_quotes(controller.id), name, name));
   };
   if (!use.has_actuators) lacks("actuators");
   if (!use.has_sensors) lacks("sensors");
@@ -219,6 +230,7 @@ void check_sections(const Reading& reading, const Controller& controller, const 
 void check_use(Reading& reading, const Entity& entity) {
   const Controller& controller = reading.scene.controllers[*entity.controller];
   ControllerUse& use = reading.uses[*entity.controller];
+  report_lacks(reading, use.lacks);
   check_sections(reading, controller, entity, use);
   if (use.faults > most_faults_with_entities) return;
   const Check check{reading, entity, use};
@@ -227,45 +239,70 @@ void check_use(Reading& reading, const Entity& entity) {
   check.check_components();
 }
 
-}  // namespace
-
-void read_controllers(Reading& reading, Element& root) {
-  auto controllers = root.required_child("controllers");
-  if (!controllers) return;
-  for (Element& element : controllers->children()) {
+void read_list(Reading& reading, Element& controllers, bool included) {
+  for (Element& element : controllers.children()) {
     if (element.name().size() > longest_type) {
-      reading.document.fault(element.where(),
-                             fmt::format("{} is too long for a type of controller; "
-                                         "write lua_controller",
-                                         in_quotes(element.name())));
+      reading.report.fault(element.where(), fmt::format("{} is too long for a type of controller; "
+                                                        "write lua_controller",
+                                                        in_quotes(element.name())));
     } else if (const auto why = unsupported_element(element.name())) {
-      reading.document.fault(element.where(),
-                             fmt::format("<{}> is not supported; {}", element.name(), *why));
+      reading.report.fault(element.where(),
+                           fmt::format("<{}> is not supported; {}", element.name(), *why));
     } else {
-      read_controller(reading, element);
+      read_controller(reading, element, included);
     }
   }
-  controllers->done();
+  controllers.done();
 }
 
-void read_controller_of(Reading& reading, Element& element, Entity& entity) {
+}  // namespace
+
+void report_lacks(Reading& reading, std::vector<Lack>& lacks) {
+  for (Lack& lack : lacks) reading.report.fault(lack.where, std::move(lack.text));
+  lacks.clear();
+}
+
+void read_controllers(Reading& reading, Element& root, std::span<Element> included) {
+  if (auto controllers = root.required_child("controllers")) {
+    read_list(reading, *controllers, false);
+  }
+  for (Element& controllers : included) read_list(reading, controllers, true);
+}
+
+std::optional<ControllerChoice> read_controller_choice(Reading& reading, Element& element) {
   auto user = element.child("controller");
-  if (!user) return;
-  const std::string id = user->required("config", identifier);
+  if (!user) return std::nullopt;
+  ControllerChoice choice;
+  choice.id = user->required("config", identifier);
   if (auto params = user->child("params")) {
-    entity.overrides_params = true;
-    entity.params = params->all_attributes();
+    choice.params = params->all_attributes();
+    choice.params_where = params->where();
     note_children_of_params(*params);
     params->done();
   }
   user->done();
-  if (id.empty()) return;
-  const auto found = reading.controllers.find(id);
-  if (found == reading.controllers.end()) {
+  if (choice.id.empty()) return std::nullopt;
+  if (!reading.controllers.contains(choice.id)) {
     std::vector<std::string> known;
     for (const Controller& controller : reading.scene.controllers) known.push_back(controller.id);
-    user->fault_at("config", known.empty() ? "names no controller; write it in <controllers>"
-                                           : "names no controller; " + advice(id, known));
+    choice.unknown = {
+        user->where("config"),
+        user->sentence("config", known.empty()
+                                     ? "names no controller; write it in <controllers>"
+                                     : "names no controller; " + advice(choice.id, known))};
+  }
+  return choice;
+}
+
+void give_controller(Reading& reading, const ControllerChoice& choice, Entity& entity) {
+  entity.overrides_params = choice.params.has_value();
+  entity.params_where = choice.params_where;
+  if (choice.params) entity.params = *choice.params;
+  const auto found = reading.controllers.find(choice.id);
+  if (found == reading.controllers.end()) {
+    if (reading.blamed.insert(choice.unknown.where).second) {
+      reading.report.fault(choice.unknown.where, choice.unknown.text);
+    }
     return;
   }
   entity.controller = found->second;

@@ -302,12 +302,13 @@ void read_leds(Reading& reading, Element& container, Entity& entity) {
 }
 
 Battery read_battery(Element& element) {
-  enum class Model { time, motion, time_motion };
-  const Model model = element.optional(
-      "discharge_model",
-      OneOf<Model>{
-          {"time", Model::time}, {"motion", Model::motion}, {"time_motion", Model::time_motion}},
-      Model::time);
+  enum class Discharge { time, motion, time_motion };
+  const Discharge discharge =
+      element.optional("discharge_model",
+                       OneOf<Discharge>{{"time", Discharge::time},
+                                        {"motion", Discharge::motion},
+                                        {"time_motion", Discharge::time_motion}},
+                       Discharge::time);
   Battery battery;
   battery.where = element.where();
   battery.full_charge = element.optional("full_charge", positive, 1.0);
@@ -319,8 +320,8 @@ Battery read_battery(Element& element) {
   if (battery.start_charge > battery.full_charge) {
     element.fault_at("start_charge", "is more than full_charge; write at most that");
   }
-  if (model != Model::motion) battery.per_second = time;
-  if (model != Model::time) {
+  if (discharge != Discharge::motion) battery.per_second = time;
+  if (discharge != Discharge::time) {
     battery.per_metre = metre;
     battery.per_radian = radian;
   }

@@ -103,7 +103,7 @@ void take_ids(Reading& reading, Element& pattern, const std::string& id, const D
 void read_pattern(Reading& reading, Element& pattern, Distribution& out) {
   constexpr std::array<std::string_view, 6> known{"box",      "cylinder", "prototype",
                                                   "foot-bot", "e-puck",   "light"};
-  if (is_entity(pattern.name())) {
+  if (entity_kind(pattern.name())) {
     out.entity = read_entity(reading, pattern, Placement::distributed);
     take_ids(reading, pattern, out.entity.id, out);
     reading.scene.distributions.push_back(std::move(out));
@@ -143,8 +143,8 @@ void read_distribution(Reading& reading, Element& element) {
     return;
   }
   if (patterns.size() > 1) {
-    reading.document.notice(patterns[1].where(),
-                            "only the first entity of a <distribute> has an effect");
+    reading.report.notice(patterns[1].where(),
+                          "only the first entity of a <distribute> has an effect");
   }
   if (copies_so_far(reading.scene) + out.quantity > most_copies) {
     entity->fault_at("quantity", fmt::format("makes more than {} distributed entities; write less",

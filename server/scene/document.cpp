@@ -9,7 +9,6 @@
 namespace ziggurat::scene {
 namespace {
 
-constexpr std::size_t most_faults = 1000;
 constexpr std::size_t smallest_average_element = 32;  // [bytes], with its closing tag
 
 /// The offset of the first byte that is not well-formed UTF-8, or npos.
@@ -70,35 +69,40 @@ std::string complaint(const pugi::xml_parse_result& result, bool at_end) {
 
 }  // namespace
 
-Document::Document(std::string text, std::string name, std::size_t file, const ReadOptions& options)
-    : source_(std::move(text)), name_(std::move(name)), file_(file), options_(options) {
+Room room_for(std::size_t max_size) {
+  return {max_size, 2 * std::max<std::size_t>(1'000'000, max_size / smallest_average_element)};
+}
+
+Document::Document(std::string text, std::size_t file, bool lenient, Room& room, Report& report)
+    : source_(std::move(text)), file_(file), lenient_(lenient), report_(report) {
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < source_.size(); ++i) {
     if (source_[i] == '\n') line_starts_.push_back(i + 1);
   }
-  if (check_text()) parse();
+  if (check_text(room)) parse();
 }
 
-bool Document::check_text() {
+bool Document::check_text(Room& room) {
+  room.bytes -= source_.size();
   if (trimmed(source_).empty()) {
-    fault({file_, 0, 0}, "the file is empty; a scene begins with <argos-configuration>");
+    report_.fault({file_, 0, 0}, "the file is empty; a scene begins with <argos-configuration>");
     return false;
   }
-  const auto most_elements = std::max<std::ptrdiff_t>(
-      1'000'000, static_cast<std::ptrdiff_t>(options_.max_size / smallest_average_element));
-  if (std::count(source_.begin(), source_.end(), '<') > 2 * most_elements) {
-    fault({file_, 0, 0},
-          fmt::format("the file has more than {} elements; split the scene, or raise "
-                      "--max-scene-size",
-                      most_elements));
+  const auto tags = static_cast<std::size_t>(std::count(source_.begin(), source_.end(), '<'));
+  if (tags > room.tags) {
+    report_.fault({file_, 0, 0},
+                  fmt::format("the file has more than {} elements; split the scene, or raise "
+                              "--max-scene-size",
+                              room.tags / 2));
     return false;
   }
+  room.tags -= tags;
   if (const std::size_t nul = source_.find('\0'); nul != std::string::npos) {
-    fault(at(nul), "this is binary data, not a scene; write an XML file in UTF-8");
+    report_.fault(at(nul), "this is binary data, not a scene; write an XML file in UTF-8");
     return false;
   }
   if (const std::size_t bad = first_bad_utf8(source_); bad != std::string_view::npos) {
-    fault(at(bad), "this is not UTF-8; save the file in UTF-8");
+    report_.fault(at(bad), "this is not UTF-8; save the file in UTF-8");
     return false;
   }
   return true;
@@ -115,14 +119,14 @@ void Document::parse() {
         static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)), source_.size());
     const bool at_end = trimmed(std::string_view(source_).substr(offset)).empty() &&
                         result.status != pugi::status_no_document_element;
-    fault(at(offset), "malformed XML: " + complaint(result, at_end));
+    report_.fault(at(offset), "malformed XML: " + complaint(result, at_end));
     return;
   }
   root_ = tree_.document_element();
   for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling()) {
     if (node.type() != pugi::node_element) continue;
-    fault(locate(node.name() - 1),
-          fmt::format("a second root element, <{}>; a file has one", node.name()));
+    report_.fault(locate(node.name() - 1),
+                  fmt::format("a second root element, <{}>; a file has one", node.name()));
   }
 }
 
@@ -131,11 +135,12 @@ void Document::check_doctype() {
     if (node.type() != pugi::node_doctype) continue;
     const bool entities = std::string_view(node.value()).find("<!ENTITY") != std::string_view::npos;
     if (entities) {
-      fault(locate(node.value()),
-            "the document type declares entities, which are never expanded here; write the text "
-            "itself");
+      report_.fault(
+          locate(node.value()),
+          "the document type declares entities, which are never expanded here; write the text "
+          "itself");
     } else {
-      notice(locate(node.value()), "the document type declaration has no effect here");
+      report_.notice(locate(node.value()), "the document type declaration has no effect here");
     }
   }
 }
@@ -154,37 +159,6 @@ Location Document::locate(const char* character) const {
 std::string_view Document::raw(const pugi::xml_attribute& attribute) const {
   const auto begin = static_cast<std::size_t>(attribute.value() - buffer_.data());
   return std::string_view(source_).substr(begin, source_.find(source_[begin - 1], begin) - begin);
-}
-
-void Document::add(Problem::Severity severity, Location where, std::string text) {
-  if (!subject.empty()) text += fmt::format(" (in {})", subject);
-  problems_.push_back({severity, name_, where, std::move(text)});
-}
-
-void Document::fault(Location where, std::string text) {
-  add(Problem::Severity::fault, where, std::move(text));
-  if (++faults_ < most_faults) return;
-  subject.clear();
-  problems_.push_back({Problem::Severity::fault, name_, where,
-                       fmt::format("{} faults; the rest of the file was not read", faults_)});
-  throw TooManyFaults{};
-}
-
-void Document::notice(Location where, std::string text) {
-  if (!noticed_.insert(text).second) return;
-  problems_.push_back({Problem::Severity::notice, name_, where, std::move(text)});
-}
-
-void Document::no_effect_yet(Location where, std::string_view subject_of_notice) {
-  notice(where, fmt::format("{} are checked, but have no effect yet", subject_of_notice));
-}
-
-std::vector<Problem> Document::problems() const {
-  std::vector<Problem> sorted = problems_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Problem& a, const Problem& b) {
-    return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
-  });
-  return sorted;
 }
 
 // --- Element ------------------------------------------------------------------------------------
@@ -228,11 +202,11 @@ void Element::check_references(const pugi::xml_attribute& attribute) const {
     const bool white = code == 0x9 || code == 0xA || code == 0xD;
     const bool character = (code >= 0x20 && code <= 0x10FFFF && !(code >= 0xD800 && code < 0xE000));
     if (white || character) continue;
-    document_->fault(document_->locate(attribute.value()),
-                     fmt::format("{}={} of <{}> has the reference {}, which stands for no "
-                                 "character; write &amp; for a literal &",
-                                 attribute.name(), in_quotes(raw), this->name(),
-                                 in_quotes(raw.substr(begin, name.size() + 2))));
+    report().fault(document_->locate(attribute.value()),
+                   fmt::format("{}={} of <{}> has the reference {}, which stands for no "
+                               "character; write &amp; for a literal &",
+                               attribute.name(), in_quotes(raw), this->name(),
+                               in_quotes(raw.substr(begin, name.size() + 2))));
     return;
   }
 }
@@ -252,9 +226,9 @@ std::optional<Element> Element::child(const char* name) {
   const pugi::xml_node found = node_.child(name);
   if (!found) return std::nullopt;
   if (const pugi::xml_node second = found.next_sibling(name)) {
-    document_->notice(document_->locate(second.name() - 1),
-                      fmt::format("a second <{}> in <{}> has no effect: the first one counts", name,
-                                  this->name()));
+    report().notice(document_->locate(second.name() - 1),
+                    fmt::format("a second <{}> in <{}> has no effect: the first one counts", name,
+                                this->name()));
   }
   return Element(*document_, found);
 }
@@ -274,15 +248,22 @@ std::vector<Element> Element::children() {
   return result;
 }
 
+std::vector<Element> Element::children(const char* name) {
+  asked_children_.push_back(name);
+  std::vector<Element> result;
+  for (const pugi::xml_node node : node_.children(name)) result.emplace_back(*document_, node);
+  return result;
+}
+
 void Element::child_without_effect(const char* name, std::string_view why) {
   asked_children_.push_back(name);
   if (const pugi::xml_node found = node_.child(name)) {
-    document_->notice(document_->locate(found.name() - 1),
-                      fmt::format("<{}> has no effect here: {}", name, why));
+    report().notice(document_->locate(found.name() - 1),
+                    fmt::format("<{}> has no effect here: {}", name, why));
   }
 }
 
-void Element::done() {
+void Element::done(std::string_view elsewhere) {
   check_repeated_attributes();
   for (const pugi::xml_attribute attribute : node_.attributes()) {
     if (any_attribute_) break;
@@ -290,19 +271,24 @@ void Element::done() {
     if (name.starts_with("xml:") || name.starts_with("xmlns")) continue;  // XML's own
     if (std::find(asked_attributes_.begin(), asked_attributes_.end(), name) ==
         asked_attributes_.end()) {
-      report_unknown_attribute(attribute);
+      report_unknown_attribute(attribute, elsewhere);
     }
   }
   for (const pugi::xml_node node : node_.children()) {
     if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
-      document_->notice(document_->locate(node.value()),
-                        fmt::format("the text {} in <{}> has no effect here",
-                                    in_quotes(trimmed(node.value())), name()));
+      report().notice(document_->locate(node.value()),
+                      fmt::format("the text {} in <{}> has no effect here",
+                                  in_quotes(trimmed(node.value())), name()));
     }
     if (node.type() != pugi::node_element || any_child_) continue;
     if (std::find(asked_children_.begin(), asked_children_.end(), node.name()) ==
         asked_children_.end()) {
-      Element(*document_, node).unknown_in(name(), asked_children_);
+      const Element child(*document_, node);
+      if (elsewhere.empty()) {
+        child.unknown_in(name(), asked_children_);
+      } else {
+        child.fault(fmt::format("can't stand in this <{}>: {}", name(), elsewhere));
+      }
     }
   }
 }
@@ -315,52 +301,79 @@ void Element::check_repeated_attributes() const {
   std::sort(names.begin(), names.end());
   for (std::size_t i = 1; i < names.size(); ++i) {
     if (names[i].first != names[i - 1].first) continue;
-    document_->fault(document_->locate(names[i].second),
-                     fmt::format("malformed XML: <{}> has the attribute {} twice; write it once",
-                                 name(), in_quotes(names[i].first)));
+    report().fault(document_->locate(names[i].second),
+                   fmt::format("malformed XML: <{}> has the attribute {} twice; write it once",
+                               name(), in_quotes(names[i].first)));
   }
 }
 
-void Element::report_unknown_attribute(const pugi::xml_attribute& attribute) const {
+void Element::report_unknown_attribute(const pugi::xml_attribute& attribute,
+                                       std::string_view elsewhere) const {
   const Location where = document_->locate(attribute.name());
   const std::string_view name = attribute.name();
   const std::span<const std::string_view> known(asked_attributes_);
-  if (document_->options().lenient) {
-    document_->notice(where, fmt::format("unknown attribute {} of <{}> has no effect; {}",
-                                         in_quotes(name), this->name(), advice(name, known)));
+  if (!elsewhere.empty()) {
+    report().fault(where, fmt::format("the attribute {}={} can't stand in this <{}>: {}", name,
+                                      in_quotes(attribute.value()), this->name(), elsewhere));
+    return;
+  }
+  if (document_->lenient()) {
+    report().notice(where, fmt::format("unknown attribute {} of <{}> has no effect; {}",
+                                       in_quotes(name), this->name(), advice(name, known)));
     return;
   }
   if (const auto why = unsupported_attribute(name)) {
-    document_->fault(where, fmt::format("the attribute {}={} of <{}> is not supported; {}", name,
-                                        in_quotes(attribute.value()), this->name(), *why));
+    report().fault(where, fmt::format("the attribute {}={} of <{}> is not supported; {}", name,
+                                      in_quotes(attribute.value()), this->name(), *why));
     return;
   }
-  document_->fault(where, fmt::format("<{}> has an unknown attribute {}={}; {}", this->name(), name,
-                                      in_quotes(attribute.value()), advice(name, known)));
+  report().fault(where, fmt::format("<{}> has an unknown attribute {}={}; {}", this->name(), name,
+                                    in_quotes(attribute.value()), advice(name, known)));
 }
 
 void Element::unknown_in(std::string_view parent, std::span<const std::string_view> known) const {
   if (const auto why = unsupported_element(name())) {
-    document_->fault(where(), fmt::format("<{}> is not supported; {}", name(), *why));
+    report().fault(where(), fmt::format("<{}> is not supported; {}", name(), *why));
     return;
   }
-  document_->fault(where(), fmt::format("unknown element <{}> in <{}>; {}", name(), parent,
-                                        advice(name(), known)));
+  report().fault(where(), fmt::format("unknown element <{}> in <{}>; {}", name(), parent,
+                                      advice(name(), known)));
+}
+
+std::string Element::sentence(const char* attribute, std::string_view text) const {
+  return fmt::format("{}={} of <{}> {}", attribute,
+                     in_quotes(trimmed(node_.attribute(attribute).value())), name(), text);
 }
 
 void Element::fault_at(const char* attribute, std::string_view text) const {
-  document_->fault(
-      where(attribute),
-      fmt::format("{}={} of <{}> {}", attribute,
-                  in_quotes(trimmed(node_.attribute(attribute).value())), name(), text));
+  report().fault(where(attribute), sentence(attribute, text));
 }
 
 void Element::fault(std::string_view text) const {
-  document_->fault(where(), fmt::format("<{}> {}", name(), text));
+  report().fault(where(), fmt::format("<{}> {}", name(), text));
 }
 
 void Element::missing(const char* attribute) const {
   fault(fmt::format("lacks the attribute {0}; write {0}=\"…\"", attribute));
+}
+
+std::size_t Element::size() const {
+  struct Sum : pugi::xml_tree_walker {
+    std::size_t bytes = 0;
+    void add(const pugi::xml_node& node) {
+      bytes += 2 * std::string_view(node.name()).size() + std::string_view(node.value()).size();
+      bytes += std::string_view("<></>").size();
+      for (const pugi::xml_attribute attribute : node.attributes()) {
+        bytes += std::string_view(attribute.name()).size();
+        bytes += std::string_view(attribute.value()).size() + std::string_view(" =\"\"").size();
+      }
+    }
+    bool begin(pugi::xml_node& node) override { return add(node), true; }
+    bool for_each(pugi::xml_node& node) override { return add(node), true; }
+  } sum;
+  pugi::xml_node node = node_;
+  node.traverse(sum);
+  return sum.bytes;
 }
 
 }  // namespace ziggurat::scene

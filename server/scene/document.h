@@ -12,37 +12,38 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <unordered_set>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "scene/names.h"
 #include "scene/reader.h"
+#include "scene/report.h"
 #include "scene/values.h"
 
 namespace ziggurat::scene {
 
-/// Thrown when so many faults were found that reading on makes no sense; ends a reading early.
-struct TooManyFaults {};
+/// What a scene and its includes may still take.
+struct Room {
+  std::size_t bytes;
+  std::size_t tags;  ///< opening and closing ones
+};
 
-/// One parsed file and what was found wrong with it.
+/// The room of a scene of at most so many bytes.
+Room room_for(std::size_t max_size);
+
+/// One parsed file.
 class Document {
  public:
   /// Parses; what is wrong with the text itself (not UTF-8, malformed, …) is a fault.
-  Document(std::string text, std::string name, std::size_t file, const ReadOptions& options);
+  /// @param file  its index in Scene::files
+  /// @param room  at least the text's size; the text is taken from it
+  Document(std::string text, std::size_t file, bool lenient, Room& room, Report& report);
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
   /// The root element; empty if the text is no well-formed document.
   pugi::xml_node root() const { return root_; }
-
-  void fault(Location where, std::string text);
-  void notice(Location where, std::string text);  ///< each text once
-
-  /// Notice that something is read and checked, and does nothing yet: each subject once.
-  /// @param subject  plural, for example "radios"
-  void no_effect_yet(Location where, std::string_view subject);
 
   /// Where a character of the parsed text stands.
   Location locate(const char* character) const;
@@ -50,32 +51,23 @@ class Document {
   /// The attribute's text as written, before character references are replaced.
   std::string_view raw(const pugi::xml_attribute& attribute) const;
 
-  const ReadOptions& options() const { return options_; }
-
-  /// All problems so far, in document order.
-  std::vector<Problem> problems() const;
-
-  /// Named in messages while it stands, for example `prototype "vehicle"`.
-  std::string subject;
+  bool lenient() const { return lenient_; }
+  Report& report() const { return report_; }
 
  private:
   void parse();
-  bool check_text();
+  bool check_text(Room& room);
   void check_doctype();
   Location at(std::size_t offset) const;
-  void add(Problem::Severity severity, Location where, std::string text);
 
   std::string source_;  ///< as read
   std::string buffer_;  ///< what the parser works in: same offsets, changed characters
-  std::string name_;
   std::size_t file_;
-  ReadOptions options_;
+  bool lenient_;
+  Report& report_;
   std::vector<std::size_t> line_starts_;
   pugi::xml_document tree_;
   pugi::xml_node root_;
-  std::vector<Problem> problems_;
-  std::size_t faults_ = 0;
-  std::unordered_set<std::string> noticed_;
 };
 
 /// One element being read. Ask for what it may hold, then call done().
@@ -85,7 +77,7 @@ class Element {
 
   std::string_view name() const { return node_.name(); }
   Location where() const;
-  Document& document() const { return *document_; }
+  Report& report() const { return document_->report(); }
 
   /// Where an attribute's value begins, or the element if it has none of that name.
   Location where(const char* attribute) const;
@@ -132,8 +124,8 @@ class Element {
   void without_effect(const char* attribute, Read read, std::string_view why) {
     if (!has(attribute)) return;
     optional(attribute, read);
-    document_->notice(where(attribute),
-                      fmt::format("{} of <{}> has no effect here: {}", attribute, name(), why));
+    report().notice(where(attribute),
+                    fmt::format("{} of <{}> has no effect here: {}", attribute, name(), why));
   }
 
   /// All attributes, trimmed, whatever their names: for <params>.
@@ -145,21 +137,29 @@ class Element {
   std::optional<Element> required_child(const char* name);
   /// All children, for a caller that knows what to do with each name.
   std::vector<Element> children();
+  /// All children of that name.
+  std::vector<Element> children(const char* name);
   /// Children that do nothing here, with everything in them.
   void child_without_effect(const char* name, std::string_view why);
 
   /// Reports attributes and children that nobody asked for, repeated attributes, and text.
-  void done();
+  /// @param elsewhere  where they belong, if all of them belong there
+  void done(std::string_view elsewhere = {});
 
   /// Reports this element as one that its parent can't hold.
   /// @param known  what the parent may hold
   void unknown_in(std::string_view parent, std::span<const std::string_view> known) const;
 
-  /// `attribute="value" of <element> <text>`, at the value.
+  /// `attribute="value" of <element> <text>`.
+  std::string sentence(const char* attribute, std::string_view text) const;
+  /// That sentence, at the value.
   void fault_at(const char* attribute, std::string_view text) const;
   /// `<element> <text>`, at the element.
   void fault(std::string_view text) const;
   void missing(const char* attribute) const;
+
+  /// Of the element with all that is in it, white space and comments aside [bytes].
+  std::size_t size() const;
 
  private:
   template <class T>
@@ -176,7 +176,8 @@ class Element {
   std::optional<std::string> take(const char* attribute);
   void check_references(const pugi::xml_attribute& attribute) const;
   void check_repeated_attributes() const;
-  void report_unknown_attribute(const pugi::xml_attribute& attribute) const;
+  void report_unknown_attribute(const pugi::xml_attribute& attribute,
+                                std::string_view elsewhere) const;
 
   Document* document_;
   pugi::xml_node node_;

@@ -63,8 +63,7 @@ void read_dynamics3d(Reading& reading, Element& engine) {
 
 /// How much force and torque the ground of a <dynamics2d> brakes with.
 void read_ground(Element friction, Plane& plane) {
-  plane.box.max_force =
-      friction.optional("box_linear_friction", non_negative, plane.box.max_force);
+  plane.box.max_force = friction.optional("box_linear_friction", non_negative, plane.box.max_force);
   plane.box.max_torque =
       friction.optional("box_angular_friction", non_negative, plane.box.max_torque);
   plane.cylinder.max_force =
@@ -75,7 +74,7 @@ void read_ground(Element friction, Plane& plane) {
 }
 
 void note_one_world(Reading& reading, const Element& engine) {
-  reading.document.notice(
+  reading.report.notice(
       engine.where(),
       fmt::format("<{}> runs in the same 3D world as everything else", engine.name()));
 }

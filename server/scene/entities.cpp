@@ -40,28 +40,40 @@ Link read_single_link(Reading& reading, Element& element, Entity& entity) {
   return link;
 }
 
-void read_single_body(Reading& reading, Element& element, Entity& entity, Placement placement) {
+void read_single_body(Reading& reading, Element& element, Entity& entity) {
   entity.links.push_back(read_single_link(reading, element, entity));
-  entity.pose = read_body(element, placement);
   if (auto leds = element.child("leds")) read_leds(reading, *leds, entity);
 }
 
-void read_prototype(Reading& reading, Element& element, Entity& entity, Placement placement) {
+void read_prototype(Reading& reading, Element& element, Entity& entity) {
   entity.movable = element.optional("movable", boolean, true);
-  entity.pose = read_body(element, placement);
   const bool rooted = read_links(reading, element, entity);
   read_joints(reading, element, entity, rooted);
   read_devices(reading, element, entity);
-  read_controller_of(reading, element, entity);
+}
+
+bool needs_controller(EntityKind kind) {
+  return kind == EntityKind::foot_bot || kind == EntityKind::e_puck;
 }
 
 }  // namespace
 
-bool is_entity(std::string_view name) {
+std::optional<EntityKind> entity_kind(std::string_view name) {
   for (const auto& [known, kind] : kinds) {
-    if (known == name) return true;
+    if (known == name) return kind;
   }
-  return false;
+  return std::nullopt;
+}
+
+std::string_view to_string(EntityKind kind) {
+  for (const auto& [name, known] : kinds) {
+    if (known == kind) return name;
+  }
+  return {};
+}
+
+bool may_have_controller(EntityKind kind) {
+  return kind == EntityKind::prototype || needs_controller(kind);
 }
 
 math::Pose read_pose(Element& element) {
@@ -74,46 +86,62 @@ math::Pose read_body(Element& element, Placement placement) {
       placement == Placement::distributed ? element.child("body") : element.required_child("body");
   if (!body) return {};
   if (placement == Placement::distributed && (body->has("position") || body->has("orientation"))) {
-    body->document().notice(body->where(),
-                            "position and orientation of a distributed entity's <body> have no "
-                            "effect: <distribute> draws them");
+    body->report().notice(body->where(),
+                          "position and orientation of a distributed entity's <body> have no "
+                          "effect: <distribute> draws them");
   }
   const math::Pose pose = read_pose(*body);
   body->done();
   return placement == Placement::distributed ? math::Pose{} : pose;
 }
 
-Entity read_entity(Reading& reading, Element& element, Placement placement) {
-  Entity entity;
-  entity.where = element.where();
-  for (const auto& [name, kind] : kinds) {
-    if (name == element.name()) entity.kind = kind;
-  }
-  entity.id = element.required("id", identifier);
+void read_body_and_devices(Reading& reading, Element& element, Entity& entity) {
   reading.anchors.clear();
-  reading.document.subject = fmt::format("{} {}", element.name(), in_quotes(entity.id));
   switch (entity.kind) {
     case EntityKind::box:
     case EntityKind::cylinder:
-      read_single_body(reading, element, entity, placement);
+      read_single_body(reading, element, entity);
       break;
     case EntityKind::prototype:
-      read_prototype(reading, element, entity, placement);
+      read_prototype(reading, element, entity);
       break;
     case EntityKind::foot_bot:
     case EntityKind::e_puck:
-      read_robot(reading, element, entity, placement);
+      read_robot(reading, element, entity);
       break;
   }
-  element.done();
-  reading.document.subject.clear();
+}
+
+Entity read_entity(Reading& reading, Element& element, Placement placement) {
+  Entity entity;
+  entity.where = element.where();
+  entity.kind = entity_kind(element.name()).value();
+  entity.id = element.required("id", identifier);
+  const auto model = element.optional("model", identifier);
+  reading.report.subject = fmt::format("{} {}", element.name(), in_quotes(entity.id));
+  if (model) reading.report.subject += fmt::format(" of model {}", in_quotes(*model));
+  std::optional<ControllerChoice> controller;
+  std::string elsewhere;
+  if (element.has("model")) {
+    elsewhere = apply_model(reading, element, model.value_or(""), entity, controller);
+  } else {
+    read_body_and_devices(reading, element, entity);
+  }
+  entity.pose = read_body(element, placement);
+  if (may_have_controller(entity.kind)) {
+    if (auto own = read_controller_choice(reading, element)) controller = std::move(own);
+    if (needs_controller(entity.kind) && !controller) element.required_child("controller");
+    if (controller) give_controller(reading, *controller, entity);
+  }
+  element.done(elsewhere);
+  reading.report.subject.clear();
   return entity;
 }
 
 std::string read_light(Reading& reading, Element& element, Placement placement) {
-  reading.document.no_effect_yet(element.where(), "lights");
+  reading.report.no_effect_yet(element.where(), "lights");
   const std::string id = element.required("id", identifier);
-  reading.document.subject = fmt::format("light {}", in_quotes(id));
+  reading.report.subject = fmt::format("light {}", in_quotes(id));
   if (placement == Placement::explicit_pose) {
     element.required("position", position);
   } else {
@@ -124,7 +152,7 @@ std::string read_light(Reading& reading, Element& element, Placement placement) 
   element.required("intensity", non_negative);
   read_medium(reading, element, MediumKind::led);
   element.done();
-  reading.document.subject.clear();
+  reading.report.subject.clear();
   return id;
 }
 

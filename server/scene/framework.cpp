@@ -32,8 +32,8 @@ void read_system(Element system) {
 }
 
 void read_profiling(Element profiling) {
-  profiling.document().notice(profiling.where(),
-                              "<profiling> has no effect here: the run's summary holds the times");
+  profiling.report().notice(profiling.where(),
+                            "<profiling> has no effect here: the run's summary holds the times");
   profiling.required("file", path);
   profiling.required("format", Words{"human_readable", "table"});
   profiling.optional("truncate_file", boolean);

@@ -131,24 +131,24 @@ std::optional<Joint> read_joint(const Reading& reading, Element& element, Ids& i
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
 /// The joint that leads to each link, or `none`; a second one is a fault.
-std::vector<std::size_t> incoming_joints(Document& document, const Entity& entity, bool& sound) {
+std::vector<std::size_t> incoming_joints(Report& report, const Entity& entity, bool& sound) {
   std::vector<std::size_t> incoming(entity.links.size(), none);
   for (std::size_t i = 0; i < entity.joints.size(); ++i) {
     const Joint& joint = entity.joints[i];
     const std::string child = in_quotes(entity.links[joint.child].id);
     if (joint.child == entity.reference_link) {
       sound = false;
-      document.fault(joint.where,
-                     fmt::format("joint {} has the reference link {} as its child, which closes a "
-                                 "cycle; swap its parent and child",
-                                 in_quotes(joint.id), child));
+      report.fault(joint.where,
+                   fmt::format("joint {} has the reference link {} as its child, which closes a "
+                               "cycle; swap its parent and child",
+                               in_quotes(joint.id), child));
     } else if (incoming[joint.child] != none) {
       sound = false;
-      document.fault(joint.where,
-                     fmt::format("joint {} gives link {} a second parent, after joint {}; joints "
-                                 "make a tree, so remove one of them",
-                                 in_quotes(joint.id), child,
-                                 in_quotes(entity.joints[incoming[joint.child]].id)));
+      report.fault(joint.where,
+                   fmt::format("joint {} gives link {} a second parent, after joint {}; joints "
+                               "make a tree, so remove one of them",
+                               in_quotes(joint.id), child,
+                               in_quotes(entity.joints[incoming[joint.child]].id)));
     } else {
       incoming[joint.child] = i;
     }
@@ -157,7 +157,7 @@ std::vector<std::size_t> incoming_joints(Document& document, const Entity& entit
 }
 
 /// Reports each cycle and each unconnected part of the tree once.
-void report_unreached(Document& document, const Entity& entity,
+void report_unreached(Report& report, const Entity& entity,
                       const std::vector<std::size_t>& incoming) {
   enum class Mark : char { unseen, current, known };
   std::vector<Mark> marks(entity.links.size(), Mark::unseen);
@@ -172,14 +172,14 @@ void report_unreached(Document& document, const Entity& entity,
       link = entity.joints[incoming[link]].parent;
     }
     if (!path.empty() && incoming[link] == none && link == path.back()) {
-      document.fault(entity.links[link].where,
-                     fmt::format("link {} is not connected to the reference link {}; add a joint "
-                                 "whose child it is",
-                                 in_quotes(entity.links[link].id),
-                                 in_quotes(entity.links[entity.reference_link].id)));
+      report.fault(entity.links[link].where,
+                   fmt::format("link {} is not connected to the reference link {}; add a joint "
+                               "whose child it is",
+                               in_quotes(entity.links[link].id),
+                               in_quotes(entity.links[entity.reference_link].id)));
     } else if (marks[link] == Mark::current) {
       const Joint& joint = entity.joints[incoming[link]];
-      document.fault(
+      report.fault(
           joint.where,
           fmt::format("joint {} is part of a cycle that never meets the reference link "
                       "{}; joints make a tree",
@@ -191,9 +191,9 @@ void report_unreached(Document& document, const Entity& entity,
 
 }  // namespace
 
-void order_joints(Document& document, Entity& entity) {
+void order_joints(Report& report, Entity& entity) {
   bool sound = true;
-  const std::vector<std::size_t> incoming = incoming_joints(document, entity, sound);
+  const std::vector<std::size_t> incoming = incoming_joints(report, entity, sound);
   std::vector<std::vector<std::size_t>> outgoing(entity.links.size());
   for (std::size_t i = 0; i < entity.joints.size(); ++i) {
     if (incoming[entity.joints[i].child] == i) outgoing[entity.joints[i].parent].push_back(i);
@@ -208,7 +208,7 @@ void order_joints(Document& document, Entity& entity) {
     ordered.push_back(entity.joints[i]);
     for (const std::size_t j : outgoing[entity.joints[i].child]) next.push(j);
   }
-  if (ordered.size() + 1 < entity.links.size()) report_unreached(document, entity, incoming);
+  if (ordered.size() + 1 < entity.links.size()) report_unreached(report, entity, incoming);
   if (sound && ordered.size() + 1 == entity.links.size()) entity.joints = std::move(ordered);
 }
 
@@ -235,7 +235,7 @@ bool read_links(Reading& reading, Element& element, Entity& entity) {
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     const bool welded = !entity.movable && i == entity.reference_link;
     if (entity.links[i].mass > 0 || welded) continue;
-    reading.document.fault(
+    reading.report.fault(
         entity.links[i].where,
         fmt::format("mass of link {} is 0; write more than 0 kg", in_quotes(entity.links[i].id)));
   }
@@ -258,7 +258,7 @@ void read_joints(Reading& reading, Element& element, Entity& entity, bool rooted
     }
     joints->done();
   }
-  if (complete) order_joints(reading.document, entity);
+  if (complete) order_joints(reading.report, entity);
 }
 
 }  // namespace ziggurat::scene

@@ -1,6 +1,7 @@
 #pragma once
 // Where in which file something was said.
 
+#include <compare>
 #include <cstddef>
 
 namespace ziggurat::scene {
@@ -9,6 +10,7 @@ struct Location {
   std::size_t file = 0;  ///< index into Scene::files
   unsigned line = 0;     ///< from 1; 0 = nowhere in particular
   unsigned column = 0;   ///< from 1
+  auto operator<=>(const Location&) const = default;
 };
 
 }  // namespace ziggurat::scene

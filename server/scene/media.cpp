@@ -54,21 +54,25 @@ std::optional<std::size_t> read_medium(Reading& reading, Element& element, Mediu
   const std::string id = element.required("medium", identifier);
   if (id.empty()) return std::nullopt;
   const auto found = reading.media.find(id);
+  const auto lack = [&](std::string_view text) {
+    if (!reading.lacks) return element.fault_at("medium", text);
+    reading.lacks->push_back({element.where("medium"), element.sentence("medium", text)});
+  };
   if (found == reading.media.end()) {
     std::vector<std::string> candidates;
     for (const Medium& medium : reading.scene.media) {
       if (medium.kind == kind) candidates.push_back(medium.id);
     }
-    element.fault_at("medium", candidates.empty()
-                                   ? fmt::format("names no medium; write <{} id={}/> in <media>",
-                                                 to_string(kind), in_quotes(id))
-                                   : "names no medium; " + advice(id, candidates));
+    lack(candidates.empty() || reading.lacks
+             ? fmt::format("names no medium{}; write <{} id={}/> in <media>",
+                           reading.lacks ? " of the scene" : "", to_string(kind), in_quotes(id))
+             : "names no medium; " + advice(id, candidates));
     return std::nullopt;
   }
   const MediumKind is = reading.scene.media[found->second].kind;
   if (is != kind) {
-    element.fault_at("medium", fmt::format("names a medium of type {}; a {} medium is due",
-                                           to_string(is), to_string(kind)));
+    lack(fmt::format("names a medium of type {}; a {} medium is due", to_string(is),
+                     to_string(kind)));
     return std::nullopt;
   }
   return found->second;

@@ -18,7 +18,6 @@ using Reasons = std::span<const std::pair<std::string_view, std::string_view>>;
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 17> element_reasons{{
     {"loop_functions", "user libraries are not loaded into the server; connect a controller"},
-    {"include", "files are not included yet; write the elements into this file"},
     {"eye-bot", "its flight model does not exist here; model it as a <prototype>"},
     {"spiri", "its flight model does not exist here; model it as a <prototype>"},
     {"quadrotor", "its flight model does not exist here; model it as a <prototype>"},

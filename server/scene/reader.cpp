@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
 #include "scene/document.h"
@@ -13,14 +11,32 @@
 namespace ziggurat::scene {
 namespace {
 
-void read_root(Reading& reading, Element& root) {
+void read_scene(Reading& reading, File file, const std::string& name) {
+  Document& document = reading.add_document(std::move(file.text), name);
+  if (!document.root()) return;
+  Element root(document, document.root());
+  Parts parts = read_includes(reading, root, file.identity);
   read_framework(reading, root);
   read_engines(reading, root);
   read_media(reading, root);
-  read_controllers(reading, root);
+  read_controllers(reading, root, parts.controllers);
+  for (Element& models : parts.models) read_models(reading, models);
   read_arena(reading, root);
   root.child_without_effect("visualization", "use the web viewer");
   root.done();
+}
+
+ReadResult read(File file, const std::string& name, const ReadOptions& options) {
+  ReadResult result;
+  Report report(result.scene.files);
+  Reading reading(report, result.scene, options);
+  try {
+    read_scene(reading, std::move(file), name);
+  } catch (const TooManyFaults&) {
+    // The last fault says so.
+  }
+  result.problems = report.problems();
+  return result;
 }
 
 ReadResult refuse(const std::string& name, std::string text) {
@@ -28,13 +44,6 @@ ReadResult refuse(const std::string& name, std::string text) {
   result.scene.files = {name};
   result.problems = {{Problem::Severity::fault, name, {}, std::move(text)}};
   return result;
-}
-
-std::string too_large(std::size_t max_size) {
-  return fmt::format(
-      "the file is larger than {} bytes; split the scene, or raise "
-      "--max-scene-size",
-      max_size);
 }
 
 }  // namespace
@@ -52,46 +61,18 @@ bool ReadResult::ok() const {
 }
 
 ReadResult read_text(std::string text, const std::string& name, const ReadOptions& options) {
-  if (text.size() > options.max_size) return refuse(name, too_large(options.max_size));
-  ReadResult result;
-  result.scene.files = {name};
-  Document document(std::move(text), name, 0, options);
-  if (document.root()) {
-    Element root(document, document.root());
-    Reading reading{document, result.scene, {}, false, {}, {}, {}, {}, {}, {}};
-    try {
-      read_root(reading, root);
-    } catch (const TooManyFaults&) {
-      // The last fault says so.
-    }
-  }
-  result.problems = document.problems();
-  return result;
+  if (text.size() > options.max_size)
+    return refuse(name, "the file " + too_large(options.max_size));
+  const std::string identity = std::filesystem::path(name).lexically_normal().string();
+  return read({identity, std::move(text)}, name, options);
 }
 
 ReadResult read_file(const std::filesystem::path& path, const ReadOptions& options) {
-  namespace fs = std::filesystem;
-  const std::string name = path.string();
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) {
-    return refuse(name, "the file does not exist; name a scene file");
+  auto opened = options.open(path, options.max_size);
+  if (const std::string* why = std::get_if<std::string>(&opened)) {
+    return refuse(path.string(), "the file " + *why);
   }
-  if (error) return refuse(name, fmt::format("cannot be read: {}", error.message()));
-  if (status.type() != fs::file_type::regular) {
-    return refuse(name, "this is not a regular file; name a scene file");
-  }
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (!error && size > options.max_size) return refuse(name, too_large(options.max_size));
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return refuse(name, "cannot be opened; check its permissions");
-  std::string text;
-  for (char block[65536]; file.read(block, sizeof block) || file.gcount() > 0;) {
-    text.append(block, static_cast<std::size_t>(file.gcount()));
-    if (text.size() > options.max_size) return refuse(name, too_large(options.max_size));
-  }
-  if (file.bad()) return refuse(name, "cannot be read to its end");
-  return read_text(std::move(text), name, options);
+  return read(std::get<File>(std::move(opened)), path.string(), options);
 }
 
 SceneError::SceneError(std::vector<Problem> problems)

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "scene/scene.h"
@@ -26,21 +28,35 @@ struct Problem {
 /// `file:line:column: text`, or `file: text` where no line is known.
 std::string to_string(const Problem& problem);
 
+struct File {
+  std::string identity;  ///< the same for every path that leads to this file
+  std::string text;
+};
+
+/// Opens a file of at most `max_size` bytes. If that fails: why, as `does not exist; …`.
+using OpenFile = std::function<std::variant<File, std::string>(const std::filesystem::path&,
+                                                               std::size_t max_size)>;
+
+/// From disk, regular files only.
+std::variant<File, std::string> open_file(const std::filesystem::path& path, std::size_t max_size);
+
 struct ReadOptions {
   bool lenient = false;  ///< unknown attributes (not elements) become notices
-  std::size_t max_size = std::size_t{64} << 20;  ///< of a file [bytes]
+  std::size_t max_size = std::size_t{64} << 20;  ///< of the scene with what it includes and with
+                                                 ///< its models written out [bytes]
+  OpenFile open = open_file;  ///< every file that is read, the scene's and those it includes
 };
 
 struct ReadResult {
   Scene scene;                    ///< complete only if no problem is a fault
-  std::vector<Problem> problems;  ///< in document order
+  std::vector<Problem> problems;  ///< by file, in document order
   bool ok() const;                ///< no fault
 };
 
 /// Never throws for what the file says; std::bad_alloc aside.
 ReadResult read_file(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// The same for a text; `name` stands in messages, and relative paths start at its folder.
+/// The same for a text; `name` stands in messages, and what it includes starts at its folder.
 ReadResult read_text(std::string text, const std::string& name, const ReadOptions& options = {});
 
 /// Carries all faults of an author: scene, arguments, environment.

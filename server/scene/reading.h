@@ -1,11 +1,13 @@
 #pragma once
 // The parts of a scene file, each read by its own function into its own struct, and what they
-// need from each other on the way. Read in this order: framework, physics engines (their defaults
-// reach into the arena), media, controllers, arena.
+// need from each other on the way. Read in this order: includes, framework, physics engines (their
+// defaults reach into the arena), media, controllers, models, arena.
 
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -28,32 +30,88 @@ struct DeviceUse {
   Location where;
 };
 
+/// Something that the scene lacks for a model or a controller: a fault once that is used.
+struct Lack {
+  Location where;
+  std::string text;
+};
+
 /// What must be known of a controller when an entity uses it.
 struct ControllerUse {
   bool has_actuators = false, has_sensors = false, has_params = false;
   std::vector<DeviceUse> devices;
   std::vector<Location> camera_anchors;  ///< of Controller::devices.cameras, same order
   unsigned faults = 0;                   ///< found with entities so far
+  std::vector<Lack> lacks;
+};
+
+/// `<controller>` of an entity or a model, not yet looked up.
+struct ControllerChoice {
+  std::string id;
+  Lack unknown;  ///< what to say if there is none of that id
+  std::optional<std::vector<std::pair<std::string, std::string>>> params;  ///< of <params> in it
+  Location params_where;
+};
+
+/// What the entities of a model have in common.
+struct Model {
+  Entity entity;  ///< without id, pose and controller
+  std::unordered_map<std::string, std::size_t> anchors;
+  std::optional<ControllerChoice> controller;
+  std::vector<Lack> lacks;
+  std::size_t size = 0;  ///< as written [bytes]
 };
 
 struct Reading {
-  Document& document;
+  Reading(Report& report_of_all, Scene& scene_read, const ReadOptions& chosen)
+      : report(report_of_all),
+        scene(scene_read),
+        options(chosen),
+        room(room_for(chosen.max_size)) {}
+
+  Report& report;
   Scene& scene;
+  const ReadOptions& options;
+  Room room;
+  std::deque<Document> documents;      ///< of Scene::files, same order
+  std::vector<Lack>* lacks = nullptr;  ///< where faults that the scene can mend go; null: reported
+  std::vector<Model> models;           ///< of Scene::models, same order
+  std::unordered_map<std::string, std::size_t> model_ids;  ///< id -> index
   BodyDefaults defaults;
   bool has_engine = false;
   std::vector<ControllerUse> uses;                           ///< of Scene::controllers, same order
   std::unordered_map<std::string, std::size_t> media;        ///< id -> index
   std::unordered_map<std::string, std::size_t> controllers;  ///< id -> index
-  std::set<std::pair<unsigned, unsigned>> blamed;  ///< device locations reported once already
+  std::set<Location> blamed;  ///< what entities have in common and is reported once already
   Ids entity_ids;
   std::unordered_map<std::string, std::size_t> anchors;  ///< link id -> index, of the entity
                                                          ///< being read
+
+  Document& add_document(std::string text, const std::string& name) {
+    scene.files.push_back(name);
+    return documents.emplace_back(std::move(text), scene.files.size() - 1, options.lenient, room,
+                                  report);
+  }
 };
+
+/// What included files and the scene say for the scene, in the order of the includes.
+struct Parts {
+  std::vector<Element> models;       ///< each <models>
+  std::vector<Element> controllers;  ///< each <controllers> of an included file
+};
+
+/// Reads all files that a file includes.
+/// @param identity  of the scene's own file
+Parts read_includes(Reading& reading, Element& root, const std::string& identity);
+
+/// Why a file is refused: `is larger than …`.
+std::string too_large(std::size_t max_size);
 
 void read_framework(Reading& reading, Element& root);
 void read_engines(Reading& reading, Element& root);
 void read_media(Reading& reading, Element& root);
-void read_controllers(Reading& reading, Element& root);
+void read_controllers(Reading& reading, Element& root, std::span<Element> included);
+void read_models(Reading& reading, Element& list);
 void read_arena(Reading& reading, Element& root);
 
 // --- controllers --------------------------------------------------------------------------------
@@ -67,8 +125,11 @@ std::vector<Camera> read_cameras(Reading& reading, Element& sensor, ControllerUs
 /// The last child of each name, in the order of those; earlier ones of the name are a notice.
 std::vector<Element> last_of_each_name(Element& list);
 
-/// Reads an entity's <controller> and checks that it has what the controller needs.
-void read_controller_of(Reading& reading, Element& element, Entity& entity);
+/// Reads `<controller>` of an entity or a model.
+std::optional<ControllerChoice> read_controller_choice(Reading& reading, Element& element);
+
+/// Gives an entity its controller and checks that it has what the controller needs.
+void give_controller(Reading& reading, const ControllerChoice& choice, Entity& entity);
 
 // --- entities -----------------------------------------------------------------------------------
 
@@ -77,10 +138,23 @@ enum class Placement { explicit_pose, distributed };
 
 /// Reads <box>, <cylinder>, <prototype>, <foot-bot> or <e-puck>.
 Entity read_entity(Reading& reading, Element& element, Placement placement);
-bool is_entity(std::string_view name);
+std::optional<EntityKind> entity_kind(std::string_view name);
+std::string_view to_string(EntityKind kind);
+bool may_have_controller(EntityKind kind);
+
+/// Reads what a model and an entity without one say alike: all but id, pose and controller.
+void read_body_and_devices(Reading& reading, Element& element, Entity& entity);
+
+/// Makes the entity one of the model of that name, with the controller that the model says.
+/// @returns where to write what can't stand on the entity itself
+std::string apply_model(Reading& reading, Element& element, const std::string& name, Entity& entity,
+                        std::optional<ControllerChoice>& controller);
+
+/// Reports what the scene lacks, once.
+void report_lacks(Reading& reading, std::vector<Lack>& lacks);
 
 /// Reads a <foot-bot> or <e-puck> into an entity that knows its kind.
-void read_robot(Reading& reading, Element& element, Entity& entity, Placement placement);
+void read_robot(Reading& reading, Element& element, Entity& entity);
 
 /// Reads <light>, whose effects are still to come; returns its id.
 std::string read_light(Reading& reading, Element& element, Placement placement);
@@ -100,7 +174,7 @@ bool read_links(Reading& reading, Element& element, Entity& entity);
 void read_joints(Reading& reading, Element& element, Entity& entity, bool rooted);
 
 /// Checks that joints make a tree with the reference link at its root, and orders them.
-void order_joints(Document& document, Entity& entity);
+void order_joints(Report& report, Entity& entity);
 
 /// Reads <devices> of a prototype.
 void read_devices(Reading& reading, Element& element, Entity& entity);
@@ -119,7 +193,8 @@ Surface read_surface(Reading& reading, Element& element, const Surface& usual);
 /// `linear_damping` and `angular_damping`.
 Damping read_damping(Reading& reading, Element& element, const Damping& usual);
 
-/// The medium that an attribute `medium` names; a missing, unknown or wrong one is a fault.
+/// The medium that an attribute `medium` names; a missing, unknown or wrong one is a fault, or in
+/// a model or an included controller something that the scene lacks.
 std::optional<std::size_t> read_medium(Reading& reading, Element& element, MediumKind kind);
 
 /// The anchor that an attribute `anchor` names; an unknown one is a fault.

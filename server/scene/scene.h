@@ -120,6 +120,8 @@ struct Entity {
   std::optional<std::size_t> controller;  ///< index into Scene::controllers
   std::vector<std::pair<std::string, std::string>> params;  ///< the entity's own <params>, if
   bool overrides_params = false;                            ///< it has one, replacing the controller's
+  Location params_where;             ///< of that <params>
+  std::optional<std::size_t> model;  ///< index into Scene::models; none: written out
   Location where;
 };
 
@@ -208,10 +210,17 @@ struct Controller {
   Location params_where;  ///< of <params>
 };
 
+/// Something that many entities are alike in, `<models>` in the file.
+struct ModelName {
+  std::string id;
+  Location where;  ///< of its definition
+};
+
 struct Scene {
   std::vector<std::string> files;  ///< what Location::file counts; [0] is the scene file
   Experiment experiment;
   std::vector<Controller> controllers;
+  std::vector<ModelName> models;
   Arena arena;
   std::vector<Entity> entities;  ///< explicitly placed, in document order
   std::vector<Distribution> distributions;

@@ -173,6 +173,28 @@ class Machines(SceneTest):
         self.assertFalse(missing["ok"])
         self.assertEqual(missing["problems"][0]["severity"], "fault")
 
+    def test_check_counts_entities_of_models(self):
+        self.write("tile.argos", """<m><models><prototype id="tile" movable="false">
+<links ref="l"><link id="l" geometry="box" size="0.1,0.1,0.1"
+mass="1"/></links><devices><tags medium="tags">
+<tag anchor="l" position="0,0,0.1" orientation="0,0,0" observable_angle="90"
+side_length="0.05" payload="hello"/></tags></devices>
+</prototype></models></m>""")
+        scene = self.write("tiles.argos", """<a><include file="tile.argos"/><framework>
+<experiment ticks_per_second="10"/></framework><controllers/><media><tag id="tags"/></media>
+<physics_engines><dynamics3d id="d"/></physics_engines><arena size="9,9,9">
+<prototype id="a" model="tile"><body position="0,0,0"/></prototype>
+<prototype id="b" model="tile"><body position="1,0,0"/></prototype></arena></a>""")
+        outcome = self.ziggurat("check", "--json", scene)
+        report, = json.loads(outcome.out)
+        self.assertTrue(report["ok"], outcome.out)
+        self.assertEqual(report["models"], [{"id": "tile", "entities": 2}])
+        plain = [problem for problem in report["problems"] if "plain white" in problem["text"]]
+        self.assertEqual(len(plain), 1, "of a model once")
+        self.assertIn("of model 'tile'", plain[0]["text"])
+        self.assertTrue(plain[0]["file"].endswith("tile.argos"))
+        self.assertIn('2 entities (2 of model "tile")', self.ziggurat("check", scene).out)
+
     def test_messages_are_json(self):
         self.change('mass="2"', 'mass="-2"', 1)
         outcome = self.ziggurat("run", "--json", self.scene)

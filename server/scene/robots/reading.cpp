@@ -39,10 +39,9 @@ void check_blob_cameras(Element& element, EntityKind kind) {
 
 }  // namespace
 
-void read_robot(Reading& reading, Element& element, Entity& entity, Placement placement) {
+void read_robot(Reading& reading, Element& element, Entity& entity) {
   entity.kind == EntityKind::foot_bot ? equip_foot_bot(entity) : equip_e_puck(entity);
   entity.movable = element.optional("movable", boolean, true);
-  entity.pose = read_body(element, placement);
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     entity.links[i].where = element.where();
     reading.anchors.emplace(entity.links[i].id, i);
@@ -57,8 +56,6 @@ void read_robot(Reading& reading, Element& element, Entity& entity, Placement pl
   check_blob_cameras(element, entity.kind);
   if (auto battery = element.child("battery")) devices.battery = read_battery(*battery);
   if (auto engine = element.child("dynamics2d")) read_steering_limits(*engine, *entity.traction);
-  element.required_child("controller");
-  read_controller_of(reading, element, entity);
 }
 
 }  // namespace ziggurat::scene

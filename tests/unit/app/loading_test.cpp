@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "app/arguments.h"
+#include "app/private_folder.h"
+#include "simulation/simulation.h"
 
 namespace ziggurat::app {
 namespace {
@@ -47,6 +52,58 @@ TEST(Seed, CommandLineWinsAndZeroDrawsOne) {
   const auto first = choose_seed(options, scene);
   EXPECT_NE(first, 0u);
   EXPECT_TRUE(choose_seed(options, scene) != first || choose_seed(options, scene) != first);
+}
+
+class Included : public testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) const {
+    const std::filesystem::path path = std::filesystem::path(folder_.path()) / name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << text;
+  }
+  void SetUp() override {
+    write("parts/block.argos", block("block.lua"));
+    write("parts/block.lua", "");
+    write("scenes/own.lua", "");
+    write("scenes/a.argos",
+          R"(<a><include file="../parts/block.argos"/>
+<framework><experiment ticks_per_second="10"/></framework><controllers/><media/>
+<physics_engines><dynamics3d id="d"/></physics_engines><arena size="9,9,9">
+<prototype id="a" model="block"><body/></prototype>
+<prototype id="b" model="block"><body position="3,0,0"/>
+<controller config="c"><params script="own.lua"/></controller></prototype>
+<distribute><position method="grid" center="0,5,0" distances="2,2,2" layout="2,1,1"/>
+<orientation method="constant" values="0,0,0"/>
+<entity quantity="2" max_trials="1"><prototype id="d" model="block"/></entity></distribute>
+</arena></a>)");
+  }
+  static std::string block(const std::string& script) {
+    return R"(<m><controllers><lua_controller id="c"><actuators/><sensors/><params script=")" +
+           script + R"("/></lua_controller></controllers><models><prototype id="block">
+<links ref="l"><link id="l" geometry="sphere" radius="0.1" mass="1"/></links>
+<controller config="c"/></prototype></models></m>)";
+  }
+  PrivateFolder folder_;
+};
+
+TEST_F(Included, ScriptsAreFoundBesideTheFileThatNamesThem) {
+  const std::string path = folder_.path() + "/scenes/a.argos";
+  Console console({true, false});
+  const auto scene = load_scene(path, {}, console);
+  const simulation::Simulation simulation(scene, {1, {}});
+  const std::string block_script = folder_.path() + "/parts/block.lua";
+  EXPECT_EQ(script_paths(scene, simulation.layout(), path),
+            (std::vector<std::string>{block_script, folder_.path() + "/scenes/own.lua",
+                                      block_script, block_script}));
+}
+
+TEST_F(Included, FilesAreInTheHashOfTheScene) {
+  const std::string path = folder_.path() + "/scenes/a.argos";
+  Console console({true, false});
+  const auto before = scene_hash(load_scene(path, {}, console));
+  EXPECT_EQ(scene_hash(load_scene(path, {}, console)), before);
+  write("parts/block.argos", block("./block.lua"));
+  EXPECT_NE(scene_hash(load_scene(path, {}, console)), before);
 }
 
 }  // namespace

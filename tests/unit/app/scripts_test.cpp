@@ -38,12 +38,24 @@ TEST_F(Scripts, AreFoundBesideTheSceneAndAboveIt) {
   const auto scene = write("a/b/scene.argos", "");
   const auto beside = write("a/b/beside.lua", "");
   const auto above = write("scripts/above.lua", "");
-  EXPECT_EQ(find_script("beside.lua", scene), beside);
-  EXPECT_EQ(find_script("scripts/above.lua", scene), above);
-  EXPECT_EQ(find_script(above.string(), scene), above);
-  EXPECT_EQ(find_script("nowhere.lua", scene), std::nullopt);
-  EXPECT_EQ(find_script("/nowhere.lua", scene), std::nullopt);
-  EXPECT_EQ(find_script("scripts", scene), std::nullopt) << "a folder is no script";
+  EXPECT_EQ(find_script("beside.lua", scene, scene), beside);
+  EXPECT_EQ(find_script("scripts/above.lua", scene, scene), above);
+  EXPECT_EQ(find_script(above.string(), scene, scene), above);
+  EXPECT_EQ(find_script("nowhere.lua", scene, scene), std::nullopt);
+  EXPECT_EQ(find_script("/nowhere.lua", scene, scene), std::nullopt);
+  EXPECT_EQ(find_script("scripts", scene, scene), std::nullopt) << "a folder is no script";
+}
+
+TEST_F(Scripts, AreFoundBesideTheFileThatNamesThem) {
+  const auto scene = write("a/scene.argos", "");
+  const auto models = write("parts/block.argos", "");
+  const auto beside = write("parts/block.lua", "");
+  const auto nearer = write("parts/both.lua", "");
+  const auto of_scene = write("a/both.lua", "");
+  EXPECT_EQ(find_script("block.lua", models, scene), beside);
+  EXPECT_EQ(find_script("block.lua", scene, scene), std::nullopt);
+  EXPECT_EQ(find_script("both.lua", models, scene), nearer);
+  EXPECT_EQ(find_script("both.lua", scene, scene), of_scene);
 }
 
 TEST_F(Scripts, WorkingDirectoryComesFirst) {
@@ -52,7 +64,7 @@ TEST_F(Scripts, WorkingDirectoryComesFirst) {
   const auto here = write("b/drive.lua", "");
   const auto former = fs::current_path();
   fs::current_path(here.parent_path());
-  const auto found = find_script("drive.lua", scene);
+  const auto found = find_script("drive.lua", scene, scene);
   fs::current_path(former);
   EXPECT_EQ(found, here);
 }

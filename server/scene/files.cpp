@@ -1,0 +1,128 @@
+// The files that a scene is made of: the scene's own, and those that it includes.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t deepest_include = 16;
+constexpr unsigned most_includes = 1000;
+
+std::string join(const std::vector<std::string>& names, std::size_t first) {
+  std::string text;
+  for (std::size_t i = first; i < names.size(); ++i) text += names[i] + " includes ";
+  return text + names[first];
+}
+
+/// Follows includes from file to file.
+struct Includes {
+  Reading& reading;
+  Parts parts;
+  std::vector<std::string> open;   ///< identities of the files from the scene to the current one
+  std::vector<std::string> names;  ///< theirs, as messages call them
+  std::set<std::string> known;     ///< identities of all files so far
+  unsigned count = 0;
+
+  void read_root(Element& root, bool included) {
+    for (Element& element : root.children("include")) include(element);
+    if (auto models = root.child("models")) parts.models.push_back(*models);
+    if (!included) return;
+    if (auto controllers = root.child("controllers")) parts.controllers.push_back(*controllers);
+    root.done(
+        "a file that is included has <include>, <models> and <controllers>; the rest is for "
+        "the scene to say");
+  }
+
+  void include(Element& element) {
+    const std::string written = element.required("file", path);
+    element.done();
+    if (written.empty() || ++count > most_includes + 1) return;
+    if (count > most_includes) {
+      element.fault(fmt::format("is one too many; a scene has at most {}", most_includes));
+      return;
+    }
+    const fs::path path = (fs::path(names.back()).parent_path() / written).lexically_normal();
+    auto opened = reading.options.open(path, reading.room.bytes);
+    if (const std::string* why = std::get_if<std::string>(&opened)) {
+      element.fault_at("file", fmt::format("names {}, which {}", in_quotes(path.string()), *why));
+      return;
+    }
+    File& file = std::get<File>(opened);
+    if (file.text.size() > reading.room.bytes) {
+      element.fault_at("file", too_large(reading.room.bytes));
+    } else if (may_stand(element, file.identity)) {
+      add(std::move(file), path.string());
+    }
+  }
+
+  /// False for a file that was read before, and after a fault.
+  bool may_stand(const Element& element, const std::string& identity) {
+    const auto same = std::find(open.begin(), open.end(), identity);
+    if (same != open.end()) {
+      const auto first = static_cast<std::size_t>(same - open.begin());
+      element.fault_at("file", fmt::format("closes a cycle: {}; remove one of these includes",
+                                           join(names, first)));
+      return false;
+    }
+    if (open.size() > deepest_include) {
+      element.fault_at("file", fmt::format("is nested too deep; includes may lead over {} files",
+                                           deepest_include));
+      return false;
+    }
+    return known.insert(identity).second;
+  }
+
+  void add(File file, const std::string& name) {
+    Document& document = reading.add_document(std::move(file.text), name);
+    open.push_back(std::move(file.identity));
+    names.push_back(name);
+    if (document.root()) {
+      Element root(document, document.root());
+      read_root(root, true);
+    }
+    open.pop_back();
+    names.pop_back();
+  }
+};
+
+}  // namespace
+
+std::string too_large(std::size_t max_size) {
+  return fmt::format("is larger than {} bytes; split the scene, or raise --max-scene-size",
+                     max_size);
+}
+
+std::variant<File, std::string> open_file(const fs::path& path, std::size_t max_size) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) return "does not exist; check its path";
+  if (error) return fmt::format("cannot be read: {}", error.message());
+  if (status.type() != fs::file_type::regular) return "is not a regular file; check its path";
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!error && size > max_size) return too_large(max_size);
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return "cannot be opened; check its permissions";
+  std::string text;
+  for (char block[65536]; file.read(block, sizeof block) || file.gcount() > 0;) {
+    text.append(block, static_cast<std::size_t>(file.gcount()));
+    if (text.size() > max_size) return too_large(max_size);
+  }
+  if (file.bad()) return "cannot be read to its end";
+  return File{fs::canonical(path, error).string(), std::move(text)};
+}
+
+Parts read_includes(Reading& reading, Element& root, const std::string& identity) {
+  Includes includes{reading, {}, {identity}, {reading.scene.files[0]}, {identity}};
+  includes.read_root(root, false);
+  return std::move(includes.parts);
+}
+
+}  // namespace ziggurat::scene

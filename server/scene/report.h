@@ -1,0 +1,47 @@
+#pragma once
+// Everything said about a scene and the files that it includes, on the way.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+#include "scene/reader.h"
+
+namespace ziggurat::scene {
+
+/// Thrown when so many faults were found that reading on makes no sense; ends a reading early.
+struct TooManyFaults {};
+
+class Report {
+ public:
+  /// @param files  what Location::file counts; must outlive this and may grow
+  explicit Report(const std::vector<std::string>& files) : files_(files) {}
+  Report(const Report&) = delete;
+  Report& operator=(const Report&) = delete;
+
+  void fault(Location where, std::string text);
+  void notice(Location where, std::string text);  ///< each text once
+
+  /// Notice that something is read and checked, and does nothing yet: each subject once.
+  /// @param plural  of what, for example "radios"
+  void no_effect_yet(Location where, std::string_view plural);
+
+  /// `file:line:column` of a place, for a message about another.
+  std::string place(Location where) const;
+
+  /// All problems so far: by file, and in document order within each.
+  std::vector<Problem> problems() const;
+
+  /// Named in messages while it stands, for example `prototype "vehicle"`.
+  std::string subject;
+
+ private:
+  const std::vector<std::string>& files_;
+  std::vector<Problem> problems_;
+  std::size_t faults_ = 0;
+  std::unordered_set<std::string> noticed_;
+};
+
+}  // namespace ziggurat::scene
