@@ -30,7 +30,8 @@ MODULES = {
     "recording": ["scene", "world", "simulation", "wire", "protocol", "math"],
     "network": ["scene", "world", "wire", "protocol"],
     "app": ["scene", "world", "magnetism", "physics", "media", "camera", "render", "devices",
-            "simulation", "wire", "recording", "network", "math"],
+            "simulation", "wire", "recording", "network", "clients/cpp",
+            "math"],
     "clients/cpp": ["protocol"],
     "clients/lua": ["clients/cpp"],
 }

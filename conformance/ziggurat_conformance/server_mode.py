@@ -101,7 +101,7 @@ def _play_one(case: Case, form: str, servers, patience: float) -> Outcome:
     if stage is not None and outcome.verdict in (Verdict.FAIL, Verdict.NON_STRICT):
         outcome.transcript = stage.transcript.text()
     if outcome.verdict is not Verdict.NOT_RUN:
-        servers.done(case, outcome.verdict in (Verdict.PASS, Verdict.UNIMPLEMENTED))
+        servers.done(case, outcome.verdict is Verdict.PASS)
     return outcome
 
 

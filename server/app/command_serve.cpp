@@ -24,7 +24,15 @@ for ever, says for whom, and ends after the scene's length.
   ziggurat serve stacking.argos --real-time
       a scene without controllers stays paused unless it is paced
 
-A tcp address that isn't loopback is refused without --insecure: whoever reaches it drives robots.
+  ziggurat serve vehicle.argos --endpoint tcp://0.0.0.0:5770 \
+                --curve-secret server.secret --curve-clients clients.txt
+      for controllers on other machines whose keys are listed; 'ziggurat help keygen' tells more
+  ziggurat serve vehicle.argos --deadline hold:50:100 --lease 30
+      a controller that is late by 50 ms is not waited for, and dropped after 100 ticks in a row;
+      one whose connection is gone may take up its session within 30 s
+
+A tcp address that isn't loopback is refused without keys or --insecure: whoever reaches it drives
+robots.
 
 Exit codes: 0 finished; 1 fault of scene, arguments or environment; 3 a controller failed; 130
 interrupted.

@@ -16,6 +16,9 @@ constexpr Command table[] = {
     {"render", "draw a scene at given times", help_render, execute_render},
     {"magnetism", "plot what two magnets of a scene do to each other", help_magnetism,
      execute_magnetism},
+    {"keygen", "make a pair of keys that protect connections", help_keygen, execute_keygen},
+    {"top", "show who holds up a run", help_top, execute_top},
+    {"ctl", "steer a run: pause, step, reset, move, …", help_ctl, execute_ctl},
     {"help", "explain a command", help_help, execute_help},
 };
 

@@ -16,6 +16,7 @@ namespace exit_code {
 constexpr int finished = 0;
 constexpr int fault = 1;  ///< of scene, arguments or environment
 constexpr int controller_failed = 3;
+constexpr int gate_missed = 4;    ///< a controller did not keep up as --gate asks
 constexpr int interrupted = 130;  ///< Ctrl-C
 }  // namespace exit_code
 
@@ -35,7 +36,10 @@ std::string help_run();
 std::string help_serve();
 std::string help_check();
 std::string help_render();
+std::string help_keygen();
 std::string help_magnetism();
+std::string help_ctl();
+std::string help_top();
 std::string help_help();
 
 /// Each returns an exit code and throws what main() turns into one.
@@ -43,7 +47,10 @@ int execute_run(const Arguments& arguments);
 int execute_serve(const Arguments& arguments);
 int execute_check(const Arguments& arguments);
 int execute_render(const Arguments& arguments);
+int execute_keygen(const Arguments& arguments);
 int execute_magnetism(const Arguments& arguments);
+int execute_ctl(const Arguments& arguments);
+int execute_top(const Arguments& arguments);
 int execute_help(const Arguments& arguments);
 
 }  // namespace ziggurat::app

@@ -13,6 +13,10 @@
 namespace ziggurat::app {
 namespace {
 
+// The private endpoint is not protected, whatever keys our own surroundings name.
+const std::vector<std::pair<std::string, std::string>> no_keys{{"ZIGGURAT_SERVER_KEY", ""},
+                                                               {"ZIGGURAT_CURVE_SECRET", ""}};
+
 std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
                              const Surroundings& surroundings) {
   const std::size_t wanted =
@@ -29,6 +33,7 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
     launch.robots_file = fmt::format("{}/robots-{}", surroundings.folder, i);
     launch.program.arguments = {surroundings.lua_runner, "--connect",        surroundings.endpoint,
                                 "--robots-file",         launch.robots_file, "--quiet"};
+    launch.program.environment = no_keys;
     launches.push_back(std::move(launch));
   }
   return launches;
@@ -75,6 +80,8 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
     launch.program.arguments = {"/bin/sh", "-c", controller.command};
     launch.program.environment = {{"ZIGGURAT_ENDPOINT", surroundings.endpoint},
                                   {"ZIGGURAT_CONTROLLER", controller.id}};
+    launch.program.environment.insert(launch.program.environment.end(), no_keys.begin(),
+                                      no_keys.end());
     launches.push_back(std::move(launch));
   }
   return launches;

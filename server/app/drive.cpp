@@ -1,64 +1,105 @@
 #include "app/drive.h"
 
+#include <array>
+
 namespace ziggurat::app {
 namespace {
 
 using clock = std::chrono::steady_clock;
 
-// Charges the time since the last call to one account.
+// Charges the time since the last call to one account, and at the end of a tick to its phases.
 class Laps {
  public:
-  void charge(double& account_s) {
-    const auto now = clock::now();
-    account_s += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
+  void charge(double& account_s, Phase phase) {
+    const double taken = lap();
+    account_s += taken;
+    tick_[static_cast<std::size_t>(phase)] += taken;
+  }
+  void charge(double& account_s) { account_s += lap(); }
+
+  void end_tick(Supervision& supervision, bool is_paced) {
+    for (const Phase phase : {Phase::exchange, Phase::physics, Phase::recording, Phase::pacing}) {
+      double& taken = tick_[static_cast<std::size_t>(phase)];
+      if (phase != Phase::pacing || is_paced) supervision.charge(phase, taken);
+      taken = 0;
+    }
   }
 
  private:
+  double lap() {
+    const auto now = clock::now();
+    const double taken = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return taken;
+  }
+
   clock::time_point last_ = clock::now();
+  std::array<double, 4> tick_{};  // [s], by Phase
 };
 
-// The absolute schedule of a paced run: being late once doesn't move what comes after.
-std::optional<Ending> pace(double factor, const simulation::Simulation& simulation,
-                           clock::time_point start, Watch& watch, Summary& summary) {
+// The absolute schedule of a paced run: being late once doesn't move what comes after, a pause
+// does.
+std::optional<Ending> pace(double factor, const Driven& driven, clock::time_point start,
+                           Summary& summary) {
+  const simulation::Simulation& simulation = driven.simulation;
   const double due_s = static_cast<double>(simulation.state().tick + 1) * simulation.tick_length();
-  const auto due = start + std::chrono::duration_cast<clock::duration>(
-                               std::chrono::duration<double>(due_s / factor));
+  const auto due =
+      start + driven.supervision.paused_for() +
+      std::chrono::duration_cast<clock::duration>(std::chrono::duration<double>(due_s / factor));
   if (clock::now() > due) ++summary.late_ticks;
-  return watch.sleep_until(due);
+  return driven.watch.sleep_until(due);
+}
+
+/// One world, from tick 0 on.
+Ending drive_once(const Plan& plan, const Driven& driven, Recorders& recorders, Summary& summary,
+                  Laps& laps) {
+  const auto& [simulation, server, watch, supervision] = driven;
+  const world::State& now = simulation.state();
+  const auto start = clock::now() - supervision.paused_for();
+  for (;;) {
+    // Controllers compute while we write.
+    server.publish(simulation.observations(), now.tag_payloads);
+    supervision.published();
+    laps.charge(summary.exchange_s, Phase::exchange);
+    recorders.tick(simulation);
+    laps.charge(summary.recording_s, Phase::recording);
+
+    const auto stopped = watch.collect(simulation.commands(), now.tick);
+    laps.charge(summary.exchange_s, Phase::exchange);
+    if (stopped) return *stopped;
+    recorders.exchange(simulation.state(), simulation.observations(), simulation.commands());
+    laps.charge(summary.recording_s, Phase::recording);
+    if (now.tick == plan.ticks) return Ending::finished;
+
+    if (plan.real_time) {
+      const auto stopped_asleep = pace(*plan.real_time, driven, start, summary);
+      laps.charge(summary.pacing_s, Phase::pacing);
+      if (stopped_asleep) return *stopped_asleep;
+    }
+    simulation.step();
+    laps.charge(summary.physics_s, Phase::physics);
+    laps.end_tick(supervision, plan.real_time.has_value());
+  }
 }
 
 }  // namespace
 
-Ending drive(const Plan& plan, simulation::Simulation& simulation, network::Server& server,
-             Watch& watch, Recorders& recorders, Summary& summary) {
+Ending drive(const Plan& plan, const Driven& driven, const scene::Scene& scene,
+             Recorders& recorders, Summary& summary) {
   Laps laps;
-  const auto& now = simulation.state();
-  const auto stopped_early = watch.gather();
-  laps.charge(summary.startup_s);
-  if (stopped_early) return *stopped_early;
-  const auto start = clock::now();
   for (;;) {
-    // Controllers compute while we write.
-    server.publish(simulation.observations(), now.tag_payloads);
-    laps.charge(summary.exchange_s);
-    recorders.tick(simulation);
-    laps.charge(summary.recording_s);
-
-    const auto stopped = watch.collect(simulation.commands(), now.tick);
-    laps.charge(summary.exchange_s);
-    if (stopped) return *stopped;
-    recorders.exchange(simulation.state(), simulation.observations(), simulation.commands());
-    laps.charge(summary.recording_s);
-    if (now.tick == plan.ticks) return Ending::finished;
-
-    if (plan.real_time) {
-      const auto stopped_asleep = pace(*plan.real_time, simulation, start, watch, summary);
-      laps.charge(summary.pacing_s);
-      if (stopped_asleep) return *stopped_asleep;
+    std::optional<Ending> ending = driven.watch.gather();
+    laps.charge(summary.startup_s);
+    if (!ending) {
+      driven.supervision.gathered();
+      ending = drive_once(plan, driven, recorders, summary, laps);
     }
-    simulation.step();
-    laps.charge(summary.physics_s);
+    if (ending != Ending::reset) return *ending;
+    const std::uint64_t seed = *driven.supervision.reset_wanted();
+    driven.simulation.reset(scene, {seed, plan.clock});
+    driven.server.reset(seed);
+    driven.supervision.reset_done();
+    laps.charge(summary.startup_s);
   }
 }
 

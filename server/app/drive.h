@@ -7,6 +7,7 @@
 
 #include "app/recorders.h"
 #include "app/summary.h"
+#include "app/supervision.h"
 #include "app/watch.h"
 #include "network/server.h"
 #include "simulation/simulation.h"
@@ -17,11 +18,21 @@ namespace ziggurat::app {
 struct Plan {
   std::optional<std::uint64_t> ticks;  ///< nothing = until stopped
   std::optional<double> real_time;     ///< simulated seconds per second of the wall, if paced
+  std::optional<scene::Clock> clock;   ///< overrides the scene's
 };
 
-/// Moves the world from tick 0 to its end, and fills in where the wall time went.
+/// What a run consists of.
+struct Driven {
+  simulation::Simulation& simulation;
+  network::Server& server;
+  Watch& watch;
+  Supervision& supervision;
+};
+
+/// Moves the world from tick 0 to its end, again after each reset, and fills in where the wall time
+/// went.
 /// @throws recording::WriteError, ConsoleError
-Ending drive(const Plan& plan, simulation::Simulation& simulation, network::Server& server,
-             Watch& watch, Recorders& recorders, Summary& summary);
+Ending drive(const Plan& plan, const Driven& driven, const scene::Scene& scene,
+             Recorders& recorders, Summary& summary);
 
 }  // namespace ziggurat::app

@@ -2,44 +2,73 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
 #include "app/drive.h"
 #include "app/loading.h"
+#include "app/metrics.h"
 #include "app/private_folder.h"
 #include "app/recorders.h"
+#include "app/report_card.h"
 #include "app/scripts.h"
 #include "app/signals.h"
 #include "app/summary.h"
+#include "app/supervision.h"
 #include "app/version.h"
 #include "app/watch.h"
 #include "recording/hash_file.h"
+#include "recording/output_file.h"
 
 namespace ziggurat::app {
 namespace {
 
 constexpr const char* default_endpoint = "tcp://127.0.0.1:5770";
 
-network::Config network_config(const Options& options, Service service,
+// Hardware does not wait: whoever has no policy is held to its last command when the next tick is
+// near.
+void wait_for_nobody(const Options& options, const scene::Scene& scene,
+                     std::vector<network::Config::Deadline>& deadlines) {
+  const double factor = options.real_time.value_or(1);
+  const double tick_ms = 1000.0 / scene.experiment.ticks_per_second / factor;
+  const auto ms = static_cast<std::uint32_t>(std::max(1.0, std::floor(0.9 * tick_ms)));
+  deadlines.resize(scene.controllers.size());
+  for (auto& deadline : deadlines) {
+    if (deadline.policy.action != scene::DeadlineAction::wait || deadline.is_fixed) continue;
+    deadline.policy = {scene::DeadlineAction::hold, ms, 0};
+  }
+}
+
+network::Config network_config(const Options& options, Service service, const scene::Scene& scene,
                                const PrivateFolder& folder) {
   network::Config config;
   config.insecure = options.insecure;
-  if (service == Service::run) config.endpoints.push_back("ipc://" + folder.path() + "/run");
-  config.endpoints.insert(config.endpoints.end(), options.endpoints.begin(),
-                          options.endpoints.end());
-  if (config.endpoints.empty()) config.endpoints.emplace_back(default_endpoint);
+  config.lease = std::chrono::milliseconds(static_cast<std::int64_t>(options.lease * 1000));
+  config.deadlines = deadlines_of(options.deadlines, scene);
+  if (options.hil) wait_for_nobody(options, scene, config.deadlines);
+  if (!options.curve_secret.empty()) {
+    config.curve = {network::read_secret_key(options.curve_secret),
+                    network::read_client_keys(options.curve_clients)};
+  }
+  if (service == Service::run) config.private_endpoint = "ipc://" + folder.path() + "/run";
+  config.endpoints = options.endpoints;
+  if (service == Service::serve && config.endpoints.empty())
+    config.endpoints.emplace_back(default_endpoint);
   return config;
 }
 
 wire::Run wire_run(const scene::Scene& scene, const simulation::Simulation& simulation,
-                   std::vector<std::string> scripts, std::uint64_t seed) {
+                   std::vector<std::string> scripts, std::uint64_t seed,
+                   bool is_hardware_in_the_loop) {
   wire::Run run{simulation.layout(), scene.controllers, std::move(scripts), seed, 0, 1, {}, {}};
   run.ticks_per_second = scene.experiment.ticks_per_second;
   run.tick_ns = (1'000'000'000 + run.ticks_per_second / 2) / run.ticks_per_second;
   run.scene_hash = scene_hash(scene);
   run.server_version = version;
+  run.is_hardware_in_the_loop = is_hardware_in_the_loop;
   return run;
 }
 
@@ -48,7 +77,9 @@ Plan make_plan(const Options& options, const scene::Scene& scene) {
   plan.ticks = options.pictures ? last_tick(*options.pictures, scene.experiment)
                                 : tick_count(options, scene);
   plan.real_time = options.real_time;
-  if (!plan.real_time && !options.pictures && scene.experiment.real_time) plan.real_time = 1;
+  plan.clock = options.clock;
+  const bool is_paced = options.hil || (!options.pictures && scene.experiment.real_time);
+  if (!plan.real_time && is_paced) plan.real_time = 1;
   return plan;
 }
 
@@ -89,9 +120,11 @@ wire::End end_message(const Summary& summary) {
       break;
     case Ending::interrupted:
     case Ending::forced:
+    case Ending::reset:  // no run ends so
       end.reason = wire::EndReason::interrupted;
       break;
     case Ending::controller_vanished:
+    case Ending::deadline_missed:
       end.reason = wire::EndReason::failed;
       break;
   }
@@ -110,12 +143,38 @@ void end_in_failure(const std::exception& error, std::uint64_t tick, Watch& watc
   }
 }
 
-void complete(Summary& summary, const simulation::Simulation& simulation, const Watch& watch) {
+void complete(Summary& summary, const simulation::Simulation& simulation,
+              const network::Server& server, const scene::Scene& scene, const Watch& watch) {
   summary.ticks = simulation.state().tick;
   summary.simulated_s = static_cast<double>(summary.ticks) * simulation.tick_length();
   summary.wall_s = summary.physics_s + summary.exchange_s + summary.recording_s + summary.pacing_s;
   summary.hash = simulation.hash();
   summary.vanished = watch.vanished();
+  const auto missed = server.missed_ticks();
+  for (std::size_t c = 0; c < missed.size(); ++c) {
+    if (missed[c] > 0) summary.missed.push_back({scene.controllers[c].id, missed[c]});
+  }
+}
+
+// How controllers kept up, if anybody asks. False if the gate was missed.
+bool report_hil(const Options& options, const scene::Scene& scene, const network::Server& server,
+                const Summary& summary, Console& console) {
+  if (!options.hil && options.gate.empty() && options.report_card.empty()) return true;
+  ReportCard card{{}, summary.ticks, summary.late_ticks, options.gate};
+  const auto missed = server.missed_ticks();
+  for (std::size_t c = 0; c < scene.controllers.size(); ++c) {
+    const auto& latencies = server.latencies()[c];
+    if (latencies.count() == 0 && missed[c] == 0) continue;  // drives no robot
+    card.controllers.push_back({scene.controllers[c].id, latencies, missed[c]});
+  }
+  if (!options.report_card.empty()) {
+    const bool is_picture = options.report_card.ends_with(".svg");
+    recording::OutputFile file(options.report_card);
+    file.buffer().append(is_picture ? to_svg(card) : to_json(card) + "\n");
+    file.close();
+  }
+  console.report(to_text(card));
+  return passes(card);
 }
 
 // What remains once every process has ended, in this order: the hash is the very last line.
@@ -146,8 +205,8 @@ int execute(const Options& options, Service service) {
   // Until here Ctrl-C just ends the program; from here on there is something to clean up.
   Signals signals;
   const PrivateFolder folder;
-  const auto run = wire_run(scene, simulation, scripts, seed);
-  network::Server server(network_config(options, service, folder), run);
+  const auto run = wire_run(scene, simulation, scripts, seed, options.hil);
+  network::Server server(network_config(options, service, scene, folder), run);
   // A picture of tick 0 is taken before anybody had a say.
   const bool with_controllers =
       !options.without_controllers && !(options.pictures && plan.ticks == 0);
@@ -166,11 +225,21 @@ int execute(const Options& options, Service service) {
     processes = start_all(plan_controllers(scene, simulation.layout(), scripts, surroundings),
                           simulation.layout());
   }
-  Watch watch(
-      {scene, simulation.layout(), server, signals, processes, console, service == Service::serve},
-      simulation.tick_length());
-  const bool paused = service == Service::serve && !plan.real_time &&
-                      undriven.size() == simulation.layout().robots.size();
+  Supervision supervision(
+      {scene, path, seed, options.clock, plan.ticks.value_or(0), options.hil, simulation, server});
+  std::optional<MetricsPort> metrics;
+  if (!options.metrics.empty()) metrics.emplace(options.metrics, options.insecure);
+  if (metrics) console.notice("metrics at " + metrics->url());
+  Watch watch({scene, simulation.layout(), server, signals, processes, console, supervision,
+               metrics ? &*metrics : nullptr, service == Service::serve},
+              simulation.tick_length());
+  if (service == Service::serve && !plan.real_time &&
+      undriven.size() == simulation.layout().robots.size()) {
+    server.pause();
+    console.notice(
+        "paused: the scene has no controllers; --real-time or 'ziggurat ctl URL resume' "
+        "makes it run");
+  }
 
   Summary summary;
   summary.scene = path;
@@ -178,20 +247,22 @@ int execute(const Options& options, Service service) {
   summary.robots = simulation.layout().robots.size();
   try {
     summary.ending =
-        paused ? watch.stay_paused() : drive(plan, simulation, server, watch, recorders, summary);
+        drive(plan, {simulation, server, watch, supervision}, scene, recorders, summary);
     recorders.close();
   } catch (const std::exception& error) {
     // Ours to report, but controllers are told first and the other files completed.
     end_in_failure(error, simulation.state().tick, watch, recorders);
     throw;
   }
-  complete(summary, simulation, watch);
+  complete(summary, simulation, server, scene, watch);
   watch.wind_down(end_message(summary));
   summary.failures = watch.failures();
   recorders.write_summary(summary);
   for (const auto& picture : recorders.pictures()) console.result(picture);
+  const bool has_passed = report_hil(options, scene, server, summary, console);
   conclude(options, summary, console);
-  return exit_code_of(summary);
+  const int code = exit_code_of(summary);
+  return code == exit_code::finished && !has_passed ? exit_code::gate_missed : code;
 }
 
 }  // namespace ziggurat::app

@@ -44,7 +44,33 @@ po::options_description world_options() {
       ("endpoint", texts("URL"),
        "listen here too: tcp://127.0.0.1:5770, tcp://127.0.0.1:* or "
        "ipc:///short/path; may be repeated")  //
-      ("insecure", "allow endpoints that other machines can reach");
+      ("deadline", texts("[CONTROLLER=]ACTION[:MS[:BUDGET]]"),
+       "when a controller (all, if none is named) has not answered after MS milliseconds: wait, "
+       "hold, zero, drop or stop; BUDGET misses in a row are held before drop and stop, or drop "
+       "the robots after hold and zero; may be repeated")  //
+      ("lease", text("S"),
+       "keep the robots of a controller whose connection is gone for it, for S seconds")  //
+      ("curve-secret", text("FILE"), "protect endpoints with this key ('ziggurat keygen')")  //
+      ("curve-clients", text("FILE"),
+       "who may connect: lines with a public key, roles (controller, supervisor, observer) and a "
+       "name")  //
+      ("insecure", "allow endpoints that other machines can reach")  //
+      ("metrics", text("HOST:PORT"),
+       "serve the run's status over HTTP there: /metrics for Prometheus, /status as JSON");
+  return options;
+}
+
+po::options_description hil_options() {
+  po::options_description options("Hardware in the loop", width);
+  options.add_options()  //
+      ("hil",
+       "pace to the wall clock and wait for nobody: a controller that has not answered after nine "
+       "tenths of a tick is held to its last command, unless --deadline says otherwise")  //
+      ("gate", text("CONDITIONS"),
+       "exit with 4 unless every controller meets them: p99<2ms,misses<0.1% (p50, p90, p99, p99.9, "
+       "max, misses, late)")  //
+      ("report-card", text("FILE"),
+       "how controllers kept up, as JSON, or as a picture if FILE ends with .svg");
   return options;
 }
 
@@ -110,13 +136,13 @@ std::pair<std::string, std::string> to_controller(const std::string& value) {
 po::options_description run_options() {
   const po::options_description processes = controller_options();
   po::options_description options("", width);
-  options.add(world_options()).add(processes).add(output_options()).add(reading_options());
+  options.add(world_options()).add(hil_options()).add(processes).add(output_options()).add(reading_options());
   return options;
 }
 
 po::options_description serve_options() {
   po::options_description options("", width);
-  options.add(world_options()).add(output_options()).add(reading_options());
+  options.add(world_options()).add(hil_options()).add(output_options()).add(reading_options());
   return options;
 }
 
@@ -173,7 +199,23 @@ Options parse_options(const Arguments& arguments, const po::options_description&
   for (const auto& each : list("controller")) options.controllers.push_back(to_controller(each));
   options.endpoints = list("endpoint");
   options.without_controllers = flag("without-controllers");
+  for (const auto& each : list("deadline")) options.deadlines.push_back(to_deadline(each));
+  if (flag("lease")) {
+    options.lease = to_number("--lease", value("lease"));
+    if (options.lease < 0 || options.lease > 4e6) {
+      throw UsageError("--lease is no number of seconds from 0 to 4000000");
+    }
+  }
+  options.curve_secret = value("curve-secret");
+  options.curve_clients = value("curve-clients");
+  if (options.curve_secret.empty() != options.curve_clients.empty()) {
+    throw UsageError("--curve-secret and --curve-clients belong together");
+  }
   options.insecure = flag("insecure");
+  options.metrics = value("metrics");
+  options.hil = flag("hil");
+  if (flag("gate")) options.gate = parse_gate(value("gate"));
+  options.report_card = value("report-card");
   options.quiet = flag("quiet");
   options.json = flag("json");
   options.hash = flag("hash");

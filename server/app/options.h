@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/deadline_option.h"
+#include "app/gate.h"
 #include "app/pictures.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
@@ -29,7 +31,14 @@ struct Options {
   unsigned lua_processes = 1;                                    ///< 0 = one per robot
   std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command
   std::vector<std::string> endpoints;
+  std::vector<DeadlineOption> deadlines;
+  double lease = 0;  ///< [s] of the wall that robots of a lost session are kept for it
   bool without_controllers = false;  ///< nobody drives the robots
+  std::string curve_secret, curve_clients;  ///< paths; both or none
+  bool hil = false;              ///< hardware in the loop: paced, and nobody is waited for
+  std::vector<Condition> gate;   ///< for controllers to meet
+  std::string report_card;       ///< path; empty = none
+  std::string metrics;           ///< host:port; empty = none
   bool insecure = false;             ///< endpoints may be reached from other machines
 
   bool quiet = false;

@@ -20,6 +20,10 @@ const char* to_string(Ending ending) {
       return "forced";
     case Ending::controller_vanished:
       return "controller_vanished";
+    case Ending::deadline_missed:
+      return "deadline_missed";
+    case Ending::reset:
+      return "reset";
   }
   return "";
 }
@@ -28,12 +32,16 @@ double ratio(double numerator, double denominator) {
   return denominator > 0 ? numerator / denominator : 0;
 }
 
+bool is_by_controller(Ending ending) {
+  return ending == Ending::controller_vanished || ending == Ending::deadline_missed;
+}
+
 }  // namespace
 
 std::string to_text(const Summary& summary) {
   std::string text = fmt::format(
       "{}: {} ticks, {:.3f} s simulated in {:.3f} s: real-time factor {:.2f}, {:.0f} ticks/s\n",
-      summary.ending == Ending::controller_vanished ? "ended early" : to_string(summary.ending),
+      is_by_controller(summary.ending) ? "ended early" : to_string(summary.ending),
       summary.ticks, summary.simulated_s, summary.wall_s,
       ratio(summary.simulated_s, summary.wall_s),
       ratio(static_cast<double>(summary.ticks), summary.wall_s));
@@ -43,6 +51,10 @@ std::string to_text(const Summary& summary) {
     text += fmt::format(", pacing {:.3f} s ({} ticks late)", summary.pacing_s, summary.late_ticks);
   }
   text += fmt::format("; before it, start-up {:.3f} s\n", summary.startup_s);
+  for (const auto& each : summary.missed) {
+    text += fmt::format("  controller '{}' missed its deadline at {} tick{}\n", each.controller,
+                        each.ticks, each.ticks == 1 ? "" : "s");
+  }
   text += fmt::format("  seed {}, hash {}", summary.seed, math::to_hex(summary.hash));
   return text;
 }
@@ -54,6 +66,10 @@ std::string to_json(const Summary& summary) {
                         {"controller", failure.controller},
                         {"tick", failure.tick},
                         {"message", failure.message}});
+  }
+  auto missed = nlohmann::ordered_json::array();
+  for (const auto& each : summary.missed) {
+    missed.push_back({{"controller", each.controller}, {"ticks", each.ticks}});
   }
   const nlohmann::ordered_json json{
       {"scene", summary.scene},
@@ -74,6 +90,7 @@ std::string to_json(const Summary& summary) {
       {"hash", math::to_hex(summary.hash)},
       {"robots", summary.robots},
       {"failures", failures},
+      {"missed_deadlines", missed},
       {"vanished", summary.vanished}};
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
@@ -82,7 +99,7 @@ int exit_code_of(const Summary& summary) {
   if (summary.ending == Ending::interrupted || summary.ending == Ending::forced) {
     return exit_code::interrupted;
   }
-  if (summary.ending == Ending::controller_vanished || !summary.failures.empty()) {
+  if (is_by_controller(summary.ending) || !summary.failures.empty()) {
     return exit_code::controller_failed;
   }
   return exit_code::finished;

@@ -9,7 +9,14 @@
 namespace ziggurat::app {
 
 /// Why a run is over.
-enum class Ending { finished, interrupted, forced, controller_vanished };
+enum class Ending {
+  finished,
+  interrupted,
+  forced,
+  controller_vanished,
+  deadline_missed,  ///< of a controller whose policy is to stop
+  reset,  ///< of this world; another one follows
+};
 
 struct Summary {
   std::string scene;  ///< path as given
@@ -34,7 +41,13 @@ struct Summary {
     std::string message;
   };
   std::vector<Failure> failures;  ///< robots whose controller failed, in order of time
-  std::string vanished;           ///< the sentence on the controller that vanished
+  std::string vanished;           ///< the sentence on the controller that ended the run
+
+  struct Missed {
+    std::string controller;
+    std::uint64_t ticks = 0;  ///< at which one of its robots or more missed a deadline
+  };
+  std::vector<Missed> missed;  ///< controllers that missed any, in scene order
 };
 
 /// Several lines without line feed at the end; on failures others have the word.

@@ -1,11 +1,11 @@
 #include "app/watch.h"
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <signal.h>
 
 #include <algorithm>
 #include <array>
+#include <thread>
 #include <tuple>
 
 namespace ziggurat::app {
@@ -40,25 +40,20 @@ std::optional<Ending> Watch::collect(world::Commands& commands, std::uint64_t ti
 }
 
 std::optional<Ending> Watch::sleep_until(clock::time_point moment) {
+  const std::array descriptors{watched_.signals.descriptor()};
   for (;;) {
+    serve();
     if (auto ending = interruption()) return ending;
-    const auto left = std::chrono::ceil<milliseconds>(moment - clock::now());
+    if (auto ending = wish()) return ending;
+    const auto left = std::chrono::floor<milliseconds>(moment - clock::now());
     if (left.count() <= 0) break;
     if (progress_.due()) progress_.show(tick_, "");
     watched_.console.flush();
-    pollfd signals{watched_.signals.descriptor(), POLLIN, 0};
-    ::poll(&signals, 1, static_cast<int>(std::min(left, look_around).count()));
-  }
-  return std::nullopt;
-}
-
-Ending Watch::stay_paused() {
-  watched_.console.notice("paused: the scene has no controllers; --real-time makes it run");
-  for (;;) {
-    if (auto ending = sleep_until(clock::now() + look_around)) return *ending;
-    watched_.server.gather({milliseconds{0}, {}});  // whoever knocks gets an answer
+    watched_.server.linger({std::min(left, look_around), descriptors});
     take_report();
   }
+  std::this_thread::sleep_until(moment);
+  return std::nullopt;
 }
 
 std::optional<Ending> Watch::until(const Step& step) {
@@ -66,8 +61,11 @@ std::optional<Ending> Watch::until(const Step& step) {
   const std::array descriptors{watched_.signals.descriptor()};
   for (;;) {
     const auto outcome = step({suspected_since_ ? look_closely : look_around, descriptors});
+    serve();
     take_report();
     auto ending = interruption();
+    if (!ending && is_stopped_) ending = Ending::deadline_missed;
+    if (!ending) ending = wish();
     const bool complete = outcome == network::Outcome::complete;
     if (!ending && !complete) ending = disappearance();
     if (ending || complete) {
@@ -80,10 +78,25 @@ std::optional<Ending> Watch::until(const Step& step) {
   }
 }
 
+// Who supervises the run, or looks at its metrics.
+void Watch::serve() {
+  watched_.supervision.serve();
+  if (watched_.metrics != nullptr && watched_.metrics->is_due()) {
+    watched_.metrics->publish(watched_.supervision.status());
+  }
+}
+
 std::optional<Ending> Watch::interruption() {
   const auto arrived = watched_.signals.take();
   if (arrived.interruptions == 0) return std::nullopt;
   return arrived.interruptions > 1 ? Ending::forced : Ending::interrupted;
+}
+
+// What a supervisor asks for that ends the wait.
+std::optional<Ending> Watch::wish() {
+  if (watched_.supervision.shutdown_wanted()) return Ending::interrupted;
+  if (watched_.supervision.reset_wanted()) return Ending::reset;
+  return std::nullopt;
 }
 
 // A process that ended may have said before that its robots leave, and that may still be under
@@ -92,7 +105,7 @@ std::optional<Ending> Watch::disappearance() {
   if (watched_.waits_for_ever) return std::nullopt;
   const ControllerProcess* dead = nullptr;
   for (auto& process : watched_.processes) {
-    if (process.process.poll() && !is_left(process) && !dead) dead = &process;
+    if (process.process.poll() && is_awaited(process) && !dead) dead = &process;
   }
   const auto lost = gathered_ ? missing_robots() : std::vector<std::size_t>();
   if (!dead && lost.empty()) {
@@ -116,6 +129,10 @@ std::optional<Ending> Watch::disappearance() {
 // Lines wait for the end of their tick: then their order depends on nobody's speed.
 void Watch::take_report() {
   auto report = watched_.server.take_report();
+  if (!report.stopped.empty()) {
+    vanished_ = std::move(report.stopped);
+    is_stopped_ = true;
+  }
   for (const auto& notice : report.notices) {
     if (++peer_notices_ <= most_peer_notices) watched_.console.notice(notice);
     if (peer_notices_ == most_peer_notices) watched_.console.notice("no more is said of peers");
@@ -144,7 +161,7 @@ std::vector<std::size_t> Watch::missing_robots() const {
   std::vector<std::size_t> robots;
   const auto status = watched_.server.status();
   for (std::size_t r = 0; r < status.size(); ++r) {
-    if (status[r].membership == Membership::free) robots.push_back(r);
+    if (status[r].membership == Membership::free && is_waited_for(status[r])) robots.push_back(r);
   }
   return robots;
 }
@@ -153,16 +170,23 @@ std::vector<std::size_t> Watch::awaited_robots() const {
   std::vector<std::size_t> robots;
   const auto status = watched_.server.status();
   for (std::size_t r = 0; r < status.size(); ++r) {
-    if (status[r].membership == Membership::free || status[r].awaited) robots.push_back(r);
+    if (status[r].membership != Membership::gone && status[r].awaited) robots.push_back(r);
   }
   return robots;
 }
 
-bool Watch::is_left(const ControllerProcess& process) const {
+/// Whether the run can't go on without the process.
+bool Watch::is_awaited(const ControllerProcess& process) const {
   const auto status = watched_.server.status();
-  return std::ranges::all_of(process.robots, [&](std::size_t robot) {
-    return status[robot].membership == Membership::gone;
+  return std::ranges::any_of(process.robots, [&](std::size_t robot) {
+    return status[robot].membership != Membership::gone && is_waited_for(status[robot]);
   });
+}
+
+/// Whether nobody's absence is forgiven: before the first tick nobody's is, later a deadline's
+/// policy decides.
+bool Watch::is_waited_for(const network::RobotStatus& robot) const {
+  return !gathered_ || robot.deadline.action == scene::DeadlineAction::wait;
 }
 
 // "r0, r1 (controller 'drive'), r7 (controller 'lift')"

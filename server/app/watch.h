@@ -10,9 +10,11 @@
 
 #include "app/console.h"
 #include "app/controllers.h"
+#include "app/metrics.h"
 #include "app/progress.h"
 #include "app/signals.h"
 #include "app/summary.h"
+#include "app/supervision.h"
 #include "network/server.h"
 #include "scene/scene.h"
 #include "world/layout.h"
@@ -27,7 +29,9 @@ struct Watched {
   Signals& signals;
   std::vector<ControllerProcess>& processes;
   Console& console;
-  bool waits_for_ever;  ///< serve: whoever vanishes may come back
+  Supervision& supervision;
+  MetricsPort* metrics;  ///< may be null
+  bool waits_for_ever;   ///< serve: whoever vanishes may come back
 };
 
 class Watch {
@@ -47,16 +51,13 @@ class Watch {
   /// Until that moment.
   std::optional<Ending> sleep_until(clock::time_point moment);
 
-  /// A world that nobody moves: until it is interrupted.
-  Ending stay_paused();
-
   /// Ends the run: tells controllers, hears their last words, and sees every process end.
   /// An interruption meanwhile kills what still runs.
   void wind_down(const wire::End& end);
 
   /// Sorted by tick, then by scene order.
   std::vector<Summary::Failure> failures() const;
-  /// The sentence on the controller that vanished; empty if none did.
+  /// The sentence on the controller that ended the run; empty if none did.
   const std::string& vanished() const { return vanished_; }
 
  private:
@@ -64,12 +65,15 @@ class Watch {
 
   std::optional<Ending> until(const Step& step);
   std::optional<Ending> interruption();
+  std::optional<Ending> wish();
   std::optional<Ending> disappearance();
+  void serve();
   void take_report();
   void print_log();
   std::vector<std::size_t> missing_robots() const;
   std::vector<std::size_t> awaited_robots() const;
-  bool is_left(const ControllerProcess& process) const;
+  bool is_awaited(const ControllerProcess& process) const;
+  bool is_waited_for(const network::RobotStatus& robot) const;
   std::string by_controller(const std::vector<std::size_t>& robots) const;
   void say_who_is_awaited();
   void end_processes();
@@ -81,6 +85,7 @@ class Watch {
   std::vector<wire::LogLine> log_;  ///< of a tick that is not over
   std::vector<network::Failure> failures_;
   std::string vanished_;
+  bool is_stopped_ = false;                           ///< by a deadline
   std::optional<clock::time_point> suspected_since_;  ///< that a controller vanished
   clock::time_point waiting_since_{};
   std::string said_;      ///< who is awaited, as last printed

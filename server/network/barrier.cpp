@@ -31,23 +31,39 @@ std::string printable(std::string_view text) {
   return result;
 }
 
-Barrier::Barrier(const Config& config, const wire::Run& run, Send send)
+Barrier::Barrier(const Config& config, const wire::Run& run, Send send, Clock::time_point now)
     : config_(config),
       run_(run),
       send_([this, send = std::move(send)](const std::string& peer, wire::Outbox& message) {
         message.encode(encoding_of(peer));
         return send(peer, message);
       }),
+      now_(now),
       seats_(run.layout.robots.size()),
-      free_(seats_.size()) {
+      free_(seats_.size()),
+      next_heartbeat_(now + config.heartbeat),
+      missed_ticks_(run.controllers.size()),
+      last_missed_(run.controllers.size()),
+      latencies_(run.controllers.size()) {
   run_.max_message_bytes = config.max_message_bytes;
+  for (std::size_t i = 0; i < seats_.size(); ++i) {
+    seats_[i].deadline = policy_of(i);
+    seats_[i].free_since = now;
+  }
 }
 
-void Barrier::receive(const std::string& peer, std::string_view bytes, world::Commands* commands) {
-  const auto found = by_peer_.find(peer);
-  Session* session = found == by_peer_.end() ? nullptr : found->second;
-  if (session != nullptr) session->last_message = std::chrono::steady_clock::now();
+void Barrier::advance(Clock::time_point now) {
+  now_ = now;
+  if (now_ >= next_deadline_) check_deadlines();
+  if (now_ >= next_heartbeat_) send_heartbeats();
+}
+
+void Barrier::receive(const std::string& peer, std::string_view bytes, world::Commands* commands,
+                      const Roles& roles) {
+  Peer& from = find_peer(peer);
+  Session* session = from.session;
   if (session == nullptr) stranger_ = wire::encoding_of(bytes);
+  if (!afford(peer, from)) return;
   if (bytes.size() > config_.max_message_bytes) {
     return fail(peer, session,
                 make_fault(ErrorCode::too_large, {},
@@ -62,32 +78,35 @@ void Barrier::receive(const std::string& peer, std::string_view bytes, world::Co
   const auto kind = inbox_.parse(bytes);
   if (kind == wire::Inbox::Kind::malformed) return say_malformed(peer, session, inbox_.complaint());
   if (session == nullptr) {
-    if (kind == wire::Inbox::Kind::hello) return say_hello(peer);
+    if (kind == wire::Inbox::Kind::hello) return say_hello(peer, roles);
     return fail(
         peer, nullptr,
         make_fault(ErrorCode::out_of_state, {}, "The first message of a session is Hello."));
   }
   switch (kind) {
     case wire::Inbox::Kind::command:
-      return say_command(*session, commands);
+      if (say_command(*session, commands)) from.allowance.give_back();
+      break;
     case wire::Inbox::Kind::leave:
-      return say_leave(*session);
+      say_leave(*session);
+      break;
     case wire::Inbox::Kind::heartbeat:
-      return say_heartbeat(peer);
+      say_heartbeat(peer);
+      break;
     case wire::Inbox::Kind::request:
-      return fail(peer, session,
-                  make_fault(ErrorCode::forbidden, {}, "A controller can't make requests."),
-                  inbox_.request_id());
+      say_request(*session);
+      break;
     default:
       fail(peer, session,
            make_fault(ErrorCode::out_of_state, {}, "This session has had its Hello already."));
   }
+  if (is_paused_) stand();
 }
 
 void Barrier::receive_malformed(const std::string& peer) {
-  const auto found = by_peer_.find(peer);
+  Peer& from = find_peer(peer);
   stranger_ = wire::Encoding::binary;
-  say_malformed(peer, found == by_peer_.end() ? nullptr : found->second, {});
+  if (afford(peer, from)) say_malformed(peer, from.session, {});
 }
 
 void Barrier::say_malformed(const std::string& peer, Session* session, std::string_view why) {
@@ -99,8 +118,59 @@ void Barrier::say_malformed(const std::string& peer, Session* session, std::stri
 
 /// A session's form is that of its Hello; whoever has none is answered as spoken to.
 wire::Encoding Barrier::encoding_of(const std::string& peer) const {
-  const auto found = by_peer_.find(peer);
-  return found == by_peer_.end() ? stranger_ : found->second->encoding;
+  const auto found = peers_.find(peer);
+  const Session* session = found == peers_.end() ? nullptr : found->second.session;
+  return session == nullptr ? stranger_ : session->encoding;
+}
+
+/// The connection that a message came from. Those without session are forgotten when there are
+/// too many, first those that have been quiet.
+Barrier::Peer& Barrier::find_peer(const std::string& id) {
+  if (const auto found = peers_.find(id); found != peers_.end()) {
+    Peer& peer = found->second;
+    if (peer.session != nullptr) {
+      peer.session->last_message = now_;
+      peer.session->heartbeats = 0;
+    }
+    return peer;
+  }
+  if (peers_.size() >= 2 * config_.max_sessions) {
+    std::erase_if(peers_, [&](const auto& entry) {
+      return !entry.second.session && entry.second.allowance.is_full(config_.rate, now_);
+    });
+  }
+  if (peers_.size() >= 2 * config_.max_sessions) {
+    std::erase_if(peers_, [](const auto& entry) { return !entry.second.session; });
+  }
+  return peers_.try_emplace(id, Peer{nullptr, false, {config_.rate, now_}}).first->second;
+}
+
+/// Whether the connection may send one more message; if not, it is told once.
+bool Barrier::afford(const std::string& id, Peer& peer) {
+  if (peer.allowance.take(config_.rate, now_)) {
+    peer.is_told = false;
+    return true;
+  }
+  if (std::exchange(peer.is_told, true)) return false;
+  auto fault = make_fault(ErrorCode::too_many, {},
+                          fmt::format("More than {} messages a second, besides those that answer "
+                                      "an Observation.",
+                                      config_.rate.per_second));
+  fault.severity = Severity::fatal;
+  fault.tick = observations_ ? observations_->tick : 0;
+  outbox_.error(fault);
+  send_(id, outbox_);
+  if (peer.session != nullptr) {
+    lose(*peer.session, "it was thrown out for its many messages");
+  } else {
+    note("A peer without session sends too many messages and is not answered any more.");
+  }
+  return false;
+}
+
+Delivery Barrier::deliver(Session& session, wire::Outbox& message) {
+  session.last_sent = now_;
+  return send_(session.peer, message);
 }
 
 /// Answers a bad message, and throws out whoever sends nothing else.
@@ -148,102 +218,41 @@ void Barrier::say_leave(Session& session) {
   std::vector<std::size_t> positions(leave.robots.begin(), leave.robots.end());
   for (std::size_t i = 0; is_whole && i < session.roster.robots.size(); ++i) positions.push_back(i);
   for (const std::size_t position : positions) {
+    if (session.roster.gone[position]) continue;
     const std::size_t robot = session.roster.robots[position];
     const bool is_failure = leave.reason == wire::LeaveReason::failed;
-    if (is_failure && !session.roster.gone[position] && session.state != SessionState::draining) {
+    if (is_failure && session.state != SessionState::draining) {
       report_.failures.push_back({robot, leave.message.substr(0, max_failure), session.tick});
     }
-    mark_gone(&session, robot);
+    mark_gone(robot);
   }
   if (is_whole) erase(session);
 }
 
-/// Takes a robot out of the barrier for good.
-void Barrier::mark_gone(Session* session, std::size_t robot) {
-  Seat& seat = seats_[robot];
-  if (session != nullptr) {
-    const auto& robots = session->roster.robots;
-    const auto found = std::lower_bound(robots.begin(), robots.end(), robot);
-    session->roster.leave(static_cast<std::size_t>(found - robots.begin()));
-  }
-  if (seat.gone) return;
-  if (seat.holder == nullptr) --free_;
-  seat.gone = true;
-  seat.holder = nullptr;
-}
-
-/// The session owes nothing any more.
-void Barrier::settle(Session& session) {
-  if (!session.owes) return;
-  session.owes = false;
-  --owing_;
-}
-
-/// Its robots wait for somebody to take them; it may resume.
-void Barrier::lose(Session& session, std::string_view why) {
-  if (session.state == SessionState::lost) return;
-  const std::string robots = robots_of(session);
-  if (session.state != SessionState::draining) {
-    note(fmt::format("{} ({}) is lost: {}", session.client, robots, why));
-  }
-  settle(session);
-  by_peer_.erase(session.peer);
-  for (const std::size_t robot : session.roster.robots) {
-    if (seats_[robot].holder != &session) continue;
-    seats_[robot].holder = nullptr;
-    seats_[robot].free_since = std::chrono::steady_clock::now();
-    ++free_;
-  }
-  const bool can_resume = session.state != SessionState::draining && !session.roster.empty();
-  session.state = SessionState::lost;
-  if (!can_resume) erase(session);
-}
-
-void Barrier::erase(Session& session) {
-  settle(session);
-  if (session.state != SessionState::lost) by_peer_.erase(session.peer);
-  std::erase_if(sessions_, [&](const auto& entry) { return entry.get() == &session; });
-}
-
-void Barrier::remove_robots(std::span<const std::size_t> robots) {
-  for (const std::size_t robot : robots) {
-    Session* session = seats_[robot].holder;
-    mark_gone(session, robot);
-    if (session != nullptr && session->roster.empty()) settle(*session);
-  }
-}
-
 void Barrier::finish(const wire::End& end) {
-  finished_ = true;
+  is_finished_ = true;
   outbox_.end(end);
-  std::vector<Session*> unreachable;
+  std::vector<Session*> done;
   for (const auto& session : sessions_) {
     settle(*session);
-    if (session->state == SessionState::lost || send_(session->peer, outbox_) != Delivery::sent) {
-      unreachable.push_back(session.get());
+    const bool waits = session->role == wire::Role::controller;  // for its last words
+    if (session->state == SessionState::lost || deliver(*session, outbox_) != Delivery::sent ||
+        !waits) {
+      done.push_back(session.get());
     } else {
       session->state = SessionState::draining;
     }
   }
-  for (Session* session : unreachable) erase(*session);
+  for (Session* session : done) erase(*session);
 }
 
 bool Barrier::drained() const { return sessions_.empty(); }
 
-void Barrier::probe() {
-  outbox_.heartbeat(++heartbeats_);
-  std::vector<Session*> gone;
-  for (const auto& session : sessions_) {
-    if (session->state == SessionState::lost) continue;
-    if (send_(session->peer, outbox_) == Delivery::unreachable) gone.push_back(session.get());
-  }
-  for (Session* session : gone) lose(*session, "its connection is gone");
-}
-
-void Barrier::zero_gone(world::Commands& commands) const {
+void Barrier::zero_missing(world::Commands& commands) {
   for (std::size_t i = 0; i < seats_.size(); ++i) {
-    if (!seats_[i].gone) continue;
+    if (!seats_[i].gone && !seats_[i].zeroed) continue;
     wire::zero(run_.layout, i, commands);
+    seats_[i].zeroed = false;
   }
 }
 
@@ -252,6 +261,7 @@ std::vector<RobotStatus> Barrier::status() const {
   for (std::size_t i = 0; i < seats_.size(); ++i) {
     const Seat& seat = seats_[i];
     RobotStatus& status = result[i];
+    status.deadline = seat.deadline;
     if (seat.gone) {
       status.membership = RobotStatus::Membership::gone;
     } else if (seat.holder != nullptr) {
@@ -261,7 +271,8 @@ std::vector<RobotStatus> Barrier::status() const {
       status.awaited_since = seat.holder->owes_since;
       status.last_message = seat.holder->last_message;
     } else {
-      status.awaited = true;
+      if (seat.claimant != nullptr) status.holder = seat.claimant->client;
+      status.awaited = !seat.passed;
       status.awaited_since = seat.free_since;
     }
   }

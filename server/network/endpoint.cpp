@@ -79,9 +79,9 @@ void check_tcp(const std::string& endpoint, std::string_view address, bool insec
   }
   if (!insecure && !is_loopback(host)) {
     throw EndpointError(
-        fmt::format("{}: not a loopback address, and there is no protection yet: anyone who "
-                    "reaches it could drive the robots; use tcp://127.0.0.1:{}, or allow it "
-                    "with --insecure",
+        fmt::format("{}: not a loopback address: anyone who reaches it could drive the robots; use "
+                    "tcp://127.0.0.1:{}, protect it with --curve-secret and --curve-clients, or "
+                    "allow it with --insecure",
                     endpoint, port));
   }
 }

@@ -8,13 +8,7 @@
 namespace ziggurat::network {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-
-// While nothing comes, connections are probed after this long, then ever more rarely: a peer that
-// is held in a debugger for a night must not find a thousand heartbeats in its queue.
-constexpr milliseconds first_probe{1'000};
-constexpr milliseconds last_probe{60'000};
 
 // Between looks at descriptors and the time, so that no flood keeps us from either.
 constexpr int messages_at_once = 1000;
@@ -23,9 +17,13 @@ constexpr int messages_at_once = 1000;
 
 struct Server::State {
   State(const Config& config, const wire::Run& run)
-      : socket(config), barrier(config, run, [this](const std::string& peer, const auto& message) {
-          return socket.send(peer, message);
-        }) {}
+      : socket(config),
+        barrier(
+            config, run,
+            [this](const std::string& peer, const auto& message) {
+              return socket.send(peer, message);
+            },
+            Clock::now()) {}
 
   template <class Done>
   Outcome wait_until(Done done, const Wait& wait, world::Commands* commands);
@@ -35,8 +33,6 @@ struct Server::State {
   Socket socket;
   Barrier barrier;
   Socket::Received received;
-  milliseconds pause = first_probe;  // until the next probe
-  Clock::time_point probe = Clock::now() + first_probe;
 };
 
 Server::Server(const Config& config, const wire::Run& run)
@@ -48,7 +44,7 @@ template <class Done>
 bool Server::State::receive(Done done, world::Commands* commands) {
   for (int i = 0; i < messages_at_once && socket.receive(received); ++i) {
     if (received.is_single_frame) {
-      barrier.receive(received.peer, received.bytes, commands);
+      barrier.receive(received.peer, received.bytes, commands, received.roles);
     } else {
       barrier.receive_malformed(received.peer);
     }
@@ -62,18 +58,16 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
   const bool is_bounded = wait.timeout.count() >= 0;
   const auto end = Clock::now() + (is_bounded ? wait.timeout : milliseconds{0});
   for (;;) {
+    barrier.advance(Clock::now());
     if (receive(done, commands)) return Outcome::complete;
-    const auto wake = is_bounded ? std::min(end, probe) : probe;
+    if (barrier.has_news()) return Outcome::woken;
+    const auto wake = is_bounded ? std::min(end, barrier.due()) : barrier.due();
     const auto rest = std::chrono::ceil<milliseconds>(wake - Clock::now());
     const auto ready = socket.poll({std::max(rest, milliseconds{0}), wait.descriptors});
     if (ready == Socket::Ready::woken) return Outcome::woken;
     const auto now = Clock::now();
-    if (now >= probe) {
-      barrier.probe();
-      pause = std::min(2 * pause, last_probe);
-      probe = now + pause;
-    }
     if (is_bounded && now >= end) {
+      barrier.advance(now);
       return receive(done, commands) ? Outcome::complete : Outcome::timed_out;
     }
   }
@@ -87,31 +81,60 @@ Outcome Server::gather(const Wait& wait) {
 
 void Server::publish(const world::Observations& observations,
                      std::span<const std::string> tag_payloads) {
+  state_->barrier.advance(Clock::now());
   state_->barrier.publish(observations, tag_payloads);
-  state_->pause = first_probe;
-  state_->probe = Clock::now() + first_probe;
 }
 
 Outcome Server::collect(world::Commands& commands, const Wait& wait) {
   const auto outcome =
       state_->wait_until([this] { return state_->barrier.complete(); }, wait, &commands);
-  if (outcome == Outcome::complete) state_->barrier.zero_gone(commands);
+  if (outcome == Outcome::complete) state_->barrier.zero_missing(commands);
   return outcome;
 }
 
 void Server::finish(const wire::End& end) {
   state_->barrier.finish(end);
-  state_->pause = first_probe;
-  state_->probe = Clock::now() + first_probe;
 }
 
 Outcome Server::drain(const Wait& wait) {
   return state_->wait_until([this] { return state_->barrier.drained(); }, wait, nullptr);
 }
 
+Outcome Server::linger(const Wait& wait) {
+  return state_->wait_until([] { return false; }, wait, nullptr);
+}
+
 void Server::remove_robots(std::span<const std::size_t> robots) {
   state_->barrier.remove_robots(robots);
 }
+
+void Server::pause() { state_->barrier.pause(); }
+
+void Server::resume() {
+  state_->barrier.advance(Clock::now());
+  state_->barrier.resume();
+}
+
+bool Server::paused() const { return state_->barrier.standing(); }
+
+std::vector<std::uint64_t> Server::missed_ticks() const { return state_->barrier.missed_ticks(); }
+
+void Server::reset(std::uint64_t seed) {
+  state_->barrier.advance(Clock::now());
+  state_->barrier.reset(seed);
+}
+
+std::vector<Call> Server::take_calls() { return state_->barrier.take_calls(); }
+
+bool Server::can_hear(const Call& call) const { return state_->barrier.can_hear(call); }
+
+void Server::answer(const Call& call, const std::function<void(wire::Outbox&)>& write) {
+  state_->barrier.answer(call, write);
+}
+
+void Server::fill(wire::Status& status) const { state_->barrier.fill(status); }
+
+const std::vector<Latencies>& Server::latencies() const { return state_->barrier.latencies(); }
 
 std::vector<RobotStatus> Server::status() const { return state_->barrier.status(); }
 

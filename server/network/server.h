@@ -14,23 +14,43 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "network/allowance.h"
 #include "network/endpoint.h"
+#include "network/keys.h"
+#include "network/latencies.h"
+#include "scene/deadline.h"
 #include "wire/messages.h"
+#include "wire/outbox.h"
+#include "wire/request.h"
 #include "world/state.h"
 
 namespace ziggurat::network {
 
 struct Config {
   std::vector<std::string> endpoints;  ///< all at once; tcp port `*` or 0 = any free one
-  bool insecure = false;               ///< allow addresses that are not loopback
+  /// One that only this user's processes can reach, without protection; empty: none.
+  std::string private_endpoint;
+  std::optional<Curve> curve;  ///< protects the endpoints, but not the private one
+  bool insecure = false;       ///< without that: allow addresses that are not loopback
   std::size_t max_message_bytes = std::size_t{64} << 20;  ///< of a client's message
   std::size_t max_sessions = 4096;
   unsigned max_faults = 100;  ///< bad messages in a row before a session is thrown out
+  Rate rate;                  ///< of a connection's messages, besides answers that were due
+  std::chrono::milliseconds heartbeat{1000};  ///< of wall time that a session hears nothing; > 0
+  std::chrono::milliseconds lease{0};         ///< that robots of a lost session are kept for it
+  /// For when a controller does not answer in time.
+  struct Deadline {
+    scene::DeadlinePolicy policy;
+    bool is_fixed = false;  ///< no Hello may wish for another
+  };
+  std::vector<Deadline> deadlines;  ///< per controller of the scene; missing: wait
   int io_threads = 1;
 };
 
@@ -43,7 +63,8 @@ struct Wait {
 enum class Outcome {
   complete,   ///< what was waited for is there
   timed_out,  ///< the time is over; call again to go on
-  woken,      ///< a descriptor is readable, or a signal arrived; call again to go on
+  woken,      ///< a descriptor is readable, a signal arrived or there is news for
+              ///< supervisors; call again to go on
 };
 
 /// Who holds a robot, and whether the tick waits for it.
@@ -54,10 +75,12 @@ struct RobotStatus {
     gone,  ///< left the barrier for good; its commands are zero
   };
   Membership membership = Membership::free;
-  std::string holder;                                   ///< held: name and version of the client
+  std::string holder;                                   ///< held: name and version of the client;
+                                                        ///< free: of who may take it up again
   bool awaited = false;                                 ///< the tick waits for it
   std::chrono::steady_clock::time_point awaited_since;  ///< if awaited
   std::chrono::steady_clock::time_point last_message;   ///< of its holder, if held
+  scene::DeadlinePolicy deadline;                       ///< for when it is not answered for
 };
 
 /// A robot whose controller reported its own failure.
@@ -72,8 +95,15 @@ struct Report {
   std::vector<wire::LogLine> log;    ///< robots in scene order, then as given: never depends on
                                      ///< who runs where or who answers first
   std::vector<Failure> failures;     ///< in scene order
+  std::string stopped;               ///< the sentence on the deadline that stops the run, if any
   std::vector<std::string> notices;  ///< sentences on peers: lost, garbage, refused; in order of
                                      ///< arrival, the oldest dropped beyond 100
+};
+
+/// A request of a supervisor or observer that waits for its answer.
+struct Call {
+  std::string peer;  ///< its connection
+  wire::Request request;
 };
 
 class Server {
@@ -86,7 +116,7 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Where it listens, wildcards resolved; same order as in the config.
+  /// Where it listens, wildcards resolved: the private one first, then as in the config.
   const std::vector<std::string>& endpoints() const;
 
   /// Until every robot that is not gone is held.
@@ -109,11 +139,37 @@ class Server {
   /// Peers may never do so: give it a time and stop.
   Outcome drain(const Wait& wait);
 
+  /// Nothing is waited for but the time: messages that arrive meanwhile are taken.
+  Outcome linger(const Wait& wait);
+
   /// These robots (positions in Layout::robots) are gone: their process died, say. They leave the
   /// barrier for good and their commands become zero.
   void remove_robots(std::span<const std::size_t> robots);
 
+  /// The world stands still: collect() is not complete any more. Once the tick is answered,
+  /// sessions are told, and `paused()` is true. Goes on being called meanwhile.
+  void pause();
+  void resume();
+  bool paused() const;
+
+  /// The world went back to its start: sessions are told, what they owed is void, and the next
+  /// observation to be published is that of tick 0.
+  void reset(std::uint64_t seed);
+
+  /// Requests that arrived since the last call, in order of arrival.
+  std::vector<Call> take_calls();
+  /// Whether whoever called is still there.
+  bool can_hear(const Call& call) const;
+  /// Every call is answered once; `write` puts the response into the outbox.
+  void answer(const Call& call, const std::function<void(wire::Outbox&)>& write);
+  /// Adds what a server knows: sessions, and robots that nobody has.
+  void fill(wire::Status& status) const;
+  /// Per controller of the scene: wall time from observation to command.
+  const std::vector<Latencies>& latencies() const;
+
   std::vector<RobotStatus> status() const;  ///< per robot of the layout
+  /// Per controller of the scene: ticks at which one of its robots or more missed a deadline.
+  std::vector<std::uint64_t> missed_ticks() const;
   Report take_report();
 
  private:

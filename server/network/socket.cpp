@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <charconv>
 
 namespace ziggurat::network {
 namespace {
 
 constexpr int linger_ms = 1000;       // what is under way at the end may take this long
-constexpr int receive_queue = 64;     // messages of a peer that wait here; it waits beyond
+constexpr int receive_queue = 8;      // messages of a peer that wait here; it waits beyond
 constexpr int keepalive_idle_s = 30;  // tcp: answered by the peer's kernel, so that a controller
                                       // held in a debugger stays, and a vanished machine does not
 
@@ -30,43 +31,75 @@ std::string reason(const zmq::error_t& error) {
 
 }  // namespace
 
-Socket::Socket(const Config& config)
-    : context_(config.io_threads), router_(context_, zmq::socket_type::router) {
-  router_.set(zmq::sockopt::linger, linger_ms);
-  router_.set(zmq::sockopt::router_mandatory, true);
-  router_.set(zmq::sockopt::rcvhwm, receive_queue);
-  router_.set(zmq::sockopt::tcp_keepalive, 1);
-  router_.set(zmq::sockopt::tcp_keepalive_idle, keepalive_idle_s);
-  // Twice what is allowed: up to there a peer is told TOO_LARGE, beyond it is disconnected.
-  router_.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(2 * config.max_message_bytes));
-  for (const std::string& endpoint : config.endpoints) bind(endpoint, config);
+Socket::Socket(const Config& config) : context_(config.io_threads) {
+  if (config.curve) {
+    clients_ = config.curve->clients;
+    gatekeeper_.emplace(context_, clients_);
+  }
+  try {
+    routers_.push_back(make_router(config));
+    if (config.curve) {
+      routers_[0].set(zmq::sockopt::curve_server, true);
+      routers_[0].set(zmq::sockopt::curve_secretkey, config.curve->secret_key);
+    }
+    if (!config.private_endpoint.empty()) {
+      routers_.push_back(make_router(config));
+      bind(routers_[1], config.private_endpoint, false);
+    }
+    const bool allows_any = config.insecure || config.curve;
+    for (const std::string& endpoint : config.endpoints) bind(routers_[0], endpoint, allows_any);
+  } catch (...) {
+    close();
+    throw;
+  }
 }
 
-void Socket::bind(const std::string& endpoint, const Config& config) {
-  check_endpoint(endpoint, config.insecure);
+Socket::~Socket() { close(); }
+
+/// Ends the gatekeeper, too.
+void Socket::close() {
+  routers_.clear();
+  if (gatekeeper_) context_.shutdown();
+}
+
+zmq::socket_t Socket::make_router(const Config& config) {
+  zmq::socket_t router(context_, zmq::socket_type::router);
+  router.set(zmq::sockopt::linger, linger_ms);
+  router.set(zmq::sockopt::router_mandatory, true);
+  router.set(zmq::sockopt::rcvhwm, receive_queue);
+  router.set(zmq::sockopt::tcp_keepalive, 1);
+  router.set(zmq::sockopt::tcp_keepalive_idle, keepalive_idle_s);
+  // Twice what is allowed: up to there a peer is told TOO_LARGE, beyond it is disconnected.
+  router.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(2 * config.max_message_bytes));
+  return router;
+}
+
+void Socket::bind(zmq::socket_t& router, const std::string& endpoint, bool allows_any) {
+  check_endpoint(endpoint, allows_any);
   std::string address = endpoint;
   constexpr std::string_view localhost = "tcp://localhost:";  // bind() takes addresses only
   if (address.starts_with(localhost)) {
     address = "tcp://127.0.0.1:" + address.substr(localhost.size());
   }
-  router_.set(zmq::sockopt::ipv6, address.starts_with("tcp://["));
+  router.set(zmq::sockopt::ipv6, address.starts_with("tcp://["));
   try {
-    router_.bind(address);
+    router.bind(address);
   } catch (const zmq::error_t& error) {
     throw EndpointError(fmt::format("{}: can't listen: {}", endpoint, reason(error)));
   }
-  endpoints_.push_back(router_.get(zmq::sockopt::last_endpoint));
+  endpoints_.push_back(router.get(zmq::sockopt::last_endpoint));
 }
 
 Delivery Socket::send(const std::string& peer, const wire::Outbox& message) {
+  zmq::socket_t& router = routers_[static_cast<std::size_t>(peer[0])];
   zmq::message_t frame(message.size());
   message.write(static_cast<std::uint8_t*>(frame.data()));
   try {
     const auto flags = zmq::send_flags::sndmore | zmq::send_flags::dontwait;
-    if (!router_.send(zmq::const_buffer(peer.data(), peer.size()), flags)) {
+    if (!router.send(zmq::const_buffer(peer.data() + 1, peer.size() - 1), flags)) {
       return Delivery::congested;
     }
-    return router_.send(frame, zmq::send_flags::dontwait) ? Delivery::sent : Delivery::congested;
+    return router.send(frame, zmq::send_flags::dontwait) ? Delivery::sent : Delivery::congested;
   } catch (const zmq::error_t& error) {
     if (error.num() == EHOSTUNREACH) return Delivery::unreachable;
     throw;
@@ -74,27 +107,49 @@ Delivery Socket::send(const std::string& peer, const wire::Outbox& message) {
 }
 
 bool Socket::receive(Received& received) {
-  if (!router_.recv(frame_, zmq::recv_flags::dontwait)) return false;
-  received.peer.assign(static_cast<const char*>(frame_.data()), frame_.size());
+  for (std::size_t i = 0; i < routers_.size(); ++i) {
+    const std::size_t router = next_;
+    next_ = (next_ + 1) % routers_.size();
+    if (receive(static_cast<char>(router), received)) return true;
+  }
+  return false;
+}
+
+bool Socket::receive(char index, Received& received) {
+  zmq::socket_t& router = routers_[static_cast<std::size_t>(index)];
+  if (!router.recv(frame_, zmq::recv_flags::dontwait)) return false;
+  received.peer.assign(1, index);
+  received.peer.append(static_cast<const char*>(frame_.data()), frame_.size());
   int frames = 0;
   while (frame_.more()) {
-    (void)router_.recv(frame_, zmq::recv_flags::none);
+    (void)router.recv(frame_, zmq::recv_flags::none);
     ++frames;
   }
   received.is_single_frame = frames == 1;
   received.bytes = {static_cast<const char*>(frame_.data()), frame_.size()};
+  received.roles = index == 0 && gatekeeper_ ? roles_of_sender() : all_roles;
   return true;
+}
+
+/// What the key of the connection allows; nothing if it has none.
+Roles Socket::roles_of_sender() {
+  const char* user = zmq_msg_gets(frame_.handle(), "User-Id");
+  const std::string_view text = user == nullptr ? "" : user;
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  const bool is_number = error == std::errc{} && end == text.data() + text.size();
+  return is_number && index < clients_.size() ? clients_[index].roles : Roles{};
 }
 
 Socket::Ready Socket::poll(const Wait& wait) {
   items_.clear();
-  items_.push_back({router_.handle(), 0, ZMQ_POLLIN, 0});
+  for (auto& router : routers_) items_.push_back({router.handle(), 0, ZMQ_POLLIN, 0});
   for (const int descriptor : wait.descriptors)
     items_.push_back({nullptr, descriptor, ZMQ_POLLIN, 0});
   const int count = zmq_poll(items_.data(), static_cast<int>(items_.size()), wait.timeout.count());
   if (count < 0 && zmq_errno() != EINTR) throw zmq::error_t();
   if (count < 0) return Ready::woken;
-  for (std::size_t i = 1; i < items_.size(); ++i) {
+  for (std::size_t i = routers_.size(); i < items_.size(); ++i) {
     if (items_[i].revents != 0) return Ready::woken;
   }
   return count > 0 ? Ready::message : Ready::timed_out;

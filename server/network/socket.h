@@ -1,12 +1,15 @@
 #pragma once
-// The server's end of all connections: one ROUTER, bound to every endpoint.
+// The server's end of all connections: a ROUTER bound to every endpoint, and one for the private
+// endpoint, because a ROUTER protects all of its endpoints or none.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 #include <zmq.hpp>
 
 #include "network/barrier.h"
+#include "network/gatekeeper.h"
 #include "network/server.h"
 
 namespace ziggurat::network {
@@ -15,6 +18,7 @@ class Socket {
  public:
   /// @throws EndpointError
   explicit Socket(const Config& config);
+  ~Socket();
 
   const std::vector<std::string>& endpoints() const { return endpoints_; }
 
@@ -25,6 +29,7 @@ class Socket {
     std::string peer;
     std::string_view bytes;
     bool is_single_frame = true;
+    Roles roles = all_roles;  ///< that the connection may have
   };
   bool receive(Received& received);
 
@@ -33,10 +38,17 @@ class Socket {
   Ready poll(const Wait& wait);
 
  private:
-  void bind(const std::string& endpoint, const Config& config);
+  void close();
+  zmq::socket_t make_router(const Config& config);
+  void bind(zmq::socket_t& router, const std::string& endpoint, bool allows_any);
+  bool receive(char router, Received& received);
+  Roles roles_of_sender();
 
   zmq::context_t context_;
-  zmq::socket_t router_;
+  std::vector<ClientKey> clients_;
+  std::optional<Gatekeeper> gatekeeper_;
+  std::vector<zmq::socket_t> routers_;  // the first byte of a peer's name is its router's index
+  std::size_t next_ = 0;                // router that is asked first, by turns
   std::vector<std::string> endpoints_;
   zmq::message_t frame_;
   std::vector<zmq::pollitem_t> items_;

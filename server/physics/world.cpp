@@ -9,6 +9,7 @@
 #include "physics/forces.h"
 #include "physics/joints.h"
 #include "physics/magnets.h"
+#include "physics/move.h"
 #include "physics/solver.h"
 
 namespace ziggurat::physics {
@@ -215,6 +216,10 @@ double World::turret(std::size_t entity) const {
 
 void World::set_currents(std::span<const double> currents) {
   if (parts_->magnets) parts_->magnets->set_currents(currents);
+}
+
+void World::move(std::size_t entity, const math::Pose& pose) {
+  physics::move(parts_->bodies[entity], pose, parts_->dynamics);
 }
 
 void World::step() {

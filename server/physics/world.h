@@ -55,6 +55,9 @@ class World {
   /// @param currents  of the magnets of all entities, in order of adding
   void set_currents(std::span<const double> currents);
 
+  /// Puts an entity to rest at a pose of its origin, joints as assembled.
+  void move(std::size_t entity, const math::Pose& pose);
+
   /// Advances by one substep.
   void step();
 

@@ -27,7 +27,7 @@ double substep_length(const scene::Scene& scene, const Options& options) {
 }  // namespace
 
 struct Simulation::Parts {
-  Parts(const scene::Scene& scene, const Options& options);
+  Parts(const scene::Scene& scene, const Options& options, world::Layout& layout);
 
   devices::Tick tick() { return {layout, state, observations, commands, physics, rays, *index}; }
   void look_around();  // rays and index take the poses of the state
@@ -37,7 +37,7 @@ struct Simulation::Parts {
   double substep;  // [s]
   physics::World physics;
   physics::Rays rays;
-  world::Layout layout;
+  const world::Layout& layout;
   world::State state;
   world::Observations observations;
   world::Commands commands;
@@ -45,14 +45,15 @@ struct Simulation::Parts {
   std::optional<devices::Devices> devices;
 };
 
-Simulation::Parts::Parts(const scene::Scene& scene, const Options& options)
+Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& made)
     : ticks_per_second(scene.experiment.ticks_per_second),
       substeps(scene.physics.iterations),
       substep(substep_length(scene, options)),
       physics(scene.physics, substep),
-      rays(scene.physics) {
+      rays(scene.physics),
+      layout(made) {
   const std::vector<scene::Entity> entities = place(scene, options.seed);
-  layout = make_layout(scene, entities);
+  made = make_layout(scene, entities);
   for (const scene::Entity& entity : entities) {
     physics.add(entity);
     rays.add(entity);
@@ -72,10 +73,21 @@ void Simulation::Parts::look_around() {
 }
 
 Simulation::Simulation(const scene::Scene& scene, const Options& options)
-    : parts_(std::make_unique<Parts>(scene, options)) {}
+    : layout_(std::make_unique<world::Layout>()),
+      parts_(std::make_unique<Parts>(scene, options, *layout_)) {}
 Simulation::~Simulation() = default;
 
-const world::Layout& Simulation::layout() const { return parts_->layout; }
+void Simulation::reset(const scene::Scene& scene, const Options& options) {
+  parts_ = std::make_unique<Parts>(scene, options, *layout_);
+}
+
+void Simulation::move(std::size_t entity, const math::Pose& pose) {
+  parts_->physics.move(entity, pose);
+  parts_->physics.read(parts_->state);
+  parts_->look_around();
+}
+
+const world::Layout& Simulation::layout() const { return *layout_; }
 const world::State& Simulation::state() const { return parts_->state; }
 const world::Observations& Simulation::observations() const { return parts_->observations; }
 world::Commands& Simulation::commands() { return parts_->commands; }

@@ -32,6 +32,16 @@ class Simulation {
   const world::Observations& observations() const;  ///< of the last tick
   world::Commands& commands();  ///< applied at the start of the next tick; values persist
 
+  /// Destroys the world and builds it anew, as a fresh simulation of the same scene would be. The
+  /// layout stays where it is and as it is; states, observations and commands move.
+  /// @throws scene::SceneError if something can't be placed with this seed; then nothing changes
+  void reset(const scene::Scene& scene, const Options& options);
+
+  /// Puts an entity to rest at a pose of its origin, joints as assembled. What robots sense of it
+  /// they sense at the next tick.
+  /// @param entity  into Layout::entities
+  void move(std::size_t entity, const math::Pose& pose);
+
   /// Advances by one tick.
   void step();
 
@@ -46,6 +56,7 @@ class Simulation {
 
  private:
   struct Parts;
+  std::unique_ptr<world::Layout> layout_;  // others keep references to it
   std::unique_ptr<Parts> parts_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "wire/command.h"
 #include "wire/leave.h"
+#include "wire/response.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -91,7 +92,16 @@ Hello Inbox::hello() const {
   hello.client_name = from.client_name();
   hello.client_version = from.client_version();
   hello.session_token = from.session_token();
-  hello.deadline_action = static_cast<DeadlineAction>(from.deadline_policy().action());
+  if (from.has_deadline_policy()) {
+    const v1::DeadlinePolicy& wish = from.deadline_policy();
+    DeadlinePolicy& deadline = hello.deadline.emplace();
+    if (wish.action() != v1::DeadlinePolicy::ACTION_UNSPECIFIED) {
+      deadline.action = static_cast<DeadlineAction>(wish.action());
+    }
+    deadline.wall_deadline_ms = wish.wall_deadline_ms();
+    deadline.miss_budget = wish.miss_budget();
+  }
+  hello.takeover = from.takeover();
   return hello;
 }
 
@@ -107,6 +117,8 @@ Leave Inbox::leave() const {
 std::uint64_t Inbox::heartbeat() const { return message_->message.heartbeat().sequence(); }
 
 std::uint64_t Inbox::request_id() const { return message_->message.request().id(); }
+
+Request Inbox::request() const { return read(message_->message.request()); }
 
 std::uint64_t Inbox::command_tick() const { return message_->command.tick(); }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "wire/messages.h"
+#include "wire/request.h"
 #include "wire/roster.h"
 #include "world/state.h"
 
@@ -40,6 +41,7 @@ class Inbox {
   std::uint64_t heartbeat() const;  ///< its sequence
   std::uint64_t command_tick() const;
   std::uint64_t request_id() const;
+  Request request() const;
 
   /// What is wrong with the command or leave in hand but its tick, if anything.
   std::optional<Fault> check(const Roster& roster, const world::Layout& layout) const;

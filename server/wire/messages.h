@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scene/deadline.h"
 #include "scene/scene.h"
 #include "world/layout.h"
 
@@ -36,8 +38,8 @@ inline constexpr Version version{1, 0};
 
 enum class Role { unspecified, controller, supervisor, observer };
 
-/// What happens when a controller does not answer in time. Only `wait` exists yet.
-enum class DeadlineAction { unspecified, wait, hold, zero, drop, stop };
+using scene::DeadlineAction;
+using scene::DeadlinePolicy;
 
 struct Hello {
   Version version;
@@ -48,7 +50,9 @@ struct Hello {
   std::string client_name;
   std::string client_version;
   std::string session_token;  ///< of a session to resume; empty: a new one
-  DeadlineAction deadline_action = DeadlineAction::unspecified;
+  /// A wish. The action may be a number that is none; unspecified is read as wait.
+  std::optional<DeadlinePolicy> deadline;
+  bool takeover = false;  ///< also robots that others hold
 };
 
 /// A line that a controller logged.
@@ -114,6 +118,16 @@ struct Refusal {
   std::string holder;  ///< robot_taken: name of the client that drives it
 };
 
+/// What a session is told of itself when it begins.
+struct Welcome {
+  std::string_view token;
+  std::uint32_t minor = 0;  ///< of the protocol, as agreed
+  Role role = Role::controller;
+  std::uint32_t wall_lease_ms = 0;
+  std::uint32_t wall_heartbeat_ms = 0;
+  std::vector<DeadlinePolicy> deadlines;  ///< per robot of the session; empty: all wait
+};
+
 enum class EndReason { finished, interrupted, failed };
 
 struct End {
@@ -134,6 +148,7 @@ struct Run {
   std::string scene_hash;  ///< 16 hexadecimal digits
   std::string server_version;
   std::uint64_t max_message_bytes = std::uint64_t{64} << 20;
+  bool is_hardware_in_the_loop = false;  ///< paced, and nobody is waited for
 };
 
 /// The name in docs/protocol.md, for example "ROBOT_TAKEN".

@@ -1,10 +1,12 @@
 #include "wire/outbox.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "wire/description.h"
 #include "wire/observation.h"
 #include "wire/observation_cameras.h"
+#include "wire/response.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -25,6 +27,23 @@ void fill(const Fault& fault, v1::Error& error) {
 void fill(const Version& from, v1::Version& to) {
   to.set_major(from.major);
   to.set_minor(from.minor);
+}
+
+void fill(const DeadlinePolicy& from, v1::DeadlinePolicy& to) {
+  to.set_action(static_cast<v1::DeadlinePolicy::Action>(from.action));
+  to.set_wall_deadline_ms(from.wall_deadline_ms);
+  to.set_miss_budget(from.miss_budget);
+}
+
+/// One policy for all robots, or each its own.
+void fill(const std::vector<DeadlinePolicy>& policies, v1::Welcome& welcome) {
+  const DeadlinePolicy common = policies.empty() ? DeadlinePolicy{} : policies.front();
+  if (std::ranges::all_of(policies, [&](const auto& policy) { return policy == common; })) {
+    return fill(common, *welcome.mutable_deadline_policy());
+  }
+  for (std::size_t i = 0; i < policies.size(); ++i) {
+    fill(policies[i], *welcome.mutable_robots(static_cast<int>(i))->mutable_deadline_policy());
+  }
 }
 
 v1::End::Reason reason_of(EndReason reason) {
@@ -88,22 +107,24 @@ void Outbox::write(std::uint8_t* to) const {
   message_->message.SerializeWithCachedSizesToArray(to);
 }
 
-void Outbox::welcome(const Run& run, const Roster& roster, std::string_view token,
-                     std::uint32_t minor) {
+void Outbox::welcome(const Run& run, const Roster& roster, const Welcome& session) {
   v1::Welcome& welcome = *message_->message.mutable_welcome();
   welcome.Clear();
-  fill(Version{version.major, minor}, *welcome.mutable_version());
-  welcome.set_session_token(token.data(), token.size());
+  fill(Version{version.major, session.minor}, *welcome.mutable_version());
+  welcome.set_session_token(session.token.data(), session.token.size());
+  welcome.set_wall_lease_ms(session.wall_lease_ms);
+  welcome.set_wall_heartbeat_ms(session.wall_heartbeat_ms);
+  welcome.set_role(static_cast<v1::Role>(session.role));
   welcome.set_tick_ns(static_cast<std::uint64_t>(run.tick_ns));
   welcome.set_ticks_per_second(run.ticks_per_second);
-  welcome.set_mode(v1::MODE_LOCK_STEP);
+  welcome.set_mode(run.is_hardware_in_the_loop ? v1::MODE_HARDWARE_IN_THE_LOOP
+                                               : v1::MODE_LOCK_STEP);
   welcome.set_seed(run.seed);
   welcome.set_scene_hash(run.scene_hash);
   welcome.set_max_message_bytes(run.max_message_bytes);
   welcome.set_server_version(run.server_version);
-  welcome.set_role(v1::ROLE_CONTROLLER);
-  welcome.mutable_deadline_policy()->set_action(v1::DeadlinePolicy::WAIT);
   for (const std::size_t robot : roster.robots) describe(run, robot, *welcome.add_robots());
+  fill(session.deadlines, welcome);
   finish();
 }
 
@@ -143,6 +164,59 @@ void Outbox::error(const Fault& fault) {
   v1::Error& error = *message_->message.mutable_error();
   error.Clear();
   fill(fault, error);
+  finish();
+}
+
+void Outbox::loading(double progress, std::string_view text) {
+  v1::Loading& loading = *message_->message.mutable_loading();
+  loading.set_progress(progress);
+  loading.set_message(v1::valid_utf8(text));
+  finish();
+}
+
+void Outbox::paused(std::uint64_t tick) {
+  message_->message.mutable_paused()->set_tick(tick);
+  finish();
+}
+
+void Outbox::displaced(std::string_view by, std::string_view text) {
+  v1::Displaced& displaced = *message_->message.mutable_displaced();
+  displaced.set_by(v1::valid_utf8(by));
+  displaced.set_message(v1::valid_utf8(text));
+  finish();
+}
+
+void Outbox::reset(std::uint64_t seed) {
+  message_->message.mutable_reset()->set_seed(seed);
+  finish();
+}
+
+void Outbox::response(std::uint64_t request, std::uint64_t tick) {
+  v1::Response& response = *message_->message.mutable_response();
+  response.Clear();
+  response.set_id(request);
+  response.set_tick(tick);
+  finish();
+}
+
+void Outbox::response(std::uint64_t request, const Status& status) {
+  v1::Response& response = *message_->message.mutable_response();
+  response.Clear();
+  response.set_id(request);
+  response.set_tick(status.tick);
+  fill(status, *response.mutable_status());
+  finish();
+}
+
+void Outbox::response(std::uint64_t request, const world::Layout& layout,
+                      const world::State& state, std::span<const std::size_t> entities,
+                      std::string_view hash) {
+  v1::Response& response = *message_->message.mutable_response();
+  response.Clear();
+  response.set_id(request);
+  response.set_tick(state.tick);
+  fill(layout, state, entities, *response.mutable_states());
+  response.mutable_states()->set_hash(std::string(hash));
   finish();
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "wire/messages.h"
+#include "wire/request.h"
 #include "wire/roster.h"
 #include "world/state.h"
 
@@ -31,8 +32,7 @@ class Outbox {
   Outbox(Outbox&&) noexcept;
   Outbox& operator=(Outbox&&) noexcept;
 
-  /// @param minor  of the protocol, as agreed with the client
-  void welcome(const Run& run, const Roster& roster, std::string_view token, std::uint32_t minor);
+  void welcome(const Run& run, const Roster& roster, const Welcome& session);
   void refusal(const Refusal& refusal);
   /// False if it would have more than `limit` bytes in binary form; then nothing is in hand.
   /// @param tag_payloads  of the same tick, for each of Layout::tags
@@ -42,6 +42,17 @@ class Outbox {
   void end(const End& end);
   void error(const Fault& fault);
   void heartbeat(std::uint64_t sequence);
+  void reset(std::uint64_t seed);
+  // That a request was done at this tick, and what it was for.
+  void response(std::uint64_t request, std::uint64_t tick);
+  void response(std::uint64_t request, const Status& status);
+  /// @param entities  into Layout::entities, ascending;  @param hash  16 hexadecimal digits
+  void response(std::uint64_t request, const world::Layout& layout, const world::State& state,
+                std::span<const std::size_t> entities, std::string_view hash);
+  void loading(double progress, std::string_view message);
+  void paused(std::uint64_t tick);
+  /// @param by  name of the client that has the robots now
+  void displaced(std::string_view by, std::string_view message);
   /// That a request was not done, and why.
   void response(std::uint64_t request, const Fault& fault);
 

@@ -25,4 +25,12 @@ void zero(const world::Layout& layout, std::size_t robot, world::Commands& comma
   if (device.sends) clear(commands.range_and_bearing_data, device.data);
 }
 
+void forget_radio_messages(const Roster& roster, world::RadioMessages& messages) {
+  std::erase_if(messages.entries, [&](const world::RadioMessages::Entry& entry) {
+    return std::ranges::any_of(roster.radios.stretches, [&](const Packing::Stretch& radios) {
+      return entry.radio >= radios.flat && entry.radio < radios.flat + radios.count;
+    });
+  });
+}
+
 }  // namespace ziggurat::wire

@@ -1,8 +1,9 @@
 #pragma once
-// What becomes of the commands of a robot that left.
+// What becomes of the commands of a robot that left, or that is commanded anew.
 
 #include <cstddef>
 
+#include "wire/roster.h"
 #include "world/layout.h"
 #include "world/state.h"
 
@@ -12,5 +13,8 @@ namespace ziggurat::wire {
 /// become 0. LEDs, tags and a turret's mode stay as they are.
 /// @param robot  into the layout's robots
 void zero(const world::Layout& layout, std::size_t robot, world::Commands& commands);
+
+/// Takes back what the robots of a session have sent by radio at this tick.
+void forget_radio_messages(const Roster& roster, world::RadioMessages& messages);
 
 }  // namespace ziggurat::wire

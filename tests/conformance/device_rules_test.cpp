@@ -280,7 +280,7 @@ TEST_F(DrivingAndCameras, L1_WhoLeavesStands) {
   peers.publish(sight(6));
   peers.say("p", Peers::leave({0}));
   peers.say("p", Peers::command(6));
-  peers.barrier.zero_gone(peers.commands);
+  peers.barrier.zero_missing(peers.commands);
   EXPECT_EQ(peers.commands.wheels[0].left, 0);
   EXPECT_EQ(peers.commands.turrets[0].speed, 0);
 }

@@ -14,13 +14,17 @@ using nlohmann::json;
 /// A barrier whose peers talk in literal text.
 struct Twin : ::testing::Test {
   Twin()
-      : small(2), barrier({}, small.run(), [this](const std::string& peer, const auto& message) {
-          if (peer == dead) return Delivery::unreachable;
-          std::string bytes(message.size(), '\0');
-          message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
-          inboxes[peer].push_back(bytes);
-          return Delivery::sent;
-        }) {}
+      : small(2),
+        barrier(
+            {}, small.run(),
+            [this](const std::string& peer, const auto& message) {
+              if (peer == dead) return Delivery::unreachable;
+              std::string bytes(message.size(), '\0');
+              message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
+              inboxes[peer].push_back(bytes);
+              return Delivery::sent;
+            },
+            {}) {}
 
   void say(const std::string& peer, const std::string& bytes) {
     barrier.receive(peer, bytes, &commands);
@@ -167,7 +171,7 @@ TEST(TwinOfAll, T6_EveryAnswerComesInTheFormOfTheSession) {
     peers.say("p", Peers::hello("*"));
     peers.say("stranger", Peers::command(7));
     peers.say("late", Peers::hello("*"));
-    peers.barrier.probe();
+    peers.probe();
     peers.barrier.finish({});
     EXPECT_EQ(peers.inboxes["p"].size(), 7U);
     EXPECT_EQ(peers.inboxes["late"].size(), 1U);

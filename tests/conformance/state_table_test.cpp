@@ -43,7 +43,7 @@ void bring(Peers& peers, const std::string& state) {
   if (state == "READY") return;
   if (state == "LOST") {
     peers.unreachable.insert("p");
-    peers.barrier.probe();
+    peers.probe();
     peers.unreachable.clear();
   } else if (state == "CLOSED") {
     peers.say("p", Peers::leave());  // robot1 stays for the next Hello
@@ -52,7 +52,12 @@ void bring(Peers& peers, const std::string& state) {
     peers.barrier.finish({});
   } else {
     peers.publish(tick);
-    if (state == "STEPPING, answered") peers.say("p", Peers::command(tick));
+    if (state != "STEPPING, owing") peers.say("p", Peers::command(tick));
+    if (state == "PAUSED") {
+      peers.join("q", "robot1");
+      peers.say("q", Peers::command(tick));
+      peers.barrier.pause();
+    }
   }
   peers.inboxes.clear();
 }
@@ -101,7 +106,7 @@ TEST(StateTable, EveryCellHolds) {
       ++tested;
     }
   }
-  EXPECT_EQ(tested, 35U);
+  EXPECT_EQ(tested, 40U);
 }
 
 TEST(ErrorTable, NamesEveryCodeOfTheProtocol) {

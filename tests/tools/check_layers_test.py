@@ -83,7 +83,8 @@ class CheckLayers(unittest.TestCase):
         self.assert_caught("protocol/ziggurat/v1/bad.h", '#include "world/state.h"\n', "world")
 
     def test_catches_a_server_that_knows_a_client_and_a_client_that_knows_the_server(self):
-        self.assert_caught("server/app/bad.cpp", '#include "ziggurat/session.h"\n', "clients/cpp")
+        self.assert_caught("server/network/bad.cpp", '#include "ziggurat/session.h"\n', "clients/cpp")
+        self.assert_allowed("server/app/top.cpp", '#include "ziggurat/session.h"\n')
         self.assert_caught("clients/lua/bad.cpp", '#include "world/state.h"\n', "world")
 
     def test_catches_modules_that_are_not_in_the_table(self):

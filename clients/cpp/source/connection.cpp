@@ -1,9 +1,11 @@
 #include "connection.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 #include "ziggurat/error.h"
@@ -25,21 +27,53 @@ void set_option(void* socket, int option, int value) {
 
 }  // namespace
 
-Connection::Connection(const std::string& endpoint)
-    : endpoint_(endpoint), context_(zmq_ctx_new()), socket_(zmq_socket(context_, ZMQ_DEALER)) {
+Connection::Connection(const Options& options)
+    : endpoint_(options.endpoint), context_(zmq_ctx_new()), socket_(zmq_socket(context_, ZMQ_DEALER)) {
   zmq_msg_init(&frame_);
-  set_option(socket_, ZMQ_IPV6, endpoint.find('[') == std::string::npos ? 0 : 1);
+  set_option(socket_, ZMQ_IPV6, endpoint_.find('[') == std::string::npos ? 0 : 1);
   set_option(socket_, ZMQ_TCP_KEEPALIVE, 1);
   set_option(socket_, ZMQ_LINGER, 0);
   zmq_socket_monitor(socket_, monitor_address, ZMQ_EVENT_DISCONNECTED);
   monitor_ = zmq_socket(context_, ZMQ_PAIR);
   set_option(monitor_, ZMQ_LINGER, 0);
   zmq_connect(monitor_, monitor_address);
-  if (zmq_connect(socket_, endpoint.c_str()) == 0) return;
+  try {
+    set_keys(options);
+  } catch (const std::invalid_argument&) {
+    close();
+    throw;
+  }
+  if (zmq_connect(socket_, endpoint_.c_str()) == 0) return;
   const std::string reason = zmq_strerror(zmq_errno());
   close();
-  throw std::invalid_argument("'" + endpoint + "': not an endpoint to connect to (" + reason +
+  throw std::invalid_argument("'" + endpoint_ + "': not an endpoint to connect to (" + reason +
                               "); ipc:///path or tcp://host:port would do");
+}
+
+/// Encrypts the connection, if the options name keys.
+void Connection::set_keys(const Options& options) {
+  if (options.server_key.empty() && options.curve_secret.empty()) return;
+  if (options.server_key.empty() || options.curve_secret.empty()) {
+    throw std::invalid_argument(
+        "the server's public key and a file with a secret key belong together; one is missing");
+  }
+  std::ifstream file(options.curve_secret);
+  std::string secret;
+  std::array<char, 41> own;
+  if (!(file >> secret) || zmq_curve_public(own.data(), secret.c_str()) != 0) {
+    throw std::invalid_argument("'" + options.curve_secret +
+                                "': not a file with a secret key; 'ziggurat keygen' makes one");
+  }
+  const auto set = [&](int option, const std::string& key) {
+    return zmq_setsockopt(socket_, option, key.c_str(), key.size() + 1) == 0;
+  };
+  if (options.server_key.size() != 40 || !set(ZMQ_CURVE_SERVERKEY, options.server_key)) {
+    throw std::invalid_argument("'" + options.server_key +
+                                "': not a public key of 40 characters, as 'ziggurat keygen' "
+                                "prints it");
+  }
+  set(ZMQ_CURVE_PUBLICKEY, own.data());
+  set(ZMQ_CURVE_SECRETKEY, secret);
 }
 
 Connection::~Connection() { close(); }

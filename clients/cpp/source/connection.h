@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "ziggurat/session.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat {
@@ -18,8 +19,8 @@ class Connection {
   using Kind = v1::ServerMessage::MessageCase;
 
   /// Starts to connect; the server may come up later.
-  /// @throws std::invalid_argument for an unusable endpoint
-  explicit Connection(const std::string& endpoint);
+  /// @throws std::invalid_argument for an unusable endpoint or keys
+  explicit Connection(const Options& options);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -47,6 +48,7 @@ class Connection {
 
  private:
   void close();
+  void set_keys(const Options& options);
   bool receive_frame(std::chrono::milliseconds timeout);
   bool was_closed();
   Kind parse();

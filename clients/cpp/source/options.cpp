@@ -15,6 +15,8 @@ Options Options::from_environment() {
   Options options;
   options.endpoint = endpoint;
   if (const char* controller = std::getenv("ZIGGURAT_CONTROLLER")) options.controller = controller;
+  if (const char* key = std::getenv("ZIGGURAT_SERVER_KEY")) options.server_key = key;
+  if (const char* secret = std::getenv("ZIGGURAT_CURVE_SECRET")) options.curve_secret = secret;
   return options;
 }
 

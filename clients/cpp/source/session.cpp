@@ -16,6 +16,13 @@ ProtocolError displaced(const v1::Displaced& by) {
   return ProtocolError("DISPLACED: " + by.message(), details);
 }
 
+/// A tick went on without our answer, or had it already: the next one comes all the same.
+bool is_harmless(const v1::Error& error) {
+  if (error.severity() == v1::Error::FATAL) return false;
+  return error.severity() == v1::Error::WARNING || error.code() == v1::Error::STALE_TICK ||
+         error.code() == v1::Error::DUPLICATE_TICK;
+}
+
 }  // namespace
 
 Session::Session(const Options& options) : state_(std::make_unique<State>(options)) {
@@ -60,6 +67,12 @@ void Session::State::answer() {
   devices->sent(command);
 }
 
+/// Values that were set stay so here, and were perhaps not taken there.
+void Session::State::repeat() {
+  changed = true;
+  devices->repeat();
+}
+
 void Session::State::send_failures() {
   for (Robot& robot : robots) {
     if (robot.failure_.empty()) continue;
@@ -84,11 +97,19 @@ void Session::State::move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>
 }
 
 bool Session::State::wait() {
+  // Heartbeats say that the server is there; the world may keep us waiting all the same.
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + options.wait_timeout.value_or(std::chrono::milliseconds{0});
+  auto rest = options.wait_timeout;
   for (;;) {
-    const auto kind = connection.receive(options.wait_timeout, options.is_interrupted);
+    const auto kind = connection.receive(rest, options.is_interrupted);
+    if (rest) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
+      rest = std::max(left, std::chrono::milliseconds{0});
+    }
     if (!kind && is_interrupted()) return false;
     if (!kind) {
-      throw ConnectionError("the server at " + options.endpoint + " was silent for " +
+      throw ConnectionError("the server at " + options.endpoint + " sent no observation for " +
                             std::to_string(options.wait_timeout->count()) +
                             " ms after the answer to tick " + std::to_string(tick));
     }
@@ -104,7 +125,10 @@ bool Session::State::wait() {
         read(message.reset());
         break;
       case Connection::Kind::kError:
-        if (message.error().severity() == v1::Error::WARNING) break;
+        if (is_harmless(message.error())) {
+          if (message.error().code() != v1::Error::DUPLICATE_TICK) repeat();
+          break;
+        }
         is_over = message.error().severity() == v1::Error::FATAL;
         throw to_exception(message.error());
       case Connection::Kind::kDisplaced:

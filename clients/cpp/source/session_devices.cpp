@@ -219,6 +219,15 @@ void Session::Devices::write(v1::Command& command) {
   command.mutable_radio_messages()->Swap(&traffic.messages);
 }
 
+void Session::Devices::repeat() {
+  led_colors_.changed = true;
+  directional_led_colors_.changed = true;
+  tag_payloads_.changed = true;
+  magnet_currents_.changed = true;
+  range_and_bearing_data_.changed = true;
+  driving_.repeat();
+}
+
 void Session::Devices::sent(v1::Command& command) {
   command.mutable_radio_messages()->Swap(&traffic.messages);
   traffic.clear();

@@ -29,6 +29,8 @@ struct Session::Devices {
   void write(v1::Command& command);
   /// After the command was sent.
   void sent(v1::Command& command);
+  /// Everything is sent again with the next command: some was not taken.
+  void repeat();
   /// What was set becomes what it was in the beginning.
   void reset();
 

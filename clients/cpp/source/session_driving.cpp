@@ -101,6 +101,13 @@ void Session::Driving::sent() {
   speeds_.changed = false;
 }
 
+void Session::Driving::repeat() {
+  velocities_.changed = true;
+  modes_.changed = true;
+  rotations_.changed = true;
+  speeds_.changed = true;
+}
+
 void Session::Driving::reset() {
   velocities_.reset();
   modes_.reset();

@@ -21,6 +21,7 @@ struct Session::Driving {
   void read(const v1::Observation& observation);  ///< of a checked message
   void write(v1::Command& command) const;         ///< adds what was set since sent()
   void sent();                                    ///< after the command was
+  void repeat();                                  ///< everything is sent again with the next
   void reset();                                   ///< to what it was in the beginning
 
  private:

@@ -11,7 +11,7 @@
 namespace ziggurat {
 
 struct Session::State {
-  explicit State(const Options& from) : options(from), connection(from.endpoint) {}
+  explicit State(const Options& from) : options(from), connection(from) {}
 
   // welcome.cpp
   void open();  // Hello … Welcome
@@ -20,7 +20,8 @@ struct Session::State {
                   double*& target);
 
   // session.cpp
-  void answer();  // Command, after the Leaves of robots that failed
+  void answer();
+  void repeat();  // Command, after the Leaves of robots that failed
   void send_failures();
   bool wait();  // for the next observation; false if there is none
   bool is_interrupted() const { return options.is_interrupted && options.is_interrupted(); }

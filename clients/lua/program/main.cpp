@@ -21,6 +21,8 @@ enum ExitCode { exit_finished = 0, exit_fault = 1, exit_failed_script = 3, exit_
 Options session_options(const lua::ProgramOptions& from) {
   Options options;
   options.endpoint = from.endpoint;
+  options.server_key = from.server_key;
+  options.curve_secret = from.curve_secret;
   options.controller = from.controller;
   options.robots = from.robots;
   options.lua_only = !from.script;  // with a script of ours, any robot will do

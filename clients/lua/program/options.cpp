@@ -40,6 +40,8 @@ po::options_description description() {
        "robots to run: an id or a pattern of * ? [a-z]; may be repeated")                  //
       ("robots-file", text("FILE"), "robots to run: one id or pattern per line")           //
       ("controller", text("ID"), "robots that have this controller in the scene")          //
+      ("server-key", text("KEY"), "public key of a server that protects its endpoint")     //
+      ("curve-secret", text("FILE"), "our own secret key for it ('ziggurat keygen')")      //
       ("script", text("FILE"), "run this script instead of those that the scene names")    //
       ("name", text("NAME"), "what the server calls this program in its messages")         //
       ("max-memory", text("MIB"), "memory that the script of a robot may have; 1024")      //
@@ -137,6 +139,8 @@ Request read_arguments(int count, const char* const* arguments, bool is_terminal
   if (options.controller.empty() && options.robots.empty()) {
     options.controller = environment("ZIGGURAT_CONTROLLER");
   }
+  options.server_key = value("server-key", environment("ZIGGURAT_SERVER_KEY"));
+  options.curve_secret = value("curve-secret", environment("ZIGGURAT_CURVE_SECRET"));
   if (found.count("script")) options.script = value("script");
   options.name = value("name", options.name);
   if (found.count("max-memory")) options.max_memory = to_bytes(value("max-memory"));

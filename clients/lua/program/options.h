@@ -14,6 +14,7 @@ struct ProgramOptions {
   std::vector<std::string> robots;  ///< ids or globs, those of the robots' file included
   std::string controller;           ///< id in the scene; empty for all
   std::optional<std::filesystem::path> script;  ///< instead of the one the scene names
+  std::string server_key, curve_secret;  ///< as in ziggurat::Options
   std::string name = "ziggurat-lua";
   std::size_t max_memory = std::size_t{1} << 30;  ///< per robot [bytes]
   bool echo = false;                              ///< log lines are printed here too
@@ -26,7 +27,8 @@ struct Request {
   std::string text;  ///< of --help or --version; empty otherwise
 };
 
-/// Reads the arguments, and ZIGGURAT_ENDPOINT and ZIGGURAT_CONTROLLER for what they leave open.
+/// Reads the arguments, and ZIGGURAT_ENDPOINT, ZIGGURAT_CONTROLLER, ZIGGURAT_SERVER_KEY and
+/// ZIGGURAT_CURVE_SECRET for what they leave open.
 /// @param is_terminal  stdout is one: log lines are printed here unless quiet
 /// @throws std::runtime_error that says what is wrong and what would be right
 Request read_arguments(int count, const char* const* arguments, bool is_terminal);

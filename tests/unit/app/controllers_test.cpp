@@ -66,7 +66,9 @@ TEST(Controllers, CommandsFindTheServerInTheirEnvironment) {
             (std::vector<std::string>{"/bin/sh", "-c", "./drive --fast"}));
   EXPECT_EQ(launches[1].program.environment,
             (std::vector<std::pair<std::string, std::string>>{{"ZIGGURAT_ENDPOINT", "ipc:///e"},
-                                                              {"ZIGGURAT_CONTROLLER", "drive"}}));
+                                                              {"ZIGGURAT_CONTROLLER", "drive"},
+                                                              {"ZIGGURAT_SERVER_KEY", ""},
+                                                              {"ZIGGURAT_CURVE_SECRET", ""}}));
 }
 
 TEST(Controllers, LongListsOfNamesAreCut) {

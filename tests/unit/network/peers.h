@@ -39,14 +39,23 @@ class Peers {
   explicit Peers(const SmallRun& small, const Config& config = {})
       : small_(small),
         commands(small.commands()),
-        barrier(config, small.run(), [this](const std::string& peer, const wire::Outbox& message) {
-          if (unreachable.contains(peer)) return Delivery::unreachable;
-          std::string bytes(message.size(), '\0');
-          message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
-          inboxes[peer].push_back(message_of(bytes));
-          if (bytes.starts_with('{') != json) told_otherwise.insert(peer);
-          return Delivery::sent;
-        }) {}
+        barrier(
+            config, small.run(),
+            [this](const std::string& peer, const wire::Outbox& message) {
+              if (unreachable.contains(peer)) return Delivery::unreachable;
+              if (congested.contains(peer)) return Delivery::congested;
+              std::string bytes(message.size(), '\0');
+              message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
+              inboxes[peer].push_back(message_of(bytes));
+              if (bytes.starts_with('{') != json) told_otherwise.insert(peer);
+              return Delivery::sent;
+            },
+            now) {}
+
+  /// Wall time goes on.
+  void pass(std::chrono::milliseconds time) { barrier.advance(now += time); }
+  /// Time enough for a heartbeat, which finds out whose connection is gone.
+  void probe() { pass(std::chrono::milliseconds{1000}); }
 
   void say(const std::string& peer, const v1::ClientMessage& message) {
     barrier.receive(peer, bytes_of(message, json), &commands);
@@ -112,7 +121,8 @@ class Peers {
   bool json = talks_json();              ///< what say() talks
   std::set<std::string> told_otherwise;  ///< peers that were told something in the other form
   std::map<std::string, std::vector<v1::ServerMessage>> inboxes;
-  std::set<std::string> unreachable;
+  std::set<std::string> unreachable, congested;
+  Clock::time_point now;
   world::Commands commands;
   Barrier barrier;
 };

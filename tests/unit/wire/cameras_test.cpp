@@ -99,7 +99,7 @@ TEST_F(DeviceWire, PicturesCountToo) {
 
 TEST_F(DeviceWire, WelcomeDescribesCameras) {
   Outbox outbox;
-  outbox.welcome(run.run(), roster, "token", 0);
+  outbox.welcome(run.run(), roster, {.token = "token"});
   const auto welcome = told(outbox).welcome();
   EXPECT_EQ(welcome.robots(1).cameras_size(), 0);
   ASSERT_EQ(welcome.robots(0).cameras_size(), 1);

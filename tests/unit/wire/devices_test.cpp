@@ -244,7 +244,7 @@ TEST_F(DeviceWire, ASessionThatHearsTooMuchIsNotToldAnything) {
 
 TEST_F(DeviceWire, WelcomeDescribesThem) {
   Outbox outbox;
-  outbox.welcome(run.run(), roster, "token", 0);
+  outbox.welcome(run.run(), roster, {.token = "token"});
   const auto welcome = told(outbox).welcome();
   const v1::RobotDescription& a = welcome.robots(0);
   const v1::RobotDescription& b = welcome.robots(1);

@@ -130,7 +130,7 @@ TEST_F(Driving, ReadingsOfThoseThatMeasure) {
 
 TEST_F(Driving, WelcomeDescribesThem) {
   Outbox outbox;
-  outbox.welcome(run.run(), roster, "token", 0);
+  outbox.welcome(run.run(), roster, {.token = "token"});
   const auto welcome = told(outbox).welcome();
   EXPECT_FALSE(welcome.robots(1).has_wheels() || welcome.robots(1).has_turret());
   const v1::RobotDescription& a = welcome.robots(0);

@@ -19,6 +19,10 @@ namespace ziggurat {
 struct Options {
   std::string endpoint;  ///< `ipc://…` or `tcp://host:port`
 
+  // Keys, for a server that protects its endpoint (--curve-secret). Both or none.
+  std::string server_key;    ///< the server's public key, Z85: 40 characters
+  std::string curve_secret;  ///< path of a file with our own secret key, Z85
+
   // Which robots. Those that fit everything that is given here; all of the scene if nothing is.
   std::string controller;           ///< robots of this controller of the scene
   std::vector<std::string> robots;  ///< ids or globs (`*`, `?`, `[a-z]`)
@@ -36,7 +40,7 @@ struct Options {
   std::function<bool()> is_interrupted;
 
   /// Endpoint from ZIGGURAT_ENDPOINT, controller from ZIGGURAT_CONTROLLER if that is set: how
-  /// `ziggurat run` starts controllers.
+  /// `ziggurat run` starts controllers. Keys from ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET.
   /// @throws std::invalid_argument without ZIGGURAT_ENDPOINT
   static Options from_environment();
 };

@@ -1,0 +1,133 @@
+#pragma once
+// Watching and steering a run from outside: status, pause, reset, entities. Never waited for.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ziggurat {
+
+struct SupervisorOptions {
+  std::string endpoint;  ///< `ipc://…` or `tcp://host:port`
+  // Keys, for a server that protects its endpoint (--curve-secret). Both or none.
+  std::string server_key;    ///< the server's public key, Z85: 40 characters
+  std::string curve_secret;  ///< path of a file with our own secret key, Z85
+
+  bool only_observes = false;       ///< may ask for status and states, and nothing else
+  std::string name = "supervisor";  ///< of this program, for the server's messages
+  std::string version;              ///< of this program, for the server's messages
+  std::chrono::milliseconds connect_timeout{10'000};  ///< wall time until the server's welcome
+  /// Wall time that an answer may take; none = for ever: pause() and step() wait for controllers.
+  std::optional<std::chrono::milliseconds> answer_timeout;
+  /// Asked while waiting, at least every half second of wall time: true ends the wait with a
+  /// ConnectionError. None = nothing interrupts.
+  std::function<bool()> is_interrupted;
+};
+
+/// Wall time of something that is repeated, over the last 1000 times [s].
+struct Latency {
+  double p50 = 0, p99 = 0, max = 0;
+};
+
+/// A session of the server, as it sees it.
+struct SessionStatus {
+  std::string client;  ///< name and version
+  std::string role;    ///< "controller", "supervisor" or "observer"
+  std::string state;   ///< "ready", "owing", "answered", "paused", "draining" or "lost"
+  std::vector<std::string> robots;  ///< ids
+  std::uint64_t tick = 0;           ///< of its last observation
+  double waiting = 0;        ///< owing or lost: for how long the world has waited for it [s, wall]
+  double last_message = 0;   ///< since it was last heard of [s, wall]
+  Latency latency;           ///< from observation to command
+  std::uint64_t misses = 0;  ///< deadlines missed
+  std::string policy;        ///< "wait", or an action with its deadline: "hold after 50 ms"
+};
+
+struct ServerStatus {
+  std::uint64_t tick = 0;
+  std::chrono::nanoseconds time{};  ///< simulated
+  std::string phase;                ///< "gathering", "running", "paused" or "ending"
+  bool hardware_in_the_loop = false;
+  std::uint64_t seed = 0;
+  std::string scene, scene_hash;
+  std::uint64_t last_tick = 0;  ///< 0: until somebody stops it
+  std::vector<SessionStatus> sessions;
+  std::vector<std::string> free_robots;  ///< ids: nobody holds them, and the world waits for them
+  std::vector<std::string> gone_robots;  ///< ids: they left for good
+  struct Phase {
+    std::string name;  ///< "exchange", "physics", "recording" or "pacing"
+    Latency wall;
+  };
+  std::vector<Phase> budget;  ///< where the wall time of a tick goes
+  double uptime = 0;          ///< [s, wall]
+};
+
+struct EntityState {
+  struct Link {
+    std::string id;
+    std::array<double, 3> position{};               ///< of the link's frame in the world [m]
+    std::array<double, 4> orientation{1, 0, 0, 0};  ///< quaternion w, x, y, z
+    std::array<double, 3> velocity{};               ///< [m/s]
+    std::array<double, 3> angular_velocity{};       ///< [rad/s]
+  };
+  std::string id;
+  std::array<double, 3> position{};               ///< of the origin in the world [m]
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< quaternion w, x, y, z
+  std::vector<Link> links;
+  std::vector<std::uint32_t> led_colors;  ///< 0xRRGGBB
+};
+
+struct WorldStates {
+  std::uint64_t tick = 0;
+  std::string hash;  ///< of the whole state, 16 hexadecimal digits
+  std::vector<EntityState> entities;
+};
+
+/// A session without robots. Every call waits for its answer, which is true at the tick that the
+/// server names; what could not be done is a ProtocolError. Not thread-safe.
+class Supervisor {
+ public:
+  /// Connects and waits for the server's welcome.
+  /// @throws ConnectionError, ProtocolError, std::invalid_argument for an unusable endpoint
+  explicit Supervisor(const SupervisorOptions& options);
+  ~Supervisor();
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
+
+  // All of them throw ConnectionError and ProtocolError.
+
+  ServerStatus status();
+  /// Returns when the world stands: the tick is complete. Also the tick that it stands at.
+  std::uint64_t pause();
+  std::uint64_t resume();
+  /// Moves a paused world by so many ticks; returns when it stands again.
+  std::uint64_t step(std::uint64_t ticks);
+  /// Destroys the world and builds it anew; none = with the same seed.
+  void reset(std::optional<std::uint64_t> seed = std::nullopt);
+  /// One element as it may stand in <arena>.
+  void spawn(std::string_view xml);
+  void remove(std::string_view entity);
+  /// To rest at a pose, joints as assembled; none = as it is turned now.
+  void move(std::string_view entity, const std::array<double, 3>& position,
+            const std::optional<std::array<double, 4>>& orientation = std::nullopt);
+  /// Of the entities that ids or globs mean; none = of all.
+  WorldStates read(std::span<const std::string> entities = {});
+  /// Ends the run, as Ctrl-C does.
+  void shutdown();
+
+  /// The last answer to status() or read() as protobuf's JSON, for programs.
+  std::string last_answer_json() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace ziggurat

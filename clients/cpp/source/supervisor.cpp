@@ -1,0 +1,244 @@
+#include "ziggurat/supervisor.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "connection.h"
+#include "session_state.h"
+#include "ziggurat/error.h"
+#include "ziggurat/v1/envelope.h"
+
+namespace ziggurat {
+namespace {
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+Latency latency_of(const v1::Latency& from) { return {from.p50(), from.p99(), from.max()}; }
+
+template <std::size_t size>
+void copy(const google::protobuf::RepeatedField<double>& from, std::array<double, size>& to) {
+  std::copy_n(from.begin(), std::min<std::size_t>(size, static_cast<std::size_t>(from.size())),
+              to.begin());
+}
+
+std::string policy_of(const v1::DeadlinePolicy& from) {
+  if (from.action() == v1::DeadlinePolicy::ACTION_UNSPECIFIED) return "by robot";
+  std::string text = lower(v1::DeadlinePolicy::Action_Name(from.action()));
+  if (from.action() == v1::DeadlinePolicy::WAIT) return text;
+  text += " after " + std::to_string(from.wall_deadline_ms()) + " ms";
+  if (from.miss_budget() > 0) text += ", budget " + std::to_string(from.miss_budget());
+  return text;
+}
+
+SessionStatus session_of(const v1::SessionStatus& from) {
+  constexpr std::size_t prefix = std::string_view("ROLE_").size();
+  SessionStatus to;
+  to.client = from.client();
+  to.role = lower(v1::Role_Name(from.role()).substr(prefix));
+  to.state = lower(v1::SessionStatus::State_Name(from.state()));
+  to.robots.assign(from.robots().begin(), from.robots().end());
+  to.tick = from.tick();
+  to.waiting = from.wall_waiting_s();
+  to.last_message = from.wall_last_message_s();
+  to.latency = latency_of(from.wall_latency());
+  to.misses = from.misses();
+  to.policy = policy_of(from.deadline_policy());
+  return to;
+}
+
+ServerStatus status_of(const v1::Status& from) {
+  ServerStatus to;
+  to.tick = from.tick();
+  to.time = std::chrono::nanoseconds(from.time_ns());
+  to.phase = lower(v1::Status::Phase_Name(from.phase()));
+  to.hardware_in_the_loop = from.mode() == v1::MODE_HARDWARE_IN_THE_LOOP;
+  to.seed = from.seed();
+  to.scene = from.scene();
+  to.scene_hash = from.scene_hash();
+  to.last_tick = from.last_tick();
+  for (const v1::SessionStatus& session : from.sessions()) {
+    to.sessions.push_back(session_of(session));
+  }
+  to.free_robots.assign(from.free_robots().begin(), from.free_robots().end());
+  to.gone_robots.assign(from.gone_robots().begin(), from.gone_robots().end());
+  for (const v1::PhaseBudget& phase : from.budget()) {
+    to.budget.push_back({phase.phase(), latency_of(phase.wall())});
+  }
+  to.uptime = from.wall_uptime_s();
+  return to;
+}
+
+EntityState entity_of(const v1::States::Entity& from) {
+  EntityState to;
+  to.id = from.id();
+  copy(from.position(), to.position);
+  copy(from.orientation(), to.orientation);
+  for (const v1::States::Link& link : from.links()) {
+    EntityState::Link& state = to.links.emplace_back();
+    state.id = link.id();
+    copy(link.position(), state.position);
+    copy(link.orientation(), state.orientation);
+    copy(link.velocity(), state.velocity);
+    copy(link.angular_velocity(), state.angular_velocity);
+  }
+  to.led_colors.assign(from.led_colors().begin(), from.led_colors().end());
+  return to;
+}
+
+Options where(const SupervisorOptions& wanted) {
+  Options options;
+  options.endpoint = wanted.endpoint;
+  options.server_key = wanted.server_key;
+  options.curve_secret = wanted.curve_secret;
+  return options;
+}
+
+}  // namespace
+
+struct Supervisor::State {
+  explicit State(const SupervisorOptions& wanted) : options(wanted), connection(where(wanted)) {}
+
+  void open();
+  /// Sends the request in hand and waits for its answer. @throws ProtocolError if it was not done
+  const v1::Response& ask();
+  v1::Request& request() {
+    v1::Request& fresh = *outgoing.mutable_request();
+    fresh.Clear();
+    fresh.set_id(++last_id);
+    return fresh;
+  }
+  Connection::Kind hear(const std::optional<std::chrono::milliseconds>& timeout, const char* what);
+
+  SupervisorOptions options;
+  Connection connection;
+  v1::ClientMessage outgoing;
+  std::uint64_t last_id = 0;
+  std::string json;  // of the last answer
+};
+
+Connection::Kind Supervisor::State::hear(const std::optional<std::chrono::milliseconds>& timeout,
+                                         const char* what) {
+  const auto kind = connection.receive(timeout, options.is_interrupted);
+  if (!kind) {
+    throw ConnectionError(std::string("interrupted, or too long: no ") + what + " from " +
+                          options.endpoint);
+  }
+  if (*kind == Connection::Kind::kError) throw to_exception(connection.message().error());
+  if (*kind == Connection::Kind::kEnd) {
+    throw ConnectionError(options.endpoint + ": the run is over");
+  }
+  return *kind;
+}
+
+void Supervisor::State::open() {
+  v1::Hello& hello = *outgoing.mutable_hello();
+  hello.mutable_version()->set_major(1);
+  hello.set_role(options.only_observes ? v1::ROLE_OBSERVER : v1::ROLE_SUPERVISOR);
+  hello.set_client_name(v1::valid_utf8(options.name));
+  hello.set_client_version(v1::valid_utf8(options.version));
+  connection.send(outgoing);
+  for (;;) {
+    const auto kind = hear(options.connect_timeout, "welcome");
+    if (kind == Connection::Kind::kRefusal) {
+      throw to_exception(connection.message().refusal().error());
+    }
+    if (kind == Connection::Kind::kWelcome) break;
+  }
+  connection.expect_open();
+}
+
+const v1::Response& Supervisor::State::ask() {
+  connection.send(outgoing);
+  for (;;) {
+    const auto kind = hear(options.answer_timeout, "answer");
+    if (kind != Connection::Kind::kResponse) continue;
+    const v1::Response& response = connection.message().response();
+    if (response.id() != last_id) continue;
+    if (response.has_error()) throw to_exception(response.error());
+    return response;
+  }
+}
+
+Supervisor::Supervisor(const SupervisorOptions& options)
+    : state_(std::make_unique<State>(options)) {
+  state_->open();
+}
+
+Supervisor::~Supervisor() = default;
+
+ServerStatus Supervisor::status() {
+  state_->request().mutable_status();
+  const v1::Response& response = state_->ask();
+  state_->json.clear();
+  google::protobuf::util::MessageToJsonString(response.status(), &state_->json);
+  return status_of(response.status());
+}
+
+std::uint64_t Supervisor::pause() {
+  state_->request().mutable_pause();
+  return state_->ask().tick();
+}
+
+std::uint64_t Supervisor::resume() {
+  state_->request().mutable_resume();
+  return state_->ask().tick();
+}
+
+std::uint64_t Supervisor::step(std::uint64_t ticks) {
+  state_->request().mutable_step()->set_ticks(ticks);
+  return state_->ask().tick();
+}
+
+void Supervisor::reset(std::optional<std::uint64_t> seed) {
+  v1::ResetRequest& reset = *state_->request().mutable_reset();
+  if (seed) reset.set_seed(*seed);
+  state_->ask();
+}
+
+void Supervisor::spawn(std::string_view xml) {
+  state_->request().mutable_spawn()->set_xml(v1::valid_utf8(std::string(xml)));
+  state_->ask();
+}
+
+void Supervisor::remove(std::string_view entity) {
+  state_->request().mutable_remove()->set_entity(v1::valid_utf8(std::string(entity)));
+  state_->ask();
+}
+
+void Supervisor::move(std::string_view entity, const std::array<double, 3>& position,
+                      const std::optional<std::array<double, 4>>& orientation) {
+  v1::MoveRequest& move = *state_->request().mutable_move();
+  move.set_entity(v1::valid_utf8(std::string(entity)));
+  for (const double value : position) move.add_position(value);
+  if (orientation) {
+    for (const double value : *orientation) move.add_orientation(value);
+  }
+  state_->ask();
+}
+
+WorldStates Supervisor::read(std::span<const std::string> entities) {
+  v1::ReadRequest& read = *state_->request().mutable_read();
+  for (const std::string& entity : entities) read.add_entities(v1::valid_utf8(entity));
+  const v1::Response& response = state_->ask();
+  state_->json.clear();
+  google::protobuf::util::MessageToJsonString(response.states(), &state_->json);
+  WorldStates states{response.tick(), response.states().hash(), {}};
+  for (const v1::States::Entity& entity : response.states().entities()) {
+    states.entities.push_back(entity_of(entity));
+  }
+  return states;
+}
+
+void Supervisor::shutdown() {
+  state_->request().mutable_shutdown();
+  state_->ask();
+}
+
+std::string Supervisor::last_answer_json() const { return state_->json; }
+
+}  // namespace ziggurat

@@ -1,0 +1,84 @@
+#pragma once
+// What supervisors and observers ask for, done between ticks (docs/protocol.md, section 9).
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/latencies.h"
+#include "network/server.h"
+#include "scene/reader.h"
+#include "simulation/simulation.h"
+
+namespace ziggurat::app {
+
+/// Parts of a tick's wall time.
+enum class Phase { exchange, physics, recording, pacing };
+
+class Supervision {
+ public:
+  using clock = std::chrono::steady_clock;
+
+  struct Subject {
+    const scene::Scene& scene;
+    std::string path;  ///< of the scene
+    std::uint64_t seed = 0;
+    std::optional<scene::Clock> clock;  ///< overrides the scene's
+    std::uint64_t last_tick = 0;        ///< 0: until stopped
+    bool is_hardware_in_the_loop = false;
+    simulation::Simulation& simulation;
+    network::Server& server;
+  };
+
+  explicit Supervision(const Subject& subject);
+
+  /// Answers what can be answered now; the rest waits for its tick. Due whenever the server wakes,
+  /// and never while physics runs.
+  void serve();
+
+  void gathered() { is_gathered_ = true; }
+  /// A tick was published.
+  void published();
+  /// Charges wall time to a phase of the tick that ends.
+  void charge(Phase phase, double seconds);
+
+  /// The seed of a reset that is asked for: the world is to be destroyed and built anew.
+  std::optional<std::uint64_t> reset_wanted() const;
+  /// It was done: tick 0 is about to be published.
+  void reset_done();
+  bool shutdown_wanted() const { return shutdown_; }
+  std::uint64_t seed() const { return subject_.seed; }
+  /// For how long the world has stood, in all: a paced schedule shifts by it.
+  clock::duration paused_for() const;
+
+  wire::Status status() const;
+
+ private:
+  enum class Reply { given, later };
+  Reply try_to(const network::Call& call);
+  Reply pause(const network::Call& call);
+  Reply step(const network::Call& call);
+  Reply reset(const network::Call& call);
+  Reply read(const network::Call& call);
+  Reply move(const network::Call& call);
+  Reply fail(const network::Call& call, wire::ErrorCode code, std::string field,
+             std::string message);
+  Reply done(const network::Call& call);
+  std::optional<std::size_t> entity_named(const std::string& id) const;
+  void note_standing();
+
+  Subject subject_;
+  std::vector<network::Call> waiting_;  // unanswered, in order of arrival
+  std::optional<network::Call> stepping_, resetting_;
+  std::uint64_t steps_left_ = 0;
+  bool is_gathered_ = false, shutdown_ = false;
+  clock::time_point start_ = clock::now();
+  std::optional<clock::time_point> standing_since_;
+  clock::duration stood_{};
+  std::array<network::Latencies, 4> budget_;  // by Phase
+};
+
+}  // namespace ziggurat::app

@@ -1,0 +1,148 @@
+#include "network/keys.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zmq.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <sstream>
+
+namespace ziggurat::network {
+namespace {
+
+constexpr std::size_t key_length = 40;
+constexpr std::size_t longest_file = std::size_t{1} << 20;  // [bytes]
+
+bool is_key(const std::string& text) {
+  std::array<std::uint8_t, 32> bytes;
+  return text.size() == key_length && zmq_z85_decode(bytes.data(), text.c_str()) != nullptr;
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw KeyError(fmt::format("{}: can't be read: {}", path, std::strerror(errno)));
+  std::string text(longest_file + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > longest_file) throw KeyError(path + ": too long for a file with keys");
+  return text;
+}
+
+/// None if there is a word that is no role.
+std::optional<Roles> to_roles(const std::string& text) {
+  Roles roles;
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) {
+    if (word == "controller") {
+      roles.controller = true;
+    } else if (word == "supervisor") {
+      roles.supervisor = true;
+    } else if (word == "observer") {
+      roles.observer = true;
+    } else {
+      return std::nullopt;
+    }
+  }
+  return roles;
+}
+
+void write_text(const std::string& path, const std::string& text, mode_t mode) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  if (file < 0 && errno == EEXIST) {
+    throw KeyError(path + ": exists already; a key is never replaced, name another file");
+  }
+  if (file < 0) throw KeyError(fmt::format("{}: can't be written: {}", path, std::strerror(errno)));
+  const auto written = ::write(file, text.data(), text.size());
+  const bool is_closed = ::close(file) == 0;
+  if (written == static_cast<ssize_t>(text.size()) && is_closed) return;
+  ::unlink(path.c_str());
+  throw KeyError(path + ": can't be written");
+}
+
+}  // namespace
+
+std::string read_secret_key(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0 && (status.st_mode & 077) != 0) {
+    throw KeyError(fmt::format("{0}: others can read this secret key; chmod 600 {0}", path));
+  }
+  std::istringstream words(read_text(path));
+  std::string key, more;
+  words >> key;
+  if (!is_key(key) || (words >> more)) {
+    throw KeyError(path + ": not one secret key of 40 characters; 'ziggurat keygen' makes one");
+  }
+  return key;
+}
+
+std::vector<ClientKey> read_client_keys(const std::string& path) {
+  std::vector<ClientKey> clients;
+  std::set<std::string> seen;
+  std::string faults;
+  std::istringstream lines(read_text(path));
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const auto fault = [&](std::string_view text) {
+      faults += fmt::format("{}{}:{}: {}", faults.empty() ? "" : "\n", path, number, text);
+    };
+    // `#` is a character of keys, too: a comment begins a line, or follows a blank.
+    std::istringstream words(line);
+    ClientKey client;
+    std::string roles;
+    if (!(words >> client.public_key)) continue;
+    const bool is_comment = client.public_key[0] == '#' && !is_key(client.public_key);
+    if (is_comment) continue;
+    words >> roles;
+    std::getline(words >> std::ws, client.name);
+    const auto found = to_roles(roles);
+    if (!is_key(client.public_key)) {
+      fault("not a public key of 40 characters; 'ziggurat keygen' makes one");
+    } else if (roles.empty() || !found) {
+      fault(fmt::format("'{}' are no roles; controller, supervisor or observer, "
+                        "separated by commas, follow the key",
+                        roles.substr(0, 100)));
+    } else if (!seen.insert(client.public_key).second) {
+      fault("this key stands on an earlier line, too");
+    } else {
+      client.roles = *found;
+      clients.push_back(std::move(client));
+    }
+  }
+  if (!faults.empty()) throw KeyError(faults);
+  if (clients.empty()) throw KeyError(path + ": has no keys, so that nobody could connect");
+  return clients;
+}
+
+std::string write_key_pair(const std::string& prefix) {
+  std::array<char, key_length + 1> public_key, secret_key;
+  if (zmq_curve_keypair(public_key.data(), secret_key.data()) != 0) {
+    throw KeyError("this machine's ZeroMQ has no CURVE");
+  }
+  write_text(prefix + ".secret", std::string(secret_key.data()) + "\n", 0600);
+  try {
+    write_text(prefix + ".public", std::string(public_key.data()) + "\n", 0644);
+  } catch (const KeyError&) {
+    ::unlink((prefix + ".secret").c_str());
+    throw;
+  }
+  return public_key.data();
+}
+
+std::string public_key_of(const std::string& secret_key) {
+  std::array<char, key_length + 1> public_key;
+  if (zmq_curve_public(public_key.data(), secret_key.c_str()) != 0) {
+    throw KeyError("this machine's ZeroMQ has no CURVE");
+  }
+  return public_key.data();
+}
+
+}  // namespace ziggurat::network

@@ -1,0 +1,60 @@
+#pragma once
+// CURVE keys as they lie in files, Z85: 40 characters for 32 bytes.
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "wire/messages.h"
+
+namespace ziggurat::network {
+
+/// A file with keys that can't be used: one sentence with the file, what is wrong and what would
+/// be right.
+class KeyError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Roles that a connection may have.
+struct Roles {
+  bool controller = false, supervisor = false, observer = false;
+
+  bool allow(wire::Role role) const {
+    return (role == wire::Role::controller && controller) ||
+           (role == wire::Role::supervisor && supervisor) ||
+           (role == wire::Role::observer && observer);
+  }
+};
+inline constexpr Roles all_roles{true, true, true};
+
+/// Who may connect.
+struct ClientKey {
+  std::string public_key;  ///< Z85
+  Roles roles;
+  std::string name;  ///< for people; may be empty
+};
+
+/// How a server protects its endpoints.
+struct Curve {
+  std::string secret_key;  ///< Z85
+  std::vector<ClientKey> clients;
+};
+
+/// A secret key from a file that nobody else can read. @throws KeyError
+std::string read_secret_key(const std::string& path);
+
+/// Lines `KEY ROLE[,ROLE…] [NAME]`; `#` begins a comment. All faults of the file in one message.
+/// @throws KeyError
+std::vector<ClientKey> read_client_keys(const std::string& path);
+
+/// Writes PREFIX.secret, which only its owner can read, and PREFIX.public; replaces nothing.
+/// @returns the public key, Z85
+/// @throws KeyError
+std::string write_key_pair(const std::string& prefix);
+
+/// The public key of a secret one, both Z85.
+std::string public_key_of(const std::string& secret_key);
+
+}  // namespace ziggurat::network

@@ -1,0 +1,66 @@
+#include "physics/move.h"
+
+#include "physics/convert.h"
+
+namespace ziggurat::physics {
+namespace {
+
+void place(btCollisionObject& object, const btTransform& transform, btDynamicsWorld& world) {
+  object.setWorldTransform(transform);
+  object.setInterpolationWorldTransform(transform);
+  static_cast<contact::Collider*>(object.getUserPointer())->previous = transform;
+  if (object.getBroadphaseHandle() == nullptr) return;
+  world.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(
+      object.getBroadphaseHandle(), world.getDispatcher());
+  world.updateSingleAabb(&object);
+  object.activate(true);
+}
+
+void assemble_joints(btMultiBody& multi) {
+  for (int i = 0; i < multi.getNumLinks(); ++i) {
+    const btMultibodyLink& link = multi.getLink(i);
+    if (link.m_dofCount == 0) continue;
+    btScalar position[4] = {0, 0, 0, link.m_jointType == btMultibodyLink::eSpherical ? 1.0 : 0.0};
+    btScalar velocity[6] = {};
+    multi.setJointPosMultiDof(i, position);
+    multi.setJointVelMultiDof(i, velocity);
+  }
+}
+
+void move_multi(Body& body, const btTransform& base, btDynamicsWorld& world) {
+  btMultiBody& multi = *body.multi;
+  multi.setBaseWorldTransform(base);
+  multi.setBaseVel(btVector3(0, 0, 0));
+  multi.setBaseOmega(btVector3(0, 0, 0));
+  assemble_joints(multi);
+  multi.clearForcesAndTorques();
+  multi.clearVelocities();
+  btAlignedObjectArray<btQuaternion> rotations;
+  btAlignedObjectArray<btVector3> positions;
+  multi.forwardKinematics(rotations, positions);
+  multi.updateCollisionObjectWorldTransforms(rotations, positions);
+  for (auto& collider : body.link_colliders) place(*collider, collider->getWorldTransform(), world);
+}
+
+}  // namespace
+
+void move(Body& body, const math::Pose& pose, btDynamicsWorld& world) {
+  const math::Pose from_placed = pose * math::inverse(body.placed);
+  body.placed = pose;
+  for (LinkBody& link : body.links) {
+    link.placed = from_placed * link.placed;
+    link.turn = math::Quaternion::Identity();
+    link.spin = 0;
+  }
+  if (body.drive) body.drive->turret_angle = 0;
+  const LinkBody& root = body.links[body.reference_link];
+  const btTransform transform =
+      to_bullet(root.placed * math::Pose{root.center_of_mass, math::Quaternion::Identity()});
+  if (body.multi) return move_multi(body, transform, world);
+  body.rigid->setLinearVelocity(btVector3(0, 0, 0));
+  body.rigid->setAngularVelocity(btVector3(0, 0, 0));
+  body.rigid->clearForces();
+  place(*body.rigid, transform, world);
+}
+
+}  // namespace ziggurat::physics

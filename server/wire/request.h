@@ -1,0 +1,81 @@
+#pragma once
+// What supervisors and observers ask for, and what they are told (docs/protocol.md, section 9).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wire/messages.h"
+
+namespace ziggurat::wire {
+
+struct Request {
+  enum class Kind {
+    none,  ///< nothing was asked for
+    status,
+    pause,
+    resume,
+    step,
+    reset,
+    spawn,
+    remove,
+    move,
+    read,
+    shutdown,
+    snapshot,
+    restore,
+  };
+  std::uint64_t id = 0;  ///< the client's own
+  Kind kind = Kind::none;
+  std::uint64_t ticks = 0;            ///< step
+  std::optional<std::uint64_t> seed;  ///< reset
+  std::string text;                   ///< spawn: XML; remove, move: id of an entity
+  std::vector<std::string> entities;  ///< read: ids or globs
+  std::vector<double> position;       ///< move: as given; x, y, z [m] if it is right
+  std::vector<double> orientation;    ///< move: as given; w, x, y, z or nothing
+};
+
+/// Of wall time [s].
+struct Latency {
+  double p50 = 0, p99 = 0, max = 0;
+};
+
+struct SessionStatus {
+  enum class State { unspecified, ready, owing, answered, paused, draining, lost };
+  std::string client;  ///< name and version
+  Role role = Role::controller;
+  State state = State::ready;
+  std::vector<std::string> robots;  ///< ids
+  std::uint64_t tick = 0;           ///< of its last observation
+  double wall_waiting_s = 0;        ///< owing or lost: for how long
+  double wall_last_message_s = 0;   ///< since it was last heard of
+  Latency latency;                  ///< from observation to command
+  std::uint64_t misses = 0;         ///< deadlines missed
+  scene::DeadlinePolicy deadline;
+};
+
+struct Status {
+  enum class Phase { unspecified, gathering, running, paused, ending };
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;
+  Phase phase = Phase::gathering;
+  bool is_hardware_in_the_loop = false;
+  std::uint64_t seed = 0;
+  std::string scene, scene_hash;
+  std::uint64_t last_tick = 0;  ///< 0: until somebody stops it
+  std::vector<SessionStatus> sessions;
+  std::vector<std::string> free_robots;  ///< ids: the barrier waits for somebody to hold them
+  std::vector<std::string> gone_robots;  ///< ids
+  struct PhaseBudget {
+    std::string phase;
+    Latency wall;
+  };
+  std::vector<PhaseBudget> budget;
+  double wall_uptime_s = 0;
+};
+
+/// As protobuf's JSON, on one line.
+std::string to_json(const Status& status);
+
+}  // namespace ziggurat::wire

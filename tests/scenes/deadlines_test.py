@@ -1,0 +1,141 @@
+"""Controllers that stop, die and come back, under each deadline policy."""
+
+import os
+import re
+import signal
+import subprocess
+import time
+
+from harness import CONTROLLER_FAILED, FAULT, FINISHED, INTERRUPTED, LUA, SceneTest, main
+
+
+class Deadlines(SceneTest):
+    def disturb(self, number, *arguments):
+        """An endless run with a process per robot; that of r1 gets the signal after tick 20."""
+        process = self.start("run", self.scene, "--duration", 0, "--lua-processes", 0, *arguments)
+        self.read_until(process.stdout, r"^\[20 r2\]")
+        [(self.victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
+        os.kill(self.victim, number)
+        return process
+
+    def step_of(self, process, robot):
+        """Tick and count of the next line of a robot."""
+        found = self.read_until(process.stdout, rf"^\[(\d+) {robot}\] step (\d+)")
+        return int(found[1]), int(found[2])
+
+    def goes_on(self, process, ticks=40):
+        """The others are waited for and answer; returns the last tick."""
+        first, _ = self.step_of(process, "r2")
+        self.read_until(process.stdout, rf"^\[{first + ticks} r2\]")
+        return first + ticks
+
+    def interrupted(self, process):
+        self.interrupt(process)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, INTERRUPTED, outcome.err)
+        return outcome
+
+    def test_hold_goes_on_and_takes_the_late_one_back(self):
+        process = self.disturb(signal.SIGSTOP, "--deadline", "swing=hold:30")
+        tick = self.goes_on(process)
+        os.kill(self.victim, signal.SIGCONT)
+        found = self.read_until(process.stdout, r"^\[(\d+) r1\] step (\d+)")
+        self.assertGreaterEqual(int(found[1]), tick - 40)
+        outcome = self.interrupted(process)
+        self.assertRegex(outcome.err, r"\(r1\) missed its deadline of 30 ms at tick \d+")
+        self.assertRegex(outcome.err, r"controller 'swing' missed its deadline at \d+ ticks")
+
+    def test_zero_goes_on(self):
+        process = self.disturb(signal.SIGSTOP, "--deadline", "zero:30")
+        self.goes_on(process)
+        self.interrupted(process)
+
+    def test_hold_forgives_a_dead_one(self):
+        process = self.disturb(signal.SIGKILL, "--deadline", "hold:30")
+        self.goes_on(process, ticks=300)
+        self.interrupted(process)
+
+    def test_drop_takes_it_out_for_good(self):
+        for number in signal.SIGSTOP, signal.SIGKILL:
+            with self.subTest(number=number):
+                process = self.disturb(number, "--deadline", "drop:30:2")
+                self.goes_on(process, ticks=100)
+                outcome = self.interrupted(process)
+                self.assertRegex(outcome.err,
+                                 r"robot r1 \(controller 'swing'\) is dropped at tick \d+")
+                self.assertIn("drop:30:2", outcome.err)
+
+    def test_hold_drops_beyond_its_budget(self):
+        process = self.disturb(signal.SIGSTOP, "--deadline", "hold:30:5")
+        self.goes_on(process, ticks=100)
+        self.assertIn("robot r1 (controller 'swing') is dropped", self.interrupted(process).err)
+
+    def test_stop_ends_the_run_with_a_sentence(self):
+        process = self.disturb(signal.SIGSTOP, "--deadline", "stop:500")
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, CONTROLLER_FAILED)
+        self.assert_is_sentence(
+            outcome, r"controller 'swing' of robot r1 did not answer at tick \d+: .* stop:500 ")
+
+    def test_results_do_not_depend_on_it_while_answers_come_in_time(self):
+        expected = self.hash_of("--ticks", 40)
+        self.assertEqual(self.hash_of("--ticks", 40, "--deadline", "zero:20000"), expected)
+        process = self.start("run", self.scene, "--ticks", 40, "--real-time", 4, "--hash",
+                             "--lua-processes", 0)  # and who waits for ever loses nothing
+        self.read_until(process.stdout, r"^\[5 r2\]")
+        [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
+        os.kill(victim, signal.SIGSTOP)
+        time.sleep(0.5)
+        os.kill(victim, signal.SIGCONT)
+        outcome = self.finish(process)
+        self.assertEqual((outcome.code, outcome.lines[-1]), (FINISHED, expected))
+
+    def test_a_controller_that_does_not_exist(self):
+        outcome = self.run_scene("--deadline", "swong=hold:5", code=FAULT)
+        self.assert_is_sentence(outcome, "no controller 'swong'")
+
+
+class Keys(SceneTest):
+    def keygen(self, name):
+        outcome = self.ziggurat("keygen", "--out", name)
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        return outcome.out.strip()
+
+    def test_who_is_on_the_list_drives(self):
+        expected = self.hash_of("--ticks", 20)
+        server, friend = self.keygen("server"), self.keygen("friend")
+        self.assertEqual((self.folder / "friend.secret").stat().st_mode & 0o777, 0o600)
+        self.keygen("stranger")
+        self.write("clients", f"# those we know\n{friend} controller A friend\n")
+        process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--hash",
+                             "--curve-secret", "server.secret", "--curve-clients", "clients")
+        endpoint = re.match(r"endpoint (\S+)", process.stdout.readline())[1]
+        lua = [str(LUA), "--connect", endpoint, "--quiet",
+               "--server-key", server, "--curve-secret"]
+        stranger = subprocess.Popen([*lua, "stranger.secret"], cwd=self.folder)
+        self.started.append(stranger)
+        self.started.append(subprocess.Popen([*lua, "friend.secret"], cwd=self.folder))
+        outcome = self.finish(process)
+        self.assertEqual((outcome.code, outcome.lines[-1]), (FINISHED, expected), outcome.err)
+        stranger.kill()
+        stranger.wait()
+
+    def test_run_starts_its_own_controllers_beside_protected_endpoints(self):
+        expected = self.hash_of("--ticks", 5)
+        server = self.keygen("server")
+        self.write("clients", f"{server} controller\n")
+        self.environment["ZIGGURAT_SERVER_KEY"] = server  # not meant for them
+        self.environment["ZIGGURAT_CURVE_SECRET"] = "server.secret"
+        self.assertEqual(
+            self.hash_of("--ticks", 5, "--endpoint", "tcp://0.0.0.0:*", "--curve-secret",
+                         "server.secret", "--curve-clients", "clients"), expected)
+
+    def test_keys_are_never_replaced(self):
+        self.keygen("one")
+        outcome = self.ziggurat("keygen", "--out", "one")
+        self.assertEqual(outcome.code, FAULT)
+        self.assert_is_sentence(outcome, "one.secret: exists already")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,126 @@
+"""A run that is watched and steered from outside: ctl, top, metrics, hardware in the loop."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+import urllib.request
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BIN = pathlib.Path(os.environ.get("ZIGGURAT_BIN", ROOT / "build/release/bin"))
+DROP = ROOT / "scenes/dynamics3d_single_body_test.argos"
+VEHICLE = ROOT / "scenes/dynamics3d_multi_body_test.argos"
+
+
+class Server:
+    """ziggurat serve on a free port."""
+
+    def __init__(self, scene, *options):
+        self.process = subprocess.Popen(
+            [BIN / "ziggurat", "serve", scene, "--endpoint", "tcp://127.0.0.1:*", "--json", *options],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.url = json.loads(self.process.stdout.readline())["endpoint"]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        try:
+            self.process.communicate(timeout=20)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.communicate()
+
+    def ask(self, command, *words, check=True):
+        outcome = subprocess.run([BIN / "ziggurat", command, self.url, *words], capture_output=True,
+                                 text=True, timeout=60)
+        if check and outcome.returncode != 0:
+            raise AssertionError(f"{command} {words}: {outcome.stderr}")
+        return outcome
+
+    def read(self, *patterns):
+        return json.loads(self.ask("ctl", "read", *patterns, "--json").stdout)
+
+
+class Ctl(unittest.TestCase):
+    def test_steps_a_world_without_controllers(self):
+        with Server(DROP) as server:
+            self.assertIn("paused", server.ask("top", "--once").stdout)
+            first = server.read()
+            server.ask("ctl", "step", "5")
+            fallen = server.read()
+            self.assertLess(fallen["entities"][5]["position"][2], first["entities"][5]["position"][2])
+            status = json.loads(server.ask("ctl", "status", "--json").stdout)
+            self.assertEqual("5", status["tick"])
+            server.ask("ctl", "reset")
+            self.assertEqual(first["hash"], server.read()["hash"])
+            server.ask("ctl", "step", "5")
+            self.assertEqual(fallen["hash"], server.read()["hash"])
+
+    def test_moves_and_says_what_it_cannot_do(self):
+        with Server(DROP) as server:
+            entity = server.read()["entities"][0]["id"]
+            server.ask("ctl", "move", entity, "0.1,0.2,0.3", "90,0,0")
+            moved = server.read(entity)["entities"][0]
+            self.assertEqual([0.1, 0.2, 0.3], [round(v, 9) for v in moved["position"]])
+            self.assertAlmostEqual(0.5**0.5, moved["orientation"][3], places=9)
+            for words, reason in ((("move", "nobody", "0,0,0"), "UNKNOWN_ENTITY"),
+                                  (("step", "0"), "BAD_VALUE"),
+                                  (("spawn", os.devnull), "UNIMPLEMENTED"),
+                                  (("paus",), "did you mean 'pause'?")):
+                outcome = server.ask("ctl", *words, check=False)
+                self.assertEqual(1, outcome.returncode, words)
+                self.assertIn(reason, outcome.stderr)
+
+    def test_shuts_down(self):
+        with Server(DROP) as server:
+            server.ask("ctl", "shutdown")
+            self.assertEqual(130, server.process.wait(20))
+
+
+class Metrics(unittest.TestCase):
+    def test_say_whom_the_world_waits_for(self):
+        with Server(VEHICLE, "--metrics", "127.0.0.1:0") as server:
+            url = None
+            for line in server.process.stderr:
+                if "metrics at " in line:
+                    url = "http://" + line.split("metrics at http://")[1].split('"')[0].strip()
+                    break
+            for _ in range(100):  # until the first copy is there
+                metrics = urllib.request.urlopen(url + "/metrics", timeout=10).read().decode()
+                if metrics:
+                    break
+                time.sleep(0.05)
+            status = json.load(urllib.request.urlopen(url + "/status", timeout=10))
+        self.assertEqual("GATHERING", status["phase"])
+        self.assertIn("\nziggurat_free_robots 1\n", metrics)
+
+
+class Hil(unittest.TestCase):
+    def run_vehicle(self, *options):
+        return subprocess.run(
+            [BIN / "ziggurat", "run", VEHICLE, "--hil", "--real-time", "2", "--ticks", "10", *options],
+            capture_output=True, text=True, timeout=60)
+
+    def test_a_report_card_and_a_gate(self):
+        with tempfile.TemporaryDirectory() as folder:
+            card = pathlib.Path(folder) / "card.json"
+            good = self.run_vehicle("--gate", "max<30s,misses<100%", "--report-card", card)
+            self.assertEqual(0, good.returncode, good.stderr)
+            report = json.loads(card.read_text())
+            self.assertTrue(report["passed"])
+            self.assertGreater(report["controllers"][0]["answers"], 5)
+            picture = pathlib.Path(folder) / "card.svg"
+            bad = self.run_vehicle("--gate", "max<0us", "--report-card", picture)
+            self.assertEqual(4, bad.returncode, bad.stderr)
+            self.assertIn("gate: not met", bad.stderr)
+            self.assertIn("<svg", picture.read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()

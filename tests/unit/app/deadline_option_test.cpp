@@ -1,0 +1,59 @@
+#include "app/deadline_option.h"
+
+#include <gtest/gtest.h>
+
+#include "app/arguments.h"
+#include "app/options.h"
+
+namespace ziggurat::app {
+namespace {
+
+using scene::DeadlineAction;
+using scene::DeadlinePolicy;
+
+TEST(DeadlineOption, ActionDeadlineAndBudget) {
+  EXPECT_EQ(to_deadline("wait").policy, DeadlinePolicy{});
+  EXPECT_EQ(to_deadline("hold:50").policy, (DeadlinePolicy{DeadlineAction::hold, 50, 0}));
+  EXPECT_EQ(to_deadline("zero:5:10").policy, (DeadlinePolicy{DeadlineAction::zero, 5, 10}));
+  const auto named = to_deadline("a=b=stop:1000");
+  EXPECT_EQ(named.controller, "a=b");
+  EXPECT_EQ(named.policy.action, DeadlineAction::stop);
+}
+
+TEST(DeadlineOption, NonsenseIsRefusedWithAnExample) {
+  for (const char* text : {"", "hold", "hold:", "hold:0", "hold:-1", "hold:50:", "hold:5:1:2",
+                           "wait:5", "kill:5", "=hold:5", "drive=", "hold:99999999999",
+                           "hold:5:x", "hold:5.5"}) {
+    EXPECT_THROW(to_deadline(text), UsageError) << text;
+  }
+}
+
+TEST(DeadlineOption, ThoseThatNameAControllerWin) {
+  scene::Scene scene;
+  scene.controllers.resize(3);
+  scene.controllers[0].id = "drive";
+  scene.controllers[1].id = "lift";
+  scene.controllers[2].id = "look";
+  const auto options = parse_options({"s", "--deadline", "lift=drop:7", "--deadline", "hold:50",
+                                      "--deadline", "look=zero:1", "--deadline", "look=zero:2",
+                                      "--lease", "2.5"},
+                                     serve_options());
+  EXPECT_EQ(options.lease, 2.5);
+  const auto deadlines = deadlines_of(options.deadlines, scene);
+  ASSERT_EQ(deadlines.size(), 3U);
+  EXPECT_EQ(deadlines[0].policy.action, DeadlineAction::hold);
+  EXPECT_EQ(deadlines[1].policy.wall_deadline_ms, 7U);
+  EXPECT_EQ(deadlines[2].policy.wall_deadline_ms, 2U);
+  EXPECT_TRUE(deadlines[0].is_fixed);
+  EXPECT_FALSE(deadlines_of({}, scene)[0].is_fixed);
+  EXPECT_THROW(deadlines_of({to_deadline("nobody=wait")}, scene), UsageError);
+}
+
+TEST(Options, KeysBelongTogether) {
+  EXPECT_THROW(parse_options({"s", "--curve-secret", "x"}, serve_options()), UsageError);
+  EXPECT_THROW(parse_options({"s", "--curve-clients", "x"}, run_options()), UsageError);
+  EXPECT_THROW(parse_options({"s", "--lease", "-1"}, run_options()), UsageError);
+}
+
+}  // namespace
+}  // namespace ziggurat::app

@@ -1,0 +1,214 @@
+// CURVE on real sockets: who is on the list gets in, in the roles of its key; others get nothing.
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "network/keys.h"
+#include "network/server.h"
+#include "network/small_run.h"
+#include "ziggurat/ziggurat.h"
+
+namespace ziggurat::network {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr Wait patience{milliseconds{5000}, {}};
+
+struct Keys : ::testing::Test {
+  Keys() {
+    std::string pattern = "/tmp/ziggurat-keys-XXXXXX";
+    folder = ::mkdtemp(pattern.data());
+  }
+  ~Keys() override { std::filesystem::remove_all(folder); }
+
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+  std::string write(const std::string& name, const std::string& text, mode_t mode = 0600) const {
+    std::ofstream(path(name)) << text;
+    ::chmod(path(name).c_str(), mode);
+    return path(name);
+  }
+  static std::string complaint(auto action) {
+    try {
+      action();
+    } catch (const KeyError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  std::filesystem::path folder;
+};
+
+TEST_F(Keys, APairIsWrittenOnceAndReadBack) {
+  const std::string key = write_key_pair(path("mine"));
+  struct stat status {};
+  ASSERT_EQ(::stat(path("mine.secret").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0600U);
+  const std::string secret = read_secret_key(path("mine.secret"));
+  EXPECT_EQ(public_key_of(secret), key);
+  EXPECT_NE(complaint([&] { write_key_pair(path("mine")); }).find("exists"), std::string::npos);
+  EXPECT_EQ(read_secret_key(path("mine.secret")), secret);
+}
+
+TEST_F(Keys, ASecretThatOthersCanReadIsRefused) {
+  write_key_pair(path("mine"));
+  ::chmod(path("mine.secret").c_str(), 0640);
+  const auto text = complaint([&] { read_secret_key(path("mine.secret")); });
+  EXPECT_NE(text.find("chmod 600"), std::string::npos) << text;
+  const auto nonsense = complaint([&] { read_secret_key(write("no", "not a key\n")); });
+  EXPECT_NE(nonsense.find("keygen"), std::string::npos);
+  EXPECT_NE(complaint([&] { read_secret_key(path("nowhere")); }), "");
+}
+
+TEST_F(Keys, TheListHasKeysRolesAndNames) {
+  const std::string a = write_key_pair(path("a")), b = write_key_pair(path("b"));
+  const auto clients = read_client_keys(
+      write("list", "# who may connect\n\n" + a + " controller,observer Alice's robots\n" + b +
+                        "\tsupervisor\n"));
+  ASSERT_EQ(clients.size(), 2U);
+  EXPECT_EQ(clients[0].public_key, a);
+  EXPECT_EQ(clients[0].name, "Alice's robots");
+  EXPECT_TRUE(clients[0].roles.allow(wire::Role::observer));
+  EXPECT_FALSE(clients[0].roles.allow(wire::Role::supervisor));
+  EXPECT_FALSE(clients[1].roles.allow(wire::Role::controller));
+}
+
+TEST_F(Keys, EveryFaultOfTheListIsNamedWithItsLine) {
+  const std::string a = write_key_pair(path("a"));
+  const auto text = complaint([&] {
+    read_client_keys(write("list", a + " controller\nshort controller\n" + a + " king\n" + a +
+                                       "\n" + a + " observer\n"));
+  });
+  for (const auto* line : {":2:", ":3:", ":4:", ":5:"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  }
+  EXPECT_EQ(text.find(":1:"), std::string::npos);
+  EXPECT_NE(complaint([&] { read_client_keys(write("none", "# nobody\n")); }), "");
+}
+
+struct Protected : Keys {
+  Protected() {
+    server_key = write_key_pair(path("server"));
+    config.endpoints = {"tcp://127.0.0.1:*"};
+    config.private_endpoint = "ipc://" + path("private");
+    config.curve = {read_secret_key(path("server.secret")), {}};
+    config.curve->clients.push_back({write_key_pair(path("friend")), {true, false, false}, ""});
+    config.curve->clients.push_back({write_key_pair(path("viewer")), {false, false, true}, ""});
+    write_key_pair(path("stranger"));
+  }
+  Options options(const Server& server, const std::string& key, std::size_t endpoint = 1) const {
+    Options options;
+    options.endpoint = server.endpoints()[endpoint];
+    if (!key.empty()) {
+      options.server_key = server_key;
+      options.curve_secret = path(key + ".secret");
+    }
+    options.connect_timeout = milliseconds{700};
+    return options;
+  }
+  /// Serves whoever comes, for as long as a client takes.
+  void meanwhile(Server& server, auto client) const {
+    bool is_done = false;
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    std::thread thread([&] {
+      client();
+      is_done = true;
+      EXPECT_EQ(::write(ends[1], "x", 1), 1);
+    });
+    const std::array<int, 1> descriptors{ends[0]};
+    for (;;) {
+      const auto outcome = server.gather({milliseconds{5000}, descriptors});
+      if (outcome != Outcome::complete) break;
+      std::this_thread::sleep_for(milliseconds{5});
+      if (is_done) break;
+    }
+    thread.join();
+    ::close(ends[0]);
+    ::close(ends[1]);
+  }
+
+  std::string server_key;
+  Config config;
+};
+
+TEST_F(Protected, KeysOnTheListGetIn) {
+  const SmallRun small(2);
+  Server server(config, small.run());
+  ASSERT_EQ(server.endpoints().size(), 2U);
+  std::vector<std::thread> clients;
+  const auto drive = [&](const std::string& key, std::size_t endpoint, const std::string& robot) {
+    Options from = options(server, key, endpoint);
+    from.connect_timeout = milliseconds{5000};
+    from.robots = {robot};
+    Session session(from);
+    while (session.next()) session.robots()[0].joint("hinge").set_target(1);
+  };
+  clients.emplace_back(drive, "friend", 1, "robot0");
+  clients.emplace_back(drive, "", 0, "robot1");  // the private endpoint has no protection
+  world::Commands commands = small.commands();
+  ASSERT_EQ(server.gather(patience), Outcome::complete);
+  for (std::uint64_t tick = 0; tick < 20; ++tick) {
+    server.publish(small.observations(tick), {});
+    ASSERT_EQ(server.collect(commands, patience), Outcome::complete);
+  }
+  EXPECT_EQ(commands.joint_targets, (std::vector<double>{1, 1}));
+  server.finish({});
+  EXPECT_EQ(server.drain(patience), Outcome::complete);
+  for (auto& client : clients) client.join();
+}
+
+TEST_F(Protected, OthersGetNoAnswerToAnything) {
+  const SmallRun small(1);
+  Server server(config, small.run());
+  meanwhile(server, [&] {
+    EXPECT_THROW(Session(options(server, "stranger")), ConnectionError) << "not on the list";
+    EXPECT_THROW(Session(options(server, "")), ConnectionError) << "no key at all";
+    Options wrong = options(server, "friend");
+    wrong.server_key = public_key_of(read_secret_key(path("stranger.secret")));
+    EXPECT_THROW(Session{wrong}, ConnectionError) << "another server's key";
+  });
+  EXPECT_TRUE(server.take_report().notices.empty());
+}
+
+TEST_F(Protected, K3_ARoleThatTheKeyDoesNotHaveIsForbidden) {
+  const SmallRun small(1);
+  Server server(config, small.run());
+  meanwhile(server, [&] {
+    try {
+      Session session(options(server, "viewer"));
+      FAIL() << "a viewer drives";
+    } catch (const ProtocolError& error) {
+      EXPECT_EQ(error.details().code, "FORBIDDEN");
+    }
+  });
+}
+
+TEST_F(Protected, ClientsSayWhatIsWrongWithTheirKeys) {
+  Options options;
+  options.endpoint = "tcp://127.0.0.1:1";
+  options.server_key = server_key;
+  EXPECT_THROW(Session{options}, std::invalid_argument);
+  options.curve_secret = path("nowhere");
+  EXPECT_THROW(Session{options}, std::invalid_argument);
+  options.curve_secret = path("friend.secret");
+  options.server_key = "too short";
+  EXPECT_THROW(Session{options}, std::invalid_argument);
+}
+
+TEST_F(Protected, AnyAddressWillDo) {
+  const SmallRun small(1);
+  config.endpoints = {"tcp://0.0.0.0:*"};
+  EXPECT_NO_THROW(Server(config, small.run()));
+  config.curve.reset();
+  EXPECT_THROW(Server(config, small.run()), EndpointError);
+}
+
+}  // namespace
+}  // namespace ziggurat::network
