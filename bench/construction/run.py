@@ -14,6 +14,7 @@ import json
 import os
 import pathlib
 import resource
+import shutil
 import statistics
 import subprocess
 import sys
@@ -30,8 +31,6 @@ def side_by_side(count):
     """The stacking scene `count` times: robots and blocks in rows along x."""
     tree = ElementTree.parse(SCENE)
     root = tree.getroot()
-    for include in root.iter("include"):
-        include.set("file", str(SCENE.parent / include.get("file")))
     arena = root.find("arena")
     arena.set("size", "2, 20, 1")
     originals = list(arena)
@@ -59,12 +58,14 @@ def measure(tree, repeat):
     per_tick = int(tree.find("physics_engines/dynamics3d").get("iterations"))
     rows = []
     with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
-        scene, summary = pathlib.Path(folder) / "scene.argos", pathlib.Path(folder) / "summary.json"
+        shutil.copytree(SCENE.parent, pathlib.Path(folder) / "scenes")
+        scene = pathlib.Path(folder) / "scenes" / SCENE.name
+        summary = pathlib.Path(folder) / "summary.json"
         tree.write(scene)
         for _ in range(repeat):
             before = processor_time()
             subprocess.run([BIN / "ziggurat", "run", scene, "--quiet", "--summary", summary],
-                           check=True, stdout=subprocess.DEVNULL, cwd=SCENE.parent,
+                           check=True, stdout=subprocess.DEVNULL,
                            env=dict(os.environ, XDG_RUNTIME_DIR=folder))
             row = json.loads(summary.read_text())
             substeps = row["ticks"] * per_tick
