@@ -49,6 +49,7 @@ def _name(state: str, message: str) -> str:
 
 _table = [
     Case(_name(state, message), f"{message} in {state}: {due}",
+         (join("x", "arm0"),) if due == "welcome" else
          (*_STATES[state], _SAID[message], _heard(state, due)),
          fresh=message == "Leave" or state in ("READY", "DRAINING", "CLOSED"))
     for state, row in _DUE.items()
