@@ -225,8 +225,8 @@ int execute(const Options& options, Service service) {
     processes = start_all(plan_controllers(scene, simulation.layout(), scripts, surroundings),
                           simulation.layout());
   }
-  Supervision supervision(
-      {scene, path, seed, options.clock, plan.ticks.value_or(0), options.hil, simulation, server});
+  Supervision supervision({scene, path, run.scene_hash, seed, options.clock, plan.ticks.value_or(0),
+                           options.hil, simulation, server});
   std::optional<MetricsPort> metrics;
   if (!options.metrics.empty()) metrics.emplace(options.metrics, options.insecure);
   if (metrics) console.notice("metrics at " + metrics->url());
@@ -255,6 +255,7 @@ int execute(const Options& options, Service service) {
     throw;
   }
   complete(summary, simulation, server, scene, watch);
+  summary.seed = supervision.seed();  // a reset may have changed it
   watch.wind_down(end_message(summary));
   summary.failures = watch.failures();
   recorders.write_summary(summary);

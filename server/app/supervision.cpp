@@ -30,6 +30,7 @@ Supervision::Supervision(const Subject& subject) : subject_(subject) {}
 /// Those of one connection are answered in their order; a later one of another does not wait.
 void Supervision::serve() {
   note_standing();
+  if (stepping_ && !subject_.server.can_hear(*stepping_)) stepping_.reset();  // its steps go on
   for (network::Call& call : subject_.server.take_calls()) waiting_.push_back(std::move(call));
   std::vector<std::string> busy;  // connections whose turn it is not yet
   std::erase_if(waiting_, [&](const network::Call& call) {
@@ -52,6 +53,7 @@ Supervision::Reply Supervision::try_to(const network::Call& call) {
     case Kind::pause:
       return pause(call);
     case Kind::resume:
+      stepping_.reset();  // whoever waits for its end is told that the world is not paused
       steps_left_ = 0;
       subject_.server.resume();
       note_standing();
@@ -236,6 +238,7 @@ wire::Status Supervision::status() const {
   status.is_hardware_in_the_loop = subject_.is_hardware_in_the_loop;
   status.seed = subject_.seed;
   status.scene = subject_.path;
+  status.scene_hash = subject_.scene_hash;
   status.last_tick = subject_.last_tick;
   subject_.server.fill(status);
   for (std::size_t i = 0; i < budget_.size(); ++i) {

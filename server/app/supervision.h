@@ -24,7 +24,8 @@ class Supervision {
 
   struct Subject {
     const scene::Scene& scene;
-    std::string path;  ///< of the scene
+    std::string path;        ///< of the scene
+    std::string scene_hash;  ///< 16 hexadecimal digits
     std::uint64_t seed = 0;
     std::optional<scene::Clock> clock;  ///< overrides the scene's
     std::uint64_t last_tick = 0;        ///< 0: until stopped

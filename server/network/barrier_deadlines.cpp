@@ -51,8 +51,10 @@ scene::DeadlinePolicy Barrier::policy_of(std::size_t robot) const {
                                                : scene::DeadlinePolicy{};
 }
 
-/// A session answers for all its robots at once, so the longest of their deadlines counts.
+/// A session answers for all its robots at once, so the longest of their deadlines counts. When the
+/// last has left, what is still owed for it is due as before.
 void Barrier::set_patience(Session& session) {
+  if (session.roster.empty()) return;
   milliseconds longest{0};
   for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
     if (session.roster.gone[i]) continue;

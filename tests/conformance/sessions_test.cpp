@@ -177,6 +177,21 @@ TEST(Deadline, W1_ASessionWithARobotThatWaitsNeverMisses) {
   EXPECT_TRUE(peers.barrier.complete());
 }
 
+TEST(Deadline, W1_ASessionWhoseRobotsHaveAllLeftIsNotLateForThat) {
+  for (const bool waits : {true, false}) {
+    const auto action = waits ? DeadlineAction::wait : DeadlineAction::hold;
+    Pair pair(with_deadline(action, 50));
+    pair.peers.say("p", Peers::leave({0}));
+    pair.peers.pass(milliseconds{49});
+    EXPECT_FALSE(pair.peers.barrier.complete()) << "L2: it still owes its Command";
+    EXPECT_TRUE(pair.peers.inboxes["p"].empty());
+    pair.peers.pass(milliseconds{1});
+    EXPECT_EQ(pair.peers.barrier.complete(), !waits);
+    if (waits) pair.peers.say("p", Peers::command(5));
+    EXPECT_TRUE(pair.peers.barrier.complete());
+  }
+}
+
 TEST(Deadline, W2_ADeadConnectionIsUnderTheSamePolicy) {
   Pair pair(with_deadline(DeadlineAction::hold, 50));
   pair.peers.unreachable.insert("p");

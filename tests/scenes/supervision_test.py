@@ -77,6 +77,29 @@ class Ctl(unittest.TestCase):
                 self.assertEqual(1, outcome.returncode, words)
                 self.assertIn(reason, outcome.stderr)
 
+    def test_a_step_that_nobody_waits_for_any_more_is_in_nobodys_way(self):
+        with Server(DROP, "--duration", "0") as server:
+            impatient = subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "1000000"])
+            time.sleep(0.3)
+            impatient.kill()
+            impatient.wait()
+            server.ask("ctl", "pause")
+            before = int(json.loads(server.ask("ctl", "status", "--json").stdout)["tick"])
+            server.ask("ctl", "step", "2")
+            status = json.loads(server.ask("ctl", "status", "--json").stdout)
+            self.assertEqual(before + 2, int(status["tick"]))
+            self.assertRegex(status["sceneHash"], "^[0-9a-f]{16}$")
+
+    def test_resuming_ends_a_step(self):
+        with Server(DROP, "--duration", "0") as server:
+            stepping = subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "1000000"],
+                                        stderr=subprocess.PIPE, text=True)
+            time.sleep(0.3)
+            server.ask("ctl", "resume")
+            _, said = stepping.communicate(timeout=20)
+            self.assertEqual(1, stepping.returncode)
+            self.assertIn("OUT_OF_STATE", said)
+
     def test_shuts_down(self):
         with Server(DROP) as server:
             server.ask("ctl", "shutdown")
