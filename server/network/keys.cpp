@@ -74,7 +74,11 @@ std::string read_secret_key(const std::string& path) {
   if (::stat(path.c_str(), &status) == 0 && (status.st_mode & 077) != 0) {
     throw KeyError(fmt::format("{0}: others can read this secret key; chmod 600 {0}", path));
   }
-  std::istringstream words(read_text(path));
+  return parse_secret_key(read_text(path), path);
+}
+
+std::string parse_secret_key(const std::string& text, const std::string& path) {
+  std::istringstream words(text);
   std::string key, more;
   words >> key;
   if (!is_key(key) || (words >> more)) {
@@ -84,10 +88,14 @@ std::string read_secret_key(const std::string& path) {
 }
 
 std::vector<ClientKey> read_client_keys(const std::string& path) {
+  return parse_client_keys(read_text(path), path);
+}
+
+std::vector<ClientKey> parse_client_keys(const std::string& text, const std::string& path) {
   std::vector<ClientKey> clients;
   std::set<std::string> seen;
   std::string faults;
-  std::istringstream lines(read_text(path));
+  std::istringstream lines(text);
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
@@ -107,9 +115,10 @@ std::vector<ClientKey> read_client_keys(const std::string& path) {
     if (!is_key(client.public_key)) {
       fault("not a public key of 40 characters; 'ziggurat keygen' makes one");
     } else if (roles.empty() || !found) {
-      fault(fmt::format("'{}' are no roles; controller, supervisor or observer, "
-                        "separated by commas, follow the key",
-                        roles.substr(0, 100)));
+      fault(
+          fmt::format("'{}' are no roles; controller, supervisor or observer, "
+                      "separated by commas, follow the key",
+                      roles.substr(0, 100)));
     } else if (!seen.insert(client.public_key).second) {
       fault("this key stands on an earlier line, too");
     } else {

@@ -49,6 +49,12 @@ std::string read_secret_key(const std::string& path);
 /// @throws KeyError
 std::vector<ClientKey> read_client_keys(const std::string& path);
 
+/// The same of files that have been read: what they say.
+/// @param path  for messages
+/// @throws KeyError
+std::string parse_secret_key(const std::string& text, const std::string& path);
+std::vector<ClientKey> parse_client_keys(const std::string& text, const std::string& path);
+
 /// Writes PREFIX.secret, which only its owner can read, and PREFIX.public; replaces nothing.
 /// @returns the public key, Z85
 /// @throws KeyError

@@ -641,6 +641,19 @@ TEST(Takeover, L10_ADisplacedTokenIsGoodForNothing) {
   EXPECT_EQ(peers.told("old").refusal().error().code(), v1::Error::NO_SUCH_SESSION);
 }
 
+TEST(Reset, L6_WhoComesBeforeTick0GetsNoTickOfTheWorldThatWas) {
+  Pair pair({});
+  pair.peers.barrier.reset(7);
+  pair.peers.say("r", takeover("robot0"));
+  EXPECT_TRUE(pair.peers.told("r").has_welcome());  // and nothing else
+  EXPECT_EQ(pair.peers.inboxes["p"].back().message_case(), v1::ServerMessage::kDisplaced);
+  pair.peers.publish(0);
+  EXPECT_EQ(pair.peers.told("r").observation().tick(), 0U);
+  pair.peers.say("r", Peers::command(0, {1}));
+  pair.peers.say("q", Peers::command(0));
+  EXPECT_TRUE(pair.peers.barrier.complete());
+}
+
 TEST(Sessions, ThousandsComeAndGo) {
   const SmallRun small(3);
   Config config;

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "ziggurat/error.h"
-#include "ziggurat/v1/envelope.h"
 
 namespace ziggurat {
 namespace {
@@ -139,33 +138,6 @@ bool Connection::was_closed() {
   }
   zmq_msg_close(&event);
   return is_closed_;
-}
-
-/// What protobuf keeps for reuse is as large as the largest of each part ever was: now and then
-/// the observation begins anew.
-void Connection::forget(std::size_t size) {
-  constexpr std::size_t enough = std::size_t{64} << 20;
-  parsed_ += size;
-  if (parsed_ < enough) return;
-  parsed_ = size;
-  v1::Observation().Swap(&observation_);
-}
-
-Connection::Kind Connection::parse() {
-  const std::string_view bytes(static_cast<const char*>(zmq_msg_data(&frame_)),
-                               zmq_msg_size(&frame_));
-  const auto observation = v1::sole_field(bytes, v1::ServerMessage::kObservationFieldNumber);
-  const std::string_view content = observation.value_or(bytes);
-  if (observation) forget(content.size());
-  google::protobuf::MessageLite& message =
-      observation ? static_cast<google::protobuf::MessageLite&>(observation_) : message_;
-  if (zmq_msg_more(&frame_) != 0 ||
-      !message.ParseFromArray(content.data(), static_cast<int>(content.size()))) {
-    throw ConnectionError(endpoint_ + ": what answers there does not speak ziggurat.v1");
-  }
-  if (observation) return Kind::kObservation;
-  if (message_.has_observation()) observation_.Swap(message_.mutable_observation());
-  return message_.message_case();
 }
 
 }  // namespace ziggurat

@@ -35,11 +35,17 @@ std::string policy_of(const v1::DeadlinePolicy& from) {
   return text;
 }
 
-SessionStatus session_of(const v1::SessionStatus& from) {
+/// A later version of the protocol may have more roles.
+std::string role_of(v1::Role role) {
   constexpr std::size_t prefix = std::string_view("ROLE_").size();
+  if (!v1::Role_IsValid(role)) return "role " + std::to_string(role);
+  return lower(v1::Role_Name(role).substr(prefix));
+}
+
+SessionStatus session_of(const v1::SessionStatus& from) {
   SessionStatus to;
   to.client = from.client();
-  to.role = lower(v1::Role_Name(from.role()).substr(prefix));
+  to.role = role_of(from.role());
   to.state = lower(v1::SessionStatus::State_Name(from.state()));
   to.robots.assign(from.robots().begin(), from.robots().end());
   to.tick = from.tick();

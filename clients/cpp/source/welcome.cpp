@@ -37,6 +37,18 @@ void fill(const Options& options, v1::Hello& hello) {
   }
 }
 
+/// What is allocated because a number says so.
+void check_sizes(const v1::Welcome& welcome, const std::string& endpoint) {
+  constexpr std::uint32_t most_data_bytes = 65'536;  // of a packet, as in scenes
+  for (const v1::RobotDescription& robot : welcome.robots()) {
+    const std::uint32_t bytes = robot.range_and_bearing().data_size();
+    if (bytes <= most_data_bytes) continue;
+    throw ConnectionError(endpoint + ": the server announced range-and-bearing packets of " +
+                          std::to_string(bytes) + " bytes for robot '" + robot.id() + "'; " +
+                          std::to_string(most_data_bytes) + " are possible");
+  }
+}
+
 }  // namespace
 
 void Session::State::open() {
@@ -69,6 +81,7 @@ void Session::State::open() {
 }
 
 void Session::State::read(const v1::Welcome& welcome) {
+  check_sizes(welcome, options.endpoint);
   tick_length = std::chrono::nanoseconds(welcome.tick_ns());
   ticks_per_second = welcome.ticks_per_second();
   seed = welcome.seed();

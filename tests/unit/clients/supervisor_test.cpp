@@ -1,0 +1,98 @@
+// The supervisor's client against a server that says exactly what the test wants.
+
+#include "ziggurat/supervisor.h"
+
+#include <gtest/gtest.h>
+
+#include "fake_server.h"
+#include "ziggurat/error.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat {
+namespace {
+
+SupervisorOptions supervise(const FakeServer& server) {
+  SupervisorOptions options;
+  options.endpoint = server.endpoint;
+  options.connect_timeout = std::chrono::milliseconds{3000};
+  options.answer_timeout = std::chrono::milliseconds{3000};
+  return options;
+}
+
+v1::ServerMessage answer(const v1::ClientMessage& question) {
+  v1::ServerMessage message;
+  message.mutable_response()->set_id(question.request().id());
+  return message;
+}
+
+TEST(Supervisor, TellsWhoIsThere) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    auto message = answer(self.heard());
+    v1::Status& status = *message.mutable_response()->mutable_status();
+    status.set_tick(7);
+    status.set_phase(v1::Status::RUNNING);
+    v1::SessionStatus& session = *status.add_sessions();
+    session.set_role(v1::ROLE_OBSERVER);
+    session.set_state(v1::SessionStatus::OWING);
+    session.add_robots("a");
+    self.say(message);
+  });
+  Supervisor supervisor(supervise(server));
+  const ServerStatus status = supervisor.status();
+  EXPECT_EQ(status.tick, 7U);
+  EXPECT_EQ(status.phase, "running");
+  ASSERT_EQ(status.sessions.size(), 1U);
+  EXPECT_EQ(status.sessions[0].role, "observer");
+  EXPECT_EQ(status.sessions[0].state, "owing");
+  EXPECT_EQ(status.sessions[0].robots, std::vector<std::string>{"a"});
+  EXPECT_NE(supervisor.last_answer_json().find("ROLE_OBSERVER"), std::string::npos);
+}
+
+TEST(Supervisor, ServersOfLaterVersionsMayHaveMoreRoles) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    auto message = answer(self.heard());
+    auto& session = *message.mutable_response()->mutable_status()->add_sessions();
+    session.set_role(static_cast<v1::Role>(77));
+    session.set_state(static_cast<v1::SessionStatus::State>(77));
+    self.say(message);
+  });
+  Supervisor supervisor(supervise(server));
+  EXPECT_EQ(supervisor.status().sessions.at(0).role, "role 77");
+}
+
+TEST(Supervisor, WaitsForTheAnswerToItsOwnRequest) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    auto message = answer(self.heard());
+    const auto id = message.response().id();
+    message.mutable_response()->set_id(id + 1);
+    message.mutable_response()->set_tick(1);
+    self.say(message);
+    message.mutable_response()->set_id(id);
+    message.mutable_response()->set_tick(2);
+    self.say(message);
+  });
+  Supervisor supervisor(supervise(server));
+  EXPECT_EQ(supervisor.pause(), 2U);
+}
+
+TEST(Supervisor, WhatWasNotDoneIsAnException) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    auto message = answer(self.heard());
+    message.mutable_response()->mutable_error()->set_code(v1::Error::UNKNOWN_ENTITY);
+    self.say(message);
+  });
+  Supervisor supervisor(supervise(server));
+  try {
+    supervisor.remove("nobody");
+    FAIL() << "nothing was thrown";
+  } catch (const ProtocolError& error) {
+    EXPECT_EQ(error.details().code, "UNKNOWN_ENTITY");
+  }
+}
+
+}  // namespace
+}  // namespace ziggurat
