@@ -39,6 +39,20 @@ constexpr const char* models =
     "mass=\"1\"/></links><devices><leds medium=\"leds\"><led anchor=\"a\" offset=\"0,0,0\" "
     "color=\"red\"/></leds></devices><controller config=\"c\"/></prototype></models></m>";
 
+// What is no whole scene is what stands in the arena of this one.
+constexpr const char* before =
+    "<argos-configuration><framework><experiment ticks_per_second=\"10\"/></framework><controllers>"
+    "<lua_controller id=\"c\"><actuators><joints implementation=\"default\"><joint id=\"j\" "
+    "mode=\"velocity\" max_impulse=\"1\"/></joints></actuators><sensors><cameras "
+    "implementation=\"default\"><camera id=\"k\" anchor=\"a\" range=\"0.1:2\" position=\"0,0,0\" "
+    "orientation=\"0,0,0\" resolution=\"64,48\" focal_length=\"80,80\" principle_point=\"32,24\">"
+    "<tag_detector medium=\"tags\"/></camera></cameras></sensors><params script=\"a.lua\"/>"
+    "</lua_controller></controllers><physics_engines><dynamics3d "
+    "id=\"d\"/></physics_engines><media>"
+    "<led id=\"leds\"/><directional_led id=\"dirleds\"/><tag id=\"tags\"/><radio id=\"radio\"/>"
+    "<range_and_bearing id=\"rab\"/></media><arena size=\"9,9,9\">";
+constexpr const char* after = "</arena></argos-configuration>";
+
 /// What a scene includes comes from memory, never from this machine: a file of models, or for
 /// names with an s the scene itself under another identity.
 std::variant<File, std::string> open_from_memory(const std::filesystem::path& path,
@@ -55,7 +69,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ReadOptions options;
   options.lenient = size % 2 == 1;
   options.max_size = 8192;
-  const std::string text(reinterpret_cast<const char*>(data), size);
+  std::string text(reinterpret_cast<const char*>(data), size);
+  const bool is_whole = text.starts_with("<argos-configuration") || text.starts_with("<?");
+  if (!is_whole) text = before + text + after;
   options.open = [&text](const std::filesystem::path& path, std::size_t) {
     return open_from_memory(path, text);
   };
@@ -66,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fault |= problem.severity == Problem::Severity::fault;
   }
   require(result.ok() == !fault);
-  require(size <= options.max_size || fault);
+  require(text.size() <= options.max_size || fault);
   if (!result.ok()) return 0;
   require(result.scene.experiment.ticks_per_second >= 1 && result.scene.physics.iterations >= 1);
   for (const Entity& entity : result.scene.entities) check_entity(entity, result.scene);

@@ -1,0 +1,201 @@
+// Any bytes as a server's messages to the C++ client: its session ends with one of its two
+// exceptions or goes on, and what it hands to controllers and to Lua scripts holds together. Only
+// the socket is replaced: messages are the input, cut at `separator`. The first byte says whether
+// they meet a controller's session or a supervisor.
+
+#include <google/protobuf/stubs/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+#include "connection.h"
+#include "program/exchange.h"
+#include "ziggurat/error.h"
+#include "ziggurat/session.h"
+#include "ziggurat/supervisor.h"
+
+namespace {
+
+using namespace ziggurat;
+
+constexpr std::string_view separator = "\n--\n";
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+std::vector<std::string_view> frames;  // not received yet, the first one last
+double seen = 0;                       // so that everything is read
+
+void cut(std::string_view bytes) {
+  frames.clear();
+  for (;;) {
+    const auto end = bytes.find(separator);
+    frames.push_back(bytes.substr(0, end));
+    if (end == std::string_view::npos) break;
+    bytes.remove_prefix(end + separator.size());
+  }
+  std::ranges::reverse(frames);
+}
+
+}  // namespace
+
+namespace ziggurat {
+
+Connection::Connection(const Options& options) : endpoint_(options.endpoint) {
+  zmq_msg_init(&frame_);
+}
+Connection::~Connection() { zmq_msg_close(&frame_); }
+
+void Connection::send(const v1::ClientMessage& message) {
+  static std::vector<std::uint8_t> bytes;
+  bytes.resize(message.ByteSizeLong());
+  message.SerializeWithCachedSizesToArray(bytes.data());
+}
+
+std::optional<Connection::Kind> Connection::receive(std::optional<std::chrono::milliseconds>,
+                                                    const std::function<bool()>&) {
+  if (frames.empty()) {
+    is_closed_ = true;
+    throw ConnectionError("the server closed the connection");
+  }
+  zmq_msg_close(&frame_);
+  zmq_msg_init_size(&frame_, frames.back().size());
+  std::memcpy(zmq_msg_data(&frame_), frames.back().data(), frames.back().size());
+  frames.pop_back();
+  return parse();
+}
+
+}  // namespace ziggurat
+
+namespace {
+
+void see(Bytes bytes) {
+  for (const std::uint8_t byte : bytes) seen += byte;
+}
+
+void see_camera(const Camera& camera) {
+  for (const auto& led : camera.leds()) seen += led.center[0] + led.color.red;
+  for (const auto& led : camera.directional_leds()) seen += led.center[1] + led.color.blue;
+  for (const auto& tag : camera.tags()) {
+    seen += tag.center[0] + tag.corners[3][1] + static_cast<double>(tag.payload.size());
+  }
+  require(camera.image().empty() || camera.image().size() / 3 / camera.width() == camera.height());
+  see(camera.image());
+}
+
+void see_robot(Robot& robot) {
+  for (const Joint& joint : robot.joints()) seen += joint.encoder() + joint.target();
+  for (const Radio& radio : robot.radios()) {
+    require(radio.receives() || radio.received().empty());
+    for (const Bytes message : radio.received()) see(message);
+  }
+  for (const auto& sensor : robot.proximity_sensors()) seen += sensor.reading();
+  for (const Camera& camera : robot.cameras()) see_camera(camera);
+  if (const auto* device = robot.range_and_bearing()) {
+    for (const auto& packet : device->packets()) see(packet.data);
+    require(!device->sends() || device->data().size() == device->data_size());
+  }
+  if (const auto* sensor = robot.positioning()) seen += sensor->orientation[3];
+  if (const auto* sensor = robot.battery()) seen += sensor->time_left;
+  if (const auto* wheels = robot.wheels()) seen += wheels->reading().distance_right;
+  if (const auto* turret = robot.turret()) seen += turret->rotation();
+}
+
+void set_robot(Robot& robot) {
+  for (Joint& joint : robot.joints()) {
+    if (joint.has_motor()) joint.set_target(1);
+  }
+  for (Radio& radio : robot.radios()) {
+    if (radio.sends()) radio.send({});
+  }
+  for (Led& led : robot.leds()) led.set_color({1, 2, 3});
+  for (Led& led : robot.directional_leds()) led.set_color({1, 2, 3});
+  for (Tag& tag : robot.tags()) tag.set_payload(robot.id().substr(0, 10));
+  for (Magnet& magnet : robot.magnets()) magnet.set_current(1);
+  if (auto* device = robot.range_and_bearing(); device != nullptr && device->sends()) {
+    device->clear_data();
+  }
+  if (auto* wheels = robot.wheels(); wheels != nullptr && wheels->drives()) {
+    wheels->set_velocity(1, 2);
+  }
+  if (auto* turret = robot.turret(); turret != nullptr && turret->drives()) {
+    turret->set_mode(TurretMode::speed);
+    turret->set_rotation_speed(1);
+  }
+}
+
+/// As the runner of Lua scripts has it.
+void exchange(Robot& robot, lua::ScriptedRobot& scripted) {
+  lua::sense(robot, scripted);
+  for (auto& led : scripted.leds) led.is_fresh = true;
+  for (auto& tag : scripted.tags) tag.is_fresh = true;
+  if (scripted.range_and_bearing) {
+    auto& data = scripted.range_and_bearing->data;
+    data.is_fresh = scripted.range_and_bearing->has_transmitter;
+  }
+  lua::act(scripted, robot);
+}
+
+void drive(const Options& options) {
+  Session session(options);
+  std::vector<lua::ScriptedRobot> scripted;
+  for (Robot& robot : session.robots()) scripted.push_back(lua::describe(robot));
+  while (!frames.empty()) {
+    try {
+      if (!session.next()) break;
+    } catch (const ConnectionError&) {
+      continue;  // after bytes that are no message it goes on, if somebody wants it to
+    }
+    auto script = scripted.begin();
+    for (Robot& robot : session.robots()) {
+      see_robot(robot);
+      set_robot(robot);
+      exchange(robot, *script++);
+    }
+  }
+}
+
+void supervise() {
+  Supervisor supervisor({});
+  while (!frames.empty()) {
+    try {
+      const ServerStatus status = supervisor.status();
+      for (const SessionStatus& each : status.sessions) seen += each.latency.p99;
+      require(!supervisor.last_answer_json().empty());
+      supervisor.read();
+      require(!supervisor.last_answer_json().empty());
+      supervisor.pause();
+    } catch (const ConnectionError&) {
+    } catch (const ProtocolError&) {
+    }
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  google::protobuf::SetLogHandler(nullptr);  // it has a line for every text that is no UTF-8
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  static const Options options = [] {
+    Options all;
+    all.endpoint = "ipc:///input";
+    return all;
+  }();
+  cut({reinterpret_cast<const char*>(data + 1), size - 1});
+  try {
+    data[0] % 2 == 0 ? drive(options) : supervise();
+  } catch (const ConnectionError&) {
+  } catch (const ProtocolError&) {
+  }
+  return 0;
+}

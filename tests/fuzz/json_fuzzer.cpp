@@ -1,0 +1,31 @@
+// Any text, from a `{` on, is read as a client's message in JSON, and as a server's. What is
+// understood can be written again, and then is read as the same bytes.
+
+#include "receiver.h"
+#include "ziggurat/v1/json.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace {
+
+using namespace ziggurat;
+using fuzz::require;
+
+template <typename Message>
+void rewrite(std::string_view text) {
+  Message message;
+  if (!v1::from_json(text, message).empty()) return;
+  Message again;
+  require(v1::from_json(v1::to_json(message), again).empty());
+  require(again.message_case() == message.message_case());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::string text(reinterpret_cast<const char*>(data), size);
+  if (!text.starts_with('{')) text.insert(0, 1, '{');
+  fuzz::receive(text);
+  if (size % 8 == 0) rewrite<v1::ClientMessage>(text);
+  if (size % 8 == 1) rewrite<v1::ServerMessage>(text);
+  return 0;
+}
