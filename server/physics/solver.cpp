@@ -1,5 +1,6 @@
 #include "physics/solver.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 
 namespace ziggurat::physics {
@@ -7,6 +8,13 @@ namespace {
 
 // More makes rows overshoot and stacks tremble; less wastes sweeps.
 constexpr btScalar warm_start_share = 0.3;
+
+/// In several sums at once, always the same: one would be a chain of additions that wait for each
+/// other.
+inline btScalar dot(const btScalar* a, const btScalar* b, int count) {
+  using Vector = Eigen::Map<const Eigen::VectorXd>;
+  return Vector(a, count).dot(Vector(b, count));
+}
 
 }  // namespace
 
@@ -18,10 +26,8 @@ constexpr btScalar warm_start_share = 0.3;
 btScalar Solver::speed_change(const Row& row) const {
   btScalar speed = 0;
   const auto add_multi = [&](const btMultiBody& body, int jacobian_index) {
-    const int count = body.getNumDofs() + 6;
-    const btScalar* jacobian = &m_data.m_jacobians[jacobian_index];
-    const btScalar* velocity = body.getDeltaVelocityVector();
-    for (int i = 0; i < count; ++i) speed += jacobian[i] * velocity[i];
+    speed += dot(&m_data.m_jacobians[jacobian_index], body.getDeltaVelocityVector(),
+                 body.getNumDofs() + 6);
   };
   const auto add_rigid = [&](int id, const btVector3& normal, const btVector3& arm_normal) {
     const btSolverBody& body = m_tmpSolverBodyPool[id];
@@ -39,25 +45,6 @@ btScalar Solver::speed_change(const Row& row) const {
     add_rigid(row.m_solverBodyIdB, row.m_contactNormal2, row.m_relpos2CrossNormal);
   }
   return speed;
-}
-
-/// The same for both friction rows of a contact, side by side: each sum is a chain of additions
-/// that wait for each other, so two at once cost little more than one.
-std::pair<btScalar, btScalar> Solver::speed_changes(const Row& first, const Row& second) const {
-  if (!first.m_multiBodyA || first.m_multiBodyB || first.m_solverBodyIdB < 0 ||
-      m_tmpSolverBodyPool[first.m_solverBodyIdB].m_originalBody) {
-    return {speed_change(first), speed_change(second)};
-  }
-  const int count = first.m_multiBodyA->getNumDofs() + 6;
-  const btScalar* to_first = &m_data.m_jacobians[first.m_jacAindex];
-  const btScalar* to_second = &m_data.m_jacobians[second.m_jacAindex];
-  const btScalar* velocity = first.m_multiBodyA->getDeltaVelocityVector();
-  btScalar speed_first = 0, speed_second = 0;
-  for (int i = 0; i < count; ++i) {
-    speed_first += to_first[i] * velocity[i];
-    speed_second += to_second[i] * velocity[i];
-  }
-  return {speed_first, speed_second};
 }
 
 void Solver::apply(const Row& row, btScalar impulse) {
@@ -95,9 +82,8 @@ btScalar Solver::solve_row(const Row& row) {
 
 btScalar Solver::solve_friction(const Row& first, const Row& second, btScalar limit) {
   if (first.m_jacDiagABInv == 0 || second.m_jacDiagABInv == 0) return 0;
-  const auto [speed_first, speed_second] = speed_changes(first, second);
-  const btScalar wanted_first = first.m_rhs - speed_first * first.m_jacDiagABInv;
-  const btScalar wanted_second = second.m_rhs - speed_second * second.m_jacDiagABInv;
+  const btScalar wanted_first = first.m_rhs - speed_change(first) * first.m_jacDiagABInv;
+  const btScalar wanted_second = second.m_rhs - speed_change(second) * second.m_jacDiagABInv;
   btScalar to_first = first.m_appliedImpulse + wanted_first;
   btScalar to_second = second.m_appliedImpulse + wanted_second;
   if (to_first * to_first + to_second * to_second > limit * limit) {

@@ -8,8 +8,6 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 
-#include <utility>
-
 namespace ziggurat::physics {
 
 class Solver final : public btMultiBodyConstraintSolver {
@@ -29,7 +27,6 @@ class Solver final : public btMultiBodyConstraintSolver {
   using Row = btMultiBodySolverConstraint;
 
   btScalar speed_change(const Row& row) const;
-  std::pair<btScalar, btScalar> speed_changes(const Row& first, const Row& second) const;
   void apply(const Row& row, btScalar impulse);
   void warm_start();
   btScalar solve_row(const Row& row);
