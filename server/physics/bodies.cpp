@@ -7,6 +7,7 @@
 #include "physics/convert.h"
 #include "physics/geometry.h"
 #include "physics/turning_magnets.h"
+#include "physics/welding.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -65,13 +66,11 @@ std::optional<scene::Traction> traction_of(const scene::Entity& entity,
 
 /// Frames without body move with the first link.
 void add_frames(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
-  const Pose into = math::inverse(placed[0] * Pose{body.links[0].center_of_mass,
-                                                   math::Quaternion::Identity()});
+  const Pose into =
+      math::inverse(placed[0] * Pose{body.links[0].center_of_mass, math::Quaternion::Identity()});
   for (std::size_t i = 1; i < entity.links.size(); ++i) {
     LinkBody frame = link_body(entity.links[i], true, placed[i]);
-    frame.rigid = body.rigid.get();
-    frame.carrier = 0;
-    frame.in_carrier = to_bullet(into * placed[i]);
+    frame.in_part = into * placed[i];
     body.links.push_back(frame);
   }
   body.turret = entity.turret;
@@ -93,78 +92,91 @@ void add_drive(Body& body, const scene::Entity& entity, const scene::Physics& ph
 void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed,
                  const scene::Physics& physics) {
   const scene::Link& link = entity.links[0];
-  LinkBody part = link_body(link, entity.movable, placed[0]);
+  const LinkBody shape = link_body(link, entity.movable, placed[0]);
   const btTransform transform =
-      to_bullet(placed[0] * Pose{part.center_of_mass, math::Quaternion::Identity()});
+      to_bullet(placed[0] * Pose{shape.center_of_mass, math::Quaternion::Identity()});
   btRigidBody::btRigidBodyConstructionInfo info(
       entity.movable ? link.mass : 0, nullptr, nullptr,
-      entity.movable ? to_bullet(part.inertia) : btVector3(0, 0, 0));
+      entity.movable ? to_bullet(shape.inertia) : btVector3(0, 0, 0));
   info.m_startWorldTransform = transform;
   body.rigid = std::make_unique<btRigidBody>(info);
   furnish(body, *body.rigid, link, transform);
   body.rigid->setSleepingThresholds(sleeping_velocity, sleeping_angular_velocity);
+  Part part;
   part.rigid = body.rigid.get();
-  body.links.push_back(part);
+  part.moves = shape.moves;
+  part.mass = shape.mass;
+  part.inertia = shape.inertia;
+  body.parts.push_back(part);
+  body.links.push_back(shape);
   add_frames(body, entity, placed);
   add_drive(body, entity, physics);
 }
 
-/// A multi-body's links must be numbered from the root outwards; joints already are. Carried
-/// links have their carrier's number.
-void number_links(std::vector<LinkBody>& links, const scene::Entity& entity) {
-  int next = 0;
-  for (const scene::Joint& joint : entity.joints) {
-    LinkBody& child = links[joint.child];
-    if (child.carrier == LinkBody::carries_itself) child.index = next++;
-  }
-  for (LinkBody& link : links) {
-    if (link.carrier != LinkBody::carries_itself) link.index = links[link.carrier].index;
-  }
-}
-
-void set_up_joint(btMultiBody& multi, int index, const scene::Joint& joint, const LinkBody& parent,
-                  const LinkBody& child, int parent_index) {
-  const btVector3 inertia = to_bullet(child.inertia);
+void set_up_joint(Body& body, const scene::Joint& joint) {
+  const LinkBody& parent = body.links[joint.parent];
+  const LinkBody& child = body.links[joint.child];
+  const Part& part = body.parts[child.part];
+  const Pose pivot_in_parent = parent.frame_in_part() * joint.parent_frame;
+  const Pose child_frame = child.frame_in_part();
+  const Pose pivot = child_frame * joint.child_frame;
+  const btVector3 inertia = to_bullet(part.inertia);
   // Bullet's rotation takes the parent's coordinates to the child's.
-  const btQuaternion rotation = to_bullet(
-      math::Quaternion(joint.child_frame.orientation * joint.parent_frame.orientation.conjugate()));
-  const btVector3 to_pivot =
-      to_bullet(math::Vector3(joint.parent_frame.position - parent.center_of_mass));
-  const btVector3 from_pivot =
-      to_bullet(math::Vector3(child.center_of_mass - joint.child_frame.position));
-  const btVector3 axis = to_bullet(joint.axis);
+  const btQuaternion rotation =
+      to_bullet(math::Quaternion(pivot.orientation * pivot_in_parent.orientation.conjugate()));
+  const btVector3 to_pivot = to_bullet(pivot_in_parent.position);
+  const btVector3 from_pivot = to_bullet(math::Vector3(-pivot.position));
+  const btVector3 axis = to_bullet(math::Vector3(child_frame.orientation * joint.axis));
+  const int parent_index = body.parts[parent.part].index;
+  btMultiBody& multi = *body.multi;
   switch (joint.type) {
     case scene::JointType::fixed:
-      multi.setupFixed(index, child.mass, inertia, parent_index, rotation, to_pivot, from_pivot);
-      break;
+      break;  // welded
     case scene::JointType::spherical:
-      multi.setupSpherical(index, child.mass, inertia, parent_index, rotation, to_pivot, from_pivot,
-                           true);
+      multi.setupSpherical(part.index, part.mass, inertia, parent_index, rotation, to_pivot,
+                           from_pivot, true);
       break;
     case scene::JointType::prismatic:
-      multi.setupPrismatic(index, child.mass, inertia, parent_index, rotation, axis, to_pivot,
+      multi.setupPrismatic(part.index, part.mass, inertia, parent_index, rotation, axis, to_pivot,
                            from_pivot, true);
       break;
     case scene::JointType::revolute:
-      multi.setupRevolute(index, child.mass, inertia, parent_index, rotation, axis, to_pivot,
+      multi.setupRevolute(part.index, part.mass, inertia, parent_index, rotation, axis, to_pivot,
                           from_pivot, true);
       break;
   }
 }
 
+/// Bullet moves the first collider of each part, we the others.
+void lead(Body& body, const Part& part, LinkCollider& collider) {
+  btMultiBodyLinkCollider* leader =
+      part.index < 0 ? body.multi->getBaseCollider() : body.multi->getLink(part.index).m_collider;
+  if (leader) {
+    collider.follow(*link_collider(leader));
+  } else if (part.index < 0) {
+    body.multi->setBaseCollider(&collider);
+  } else {
+    body.multi->getLink(part.index).m_collider = &collider;
+  }
+}
+
 void add_link_colliders(Body& body, const scene::Entity& entity) {
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
-    const LinkBody& part = body.links[i];
-    if (!entity.links[i].collides || part.carrier != LinkBody::carries_itself) continue;
-    auto collider = std::make_unique<btMultiBodyLinkCollider>(body.multi.get(), part.index);
-    furnish(body, *collider, entity.links[i], part.transform());
-    if (part.index < 0) {
-      body.multi->setBaseCollider(collider.get());
-      if (!entity.movable) collider->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
+    const LinkBody& link = body.links[i];
+    if (!entity.links[i].collides || link.carrier != LinkBody::carries_itself) continue;
+    const Part& part = body.parts[link.part];
+    auto collider =
+        std::make_unique<LinkCollider>(body.multi.get(), part.index, to_bullet(link.in_part));
+    const btTransform part_pose = part.transform();
+    collider->setWorldTransform(part_pose);
+    collider->note();
+    lead(body, part, *collider);
+    furnish(body, *collider, entity.links[i], part_pose * to_bullet(link.in_part));
+    if (part.moves) {
+      collider->setActivationState(DISABLE_DEACTIVATION);
     } else {
-      body.multi->getLink(part.index).m_collider = collider.get();
+      collider->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
     }
-    if (part.moves) collider->setActivationState(DISABLE_DEACTIVATION);
     body.link_colliders.push_back(std::move(collider));
   }
 }
@@ -179,44 +191,40 @@ bool same_damping(const scene::Entity& entity) {
   return true;
 }
 
-void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed,
-                 bool magnetism) {
+/// Bullet's own damping is the dialect's law; where links differ our plug-in applies it.
+void set_damping(Body& body, const scene::Entity& entity) {
+  if (!same_damping(entity)) return;
+  body.multi->setLinearDamping(entity.links[0].damping.linear);
+  body.multi->setAngularDamping(entity.links[0].damping.angular);
+  for (LinkBody& link : body.links) link.damping = {};
+}
+
+void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose>& assembled,
+                 const std::vector<Pose>& placed, bool magnetism) {
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     const bool moves = entity.movable || i != entity.reference_link;
     body.links.push_back(link_body(entity.links[i], moves, placed[i]));
   }
-  if (magnetism) carry_turning_magnets(body.links, entity, placed);
-  number_links(body.links, entity);
-  const LinkBody& base = body.links[entity.reference_link];
-  const auto carried =
-      std::count_if(body.links.begin(), body.links.end(),
-                    [](const LinkBody& link) { return link.carrier != LinkBody::carries_itself; });
-  body.multi =
-      std::make_unique<btMultiBody>(static_cast<int>(entity.joints.size() - carried), base.mass,
-                                    to_bullet(base.inertia), !entity.movable, false);
+  if (magnetism) carry_turning_magnets(body.links, entity, assembled);
+  body.parts = weld(body.links, entity, assembled);
+  const Part& base = body.parts[0];
+  body.multi = std::make_unique<btMultiBody>(static_cast<int>(body.parts.size()) - 1, base.mass,
+                                             to_bullet(base.inertia), !entity.movable, false);
   btMultiBody& multi = *body.multi;
-  for (LinkBody& part : body.links) part.multi = &multi;
+  for (Part& part : body.parts) part.multi = &multi;
   for (const scene::Joint& joint : entity.joints) {
-    const LinkBody& child = body.links[joint.child];
-    if (child.carrier != LinkBody::carries_itself) continue;
-    set_up_joint(multi, child.index, joint, body.links[joint.parent], child,
-                 body.links[joint.parent].index);
+    if (body.links[joint.child].part != body.links[joint.parent].part) set_up_joint(body, joint);
   }
   multi.finalizeMultiDof();
   multi.setHasSelfCollision(false);
   multi.setCanSleep(false);
   multi.setUseGyroTerm(true);
-  // Bullet's own damping is the dialect's law; where links differ our plug-in applies it.
-  const scene::Damping damping = same_damping(entity) ? entity.links[0].damping : scene::Damping{};
-  multi.setLinearDamping(damping.linear);
-  multi.setAngularDamping(damping.angular);
-  if (same_damping(entity)) {
-    for (LinkBody& part : body.links) part.damping = {};
-  }
+  multi.setLinearDamping(0);
+  multi.setAngularDamping(0);
+  set_damping(body, entity);
   multi.setMaxAppliedImpulse(1e6);
   multi.setMaxCoordinateVelocity(1e6);
-  multi.setBaseWorldTransform(
-      to_bullet(base.placed * Pose{base.center_of_mass, math::Quaternion::Identity()}));
+  multi.setBaseWorldTransform(to_bullet(base_pose(body)));
   btAlignedObjectArray<btQuaternion> rotations;
   btAlignedObjectArray<btVector3> positions;
   multi.forwardKinematics(rotations, positions);
@@ -239,18 +247,24 @@ bool is_single_body(const scene::Entity& entity) {
 
 }  // namespace
 
-btTransform LinkBody::transform() const {
-  btTransform pose = rigid ? rigid->getWorldTransform() : multi->getBaseWorldTransform();
-  if (index >= 0) {
-    // Bullet moves colliders with each substep, the cached pose only when the next one begins.
-    const btMultibodyLink& link = multi->getLink(index);
-    pose = link.m_collider ? link.m_collider->getWorldTransform() : link.m_cachedWorldTransform;
-  }
-  if (carrier == carries_itself) return pose;
-  return pose * btTransform(to_bullet(turn) * in_carrier.getRotation(), in_carrier.getOrigin());
+Pose LinkBody::frame_in_part() const {
+  return in_part * Pose{-center_of_mass, math::Quaternion::Identity()};
 }
 
-void LinkBody::apply_force(const btVector3& force) const {
+Pose base_pose(const Body& body) {
+  const LinkBody& root = body.links[body.reference_link];
+  return root.placed * math::inverse(root.frame_in_part());
+}
+
+btTransform Part::transform() const {
+  if (rigid) return rigid->getWorldTransform();
+  if (index < 0) return multi->getBaseWorldTransform();
+  // Bullet moves colliders with each substep, the cached pose only when the next one begins.
+  const btMultibodyLink& link = multi->getLink(index);
+  return link.m_collider ? link_collider(link.m_collider)->part() : link.m_cachedWorldTransform;
+}
+
+void Part::apply_force(const btVector3& force) const {
   if (rigid) {
     rigid->applyCentralForce(force);
   } else if (index < 0) {
@@ -260,7 +274,7 @@ void LinkBody::apply_force(const btVector3& force) const {
   }
 }
 
-void LinkBody::apply_torque(const btVector3& torque) const {
+void Part::apply_torque(const btVector3& torque) const {
   if (rigid) {
     rigid->applyTorque(torque);
   } else if (index < 0) {
@@ -270,15 +284,16 @@ void LinkBody::apply_torque(const btVector3& torque) const {
   }
 }
 
+btTransform Body::transform(const LinkBody& link) const {
+  return parts[link.part].transform() *
+         btTransform(to_bullet(math::Quaternion(link.turn * link.in_part.orientation)),
+                     to_bullet(link.in_part.position));
+}
+
 void Body::motions(std::vector<Motion>& out) const {
-  out.resize(links.size());
+  out.resize(parts.size());
   if (rigid) {
-    const btTransform& pose = rigid->getWorldTransform();
-    for (std::size_t i = 0; i < links.size(); ++i) {
-      const btVector3 arm = links[i].transform().getOrigin() - pose.getOrigin();
-      out[i] = {rigid->getVelocityInLocalPoint(arm),
-                rigid->getAngularVelocity() + pose.getBasis().getColumn(2) * links[i].spin};
-    }
+    out[0] = {rigid->getLinearVelocity(), rigid->getAngularVelocity()};
     return;
   }
   // Bullet's tree velocities come in each link's own frame, the base first.
@@ -287,15 +302,18 @@ void Body::motions(std::vector<Motion>& out) const {
   omega.resize(count);
   velocity.resize(count);
   multi->compTreeLinkVelocities(&omega[0], &velocity[0]);
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    const LinkBody& link = links[i];
-    const bool carried = link.carrier != LinkBody::carries_itself;
-    const btMatrix3x3 basis = (carried ? links[link.carrier] : link).transform().getBasis();
-    out[i] = {basis * velocity[link.index + 1], basis * omega[link.index + 1]};
-    if (carried) {
-      out[i].velocity += out[i].angular_velocity.cross(basis * link.in_carrier.getOrigin());
-    }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const btMatrix3x3 basis = parts[i].transform().getBasis();
+    out[i] = {basis * velocity[parts[i].index + 1], basis * omega[parts[i].index + 1]};
   }
+}
+
+Motion Body::motion(const LinkBody& link, std::span<const Motion> parts_motion) const {
+  const btMatrix3x3 basis = parts[link.part].transform().getBasis();
+  Motion motion = parts_motion[link.part];
+  motion.velocity += motion.angular_velocity.cross(basis * to_bullet(link.in_part.position));
+  motion.angular_velocity += basis.getColumn(2) * link.spin;
+  return motion;
 }
 
 Body build(const scene::Entity& entity, const scene::Physics& physics) {
@@ -304,12 +322,13 @@ Body build(const scene::Entity& entity, const scene::Physics& physics) {
   body.placed = entity.pose;
   body.magnets = entity.devices.magnets;
   body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
-  std::vector<Pose> placed = assemble(entity);
-  for (Pose& pose : placed) pose = entity.pose * pose;
+  const std::vector<Pose> assembled = assemble(entity);
+  std::vector<Pose> placed;
+  for (const Pose& pose : assembled) placed.push_back(entity.pose * pose);
   if (is_single_body(entity) || entity.traction) {
     build_rigid(body, entity, placed, physics);
   } else {
-    build_multi(body, entity, placed, physics.magnetism.has_value());
+    build_multi(body, entity, assembled, placed, physics.magnetism.has_value());
   }
   return body;
 }

@@ -62,6 +62,39 @@ void Dynamics::substep(btScalar length) {
   clearForces();
 }
 
+void Dynamics::addCollisionObject(btCollisionObject* object, int group, int mask) {
+  btMultiBodyDynamicsWorld::addCollisionObject(object, group, mask);
+  btMultiBodyLinkCollider* ours = btMultiBodyLinkCollider::upcast(object);
+  if (ours && link_collider(ours)->displaced()) displaced_.push_back(link_collider(ours));
+}
+
+void Dynamics::removeCollisionObject(btCollisionObject* object) {
+  std::erase(displaced_, object);
+  btMultiBodyDynamicsWorld::removeCollisionObject(object);
+}
+
+void Dynamics::predictUnconstraintMotion(btScalar length) {
+  btDiscreteDynamicsWorld::predictUnconstraintMotion(length);
+}
+
+void Dynamics::integrateTransforms(btScalar length) {
+  btMultiBodyDynamicsWorld::integrateTransforms(length);
+  for (LinkCollider* collider : displaced_) {
+    if (collider->leader() == collider) collider->note();
+  }
+  for (LinkCollider* collider : displaced_) collider->settle();
+}
+
+void Dynamics::calculateSimulationIslands() {
+  btMultiBodyDynamicsWorld::calculateSimulationIslands();
+  for (const LinkCollider* collider : displaced_) {
+    if (collider->isStaticObject() || collider->leader() == collider) continue;
+    m_islandManager->getUnionFind().unite(collider->leader()->getIslandTag(),
+                                          collider->getIslandTag());
+  }
+  if (!displaced_.empty()) m_islandManager->storeIslandActivationState(this);
+}
+
 void Dynamics::updateAabbs() {
   // 1 mm, and what forces may add within the substep: up to a few times gravity.
   const btScalar least = btScalar(1e-3) + btScalar(15) * length_ * length_;

@@ -4,6 +4,10 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 
+#include <vector>
+
+#include "physics/link_collider.h"
+
 namespace ziggurat::physics {
 
 class Dynamics final : public btMultiBodyDynamicsWorld {
@@ -17,11 +21,22 @@ class Dynamics final : public btMultiBodyDynamicsWorld {
   /// Sets every moving collider's reach for the coming substep and its box accordingly.
   void updateAabbs() override;
 
+  void addCollisionObject(btCollisionObject* object, int group, int mask) override;
+  void removeCollisionObject(btCollisionObject* object) override;
+
+  /// Without the poses that multi-bodies would reach if nothing stopped them: nobody reads those.
+  void predictUnconstraintMotion(btScalar length) override;
+  /// Moves bodies, and the colliders that Bullet does not know of with them.
+  void integrateTransforms(btScalar length) override;
+  /// Colliders of one part are in one island.
+  void calculateSimulationIslands() override;
+
  private:
   void keep_in_box(btBroadphaseProxy& proxy, const btVector3& low, const btVector3& high);
 
   btDbvtBroadphase& broadphase_;
-  btScalar length_ = 0;  ///< of the substep under way [s]
+  btScalar length_ = 0;                   ///< of the substep under way [s]
+  std::vector<LinkCollider*> displaced_;  ///< those of our colliders
 };
 
 }  // namespace ziggurat::physics

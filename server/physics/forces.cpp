@@ -9,8 +9,8 @@ namespace ziggurat::physics {
 void Gravity::before_substep(std::span<Body> bodies, double) {
   for (const Body& body : bodies) {
     if (body.rigid && !body.rigid->isActive()) continue;
-    for (const LinkBody& link : body.links) {
-      if (link.moves && link.mass > 0) link.apply_force(btVector3(0, 0, -g_ * link.mass));
+    for (const Part& part : body.parts) {
+      if (part.moves) part.apply_force(btVector3(0, 0, -g_ * part.mass));
     }
   }
 }
@@ -28,15 +28,17 @@ void ViscousDamping::before_substep(std::span<Body> bodies, double) {
   for (const std::size_t entity : damped_) {
     const Body& body = bodies[entity];
     body.motions(motions_);
-    for (std::size_t i = 0; i < body.links.size(); ++i) {
-      const LinkBody& link = body.links[i];
+    for (const LinkBody& link : body.links) {
       if (!link.moves) continue;
-      const btVector3& v = motions_[i].velocity;
-      link.apply_force(-v * (link.mass * link.damping.linear * (1 + v.length())));
-      const btVector3& w = motions_[i].angular_velocity;
-      const btMatrix3x3 basis = link.transform().getBasis();
+      const Part& part = body.parts[link.part];
+      const auto [v, w] = body.motion(link, motions_);
+      const btVector3 force = -v * (link.mass * link.damping.linear * (1 + v.length()));
+      const btTransform pose = body.transform(link);
+      const btMatrix3x3& basis = pose.getBasis();
       const btVector3 momentum = basis * (to_bullet(link.inertia) * (basis.transpose() * w));
-      link.apply_torque(-momentum * (link.damping.angular * (1 + w.length())));
+      const btVector3 arm = pose.getOrigin() - part.transform().getOrigin();
+      part.apply_force(force);
+      part.apply_torque(arm.cross(force) - momentum * (link.damping.angular * (1 + w.length())));
     }
   }
 }

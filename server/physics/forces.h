@@ -5,7 +5,7 @@
 
 namespace ziggurat::physics {
 
-/// -m g at the centre of mass of every link that moves.
+/// -m g at the centre of mass of every part that moves.
 class Gravity final : public Plugin {
  public:
   explicit Gravity(double g) : g_(g) {}  ///< @param g  downward [m/s^2]

@@ -20,23 +20,19 @@ Magnets::Magnets(const scene::Magnetism& magnetism) : settings_(magnetism) {
   options_.taper = magnetism.taper;
 }
 
-/// A magnet in the frame of the centre of mass of the link it moves with.
+/// A magnet in the frame of the part that it moves with.
 Magnets::Placed Magnets::place(const Body& body, const scene::Magnet& magnet) const {
   Placed placed;
   placed.entity = body.entity;
   const bool on_origin = magnet.anchor.link == scene::Anchor::origin;
-  const std::size_t anchor =
-      on_origin ? body.reference_link : static_cast<std::size_t>(magnet.anchor.link);
-  const LinkBody& link = body.links[anchor];
-  Pose in_link;  // of the anchor frame, seen from the link's centre of mass
-  in_link.position = -link.center_of_mass;
-  if (on_origin) in_link = in_link * body.origin_from_reference;
-  placed.link = anchor;
-  Pose in_mover = in_link;
-  if (link.carrier != LinkBody::carries_itself) {
+  placed.link = on_origin ? body.reference_link : static_cast<std::size_t>(magnet.anchor.link);
+  const LinkBody& link = body.links[placed.link];
+  placed.part = link.part;
+  Pose in_mover = link.frame_in_part();  // the anchor frame
+  if (on_origin) in_mover = in_mover * body.origin_from_reference;
+  if (turns_freely(link, magnet)) {
+    placed.turning = placed.link;
     placed.link = static_cast<std::size_t>(link.carrier);
-    in_mover = from_bullet(link.in_carrier) * in_link;
-    if (turns_freely(link, magnet)) placed.turning = anchor;
   }
   placed.magnet.position = in_mover * magnet.offset;
   placed.magnet.shape = shape_of(magnet);
@@ -70,7 +66,7 @@ void Magnets::build_field() {
   carriers_.clear();
   std::vector<magnetism::Magnet> magnets;
   for (const Placed& placed : magnets_) {
-    const std::pair carrier(placed.entity, placed.link);
+    const std::pair carrier(placed.entity, placed.part);
     auto found = std::find(carriers_.begin(), carriers_.end(), carrier);
     if (found == carriers_.end()) found = carriers_.insert(carriers_.end(), carrier);
     magnets.push_back(placed.magnet);
@@ -84,15 +80,18 @@ void Magnets::build_field() {
 void Magnets::before_substep(std::span<Body> bodies, double substep) {
   if (magnets_.empty()) return;
   if (!field_) build_field();
+  const auto part_of = [&](std::size_t carrier) -> const Part& {
+    return bodies[carriers_[carrier].first].parts[carriers_[carrier].second];
+  };
   for (std::size_t i = 0; i < carriers_.size(); ++i) {
-    poses_[i] = from_bullet(bodies[carriers_[i].first].links[carriers_[i].second].transform());
+    poses_[i] = from_bullet(part_of(i).transform());
   }
   field_->evaluate(substep, poses_, currents_, wrenches_);
   for (std::size_t i = 0; i < carriers_.size(); ++i) {
-    const LinkBody& link = bodies[carriers_[i].first].links[carriers_[i].second];
-    if (!link.moves) continue;
-    link.apply_force(to_bullet(wrenches_[i].force));
-    link.apply_torque(to_bullet(wrenches_[i].torque));
+    const Part& part = part_of(i);
+    if (!part.moves) continue;
+    part.apply_force(to_bullet(wrenches_[i].force));
+    part.apply_torque(to_bullet(wrenches_[i].torque));
   }
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
     if (!magnets_[i].turning) continue;
@@ -100,20 +99,37 @@ void Magnets::before_substep(std::span<Body> bodies, double substep) {
   }
 }
 
-Magnets::Stiffest Magnets::stiffest_bond(std::span<const Body> bodies) {
+Magnets::Stiffest Magnets::stiffest_bond(std::span<const Body> bodies) const {
   Stiffest stiffest;
-  if (magnets_.empty()) return stiffest;
-  if (!field_) build_field();
-  for (std::size_t i = 0; i < carriers_.size(); ++i) {
-    const auto& [entity, link] = carriers_[i];
-    const LinkBody& body = bodies[entity].links[link];
-    if (!body.moves) continue;
-    const magnetism::BondedBody bonded{body.half_extents, Vector3::Zero(), body.mass, body.inertia};
-    const double rate =
-        magnetism::stiffest_rate(field_->magnets(), static_cast<std::uint32_t>(i), bonded);
-    if (rate > stiffest.rate) stiffest = {entity, rate};
+  for (const Body& body : bodies) {
+    for (std::size_t i = 0; i < body.links.size(); ++i) {
+      const double rate = stiffest_rate(body, i);
+      if (rate > stiffest.rate) stiffest = {body.entity, rate};
+    }
   }
   return stiffest;
+}
+
+/// Of a link's faces, with the mass of all that moves with it. In the link's axes about the
+/// part's centre of mass.
+double Magnets::stiffest_rate(const Body& body, std::size_t number) const {
+  const LinkBody& link = body.links[number];
+  const Part& part = body.parts[link.part];
+  if (!part.moves) return 0;
+  const Eigen::Matrix3d into = link.in_part.orientation.conjugate().toRotationMatrix();
+  std::vector<magnetism::Magnet> magnets;
+  for (const Placed& placed : magnets_) {
+    if (placed.entity != body.entity || placed.link != number) continue;
+    magnets.push_back(placed.magnet);
+    magnets.back().position = into * placed.magnet.position;
+  }
+  if (magnets.empty()) return 0;
+  const Eigen::Matrix3d inertia = into * part.inertia.asDiagonal() * into.transpose();
+  return magnetism::stiffest_rate(magnets, 0,
+                                  {.half_extents = link.half_extents,
+                                   .offset = into * link.in_part.position,
+                                   .mass = part.mass,
+                                   .inertia = inertia.diagonal()});
 }
 
 void Magnets::set_currents(std::span<const double> currents) {

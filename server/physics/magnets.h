@@ -26,18 +26,20 @@ class Magnets final : public Plugin {
     std::size_t entity = 0;
     double rate = 0;
   };
-  Stiffest stiffest_bond(std::span<const Body> bodies);
+  Stiffest stiffest_bond(std::span<const Body> bodies) const;
 
  private:
-  /// A magnet, and the link it moves with.
+  /// A magnet, and what it moves with.
   struct Placed {
     std::size_t entity = 0;
-    std::size_t link = 0;                ///< that moves and feels the force
+    std::size_t part = 0;                ///< that moves and feels the force
+    std::size_t link = 0;                ///< in whose shape it sits
     std::optional<std::size_t> turning;  ///< the link that shows its orientation
     magnetism::Magnet magnet;            ///< its body not yet numbered
   };
 
   Placed place(const Body& body, const scene::Magnet& magnet) const;
+  double stiffest_rate(const Body& body, std::size_t link) const;
   void build_field();
 
   magnetism::Options options_;
@@ -47,7 +49,7 @@ class Magnets final : public Plugin {
 
   // Made when the first substep after a change begins.
   std::optional<magnetism::Field> field_;
-  std::vector<std::pair<std::size_t, std::size_t>> carriers_;  // entity and link of each body
+  std::vector<std::pair<std::size_t, std::size_t>> carriers_;  // entity and part of each body
   std::vector<math::Pose> poses_;
   std::vector<magnetism::Wrench> wrenches_;
 };

@@ -39,7 +39,13 @@ void move_multi(Body& body, const btTransform& base, btDynamicsWorld& world) {
   btAlignedObjectArray<btVector3> positions;
   multi.forwardKinematics(rotations, positions);
   multi.updateCollisionObjectWorldTransforms(rotations, positions);
-  for (auto& collider : body.link_colliders) place(*collider, collider->getWorldTransform(), world);
+  for (auto& collider : body.link_colliders) {
+    if (collider->leader() == collider.get()) collider->note();
+  }
+  for (auto& collider : body.link_colliders) {
+    collider->settle();
+    place(*collider, collider->getWorldTransform(), world);
+  }
 }
 
 }  // namespace
@@ -53,9 +59,7 @@ void move(Body& body, const math::Pose& pose, btDynamicsWorld& world) {
     link.spin = 0;
   }
   if (body.drive) body.drive->turret_angle = 0;
-  const LinkBody& root = body.links[body.reference_link];
-  const btTransform transform =
-      to_bullet(root.placed * math::Pose{root.center_of_mass, math::Quaternion::Identity()});
+  const btTransform transform = to_bullet(base_pose(body));
   if (body.multi) return move_multi(body, transform, world);
   body.rigid->setLinearVelocity(btVector3(0, 0, 0));
   body.rigid->setAngularVelocity(btVector3(0, 0, 0));

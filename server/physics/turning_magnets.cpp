@@ -66,7 +66,7 @@ struct Load {
 }  // namespace
 
 void carry_turning_magnets(std::vector<LinkBody>& links, const scene::Entity& entity,
-                           const std::vector<math::Pose>& placed) {
+                           const std::vector<math::Pose>& assembled) {
   std::vector<std::vector<std::size_t>> carried(links.size());
   for (const scene::Joint& joint : entity.joints) {
     const scene::Link& link = entity.links[joint.child];
@@ -85,22 +85,19 @@ void carry_turning_magnets(std::vector<LinkBody>& links, const scene::Entity& en
     if (carried[i].empty()) continue;
     LinkBody& carrier = links[i];
     const math::Pose carrier_centre =
-        placed[i] * math::Pose{carrier.center_of_mass, math::Quaternion::Identity()};
+        assembled[i] * math::Pose{carrier.center_of_mass, math::Quaternion::Identity()};
     Load load(carrier);
-    std::vector<math::Pose> poses;
     for (const std::size_t child : carried[i]) {
       const math::Pose centre =
-          placed[child] * math::Pose{links[child].center_of_mass, math::Quaternion::Identity()};
-      poses.push_back(math::inverse(carrier_centre) * centre);
-      load.add(links[child].mass, poses.back().position);
+          assembled[child] * math::Pose{links[child].center_of_mass, math::Quaternion::Identity()};
+      load.add(links[child].mass, math::inverse(carrier_centre) * centre.position);
     }
     if (!load.balanced()) continue;
     carrier.mass = load.mass;
     carrier.inertia = load.inertia.diagonal();
-    for (std::size_t k = 0; k < poses.size(); ++k) {
-      LinkBody& child = links[carried[i][k]];
+    for (const std::size_t index : carried[i]) {
+      LinkBody& child = links[index];
       child.carrier = static_cast<int>(i);
-      child.in_carrier = to_bullet(poses[k]);
       child.mass = 0;
       child.inertia.setZero();
     }

@@ -15,9 +15,9 @@ namespace ziggurat::physics {
 /// one if it is a sphere at the end of the tree, on a spherical joint at its centre, with a magnet
 /// at its centre, inside its carrier's shape, and if the carrier with all it carries is balanced
 /// about its own centre and axes. Others stay links of the multi-body.
-/// @param placed  X_WL of all links
+/// @param assembled  X_EL of all links
 void carry_turning_magnets(std::vector<LinkBody>& links, const scene::Entity& entity,
-                           const std::vector<math::Pose>& placed);
+                           const std::vector<math::Pose>& assembled);
 
 /// Whether a magnet sits at the centre of a sphere that turns freely.
 bool turns_freely(const LinkBody& link, const scene::Magnet& magnet);

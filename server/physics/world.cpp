@@ -127,7 +127,7 @@ void World::Parts::add_joints(const scene::Entity& entity, Body& body) {
     moving.entity = body.entity;
     moving.index = i;
     moving.multi = body.multi.get();
-    moving.link = body.links[joint.child].index;
+    moving.link = body.parts[body.links[joint.child].part].index;
     if (joint.limit) {
       moving.limit = std::make_unique<btMultiBodyJointLimitConstraint>(
           body.multi.get(), moving.link, joint.limit->lower, joint.limit->upper);
@@ -251,12 +251,13 @@ void World::read(world::State& state) const {
       world::LinkState& out = state.links[body.first_link + i];
       out.pose = link.placed;
       if (p.stepped && link.moves) {
-        out.pose = from_bullet(link.transform());
+        out.pose = from_bullet(body.transform(link));
         out.pose.position -= out.pose.orientation * link.center_of_mass;
       }
-      out.angular_velocity = from_bullet(motions[i].angular_velocity);
+      const Motion motion = body.motion(link, motions);
+      out.angular_velocity = from_bullet(motion.angular_velocity);
       const math::Vector3 arm = out.pose.orientation * -link.center_of_mass;
-      out.velocity = from_bullet(motions[i].velocity) + out.angular_velocity.cross(arm);
+      out.velocity = from_bullet(motion.velocity) + out.angular_velocity.cross(arm);
     }
     const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
     state.origins[body.entity] = p.stepped ? reference * body.origin_from_reference : body.placed;
@@ -277,14 +278,14 @@ double World::energy() const {
   std::vector<Motion> motions;
   for (const Body& body : parts_->bodies) {
     body.motions(motions);
-    for (std::size_t i = 0; i < body.links.size(); ++i) {
-      const LinkBody& link = body.links[i];
-      if (!link.moves) continue;
-      const btTransform pose = link.transform();
+    for (std::size_t i = 0; i < body.parts.size(); ++i) {
+      const Part& part = body.parts[i];
+      if (!part.moves) continue;
+      const btTransform pose = part.transform();
       const btVector3 w = pose.getBasis().transpose() * motions[i].angular_velocity;
       total +=
-          link.mass * (motions[i].velocity.length2() / 2 + parts_->gravity * pose.getOrigin().z());
-      total += (to_bullet(link.inertia) * w).dot(w) / 2;
+          part.mass * (motions[i].velocity.length2() / 2 + parts_->gravity * pose.getOrigin().z());
+      total += (to_bullet(part.inertia) * w).dot(w) / 2;
     }
   }
   return total;

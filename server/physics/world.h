@@ -68,8 +68,8 @@ class World {
   /// rate, and the entity it belongs to; 0 where there is no magnetism.
   struct Stiffness {
     std::size_t entity = 0;
-    double product = 0;    ///< explicit steps are safe up to `safe` and unstable from 2 on
-    double substep = 0;    ///< internal [s]
+    double product = 0;  ///< explicit steps are safe up to `safe` and unstable from 2 on
+    double substep = 0;  ///< internal [s]
     double safe = 0;
   };
   Stiffness stiffest_bond() const;

@@ -1,0 +1,101 @@
+#include "physics/welding.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace ziggurat::physics {
+namespace {
+
+using Eigen::Matrix3d;
+using math::Pose;
+using math::Vector3;
+
+/// Off-diagonal inertia below this share of the diagonal is rounding.
+constexpr double rounding = 1e-12;
+
+/// X_ES of a shape's centre.
+Pose centre(const LinkBody& link, const Pose& assembled) {
+  return assembled * Pose{link.center_of_mass, math::Quaternion::Identity()};
+}
+
+std::vector<LinkBody*> links_of(std::vector<LinkBody>& links, std::size_t part) {
+  std::vector<LinkBody*> found;
+  for (LinkBody& link : links) {
+    if (link.part == part) found.push_back(&link);
+  }
+  return found;
+}
+
+Matrix3d inertia_about(const Vector3& point, const std::vector<LinkBody*>& links) {
+  Matrix3d sum = Matrix3d::Zero();
+  for (const LinkBody* link : links) {
+    const Matrix3d axes = link->in_part.orientation.toRotationMatrix();
+    const Vector3 arm = link->in_part.position - point;
+    sum += axes * link->inertia.asDiagonal() * axes.transpose();
+    sum += link->mass * (arm.squaredNorm() * Matrix3d::Identity() - arm * arm.transpose());
+  }
+  return sum;
+}
+
+/// Principal axes as a rotation; none where the inertia is diagonal already.
+math::Quaternion principal_axes(const Matrix3d& inertia) {
+  const Matrix3d rest = inertia - Matrix3d(inertia.diagonal().asDiagonal());
+  if (rest.norm() <= rounding * inertia.norm()) return math::Quaternion::Identity();
+  Matrix3d axes = Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia).eigenvectors();
+  if (axes.determinant() < 0) axes.col(2) *= -1;
+  return math::Quaternion(axes).normalized();
+}
+
+/// Moves a part's frame from its first link's centre to where all its links balance.
+void balance(Part& part, const std::vector<LinkBody*>& links) {
+  part.mass = 0;
+  Vector3 moment = Vector3::Zero();
+  for (const LinkBody* link : links) {
+    part.mass += link->mass;
+    moment += link->mass * link->in_part.position;
+  }
+  const Vector3 centre_of_mass = moment / part.mass;
+  const Matrix3d inertia = inertia_about(centre_of_mass, links);
+  const math::Quaternion axes = principal_axes(inertia);
+  const Matrix3d rotation = axes.toRotationMatrix();
+  part.inertia = (rotation.transpose() * inertia * rotation).diagonal();
+  const Pose into = math::inverse({centre_of_mass, axes});
+  for (LinkBody* link : links) link->in_part = into * link->in_part;
+}
+
+}  // namespace
+
+std::vector<Part> weld(std::vector<LinkBody>& links, const scene::Entity& entity,
+                       const std::vector<Pose>& assembled) {
+  std::vector<Part> parts;
+  std::vector<std::size_t> first;  // link of each part
+  const auto begin = [&](std::size_t link) {
+    Part part;
+    part.index = static_cast<int>(parts.size()) - 1;
+    part.moves = links[link].moves;
+    part.mass = links[link].mass;
+    part.inertia = links[link].inertia;
+    links[link].part = parts.size();
+    parts.push_back(part);
+    first.push_back(link);
+  };
+  begin(entity.reference_link);
+  for (const scene::Joint& joint : entity.joints) {  // from the root outwards
+    LinkBody& child = links[joint.child];
+    if (joint.type != scene::JointType::fixed && child.carrier == LinkBody::carries_itself) {
+      begin(joint.child);
+      continue;
+    }
+    child.part = links[joint.parent].part;
+    child.moves = parts[child.part].moves;
+    const std::size_t root = first[child.part];
+    child.in_part =
+        math::inverse(centre(links[root], assembled[root])) * centre(child, assembled[joint.child]);
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::vector<LinkBody*> welded = links_of(links, i);
+    if (parts[i].moves && welded.size() > 1) balance(parts[i], welded);
+  }
+  return parts;
+}
+
+}  // namespace ziggurat::physics
