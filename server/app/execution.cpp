@@ -1,11 +1,14 @@
 #include "app/execution.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "app/console.h"
 #include "app/drive.h"
@@ -20,6 +23,7 @@
 #include "app/supervision.h"
 #include "app/version.h"
 #include "app/watch.h"
+#include "network/reception.h"
 #include "recording/hash_file.h"
 #include "recording/output_file.h"
 
@@ -42,18 +46,15 @@ void wait_for_nobody(const Options& options, const scene::Scene& scene,
   }
 }
 
-network::Config network_config(const Options& options, Service service, const scene::Scene& scene,
-                               const PrivateFolder& folder) {
+// What can be said before there is a scene.
+network::Config network_config(const Options& options, Service service) {
   network::Config config;
   config.insecure = options.insecure;
   config.lease = std::chrono::milliseconds(static_cast<std::int64_t>(options.lease * 1000));
-  config.deadlines = deadlines_of(options.deadlines, scene);
-  if (options.hil) wait_for_nobody(options, scene, config.deadlines);
   if (!options.curve_secret.empty()) {
     config.curve = {network::read_secret_key(options.curve_secret),
                     network::read_client_keys(options.curve_clients)};
   }
-  if (service == Service::run) config.private_endpoint = "ipc://" + folder.path() + "/run";
   config.endpoints = options.endpoints;
   if (service == Service::serve && config.endpoints.empty())
     config.endpoints.emplace_back(default_endpoint);
@@ -99,8 +100,8 @@ std::vector<std::size_t> undriven_robots(const scene::Scene& scene, const world:
   return robots;
 }
 
-void announce(const Options& options, const network::Server& server, Console& console) {
-  const auto& endpoints = server.endpoints();
+void announce(const Options& options, const std::vector<std::string>& endpoints,
+              Console& console) {
   if (options.json) {
     console.result(
         nlohmann::ordered_json{{"endpoint", endpoints.front()}, {"endpoints", endpoints}}.dump());
@@ -156,6 +157,13 @@ void complete(Summary& summary, const simulation::Simulation& simulation,
   }
 }
 
+// On Ctrl-C before there is a world: reading and building have nothing to clean up.
+[[noreturn]] void end_while_loading() {
+  constexpr std::string_view text = "ziggurat: interrupted while loading\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+  std::_Exit(exit_code::interrupted);
+}
+
 // How controllers kept up, if anybody asks. False if the gate was missed.
 bool report_hil(const Options& options, const scene::Scene& scene, const network::Server& server,
                 const Summary& summary, Console& console) {
@@ -195,18 +203,25 @@ void conclude(const Options& options, const Summary& summary, Console& console) 
 int execute(const Options& options, Service service) {
   Console console({options.quiet, options.json});
   const auto& path = only_scene(options);
+  Signals signals;
+  auto config = network_config(options, service);
+  network::Reception reception(config, {signals.descriptor(), end_while_loading});
+  reception.say(0, "The scene is being read.");
+  if (service == Service::serve) announce(options, reception.endpoints(), console);
   const auto scene = load_scene(path, options, console);
+  reception.say(0.5, "The world is being built.");
   const auto plan = make_plan(options, scene);
   const auto seed = choose_seed(options, scene);
   simulation::Simulation simulation(scene, {seed, options.clock});
   for (const auto& notice : simulation.notices()) console.notice(path + ": " + notice);
   const auto scripts = script_paths(scene, simulation.layout(), path);
 
-  // Until here Ctrl-C just ends the program; from here on there is something to clean up.
-  Signals signals;
   const PrivateFolder folder;
   const auto run = wire_run(scene, simulation, scripts, seed, options.hil);
-  network::Server server(network_config(options, service, scene, folder), run);
+  config.deadlines = deadlines_of(options.deadlines, scene);
+  if (options.hil) wait_for_nobody(options, scene, config.deadlines);
+  if (service == Service::run) config.private_endpoint = "ipc://" + folder.path() + "/run";
+  network::Server server(config, run, reception);
   // A picture of tick 0 is taken before anybody had a say.
   const bool with_controllers =
       !options.without_controllers && !(options.pictures && plan.ticks == 0);
@@ -216,8 +231,6 @@ int execute(const Options& options, Service service) {
   if (options.seed.value_or(scene.experiment.random_seed) == 0) {
     console.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", seed));
   }
-  if (service == Service::serve) announce(options, server, console);
-
   std::vector<ControllerProcess> processes;
   if (service == Service::run && with_controllers) {
     const Surroundings surroundings{server.endpoints().front(), folder.path(), find_lua_runner(),

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "network/barrier.h"
+#include "network/reception.h"
 #include "network/socket.h"
 
 namespace ziggurat::network {
@@ -16,12 +17,12 @@ constexpr int messages_at_once = 1000;
 }  // namespace
 
 struct Server::State {
-  State(const Config& config, const wire::Run& run)
-      : socket(config),
+  State(const Config& config, const wire::Run& run, std::unique_ptr<Socket> listening)
+      : socket(std::move(listening)),
         barrier(
             config, run,
             [this](const std::string& peer, const auto& message) {
-              return socket.send(peer, message);
+              return socket->send(peer, message);
             },
             Clock::now()) {}
 
@@ -30,19 +31,31 @@ struct Server::State {
   template <class Done>
   bool receive(Done done, world::Commands* commands);
 
-  Socket socket;
+  std::unique_ptr<Socket> socket;
+  std::vector<Reception::Visitor> visitors;  // whose Hello is still to be handled
   Barrier barrier;
   Socket::Received received;
 };
 
 Server::Server(const Config& config, const wire::Run& run)
-    : state_(std::make_unique<State>(config, run)) {}
+    : state_(std::make_unique<State>(config, run, std::make_unique<Socket>(config))) {}
+
+Server::Server(const Config& config, const wire::Run& run, Reception& reception) {
+  auto [socket, visitors] = reception.hand_over();
+  if (!config.private_endpoint.empty()) socket->add_private(config);
+  state_ = std::make_unique<State>(config, run, std::move(socket));
+  state_->visitors = std::move(visitors);
+}
+
 Server::~Server() = default;
 
 /// Takes messages as they are there until `done` or there is none. True if done.
 template <class Done>
 bool Server::State::receive(Done done, world::Commands* commands) {
-  for (int i = 0; i < messages_at_once && socket.receive(received); ++i) {
+  for (const auto& visitor : std::exchange(visitors, {})) {
+    barrier.receive(visitor.peer, visitor.hello, commands, visitor.roles);
+  }
+  for (int i = 0; i < messages_at_once && socket->receive(received); ++i) {
     if (received.is_single_frame) {
       barrier.receive(received.peer, received.bytes, commands, received.roles);
     } else {
@@ -63,7 +76,7 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
     if (barrier.has_news()) return Outcome::woken;
     const auto wake = is_bounded ? std::min(end, barrier.due()) : barrier.due();
     const auto rest = std::chrono::ceil<milliseconds>(wake - Clock::now());
-    const auto ready = socket.poll({std::max(rest, milliseconds{0}), wait.descriptors});
+    const auto ready = socket->poll({std::max(rest, milliseconds{0}), wait.descriptors});
     if (ready == Socket::Ready::woken) return Outcome::woken;
     const auto now = Clock::now();
     if (is_bounded && now >= end) {
@@ -73,7 +86,7 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
   }
 }
 
-const std::vector<std::string>& Server::endpoints() const { return state_->socket.endpoints(); }
+const std::vector<std::string>& Server::endpoints() const { return state_->socket->endpoints(); }
 
 Outcome Server::gather(const Wait& wait) {
   return state_->wait_until([this] { return state_->barrier.gathered(); }, wait, nullptr);

@@ -33,6 +33,8 @@
 
 namespace ziggurat::network {
 
+class Reception;
+
 struct Config {
   std::vector<std::string> endpoints;  ///< all at once; tcp port `*` or 0 = any free one
   /// One that only this user's processes can reach, without protection; empty: none.
@@ -112,6 +114,10 @@ class Server {
   /// of the message size is replaced by the config's.
   /// @throws EndpointError, also if an address is taken
   Server(const Config& config, const wire::Run& run);
+  /// Goes on where a reception listens, which was made from the same config but for the private
+  /// endpoint and the deadlines. Whoever waits there is answered in the
+  /// first wait.
+  Server(const Config& config, const wire::Run& run, Reception& reception);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 
@@ -42,12 +43,9 @@ Socket::Socket(const Config& config) : context_(config.io_threads) {
       routers_[0].set(zmq::sockopt::curve_server, true);
       routers_[0].set(zmq::sockopt::curve_secretkey, config.curve->secret_key);
     }
-    if (!config.private_endpoint.empty()) {
-      routers_.push_back(make_router(config));
-      bind(routers_[1], config.private_endpoint, false);
-    }
     const bool allows_any = config.insecure || config.curve;
     for (const std::string& endpoint : config.endpoints) bind(routers_[0], endpoint, allows_any);
+    if (!config.private_endpoint.empty()) add_private(config);
   } catch (...) {
     close();
     throw;
@@ -60,6 +58,12 @@ Socket::~Socket() { close(); }
 void Socket::close() {
   routers_.clear();
   if (gatekeeper_) context_.shutdown();
+}
+
+void Socket::add_private(const Config& config) {
+  routers_.push_back(make_router(config));
+  bind(routers_.back(), config.private_endpoint, false);
+  std::rotate(endpoints_.begin(), endpoints_.end() - 1, endpoints_.end());
 }
 
 zmq::socket_t Socket::make_router(const Config& config) {

@@ -20,6 +20,9 @@ class Socket {
   explicit Socket(const Config& config);
   ~Socket();
 
+  /// Listens at the config's private endpoint, too, and names it first. @throws EndpointError
+  void add_private(const Config& config);
+
   const std::vector<std::string>& endpoints() const { return endpoints_; }
 
   Delivery send(const std::string& peer, const wire::Outbox& message);

@@ -96,7 +96,7 @@ TEST(StateTable, EveryCellHolds) {
   std::size_t tested = 0;
   for (std::size_t row = 1; row < table.size(); ++row) {
     const std::string& state = table[row][0];
-    if (state.ends_with("(reserved)")) continue;
+    if (state == "HELLO") continue;  // before there is a barrier: unit/network/reception_test.cpp
     for (std::size_t column = 1; column < header.size(); ++column) {
       SCOPED_TRACE(state + ", " + header[column]);
       const SmallRun small(2);

@@ -6,6 +6,7 @@ import random
 import socket
 import subprocess
 
+import zmq
 from harness import FINISHED, INTERRUPTED, LUA, SceneTest, main
 
 
@@ -62,6 +63,50 @@ class Serve(SceneTest):
         self.assertEqual(process.stdout.readline(), f"endpoint ipc://{self.folder}/s\n")
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def hello(self, endpoint, meanwhile=lambda: None):
+        """The first answer to a Hello, and the first that is no Loading; `meanwhile` before it."""
+        with zmq.Context() as context, context.socket(zmq.DEALER) as dealer:
+            dealer.linger, dealer.rcvtimeo = 0, 20_000
+            dealer.connect(endpoint)
+            hello = {"version": {"major": 1}, "role": "ROLE_CONTROLLER", "robots": ["*"]}
+            dealer.send_json({"hello": hello})
+            first = answer = dealer.recv_json()
+            meanwhile()
+            while "loading" in answer:
+                answer = dealer.recv_json()
+            return first, answer
+
+    def crowd(self):
+        """A scene that takes some seconds to place its entities, with one robot."""
+        text = self.scene.read_text()
+        crowd = '''<distribute>
+          <position method="uniform" min="-99,-99,9" max="99,99,9"/>
+          <orientation method="constant" values="0,0,0"/>
+          <entity quantity="40000" max_trials="1000">
+            <box id="crowd" size="0.5,0.5,0.1" movable="false"/>
+          </entity>
+        </distribute>'''
+        return self.write("crowd.argos", text.replace("</arena>", crowd + "</arena>"))
+
+    def test_listens_before_the_world_is_there(self):
+        self.scene = self.crowd()
+        process, endpoint = self.serve("--ticks", 0)
+        loading, answer = self.hello(endpoint)
+        self.assertIn("loading", loading)
+        self.assertIn("welcome", answer)
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_interrupted_while_loading(self):
+        self.scene = self.crowd()
+        process, endpoint = self.serve("--ticks", 0)
+        loading, answer = self.hello(endpoint, lambda: self.interrupt(process))
+        self.assertIn("loading", loading)
+        self.assertEqual(answer["refusal"]["error"]["code"], "OUT_OF_STATE")
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, INTERRUPTED)
+        self.assertIn("interrupted while loading", outcome.err)
 
     def test_garbage_changes_nothing(self):
         expected = self.hash_of("--ticks", 20)
