@@ -67,7 +67,9 @@ TEST(TickPath, SensingAndDrivingAllocateNothing) {
       }
     }
     if (session.tick() == ticks / 2) before = allocations;
-    if (session.tick() > ticks / 2) EXPECT_EQ(allocations, before) << session.tick();
+    if (session.tick() > ticks / 2) {
+      EXPECT_EQ(allocations, before) << session.tick();
+    }
   }
   EXPECT_EQ(tags, 10 * ticks);
   EXPECT_GT(before, 0U) << "they are not counted";

@@ -99,7 +99,7 @@ TEST_F(DeviceWire, PicturesCountToo) {
 
 TEST_F(DeviceWire, WelcomeDescribesCameras) {
   Outbox outbox;
-  outbox.welcome(run.run(), roster, {.token = "token"});
+  outbox.welcome(run.run(), roster, Welcome{"token", 0, Role::controller, 0, 0, {}});
   const auto welcome = told(outbox).welcome();
   EXPECT_EQ(welcome.robots(1).cameras_size(), 0);
   ASSERT_EQ(welcome.robots(0).cameras_size(), 1);

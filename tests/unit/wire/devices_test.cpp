@@ -244,7 +244,7 @@ TEST_F(DeviceWire, ASessionThatHearsTooMuchIsNotToldAnything) {
 
 TEST_F(DeviceWire, WelcomeDescribesThem) {
   Outbox outbox;
-  outbox.welcome(run.run(), roster, {.token = "token"});
+  outbox.welcome(run.run(), roster, Welcome{"token", 0, Role::controller, 0, 0, {}});
   const auto welcome = told(outbox).welcome();
   const v1::RobotDescription& a = welcome.robots(0);
   const v1::RobotDescription& b = welcome.robots(1);

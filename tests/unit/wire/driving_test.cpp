@@ -130,7 +130,7 @@ TEST_F(Driving, ReadingsOfThoseThatMeasure) {
 
 TEST_F(Driving, WelcomeDescribesThem) {
   Outbox outbox;
-  outbox.welcome(run.run(), roster, {.token = "token"});
+  outbox.welcome(run.run(), roster, Welcome{"token", 0, Role::controller, 0, 0, {}});
   const auto welcome = told(outbox).welcome();
   EXPECT_FALSE(welcome.robots(1).has_wheels() || welcome.robots(1).has_turret());
   const v1::RobotDescription& a = welcome.robots(0);

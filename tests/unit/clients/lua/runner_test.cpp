@@ -20,11 +20,17 @@ using std::chrono::milliseconds;
 
 constexpr network::Wait patience{milliseconds{5000}, {}};
 
+network::Config local_config() {
+  network::Config config;
+  config.endpoints = {"tcp://127.0.0.1:*"};
+  return config;
+}
+
 /// Robots robot0 … robot2 with a joint `hinge` each that reads 100 * tick + i, all run by one
 /// script; ticks 0 to 4.
 class RunnerTest : public ScriptTest {
  protected:
-  RunnerTest() : server_({.endpoints = {"tcp://127.0.0.1:*"}}, small_.run()) {}
+  RunnerTest() : server_(local_config(), small_.run()) {}
   ~RunnerTest() override { allow_scripts(); }
 
   void run(const std::string& script) {
