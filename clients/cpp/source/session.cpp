@@ -126,6 +126,7 @@ bool Session::State::wait() {
         break;
       case Connection::Kind::kError:
         if (is_harmless(message.error())) {
+          if (message.error().code() == v1::Error::DEADLINE_MISSED) ++missed;
           if (message.error().code() != v1::Error::DUPLICATE_TICK) repeat();
           break;
         }
@@ -202,6 +203,8 @@ std::uint32_t Session::ticks_per_second() const noexcept { return state_->ticks_
 std::uint64_t Session::seed() const noexcept { return state_->seed; }
 const std::string& Session::scene_hash() const noexcept { return state_->scene_hash; }
 const std::string& Session::server_version() const noexcept { return state_->server_version; }
+const std::string& Session::token() const noexcept { return state_->token; }
+std::uint64_t Session::missed() const noexcept { return state_->missed; }
 
 Robot& Session::robot(std::string_view id) {
   for (Robot& robot : state_->robots) {

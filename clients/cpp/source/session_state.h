@@ -57,6 +57,8 @@ struct Session::State {
   std::uint64_t seed = 0;
   std::string scene_hash;
   std::string server_version;
+  std::string token;
+  std::uint64_t missed = 0;
 };
 
 /// The server's words as an exception; `holder` if it refused for somebody else's sake.

@@ -35,6 +35,14 @@ void fill(const Options& options, v1::Hello& hello) {
   if (options.robots.empty() && options.controller.empty() && !options.lua_only) {
     hello.add_robots("*");
   }
+  hello.set_session_token(options.session_token);
+  hello.set_takeover(options.takeover);
+  if (options.deadline) {
+    v1::DeadlinePolicy& policy = *hello.mutable_deadline_policy();
+    policy.set_action(static_cast<v1::DeadlinePolicy::Action>(options.deadline->action));
+    policy.set_wall_deadline_ms(static_cast<std::uint32_t>(options.deadline->after.count()));
+    policy.set_miss_budget(options.deadline->miss_budget);
+  }
 }
 
 /// What is allocated because a number says so.
@@ -87,6 +95,7 @@ void Session::State::read(const v1::Welcome& welcome) {
   seed = welcome.seed();
   scene_hash = welcome.scene_hash();
   server_version = welcome.server_version();
+  token = welcome.session_token();
   log.max_bytes = std::max<std::size_t>(welcome.max_message_bytes() / 4, std::size_t{1} << 16);
   std::size_t reading_count = 0;
   std::size_t target_count = 0;

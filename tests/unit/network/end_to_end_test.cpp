@@ -191,6 +191,53 @@ TEST(EndToEnd, ALostRobotIsTakenAgainAtTheSameTick) {
   heir.join();
 }
 
+TEST(EndToEnd, ASessionIsTakenUpByItsToken) {
+  const SmallRun small(1);
+  Config config = local_config();
+  config.lease = milliseconds{60'000};
+  Server server(config, small.run());
+  std::thread client([&] {
+    auto options = options_for(server, {"*"});
+    auto first = std::make_unique<Session>(options);
+    EXPECT_TRUE(first->next());
+    EXPECT_TRUE(first->next());
+    options.session_token = first->token();
+    options.takeover = true;  // its connection is still there
+    Session second(options);
+    EXPECT_EQ(second.token(), first->token());
+    EXPECT_TRUE(second.next());
+    EXPECT_EQ(second.tick(), 1U) << "the same tick again";
+    EXPECT_THROW(first->next(), ProtocolError) << "it is displaced";
+    do {
+      second.robots()[0].joint("hinge").set_target(4);
+    } while (second.next());
+  });
+  world::Commands commands = small.commands();
+  serve(server, small, 3, commands);
+  client.join();
+  EXPECT_EQ(commands.joint_targets, std::vector<double>{4});
+}
+
+TEST(EndToEnd, AWishForADeadlineIsGrantedAndMissesAreCounted) {
+  const SmallRun small(1);
+  Server server(local_config(), small.run());
+  std::uint64_t missed = 0;
+  std::thread client([&] {
+    auto options = options_for(server, {"*"});
+    options.deadline = {Deadline::Action::hold, milliseconds{20}, 0};
+    Session session(options);
+    while (session.next()) {
+      if (session.tick() == 1) std::this_thread::sleep_for(milliseconds{200});
+    }
+    missed = session.missed();
+  });
+  world::Commands commands = small.commands();
+  serve(server, small, 2, commands);
+  client.join();
+  EXPECT_GE(missed, 1U);
+  EXPECT_GE(server.missed_ticks()[0], 1U);
+}
+
 TEST(EndToEnd, AReadableDescriptorWakesTheWait) {
   const SmallRun small(1);
   Server server(local_config(), small.run());

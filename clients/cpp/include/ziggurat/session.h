@@ -15,6 +15,20 @@
 
 namespace ziggurat {
 
+/// What happens when the session has not answered an observation after so much wall time.
+struct Deadline {
+  enum class Action {
+    wait = 1,  ///< the world waits for ever
+    hold,      ///< what was commanded before stays
+    zero,      ///< the robots' commands become zero until they are commanded anew
+    drop,      ///< the robots leave the run for good
+    stop,      ///< the run ends
+  };
+  Action action = Action::wait;
+  std::chrono::milliseconds after{0};  ///< wall time from observation to answer; > 0 unless wait
+  std::uint32_t miss_budget = 0;       ///< misses in a row that are held; of hold and zero: 0 = any
+};
+
 /// Whom to connect to and which robots to drive.
 struct Options {
   std::string endpoint;  ///< `ipc://…` or `tcp://host:port`
@@ -27,6 +41,13 @@ struct Options {
   std::string controller;           ///< robots of this controller of the scene
   std::vector<std::string> robots;  ///< ids or globs (`*`, `?`, `[a-z]`)
   bool lua_only = false;            ///< only robots whose controller is a Lua script
+
+  /// Session::token() of a session whose connection is gone: takes that up, with its robots and at
+  /// the tick that the world is at. Which robots are asked for is not looked at then; the server
+  /// keeps what was commanded, but this side begins with 0: command all values anew.
+  std::string session_token;
+  bool takeover = false;             ///< also robots that others drive; those sessions are told
+  std::optional<Deadline> deadline;  ///< a wish; none: as the scene or the server's owner says
 
   std::string name = "controller";  ///< of this program, for the server's messages
   std::string version;              ///< of this program, for the server's messages
@@ -87,6 +108,9 @@ class Session {
   std::chrono::nanoseconds time() const noexcept;  ///< simulated, of the observation in hand
   /// Why next() returned false; none before that.
   const std::optional<Ending>& ending() const noexcept;
+
+  const std::string& token() const noexcept;  ///< for Options::session_token; any bytes
+  std::uint64_t missed() const noexcept;      ///< ticks that went on without our answer
 
   std::span<Robot> robots() noexcept;  ///< in scene order
   /// @throws std::out_of_range, naming the robots there are
