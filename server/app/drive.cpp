@@ -50,6 +50,16 @@ std::optional<Ending> pace(double factor, const Driven& driven, clock::time_poin
   return driven.watch.sleep_until(due);
 }
 
+// Somebody may pause the world when its tick is complete already: then it stays where it is, and
+// who comes meanwhile is waited for, too.
+std::optional<Ending> stand(const Driven& driven) {
+  const auto& [simulation, server, watch, supervision] = driven;
+  while (server.paused()) {
+    if (auto stopped = watch.collect(simulation.commands(), simulation.state().tick)) return stopped;
+  }
+  return std::nullopt;
+}
+
 /// One world, from tick 0 on.
 Ending drive_once(const Plan& plan, const Driven& driven, Recorders& recorders, Summary& summary,
                   Laps& laps) {
@@ -64,18 +74,19 @@ Ending drive_once(const Plan& plan, const Driven& driven, Recorders& recorders, 
     recorders.tick(simulation);
     laps.charge(summary.recording_s, Phase::recording);
 
-    const auto stopped = watch.collect(simulation.commands(), now.tick);
+    auto stopped = watch.collect(simulation.commands(), now.tick);
+    if (!stopped) stopped = stand(driven);
     laps.charge(summary.exchange_s, Phase::exchange);
+    const bool is_last = now.tick == plan.ticks;
+    if (plan.real_time && !stopped && !is_last) {
+      stopped = pace(*plan.real_time, driven, start, summary);
+      if (!stopped) stopped = stand(driven);
+      laps.charge(summary.pacing_s, Phase::pacing);
+    }
     if (stopped) return *stopped;
     recorders.exchange(simulation.state(), simulation.observations(), simulation.commands());
     laps.charge(summary.recording_s, Phase::recording);
-    if (now.tick == plan.ticks) return Ending::finished;
-
-    if (plan.real_time) {
-      const auto stopped_asleep = pace(*plan.real_time, driven, start, summary);
-      laps.charge(summary.pacing_s, Phase::pacing);
-      if (stopped_asleep) return *stopped_asleep;
-    }
+    if (is_last) return Ending::finished;
     simulation.step();
     laps.charge(summary.physics_s, Phase::physics);
     laps.end_tick(supervision, plan.real_time.has_value());

@@ -90,6 +90,19 @@ class Ctl(unittest.TestCase):
             self.assertEqual(before + 2, int(status["tick"]))
             self.assertRegex(status["sceneHash"], "^[0-9a-f]{16}$")
 
+    def test_a_paused_world_stays_where_it_was_said_to_stand(self):
+        for paced in ([], ["--real-time", "50"]):
+            with Server(VEHICLE, "--duration", "0", *paced) as server:
+                lua = subprocess.Popen([BIN / "ziggurat-lua", "--connect", server.url, "--quiet"],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                for _ in range(8):
+                    said = json.loads(server.ask("ctl", "pause", "--json").stdout)["tick"]
+                    status = json.loads(server.ask("ctl", "status", "--json").stdout)
+                    self.assertEqual(said, int(status["tick"]))
+                    server.ask("ctl", "resume")
+                server.ask("ctl", "shutdown")
+                lua.wait(timeout=20)
+
     def test_resuming_ends_a_step(self):
         with Server(DROP, "--duration", "0") as server:
             stepping = subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "1000000"],
