@@ -183,14 +183,16 @@ std::variant<Session*, wire::Refusal> Barrier::take_robots(const wire::Hello& he
   }
   std::vector<std::size_t> robots;
   for (const Selected& selected : std::get<std::vector<Selected>>(selection)) {
-    if (seats_[selected.robot].gone && !selected.by_id) continue;
-    if (auto refused = check_seat(selected.robot, hello.takeover)) return std::move(*refused);
-    robots.push_back(selected.robot);
+    if (!seats_[selected.robot].gone || selected.by_id) robots.push_back(selected.robot);
   }
   if (robots.empty()) {
     return refusal(ErrorCode::not_yours, "robots", "All robots asked for have left the run.");
   }
+  // What can never succeed comes before what may succeed later.
   if (auto refused = check_deadline(hello, robots)) return std::move(*refused);
+  for (const std::size_t robot : robots) {
+    if (auto refused = check_seat(robot, hello.takeover)) return std::move(*refused);
+  }
   auto session = std::make_unique<Session>();
   session->token = new_token();
   session->roster = wire::make_roster(run_.layout, robots);

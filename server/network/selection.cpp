@@ -79,7 +79,9 @@ std::variant<std::vector<Selected>, wire::Fault> select_robots(const wire::Hello
   }
   if (selected.empty()) {
     return make_fault(ErrorCode::unknown_robot, "robots",
-                      "No robot of the scene fits what the Hello asks for.");
+                      run.layout.robots.empty()
+                          ? "The scene has no robots: no entity has a controller."
+                          : "No robot of the scene fits what the Hello asks for.");
   }
   return selected;
 }

@@ -303,6 +303,16 @@ TEST(Deadline, H8_AWishIsGrantedUnlessThePolicyIsFixed) {
   EXPECT_EQ(peers.told("q").welcome().deadline_policy().action(), v1::DeadlinePolicy::DROP);
 }
 
+TEST(Deadline, H15_AWishThatIsNeverGrantedIsToldBeforeATakenRobot) {
+  const SmallRun small(1);
+  Peers peers(small, with_deadline(DeadlineAction::hold, 50));
+  peers.join("p", "robot0");
+  peers.say("q", wish("robot0", v1::DeadlinePolicy::WAIT, 0));
+  const auto error = peers.told("q").refusal().error();
+  EXPECT_EQ(error.code(), v1::Error::FORBIDDEN);
+  EXPECT_FALSE(error.retryable());
+}
+
 TEST(Deadline, H8_PoliciesThatMakeNoSense) {
   const SmallRun small(1);
   Peers peers(small);
