@@ -174,7 +174,7 @@ CLIENT_CASES = [
          (*BEGUN, error("DEADLINE_MISSED", "WARNING"), *ticks(1, 3))),
     Case("M3.fatal", "A fatal error is the end, and shows in the exit code",
          (*BEGUN, error("TOO_MANY", "FATAL"), Ends(good=False))),
-    Case("L5.end", "After the end it leaves and ends well",
+    Case("L11.end", "After the end it leaves and ends well",
          (*BEGUN, *ticks(1, 3), end(3), LEFT, Ends(good=True, should=True))),
     Case("L5.end-while-it-works", "The end may come instead of the next tick, after an answer",
          (*BEGUN, observation(1), answered(1), end(1, "INTERRUPTED"), LEFT, Ends(should=True))),

@@ -52,7 +52,7 @@ CLIENT_BUGS = {
     "storm": "H10.no-storm",
     "refusal-is-fine": "H10.refused",
     "fatal-is-fine": "M3.fatal",
-    "ignores-end": "L5.end",
+    "ignores-end": "L11.end",
     "dies-of-news": "T5.unknown-kind",
 }
 
