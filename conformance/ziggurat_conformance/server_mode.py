@@ -6,6 +6,7 @@ from fnmatch import fnmatchcase
 from typing import Callable, Iterator, Optional
 
 from .case import Case, Failed, NonStrict, NotRun, Outcome, Unimplemented, Verdict
+from .keys import VARIANT, Keys
 from .server_process import ServerProcess
 from .server_scene import SCENE
 from .steps import Stage
@@ -21,17 +22,20 @@ class Servers:
         self._patience = patience
         self._shared: dict[str, ServerProcess] = {}
         self.own: Optional[ServerProcess] = None
+        self.keys = Keys()
 
     def server_for(self, case: Case) -> ServerProcess:
         command = self._commands.get(case.variant)
         if command is None:
             raise NotRun(f"give the server's command for it: --variant {case.variant}=…")
+        files = self.keys.files() if case.variant == VARIANT else {}
         if case.fresh:
-            self.own = ServerProcess(command, SCENE, self._patience)
+            self.own = ServerProcess(command, SCENE, self._patience, files)
             return self.own
         shared = self._shared.get(case.variant)
         if shared is None or not shared.runs():
-            shared = self._shared[case.variant] = ServerProcess(command, SCENE, self._patience)
+            shared = ServerProcess(command, SCENE, self._patience, files)
+            self._shared[case.variant] = shared
         return shared
 
     def done(self, case: Case, usable: bool) -> None:
@@ -45,6 +49,7 @@ class Servers:
         for server in self._shared.values():
             server.stop()
         self._shared.clear()
+        self.keys.close()
 
 
 class RunningServer:
@@ -85,7 +90,8 @@ def _play_one(case: Case, form: str, servers, patience: float) -> Outcome:
     stage = None
     try:
         server = servers.server_for(case)
-        with Stage(server.endpoint, form, patience, server) as stage:
+        keys = servers.keys if case.variant == VARIANT else None
+        with Stage(server.endpoint, form, patience, server, keys) as stage:
             stage.play(case.steps)
             if not case.fresh and hasattr(server, "runs") and not server.runs():
                 raise Failed(f"the server ended:\n{server.last_words()}")

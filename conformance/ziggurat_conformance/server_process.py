@@ -9,8 +9,6 @@ import time
 from pathlib import Path
 from typing import Optional
 
-import zmq
-
 
 class ServerProcess:
     """Starts the command and waits until something listens at its endpoint."""
@@ -82,8 +80,3 @@ def _free_port() -> int:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
 
-
-def curve_keys(folder: Path) -> dict:
-    """Keys for a server that asks for them, as files, and those of peers the server knows."""
-    names = ("server", "controller", "supervisor", "observer", "stranger")
-    return {name: zmq.curve_keypair() for name in names}

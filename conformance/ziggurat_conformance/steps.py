@@ -132,7 +132,7 @@ class Stage:
         self.form = form
         self.patience = patience
         self.server = server
-        self.keys = keys or {}
+        self.keys = keys  # Keys, if the server asks for them
         self.transcript = Transcript()
         self.peers: dict[str, Peer] = {}
         self.tokens: dict[str, bytes] = {}  # also of peers that are gone
@@ -148,7 +148,7 @@ class Stage:
     def peer(self, name: str) -> Peer:
         """The peer of that name, connected at its first use. "json" and "binary" speak as they say."""
         if name not in self.peers:
-            keys = self.keys.get(name, self.keys.get("*"))
+            keys = self.keys.of(name) if self.keys else None
             form = name if name in wire.FORMS else self.form
             self.peers[name] = Peer(name, self.endpoint, form, self.transcript, keys)
         return self.peers[name]

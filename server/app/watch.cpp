@@ -133,6 +133,7 @@ void Watch::take_report() {
     vanished_ = std::move(report.stopped);
     is_stopped_ = true;
   }
+  for (const auto& notice : report.dropped) watched_.console.notice(notice);
   for (const auto& notice : report.notices) {
     if (++peer_notices_ <= most_peer_notices) watched_.console.notice(notice);
     if (peer_notices_ == most_peer_notices) watched_.console.notice("no more is said of peers");

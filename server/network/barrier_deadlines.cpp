@@ -158,9 +158,10 @@ void Barrier::count_miss(std::size_t robot) {
 
 void Barrier::drop(std::size_t robot) {
   const auto& layout = run_.layout.robots[robot];
-  note(fmt::format("robot {} (controller '{}') is dropped at tick {}: {} missed in a row, {}",
-                   layout.id, run_.controllers[layout.controller].id, observations_->tick,
-                   seats_[robot].misses_in_row, to_text(seats_[robot].deadline)));
+  report_.dropped.push_back(
+      fmt::format("robot {} (controller '{}') is dropped at tick {}: {} missed in a row, {}",
+                  layout.id, run_.controllers[layout.controller].id, observations_->tick,
+                  seats_[robot].misses_in_row, to_text(seats_[robot].deadline)));
   mark_gone(robot);
 }
 

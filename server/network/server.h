@@ -98,6 +98,8 @@ struct Report {
                                      ///< who runs where or who answers first
   std::vector<Failure> failures;     ///< in scene order
   std::string stopped;               ///< the sentence on the deadline that stops the run, if any
+  std::vector<std::string> dropped;  ///< sentences on robots that a deadline took out: one for each
+                                     ///< robot at most, so that no peer's noise can hide them
   std::vector<std::string> notices;  ///< sentences on peers: lost, garbage, refused; in order of
                                      ///< arrival, the oldest dropped beyond 100
 };

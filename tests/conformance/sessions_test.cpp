@@ -119,6 +119,17 @@ TEST(Deadline, DropHoldsTheBudgetFirst) {
   EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::gone);
 }
 
+TEST(Deadline, DropIsReportedWhateverNoiseStrangersMake) {
+  Pair pair(with_deadline(DeadlineAction::drop, 50));
+  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("stranger", "\xff");
+  pair.peers.pass(milliseconds{50});
+  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("stranger", "\xff");
+  const auto dropped = pair.peers.barrier.take_report().dropped;
+  ASSERT_EQ(dropped.size(), 1U);
+  EXPECT_NE(dropped[0].find("robot0"), std::string::npos);
+  EXPECT_TRUE(pair.peers.barrier.take_report().dropped.empty());
+}
+
 TEST(Deadline, HoldDropsBeyondTheBudget) {
   for (const auto action : {DeadlineAction::hold, DeadlineAction::zero}) {
     Pair pair(with_deadline(action, 50, 2));

@@ -73,12 +73,13 @@ class SceneTest(unittest.TestCase):
     # --- runs -----------------------------------------------------------------------------------
 
     def start(self, *arguments, **options):
+        seconds = options.pop("limit", 2 * LIMIT)
         process = subprocess.Popen(
             [str(ZIGGURAT), *map(str, arguments)], cwd=self.folder, env=self.environment,
             stdin=subprocess.DEVNULL, stdout=options.pop("stdout", subprocess.PIPE),
             stderr=options.pop("stderr", subprocess.PIPE), text=True, errors="replace", **options)
         self.started.append(process)
-        limit = threading.Timer(2 * LIMIT, process.kill)  # so that nobody reads for ever
+        limit = threading.Timer(seconds, process.kill)  # so that nobody reads for ever
         limit.start()
         self.addCleanup(limit.cancel)
         return process

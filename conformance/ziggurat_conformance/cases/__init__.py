@@ -1,6 +1,6 @@
 """All cases for servers, in the order of the document's sections."""
 
-from . import deadlines, hello, leaving, states, supervision, tick, transport
+from . import deadlines, hello, leaving, security, states, supervision, tick, transport
 
 SERVER_CASES = [
     *transport.CASES,
@@ -9,5 +9,6 @@ SERVER_CASES = [
     *deadlines.CASES,
     *states.CASES,
     *leaving.CASES,
+    *security.CASES,
     *supervision.CASES,
 ]

@@ -33,6 +33,9 @@ SERVER_BUGS = {
     "nan-counts": "S8.nan-joint",
     "half-a-command": "S10.no-effect",
     "radio-reversed": "D3.order",
+    "plain-text": "K1.plain",
+    "any-key": "K2.unlisted",
+    "any-role": "K3.controller-as-supervisor",
 }
 
 CLIENT_BUGS = {
@@ -59,8 +62,9 @@ CLIENT_BUGS = {
 
 def _server_verdicts(bug: str, ids: set) -> dict:
     command = shlex.join([sys.executable, str(HERE / "tiny_server.py"), "{endpoint}", bug])
+    curve = f"{command} {{curve_secret}} {{curve_clients}}"
     cases = [case for case in server_mode.chosen(SERVER_CASES, list(ids), "binary")]
-    outcomes = server_mode.play(cases, server_mode.Servers(command, {}, PATIENCE), PATIENCE,
+    outcomes = server_mode.play(cases, server_mode.Servers(command, {"curve": curve}, PATIENCE), PATIENCE,
                                 lambda outcome: None)
     return {outcome.id: outcome for outcome in outcomes}
 

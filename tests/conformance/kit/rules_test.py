@@ -17,9 +17,6 @@ REASONS = {
     "T10": "how the kit starts every client",
     "T8": "a matter of the server's command line",
     "P3": "advice to clients",
-    "K1": "needs keys: tests/unit/network/curve_test.cpp",
-    "K2": "needs keys: tests/unit/network/curve_test.cpp",
-    "K3": "needs keys: tests/unit/network/curve_test.cpp",
     "K4": "says what the absence of keys means",
     "D5": "it would take more than 1 GiB of messages at a tick",
 }

@@ -1,15 +1,18 @@
-"""A server of the protocol's core in little space, and broken ones: tiny_server.py ENDPOINT [BUG].
+"""A server of the protocol's core in little space, and broken ones:
+tiny_server.py ENDPOINT [BUG [SECRET CLIENTS]], the last two as of `ziggurat serve --curve-…`.
 
 It has four robots of one joint, one radio and nothing else of interest, and no physics. It is there to
 show that the kit catches what is broken; nothing else should use it.
 """
 
 import math
+import pathlib
 import signal
 import sys
 from fnmatch import fnmatchcase
 
 import zmq
+import zmq.auth.thread
 from google.protobuf.message import DecodeError
 
 import protocol_pb2 as protocol
@@ -29,7 +32,9 @@ class Session:
 
 
 class Server:
-    def __init__(self, endpoint, bug):
+    def __init__(self, endpoint, bug, keys=()):
+        self.roles = {}  # by public key
+        self.allowed = None  # roles of whoever is spoken to
         self.bug, self.tick, self.begun = bug, 0, False
         self.angle, self.speed = [0.0] * 4, [0.0] * 4
         self.sent, self.heard = [], []  # (robot, payload)
@@ -38,11 +43,27 @@ class Server:
         self.socket = zmq.Context.instance().socket(zmq.ROUTER)
         self.socket.setsockopt(zmq.ROUTER_MANDATORY, 1)
         self.socket.setsockopt(zmq.LINGER, 0)
+        if keys and bug != "plain-text":
+            self.protect(*keys)
         self.socket.bind(endpoint)
+
+    def protect(self, secret, clients):
+        for line in pathlib.Path(clients).read_text().splitlines():
+            key, roles, _ = line.split()
+            self.roles[key] = roles.split(",")
+        allows_any = self.bug == "any-key"
+        self.authenticator = zmq.auth.thread.ThreadAuthenticator(self.socket.context)
+        self.authenticator.start()
+        self.authenticator.configure_curve_callback(credentials_provider=self)
+        self.callback = lambda domain, key: allows_any or key.decode() in self.roles
+        self.socket.curve_secretkey = pathlib.Path(secret).read_bytes().strip()
+        self.socket.curve_server = True
 
     def serve(self):
         while True:
-            peer, *frames = self.socket.recv_multipart()
+            frames = self.socket.recv_multipart(copy=False)
+            user = frames[-1].get("User-Id") if self.roles else None
+            peer, *frames = [frame.bytes for frame in frames]
             session = self.sessions.get(peer)
             try:
                 try:
@@ -52,6 +73,7 @@ class Server:
                 kind = message.WhichOneof("message")
                 if len(frames) != 1 or kind is None:
                     raise Fault(E.MALFORMED)
+                self.allowed = self.roles.get(user)
                 self.take(peer, session, kind, getattr(message, kind))
             except Fault as fault:
                 if self.bug == "silent-on-garbage" and fault.error.code == E.MALFORMED:
@@ -102,6 +124,9 @@ class Server:
     def hello(self, peer, hello):
         if hello.version.major != 1 and self.bug != "any-version":
             raise Fault(E.VERSION_MISMATCH)
+        role = protocol.Role.Name(hello.role).removeprefix("ROLE_").lower()
+        if self.allowed is not None and role not in self.allowed and self.bug != "any-role":
+            raise Fault(E.FORBIDDEN)
         if hello.role != protocol.ROLE_CONTROLLER:
             raise Fault(E.BAD_VALUE)
         if hello.session_token and self.bug != "any-token":
@@ -215,4 +240,4 @@ class Server:
 
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    Server(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else "").serve()
+    Server(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else "", sys.argv[3:]).serve()

@@ -1,0 +1,161 @@
+"""A controller that can be disturbed, as a process that is forked from the test.
+
+What it commands follows from the tick and what its robot senses, so that one that comes back goes on
+where the last one was. Its target also counts what it hears: a radio message that is lost, or sent
+twice, shows in the robots' poses.
+"""
+
+import math
+import multiprocessing
+import os
+import random
+import struct
+import time
+
+import ziggurat
+from ziggurat import protocol_pb2 as v1
+from zmtp import RawPeer
+
+ROBOTS = 16
+
+# What a controller does to its own connection when it is told to.
+GARBAGE, RUDE, FLOOD, SLOW = range(1, 5)
+
+
+class Board:
+    """What the test and its controllers share."""
+
+    def __init__(self):
+        processes = multiprocessing.get_context("fork")
+        self.ticks = processes.Array("q", [-1] * ROBOTS, lock=False)  # each one's last
+        self.orders = processes.Array("q", [0] * ROBOTS, lock=False)  # what to do, once
+        self.noticed = processes.Array("q", [0] * ROBOTS, lock=False)  # other than ticks and ends
+        self.missed = processes.Array("q", [0] * ROBOTS, lock=False)  # deadlines
+        self.first_missed = processes.Array("q", [-1] * ROBOTS, lock=False)  # tick
+        self.resumed = processes.Array("q", [0] * ROBOTS, lock=False)
+        self.ended = processes.Array("q", [0] * ROBOTS, lock=False)
+
+
+def drive(index, endpoint, folder, board, talks):
+    """Drives robot `index` to the end of the run, coming back whenever its connection is gone."""
+    token = folder / f"token{index}"
+    while True:
+        try:
+            session = _begin(index, endpoint, token)
+            if _live(index, session, board, talks):
+                board.ended[index] = 1
+                session.close()
+                return
+        except ziggurat.ConnectionLost:
+            if not token.exists():
+                raise
+
+
+def _begin(index, endpoint, token):
+    if not token.exists():
+        session = ziggurat.connect(endpoint, f"robot{index}", name=f"controller {index}",
+                                   connect_timeout=60)
+        _write_whole(token, session.token)
+        return session
+    while True:  # until the server has seen that the old connection is gone
+        try:
+            return ziggurat.resume(endpoint, token.read_bytes(), name=f"controller {index}",
+                                   connect_timeout=60)
+        except ziggurat.Refused as refused:
+            if not refused.retryable:
+                raise
+            time.sleep(0.005)
+
+
+def _write_whole(path, data):
+    """A process that is killed leaves the file whole, or not at all."""
+    fresh = path.with_suffix(".new")
+    fresh.write_bytes(data)
+    os.replace(fresh, path)
+
+
+def _live(index, session, board, talks):
+    """Answers ticks; false if the session is to be taken up anew."""
+    [robot] = session.robots
+    for tick in session:
+        board.ticks[index] = tick.number
+        board.resumed[index] += tick.event is ziggurat.Event.RESUME
+        order, board.orders[index] = board.orders[index], 0
+        if order and not _misbehave(order, session, tick.number):
+            session.abandon()
+            return False
+        _command(robot, tick.number, index, talks)
+        if session.missed and board.first_missed[index] < 0:
+            board.first_missed[index] = tick.number - 1
+        board.missed[index] = max(board.missed[index], session.missed)
+        board.noticed[index] += session.paused or (session.late > 0 and session.missed == 0)
+    return True
+
+
+def _command(robot, tick, index, talks):
+    hinge, radio = robot.joints["hinge"], robot.radios["mouth"]
+    heard = sum(struct.unpack("<qq", payload)[0] for payload in radio.received)
+    hinge.target = 0.8 * math.sin(0.05 * tick + index) - 0.3 * hinge.encoder + 1e-3 * (heard % 7)
+    if talks and (tick + index) % 8 == 0:
+        radio.send(struct.pack("<qq", tick + index, index))
+
+
+# ---- misbehaviour over the controller's own connection -------------------------------------------
+
+
+def _misbehave(order, session, tick):
+    """False if the session is over, and has to be taken up."""
+    socket = session._connection.socket
+    draw = random.Random(tick)
+    if order == GARBAGE:
+        for frames in _garbage(draw, 20):
+            socket.send_multipart(frames)
+        return all(_error(socket) in ("MALFORMED", "TOO_LARGE") for _ in range(20))
+    if order == RUDE:
+        for frames in _garbage(draw, 150):
+            socket.send_multipart(frames)
+        while _error(socket) != "TOO_MANY":
+            pass
+        return False
+    if order == FLOOD:
+        beat = v1.ClientMessage(heartbeat=v1.Heartbeat(sequence=1)).SerializeToString()
+        for _ in range(4000):
+            socket.send(beat)
+        while _error(socket) != "TOO_MANY":
+            pass
+        return False
+    session.abandon()
+    _command_slowly(session)
+    return False
+
+
+def _garbage(draw, count):
+    """Messages that are none: noise, several frames, half a command, nothing, the other form."""
+    whole = v1.ClientMessage(command=v1.Command(tick=1, joint_targets=[1.0] * 20)).SerializeToString()
+    for i in range(count):
+        yield ([b"\xff" + draw.randbytes(200)], [whole, whole], [whole[:len(whole) // 2]],
+               [b"\xff" + draw.randbytes(100_000)], [b'{"command": {"tick": "1"}}'])[i % 5]
+
+
+def _error(socket):
+    """The code of the next Error; other messages don't matter."""
+    while True:
+        message = v1.ServerMessage.FromString(socket.recv())
+        if message.WhichOneof("message") == "error":
+            return v1.Error.Code.Name(message.error.code)
+
+
+def _command_slowly(session):
+    """Takes up the session over a connection of its own, byte by byte, and hangs up in the middle of
+    its command."""
+    hello = v1.Hello(version=v1.Version(major=1), role=v1.ROLE_CONTROLLER, robots=["*"],
+                     client_name="slow", session_token=session.token, takeover=True)
+    command = v1.ClientMessage(command=v1.Command(tick=session.tick.number)).SerializeToString()
+    with RawPeer(session.endpoint, drip=0.001) as peer:
+        peer.say(v1.ClientMessage(hello=hello).SerializeToString())
+        for due in ("welcome", "observation"):
+            kind = v1.ServerMessage.FromString(peer.hear()).WhichOneof("message")
+            if kind != due:
+                raise AssertionError(f"{due} is due, not {kind}")
+        peer.say_half(command)
+        time.sleep(0.05)

@@ -1,0 +1,275 @@
+"""Sixteen controllers, each of which is disturbed, in runs that must not show it.
+
+disturbances_test.py         1000 ticks, a disturbance for each controller
+disturbances_test.py --full  10 000 ticks, every disturbance for each controller
+"""
+
+import multiprocessing
+import os
+import pathlib
+import re
+import signal
+import sys
+import time
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+import controller  # noqa: E402
+import strangers  # noqa: E402
+from controller import FLOOD, GARBAGE, ROBOTS, RUDE, SLOW, Board  # noqa: E402
+from harness import FINISHED, SceneTest  # noqa: E402
+
+IS_FULL = "--full" in sys.argv
+TICKS = 10_000 if IS_FULL else 1000
+LIMIT = 1200 if IS_FULL else 120  # [s] of wall time for a run: more is a hang
+STOPPED_TICKS = 4  # that a controller with a deadline misses
+FORK = multiprocessing.get_context("fork")
+
+ACTUATORS = """<actuators>
+        <joints implementation="default"><joint id="hinge" mode="velocity" max_impulse="0.01" /></joints>
+        <radios implementation="default" />
+      </actuators>
+      <sensors>
+        <joints implementation="default"><joint id="hinge" mode="position" /></joints>
+        <radios implementation="default" />
+      </sensors>"""
+
+
+def scene():
+    """Robots of one arm each on the floor, a metre apart: they hear each other, and never touch."""
+    controllers, robots = [], []
+    for i in range(ROBOTS):
+        controllers.append(f"""
+    <external_controller id="c{i}">
+      {ACTUATORS}
+      <params />
+    </external_controller>""")
+        robots.append(f"""
+    <prototype id="robot{i}">
+      <body position="{i % 4}, {i // 4}, 0" orientation="{10 * i}, 0, 0" />
+      <controller config="c{i}" />
+      <links ref="base">
+        <link id="base" geometry="box" size="0.1, 0.1, 0.05" mass="2" />
+        <link id="arm" geometry="box" size="0.2, 0.02, 0.02" mass="0.1" position="0, 0, 0.05" />
+      </links>
+      <joints>
+        <joint id="hinge" type="revolute" axis="0, 0, 1">
+          <parent link="base" position="0, 0, 0.05" orientation="0, 0, 0" />
+          <child link="arm" position="0, 0, 0" orientation="0, 0, 0" />
+        </joint>
+      </joints>
+      <devices>
+        <radios medium="air"><radio id="mouth" anchor="base" position="0, 0, 0.1" range="1.5" /></radios>
+      </devices>
+    </prototype>""")
+    return f"""<argos-configuration>
+  <framework><experiment length="0" ticks_per_second="10" random_seed="3" /></framework>
+  <controllers>{"".join(controllers)}
+  </controllers>
+  <arena size="10, 10, 1" center="0, 0, 0.5">{"".join(robots)}
+  </arena>
+  <physics_engines>
+    <dynamics3d id="dyn3d" iterations="4"><floor /><gravity g="9.8" /></dynamics3d>
+  </physics_engines>
+  <media><radio id="air" /></media>
+</argos-configuration>
+"""
+
+
+class Crowd:
+    """A server and its controllers, for the length of a run."""
+
+    def __init__(self, test, name, *options, talks=True):
+        self.test, self.name, self.talks = test, name, talks
+        self.folder = test.folder / name
+        self.folder.mkdir()
+        self.board = Board()
+        with open(self.folder / "stderr", "w", encoding="utf-8") as words:
+            self.server = test.start(
+                "serve", test.scene, "--endpoint", "tcp://127.0.0.1:*", "--ticks", TICKS,
+                "--hash-file", self.folder / "hashes", "--trace", self.folder / "trace", *options,
+                limit=LIMIT, stderr=words)
+        self.endpoint = self.server.stdout.readline().split()[1]
+        self.others = []
+        self.controllers = [self.fork(controller.drive, *self.for_controller(i))
+                            for i in range(ROBOTS)]
+
+    def for_controller(self, i):
+        return i, self.endpoint, self.folder, self.board, self.talks
+
+    def fork(self, function, *arguments):
+        process = FORK.Process(target=function, args=arguments, daemon=True)
+        process.start()
+        self.others.append(process)
+        return process
+
+    def signal(self, i, number):
+        os.kill(self.controllers[i].pid, number)
+
+    def start_again(self, i):
+        self.controllers[i] = self.fork(controller.drive, *self.for_controller(i))
+
+    def wait(self, is_true, what):
+        end = time.monotonic() + LIMIT
+        while not is_true():
+            if self.server.poll() is not None or time.monotonic() > end:
+                self.test.fail(f"no {what}\n{self.words()}")
+            time.sleep(0.002)
+
+    def wait_for_tick(self, tick, of):
+        self.wait(lambda: self.board.ticks[of] >= tick, f"tick {tick}")
+
+    def words(self):
+        return (self.folder / "stderr").read_text()[-4000:]
+
+    def finish(self):
+        """Waits for the run's end, which must be a good one."""
+        try:
+            code = self.server.wait(LIMIT)
+        finally:
+            ended = time.monotonic() + 20
+            for process in self.controllers:
+                process.join(max(0.0, ended - time.monotonic()))
+            for process in self.others:
+                if process.is_alive():
+                    process.kill()
+                process.join()
+            self.server.stdout.close()
+        self.test.assertEqual(code, FINISHED, self.words())
+        return self
+
+    def hashes(self):
+        return (self.folder / "hashes").read_text().splitlines()
+
+    def differences(self, other):
+        """By robot, the first tick at which a pose of it is another."""
+        found = {}
+        with open(self.folder / "trace") as ours, open(other.folder / "trace") as theirs:
+            for one, two in zip(ours, theirs, strict=True):
+                if one != two:
+                    tick, _, robot, _ = one.split(",", 3)
+                    found.setdefault(robot, int(tick))
+        return found
+
+    def arm_at_the_end(self, i, ticks):
+        """Orientations of a robot's arm in the last ticks."""
+        with open(self.folder / "trace") as rows:
+            found = [row.split(",")[7:] for row in rows if f",robot{i},arm," in row]
+        return [[float(value) for value in row] for row in found[-ticks:]]
+
+
+class Disturbances(SceneTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("crowd.argos", scene())
+        self.begun = time.monotonic()
+
+    def say(self, text):
+        print(f"  {time.monotonic() - self.begun:6.1f} s  {text}", flush=True)
+
+    def undisturbed(self, **options):
+        crowd = Crowd(self, "undisturbed", **options).finish()
+        self.assertEqual([0] * ROBOTS, list(crowd.board.noticed))
+        self.assertEqual([1] * ROBOTS, list(crowd.board.ended))
+        self.say(f"undisturbed: {crowd.hashes()[-1]}")
+        return crowd
+
+    # ---- who waits for ever loses nothing ----
+
+    def test_a_world_that_waits_does_not_notice(self):
+        """Policy WAIT and a lease: every tick's hash is that of the undisturbed run."""
+        expected = self.undisturbed()
+        crowd = Crowd(self, "disturbed", "--lease", "60")
+        for function in strangers.slowloris, strangers.noise, strangers.never_reads:
+            crowd.fork(strangers.annoy, function, crowd.endpoint)
+        kinds = (self.stop, self.kill, GARBAGE, RUDE, FLOOD, SLOW)
+        rounds = len(kinds) if IS_FULL else 1
+        apart = TICKS * 9 // 10 // (rounds * ROBOTS)
+        resumed = [0] * ROBOTS
+        for number in range(rounds * ROBOTS):
+            i = number % ROBOTS
+            kind = kinds[(number + number // ROBOTS) % len(kinds)]
+            crowd.wait_for_tick(apart * (number + 1), of=i)
+            if callable(kind):
+                kind(crowd, i)
+            else:
+                crowd.board.orders[i] = kind
+            resumed[i] += kind in (self.kill, RUDE, FLOOD, SLOW)
+        peak = re.search(r"VmHWM:\s*(\d+)",
+                         pathlib.Path(f"/proc/{crowd.server.pid}/status").read_text())[1]
+        crowd.finish()
+        self.say(f"the server had {int(peak) / 1024:.0f} MB at its most")
+        self.say(f"disturbed:   {crowd.hashes()[-1]}, {rounds * ROBOTS} disturbances")
+        self.assertEqual([0] * ROBOTS, list(crowd.board.noticed), crowd.words())
+        self.assertEqual(resumed, list(crowd.board.resumed))
+        self.assertEqual([1] * ROBOTS, list(crowd.board.ended))
+        self.assertEqual(expected.hashes(), crowd.hashes())
+
+    def stop(self, crowd, i):
+        """The world stands while a controller does."""
+        crowd.signal(i, signal.SIGSTOP)
+        time.sleep(0.1)
+        ticks = max(crowd.board.ticks)
+        time.sleep(0.1)
+        self.assertEqual(ticks, max(crowd.board.ticks))
+        crowd.signal(i, signal.SIGCONT)
+
+    def kill(self, crowd, i):
+        crowd.signal(i, signal.SIGKILL)
+        crowd.controllers[i].join()
+        crowd.start_again(i)
+
+    # ---- who has a deadline loses what its policy says ----
+
+    def test_others_are_as_ever(self):
+        """HOLD, ZERO and DROP: only the disturbed robots move otherwise, and not before."""
+        expected = self.undisturbed(talks=False)
+        for turn in range(4 if IS_FULL else 1):
+            self.disturb_under_policies(expected, [(i + turn) % 4 for i in range(ROBOTS)], turn)
+
+    def disturb_under_policies(self, expected, roles, turn):
+        """Roles: 0 waits; 1 holds and 2 zeroes while it is stopped; 3 is killed and dropped."""
+        texts = (None, "hold:200", "zero:200", "drop:200:3")
+        options = [f"--deadline=c{i}={texts[role]}" for i, role in enumerate(roles) if role]
+        crowd = Crowd(self, f"policies{turn}", *options, talks=False)
+        begun = {}
+        apart = TICKS * 8 // 10 // ROBOTS
+        for i, role in enumerate(roles):
+            crowd.wait_for_tick(apart * (i + 1), of=roles.index(0))
+            if role == 0:
+                continue
+            begun[f"robot{i}"] = max(crowd.board.ticks)
+            crowd.signal(i, signal.SIGKILL if role == 3 else signal.SIGSTOP)
+            if role != 3:
+                crowd.wait_for_tick(max(crowd.board.ticks) + STOPPED_TICKS, of=roles.index(0))
+                crowd.signal(i, signal.SIGCONT)
+        crowd.finish()
+        differences = crowd.differences(expected)
+        self.say(f"policies: robots that moved otherwise, and from which tick on: {differences}")
+        self.assertEqual(set(begun), set(differences), crowd.words())
+        for i, role in enumerate(roles):
+            if role in (1, 2):  # on a busy machine it may have missed one before
+                begun[f"robot{i}"] = crowd.board.first_missed[i]
+            if role:
+                self.assertGreater(differences[f"robot{i}"], begun[f"robot{i}"], i)
+            self.judge(crowd, i, role)
+
+    def judge(self, crowd, i, role):
+        """What a controller of this role was told, and where its robot stands."""
+        self.assertEqual(role != 3, bool(crowd.board.ended[i]), i)
+        self.assertEqual(role in (1, 2), crowd.board.missed[i] >= STOPPED_TICKS - 1, i)
+        self.assertEqual(0, crowd.board.noticed[i], i)
+        dropped = re.search(rf"robot{i} \(controller 'c{i}'\) is dropped at tick (\d+)", crowd.words())
+        self.assertEqual(role == 3, bool(dropped), crowd.words())
+        last = crowd.arm_at_the_end(i, 10)
+        travel = max(abs(a - b) for a, b in zip(last[0], last[-1]))
+        if role == 3:  # but for what its contacts with the floor creep
+            self.assertLess(travel, 1e-4, "a dropped robot's arm stands")
+        else:
+            self.assertGreater(travel, 1e-3, "an arm whose controller is there moves")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[word for word in sys.argv if word != "--full"], verbosity=2)
