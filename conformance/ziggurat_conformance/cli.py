@@ -15,7 +15,8 @@ examples:
       starts and restarts the server and plays all cases; the words in braces are filled in
   ziggurat-conformance server --variant 'lease=ziggurat serve {scene} --endpoint {endpoint} --lease 2' \\
                               -- ziggurat serve '{scene}' --endpoint '{endpoint}'
-      also plays the cases that need a server with a lease
+      also plays the cases that need a server with a lease; curve=… for one with keys, whose files are
+      {curve_secret} and {curve_clients}
   ziggurat-conformance server tcp://127.0.0.1:5770
       plays what can be played against a server that runs; it must have our scene (--scene says where)
   ziggurat-conformance client -- ./my_controller
@@ -23,7 +24,8 @@ examples:
   ziggurat-conformance server --only 'S9.*' --html report.html -- …
       some cases, and a page with the exchange of every failure
 
-Exit code: 0 if no case failed, 1 if one did, 2 for a mistake on this line or a server that does not start.
+Exit code: 0 if no case failed, also if some were not run; 1 if one did; 2 for a mistake on this line, or
+a program that does not start.
 docs/conformance.md explains verdicts, levels, and how to add a case."""
 
 
@@ -39,7 +41,7 @@ def _parser() -> argparse.ArgumentParser:
     server.add_argument("target", nargs="*", metavar="URL | -- COMMAND",
                         help="where a server listens, or how to start one")
     server.add_argument("--variant", action="append", default=[], metavar="NAME=COMMAND",
-                        help="how to start a server for the cases of this variant: lease, limits, …")
+                        help="how to start a server for the cases of this variant: lease, curve")
     client = modes.add_parser("client", help="play a server against a controller program",
                               epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
     client.add_argument("target", nargs="*", metavar="-- COMMAND")
@@ -62,12 +64,19 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+class _Mistake(Exception):
+    """On the command line."""
+
+
 def _variants(texts: list) -> dict:
+    known = sorted({case.variant for case in SERVER_CASES} - {""})
     variants = {}
     for text in texts:
         name, separator, command = text.partition("=")
         if not separator:
-            raise SystemExit(f"ziggurat-conformance: --variant {text!r}: write NAME=COMMAND")
+            raise _Mistake(f"--variant {text!r}: write NAME=COMMAND")
+        if name not in known:
+            raise _Mistake(f"--variant {text!r}: no case asks for {name!r}; {', '.join(known)} would do")
         variants[name] = command
     return variants
 
@@ -75,10 +84,19 @@ def _variants(texts: list) -> dict:
 def _known(path) -> set:
     if path is None:
         return set()
-    lines = (line.split("#")[0].strip() for line in path.read_text().splitlines())
+    try:
+        text = path.read_text()
+    except OSError as error:
+        raise _Mistake(f"--known-failing {path}: {error.strerror}") from None
+    lines = (line.split("#")[0].strip() for line in text.splitlines())
     return {line for line in lines if line}
 
 
+def _chosen(cases: list, options) -> list:
+    chosen = list(server_mode.chosen(cases, options.only, options.form))
+    if not chosen:
+        raise _Mistake(f"no case fits --only {' '.join(options.only)}; --list lists them all")
+    return chosen
 
 
 def _server(options, terminal):
@@ -91,7 +109,7 @@ def _server(options, terminal):
         forms = (options.form,) if options.form else wire.FORMS
         return chaos.play_server(servers, options.chaos, options.ticks, options.patience, forms,
                                  terminal.outcome)
-    cases = list(server_mode.chosen(SERVER_CASES, options.only, options.form))
+    cases = _chosen(SERVER_CASES, options)
     return server_mode.play(cases, servers, options.patience, terminal.outcome)
 
 
@@ -99,7 +117,7 @@ def _client(options, terminal):
     if options.chaos is not None:
         return chaos.play_client(options.target, options.chaos, options.ticks, options.patience,
                                  terminal.outcome)
-    cases = list(server_mode.chosen(client_mode.CASES, options.only, options.form))
+    cases = _chosen(client_mode.CASES, options)
     return client_mode.play(cases, options.target, options.patience, terminal.outcome)
 
 
@@ -128,11 +146,12 @@ def main(arguments=None) -> int:
     terminal = report.Terminal(options.verbose)
     start = time.monotonic()
     try:
+        known = _known(options.known_failing)
         outcomes = (_server if options.mode == "server" else _client)(options, terminal)
-    except RuntimeError as error:
+    except (RuntimeError, _Mistake) as error:
         print(f"ziggurat-conformance: {error}", file=sys.stderr)
         return 2
-    report.judge_known(outcomes, _known(options.known_failing))
+    report.judge_known(outcomes, known)
     terminal.end(outcomes, time.monotonic() - start)
     title = f"Conformance of a {options.mode}: {shlex.join(options.target)}"
     if options.junit:

@@ -27,6 +27,9 @@ def _play_one(case: Case, command: list, patience: float) -> Outcome:
             outcome.verdict, outcome.reason = Verdict.NON_STRICT, str(reason)
         except Failed as reason:
             outcome.verdict, outcome.reason = Verdict.FAIL, str(reason)
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+            reason = f"what it said made the case stumble: {error!r}"
+            outcome.verdict, outcome.reason = Verdict.FAIL, reason
     outcome.seconds = time.monotonic() - start
     if outcome.verdict is not Verdict.PASS:
         outcome.transcript = stage.transcript.text()

@@ -83,7 +83,8 @@ class ClientStage:
             self.process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL,
                                             stdout=self._output, stderr=subprocess.STDOUT)
         except OSError as error:
-            raise RuntimeError(f"the controller could not be started: {error}") from None
+            raise RuntimeError(f"{command[0]}: the controller can't be started: "
+                               f"{error.strerror}") from None
 
     def __enter__(self) -> "ClientStage":
         return self

@@ -37,18 +37,40 @@ def good(outcomes: list) -> bool:
 
 
 def badges(outcomes: list) -> dict:
-    """Level → None if none of its cases was run, else whether all of them passed."""
+    """Level → whether all of its cases passed; None if none failed and some were not run."""
     result = {}
     for level in Level:
-        verdicts = [o.verdict for o in outcomes if o.level is level]
-        run = [v for v in verdicts if v is not Verdict.NOT_RUN]
-        passed = all(v in (Verdict.PASS, Verdict.NON_STRICT) for v in run)
-        result[level] = (passed and len(run) == len(verdicts)) if run else None
+        counts = _counts(outcomes, level)
+        passed = counts[Verdict.PASS] + counts[Verdict.NON_STRICT]
+        is_open = passed + counts[Verdict.NOT_RUN] == counts.total()
+        result[level] = passed == counts.total() > 0 or (None if is_open else False)
     return result
 
 
+def _counts(outcomes: list, level: Level) -> collections.Counter:
+    return collections.Counter(outcome.verdict for outcome in outcomes if outcome.level is level)
+
+
+def _badge_text(outcomes: list, level: Level, reached) -> str:
+    """"reached", or why not."""
+    if reached:
+        return "reached"
+    counts = _counts(outcomes, level)
+    reasons = [f"{counts[verdict]} {verdict.value}" for verdict in Verdict
+               if counts[verdict] and verdict not in (Verdict.PASS, Verdict.NON_STRICT)]
+    return f"{'open' if reached is None else 'not reached'}: {', '.join(reasons) or 'no case was chosen'}"
+
+
+_LINES, _COLUMNS = 30, 200  # of an exchange on the terminal; the page has all
+
+
+def _cut(line: str) -> str:
+    return line if len(line) <= _COLUMNS else line[:_COLUMNS - 1] + "…"
+
+
 class Terminal:
-    """Lines as cases end: failures at once and in full, the rest as dots unless asked for."""
+    """Lines as cases end: failures at once and in full; unless asked for, a dot for what passes and a
+    dash for what is not run."""
 
     def __init__(self, verbose: bool):
         self._verbose = verbose
@@ -56,9 +78,9 @@ class Terminal:
         self._column = 0
 
     def outcome(self, outcome: Outcome) -> None:
-        if outcome.verdict is Verdict.PASS and not self._verbose:
+        if outcome.verdict in (Verdict.PASS, Verdict.NOT_RUN) and not self._verbose:
             self._column += 1
-            print(".", end="" if self._column % 80 else "\n", flush=True)
+            print("." if outcome.verdict is Verdict.PASS else "-", end="" if self._column % 80 else "\n", flush=True)
             return
         if self._column % 80:
             print()
@@ -70,7 +92,8 @@ class Terminal:
         if outcome.reason and outcome.verdict is not Verdict.PASS:
             print(f"               {outcome.reason}")
         if outcome.transcript:
-            print("\n".join("               " + line for line in outcome.transcript.splitlines()[-30:]))
+            print("\n".join("               " + _cut(line)
+                            for line in outcome.transcript.splitlines()[-_LINES:]))
 
     def end(self, outcomes: list, seconds: float) -> None:
         if self._column % 80:
@@ -78,9 +101,11 @@ class Terminal:
         counts = collections.Counter(outcome.verdict for outcome in outcomes)
         parts = [f"{counts[verdict]} {verdict.value}" for verdict in Verdict if counts[verdict]]
         print(f"{len(outcomes)} cases in {seconds:.1f} s: {', '.join(parts)}")
+        reasons = collections.Counter(o.reason for o in outcomes if o.verdict is Verdict.NOT_RUN)
+        for reason, count in reasons.items():
+            print(f"  {count} not run: {reason}")
         for level, reached in badges(outcomes).items():
-            word = {True: "reached", False: "not reached", None: "not tried"}[reached]
-            print(f"  {level.value:<10} {word}")
+            print(f"  {level.value:<10} {_badge_text(outcomes, level, reached)}")
 
 
 def write_junit(path: Path, outcomes: list, suite: str) -> None:
@@ -148,9 +173,10 @@ def write_html(path: Path, outcomes: list, title: str) -> None:
     failures = "\n".join(
         f"<h2>{escape(o.id)}: {escape(o.title)}</h2><p>{escape(o.reason)}</p>"
         f"<pre>{escape(o.transcript)}</pre>" for o in outcomes if o.verdict is Verdict.FAIL)
-    words = {True: ("pass", "reached"), False: ("fail", "not reached"), None: ("not", "not tried")}
+    words = {True: "pass", False: "fail", None: "not"}
     shown = "".join(
-        f'<span class="badge {words[reached][0]}">{level.value}: {words[reached][1]}</span>'
+        f'<span class="badge {words[reached]}">{level.value}: '
+        f"{escape(_badge_text(outcomes, level, reached))}</span>"
         for level, reached in badges(outcomes).items())
     counts = collections.Counter(o.verdict.value for o in outcomes)
     path.write_text(_PAGE.format(

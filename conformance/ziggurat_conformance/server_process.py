@@ -23,7 +23,8 @@ class ServerProcess:
                 self._arguments, stdin=subprocess.DEVNULL, stdout=self._output,
                 stderr=subprocess.STDOUT)
         except OSError as error:
-            raise RuntimeError(f"the server could not be started: {error}") from None
+            raise RuntimeError(f"{self._arguments[0]}: the server can't be started: "
+                               f"{error.strerror}") from None
         self._wait_until_it_listens(patience)
 
     def interrupt(self) -> None:
@@ -53,12 +54,14 @@ class ServerProcess:
 
     def _wait_until_it_listens(self, patience: float) -> None:
         host, port = self.endpoint.removeprefix("tcp://").rsplit(":", 1)
-        deadline = time.monotonic() + max(patience, 10)
+        limit = max(patience, 10)
+        deadline = time.monotonic() + limit
         while time.monotonic() < deadline:
             if not self.runs():
+                words = self.last_words()
                 raise RuntimeError(
-                    f"the server ended at once (exit code {self._process.returncode}):\n"
-                    f"{self.last_words()}")
+                    f"the server ended at once, with exit code {self._process.returncode}; it "
+                    + (f"said:\n{words}" if words else "said nothing"))
             try:
                 with socket.create_connection((host, int(port)), 0.2):
                     return
@@ -66,7 +69,28 @@ class ServerProcess:
                 time.sleep(0.01)
         words = self.last_words()
         self.stop()
-        raise RuntimeError(f"nothing listens at {self.endpoint}; the server said:\n{words}")
+        raise RuntimeError(f"nothing listens at {self.endpoint}, which takes the place of {{endpoint}} in "
+                           f"the command, after {limit:g} s; the server "
+                           + (f"said:\n{words}" if words else "said nothing"))
+
+
+def check_listens(endpoint: str) -> None:
+    """Raises RuntimeError with a sentence unless somebody does."""
+    kind, _, address = endpoint.partition("://")
+    try:
+        if kind == "tcp":
+            host, _, port = address.rpartition(":")
+            socket.create_connection((host.strip("[]"), int(port)), 5).close()
+        elif kind == "ipc":
+            with socket.socket(socket.AF_UNIX) as probe:
+                probe.connect(address)
+        else:
+            raise ValueError
+    except ValueError:
+        raise RuntimeError(f"{endpoint!r} is no endpoint; tcp://127.0.0.1:5770 or ipc:///tmp/arena "
+                           "would do") from None
+    except OSError as error:
+        raise RuntimeError(f"nobody listens at {endpoint}: {error.strerror or error}") from None
 
 
 def _filled(word: str, values: dict) -> str:

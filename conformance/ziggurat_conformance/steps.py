@@ -282,6 +282,8 @@ def _resolved(stage: Stage, peer: Peer, value: Any) -> Any:
     if isinstance(value, Zeros):
         count = sum(len(getattr(robot, value.devices)) for robot in peer.welcome.robots)
         values = [value.value] * (count + value.wrong)
+        if value.first is not None and not values:
+            raise Failed(f"Welcome describes no {value.devices}; our scene has some")
         if value.first is not None:
             values[0] = value.first
         return values

@@ -58,15 +58,15 @@ class Deadlines(SceneTest):
     def test_drop_takes_it_out_for_good(self):
         for number in signal.SIGSTOP, signal.SIGKILL:
             with self.subTest(number=number):
-                process = self.disturb(number, "--deadline", "drop:30:2")
+                process = self.disturb(number, "--deadline", "drop:200:4")
                 self.goes_on(process, ticks=100)
                 outcome = self.interrupted(process)
                 self.assertRegex(outcome.err,
                                  r"robot r1 \(controller 'swing'\) is dropped at tick \d+")
-                self.assertIn("drop:30:2", outcome.err)
+                self.assertIn("drop:200:4", outcome.err)
 
     def test_hold_drops_beyond_its_budget(self):
-        process = self.disturb(signal.SIGSTOP, "--deadline", "hold:30:5")
+        process = self.disturb(signal.SIGSTOP, "--deadline", "hold:200:4")
         self.goes_on(process, ticks=100)
         self.assertIn("robot r1 (controller 'swing') is dropped", self.interrupted(process).err)
 

@@ -188,6 +188,8 @@ class Server:
     def command(self, session, command):
         if command.tick > self.tick and self.bug != "future-counts":
             raise Fault(E.FUTURE_TICK)
+        if command.tick < self.tick and self.bug == "dies":
+            sys.exit("goodbye")
         if command.tick < self.tick and self.bug != "stale-counts":
             raise Fault(E.STALE_TICK)
         if not session.owes:

@@ -1,0 +1,112 @@
+"""What the kit says to a stranger who gets the command line, or the program under test, wrong."""
+
+import contextlib
+import io
+import json
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from xml.etree import ElementTree
+
+from ziggurat_conformance import cli
+
+HERE = Path(__file__).resolve().parent
+TINY = [sys.executable, str(HERE / "tiny_server.py"), "{endpoint}"]
+
+
+def run(*arguments):
+    """Exit code, stdout, stderr."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            code = cli.main(list(arguments))
+        except SystemExit as exit:
+            code = exit.code
+    return code, out.getvalue(), err.getvalue()
+
+
+class Mistakes(unittest.TestCase):
+    def expect(self, sentence, *arguments):
+        code, _, err = run(*arguments)
+        self.assertEqual(2, code, err)
+        self.assertRegex(err, sentence)
+        self.assertNotIn("Traceback", err)
+
+    def test_a_program_that_is_not_there(self):
+        self.expect(r"\./nothing: the server can't be started: No such file", "server", "--",
+                    "./nothing", "{endpoint}")
+        self.expect(r"\./nothing: the controller can't be started: No such file", "client", "--",
+                    "./nothing")
+
+    def test_a_server_that_ends_at_once(self):
+        self.expect(r"ended at once, with exit code 7; it said:\nno libfoo", "server", "--", "sh", "-c",
+                    "echo no libfoo >&2; exit 7")
+
+    def test_a_server_that_does_not_listen(self):
+        self.expect(r"nothing listens at tcp://\S+, which takes the place of \{endpoint\} .*after 10 s; "
+                    r"the server said nothing", "server", "--", "sleep", "1000")
+
+    def test_an_endpoint_where_nobody_listens(self):
+        self.expect("nobody listens at tcp://127.0.0.1:1: Connection refused", "server",
+                    "tcp://127.0.0.1:1")
+        self.expect("nobody listens at ipc:///nowhere/at/all", "server", "ipc:///nowhere/at/all")
+        self.expect("'tcp://somewhere' is no endpoint", "server", "tcp://somewhere")
+        self.expect("'udp://127.0.0.1:5' is no endpoint", "server", "udp://127.0.0.1:5")
+
+    def test_cases_variants_and_lists_that_are_not_there(self):
+        self.expect("no case fits --only nonsense", "server", "--only", "nonsense", "--", *TINY)
+        self.expect("no case asks for 'leas'; curve, lease", "server", "--variant", "leas=x", "--", *TINY)
+        self.expect("--variant 'lease': write NAME=COMMAND", "server", "--variant", "lease", "--", *TINY)
+        self.expect("--known-failing nowhere: No such file", "server", "--known-failing", "nowhere", "--",
+                    *TINY)
+        self.expect("say what to test", "server")
+
+
+class Reports(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def play(self, *arguments):
+        code, out, _ = run("server", "--patience", "1", "--form", "binary", *arguments, "--json",
+                           str(self.folder / "r.json"), "--junit", str(self.folder / "r.xml"), "--html",
+                           str(self.folder / "r.html"), "--", *self.server)
+        return code, out, json.loads((self.folder / "r.json").read_text())
+
+    def test_of_a_server_that_is_right(self):
+        self.server = TINY
+        code, out, report = self.play("--only", "S9.*", "--only", "L7.*", "--only", "K1.listed")
+        self.assertEqual(0, code, out)
+        self.assertEqual({"Core": True, "Reconnect": None, "HIL": None, "Secure": None},
+                         report["badges"])
+        self.assertRegex(out, r"\d+ not run: give the server's command for it: --variant lease=…\n")
+        self.assertRegex(out, r"Reconnect +open: \d+ not run\n")
+        self.assertRegex(out, r"HIL +open: no case was chosen\n")
+        page = (self.folder / "r.html").read_text()
+        self.assertIn("Core: reached", page)
+        self.assertNotIn("<pre>", page)
+
+    def test_of_a_server_that_is_wrong(self):
+        self.server = [*TINY, "stale-counts"]
+        code, out, report = self.play("--only", "S9.*")
+        self.assertEqual(1, code, out)
+        self.assertFalse(report["badges"]["Core"])
+        self.assertRegex(out, r"Core +not reached: \d fail\n")
+        page = (self.folder / "r.html").read_text()
+        self.assertIn("<h2>S9.stale: A Command for an earlier tick is STALE_TICK</h2>", page)
+        self.assertRegex(page, "<p>.* error is due</p><pre>")
+        suite = ElementTree.parse(self.folder / "r.xml").getroot()
+        self.assertEqual(suite.get("failures"), str(len(suite.findall("testcase/failure"))))
+        self.assertLess(max(map(len, out.splitlines())), 250)
+
+    def test_of_a_server_that_dies_in_the_middle(self):
+        self.server = [*TINY, "dies"]
+        code, out, report = self.play("--only", "S9.*")
+        self.assertEqual(1, code, out)
+        [stale] = [case for case in report["cases"] if case["id"] == "S9.stale"]
+        self.assertRegex(stale["reason"], "error is due; the server had ended, and had said:\ngoodbye")
+        self.assertTrue(any(case["verdict"] == "pass" for case in report["cases"]), "it is started anew")
+
+
+if __name__ == "__main__":
+    unittest.main()
