@@ -44,10 +44,11 @@ def main():
         elif kind == "refusal" or kind == "displaced":
             print(said, file=sys.stderr)
             return 1
-        elif kind == "error" and said["severity"] != "WARNING":
+        elif kind == "error" and said["severity"] != "WARNING" and "_TICK" not in said["code"]:
             say(leave={"reason": "FAILED", "message": said["message"]})
             return 1
-        # "loading", "heartbeat", "paused", "reset" need no answer, nor does what comes in future.
+        # "loading", "heartbeat", "paused", "reset" need no answer, nor does what comes in future;
+        # STALE_TICK, DUPLICATE_TICK and FUTURE_TICK tell of an answer that met a reset on its way.
 
 
 if __name__ == "__main__":

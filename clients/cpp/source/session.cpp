@@ -17,10 +17,13 @@ ProtocolError displaced(const v1::Displaced& by) {
 }
 
 /// A tick went on without our answer, or had it already: the next one comes all the same.
-bool is_harmless(const v1::Error& error) {
+/// @param was_put_back  the world has gone back to an earlier tick: an answer that met that on its
+///                      way is for a tick to come
+bool is_harmless(const v1::Error& error, bool was_put_back) {
   if (error.severity() == v1::Error::FATAL) return false;
   return error.severity() == v1::Error::WARNING || error.code() == v1::Error::STALE_TICK ||
-         error.code() == v1::Error::DUPLICATE_TICK;
+         error.code() == v1::Error::DUPLICATE_TICK ||
+         (error.code() == v1::Error::FUTURE_TICK && was_put_back);
 }
 
 }  // namespace
@@ -125,9 +128,10 @@ bool Session::State::wait() {
         read(message.reset());
         break;
       case Connection::Kind::kError:
-        if (is_harmless(message.error())) {
+        if (is_harmless(message.error(), was_put_back)) {
           if (message.error().code() == v1::Error::DEADLINE_MISSED) ++missed;
-          if (message.error().code() != v1::Error::DUPLICATE_TICK) repeat();
+          // What was answered already counts, unless that was an answer to the world before.
+          if (message.error().code() != v1::Error::DUPLICATE_TICK || was_put_back) repeat();
           break;
         }
         is_over = message.error().severity() == v1::Error::FATAL;
@@ -172,6 +176,7 @@ void Session::State::read(const v1::End& end) {
 void Session::State::read(const v1::Reset& reset) {
   seed = reset.seed();
   is_reset = true;
+  was_put_back = true;
   std::fill(targets.begin(), targets.end(), 0.0);
   changed = false;
   devices->reset();

@@ -44,10 +44,11 @@ struct Session::State {
   v1::ClientMessage outgoing;  // long-lived: keeps its memory
 
   Event event = Event::init;
-  bool has_begun = false;  // an observation was delivered
-  bool is_reset = false;   // the next observation is the first after a reset
-  bool owes = false;       // the observation in hand is not answered yet
-  bool is_over = false;    // nothing is to be said any more
+  bool has_begun = false;     // an observation was delivered
+  bool is_reset = false;      // the next observation is the first after a reset
+  bool was_put_back = false;  // the world, to its start, at some time
+  bool owes = false;          // the observation in hand is not answered yet
+  bool is_over = false;       // nothing is to be said any more
   std::uint64_t tick = 0;
   std::chrono::nanoseconds time{0};
   std::optional<Ending> ending;

@@ -12,9 +12,9 @@ from .errors import Displaced, ProtocolError
 from .exchange import Exchange
 from .robot import Named, Places, Robot
 
-# Errors that say that a command came late or twice, or met a reset on its way (which makes its tick a
-# future one): harmless, the next observation is there or on its way.
-_LATE = (v1.Error.STALE_TICK, v1.Error.DUPLICATE_TICK, v1.Error.FUTURE_TICK)
+# Errors that say that a command came late or twice: harmless, the next observation is there or on its
+# way. One that meets a reset on its way is for a future tick.
+_LATE = (v1.Error.STALE_TICK, v1.Error.DUPLICATE_TICK)
 
 
 class Event(enum.Enum):
@@ -117,6 +117,7 @@ class Session:
         self.tick: Optional[Tick] = None  # the one that was given last
         self.ending: Optional[Ending] = None
         self.paused = False
+        self._was_put_back = False  # the world, by a reset
         self.missed = 0  # deadlines
         self.late = 0  # commands that came too late, or twice
 
@@ -170,6 +171,7 @@ class Session:
         if kind == "reset":
             self._exchange.reset()
             self._event = Event.RESET
+            self._was_put_back = True
             self._owes = None
         elif kind == "paused":
             self.paused = True
@@ -185,8 +187,11 @@ class Session:
             self.missed += 1
             self._exchange.repeat()
             return
-        if error.code in _LATE and error.severity != v1.Error.FATAL:
+        met_reset = error.code == v1.Error.FUTURE_TICK and self._was_put_back
+        if (error.code in _LATE or met_reset) and error.severity != v1.Error.FATAL:
             self.late += 1
+            if self._was_put_back:  # the world may have taken an answer of before in place of ours
+                self._exchange.repeat()
             return
         if error.severity == v1.Error.WARNING:
             return

@@ -186,6 +186,11 @@ CLIENT_CASES = [
     Case("L6.reset-twice", "It may be reset again and again",
          (*BEGUN, *[s for seed in (8, 9, 10) for s in
                     (*ticks(1, 2), Tell({"reset": {"seed": seed}}), *ticks(0, 0))]), Level.RECONNECT),
+    *[Case(f"S9.reset-crosses-{code.lower().replace('_', '-')}",
+           f"A command that met a reset on its way may be {code}: no reason to give up",
+           (*BEGUN, *ticks(1, 3), Tell({"reset": {"seed": 8}}), *ticks(0, 0), error(code, "DISCARD"),
+            Quiet(0.2, should=True), *ticks(1, 2)), Level.RECONNECT)
+      for code in ("FUTURE_TICK", "STALE_TICK", "DUPLICATE_TICK")],
     Case("L6.paused", "While the world is paused it says nothing",
          (*BEGUN, Tell({"paused": {"tick": 0}}), Tell({"heartbeat": {"sequence": 1}}), Quiet(0.5),
           *ticks(1, 3)), Level.RECONNECT),

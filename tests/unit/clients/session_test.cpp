@@ -99,6 +99,56 @@ TEST(Session, ResetIsDeliveredOnTheObservationThatFollows) {
   EXPECT_FALSE(session.next());
 }
 
+TEST(Session, AnAnswerThatMetAResetOnItsWayIsPassedOver) {
+  for (const auto code :
+       {v1::Error::FUTURE_TICK, v1::Error::STALE_TICK, v1::Error::DUPLICATE_TICK}) {
+    FakeServer server([code](FakeServer& self) {
+      self.welcome();
+      self.observe(5, {0, 0, 0, 0});
+      v1::ServerMessage reset, error;
+      reset.mutable_reset()->set_seed(8);
+      self.say(reset);
+      self.observe(0, {0, 0, 0, 0});
+      EXPECT_EQ(self.heard().command().tick(), 5U);
+      error.mutable_error()->set_code(code);
+      error.mutable_error()->set_severity(v1::Error::DISCARD);
+      self.say(error);
+      EXPECT_EQ(self.heard().command().joint_targets(1), 4);
+      self.observe(1, {0, 0, 0, 0});
+      const auto command = self.heard().command();
+      EXPECT_EQ(command.tick(), 1U);
+      ASSERT_EQ(command.joint_targets_size(), 2);  // in case that the answer to 0 was the lost one
+      EXPECT_EQ(command.joint_targets(1), 4);
+      self.end();
+      self.heard();
+    });
+    Session session(options_for(server));
+    ASSERT_TRUE(session.next());
+    ASSERT_TRUE(session.next());
+    EXPECT_EQ(session.event(), Event::reset);
+    session.robot("b").joint("hinge").set_target(4);
+    ASSERT_TRUE(session.next());
+    EXPECT_EQ(session.tick(), 1U);
+    EXPECT_FALSE(session.next());
+  }
+}
+
+TEST(Session, AnAnswerForATickToComeIsAFaultOtherwise) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.observe(5, {0, 0, 0, 0});
+    self.heard();
+    v1::ServerMessage error;
+    error.mutable_error()->set_code(v1::Error::FUTURE_TICK);
+    error.mutable_error()->set_severity(v1::Error::DISCARD);
+    self.say(error);
+    self.heard();
+  });
+  Session session(options_for(server));
+  ASSERT_TRUE(session.next());
+  EXPECT_THROW(session.next(), ProtocolError);
+}
+
 TEST(Session, LogsAndFailuresGoWithTheAnswer) {
   FakeServer server([](FakeServer& self) {
     self.welcome();

@@ -1,0 +1,222 @@
+"""Supervision, takeover, resuming, deadlines and keys: the package against the real server, whose program
+is in ZIGGURAT."""
+
+import itertools
+import os
+import pathlib
+import tempfile
+import threading
+import time
+import unittest
+
+import zmq
+import ziggurat
+
+ROOT = pathlib.Path(__file__).resolve().parents[4]
+PROGRAM = os.environ["ZIGGURAT"]
+ARMS = ROOT / "conformance" / "scene" / "conformance.argos"  # four robots with a motor each
+
+
+def serve(*arguments):
+    return ziggurat.Server(str(ARMS), command=PROGRAM, arguments=("--duration", "0", *arguments))
+
+
+def aside(function):
+    """The result of a function that runs in a thread, once somebody asks for it."""
+    results = []
+    thread = threading.Thread(target=lambda: results.append(function()), daemon=True)
+    thread.start()
+
+    def result():
+        thread.join(20)
+        return results[0]
+
+    return result
+
+
+def numbers_of(session, count):
+    return [tick.number for tick in itertools.islice(session, count)]
+
+
+def until(is_true):
+    end = time.monotonic() + 20
+    while not is_true():
+        if time.monotonic() > end:
+            raise AssertionError("it did not come true")
+        time.sleep(0.01)
+
+
+class Supervising(unittest.TestCase):
+    def test_a_world_is_paused_stepped_moved_reset_and_ended(self):
+        with serve() as server, ziggurat.supervise(server.endpoint) as world:
+            self.assertEqual(world.status().phase, "gathering")
+            self.assertEqual(len(world.status().free_robots), 4)
+            ticks, ended = [], []
+
+            def control():
+                with ziggurat.connect(server.endpoint, name="arms") as session:
+                    for tick in session:
+                        ticks.append((tick.number, tick.event))
+                        for robot in session.robots:
+                            robot.joints["hinge"].target = 1.0
+                    ended.append(session.ending.reason)
+
+            driver = threading.Thread(target=control, daemon=True)
+            driver.start()
+            until(lambda: world.status().tick >= 3)
+            at = world.pause()
+            status = world.status()
+            self.assertEqual((status.phase, status.tick), ("paused", at))
+            [arms] = [s for s in status.sessions if s.role == "controller"]
+            self.assertEqual((arms.client, arms.state), ("arms", "paused"))
+            self.assertEqual(arms.robots, ("arm0", "arm1", "arm2", "arm3"))
+
+            before = world.read("arm0")
+            self.assertEqual(before.tick, at)
+            self.assertEqual(world.step(5), at + 5)
+            after = world.read("arm*")
+            self.assertEqual(len(after.entities), 4)
+            turned = [state["arm0"].links[1].orientation for state in (before, after)]
+            self.assertNotAlmostEqual(turned[0][3], turned[1][3], places=2)
+
+            world.move("arm0", (1.0, 1.0, 0.0))
+            self.assertEqual(world.read("arm0")["arm0"].position, (1.0, 1.0, 0.0))
+
+            self.assertEqual(world.reset(seed=11), 0)
+            self.assertEqual(world.status().seed, 11)
+            fresh = world.read("arm0")["arm0"]
+            self.assertEqual(tuple(round(x, 9) for x in fresh.position), (0.3, 0.3, 0.0))
+            world.resume()
+            until(lambda: world.status().tick >= 3)
+            self.assertEqual([event for number, event in ticks if number == 0],
+                             [ziggurat.Event.INIT, ziggurat.Event.RESET])
+            world.shutdown()
+            driver.join(20)
+            self.assertEqual(ended, ["interrupted"])
+            self.assertEqual(server.wait(20), 130)
+
+    def test_what_cannot_be_done_says_why(self):
+        with serve() as server, ziggurat.supervise(server.endpoint) as world:
+            for call, code in ((lambda: world.step(1), "OUT_OF_STATE"),
+                               (lambda: world.read("nobody"), "UNKNOWN_ENTITY"),
+                               (lambda: world.move("nobody", (0, 0, 0)), "UNKNOWN_ENTITY"),
+                               (lambda: world.move("arm0", (0, 0, float("nan"))), "BAD_VALUE")):
+                with self.assertRaises(ziggurat.ProtocolError) as caught:
+                    call()
+                self.assertEqual(caught.exception.code, code)
+            with ziggurat.supervise(server.endpoint, observer=True) as watcher:
+                self.assertEqual(len(watcher.read().entities), 4)
+                with self.assertRaises(ziggurat.ProtocolError) as caught:
+                    watcher.pause()
+                self.assertEqual(caught.exception.code, "FORBIDDEN")
+
+
+class Holding(unittest.TestCase):
+    def test_a_takeover_displaces_whoever_drives(self):
+        with serve() as server:
+            first = ziggurat.connect(server.endpoint, name="first")
+            tick = next(first)
+            with ziggurat.connect(server.endpoint, "arm1", name="second", takeover=True) as second:
+                with self.assertRaises(ziggurat.Displaced) as caught:
+                    for tick in first:
+                        pass
+                self.assertIn("second", str(caught.exception))
+                self.assertEqual([robot.id for robot in second.robots], ["arm1"])
+                with ziggurat.connect(server.endpoint, ["arm0", "arm2", "arm3"]) as third:
+                    # Both get the tick that stands.
+                    self.assertEqual(next(second).number, next(third).number)
+
+    def test_a_lease_keeps_robots_for_their_token(self):
+        with serve("--lease", "60") as server:
+            session = ziggurat.connect(server.endpoint, name="first")
+            for tick in session:
+                for robot in session.robots:
+                    robot.joints["hinge"].target = 2.0
+                if tick.number == 3:
+                    break
+            session.abandon()
+            with ziggurat.supervise(server.endpoint) as world:
+                until(lambda: [s.state for s in world.status().sessions if s.role == "controller"]
+                      == ["lost"])
+            with self.assertRaises(ziggurat.Refused) as caught:
+                ziggurat.connect(server.endpoint, "arm0")
+            self.assertEqual((caught.exception.code, caught.exception.retryable),
+                             ("ROBOT_TAKEN", True))
+            with ziggurat.resume(server.endpoint, session.token) as again:
+                tick = next(again)
+                self.assertEqual((tick.number, tick.event), (3, ziggurat.Event.RESUME))
+                encoder = again.robots[0].joints["hinge"].encoder
+                tick = next(again)
+                self.assertEqual((tick.number, tick.event), (4, ziggurat.Event.STEP))
+                self.assertAlmostEqual(again.robots[0].joints["hinge"].encoder - encoder, 0.2,
+                                       delta=0.01)  # what was commanded before holds
+            with self.assertRaises(ziggurat.Refused) as caught:
+                ziggurat.resume(server.endpoint, b"no such token")
+            self.assertEqual(caught.exception.code, "NO_SUCH_SESSION")
+
+
+class Deadlines(unittest.TestCase):
+    def test_who_is_late_is_told_and_gets_every_tick(self):
+        deadline = ziggurat.Deadline("hold", wall_ms=300)
+        with serve() as server:
+            with ziggurat.connect(server.endpoint, "arm0", deadline=deadline) as late:
+                rest = ziggurat.connect(server.endpoint, "arm[1-3]")
+                their_numbers = aside(lambda: numbers_of(rest, 6))
+                tick = next(late)
+                late.robots[0].joints["hinge"].target = 1.0
+                time.sleep(0.7)  # two deadlines
+                self.assertEqual([tick.number, *numbers_of(late, 5)], list(range(6)))
+                self.assertEqual(their_numbers(), list(range(6)))
+                self.assertGreaterEqual(late.missed, 1)
+                self.assertGreaterEqual(late.late, 1)  # what it said to the tick that was over
+                # It was said again: the joint turned, although the first command was lost.
+                self.assertGreater(late.robots[0].joints["hinge"].encoder, 0.05)
+                rest.abandon()
+
+    def test_who_is_dropped_gets_no_tick_any_more_but_the_end(self):
+        deadline = ziggurat.Deadline("drop", wall_ms=100)
+        with serve() as server, ziggurat.supervise(server.endpoint) as world:
+            late = ziggurat.connect(server.endpoint, "arm0", deadline=deadline)
+            with ziggurat.connect(server.endpoint, "arm[1-3]") as rest:
+                next(late)
+                self.assertEqual(numbers_of(rest, 6), list(range(6)))
+                self.assertEqual(world.status().gone_robots, ("arm0",))
+                world.shutdown()
+                self.assertEqual(numbers_of(late, 6), [])
+                self.assertEqual((late.missed, late.ending.reason), (1, "interrupted"))
+                late.close()
+
+    def test_a_wish_that_the_server_has_fixed_otherwise_is_refused(self):
+        with serve("--deadline", "hold:5000") as server:
+            with self.assertRaises(ziggurat.Refused) as caught:
+                ziggurat.connect(server.endpoint, deadline=ziggurat.Deadline("stop", wall_ms=10))
+            self.assertEqual(caught.exception.code, "FORBIDDEN")
+
+
+class Keys(unittest.TestCase):
+    def test_who_is_listed_connects_in_its_roles(self):
+        server_key, server_secret = zmq.curve_keypair()
+        public, secret = zmq.curve_keypair()
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        (folder / "secret").touch(0o600)
+        (folder / "secret").write_bytes(server_secret)
+        (folder / "clients").write_text(f"{public.decode()} controller,observer me\n")
+        curve = ziggurat.Curve(server_key.decode(), public.decode(), secret.decode())
+        with serve("--curve-secret", str(folder / "secret"), "--curve-clients",
+                   str(folder / "clients")) as server:
+            with ziggurat.connect(server.endpoint, curve=curve) as session:
+                self.assertEqual(numbers_of(session, 3), [0, 1, 2])
+                with ziggurat.supervise(server.endpoint, observer=True, curve=curve) as watcher:
+                    self.assertEqual(watcher.status().phase, "running")
+                with self.assertRaises(ziggurat.Refused) as caught:
+                    ziggurat.supervise(server.endpoint, curve=curve)
+                self.assertEqual(caught.exception.code, "FORBIDDEN")
+            stranger = ziggurat.Curve(server_key.decode(),
+                                      *(key.decode() for key in zmq.curve_keypair()))
+            for keys in (stranger, None):
+                with self.assertRaises(ziggurat.ConnectionLost):
+                    ziggurat.connect(server.endpoint, curve=keys, connect_timeout=0.5)
+
+
+if __name__ == "__main__":
+    unittest.main()
