@@ -3,6 +3,8 @@
 import enum
 from dataclasses import dataclass
 
+from .server_scene import MAIN
+
 
 class Level(enum.Enum):
     """Badges: a server or client has one if it passes all of its cases."""
@@ -32,6 +34,7 @@ class Case:
     level: Level = Level.CORE
     fresh: bool = False  # needs a server of its own: it ends the run, or takes robots out of it
     variant: str = ""  # of the server's command; empty = the plain one
+    scene: str = MAIN
     forms: tuple = ("binary", "json")
 
     @property

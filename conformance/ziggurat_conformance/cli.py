@@ -8,6 +8,7 @@ from pathlib import Path
 
 from . import chaos, client_mode, report, server_mode, wire
 from .cases import SERVER_CASES
+from .server_scene import SCENE
 
 _EXAMPLES = """\
 examples:
@@ -133,7 +134,7 @@ def main(arguments=None) -> int:
     parser = _parser()
     options = parser.parse_args(arguments)
     if options.scene:
-        print(server_mode.SCENE)
+        print(SCENE)
         return 0
     if options.mode is None:
         parser.print_help()

@@ -164,12 +164,19 @@ pre {{ background: #f4f4f4; padding: .8em; overflow-x: auto; font-size: 12px; }}
 """
 
 
+def _why(outcome: Outcome) -> str:
+    """What stands behind a verdict in the table; failures have a chapter of their own."""
+    if outcome.verdict in (Verdict.PASS, Verdict.FAIL) or not outcome.reason:
+        return ""
+    return f"<br><small>{html.escape(outcome.reason)}</small>"
+
+
 def write_html(path: Path, outcomes: list, title: str) -> None:
     """One page that needs nothing else: every verdict, and the exchange of every failure."""
     escape = html.escape
     rows = "\n".join(
         f"<tr><td>{escape(o.id)}<td>{escape(o.title)}<td>{o.level.value}"
-        f'<td class="{o.verdict.value}">{o.verdict.value}</tr>' for o in outcomes)
+        f'<td class="{o.verdict.value}">{o.verdict.value}{_why(o)}</tr>' for o in outcomes)
     failures = "\n".join(
         f"<h2>{escape(o.id)}: {escape(o.title)}</h2><p>{escape(o.reason)}</p>"
         f"<pre>{escape(o.transcript)}</pre>" for o in outcomes if o.verdict is Verdict.FAIL)

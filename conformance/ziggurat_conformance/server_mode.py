@@ -10,7 +10,7 @@ from .case import Case, Failed, NonStrict, NotRun, Outcome, Unimplemented, Verdi
 from .keys import VARIANT, Keys
 from .say import hello
 from .server_process import ServerProcess, check_listens
-from .server_scene import SCENE
+from .server_scene import MAIN, path_of
 from .steps import Hear, Join, Say, Stage
 
 _MOST_VAIN_STARTS = 3
@@ -23,7 +23,7 @@ class Servers:
     def __init__(self, command: str, variants: dict, patience: float):
         self._commands = {"": command, **variants}
         self._patience = patience
-        self._shared: dict[str, ServerProcess] = {}
+        self._shared: dict[tuple, ServerProcess] = {}  # by variant and scene
         self.own: Optional[ServerProcess] = None
         self.keys = Keys()
         self._commands_started: set[str] = set()
@@ -35,17 +35,17 @@ class Servers:
             raise NotRun(f"give the server's command for it: --variant {case.variant}=…")
         files = self.keys.files() if case.variant == VARIANT else {}
         if case.fresh:
-            self.own = self._start(command, files)
+            self.own = self._start(command, case.scene, files)
             return self.own
-        shared = self._shared.get(case.variant)
+        shared = self._shared.get((case.variant, case.scene))
         if shared is None or not shared.runs():
-            shared = self._shared[case.variant] = self._start(command, files)
+            shared = self._shared[case.variant, case.scene] = self._start(command, case.scene, files)
         return shared
 
-    def _start(self, command: str, files: dict) -> ServerProcess:
+    def _start(self, command: str, scene: str, files: dict) -> ServerProcess:
         """Raises RuntimeError if it never did start, or does not any more; Failed if it may again."""
         try:
-            server = ServerProcess(command, SCENE, self._patience, files)
+            server = ServerProcess(command, path_of(scene), self._patience, files)
         except RuntimeError as error:
             self._vain_starts += 1
             if self._vain_starts < _MOST_VAIN_STARTS and command in self._commands_started:
@@ -59,8 +59,8 @@ class Servers:
         if self.own is not None:
             self.own.stop()
             self.own = None
-        elif not usable and case.variant in self._shared:
-            self._shared.pop(case.variant).stop()
+        elif not usable and (case.variant, case.scene) in self._shared:
+            self._shared.pop((case.variant, case.scene)).stop()
 
     def stop(self) -> None:
         for server in self._shared.values():
@@ -77,7 +77,7 @@ class RunningServer:
         self.endpoint = endpoint
 
     def server_for(self, case: Case) -> "RunningServer":
-        if case.fresh or case.variant:
+        if case.fresh or case.variant or case.scene != MAIN:
             raise NotRun("takes a server that the kit starts itself: server -- COMMAND")
         return self
 

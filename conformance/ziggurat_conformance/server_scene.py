@@ -1,6 +1,15 @@
-"""The scene that servers under test load."""
+"""The scenes that servers under test load."""
 
 from pathlib import Path
 
-SCENE = Path(__file__).resolve().parent.parent / "scene" / "conformance.argos"
-IDLE_SCRIPT = str(SCENE.parent / "idle.lua")
+_FOLDER = Path(__file__).resolve().parent.parent / "scene"
+IDLE_SCRIPT = str(_FOLDER / "idle.lua")
+
+
+def path_of(scene: str) -> Path:
+    """By the name that cases give it."""
+    return _FOLDER / f"{scene}.argos"
+
+
+MAIN = "conformance"
+SCENE = path_of(MAIN)

@@ -1,11 +1,12 @@
 """All cases for servers, in the order of the document's sections."""
 
-from . import deadlines, hello, leaving, security, states, supervision, tick, transport
+from . import deadlines, hello, leaving, rovers, security, states, supervision, tick, transport
 
 SERVER_CASES = [
     *transport.CASES,
     *hello.CASES,
     *tick.CASES,
+    *rovers.CASES,
     *deadlines.CASES,
     *states.CASES,
     *leaving.CASES,

@@ -85,6 +85,7 @@ class Reports(unittest.TestCase):
         page = (self.folder / "r.html").read_text()
         self.assertIn("Core: reached", page)
         self.assertNotIn("<pre>", page)
+        self.assertIn("not run<br><small>give the server&#x27;s command for it", page)
 
     def test_of_a_server_that_is_wrong(self):
         self.server = [*TINY, "stale-counts"]

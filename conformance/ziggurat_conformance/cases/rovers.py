@@ -1,0 +1,153 @@
+"""Section 3.1: wheels, turrets and pictures, in a scene of their own. rover0 and rover1 drive and measure,
+rover2 only measures."""
+
+import math
+
+from ..case import Case
+from ..say import answer, hear_error, hello, join, leave, observe
+from ..steps import Check, Join
+
+SCENE = "rovers"
+ALL = [join("p", "*"), *observe("p")]
+_DRIVERS = 2  # of the three robots
+
+
+def _case(id: str, title: str, *steps, fresh: bool = False) -> Case:
+    return Case(id, title, steps, fresh=fresh, scene=SCENE)
+
+
+def _stands(peer: str = "p", robots: int = _DRIVERS) -> list:
+    """Whatever the case before has left: wheels stand, turrets turn with their robots."""
+    return [answer(peer, wheel_velocities=[0.0] * 2 * robots, turret_modes=["TURRET_PASSIVE"] * robots,
+                   turret_rotations=[0.0] * robots, turret_speeds=[0.0] * robots), *observe(peer)]
+
+
+def _speeds(*due: float) -> Check:
+    """Velocities of left and right wheels, robot by robot."""
+
+    def check(stage) -> str:
+        told = list(stage.peer("p").observation.wheels)
+        if len(told) != 4 * len(due) // 2:
+            return f"wheels has {len(told)} values; {4 * len(due) // 2} are due"
+        found = [told[4 * (i // 2) + i % 2] for i in range(len(due))]
+        wrong = any(abs(a - b) > 1e-9 for a, b in zip(found, due))
+        return f"the wheels' speeds are {found}; {list(due)} are due" if wrong else ""
+
+    return Check("wheels", check)
+
+
+def _distances(stage) -> str:
+    """What the speeds carry in a tick of 0.1 s."""
+    told = list(stage.peer("p").observation.wheels)
+    wrong = any(abs(told[i + 2] - 0.1 * told[i]) > 1e-9 for i in range(len(told)) if i % 4 < 2)
+    return f"wheels is {told}: distances are not a tenth of the speeds" if wrong else ""
+
+
+def _remember(stage) -> str:
+    stage.memory["turrets"] = list(stage.peer("p").observation.turret_rotations)
+    count = len(stage.peer("p").welcome.robots)
+    found = len(stage.memory["turrets"])
+    return "" if found == count else f"turret_rotations has {found} values; {count} are due"
+
+
+def _turned(*due: float) -> Check:
+    """By how much the turrets turned since _remember."""
+
+    def check(stage) -> str:
+        pairs = zip(stage.memory["turrets"], stage.peer("p").observation.turret_rotations)
+        found = [math.remainder(b - a, math.tau) for a, b in pairs]
+        wrong = len(found) != len(due) or any(abs(a - b) > 1e-6 for a, b in zip(found, due))
+        return f"the turrets turned by {found}; {list(due)} are due" if wrong else ""
+
+    return Check("turrets", check)
+
+
+def _point_to(*due: float) -> Check:
+    def check(stage) -> str:
+        found = list(stage.peer("p").observation.turret_rotations)
+        wrong = len(found) != len(due) or any(
+            abs(math.remainder(a - b, math.tau)) > 0.05 for a, b in zip(found, due))
+        return f"the turrets point to {found}; {list(due)} are due" if wrong else ""
+
+    return Check("turrets", check)
+
+
+def _images(size: int) -> Check:
+    def check(stage) -> str:
+        found = [len(image) for image in stage.peer("p").observation.camera_images]
+        return "" if found == [size] else f"camera_images are of {found} bytes; [{size}] are due"
+
+    return Check("pictures", check)
+
+
+def _bad(rule: str, name: str, title: str, field: str, values: list, **more) -> Case:
+    """A command that is BAD_VALUE and has no effect; a right one follows."""
+    return _case(f"{rule}.{name}", title, ALL, _stands(), answer("p", **{field: values}, **more),
+                 hear_error("p", "BAD_VALUE", field=field), answer("p"), observe("p"),
+                 _speeds(0, 0, 0, 0, 0, 0))
+
+
+_ZEROS = {"wheel_velocities": [0.1] * 4, "turret_modes": ["TURRET_SPEED"] * 2,
+          "turret_rotations": [0.5] * 2, "turret_speeds": [0.5] * 2}
+_KEBAB = {field: field.replace("_", "-") for field in _ZEROS}
+_TICKS = [step for _ in range(40) for step in (answer("p"), *observe("p"))]
+
+CASES = [
+    _case("D6.per-wheel", "A speed for each wheel of the robots that drive, left and right", ALL,
+          answer("p", wheel_velocities=[0.1, 0.2, -0.1, 0.05]), observe("p"),
+          _speeds(0.1, 0.2, -0.1, 0.05, 0, 0), Check("distances", _distances), _stands()),
+    _case("D6.stays", "Speeds of wheels stay until changed", ALL,
+          answer("p", wheel_velocities=[0.1] * 4), observe("p"), answer("p"), observe("p"),
+          _speeds(0.1, 0.1, 0.1, 0.1, 0, 0), _stands(), _speeds(0, 0, 0, 0, 0, 0)),
+    _case("D6.begins", "They begin as 0", ALL, _speeds(0, 0, 0, 0, 0, 0), answer("p"), observe("p"),
+          _speeds(0, 0, 0, 0, 0, 0), fresh=True),
+    _case("D6.some", "A command may speak for one robot: two values", ALL, _stands(),
+          answer("p", robots=[1], wheel_velocities=[0.1, 0.2]), observe("p"),
+          _speeds(0, 0, 0.1, 0.2, 0, 0), _stands()),
+    _case("D6.asked-order", "Values are in the order of `robots`", ALL, _stands(),
+          answer("p", robots=[1, 0], wheel_velocities=[0.1, 0.2, 0.3, 0.4]), observe("p"),
+          _speeds(0.3, 0.4, 0.1, 0.2, 0, 0), _stands()),
+    _case("D6.described", "Welcome says who drives and who measures",
+          Join("p", hello("*"), {"robots": [
+              {"wheels": {"drives": True, "measures": True}, "turret": {"drives": True, "measures": True}},
+              {"wheels": {"drives": True, "measures": True}, "turret": {"drives": True, "measures": True}},
+              {"wheels": {"drives": False, "measures": True},
+               "turret": {"drives": False, "measures": True}}]})),
+    _bad("D6", "of-a-passenger", "Speeds for a robot that only measures", "wheel_velocities",
+         [0.1, 0.1], robots=[2]),
+    _case("D6.left", "The wheels of robots that left stand (L1)", ALL,
+          answer("p", wheel_velocities=[0.1] * 4), observe("p"), leave("p", 0), answer("p"),
+          observe("p"), _speeds(0, 0, 0.1, 0.1, 0, 0), fresh=True),
+    *[_bad("S6", f"{name}-{_KEBAB[field]}", f"One value of {field} too {word}", field, values)
+      for field, zeros in _ZEROS.items()
+      for name, word, values in (("short", "few", zeros[1:]), ("long", "many", zeros + zeros[:1]))],
+    *[_bad("S8", f"{name}-{_KEBAB[field]}", f"{name} in {field} is refused", field,
+           [bad, *_ZEROS[field][1:]])
+      for field in ("wheel_velocities", "turret_rotations", "turret_speeds")
+      for name, bad in (("nan", math.nan), ("infinity", math.inf))],
+    *[_bad("D7", f"mode-{mode}", "A mode that there is not", "turret_modes", ["TURRET_SPEED", mode])
+      for mode in (0, 4, 77)],
+    _bad("D7", "of-a-passenger", "A mode for a robot that only measures", "turret_modes",
+         ["TURRET_SPEED"], robots=[2]),
+    _case("D7.begins", "A turret begins passive, at 0 and with speed 0", ALL, Check("", _remember),
+          answer("p", turret_speeds=[1.0, 1.0], turret_rotations=[1.0, 1.0]), observe("p"),
+          answer("p"), observe("p"), _turned(0, 0, 0),  # a value changes no mode
+          answer("p", turret_modes=["TURRET_SPEED", "TURRET_PASSIVE"]), observe("p"),
+          _turned(0.1, 0, 0), fresh=True),  # and waits for its own
+    _case("D7.speed", "At a speed it turns, until told otherwise", ALL, _stands(), Check("", _remember),
+          answer("p", turret_modes=["TURRET_SPEED"] * 2, turret_speeds=[1.0, -0.5]), observe("p"),
+          _turned(0.1, -0.05, 0), answer("p"), observe("p"), _turned(0.2, -0.1, 0),
+          answer("p", turret_speeds=[0.0, 0.0]), observe("p"), _turned(0.2, -0.1, 0), _stands()),
+    _case("D7.position", "Towards an angle it turns until it is there", ALL, _stands(),
+          answer("p", turret_modes=["TURRET_POSITION"] * 2, turret_rotations=[1.0, -2.0]), observe("p"),
+          _TICKS, _TICKS, _TICKS, _point_to(1.0, -2.0, 0), _stands()),
+    _case("D7.by-itself", "Setting one thing changes no other", ALL, _stands(), Check("", _remember),
+          answer("p", turret_modes=["TURRET_SPEED"] * 2, turret_speeds=[1.0, 1.0]), observe("p"),
+          answer("p", turret_rotations=[2.0, 2.0]), observe("p"), _turned(0.2, 0.2, 0), _stands()),
+    _case("D7.robot-turns", "A passive turret turns with its robot: its rotation stays", ALL, _stands(),
+          Check("", _remember), answer("p", wheel_velocities=[-0.05, 0.05, 0.1, 0.1]), observe("p"),
+          _turned(0, 0, 0), _stands()),
+    _case("D8.picture", "A camera with `image` has a picture of width × height × 3 bytes",
+          ALL, answer("p"), observe("p"), _images(16 * 12 * 3)),
+    _case("D8.no-picture-at-tick-0", "At tick 0 it is empty", ALL, _images(0), fresh=True),
+]
