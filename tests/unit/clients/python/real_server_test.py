@@ -95,6 +95,24 @@ class Supervising(unittest.TestCase):
             self.assertEqual(ended, ["interrupted"])
             self.assertEqual(server.wait(20), 130)
 
+    def test_a_world_that_is_said_to_stand_stands(self):
+        """Whenever the pause comes: with the last answer of a tick, and between the ticks of a pace."""
+        for pace in (), ("--real-time", "5"):
+            with self.subTest(pace), serve(*pace) as server:
+                with ziggurat.supervise(server.endpoint) as world:
+                    session = ziggurat.connect(server.endpoint)
+                    driver = threading.Thread(target=lambda: list(session), daemon=True)
+                    driver.start()
+                    for _ in range(30 if pace else 200):
+                        at = world.pause()
+                        time.sleep(0.003)
+                        status = world.status()
+                        self.assertEqual((status.phase, status.tick), ("paused", at))
+                        world.resume()
+                        until(lambda: world.status().tick > at)
+                    world.shutdown()
+                    driver.join(20)
+
     def test_what_cannot_be_done_says_why(self):
         with serve() as server, ziggurat.supervise(server.endpoint) as world:
             for call, code in ((lambda: world.step(1), "OUT_OF_STATE"),
