@@ -31,8 +31,9 @@ def polite(endpoint, number):
     """A supervisor that asks and leaves. (Robots of a controller that leaves would be gone.)"""
     with RawPeer(endpoint) as peer:
         peer.say(hello(role=v1.ROLE_SUPERVISOR))
+        hear(peer, "welcome")
         peer.say(ask(number))
-        hear(peer, "welcome", "response")
+        hear(peer, "response")
         peer.say(v1.ClientMessage(leave=v1.Leave(reason=v1.Leave.DONE)).SerializeToString())
 
 
@@ -96,9 +97,11 @@ def ask(number):
 
 
 def hear(peer, *kinds):
-    """Messages of these kinds, one after the other, and nothing else."""
+    """Messages of these kinds, one after the other, and nothing else once the world is there."""
     for due in kinds:
-        kind = v1.ServerMessage.FromString(peer.hear()).WhichOneof("message")
+        kind = "loading"
+        while kind == "loading":
+            kind = v1.ServerMessage.FromString(peer.hear()).WhichOneof("message")
         if kind != due:
             raise AssertionError(f"{due} is due, not {kind}")
 
@@ -127,6 +130,8 @@ class Leaks(SceneTest):
         process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--quiet",
                              limit=120)
         endpoint = process.stdout.readline().split()[1]
+        polite(endpoint, 1)  # the world is there
+        time.sleep(0.2)
         idle, _ = self.measure(process)
         self.come_and_go(endpoint, range(WARM_UP))
         _, memory = self.measure(process)
