@@ -1,6 +1,8 @@
 // The program `ziggurat`: finds the command, and turns what it throws into a message and an exit
 // code.
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <exception>
 #include <string>
@@ -18,6 +20,15 @@ bool asks_for_help(const Arguments& arguments) {
   const auto end = std::ranges::find(arguments, "--");
   return std::any_of(arguments.begin(), end,
                      [](const auto& each) { return each == "--help" || each == "-h"; });
+}
+
+/// As many open files as we may have: each connection is one, and the usual 1024 would be fewer
+/// than the sessions that the protocol promises room for.
+void allow_many_connections() {
+  rlimit limit;
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  (void)::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 int dispatch(Arguments arguments, Console& console) {
@@ -47,6 +58,7 @@ int main(int count, char** texts) {
   Console::Style style;
   style.json = std::ranges::find(arguments, "--json") != arguments.end();
   Console console(style);
+  allow_many_connections();
   try {
     return dispatch(arguments, console);
   } catch (const ziggurat::scene::SceneError& error) {

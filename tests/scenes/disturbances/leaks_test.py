@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import resource
 import socket
 import struct
 import sys
@@ -141,6 +142,22 @@ class Leaks(SceneTest):
         growth = self.measure(process)[1] - memory
         print(f"{CONNECTIONS} connections: {files} open files, {growth} KiB more", flush=True)
         self.assertLess(growth, MOST_GROWTH)
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_half_open_connections_keep_nobody_out(self):
+        """More of them than a shell usually grants open files; they are hung up on in the end."""
+        soft, hard = 256, resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+        process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--quiet", limit=120,
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard)))
+        endpoint = process.stdout.readline().split()[1]
+        strangers = [connect(endpoint) for _ in range(2 * soft)]
+        polite(endpoint, 1)
+        for stranger in strangers:  # each has sent nothing
+            stranger.settimeout(20)
+            while stranger.recv(100):  # its greeting
+                pass
+            stranger.close()
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
