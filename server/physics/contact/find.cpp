@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "physics/contact/pairs.h"
+#include "physics/contact/sort.h"
 
 namespace ziggurat::physics::contact {
 namespace {
@@ -143,8 +144,8 @@ void reduce(Contacts& contacts, const btTransform& frame) {
     const btVector3 arm = points[i].on_b - middle;
     ordered[i] = {turn(arm.dot(first), arm.dot(second)), points[i]};
   }
-  std::stable_sort(ordered.begin(), ordered.begin() + contacts.count,
-                   [](const auto& p, const auto& q) { return p.first < q.first; });
+  sort_few(ordered.data(), ordered.data() + contacts.count,
+           [](const auto& p, const auto& q) { return p.first < q.first; });
   for (int i = 0; i < contacts.count; ++i) points[i] = ordered[i].second;
 }
 

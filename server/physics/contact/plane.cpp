@@ -1,8 +1,7 @@
 // Boxes, cylinders and spheres against a half-space.
 
-#include <algorithm>
-
 #include "physics/contact/pairs.h"
+#include "physics/contact/sort.h"
 
 namespace ziggurat::physics::contact {
 namespace {
@@ -16,8 +15,8 @@ void add(const btVector3& point, const btTransform& plane, btScalar reach, Conta
 /// Of many points over one plane only the lowest can carry: ties keep their order.
 void keep_lowest(Contacts& contacts, int most) {
   if (contacts.count <= most) return;
-  std::stable_sort(contacts.points.begin(), contacts.points.begin() + contacts.count,
-                   [](const Point& p, const Point& q) { return p.distance < q.distance; });
+  sort_few(contacts.points.data(), contacts.points.data() + contacts.count,
+           [](const Point& p, const Point& q) { return p.distance < q.distance; });
   contacts.count = most;
 }
 
