@@ -46,18 +46,29 @@ Magnets::Placed Magnets::place(const Body& body, const scene::Magnet& magnet) co
 }
 
 void Magnets::body_added(const Body& body) {
+  if (body.magnets.empty()) return;
+  give_up_field();
   for (const scene::Magnet& magnet : body.magnets) {
     magnets_.push_back(place(body, magnet));
+    magnets_.back().number = added_++;
     currents_.push_back(0);
   }
-  field_.reset();
 }
 
 void Magnets::body_removed(const Body& body) {
+  if (body.magnets.empty()) return;
+  give_up_field();
   for (std::size_t i = magnets_.size(); i-- > 0;) {
     if (magnets_[i].entity != body.entity) continue;
     magnets_.erase(magnets_.begin() + static_cast<std::ptrdiff_t>(i));
     currents_.erase(currents_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+/// The next one goes on with the orientations of this one.
+void Magnets::give_up_field() {
+  for (std::size_t i = 0; field_ && i < magnets_.size(); ++i) {
+    if (magnets_[i].turning) magnets_[i].turn = field_->turns()[i];
   }
   field_.reset();
 }
@@ -75,6 +86,9 @@ void Magnets::build_field() {
   poses_.resize(carriers_.size());
   wrenches_.resize(carriers_.size());
   field_.emplace(std::move(magnets), carriers_.size(), options_);
+  std::vector<Quaternion> turns(field_->turns().begin(), field_->turns().end());
+  for (std::size_t i = 0; i < magnets_.size(); ++i) turns[i] = magnets_[i].turn.value_or(turns[i]);
+  field_->set_turns(turns);
 }
 
 void Magnets::before_substep(std::span<Body> bodies, double substep) {
@@ -133,7 +147,7 @@ double Magnets::stiffest_rate(const Body& body, std::size_t number) const {
 }
 
 void Magnets::set_currents(std::span<const double> currents) {
-  currents_.assign(currents.begin(), currents.end());
+  for (std::size_t i = 0; i < magnets_.size(); ++i) currents_[i] = currents[magnets_[i].number];
 }
 
 }  // namespace ziggurat::physics

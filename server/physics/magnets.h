@@ -17,7 +17,7 @@ class Magnets final : public Plugin {
   void body_removed(const Body& body) override;
   void before_substep(std::span<Body> bodies, double substep) override;
 
-  /// @param currents  of all magnets, in the order in which their bodies were added
+  /// @param currents  of all magnets that were ever added, in the order of their bodies
   void set_currents(std::span<const double> currents);
 
   /// The largest rate of a bond between two bodies like one of these [rad/s], and whose it is.
@@ -36,16 +36,20 @@ class Magnets final : public Plugin {
     std::size_t link = 0;                ///< in whose shape it sits
     std::optional<std::size_t> turning;  ///< the link that shows its orientation
     magnetism::Magnet magnet;            ///< its body not yet numbered
+    std::size_t number = 0;              ///< among all that were ever added
+    std::optional<math::Quaternion> turn;  ///< where it was when the field was given up
   };
 
   Placed place(const Body& body, const scene::Magnet& magnet) const;
   double stiffest_rate(const Body& body, std::size_t link) const;
+  void give_up_field();
   void build_field();
 
   magnetism::Options options_;
   scene::Magnetism settings_;
   std::vector<Placed> magnets_;
   std::vector<double> currents_;  // parallel to magnets_
+  std::size_t added_ = 0;         // magnets
 
   // Made when the first substep after a change begins.
   std::optional<magnetism::Field> field_;

@@ -10,6 +10,7 @@ void place(btCollisionObject& object, const btTransform& transform, btDynamicsWo
   object.setInterpolationWorldTransform(transform);
   static_cast<contact::Collider*>(object.getUserPointer())->previous = transform;
   if (object.getBroadphaseHandle() == nullptr) return;
+  wake_neighbours(object, world);
   world.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(
       object.getBroadphaseHandle(), world.getDispatcher());
   world.updateSingleAabb(&object);
@@ -49,6 +50,18 @@ void move_multi(Body& body, const btTransform& base, btDynamicsWorld& world) {
 }
 
 }  // namespace
+
+void wake_neighbours(const btCollisionObject& object, btDynamicsWorld& world) {
+  const btBroadphasePairArray& pairs =
+      world.getBroadphase()->getOverlappingPairCache()->getOverlappingPairArray();
+  const btBroadphaseProxy* proxy = object.getBroadphaseHandle();
+  for (int i = 0; i < pairs.size(); ++i) {
+    if (pairs[i].m_pProxy0 != proxy && pairs[i].m_pProxy1 != proxy) continue;
+    const btBroadphaseProxy* other =
+        pairs[i].m_pProxy0 == proxy ? pairs[i].m_pProxy1 : pairs[i].m_pProxy0;
+    static_cast<btCollisionObject*>(other->m_clientObject)->activate();
+  }
+}
 
 void move(Body& body, const math::Pose& pose, btDynamicsWorld& world) {
   const math::Pose from_placed = pose * math::inverse(body.placed);

@@ -119,6 +119,7 @@ struct Rays::Parts {
     std::size_t link = 0;  // into State::links
     math::Pose pose;       // X_WL of the last update
     btDbvtNode* leaf = nullptr;
+    bool removed = false;
   };
 
   bool has_floor = false;
@@ -155,10 +156,20 @@ void Rays::add(const scene::Entity& entity) {
   Parts& p = *parts_;
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     const scene::Link& link = entity.links[i];
-    if (link.collides) p.solids.push_back({link.geometry, p.entities, p.links + i, {}, nullptr});
+    if (link.collides) p.solids.push_back({link.geometry, p.entities, p.links + i, {}, nullptr, false});
   }
   p.links += entity.links.size();
   p.entities += 1;
+}
+
+void Rays::remove(std::size_t entity) {
+  Parts& p = *parts_;
+  for (Parts::Solid& solid : p.solids) {
+    if (solid.entity != entity) continue;
+    if (solid.leaf) p.tree.remove(solid.leaf);
+    solid.leaf = nullptr;
+    solid.removed = true;
+  }
 }
 
 void Rays::update(const world::State& state) {
@@ -166,6 +177,7 @@ void Rays::update(const world::State& state) {
   bool grown = false;
   for (std::size_t i = 0; i < p.solids.size(); ++i) {
     Parts::Solid& solid = p.solids[i];
+    if (solid.removed) continue;
     const math::Pose& pose = state.links[solid.link].pose;
     if (solid.leaf && same(pose, solid.pose)) continue;
     if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) continue;

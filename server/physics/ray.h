@@ -34,6 +34,10 @@ class Rays {
   /// Adds an entity; its links take the next places of State::links.
   void add(const scene::Entity& entity);
 
+  /// Rays meet the entity no more; its places in State::links stay its own.
+  /// @param entity  in order of adding
+  void remove(std::size_t entity);
+
   /// Takes the poses of a tick; due before casts.
   void update(const world::State& state);
 

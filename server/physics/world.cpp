@@ -1,6 +1,8 @@
 #include "physics/world.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "magnetism/stiffness.h"
 #include "physics/convert.h"
@@ -10,6 +12,7 @@
 #include "physics/joints.h"
 #include "physics/magnets.h"
 #include "physics/move.h"
+#include "physics/overlap.h"
 #include "physics/solver.h"
 
 namespace ziggurat::physics {
@@ -64,12 +67,14 @@ struct World::Parts {
   ~Parts();
 
   void add_joints(const scene::Entity& entity, Body& body);
+  void detach(MovingJoint& joint);
+  void detach(Body& body);
 
   scene::Physics settings;
   double gravity;  // [m/s^2]
   int splits;      // internal substeps per substep
   double length;   // of an internal substep [s]
-  bool stepped = false;
+  std::size_t stepped = 0;  // so many bodies have been through a step; the rest is as placed
 
   /// Room that read() works in, kept so that a tick does not allocate it.
   struct Reading {
@@ -95,16 +100,21 @@ struct World::Parts {
 };
 
 World::Parts::~Parts() {
-  for (MovingJoint& joint : joints) {
-    if (joint.limit) dynamics.removeMultiBodyConstraint(joint.limit.get());
-    if (joint.motor.constraint) dynamics.removeMultiBodyConstraint(joint.motor.constraint.get());
-  }
-  for (Body& body : bodies) {
-    if (body.drive) dynamics.removeConstraint(body.drive.get());
-    for (auto& collider : body.link_colliders) dynamics.removeCollisionObject(collider.get());
-    if (body.multi) dynamics.removeMultiBody(body.multi.get());
-    if (body.rigid) dynamics.removeRigidBody(body.rigid.get());
-  }
+  for (MovingJoint& joint : joints) detach(joint);
+  for (Body& body : bodies) detach(body);
+}
+
+/// Takes it out of Bullet's world.
+void World::Parts::detach(MovingJoint& joint) {
+  if (joint.limit) dynamics.removeMultiBodyConstraint(joint.limit.get());
+  if (joint.motor.constraint) dynamics.removeMultiBodyConstraint(joint.motor.constraint.get());
+}
+
+void World::Parts::detach(Body& body) {
+  if (body.drive) dynamics.removeConstraint(body.drive.get());
+  for (auto& collider : body.link_colliders) dynamics.removeCollisionObject(collider.get());
+  if (body.multi) dynamics.removeMultiBody(body.multi.get());
+  if (body.rigid) dynamics.removeRigidBody(body.rigid.get());
 }
 
 /// Puts the turret where the drive has it.
@@ -149,7 +159,11 @@ void World::add(const scene::Entity& entity) {
   body.entity = p.bodies.size() - 1;
   body.first_link = p.link_count;
   p.link_count += body.links.size();
-  if (body.rigid) p.dynamics.addRigidBody(body.rigid.get());
+  const int number = static_cast<int>(body.entity);
+  if (body.rigid) {
+    body.rigid->setUserIndex(number);
+    p.dynamics.addRigidBody(body.rigid.get());
+  }
   if (body.drive) {
     p.driven.push_back(body.entity);
     if (entity.movable) p.dynamics.addConstraint(body.drive.get());
@@ -157,6 +171,7 @@ void World::add(const scene::Entity& entity) {
   if (body.multi) p.dynamics.addMultiBody(body.multi.get());
   for (auto& collider : body.link_colliders) {
     const bool fixed = collider->isStaticObject();
+    collider->setUserIndex(number);
     p.dynamics.addCollisionObject(
         collider.get(), fixed ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter,
         fixed ? btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter
@@ -164,6 +179,46 @@ void World::add(const scene::Entity& entity) {
   }
   p.add_joints(entity, body);
   for (auto& plugin : p.plugins) plugin->body_added(body);
+}
+
+void World::remove(std::size_t entity) {
+  Parts& p = *parts_;
+  Body& body = p.bodies[entity];
+  for (auto& collider : body.link_colliders) wake_neighbours(*collider, p.dynamics);
+  if (body.rigid) wake_neighbours(*body.rigid, p.dynamics);
+  for (auto& plugin : p.plugins) plugin->body_removed(body);
+  std::erase(p.driven, entity);
+  std::erase_if(p.motors, [&](std::size_t motor) { return p.joints[motor].entity == entity; });
+  for (MovingJoint& joint : p.joints) {
+    if (joint.entity != entity) continue;
+    p.detach(joint);
+    const std::size_t index = joint.index;
+    joint = {};
+    joint.entity = entity;
+    joint.index = index;
+  }
+  p.detach(body);
+  // Without links: nothing acts on it, nothing is read of it.
+  const Body gone = std::exchange(body, Body{});
+  body.entity = entity;
+  body.first_link = gone.first_link;
+}
+
+std::optional<std::size_t> World::overlapped_by(const scene::Entity& entity) const {
+  const std::vector<PlacedCollider> candidates = placed_colliders(entity);
+  std::optional<std::size_t> first;
+  const btCollisionObjectArray& objects = parts_->dynamics.getCollisionObjectArray();
+  for (int i = 0; i < objects.size(); ++i) {
+    const btCollisionObject& object = *objects[i];
+    if (object.getUserIndex() < 0) continue;  // the floor
+    const auto number = static_cast<std::size_t>(object.getUserIndex());
+    if (first && *first <= number) continue;
+    const PlacedCollider other = placed_collider(object);
+    if (std::ranges::any_of(candidates, [&](const auto& each) { return overlaps(each, other); })) {
+      first = number;
+    }
+  }
+  return first;
 }
 
 JointIndex World::joint(std::size_t entity, std::size_t joint) const {
@@ -190,12 +245,12 @@ void World::set_target(JointIndex joint, double target) {
 
 double World::position(JointIndex index) const {
   const MovingJoint& joint = parts_->joints[index.value];
-  return joint.multi->getJointPos(joint.link);
+  return joint.multi ? joint.multi->getJointPos(joint.link) : 0;
 }
 
 double World::velocity(JointIndex index) const {
   const MovingJoint& joint = parts_->joints[index.value];
-  return joint.multi->getJointVel(joint.link);
+  return joint.multi ? joint.multi->getJointVel(joint.link) : 0;
 }
 
 void World::set_velocity(std::size_t entity, double velocity, double angular_velocity) {
@@ -224,7 +279,7 @@ void World::move(std::size_t entity, const math::Pose& pose) {
 
 void World::step() {
   Parts& p = *parts_;
-  p.stepped = true;
+  p.stepped = p.bodies.size();
   for (int split = 0; split < p.splits; ++split) {
     for (auto& plugin : p.plugins) plugin->before_substep(p.bodies, p.length);
     for (const std::size_t motor : p.motors) {
@@ -244,13 +299,15 @@ void World::read(world::State& state) const {
   state.links.resize(p.link_count);
   auto& [motions, rotations, positions] = p.reading;
   for (const Body& body : p.bodies) {
-    if (body.multi && p.stepped) body.multi->forwardKinematics(rotations, positions);
+    if (body.links.empty()) continue;  // removed
+    const bool stepped = body.entity < p.stepped;
+    if (body.multi && stepped) body.multi->forwardKinematics(rotations, positions);
     body.motions(motions);
     for (std::size_t i = 0; i < body.links.size(); ++i) {
       const LinkBody& link = body.links[i];
       world::LinkState& out = state.links[body.first_link + i];
       out.pose = link.placed;
-      if (p.stepped && link.moves) {
+      if (stepped && link.moves) {
         out.pose = from_bullet(body.transform(link));
         out.pose.position -= out.pose.orientation * link.center_of_mass;
       }
@@ -260,7 +317,7 @@ void World::read(world::State& state) const {
       out.velocity = from_bullet(motion.velocity) + out.angular_velocity.cross(arm);
     }
     const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
-    state.origins[body.entity] = p.stepped ? reference * body.origin_from_reference : body.placed;
+    state.origins[body.entity] = stepped ? reference * body.origin_from_reference : body.placed;
   }
 }
 
@@ -277,6 +334,7 @@ double World::energy() const {
   double total = 0;
   std::vector<Motion> motions;
   for (const Body& body : parts_->bodies) {
+    if (body.links.empty()) continue;
     body.motions(motions);
     for (std::size_t i = 0; i < body.parts.size(); ++i) {
       const Part& part = body.parts[i];

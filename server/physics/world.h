@@ -25,8 +25,18 @@ class World {
   World(const scene::Physics& physics, double substep);
   ~World();
 
-  /// Adds an entity at its pose; its links take the next places of State::links.
+  /// Adds an entity at its pose, now or while the world runs; its links take the next places of
+  /// State::links.
   void add(const scene::Entity& entity);
+
+  /// Takes an entity out: its bodies, joints and magnets are gone, and what rested on it falls. Its
+  /// number and its places in State::links stay its own, and read() leaves them as they are. Nothing
+  /// else may be asked of it afterwards but its joints, which are at 0.
+  void remove(std::size_t entity);
+
+  /// The first entity, in order of adding, that another would overlap at its pose as all stand now.
+  /// The floor never counts; touching is not overlapping.
+  std::optional<std::size_t> overlapped_by(const scene::Entity& entity) const;
 
   /// A revolute or prismatic joint of an entity added before.
   /// @param entity  in order of adding;  @param joint  index into Entity::joints

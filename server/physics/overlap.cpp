@@ -1,0 +1,48 @@
+#include "physics/overlap.h"
+
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
+#include "physics/assembly.h"
+#include "physics/contact/algorithm.h"
+#include "physics/convert.h"
+#include "physics/geometry.h"
+
+namespace ziggurat::physics {
+namespace {
+
+/// Below this two bodies overlap rather than touch: rounding is a thousand times smaller [m].
+constexpr btScalar overlap = -1e-8;
+
+}  // namespace
+
+std::vector<PlacedCollider> placed_colliders(const scene::Entity& entity) {
+  std::vector<PlacedCollider> placed;
+  const std::vector<math::Pose> assembled = assemble(entity);
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    const scene::Link& link = entity.links[i];
+    if (!link.collides) continue;
+    const math::Pose centre{center_of_mass(link.geometry), math::Quaternion::Identity()};
+    placed.push_back({contact_shape(link.geometry), to_bullet(entity.pose * assembled[i] * centre),
+                      bounding_radius(link.geometry)});
+  }
+  return placed;
+}
+
+PlacedCollider placed_collider(const btCollisionObject& object) {
+  btVector3 centre;
+  btScalar radius;
+  object.getCollisionShape()->getBoundingSphere(centre, radius);
+  return {contact::collider_of(object).shape, object.getWorldTransform(), radius};
+}
+
+bool overlaps(const PlacedCollider& a, const PlacedCollider& b) {
+  const btScalar reach = a.radius + b.radius;
+  if ((a.pose.getOrigin() - b.pose.getOrigin()).length2() > reach * reach) return false;
+  const contact::Contacts contacts = contact::find(a.shape, a.pose, b.shape, b.pose, 0);
+  for (int i = 0; i < contacts.count; ++i) {
+    if (contacts.points[i].distance < overlap) return true;
+  }
+  return false;
+}
+
+}  // namespace ziggurat::physics

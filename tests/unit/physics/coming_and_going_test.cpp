@@ -1,0 +1,226 @@
+// Entities that come while a world runs, and entities that go.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bench_scene.h"
+#include "physics/ray.h"
+
+namespace ziggurat::physics {
+namespace {
+
+using namespace testing;
+using math::Pose;
+using math::Vector3;
+
+const scene::Box cube{{0.1, 0.1, 0.1}};
+
+scene::Entity box_at(const Vector3& position, bool movable = true) {
+  return single(scene::EntityKind::box, {position, math::Quaternion::Identity()}, movable, cube, 1);
+}
+
+Vector3 position(const World& world, std::size_t entity) {
+  return state_of(world).origins[entity].position;
+}
+
+/// A pendulum that swings about y, held by a base in the air.
+scene::Entity pendulum(const Vector3& at) {
+  scene::Entity entity = prototype("pendulum", {at, math::Quaternion::Identity()}, false,
+                                   {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1),
+                                    link("bob", scene::Sphere{0.01}, 0.1)});
+  entity.joints.push_back(joint(scene::JointType::revolute, Vector3::UnitY(),
+                                {{0, 0, 0}, math::Quaternion::Identity()},
+                                {{0.1, 0, 0.01}, math::Quaternion::Identity()}));
+  return entity;
+}
+
+TEST(Coming, StandsWhereItIsPlacedUntilTheNextStep) {
+  World world(with_gravity(9.8), 0.01);
+  world.add(box_at({0, 0, 5}));
+  for (int i = 0; i < 7; ++i) world.step();
+  const Pose pose{{0.1, 0.7, 0.3}, about({1, 2, 3}, 0.7)};
+  world.add(single(scene::EntityKind::box, pose, true, cube, 1));
+  const world::State state = state_of(world);
+  EXPECT_EQ(state.origins[1].position, pose.position);
+  EXPECT_EQ(state.origins[1].orientation.coeffs(), pose.orientation.coeffs());
+  EXPECT_EQ(state.links[1].velocity, Vector3::Zero());
+}
+
+TEST(Coming, FallsFromThereAndLeavesTheOthersAlone) {
+  const double h = 0.01, g = 9.8;
+  World world(with_gravity(g), h), alone(with_gravity(g), h);
+  for (World* each : {&world, &alone}) {
+    each->add(box_at({0, 0, 5}));
+    each->add(pendulum({1, 0, 3}));
+    for (int i = 0; i < 20; ++i) each->step();
+  }
+  world.add(box_at({3, 0, 7}));
+  for (int n = 1; n <= 40; ++n) {
+    world.step();
+    alone.step();
+    ASSERT_NEAR(position(world, 2).z(), 7 - g * h * h * n * (n + 1) / 2, 1e-12) << "substep " << n;
+    ASSERT_EQ(position(world, 0), position(alone, 0));
+    ASSERT_EQ(state_of(world).links[2].pose.position, state_of(alone).links[2].pose.position);
+  }
+}
+
+TEST(Coming, FarAwayItHardlyTouchesWhatBumpsIntoTheFloor) {
+  // Not to the bit: Bullet solves small islands in batches that end their sweeps together, and
+  // finds pairs in the order of a tree that all bodies share.
+  World world(with_floor(9.8), 0.01), alone(with_floor(9.8), 0.01);
+  for (World* each : {&world, &alone}) {
+    for (int i = 0; i < 5; ++i) each->add(box_at({0.3 * i, 0, 0.02 + 0.01 * i}));
+    for (int i = 0; i < 3; ++i) each->step();
+  }
+  world.add(box_at({50, 0, 0}));
+  for (int i = 0; i < 200; ++i) {
+    world.step();
+    alone.step();
+    for (std::size_t k = 0; k < 5; ++k) {
+      ASSERT_LT((position(world, k) - position(alone, k)).norm(), 1e-5) << i;
+    }
+  }
+}
+
+TEST(Coming, IsHitByWhatFallsOnIt) {
+  World world(with_floor(9.8), 0.01);
+  world.add(box_at({0, 0, 1}));
+  for (int i = 0; i < 5; ++i) world.step();
+  world.add(box_at({0, 0, 0}));
+  for (int i = 0; i < 300; ++i) world.step();
+  EXPECT_NEAR(position(world, 0).z(), 0.1, 1e-4);
+}
+
+TEST(Coming, OverlapsWhatIsThereNowAndNotWhatWas) {
+  World world(with_gravity(9.8), 0.01);
+  world.add(box_at({0, 0, 0}, false));
+  world.add(box_at({1, 0, 5}));
+  EXPECT_EQ(world.overlapped_by(box_at({0.09, 0, 0})), 0u);
+  EXPECT_EQ(world.overlapped_by(box_at({0.1, 0, 0})), std::nullopt) << "they touch";
+  EXPECT_EQ(world.overlapped_by(box_at({1, 0, 5})), 1u);
+  for (int i = 0; i < 100; ++i) world.step();
+  EXPECT_EQ(world.overlapped_by(box_at({1, 0, 5})), std::nullopt);
+  EXPECT_EQ(world.overlapped_by(box_at(position(world, 1))), 1u);
+  world.remove(0);
+  EXPECT_EQ(world.overlapped_by(box_at({0, 0, 0})), std::nullopt);
+}
+
+TEST(Going, LetsFallWhatSleptOnIt) {
+  World world(with_floor(9.8), 0.01);
+  world.add(box_at({0, 0, 0}, false));
+  world.add(box_at({0, 0, 0.1}));
+  for (int i = 0; i < 300; ++i) world.step();
+  ASSERT_NEAR(position(world, 1).z(), 0.1, 1e-5);
+  world.remove(0);
+  for (int i = 0; i < 300; ++i) world.step();
+  EXPECT_NEAR(position(world, 1).z(), 0, 1e-4);
+}
+
+TEST(Going, ByAMoveLetsFallToo) {
+  World world(with_floor(9.8), 0.01);
+  world.add(box_at({0, 0, 0}));
+  world.add(box_at({0, 0, 0.1}));
+  for (int i = 0; i < 300; ++i) world.step();
+  world.move(0, {{2, 0, 0}, math::Quaternion::Identity()});
+  for (int i = 0; i < 300; ++i) world.step();
+  EXPECT_NEAR(position(world, 1).z(), 0, 1e-4);
+}
+
+TEST(Going, TakesJointsAndMotorsAlongAndLeavesTheOthers) {
+  World world(with_gravity(9.8), 0.001), alone(with_gravity(9.8), 0.001);
+  world.add(pendulum({0, 0, 3}));
+  world.add(pendulum({1, 0, 3}));
+  alone.add(pendulum({1, 0, 3}));
+  const JointIndex first = world.joint(0, 0), second = world.joint(1, 0);
+  world.add_motor(first, scene::JointMode::velocity, 1);
+  world.set_target(first, 3);
+  for (int i = 0; i < 100; ++i) world.step();
+  world.remove(0);
+  world.set_target(first, 1);
+  for (int i = 0; i < 100; ++i) world.step();
+  for (int i = 0; i < 200; ++i) alone.step();
+  EXPECT_EQ(world.position(first), 0);
+  EXPECT_EQ(world.velocity(first), 0);
+  EXPECT_NE(world.position(second), 0);
+  EXPECT_EQ(world.position(second), alone.position(alone.joint(0, 0)));
+}
+
+TEST(Going, OfARobotOnWheelsStopsItsDrive) {
+  World world(with_floor(9.8), 0.01);
+  scene::Entity robot = box_at({0, 0, 0});
+  robot.traction = scene::Traction{10, 1};
+  robot.axle_length = 0.1;
+  world.add(robot);
+  world.add(box_at({1, 0, 0}));
+  world.set_velocity(0, 0.2, 0);
+  for (int i = 0; i < 50; ++i) world.step();
+  EXPECT_NEAR(position(world, 0).x(), 0.1, 1e-3);
+  world.remove(0);
+  for (int i = 0; i < 50; ++i) world.step();
+  EXPECT_NEAR(position(world, 1).x(), 1, 1e-6);
+}
+
+TEST(Going, EndsItsMagnetismAndKeepsTheCurrentsOfTheRest) {
+  // Three dipoles in a row: the middle one is held, and pulls or not as its current says.
+  scene::Physics physics = with_gravity(0);
+  physics.magnetism = scene::Magnetism{};
+  World world(physics, 0.001);
+  for (const double x : {-0.05, 0.0, 0.05}) {
+    scene::Entity body = prototype("dipole", {{x, 0, 0}, math::Quaternion::Identity()}, x > 0,
+                                   {link("base", scene::Sphere{0.003}, 0.001)});
+    scene::Magnet magnet;
+    magnet.anchor.link = 0;
+    magnet.offset = {0, 0, 0.003};
+    magnet.passive_field = x == 0 ? Vector3::Zero() : Vector3(65, 0, 0);
+    magnet.active_field = x == 0 ? Vector3(65, 0, 0) : Vector3::Zero();
+    body.devices.magnets.push_back(magnet);
+    world.add(body);
+  }
+  world.remove(0);
+  for (int i = 0; i < 20; ++i) world.step();
+  EXPECT_EQ(position(world, 2).x(), 0.05) << "nothing pulls";
+  const double currents[] = {0, 1, 0};
+  world.set_currents(currents);
+  for (int i = 0; i < 20; ++i) world.step();
+  EXPECT_NEAR(0.05 - position(world, 2).x(), 0.605e-3, 5e-6) << "dialect A.6";
+  world.remove(1);
+  const double before = position(world, 2).x();
+  const double speed = state_of(world).links[2].velocity.x();
+  for (int i = 0; i < 20; ++i) world.step();
+  EXPECT_NEAR(position(world, 2).x(), before + 0.02 * speed, 1e-9) << "nothing pulls again";
+}
+
+TEST(Going, IsNotMetByRays) {
+  World world(with_gravity(0), 0.01);
+  Rays rays{with_gravity(0)};
+  for (const double x : {1.0, 2.0}) {
+    world.add(box_at({x, 0, 0}));
+    rays.add(box_at({x, 0, 0}));
+  }
+  const RayQuery query{{0, 0, 0.05}, {5, 0, 0.05}, {}, false};
+  rays.update(state_of(world));
+  EXPECT_EQ(rays.cast(query)->entity, 0u);
+  rays.remove(0);
+  rays.update(state_of(world));
+  EXPECT_EQ(rays.cast(query)->entity, 1u);
+  std::vector<std::size_t> near;
+  rays.find({0, -1, 0}, {5, 1, 1}, near);
+  EXPECT_EQ(near.size(), 1u);
+}
+
+TEST(ComingAndGoing, AThousandTimesLeavesTheWorldAsItWas) {
+  World world(with_floor(9.8), 0.01);
+  world.add(box_at({0, 0, 0}));
+  for (std::size_t n = 1; n <= 1000; ++n) {
+    world.add(n % 2 == 0 ? box_at({0, 0, 0.1}) : pendulum({0.3, 0, 1}));
+    world.step();
+    world.remove(n);
+  }
+  for (int i = 0; i < 100; ++i) world.step();
+  EXPECT_NEAR(position(world, 0).z(), 0, 1e-4);
+  EXPECT_NEAR(world.energy(), 9.8 * 0.05, 1e-3) << "one box is left";
+}
+
+}  // namespace
+}  // namespace ziggurat::physics
