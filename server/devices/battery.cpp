@@ -5,10 +5,10 @@
 
 namespace ziggurat::devices {
 
-Batteries::Batteries(const Setting& setting) : tick_length_(setting.tick_length) {
-  for (const world::BatteryLayout& layout : setting.layout.batteries) {
+void Batteries::add(const Setting& setting) {
+  for (std::size_t i = cells_.size(); i < setting.layout.batteries.size(); ++i) {
     Cell cell;
-    cell.battery = *setting.entities[layout.entity].devices.battery;
+    cell.battery = *setting.entity(setting.layout.batteries[i].entity).devices.battery;
     cell.charge = cell.battery.start_charge;
     cells_.push_back(cell);
   }
@@ -23,11 +23,11 @@ world::BatteryReading Batteries::read(const Cell& cell, double used) const {
 }
 
 void Batteries::start(Tick& tick) {
-  tick.observations.batteries.resize(cells_.size());
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
+  std::vector<world::BatteryReading>& readings = tick.observations.batteries;
+  for (std::size_t i = readings.size(); i < cells_.size(); ++i) {
     Cell& cell = cells_[i];
     cell.pose = tick.state.origins[tick.layout.batteries[i].entity];
-    tick.observations.batteries[i] = read(cell, cell.battery.per_second * tick_length_);
+    readings.push_back(read(cell, cell.battery.per_second * tick_length_));
   }
 }
 

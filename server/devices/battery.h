@@ -9,9 +9,10 @@ namespace ziggurat::devices {
 
 class Batteries {
  public:
-  explicit Batteries(const Setting& setting);
+  explicit Batteries(const Setting& setting) : tick_length_(setting.tick_length) { add(setting); }
 
-  void start(Tick& tick);
+  void add(const Setting& setting);
+  void start(Tick& tick);  ///< those that are new
   void sense(Tick& tick);
 
  private:

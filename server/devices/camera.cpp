@@ -22,7 +22,7 @@ bool Sight::clear(const math::Vector3& eye, const math::Vector3& target) const {
   return !blocked;
 }
 
-Cameras::Cameras(const Setting& setting) {
+void Cameras::add(const Setting& setting) {
   for (const world::CameraLayout& camera : setting.layout.cameras) {
     detects_ = detects_ || camera.leds || camera.directional_leds || camera.tags;
   }
@@ -33,6 +33,7 @@ void Cameras::sense(Tick& tick) {
   tick.observations.directional_leds.clear();
   tick.observations.tags.clear();
   for (std::size_t robot = 0; robot < tick.layout.robots.size(); ++robot) {
+    if (tick.state.is_absent(tick.layout.robots[robot].entity)) continue;
     const world::Range& cameras = tick.layout.robots[robot].cameras;
     for (std::size_t i = cameras.begin; i < cameras.end(); ++i) sense(tick, robot, i);
   }

@@ -12,7 +12,9 @@ namespace ziggurat::devices {
 
 class Cameras {
  public:
-  explicit Cameras(const Setting& setting);
+  explicit Cameras(const Setting& setting) { add(setting); }
+
+  void add(const Setting& setting);
 
   bool detects() const { return detects_; }  ///< then rays and index are needed
 

@@ -14,13 +14,26 @@ Devices::Devices(const Setting& setting, physics::World& physics)
       cameras_(setting),
       pictures_(setting) {}
 
+void Devices::add(const Setting& setting, physics::World& physics) {
+  joints_.add(setting, physics);
+  wheels_.add(setting);
+  turrets_.add(setting);
+  radios_.add(setting);
+  proximity_.add(setting);
+  range_and_bearing_.add(setting);
+  positioning_.add(setting);
+  batteries_.add(setting);
+  cameras_.add(setting);
+  pictures_.add(setting);
+}
+
 void Devices::start(Tick& tick) {
   joints_.start(tick);
   wheels_.start(tick);
   turrets_.start(tick);
   start_visible(tick);
   proximity_.start(tick);
-  positioning_.sense(tick);
+  positioning_.start(tick);
   batteries_.start(tick);
   pictures_.start(tick);
 }

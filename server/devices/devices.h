@@ -22,8 +22,11 @@ class Devices {
   /// Adds motors to the joints that have an actuator.
   Devices(const Setting& setting, physics::World& physics);
 
-  /// Gives commands and observations of tick 0 their length and initial values, and State what is
-  /// visible of devices. Poses of tick 0 are due.
+  /// Takes in those of robots that have come since.
+  void add(const Setting& setting, physics::World& physics);
+
+  /// Gives commands and observations their length, those that are new their initial values, and
+  /// State what is visible of them. Their first poses are due. What others command and show stays.
   void start(Tick& tick);
 
   /// Before physics: what was commanded takes effect, at the poses of the last tick.

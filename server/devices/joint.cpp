@@ -18,9 +18,9 @@ bool has_coordinate(const scene::Joint& joint) {
 
 }  // namespace
 
-Joints::Joints(const Setting& setting, physics::World& physics) {
-  for (const world::RobotLayout& robot : setting.layout.robots) {
-    const scene::Entity& entity = setting.entities[robot.entity];
+void Joints::add(const Setting& setting, physics::World& physics) {
+  for (const world::RobotLayout& robot : setting.new_robots()) {
+    const scene::Entity& entity = setting.entity(robot.entity);
     const scene::ControllerDevices& enabled = setting.enabled(robot);
     for (const scene::JointActuator& actuator : enabled.joint_actuators) {
       actuators_.push_back(physics.joint(robot.entity, find_joint(entity, actuator.joint)));
@@ -39,8 +39,8 @@ Joints::Joints(const Setting& setting, physics::World& physics) {
 }
 
 void Joints::start(Tick& tick) const {
-  tick.commands.joint_targets.assign(actuators_.size(), 0);
-  tick.observations.joint_readings.assign(sensors_.size(), 0);
+  tick.commands.joint_targets.resize(actuators_.size(), 0);
+  tick.observations.joint_readings.resize(sensors_.size(), 0);
 }
 
 void Joints::apply(Tick& tick) const {

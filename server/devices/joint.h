@@ -9,9 +9,10 @@ namespace ziggurat::devices {
 
 class Joints {
  public:
-  Joints(const Setting& setting, physics::World& physics);
+  Joints(const Setting& setting, physics::World& physics) { add(setting, physics); }
 
-  void start(Tick& tick) const;  ///< targets and readings are 0
+  void add(const Setting& setting, physics::World& physics);
+  void start(Tick& tick) const;  ///< targets and readings that are new are 0
   void apply(Tick& tick) const;
   void sense(Tick& tick) const;
 

@@ -13,9 +13,11 @@ namespace ziggurat::devices {
 class Pictures {
  public:
   /// Without a camera that asks, nothing is made, and nothing of OpenGL is loaded.
-  explicit Pictures(const Setting& setting);
+  explicit Pictures(const Setting& setting) { add(setting); }
 
-  /// Empty pictures, as of tick 0. @throws render::RenderError if there can't be any
+  void add(const Setting& setting);
+
+  /// Empty pictures, as of tick 0, of cameras that are new. @throws render::RenderError if there can't be any
   void start(Tick& tick);
 
   /// Replaces all of them. @throws render::RenderError

@@ -13,8 +13,8 @@ math::Vector3 draw(const scene::NoiseRange& noise, math::RandomStream& random) {
 
 }  // namespace
 
-Positioning::Positioning(const Setting& setting) {
-  for (const world::RobotLayout& robot : setting.layout.robots) {
+void Positioning::add(const Setting& setting) {
+  for (const world::RobotLayout& robot : setting.new_robots()) {
     if (robot.positioning.count == 0) continue;
     const scene::ControllerDevices& enabled = setting.enabled(robot);
     sensors_.push_back({enabled.position_noise, enabled.angle_noise, enabled.axis_noise,
@@ -22,10 +22,15 @@ Positioning::Positioning(const Setting& setting) {
   }
 }
 
-void Positioning::sense(Tick& tick) {
+void Positioning::start(Tick& tick) {
+  const std::size_t known = tick.observations.positioning.size();
+  tick.observations.positioning.resize(sensors_.size());
+  sense(tick, known);
+}
+
+void Positioning::sense(Tick& tick, std::size_t first) {
   std::vector<math::Pose>& poses = tick.observations.positioning;
-  poses.resize(sensors_.size());
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+  for (std::size_t i = first; i < sensors_.size(); ++i) {
     Sensor& sensor = sensors_[i];
     math::Pose pose = tick.state.origins[tick.layout.positioning[i]];
     if (!is_silent(sensor.position)) pose.position += draw(sensor.position, sensor.random);

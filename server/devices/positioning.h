@@ -10,11 +10,15 @@ namespace ziggurat::devices {
 
 class Positioning {
  public:
-  explicit Positioning(const Setting& setting);
+  explicit Positioning(const Setting& setting) { add(setting); }
 
-  void sense(Tick& tick);
+  void add(const Setting& setting);
+  void start(Tick& tick);  ///< senses with those that are new
+  void sense(Tick& tick) { sense(tick, 0); }
 
  private:
+  void sense(Tick& tick, std::size_t first);
+
   struct Sensor {
     scene::NoiseRange position, angle, axis;
     math::RandomStream random;

@@ -24,14 +24,14 @@ double footbot_proximity_reading(double distance) {
   return std::min(1.0, strength / (distance + offset));
 }
 
-Proximity::Proximity(const Setting& setting) {
-  for (std::size_t r = 0; r < setting.layout.robots.size(); ++r) {
+void Proximity::add(const Setting& setting) {
+  for (std::size_t r = setting.first_robot; r < setting.layout.robots.size(); ++r) {
     const world::RobotLayout& robot = setting.layout.robots[r];
     if (robot.proximity.count == 0) continue;
     const scene::ControllerDevices& enabled = setting.enabled(robot);
     robots_.push_back({r, enabled.proximity_noise, enabled.proximity_show_rays,
                        math::RandomStream(setting.seed, "proximity/" + robot.id)});
-    for (const auto& from : setting.entities[robot.entity].devices.proximity_sensors) {
+    for (const auto& from : setting.entity(robot.entity).devices.proximity_sensors) {
       Sensor sensor;
       sensor.footbot = enabled.footbot_proximity;
       sensor.response = from.response ? from.response : enabled.proximity_response;
@@ -49,7 +49,7 @@ Proximity::Proximity(const Setting& setting) {
 }
 
 void Proximity::start(Tick& tick) const {
-  tick.observations.proximity.assign(sensors_.size(), 0);
+  tick.observations.proximity.resize(sensors_.size(), 0);
 }
 
 void Proximity::sense(Tick& tick) {
@@ -58,6 +58,7 @@ void Proximity::sense(Tick& tick) {
 
 void Proximity::sense(Tick& tick, Robot& robot) {
   const world::RobotLayout& layout = tick.layout.robots[robot.index];
+  if (tick.state.is_absent(layout.entity)) return;
   const std::array own{layout.entity};
   for (std::size_t i = layout.proximity.begin; i < layout.proximity.end(); ++i) {
     const world::ProximityLayout& ray = tick.layout.proximity[i];

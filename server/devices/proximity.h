@@ -16,9 +16,10 @@ double footbot_proximity_reading(double distance);
 
 class Proximity {
  public:
-  explicit Proximity(const Setting& setting);
+  explicit Proximity(const Setting& setting) { add(setting); }
 
-  void start(Tick& tick) const;  ///< readings are 0
+  void add(const Setting& setting);
+  void start(Tick& tick) const;  ///< readings that are new are 0
   void sense(Tick& tick);
 
   bool casts_rays() const { return !sensors_.empty(); }

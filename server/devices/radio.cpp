@@ -2,7 +2,7 @@
 
 namespace ziggurat::devices {
 
-Radios::Radios(const Setting& setting) {
+void Radios::add(const Setting& setting) {
   const world::Layout& layout = setting.layout;
   robots_.resize(layout.radios.size());
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {

@@ -10,7 +10,9 @@ namespace ziggurat::devices {
 
 class Radios {
  public:
-  explicit Radios(const Setting& setting);
+  explicit Radios(const Setting& setting) { add(setting); }
+
+  void add(const Setting& setting);
 
   /// Delivers what was commanded and empties it; publishes links that somebody asks for.
   void apply(Tick& tick);

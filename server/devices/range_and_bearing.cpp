@@ -4,10 +4,10 @@
 
 namespace ziggurat::devices {
 
-RangeAndBearing::RangeAndBearing(const Setting& setting) {
+void RangeAndBearing::add(const Setting& setting) {
   const world::Layout& layout = setting.layout;
   receivers_.resize(layout.range_and_bearing.size());
-  for (std::size_t r = 0; r < layout.robots.size(); ++r) {
+  for (std::size_t r = setting.first_robot; r < layout.robots.size(); ++r) {
     const world::RobotLayout& robot = layout.robots[r];
     const scene::ControllerDevices& enabled = setting.enabled(robot);
     if (robot.range_and_bearing.count == 0 || !enabled.range_and_bearing_sensor) continue;

@@ -12,8 +12,9 @@ namespace ziggurat::devices {
 
 class RangeAndBearing {
  public:
-  explicit RangeAndBearing(const Setting& setting);
+  explicit RangeAndBearing(const Setting& setting) { add(setting); }
 
+  void add(const Setting& setting);
   void sense(Tick& tick);
 
   bool casts_rays() const { return casts_rays_; }

@@ -2,6 +2,8 @@
 // What devices are built from, and what they work on in a tick.
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "media/devices_index.h"
@@ -13,13 +15,22 @@
 
 namespace ziggurat::devices {
 
+/// The world at its start, or what has come since the devices were told of it last.
 struct Setting {
   const scene::Scene& scene;
-  const std::vector<scene::Entity>& entities;  ///< all, placed, in scene order
-  const world::Layout& layout;                 ///< outlives the devices
-  std::uint64_t seed;                          ///< of random streams
-  double tick_length;                          ///< simulated time per tick [s]
+  std::span<const scene::Entity> entities;  ///< those that are new, placed, in scene order
+  const world::Layout& layout;              ///< of all; outlives the devices
+  std::uint64_t seed;                       ///< of random streams
+  double tick_length;                       ///< simulated time per tick [s]
+  std::size_t first_entity = 0, first_robot = 0;  ///< into the layout: those before are known
+  /// All entities as they were placed, in scene order; costs time.
+  std::function<std::vector<scene::Entity>()> all_entities = {};
 
+  /// @param entity  into Layout::entities, a new one
+  const scene::Entity& entity(std::size_t entity) const { return entities[entity - first_entity]; }
+  std::span<const world::RobotLayout> new_robots() const {
+    return std::span(layout.robots).subspan(first_robot);
+  }
   const scene::ControllerDevices& enabled(const world::RobotLayout& robot) const {
     return scene.controllers[robot.controller].devices;
   }

@@ -12,12 +12,11 @@ constexpr double derivative_gain = 0.2;
 
 }  // namespace
 
-Turrets::Turrets(const Setting& setting)
-    : tick_length_(setting.tick_length), last_errors_(setting.layout.turrets.size()) {}
+void Turrets::add(const Setting& setting) { last_errors_.resize(setting.layout.turrets.size()); }
 
 void Turrets::start(Tick& tick) const {
-  tick.commands.turrets.assign(last_errors_.size(), {});
-  tick.observations.turrets.assign(last_errors_.size(), 0);
+  tick.commands.turrets.resize(last_errors_.size());
+  tick.observations.turrets.resize(last_errors_.size(), 0);
 }
 
 double Turrets::approach(double& last_error, double error) const {
@@ -28,7 +27,7 @@ double Turrets::approach(double& last_error, double error) const {
 void Turrets::apply(Tick& tick) {
   for (std::size_t i = 0; i < last_errors_.size(); ++i) {
     const world::TurretLayout& layout = tick.layout.turrets[i];
-    if (!layout.drives) continue;
+    if (!layout.drives || tick.state.is_absent(layout.entity)) continue;
     const world::TurretCommand& command = tick.commands.turrets[i];
     if (command.mode != world::TurretMode::position) last_errors_[i] = 0;
     switch (command.mode) {
@@ -51,7 +50,8 @@ void Turrets::apply(Tick& tick) {
 void Turrets::sense(Tick& tick) const {
   for (std::size_t i = 0; i < last_errors_.size(); ++i) {
     const world::TurretLayout& layout = tick.layout.turrets[i];
-    if (layout.measures) tick.observations.turrets[i] = tick.physics.turret(layout.entity);
+    if (!layout.measures || tick.state.is_absent(layout.entity)) continue;
+    tick.observations.turrets[i] = tick.physics.turret(layout.entity);
   }
 }
 

@@ -9,9 +9,10 @@ namespace ziggurat::devices {
 
 class Turrets {
  public:
-  explicit Turrets(const Setting& setting);
+  explicit Turrets(const Setting& setting) : tick_length_(setting.tick_length) { add(setting); }
 
-  void start(Tick& tick) const;  ///< passive, at 0
+  void add(const Setting& setting);
+  void start(Tick& tick) const;  ///< those that are new are passive, at 0
   void apply(Tick& tick);
   void sense(Tick& tick) const;
 

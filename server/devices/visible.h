@@ -6,7 +6,7 @@
 
 namespace ziggurat::devices {
 
-/// What the scene says, in commands and state.
+/// What the scene says of those that are new, in commands and state.
 void start_visible(Tick& tick);
 void apply_visible(Tick& tick);
 

@@ -13,8 +13,8 @@ double draw(math::RandomStream& random, const scene::NoiseRange& noise) {
 
 }  // namespace
 
-Wheels::Wheels(const Setting& setting) : tick_length_(setting.tick_length) {
-  for (const world::RobotLayout& robot : setting.layout.robots) {
+void Wheels::add(const Setting& setting) {
+  for (const world::RobotLayout& robot : setting.new_robots()) {
     if (robot.wheels.count == 0) continue;
     const scene::ControllerDevices& enabled = setting.enabled(robot);
     Axle axle{enabled.wheel_noise,
@@ -33,14 +33,14 @@ Wheels::Wheels(const Setting& setting) : tick_length_(setting.tick_length) {
 }
 
 void Wheels::start(Tick& tick) const {
-  tick.commands.wheels.assign(axles_.size(), {});
-  tick.observations.wheels.assign(axles_.size(), {});
+  tick.commands.wheels.resize(axles_.size());
+  tick.observations.wheels.resize(axles_.size());
 }
 
 void Wheels::apply(Tick& tick) {
   for (std::size_t i = 0; i < axles_.size(); ++i) {
     const world::WheelsLayout& layout = tick.layout.wheels[i];
-    if (!layout.drives) continue;
+    if (!layout.drives || tick.state.is_absent(layout.entity)) continue;
     Axle& axle = axles_[i];
     const world::WheelsCommand& command = tick.commands.wheels[i];
     axle.velocity = {command.left, command.right};
@@ -57,7 +57,8 @@ void Wheels::apply(Tick& tick) {
 
 void Wheels::sense(Tick& tick) {
   for (std::size_t i = 0; i < axles_.size(); ++i) {
-    if (!tick.layout.wheels[i].measures) continue;
+    const world::WheelsLayout& layout = tick.layout.wheels[i];
+    if (!layout.measures || tick.state.is_absent(layout.entity)) continue;
     Axle& axle = axles_[i];
     const auto& [left, right] = axle.velocity;
     world::WheelsReading& reading = tick.observations.wheels[i];

@@ -11,9 +11,10 @@ namespace ziggurat::devices {
 
 class Wheels {
  public:
-  explicit Wheels(const Setting& setting);
+  explicit Wheels(const Setting& setting) : tick_length_(setting.tick_length) { add(setting); }
 
-  void start(Tick& tick) const;  ///< commands and readings are 0
+  void add(const Setting& setting);
+  void start(Tick& tick) const;  ///< commands and readings that are new are 0
   void apply(Tick& tick);
   void sense(Tick& tick);
 

@@ -1,12 +1,14 @@
 #include "media/devices_index.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 namespace ziggurat::media {
 namespace {
 
 constexpr double rounding = 1e-9;  // [m]
+constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();  // never found
 
 template <class List>
 world::Range append(const List& list, bool wanted, std::vector<world::Mount>& mounts) {
@@ -57,9 +59,14 @@ DevicesIndex::DevicesIndex(const world::Layout& layout) {
 void DevicesIndex::build(const world::State& state) {
   bool moved[2] = {!built_, !built_};
   for (std::size_t i = 0; i < mounts_.size(); ++i) {
-    const math::Vector3 position = world::position_of(state, mounts_[i]);
-    if (position == positions_[i]) continue;
-    positions_[i] = position;
+    if (state.is_absent(mounts_[i].entity)) {
+      if (positions_[i].hasNaN()) continue;
+      positions_[i].setConstant(nowhere);
+    } else {
+      const math::Vector3 position = world::position_of(state, mounts_[i]);
+      if (position == positions_[i]) continue;
+      positions_[i] = position;
+    }
     moved[i >= senders_] = true;
   }
   built_ = true;

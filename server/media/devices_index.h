@@ -22,7 +22,7 @@ class DevicesIndex {
   // Each kind's stretch of all devices; empty if nobody asks for it.
   world::Range radios, range_and_bearing, leds, directional_leds, tags;
 
-  /// In W [m].
+  /// In W [m]; of what is absent not a number.
   const math::Vector3& position(const world::Range& kind, std::size_t device) const {
     return positions_[kind.begin + device];
   }

@@ -197,6 +197,7 @@ void Draftsman::add_bodies(const world::State& state, const View& view, Drawing&
   const Pose camera_from_world = math::inverse(view.camera);
   const math::Quaternion to_light = light_from_world();
   for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+    if (state.is_absent(layout_.links[i].entity)) continue;
     const Body& body = model_.bodies[i];
     const Vector3 size = size_of(body.geometry);
     const Pose in_camera = camera_from_world * state.links[i].pose;
@@ -230,12 +231,15 @@ void Draftsman::add_marks(const world::State& state, const View& view, Drawing& 
   };
   for (std::size_t i = 0; i < layout_.tags.size(); ++i) {
     const world::TagLayout& tag = layout_.tags[i];
+    if (state.is_absent(tag.mount.entity)) continue;
     const Pose pose = camera_from_world * world::pose_of(state, tag.mount);
     if (!shows({pose.position, modules_per_side * tag.side_length}, view)) continue;
     drawing.marks.push_back(tag_mark(pose, tag.side_length, state.tag_payloads[i]));
   }
   for (std::size_t i = 0; i < layout_.directional_leds.size(); ++i) {
-    const Pose pose = camera_from_world * world::pose_of(state, layout_.directional_leds[i].mount);
+    const world::Mount& mount = layout_.directional_leds[i].mount;
+    if (state.is_absent(mount.entity)) continue;
+    const Pose pose = camera_from_world * world::pose_of(state, mount);
     const double radius = led_radius_at(pose.position.z(), view);
     if (!in_view(pose.position, radius)) continue;
     drawing.marks.push_back(disc(pose.position, pose.orientation * Vector3(radius, 0, 0),
@@ -244,7 +248,9 @@ void Draftsman::add_marks(const world::State& state, const View& view, Drawing& 
   }
   // An LED shines all around: its disc faces the camera, in front of it by the LED's own radius.
   for (std::size_t i = 0; i < layout_.leds.size(); ++i) {
-    const Vector3 at = camera_from_world * world::position_of(state, layout_.leds[i].mount);
+    const world::Mount& mount = layout_.leds[i].mount;
+    if (state.is_absent(mount.entity)) continue;
+    const Vector3 at = camera_from_world * world::position_of(state, mount);
     const double distance = at.norm();
     if (!(distance > 2 * led_radius)) continue;
     const Vector3 center = at * (1 - led_radius / distance);

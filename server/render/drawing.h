@@ -63,6 +63,8 @@ class Draftsman {
 
   const Meshes& meshes() const { return meshes_; }
   const Model& model() const { return model_; }
+  /// An entity that has come since; its links are the next of the layout.
+  void add(const scene::Entity& entity) { render::add_bodies(entity, model_); }
   void draw(const world::State& state, const View& view, Drawing& drawing);
 
  private:

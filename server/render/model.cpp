@@ -41,13 +41,15 @@ double round_tile(double length) {
 
 }  // namespace
 
+void add_bodies(const scene::Entity& entity, Model& model) {
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    model.bodies.push_back({entity.links[i].geometry, color_of(entity, i)});
+  }
+}
+
 Model make_model(const scene::Scene& scene, const std::vector<scene::Entity>& entities) {
   Model model;
-  for (const scene::Entity& entity : entities) {
-    for (std::size_t i = 0; i < entity.links.size(); ++i) {
-      model.bodies.push_back({entity.links[i].geometry, color_of(entity, i)});
-    }
-  }
+  for (const scene::Entity& entity : entities) add_bodies(entity, model);
   model.has_floor = scene.physics.floor.has_value();
   model.arena_center = scene.arena.center.head<2>();
   model.arena_half_size = 0.5 * scene.arena.size.head<2>();

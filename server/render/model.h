@@ -24,6 +24,8 @@ struct Model {
   math::Vector2 arena_half_size = math::Vector2::Zero();  ///< [m]
 };
 
+void add_bodies(const scene::Entity& entity, Model& model);
+
 /// @param entities  all of them, placed, in scene order
 Model make_model(const scene::Scene& scene, const std::vector<scene::Entity>& entities);
 

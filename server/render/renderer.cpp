@@ -22,6 +22,8 @@ Renderer::Renderer(const scene::Scene& scene, const std::vector<scene::Entity>& 
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 
+void Renderer::add(const scene::Entity& entity) { parts_->draftsman.add(entity); }
+
 void Renderer::prepare() {
   if (!parts_->canvas) parts_->canvas.emplace(parts_->draftsman.meshes());
 }

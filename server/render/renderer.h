@@ -23,6 +23,9 @@ class Renderer {
   ~Renderer();
   Renderer(Renderer&&) noexcept;
 
+  /// An entity that has come since; its links are the next of the layout.
+  void add(const scene::Entity& entity);
+
   /// Loads and makes what pictures need, so that what is missing is known before the first.
   /// @throws RenderError
   void prepare();

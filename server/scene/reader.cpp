@@ -36,6 +36,7 @@ ReadResult read(File file, const std::string& name, const ReadOptions& options) 
     // The last fault says so.
   }
   result.problems = report.problems();
+  result.additions = Additions(reading);
   return result;
 }
 

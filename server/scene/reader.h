@@ -9,24 +9,11 @@
 #include <variant>
 #include <vector>
 
+#include "scene/additions.h"
+#include "scene/problem.h"
 #include "scene/scene.h"
 
 namespace ziggurat::scene {
-
-/// One thing said about a scene file.
-struct Problem {
-  enum class Severity {
-    notice,  ///< accepted, and without effect here
-    fault,   ///< the scene can't be run
-  };
-  Severity severity = Severity::fault;
-  std::string file;
-  Location where;
-  std::string text;  ///< what is wrong, with the value; what would be right
-};
-
-/// `file:line:column: text`, or `file: text` where no line is known.
-std::string to_string(const Problem& problem);
 
 struct File {
   std::string identity;  ///< the same for every path that leads to this file
@@ -50,6 +37,7 @@ struct ReadOptions {
 struct ReadResult {
   Scene scene;                    ///< complete only if no problem is a fault
   std::vector<Problem> problems;  ///< by file, in document order
+  Additions additions;            ///< to the scene, if no problem is a fault
   bool ok() const;                ///< no fault
 };
 

@@ -22,27 +22,31 @@ void add_joints(const scene::ControllerDevices& enabled, world::RobotLayout& rob
 
 }  // namespace
 
+void append(const scene::Scene& scene, const scene::Entity& entity, world::Layout& layout) {
+  const std::size_t index = layout.entities.size();
+  const bool single =
+      entity.kind == scene::EntityKind::box || entity.kind == scene::EntityKind::cylinder;
+  layout.entities.push_back({entity.id, {layout.links.size(), entity.links.size()}, !single});
+  for (const scene::Link& link : entity.links) {
+    layout.links.push_back({single ? "" : link.id, index});
+  }
+  const scene::Controller* controller =
+      entity.controller ? &scene.controllers[*entity.controller] : nullptr;
+  const scene::ControllerDevices nothing;
+  world::RobotLayout robot;
+  add_devices({entity, index, controller ? controller->devices : nothing}, robot, layout);
+  if (!controller) return;
+  robot.id = entity.id;
+  robot.entity = index;
+  robot.controller = *entity.controller;
+  robot.params = entity.overrides_params ? entity.params : controller->params;
+  add_joints(controller->devices, robot, layout);
+  layout.robots.push_back(std::move(robot));
+}
+
 world::Layout make_layout(const scene::Scene& scene, const std::vector<scene::Entity>& entities) {
   world::Layout layout;
-  for (std::size_t i = 0; i < entities.size(); ++i) {
-    const scene::Entity& entity = entities[i];
-    const bool single =
-        entity.kind == scene::EntityKind::box || entity.kind == scene::EntityKind::cylinder;
-    layout.entities.push_back({entity.id, {layout.links.size(), entity.links.size()}, !single});
-    for (const scene::Link& link : entity.links) layout.links.push_back({single ? "" : link.id, i});
-    const scene::Controller* controller =
-        entity.controller ? &scene.controllers[*entity.controller] : nullptr;
-    const scene::ControllerDevices nothing;
-    world::RobotLayout robot;
-    add_devices({entity, i, controller ? controller->devices : nothing}, robot, layout);
-    if (!controller) continue;
-    robot.id = entity.id;
-    robot.entity = i;
-    robot.controller = *entity.controller;
-    robot.params = entity.overrides_params ? entity.params : controller->params;
-    add_joints(controller->devices, robot, layout);
-    layout.robots.push_back(std::move(robot));
-  }
+  for (const scene::Entity& entity : entities) append(scene, entity, layout);
   return layout;
 }
 

@@ -8,6 +8,9 @@
 
 namespace ziggurat::simulation {
 
+/// Appends an entity behind all others.
+void append(const scene::Scene& scene, const scene::Entity& entity, world::Layout& layout);
+
 /// @param entities  all of them, placed, in scene order
 world::Layout make_layout(const scene::Scene& scene, const std::vector<scene::Entity>& entities);
 

@@ -29,9 +29,12 @@ double substep_length(const scene::Scene& scene, const Options& options) {
 struct Simulation::Parts {
   Parts(const scene::Scene& scene, const Options& options, world::Layout& layout);
 
+  void spawn(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
+  void remove(std::size_t entity);
   devices::Tick tick() { return {layout, state, observations, commands, physics, rays, *index}; }
   void look_around();  // rays and index take the poses of the state
 
+  std::uint64_t seed;
   unsigned ticks_per_second;
   unsigned substeps;
   double substep;  // [s]
@@ -43,10 +46,12 @@ struct Simulation::Parts {
   world::Commands commands;
   std::optional<media::DevicesIndex> index;
   std::optional<devices::Devices> devices;
+  std::vector<scene::Entity> spawned;
 };
 
 Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& made)
-    : ticks_per_second(scene.experiment.ticks_per_second),
+    : seed(options.seed),
+      ticks_per_second(scene.experiment.ticks_per_second),
       substeps(scene.physics.iterations),
       substep(substep_length(scene, options)),
       physics(scene.physics, substep),
@@ -59,7 +64,8 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
     rays.add(entity);
   }
   index.emplace(layout);
-  devices.emplace(devices::Setting{scene, entities, layout, options.seed, 1.0 / ticks_per_second},
+  devices.emplace(devices::Setting{scene, entities, layout, seed, 1.0 / ticks_per_second, 0, 0,
+                                   [&] { return entities; }},
                   physics);
   physics.read(state);
   look_around();
@@ -70,6 +76,39 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
 void Simulation::Parts::look_around() {
   if (devices->casts_rays()) rays.update(state);
   if (devices->needs_index()) index->build(state);
+}
+
+void Simulation::Parts::spawn(const scene::Scene& scene, const scene::Entity& entity,
+                              world::Layout& grown) {
+  const std::size_t first_entity = grown.entities.size(), first_robot = grown.robots.size();
+  append(scene, entity, grown);
+  spawned.push_back(entity);
+  physics.add(entity);
+  rays.add(entity);
+  index.emplace(layout);
+  devices->add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, first_entity,
+                first_robot,
+                [&] {
+                  std::vector<scene::Entity> all = place(scene, seed);
+                  all.insert(all.end(), spawned.begin(), spawned.end());
+                  return all;
+                }},
+               physics);
+  physics.read(state);
+  look_around();
+  devices::Tick first = tick();
+  devices->start(first);
+}
+
+void Simulation::Parts::remove(std::size_t entity) {
+  physics.remove(entity);
+  rays.remove(entity);
+  state.absent.resize(layout.entities.size());
+  state.absent[entity] = true;
+  std::erase_if(commands.radio_messages.entries, [&](const auto& message) {
+    return layout.radios[message.radio].mount.entity == entity;
+  });
+  look_around();
 }
 
 Simulation::Simulation(const scene::Scene& scene, const Options& options)
@@ -86,6 +125,20 @@ void Simulation::move(std::size_t entity, const math::Pose& pose) {
   parts_->physics.read(parts_->state);
   parts_->look_around();
 }
+
+void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity) {
+  if (const auto other = parts_->physics.overlapped_by(entity)) {
+    scene::Problem problem;
+    problem.file = scene::file_of(scene, entity.where);
+    problem.where = entity.where;
+    problem.text = fmt::format("'{}' overlaps '{}' where it is placed; choose a place that is free",
+                               entity.id, layout_->entities[*other].id);
+    throw scene::SceneError({problem});
+  }
+  parts_->spawn(scene, entity, *layout_);
+}
+
+void Simulation::remove(std::size_t entity) { parts_->remove(entity); }
 
 const world::Layout& Simulation::layout() const { return *layout_; }
 const world::State& Simulation::state() const { return parts_->state; }

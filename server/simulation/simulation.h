@@ -32,8 +32,9 @@ class Simulation {
   const world::Observations& observations() const;  ///< of the last tick
   world::Commands& commands();  ///< applied at the start of the next tick; values persist
 
-  /// Destroys the world and builds it anew, as a fresh simulation of the same scene would be. The
-  /// layout stays where it is and as it is; states, observations and commands move.
+  /// Destroys the world and builds it anew, as a fresh simulation of the same scene would be: who
+  /// was removed is back, who was spawned is gone from the layout. The layout stays where it is;
+  /// states, observations and commands move.
   /// @throws scene::SceneError if something can't be placed with this seed; then nothing changes
   void reset(const scene::Scene& scene, const Options& options);
 
@@ -41,6 +42,17 @@ class Simulation {
   /// they sense at the next tick.
   /// @param entity  into Layout::entities
   void move(std::size_t entity, const math::Pose& pose);
+
+  /// Adds an entity behind all others; nothing of what the others are, sense or do changes before
+  /// the next tick. Observations of the last tick say of a robot what they say at tick 0.
+  /// @param scene  the one that this was made from
+  /// @param entity  its id is nobody's who is present
+  /// @throws scene::SceneError if it overlaps somebody; then nothing changes
+  void spawn(const scene::Scene& scene, const scene::Entity& entity);
+
+  /// Takes an entity out. Its places stay in all arrays, as they are; so does its name.
+  /// @param entity  into Layout::entities, one that is present
+  void remove(std::size_t entity);
 
   /// Advances by one tick.
   void step();

@@ -89,6 +89,9 @@ std::uint64_t hash(const State& state, const Observations& observations) {
     hash.add(std::span(link.velocity.data(), 3));
     hash.add(std::span(link.angular_velocity.data(), 3));
   }
+  for (std::size_t i = 0; i < state.absent.size(); ++i) {
+    if (state.absent[i]) hash.add(std::uint64_t{i});
+  }
   hash.add(observations.joint_readings);
   add_visible(hash, state);
   add_sensed(hash, observations);

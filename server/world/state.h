@@ -47,6 +47,8 @@ struct State {
   std::int64_t time_ns = 0;         ///< simulated: round(tick * 1e9 / ticks_per_second)
   std::vector<math::Pose> origins;  ///< X_WE per entity
   std::vector<LinkState> links;     ///< of all entities, in scene order
+  std::vector<bool> absent;         ///< per entity: it was removed, its places hold what was there
+                                    ///< last; may be shorter: the rest is present
 
   // What others can perceive; each as long as its list in Layout.
   std::vector<Color> led_colors;
@@ -57,6 +59,8 @@ struct State {
 
   std::vector<Ray> rays;        ///< not part of the hash
   std::vector<Frustum> frusta;  ///< not part of the hash
+
+  bool is_absent(std::size_t entity) const { return entity < absent.size() && absent[entity]; }
 };
 
 /// Messages of radios. Their bytes stand in one buffer, and may be shared by several messages.

@@ -26,13 +26,14 @@ struct SmallScene {
            R"(<range_and_bearing id="through" check_occlusions="false"/></media></argos>)";
   }
 
-  scene::Scene read() const {
-    const scene::ReadResult result = scene::read_text(str(), "small.argos");
+  scene::ReadResult read_all() const {
+    scene::ReadResult result = scene::read_text(str(), "small.argos");
     for (const auto& problem : result.problems) {
       EXPECT_EQ(problem.severity, scene::Problem::Severity::notice) << scene::to_string(problem);
     }
-    return result.scene;
+    return result;
   }
+  scene::Scene read() const { return read_all().scene; }
 
   Simulation run(std::uint64_t seed = 1) const { return Simulation(read(), {seed, {}}); }
 };

@@ -1,0 +1,24 @@
+#pragma once
+// One thing said about a scene file.
+
+#include <string>
+
+#include "scene/location.h"
+
+namespace ziggurat::scene {
+
+struct Problem {
+  enum class Severity {
+    notice,  ///< accepted, and without effect here
+    fault,   ///< the scene can't be run
+  };
+  Severity severity = Severity::fault;
+  std::string file;
+  Location where;
+  std::string text;  ///< what is wrong, with the value; what would be right
+};
+
+/// `file:line:column: text`, or `file: text` where no line is known.
+std::string to_string(const Problem& problem);
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,274 @@
+// Entities that are spawned while a world runs, and entities that are removed.
+
+#include <gtest/gtest.h>
+
+#include "small_scene.h"
+
+namespace ziggurat::simulation {
+namespace {
+
+using testing::robot;
+using testing::SmallScene;
+
+const std::string gravity = R"(<gravity g="10"/>)";
+
+std::string box(const std::string& id, const std::string& position, bool movable = true) {
+  return "<box id=\"" + id + R"(" size=".1,.1,.1" mass="1" movable=")" +
+         (movable ? "true" : "false") + "\"><body position=\"" + position + "\"/></box>";
+}
+
+std::string tag(const std::string& payload) {
+  return R"(<tags medium="tags"><tag anchor="base" position="0,0,0.1" orientation="0,0,0" )"
+         R"(observable_angle="90" side_length="0.05" payload=")" +
+         payload + "\"/></tags>";
+}
+
+/// A scene and a world of it.
+class World {
+ public:
+  explicit World(const SmallScene& small)
+      : read_(small.read_all()), simulation(read_.scene, {1, {}}) {}
+
+  void spawn(const std::string& xml) {
+    const auto& entities = simulation.layout().entities;
+    const scene::Addition addition =
+        read_.additions.read(xml, read_.scene, 1 << 20, [&](const std::string& id) {
+          for (std::size_t i = 0; i < entities.size(); ++i) {
+            if (entities[i].id == id && !simulation.state().is_absent(i)) return true;
+          }
+          return false;
+        });
+    for (const auto& problem : addition.problems) ADD_FAILURE() << scene::to_string(problem);
+    simulation.spawn(read_.scene, addition.entity);
+  }
+  void step(int ticks = 1) {
+    for (int i = 0; i < ticks; ++i) simulation.step();
+  }
+  void reset() { simulation.reset(read_.scene, {1, {}}); }
+
+ private:
+  scene::ReadResult read_;
+
+ public:
+  Simulation simulation;
+};
+
+TEST(Spawn, ABoxFallsFromWhereItIsPlaced) {
+  World world({"", "", box("a", "0,0,5"), gravity});
+  world.step(3);
+  world.spawn(box("b", "1,0,4"));
+  EXPECT_EQ(world.simulation.layout().entities.at(1).id, "b");
+  EXPECT_EQ(world.simulation.state().origins.at(1).position, math::Vector3(1, 0, 4));
+  world.step();
+  // Two substeps of 50 ms, semi-implicit Euler: g h^2 (1 + 2).
+  EXPECT_NEAR(world.simulation.state().origins[1].position.z(), 4 - 10 * 0.05 * 0.05 * 3, 1e-12);
+}
+
+TEST(Spawn, WhereSomethingStandsIsRefusedAndChangesNothing) {
+  World world({"", "", box("a", "0,0,5", false), gravity}), other({"", "", box("a", "0,0,5", false), gravity});
+  world.step(3);
+  other.step(3);
+  try {
+    world.spawn("\n" + box("b", "0.05,0,5"));
+    FAIL() << "they overlap";
+  } catch (const scene::SceneError& error) {
+    EXPECT_STREQ(error.what(),
+                 "spawn:2:1: 'b' overlaps 'a' where it is placed; choose a place that is free");
+  }
+  EXPECT_EQ(world.simulation.layout().entities.size(), 1u);
+  world.step(3);
+  other.step(3);
+  EXPECT_EQ(world.simulation.hash(), other.simulation.hash());
+}
+
+TEST(Spawn, IsDeterministicAndGoneAfterAReset) {
+  const SmallScene small{"", "<positioning implementation=\"default\"/>",
+                         box("a", "0,0,0.5") + robot("r", "2,0,0.3", tag("7")), gravity + "<floor/>"};
+  World one(small), two(small), fresh(small);
+  for (World* world : {&one, &two}) {
+    world->step(4);
+    world->spawn(robot("s", "0.02,0,0.9", tag("8"), "10,20,30"));
+    world->step(2);
+    world->simulation.remove(0);
+    world->step(10);
+  }
+  EXPECT_EQ(one.simulation.hash(), two.simulation.hash());
+  one.reset();
+  EXPECT_EQ(one.simulation.layout().entities.size(), 2u);
+  EXPECT_EQ(one.simulation.layout().robots.size(), 1u);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(one.simulation.hash(), fresh.simulation.hash()) << "tick " << i;
+    one.step();
+    fresh.step();
+  }
+}
+
+TEST(Spawn, ChangesTheHashAtOnceAndSoDoesRemove) {
+  World world({"", "", box("a", "0,0,5"), gravity}), other({"", "", box("a", "0,0,5"), gravity});
+  world.spawn(box("b", "1,0,4"));
+  EXPECT_NE(world.simulation.hash(), other.simulation.hash());
+  const auto before = world.simulation.hash();
+  world.simulation.remove(1);
+  EXPECT_NE(world.simulation.hash(), before);
+}
+
+const std::string camera =
+    R"(<cameras implementation="default"><camera id="eye" anchor="base" position="0,0,0.2" )"
+    R"(orientation="0,0,0" range="0.01:3" resolution="640,480" focal_length="400,400" )"
+    R"(principle_point="320,240"><tag_detector medium="tags"/><led_detector medium="leds"/>)"
+    R"(</camera></cameras>)";
+
+TEST(Spawn, ATagIsSeenAtTheNextTickAndNoMoreOnceItIsRemoved) {
+  World world({"", camera, robot("r", "0,0,0", ""), ""});
+  world.step(2);
+  // Its tag faces down, one metre above the camera, which looks up.
+  world.spawn(robot("s", "0,0,1.3", tag("8"), "0,180,0"));
+  EXPECT_TRUE(world.simulation.observations().tags.empty());
+  world.step();
+  const auto& seen = world.simulation.observations().tags;
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_EQ(seen[0].camera, 0u);
+  EXPECT_EQ(world.simulation.state().tag_payloads.at(seen[0].tag), "8");
+  world.simulation.remove(1);
+  world.step();
+  EXPECT_TRUE(world.simulation.observations().tags.empty());
+}
+
+TEST(Spawn, ARobotSensesWhatIsThere) {
+  World world({"", camera, robot("r", "0,0,1.3", tag("7"), "0,180,0"), ""});
+  world.step(2);
+  world.simulation.remove(0);
+  world.spawn(robot("t", "0,0,1.3", tag("9"), "0,180,0"));
+  world.spawn(robot("s", "0,0,0", ""));
+  world.step();
+  const auto& seen = world.simulation.observations().tags;
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_EQ(seen[0].camera, 2u) << "of the robot that came last; the tag's own looks away";
+  EXPECT_EQ(world.simulation.state().tag_payloads.at(seen[0].tag), "9");
+}
+
+const std::string radio =
+    R"(<radios medium="air"><radio anchor="base" position="0,0,0" range="3"/></radios>)";
+
+std::vector<std::size_t> hearers(Simulation& simulation, std::size_t sender) {
+  const std::uint8_t hello[] = {1};
+  simulation.commands().radio_messages.add(sender, hello);
+  simulation.step();
+  std::vector<std::size_t> radios;
+  for (const auto& entry : simulation.observations().radio_messages.entries) {
+    radios.push_back(entry.radio);
+  }
+  return radios;
+}
+
+TEST(Spawn, RadiosHearEachOtherAsLongAsTheyAreThere) {
+  World world({R"(<radios implementation="default"/>)", R"(<radios implementation="default"/>)",
+               robot("r", "0,0,0", radio) + robot("q", "1,0,0", radio), ""});
+  EXPECT_EQ(hearers(world.simulation, 0), (std::vector<std::size_t>{1}));
+  world.spawn(robot("s", "0,1,0", radio));
+  EXPECT_EQ(hearers(world.simulation, 0), (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(hearers(world.simulation, 2), (std::vector<std::size_t>{0, 1}));
+  world.simulation.remove(1);
+  EXPECT_EQ(hearers(world.simulation, 2), (std::vector<std::size_t>{0}));
+  EXPECT_EQ(hearers(world.simulation, 1), (std::vector<std::size_t>{})) << "it is not there";
+  const std::uint8_t last[] = {1};
+  world.simulation.commands().radio_messages.add(2, last);
+  world.simulation.remove(2);
+  world.step();
+  EXPECT_TRUE(world.simulation.observations().radio_messages.entries.empty());
+}
+
+TEST(Spawn, RangeAndBearingReachesAsLongAsTheyAreThere) {
+  const std::string device =
+      R"(<range_and_bearing anchor="base" position="0,0,0.2" range="3" data_size="2" medium="rab"/>)";
+  World world({R"(<range_and_bearing implementation="default"/>)",
+               R"(<range_and_bearing implementation="medium" medium="rab"/>)",
+               robot("r", "0,0,0", device), ""});
+  world.spawn(robot("s", "0,1,0", device));
+  world.simulation.commands().range_and_bearing_data[3] = 9;
+  world.step();
+  const auto& packets = world.simulation.observations().range_and_bearing;
+  ASSERT_EQ(packets.size(), 2u);
+  EXPECT_EQ(packets[0].receiver, 0u);
+  EXPECT_NEAR(packets[0].range, 1, 1e-12);
+  EXPECT_EQ(world.simulation.observations().range_and_bearing_data.at(packets[0].data.begin + 1), 9);
+  world.simulation.remove(0);
+  world.step();
+  EXPECT_TRUE(packets.empty());
+}
+
+TEST(Spawn, LeavesWhatOthersCommandForTheTickInHand) {
+  const SmallScene small{R"(<leds implementation="default" medium="leds"/>)", "",
+                         robot("r", "0,0,0",
+                               R"(<leds medium="leds"><led anchor="base" offset="0,0,0" color="red"/></leds>)"),
+                         ""};
+  World world(small);
+  world.step();
+  world.simulation.commands().led_colors[0] = 0x00FF00;
+  const auto before = world.simulation.state().led_colors;
+  world.spawn(robot("s", "3,0,0",
+                    R"(<leds medium="leds"><led anchor="base" offset="0,0,0" color="blue"/></leds>)"));
+  EXPECT_EQ(world.simulation.state().led_colors, (std::vector<world::Color>{0xFF0000, 0x0000FF}))
+      << "nothing is applied before the tick";
+  world.step();
+  EXPECT_EQ(world.simulation.state().led_colors, (std::vector<world::Color>{0x00FF00, 0x0000FF}));
+}
+
+const std::string wheels = R"(<differential_steering implementation="default"/>)";
+
+TEST(Spawn, AFootBotIsDrivenAndItsPlacesStayWhenItIsRemoved) {
+  const auto foot_bot = [](const std::string& id, const std::string& at) {
+    return "<foot-bot id=\"" + id + "\"><body position=\"" + at +
+           "\"/><controller config=\"c\"/></foot-bot>";
+  };
+  World world({wheels + R"(<footbot_turret implementation="default"/>)",
+               wheels + R"(<footbot_turret_encoder implementation="default"/><footbot_proximity )"
+               R"(implementation="default"/><positioning implementation="default"/>)",
+               foot_bot("a", "0,0,0"), gravity + "<floor/>"});
+  world.step();
+  world.spawn(foot_bot("b", "2,0,0"));
+  ASSERT_EQ(world.simulation.commands().wheels.size(), 2u);
+  EXPECT_EQ(world.simulation.observations().positioning.at(1).position.x(), 2);
+  for (auto& command : world.simulation.commands().wheels) command = {0.2, 0.2};
+  world.step(10);
+  EXPECT_NEAR(world.simulation.state().origins[1].position.x(), 2.2, 0.005);
+  EXPECT_NEAR(world.simulation.observations().positioning[1].position.x(), 2.2, 0.005);
+  const auto where = world.simulation.state().origins[1].position;
+  world.simulation.remove(1);
+  world.simulation.commands().turrets[1] = {world::TurretMode::speed, 0, 1};
+  world.step(10);
+  EXPECT_EQ(world.simulation.state().origins[1].position, where);
+  EXPECT_NEAR(world.simulation.state().origins[0].position.x(), 0.4, 0.01);
+  world.spawn(foot_bot("b", "2.2,0,0"));
+  EXPECT_EQ(world.simulation.layout().robots.size(), 3u) << "a name may come again";
+}
+
+TEST(Remove, OfASupportLetsFallWhatStoodOnIt) {
+  World world({"", "", box("a", "0,0,0", false) + box("b", "0,0,0.1"), gravity + "<floor/>"});
+  world.step(50);
+  ASSERT_NEAR(world.simulation.state().origins[1].position.z(), 0.1, 1e-4);
+  world.simulation.remove(0);
+  world.step(50);
+  EXPECT_NEAR(world.simulation.state().origins[1].position.z(), 0, 1e-3);
+}
+
+TEST(Remove, OfAJointedRobotLeavesItsReadings) {
+  const std::string arm =
+      R"(<prototype id="p" movable="false"><body position="1,0,2"/><links ref="base">)"
+      R"(<link id="base" geometry="box" size=".1,.1,.1" mass="1"/>)"
+      R"(<link id="arm" geometry="box" size=".5,.1,.1" mass="1"/></links><joints>)"
+      R"(<joint id="hinge" type="revolute" axis="0,1,0"><parent link="base" position="0,0,0"/>)"
+      R"(<child link="arm" position="-.25,0,0"/></joint></joints><controller config="c"/></prototype>)";
+  World world({R"(<joints implementation="default"><joint id="hinge" mode="velocity" max_impulse="1"/></joints>)",
+               R"(<joints implementation="default"><joint id="hinge" mode="position"/></joints>)", arm,
+               ""});
+  world.simulation.commands().joint_targets[0] = 1;
+  world.step(5);
+  EXPECT_GT(world.simulation.observations().joint_readings[0], 0.3);
+  world.simulation.remove(0);
+  world.step(5);
+  EXPECT_EQ(world.simulation.observations().joint_readings.size(), 1u);
+}
+
+}  // namespace
+}  // namespace ziggurat::simulation
