@@ -17,6 +17,18 @@ namespace {
 const std::vector<std::pair<std::string, std::string>> no_keys{{"ZIGGURAT_SERVER_KEY", ""},
                                                                {"ZIGGURAT_CURVE_SECRET", ""}};
 
+Launch lua_launch(std::string name, std::vector<std::size_t> robots, const std::string& list,
+                  const Surroundings& surroundings) {
+  Launch launch;
+  launch.name = std::move(name);
+  launch.robots = std::move(robots);
+  launch.robots_file = fmt::format("{}/{}", surroundings.folder, list);
+  launch.program.arguments = {surroundings.lua_runner, "--connect",        surroundings.endpoint,
+                              "--robots-file",         launch.robots_file, "--quiet"};
+  launch.program.environment = no_keys;
+  return launch;
+}
+
 std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
                              const Surroundings& surroundings) {
   const std::size_t wanted =
@@ -24,17 +36,12 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
   const std::size_t count = std::min(wanted, robots.size());
   std::vector<Launch> launches;
   for (std::size_t i = 0; i < count; ++i) {
-    Launch launch;
-    launch.name = count == 1 ? "ziggurat-lua" : fmt::format("ziggurat-lua {} of {}", i + 1, count);
     const auto block = [&](std::size_t n) {
       return robots.begin() + static_cast<std::ptrdiff_t>(n * robots.size() / count);
     };
-    launch.robots.assign(block(i), block(i + 1));
-    launch.robots_file = fmt::format("{}/robots-{}", surroundings.folder, i);
-    launch.program.arguments = {surroundings.lua_runner, "--connect",        surroundings.endpoint,
-                                "--robots-file",         launch.robots_file, "--quiet"};
-    launch.program.environment = no_keys;
-    launches.push_back(std::move(launch));
+    launches.push_back(lua_launch(
+        count == 1 ? "ziggurat-lua" : fmt::format("ziggurat-lua {} of {}", i + 1, count),
+        {block(i), block(i + 1)}, fmt::format("robots-{}", i), surroundings));
   }
   return launches;
 }
@@ -85,6 +92,12 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
     launches.push_back(std::move(launch));
   }
   return launches;
+}
+
+Launch plan_spawned(std::size_t robot, std::size_t number, const world::Layout& layout,
+                    const Surroundings& surroundings) {
+  return lua_launch(fmt::format("ziggurat-lua of '{}'", layout.robots[robot].id), {robot},
+                    fmt::format("spawned-{}", number), surroundings);
 }
 
 std::vector<ControllerProcess> start_all(const std::vector<Launch>& launches,

@@ -40,6 +40,11 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
                                      const std::vector<std::string>& scripts,
                                      const Surroundings& surroundings);
 
+/// A Lua process of its own, for a robot that was spawned.
+/// @param number  that no earlier one had
+Launch plan_spawned(std::size_t robot, std::size_t number, const world::Layout& layout,
+                    const Surroundings& surroundings);
+
 /// Starts all; if one can't be started those before it are killed.
 /// @throws std::runtime_error with a sentence
 std::vector<ControllerProcess> start_all(const std::vector<Launch>& launches,

@@ -208,7 +208,7 @@ int execute(const Options& options, Service service) {
   network::Reception reception(config, {signals.descriptor(), end_while_loading});
   reception.say(0, "The scene is being read.");
   if (service == Service::serve) announce(options, reception.endpoints(), console);
-  const auto scene = load_scene(path, options, console);
+  const auto [scene, additions] = load_scene(path, options, console);
   reception.say(0.5, "The world is being built.");
   const auto plan = make_plan(options, scene);
   const auto seed = choose_seed(options, scene);
@@ -232,14 +232,16 @@ int execute(const Options& options, Service service) {
     console.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", seed));
   }
   std::vector<ControllerProcess> processes;
+  std::optional<Surroundings> surroundings;
   if (service == Service::run && with_controllers) {
-    const Surroundings surroundings{server.endpoints().front(), folder.path(), find_lua_runner(),
-                                    options.lua_processes};
-    processes = start_all(plan_controllers(scene, simulation.layout(), scripts, surroundings),
+    surroundings = {server.endpoints().front(), folder.path(), find_lua_runner(),
+                    options.lua_processes};
+    processes = start_all(plan_controllers(scene, simulation.layout(), scripts, *surroundings),
                           simulation.layout());
   }
-  Supervision supervision({scene, path, run.scene_hash, seed, options.clock, plan.ticks.value_or(0),
-                           options.hil, simulation, server});
+  Supervision supervision({scene, additions, options.reading.max_size, path, run.scene_hash, seed,
+                           options.clock, plan.ticks.value_or(0), options.hil, simulation, server,
+                           with_controllers, processes, surroundings});
   std::optional<MetricsPort> metrics;
   if (!options.metrics.empty()) metrics.emplace(options.metrics, options.insecure);
   if (metrics) console.notice("metrics at " + metrics->url());

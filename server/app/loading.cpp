@@ -43,7 +43,7 @@ const scene::Entity& as_written(const scene::Scene& scene, std::size_t entity) {
 
 }  // namespace
 
-scene::Scene load_scene(const std::string& path, const Options& options, Console& console) {
+scene::OpenScene load_scene(const std::string& path, const Options& options, Console& console) {
   auto result = scene::read_file(path, options.reading);
   auto problems = std::move(result.problems);
   override_controllers(options, result.scene);
@@ -57,7 +57,7 @@ scene::Scene load_scene(const std::string& path, const Options& options, Console
     throw scene::SceneError(
         {std::make_move_iterator(faults), std::make_move_iterator(problems.end())});
   }
-  return std::move(result.scene);
+  return {std::move(result.scene), std::move(result.additions)};
 }
 
 std::uint64_t choose_seed(const Options& options, const scene::Scene& scene) {
@@ -93,14 +93,7 @@ std::vector<std::string> script_paths(const scene::Scene& scene, const world::La
                                       const std::string& scene_path) {
   std::vector<std::string> paths;
   for (const auto& robot : layout.robots) {
-    const auto script = script_of(robot.params);
-    const bool lua = scene.controllers[robot.controller].lua;
-    std::optional<std::filesystem::path> found;
-    if (lua && !script.empty()) {
-      const auto naming = file_of_params(scene, as_written(scene, robot.entity));
-      found = find_script(script, naming, scene_path);
-    }
-    paths.push_back(found ? found->string() : std::string());
+    paths.push_back(script_path(scene, as_written(scene, robot.entity), scene_path));
   }
   return paths;
 }

@@ -14,7 +14,7 @@
 namespace ziggurat::app {
 
 /// Reads the scene and prints its notices. @throws scene::SceneError with all faults found
-scene::Scene load_scene(const std::string& path, const Options& options, Console& console);
+scene::OpenScene load_scene(const std::string& path, const Options& options, Console& console);
 
 /// The seed of the command line, else of the scene; a fresh one from the system if that is 0.
 std::uint64_t choose_seed(const Options& options, const scene::Scene& scene);

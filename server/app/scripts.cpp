@@ -16,24 +16,22 @@ struct Use {
   scene::Location where;
 };
 
+bool has_own_script(const scene::Scene& scene, const scene::Entity& entity) {
+  return entity.controller && entity.overrides_params &&
+         runs_script(scene.controllers[*entity.controller]);
+}
+
 std::vector<Use> uses(const scene::Scene& scene) {
   std::vector<Use> result;
   for (const auto& controller : scene.controllers) {
     if (runs_script(controller)) result.push_back({&controller.params, controller.params_where});
   }
   const auto add = [&](const scene::Entity& entity) {
-    if (entity.controller && entity.overrides_params &&
-        runs_script(scene.controllers[*entity.controller])) {
-      result.push_back({&entity.params, entity.params_where});
-    }
+    if (has_own_script(scene, entity)) result.push_back({&entity.params, entity.params_where});
   };
   for (const auto& entity : scene.entities) add(entity);
   for (const auto& distribution : scene.distributions) add(distribution.entity);
   return result;
-}
-
-std::string file_of(const scene::Scene& scene, scene::Location where) {
-  return where.file < scene.files.size() ? scene.files[where.file] : std::string();
 }
 
 std::optional<std::string> fault(const std::string& script, const fs::path& naming_file,
@@ -47,6 +45,19 @@ std::optional<std::string> fault(const std::string& script, const fs::path& nami
   }
   if (auto error = compile_error(*path)) return "script does not compile: " + *error;
   return std::nullopt;
+}
+
+void check(const scene::Scene& scene, const Use& use, const fs::path& scene_file,
+           std::vector<scene::Problem>& problems) {
+  using Severity = scene::Problem::Severity;
+  const auto file = scene::file_of(scene, use.where);
+  const auto script = script_of(*use.params);
+  if (script.empty()) {
+    problems.push_back({Severity::notice, file, use.where,
+                        "no script is named in <params>: its robots do nothing"});
+  } else if (auto text = fault(script, file, scene_file)) {
+    problems.push_back({Severity::fault, file, use.where, *text});
+  }
 }
 
 }  // namespace
@@ -85,25 +96,33 @@ bool runs_script(const scene::Controller& controller) {
 }
 
 std::string file_of_params(const scene::Scene& scene, const scene::Entity& entity) {
-  return file_of(scene, entity.overrides_params
+  return scene::file_of(scene, entity.overrides_params
                             ? entity.params_where
                             : scene.controllers[*entity.controller].params_where);
 }
 
 std::vector<scene::Problem> check_scripts(const scene::Scene& scene, const fs::path& scene_file) {
-  using Severity = scene::Problem::Severity;
   std::vector<scene::Problem> problems;
-  for (const Use& use : uses(scene)) {
-    const auto file = file_of(scene, use.where);
-    const auto script = script_of(*use.params);
-    if (script.empty()) {
-      problems.push_back({Severity::notice, file, use.where,
-                          "no script is named in <params>: its robots do nothing"});
-    } else if (auto text = fault(script, file, scene_file)) {
-      problems.push_back({Severity::fault, file, use.where, *text});
-    }
+  for (const Use& use : uses(scene)) check(scene, use, scene_file, problems);
+  return problems;
+}
+
+std::vector<scene::Problem> check_script(const scene::Scene& scene, const scene::Entity& entity,
+                                         const fs::path& scene_file) {
+  std::vector<scene::Problem> problems;
+  if (has_own_script(scene, entity)) {
+    check(scene, {&entity.params, entity.params_where}, scene_file, problems);
   }
   return problems;
+}
+
+std::string script_path(const scene::Scene& scene, const scene::Entity& entity,
+                        const fs::path& scene_file) {
+  const scene::Controller& controller = scene.controllers[*entity.controller];
+  const auto script = script_of(entity.overrides_params ? entity.params : controller.params);
+  if (!controller.lua || script.empty()) return {};
+  const auto found = find_script(script, file_of_params(scene, entity), scene_file);
+  return found ? found->string() : std::string();
 }
 
 }  // namespace ziggurat::app

@@ -31,6 +31,14 @@ bool runs_script(const scene::Controller& controller);
 /// The file that says the params of an entity with a controller.
 std::string file_of_params(const scene::Scene& scene, const scene::Entity& entity);
 
+/// A fault if the script that an entity names in <params> of its own is missing or doesn't compile.
+std::vector<scene::Problem> check_script(const scene::Scene& scene, const scene::Entity& entity,
+                                         const std::filesystem::path& scene_file);
+
+/// The path of the script that an entity's Lua controller runs; empty if it names none.
+std::string script_path(const scene::Scene& scene, const scene::Entity& entity,
+                        const std::filesystem::path& scene_file);
+
 /// A fault for each script that would run and is missing or doesn't compile, with the line
 /// of its <params>; a notice for each that names none.
 std::vector<scene::Problem> check_scripts(const scene::Scene& scene,

@@ -25,7 +25,7 @@ bool is_finite(const std::vector<double>& values) {
 
 }  // namespace
 
-Supervision::Supervision(const Subject& subject) : subject_(subject) {}
+Supervision::Supervision(const Subject& subject) : subject_(subject), room_(subject.room) {}
 
 /// Those of one connection are answered in their order; a later one of another does not wait.
 void Supervision::serve() {
@@ -64,6 +64,10 @@ Supervision::Reply Supervision::try_to(const network::Call& call) {
       return reset(call);
     case Kind::move:
       return move(call);
+    case Kind::spawn:
+      return spawn(call);
+    case Kind::remove:
+      return remove(call);
     case Kind::shutdown:
       shutdown_ = true;
       return done(call);
@@ -119,14 +123,19 @@ Supervision::Reply Supervision::reset(const network::Call& call) {
 
 Supervision::Reply Supervision::read(const network::Call& call) {
   const world::Layout& layout = subject_.simulation.layout();
+  const auto is_absent = [&](std::size_t entity) {
+    return subject_.simulation.state().is_absent(entity);
+  };
   std::vector<std::size_t> entities;
   if (call.request.entities.empty()) {
     entities.resize(layout.entities.size());
     std::iota(entities.begin(), entities.end(), std::size_t{0});
+    std::erase_if(entities, is_absent);
   }
   for (const std::string& pattern : call.request.entities) {
     const std::size_t before = entities.size();
     for (std::size_t i = 0; i < layout.entities.size(); ++i) {
+      if (is_absent(i)) continue;
       const std::string& id = layout.entities[i].id;
       if (id == pattern || network::matches(pattern, id)) entities.push_back(i);
     }
@@ -188,9 +197,10 @@ Supervision::Reply Supervision::done(const network::Call& call) {
 
 std::optional<std::size_t> Supervision::entity_named(const std::string& id) const {
   const auto& entities = subject_.simulation.layout().entities;
-  const auto found = std::ranges::find(entities, id, &world::EntityLayout::id);
-  if (found == entities.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - entities.begin());
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (entities[i].id == id && !subject_.simulation.state().is_absent(i)) return i;
+  }
+  return std::nullopt;
 }
 
 void Supervision::published() {
@@ -209,6 +219,7 @@ std::optional<std::uint64_t> Supervision::reset_wanted() const {
 
 void Supervision::reset_done() {
   subject_.seed = *reset_wanted();
+  forget_spawned();
   done(*resetting_);
   resetting_.reset();
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/controllers.h"
 #include "network/latencies.h"
 #include "network/server.h"
 #include "scene/reader.h"
@@ -24,6 +25,8 @@ class Supervision {
 
   struct Subject {
     const scene::Scene& scene;
+    const scene::Additions& additions;  ///< to the scene
+    std::size_t room = 0;               ///< of what is spawned, models written out [bytes]
     std::string path;        ///< of the scene
     std::string scene_hash;  ///< 16 hexadecimal digits
     std::uint64_t seed = 0;
@@ -32,6 +35,9 @@ class Supervision {
     bool is_hardware_in_the_loop = false;
     simulation::Simulation& simulation;
     network::Server& server;
+    bool with_controllers = true;  ///< else nobody drives robots, those that are spawned neither
+    std::vector<ControllerProcess>& processes;
+    std::optional<Surroundings> surroundings;  ///< of Lua processes that the run starts
   };
 
   explicit Supervision(const Subject& subject);
@@ -65,6 +71,10 @@ class Supervision {
   Reply reset(const network::Call& call);
   Reply read(const network::Call& call);
   Reply move(const network::Call& call);
+  Reply spawn(const network::Call& call);
+  Reply remove(const network::Call& call);
+  void employ(const scene::Entity& entity);
+  void forget_spawned();
   Reply fail(const network::Call& call, wire::ErrorCode code, std::string field,
              std::string message);
   Reply done(const network::Call& call);
@@ -75,6 +85,9 @@ class Supervision {
   std::vector<network::Call> waiting_;  // unanswered, in order of arrival
   std::optional<network::Call> stepping_, resetting_;
   std::uint64_t steps_left_ = 0;
+  std::size_t spawned_ = 0;       // entities, since the start or the last reset
+  std::size_t room_;              // that is left for more [bytes]
+  std::size_t launched_ = 0;      // Lua processes for them, ever
   bool is_gathered_ = false, shutdown_ = false;
   clock::time_point start_ = clock::now();
   std::optional<clock::time_point> standing_since_;

@@ -29,6 +29,7 @@ Watch::Watch(const Watched& watched, double tick_length)
     : watched_(watched), progress_(watched.console, tick_length) {}
 
 std::optional<Ending> Watch::gather() {
+  gathered_ = false;  // a reset may have set robots free
   const auto ending = until([&](const auto& wait) { return watched_.server.gather(wait); });
   gathered_ = !ending;
   return ending;
@@ -107,7 +108,9 @@ std::optional<Ending> Watch::disappearance() {
   for (auto& process : watched_.processes) {
     if (process.process.poll() && is_awaited(process) && !dead) dead = &process;
   }
-  const auto lost = gathered_ ? missing_robots() : std::vector<std::size_t>();
+  auto lost = gathered_ ? missing_robots() : std::vector<std::size_t>();
+  const auto status = watched_.server.status();
+  std::erase_if(lost, [&](std::size_t robot) { return !status[robot].was_held; });  // yet to come
   if (!dead && lost.empty()) {
     suspected_since_.reset();
     return std::nullopt;
@@ -142,10 +145,11 @@ void Watch::take_report() {
   for (auto& failure : report.failures) {
     const auto& robot = watched_.layout.robots[failure.robot];
     print_log();
+    const auto& controller = watched_.scene.controllers[robot.controller].id;
     watched_.console.fault(fmt::format("robot {} (controller '{}') failed at tick {}: {}", robot.id,
-                                       watched_.scene.controllers[robot.controller].id,
-                                       failure.tick, failure.message));
-    failures_.push_back(std::move(failure));
+                                       controller, failure.tick, failure.message));
+    failures_.push_back(
+        {failure.robot, {robot.id, controller, failure.tick, std::move(failure.message)}});
   }
 }
 
@@ -255,13 +259,10 @@ void Watch::end_processes() {
 
 std::vector<Summary::Failure> Watch::failures() const {
   auto sorted = failures_;
-  std::ranges::sort(sorted, {}, [](const auto& each) { return std::tuple(each.tick, each.robot); });
+  std::ranges::sort(sorted, {},
+                    [](const auto& each) { return std::tuple(each.second.tick, each.first); });
   std::vector<Summary::Failure> result;
-  for (const auto& each : sorted) {
-    const auto& robot = watched_.layout.robots[each.robot];
-    result.push_back(
-        {robot.id, watched_.scene.controllers[robot.controller].id, each.tick, each.message});
-  }
+  for (auto& [robot, failure] : sorted) result.push_back(std::move(failure));
   return result;
 }
 

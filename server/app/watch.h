@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/console.h"
@@ -83,7 +84,7 @@ class Watch {
   bool gathered_ = false;
   std::uint64_t tick_ = 0;
   std::vector<wire::LogLine> log_;  ///< of a tick that is not over
-  std::vector<network::Failure> failures_;
+  std::vector<std::pair<std::size_t, Summary::Failure>> failures_;  ///< with the robot's place
   std::string vanished_;
   bool is_stopped_ = false;                           ///< by a deadline
   std::optional<clock::time_point> suspected_since_;  ///< that a controller vanished

@@ -208,6 +208,9 @@ void Barrier::say_heartbeat(const std::string& peer) {
 }
 
 void Barrier::say_leave(Session& session) {
+  const bool is_forgotten =
+      session.state == SessionState::draining && session.roster.robots.empty();
+  if (is_forgotten) return erase(session);  // what its robots still log is nobody's
   if (auto fault = inbox_.check(session.roster, run_.layout)) {
     return fail(session.peer, &session, std::move(*fault));
   }
@@ -234,6 +237,7 @@ void Barrier::finish(const wire::End& end) {
   outbox_.end(end);
   std::vector<Session*> done;
   for (const auto& session : sessions_) {
+    if (session->state == SessionState::draining) continue;  // it is told already
     settle(*session);
     const bool waits = session->role == wire::Role::controller;  // for its last words
     if (session->state == SessionState::lost || deliver(*session, outbox_) != Delivery::sent ||
@@ -262,6 +266,7 @@ std::vector<RobotStatus> Barrier::status() const {
     const Seat& seat = seats_[i];
     RobotStatus& status = result[i];
     status.deadline = seat.deadline;
+    status.was_held = seat.was_held;
     if (seat.gone) {
       status.membership = RobotStatus::Membership::gone;
     } else if (seat.holder != nullptr) {

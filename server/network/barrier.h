@@ -63,7 +63,9 @@ class Barrier {
   /// @param tag_payloads  of the same tick, for each of Layout::tags
   void publish(const world::Observations& observations, std::span<const std::string> tag_payloads);
   void finish(const wire::End& end);
-  void remove_robots(std::span<const std::size_t> robots);
+  void add_robots(std::span<const std::string> scripts, const world::Observations& observations,
+                  std::span<const std::string> tag_payloads);
+  void remove_robots(std::span<const std::size_t> robots, const std::string& why = {});
   /// No tick is complete from now on; once the one in hand would be, sessions are told.
   void pause();
   void resume();
@@ -106,6 +108,7 @@ class Barrier {
     Session* holder = nullptr;
     Session* claimant = nullptr;  // lost; may take it up again
     bool gone = false;
+    bool was_held = false;
     bool passed = false;  // free, and the tick goes on without it
     bool zeroed = false;  // its commands become zero at the end of the tick
     std::uint32_t misses_in_row = 0;
@@ -139,6 +142,10 @@ class Barrier {
   void lose(Session& session, std::string_view why);
   void displace(Session& session, const std::string& by);
   void erase(Session& session);
+  void say_removed(Session& session, std::size_t robot, const std::string& why);
+  bool say_end(Session& session, std::string why);
+  void forget(Session& session);
+  void forget_robots();
 
   // barrier_command.cpp
   bool observe(Session& session);

@@ -81,6 +81,7 @@ void Barrier::answer(const Call& call, const std::function<void(wire::Outbox&)>&
 
 void Barrier::reset(std::uint64_t seed) {
   run_.seed = seed;
+  forget_robots();
   observations_.reset();  // whoever comes now gets no tick of the world that was
   for (Seat& seat : seats_) {
     seat.misses_in_row = 0;

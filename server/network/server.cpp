@@ -117,8 +117,15 @@ Outcome Server::linger(const Wait& wait) {
   return state_->wait_until([] { return false; }, wait, nullptr);
 }
 
-void Server::remove_robots(std::span<const std::size_t> robots) {
-  state_->barrier.remove_robots(robots);
+void Server::add_robots(std::span<const std::string> scripts,
+                        const world::Observations& observations,
+                        std::span<const std::string> tag_payloads) {
+  state_->barrier.advance(Clock::now());
+  state_->barrier.add_robots(scripts, observations, tag_payloads);
+}
+
+void Server::remove_robots(std::span<const std::size_t> robots, const std::string& why) {
+  state_->barrier.remove_robots(robots, why);
 }
 
 void Server::pause() { state_->barrier.pause(); }

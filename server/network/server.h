@@ -83,6 +83,7 @@ struct RobotStatus {
   std::chrono::steady_clock::time_point awaited_since;  ///< if awaited
   std::chrono::steady_clock::time_point last_message;   ///< of its holder, if held
   scene::DeadlinePolicy deadline;                       ///< for when it is not answered for
+  bool was_held = false;                                ///< somebody has driven it
 };
 
 /// A robot whose controller reported its own failure.
@@ -150,9 +151,18 @@ class Server {
   /// Nothing is waited for but the time: messages that arrive meanwhile are taken.
   Outcome linger(const Wait& wait);
 
+  /// Robots have come: those of the layout that the server does not know yet. The tick in hand does
+  /// not wait for them, the next one does.
+  /// @param scripts  of them, as Run::scripts
+  /// @param observations, tag_payloads  of the tick in hand, theirs included
+  void add_robots(std::span<const std::string> scripts, const world::Observations& observations,
+                  std::span<const std::string> tag_payloads);
+
   /// These robots (positions in Layout::robots) are gone: their process died, say. They leave the
   /// barrier for good and their commands become zero.
-  void remove_robots(std::span<const std::size_t> robots);
+  /// @param why  a sentence for their sessions, which end with their last robot; empty: they are
+  ///             not told
+  void remove_robots(std::span<const std::size_t> robots, const std::string& why = {});
 
   /// The world stands still: collect() is not complete any more. Once the tick is answered,
   /// sessions are told, and `paused()` is true. Goes on being called meanwhile.
@@ -161,7 +171,8 @@ class Server {
   bool paused() const;
 
   /// The world went back to its start: sessions are told, what they owed is void, and the next
-  /// observation to be published is that of tick 0.
+  /// observation to be published is that of tick 0. Robots that the layout has no more are
+  /// forgotten, and sessions that have one of them are over.
   void reset(std::uint64_t seed);
 
   /// Requests that arrived since the last call, in order of arrival.

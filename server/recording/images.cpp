@@ -7,6 +7,7 @@
 
 #include "recording/output_file.h"
 #include "recording/png.h"
+#include "recording/reading_cameras.h"
 
 namespace ziggurat::recording {
 namespace {
@@ -33,23 +34,17 @@ std::string image_name(std::string_view robot, std::string_view camera, std::uin
 }
 
 Images::Images(std::string folder, const world::Layout& layout)
-    : folder_(std::move(folder)), layout_(layout), robot_of_camera_(layout.cameras.size()) {
+    : folder_(std::move(folder)), layout_(layout) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) throw WriteError(fmt::format("{}: cannot be made: {}", folder_, error.message()));
-  for (std::size_t i = 0; i < layout.robots.size(); ++i) {
-    const world::Range& cameras = layout.robots[i].cameras;
-    for (std::size_t camera = cameras.begin; camera < cameras.end(); ++camera) {
-      robot_of_camera_[camera] = i;
-    }
-  }
 }
 
 void Images::write(const world::Observations& observations) {
   for (const world::Image& image : observations.images) {
     if (image.rgb.empty()) continue;
     const world::CameraLayout& camera = layout_.cameras[image.camera];
-    const std::string& robot = layout_.robots[robot_of_camera_[image.camera]].id;
+    const std::string& robot = robot_with(image.camera, layout_).id;
     const auto path =
         std::filesystem::path(folder_) / image_name(robot, camera.id, observations.tick);
     write_png(path.string(), camera.resolution[0], camera.resolution[1], image.rgb);

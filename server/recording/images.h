@@ -27,7 +27,6 @@ class Images {
  private:
   std::string folder_;
   const world::Layout& layout_;
-  std::vector<std::size_t> robot_of_camera_;  // into Layout::robots
 };
 
 }  // namespace ziggurat::recording

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "recording/json.h"
+#include "recording/reading_cameras.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/recording.pb.h"
 
@@ -32,13 +33,6 @@ v1::RayLine line_of(const world::State& state, const char* kind, const std::stri
   return line;
 }
 
-const std::string& robot_with(std::size_t camera, const world::Layout& layout) {
-  for (const world::RobotLayout& robot : layout.robots) {
-    if (camera < robot.cameras.end()) return robot.id;
-  }
-  return layout.robots.back().id;
-}
-
 }  // namespace
 
 Rays::Rays(std::string path, const world::Layout& layout)
@@ -53,7 +47,7 @@ void Rays::write(const world::State& state) {
     write(line);
   }
   for (const world::Frustum& frustum : state.frusta) {
-    v1::RayLine line = line_of(state, "frustum", robot_with(frustum.camera, layout_));
+    v1::RayLine line = line_of(state, "frustum", robot_with(frustum.camera, layout_).id);
     line.set_camera(v1::valid_utf8(layout_.cameras[frustum.camera].id));
     for (const math::Vector3& corner : frustum.corners) {
       line.mutable_corners()->Add(corner.begin(), corner.end());

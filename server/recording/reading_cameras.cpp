@@ -32,6 +32,13 @@ void add_leds(std::span<const world::LedReading> seen,
 
 }  // namespace
 
+const world::RobotLayout& robot_with(std::size_t camera, const world::Layout& layout) {
+  for (const world::RobotLayout& robot : layout.robots) {
+    if (camera < robot.cameras.end()) return robot;
+  }
+  return layout.robots.back();
+}
+
 void add_cameras(const Moment& moment, const world::RobotLayout& robot, CameraMap& out) {
   for (std::size_t i = robot.cameras.begin; i < robot.cameras.end(); ++i) {
     v1::CameraReading& camera = out[v1::valid_utf8(moment.layout.cameras[i].id)];

@@ -1,6 +1,7 @@
 #pragma once
 // What cameras see, for a line of `--readings`.
 
+#include <cstddef>
 #include <string>
 
 #include "recording/reading.h"
@@ -8,6 +9,10 @@
 namespace ziggurat::recording {
 
 using CameraMap = google::protobuf::Map<std::string, v1::CameraReading>;
+
+/// The robot that a camera belongs to.
+/// @param camera  into Layout::cameras
+const world::RobotLayout& robot_with(std::size_t camera, const world::Layout& layout);
 
 /// Adds an entry for each camera of the robot, also for those that see nothing.
 void add_cameras(const Moment& moment, const world::RobotLayout& robot, CameraMap& out);

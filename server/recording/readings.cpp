@@ -13,6 +13,7 @@ Readings::Readings(std::string path, const world::Layout& layout)
 void Readings::write(const world::State& state, const world::Observations& observations,
                      const world::Commands& commands) {
   for (std::size_t robot = 0; robot < layout_.robots.size(); ++robot) {
+    if (state.is_absent(layout_.robots[robot].entity)) continue;
     file_.buffer().append(to_json(make_reading({layout_, state, observations, commands}, robot)));
     file_.buffer().push_back('\n');
     file_.written();

@@ -22,24 +22,35 @@ std::string field(const std::string& text) {
 
 }  // namespace
 
-Trace::Trace(std::string path, const world::Layout& layout) : file_(std::move(path)) {
-  for (std::size_t e = 0; e < layout.entities.size(); ++e) {
-    const auto& entity = layout.entities[e];
-    rows_.push_back({fmt::format(",{},,", field(entity.id)), true, e});
+/// Of those that are new; of all when a world begins.
+void Trace::name_rows(const world::State& state) {
+  if (state.tick == 0) {
+    rows_.clear();
+    entities_ = 0;
+  }
+  for (; entities_ < layout_.entities.size(); ++entities_) {
+    const auto& entity = layout_.entities[entities_];
+    rows_.push_back({fmt::format(",{},,", field(entity.id)), entities_, true, entities_});
     if (!entity.lists_links) continue;
     for (std::size_t l = entity.links.begin; l < entity.links.end(); ++l) {
-      rows_.push_back(
-          {fmt::format(",{},{},", field(entity.id), field(layout.links[l].id)), false, l});
+      rows_.push_back({fmt::format(",{},{},", field(entity.id), field(layout_.links[l].id)),
+                       entities_, false, l});
     }
   }
+}
+
+Trace::Trace(std::string path, const world::Layout& layout)
+    : layout_(layout), file_(std::move(path)) {
   file_.buffer().append(std::string_view("tick,time_s,entity,link,x,y,z,qw,qx,qy,qz\n"));
 }
 
 void Trace::write(const world::State& state) {
+  name_rows(state);
   const std::string when =
       fmt::format("{},{}", state.tick, static_cast<double>(state.time_ns) / 1e9);
   auto& buffer = file_.buffer();
   for (const Row& row : rows_) {
+    if (state.is_absent(row.entity)) continue;
     const math::Pose& pose = row.origin ? state.origins[row.index] : state.links[row.index].pose;
     const auto& p = pose.position;
     const auto& q = pose.orientation;

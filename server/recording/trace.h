@@ -16,20 +16,25 @@ namespace ziggurat::recording {
 /// entity lists its links.
 class Trace {
  public:
-  /// @throws WriteError
+  /// Keeps a reference to `layout`. @throws WriteError
   Trace(std::string path, const world::Layout& layout);
 
-  /// @throws WriteError
+  /// Without rows of what is absent. @throws WriteError
   void write(const world::State& state);
   void close() { file_.close(); }
 
  private:
+  void name_rows(const world::State& state);
+
   struct Row {
     std::string names;  ///< `,entity,link,` as it stands in the file
+    std::size_t entity;
     bool origin;        ///< whether `index` counts State::origins or State::links
     std::size_t index;
   };
 
+  const world::Layout& layout_;
+  std::size_t entities_ = 0;  // that have rows
   std::vector<Row> rows_;
   OutputFile file_;
 };

@@ -48,6 +48,12 @@ class Additions {
   std::unique_ptr<Parts> parts_;
 };
 
+/// A scene, and what it knows for those who add to it.
+struct OpenScene {
+  Scene scene;
+  Additions additions;
+};
+
 /// The name of the file that a location in a scene, or in what was added to it, counts.
 std::string file_of(const Scene& scene, const Location& where);
 

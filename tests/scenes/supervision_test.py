@@ -71,7 +71,7 @@ class Ctl(unittest.TestCase):
             self.assertAlmostEqual(0.5**0.5, moved["orientation"][3], places=9)
             for words, reason in ((("move", "nobody", "0,0,0"), "UNKNOWN_ENTITY"),
                                   (("step", "0"), "BAD_VALUE"),
-                                  (("spawn", os.devnull), "UNIMPLEMENTED"),
+                                  (("spawn", os.devnull), "BAD_VALUE"),
                                   (("paus",), "did you mean 'pause'?")):
                 outcome = server.ask("ctl", *words, check=False)
                 self.assertEqual(1, outcome.returncode, words)

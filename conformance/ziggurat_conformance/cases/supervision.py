@@ -1,9 +1,11 @@
 """Section 9: supervision."""
 
 import math
+import re
 
 from ..case import Case, Level
 from ..say import ALL, answer, hear_refusal, hello, join, observe, say_hello
+from ..server_scene import SCENE
 from ..steps import Check, Hear, Join, Say, Silence, Skip, Tick
 from ..wire import Count, OneOf, Some
 
@@ -83,6 +85,20 @@ def _moved(stage) -> str:
 
 def _v(name: str, title: str, *steps, level: Level = Level.RECONNECT, **more) -> Case:
     return Case(name, title, tuple(steps), level, **more)
+
+
+def _arm(id: str) -> str:
+    """An arm like arm0, in a place of its own."""
+    arm = re.search(r'<prototype id="arm0".*?</prototype>', SCENE.read_text(), re.DOTALL)[0]
+    return arm.replace('"arm0"', f'"{id}"').replace("0.3, 0.3, 0", "1, 1, 0")
+
+
+def _spawned(id: int, xml: str) -> list:
+    return [ask("s", id, spawn={"xml": xml}), told("s", id)]
+
+
+def _removed(id: int, entity: str) -> list:
+    return [ask("s", id, remove={"entity": entity}), told("s", id)]
 
 
 _BOX = '<box id="crate" size="0.1,0.1,0.1" movable="false"><body position="1.5,1.5,0"/></box>'
@@ -167,11 +183,25 @@ CASES = [
       for name, pose in (("short", {"position": [1.0]}), ("nan", {"position": [math.nan, 0.0, 0.0]}),
                          ("absent", {}),
                          ("turned-by-nothing", {"position": [0.0] * 3, "orientation": [0.0] * 4}))],
-    _v("V9.spawn", "An entity may be spawned, read and removed", *_paused(),
-       ask("s", 2, spawn={"xml": _BOX}), told("s", 2), ask("s", 3, read={"entities": ["crate"]}),
-       told("s", 3, states={"entities": [{"position": [1.5, 1.5, 0.0]}]}),
-       ask("s", 4, remove={"entity": "crate"}), told("s", 4), ask("s", 5, read={"entities": ["crate"]}),
-       failed("s", 5, "UNKNOWN_ENTITY"), *_resumed(), fresh=True),
+    _v("V9.spawn", "An entity may be spawned and read", *_paused(), *_spawned(2, _BOX),
+       ask("s", 3, read={"entities": ["crate"]}),
+       told("s", 3, states={"entities": [{"position": [1.5, 1.5, 0.0]}]}), *_resumed(), fresh=True),
+    _v("V9.waited", "A robot that was spawned is waited for from the next tick on", *_paused(),
+       *_spawned(2, _arm("arm9")), *_resumed(), answer("p"), Silence("p"),
+       join("q", "arm9"), *observe("q"), Silence("p"), answer("q"), *observe("p", "q"), answer("p"),
+       answer("q"), *observe("p", "q"), fresh=True),
+    _v("V9.taken", "It may be taken at once, and gets the tick in hand", *_paused(),
+       *_spawned(2, _arm("arm9")), join("q", "arm9"), Hear("q", "observation", {"tick": Tick(of="p")}),
+       answer("q"), Hear("q", "paused"), ask("s", 3, resume={}), told("s", 3), *observe("p", "q"),
+       fresh=True),
+    _v("V9.overlap", "A place that is taken is BAD_VALUE", *_paused(),
+       ask("s", 2, spawn={"xml": _BOX.replace("1.5,1.5,0", "0.35,0.3,0")}),
+       failed("s", 2, "BAD_VALUE"), *_resumed()),
+    _v("V9.not-in-the-arena", "What has no body is BAD_VALUE", *_paused(),
+       ask("s", 2, spawn={"xml": '<distribute/>'}), failed("s", 2, "BAD_VALUE"), *_resumed()),
+    _v("V9.no-effect", "What is BAD_VALUE had no effect", *_paused(),
+       ask("s", 2, spawn={"xml": _BOX.replace("false", "perhaps")}), failed("s", 2, "BAD_VALUE"),
+       ask("s", 3, read={"entities": ["crate"]}), failed("s", 3, "UNKNOWN_ENTITY"), *_resumed()),
     _v("V9.bad-xml", "What is no entity is BAD_VALUE", *_paused(),
        ask("s", 2, spawn={"xml": "<box id="}), failed("s", 2, "BAD_VALUE"), *_resumed()),
     _v("V9.bad-entity", "Nor is a faulty one", *_paused(),
@@ -180,7 +210,32 @@ CASES = [
     _v("V9.taken-id", "Nor one whose id is taken", *_paused(),
        ask("s", 2, spawn={"xml": _BOX.replace("crate", "arm0")}), failed("s", 2, "BAD_VALUE"),
        *_resumed()),
-    _v("V9.remove-unknown", "Removing what is not there is UNKNOWN_ENTITY", *_paused(),
+    _v("V13.remove", "An entity may be removed, and its id used again", *_paused(),
+       *_spawned(2, _BOX), *_removed(3, "crate"), ask("s", 4, read={"entities": ["crate"]}),
+       failed("s", 4, "UNKNOWN_ENTITY"), *_spawned(5, _BOX), ask("s", 6, read={"entities": ["crate"]}),
+       told("s", 6, states={"entities": Count(1)}), *_resumed(), fresh=True),
+    _v("V13.robot", "The session of a robot that is removed is told, and goes on", *_paused(),
+       *_removed(2, "arm1"), Hear("p", "error", {"code": "NOT_YOURS", "severity": "WARNING",
+                                                 "robot": "arm1"}),
+       *_resumed(), answer("p"), Hear("p", "observation", {"joint_readings": Count(4)}), fresh=True),
+    _v("V13.last", "A session whose last robot is removed is over; nobody waits for it",
+       join("p", "arm0"), join("q", "arm1", "arm2", "arm3"), *observe("p", "q"), _comes(),
+       *_removed(1, "arm0"), Hear("p", "end", {"reason": "FINISHED"}), answer("q"), *observe("q"),
+       fresh=True),
+    _v("V13.gone", "A robot that was removed has left", *_paused(), *_removed(2, "arm1"),
+       say_hello("q", "arm1"), hear_refusal("q", "NOT_YOURS"), Skip("p", "error"), *_resumed(),
+       fresh=True),
+    _v("V14.gone", "After a reset, what was spawned is gone", *_paused(), *_spawned(2, _BOX),
+       ask("s", 3, reset={}), Skip("p", "reset"), *observe("p"), told("s", 3),
+       ask("s", 4, read={"entities": ["crate"]}), failed("s", 4, "UNKNOWN_ENTITY"), fresh=True),
+    _v("V14.back", "After a reset, what was removed is back", *_paused(), *_removed(2, "arm1"),
+       ask("s", 3, reset={}), Skip("p", "reset"), *observe("p"), told("s", 3),
+       ask("s", 4, read={}), told("s", 4, states={"entities": Count(4)}), fresh=True),
+    _v("V14.session", "A session with a robot that was spawned ends with a reset", *_paused(),
+       *_spawned(2, _arm("arm9")), join("q", "arm9"), *observe("q"), ask("s", 3, reset={}),
+       Hear("q", "end", {"reason": "FINISHED"}), Hear("p", "reset"), *observe("p"), told("s", 3),
+       say_hello("r", "arm9"), hear_refusal("r", "UNKNOWN_ROBOT"), fresh=True),
+    _v("V13.unknown", "Removing what is not there is UNKNOWN_ENTITY", *_paused(),
        ask("s", 2, remove={"entity": "nobody"}), failed("s", 2, "UNKNOWN_ENTITY"), *_resumed()),
     _v("V10.shutdown", "Shutdown is answered, and the run ends", *ALL, _comes(),
        ask("s", 1, shutdown={}), told("s", 1), Skip("p", "end"), Skip("s", "end"), fresh=True),

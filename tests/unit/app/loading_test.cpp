@@ -89,7 +89,7 @@ class Included : public testing::Test {
 TEST_F(Included, ScriptsAreFoundBesideTheFileThatNamesThem) {
   const std::string path = folder_.path() + "/scenes/a.argos";
   Console console({true, false});
-  const auto scene = load_scene(path, {}, console);
+  const auto scene = load_scene(path, {}, console).scene;
   const simulation::Simulation simulation(scene, {1, {}});
   const std::string block_script = folder_.path() + "/parts/block.lua";
   EXPECT_EQ(script_paths(scene, simulation.layout(), path),
@@ -100,10 +100,10 @@ TEST_F(Included, ScriptsAreFoundBesideTheFileThatNamesThem) {
 TEST_F(Included, FilesAreInTheHashOfTheScene) {
   const std::string path = folder_.path() + "/scenes/a.argos";
   Console console({true, false});
-  const auto before = scene_hash(load_scene(path, {}, console));
-  EXPECT_EQ(scene_hash(load_scene(path, {}, console)), before);
+  const auto before = scene_hash(load_scene(path, {}, console).scene);
+  EXPECT_EQ(scene_hash(load_scene(path, {}, console).scene), before);
   write("parts/block.argos", block("./block.lua"));
-  EXPECT_NE(scene_hash(load_scene(path, {}, console)), before);
+  EXPECT_NE(scene_hash(load_scene(path, {}, console).scene), before);
 }
 
 }  // namespace

@@ -20,18 +20,22 @@ class SmallRun {
     controllers_[0].id = "lua";
     controllers_[0].lua = true;
     controllers_[1].id = "external";
-    for (std::size_t i = 0; i < robots; ++i) {
-      world::RobotLayout robot;
-      robot.id = "robot" + std::to_string(i);
-      robot.entity = i;
-      robot.controller = i % 2;
-      robot.params = {{"speed", std::to_string(i)}, {"script", "drive.lua"}};
-      robot.joint_sensors = {i, 1};
-      robot.joint_actuators = {i, 1};
-      layout_.robots.push_back(robot);
-      layout_.joint_sensors.push_back({"hinge", false, false});
-      layout_.joint_actuators.push_back({"hinge", true, false, 0.005});
-    }
+    while (layout_.robots.size() < robots) add_robot();
+  }
+
+  /// One more, behind all others.
+  void add_robot() {
+    const std::size_t i = layout_.robots.size();
+    world::RobotLayout robot;
+    robot.id = "robot" + std::to_string(i);
+    robot.entity = i;
+    robot.controller = i % 2;
+    robot.params = {{"speed", std::to_string(i)}, {"script", "drive.lua"}};
+    robot.joint_sensors = {i, 1};
+    robot.joint_actuators = {i, 1};
+    layout_.robots.push_back(robot);
+    layout_.joint_sensors.push_back({"hinge", false, false});
+    layout_.joint_actuators.push_back({"hinge", true, false, 0.005});
   }
 
   wire::Run run() const {

@@ -147,6 +147,39 @@ TEST(Spawn, ARobotSensesWhatIsThere) {
   EXPECT_EQ(world.simulation.state().tag_payloads.at(seen[0].tag), "9");
 }
 
+const std::string photographer =
+    R"(<cameras implementation="default"><camera id="eye" anchor="base" position="0,0,0.2" )"
+    R"(orientation="0,0,0" range="0.01:3" resolution="64,48" focal_length="40,40" )"
+    R"(principle_point="32,24" image="true"/></cameras>)";
+
+TEST(Spawn, IsInPicturesAndTakesThem) {
+  // The first camera of the world comes late: what is there already is in its pictures.
+  World world({"", photographer, box("a", "0,0,1.5", false), ""});
+  world.step();
+  world.spawn(robot("r", "0,0,0", ""));
+  const auto& images = world.simulation.observations().images;
+  ASSERT_EQ(images.size(), 1u);
+  EXPECT_TRUE(images[0].rgb.empty()) << "as at tick 0";
+  world.step();
+  const auto with_a = images[0].rgb;
+  ASSERT_EQ(with_a.size(), 64u * 48 * 3);
+  world.spawn(box("b", "0.3,0,1.5", false));
+  world.step();
+  EXPECT_NE(images[0].rgb, with_a);
+  world.simulation.remove(2);
+  world.step();
+  EXPECT_EQ(images[0].rgb, with_a);
+  world.simulation.remove(0);
+  world.step();
+  EXPECT_NE(images[0].rgb, with_a);
+  world.spawn(robot("s", "1,0,0", ""));
+  world.simulation.remove(1);
+  world.step();
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_TRUE(images[0].rgb.empty()) << "it is not there";
+  EXPECT_FALSE(images[1].rgb.empty());
+}
+
 const std::string radio =
     R"(<radios medium="air"><radio anchor="base" position="0,0,0" range="3"/></radios>)";
 

@@ -2,9 +2,11 @@
 
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
+import threading
 import unittest
 
 import ziggurat
@@ -34,6 +36,39 @@ class EndToEnd(unittest.TestCase):
                 for wheel in wheels:
                     self.assertAlmostEqual(wheel.encoder, 1.0, delta=0.03)
             self.assertEqual(server.wait(10), 0)
+
+    def test_a_robot_that_is_spawned_is_driven_until_it_is_removed(self):
+        text = re.search(r'<prototype id="vehicle".*?</prototype>', VEHICLE.read_text(), re.DOTALL)[0]
+        late = text.replace('id="vehicle"', 'id="late"').replace('position="0,0,0"',
+                                                                 'position="0,3,0"', 1)
+        self.assertNotEqual(late, text)
+        driven = []
+
+        def drive():
+            with ziggurat.connect(server.endpoint, "late") as session:
+                wheel = session.robots["late"].joints[0]
+                for _ in session:
+                    wheel.target = 1.0
+                    driven.append(wheel.encoder)
+                driven.append(session.ending.reason)
+
+        with serve(VEHICLE) as server, ziggurat.supervise(server.endpoint) as world:
+            with ziggurat.connect(server.endpoint, "vehicle") as session:
+                for tick in session:
+                    if tick.number == 3:
+                        self.assertEqual(world.spawn(late), 3)
+                        with self.assertRaisesRegex(ziggurat.ProtocolError, "BAD_VALUE"):
+                            world.spawn(late)
+                        thread = threading.Thread(target=drive)
+                        thread.start()
+                    if tick.number == 30:
+                        world.remove("late")
+                        thread.join(20)
+                        self.assertFalse(thread.is_alive())
+                    if tick.number == 40:
+                        break
+        self.assertAlmostEqual(driven[-2], 1.0, delta=0.05)
+        self.assertEqual(driven[-1], "finished")
 
     def test_the_example(self):
         example = ROOT / "clients" / "python" / "examples" / "vehicle.py"

@@ -1,0 +1,160 @@
+"""Entities that come and go while a world runs: ctl spawn and remove."""
+
+import csv
+import json
+import re
+import subprocess
+
+from harness import INTERRUPTED, LUA, ZIGGURAT, SceneTest, main
+
+BOX = '<box id="{}" size="0.1,0.1,0.1" movable="true" mass="1"><body position="{}"/></box>'
+
+
+class Spawn(SceneTest):
+    def arm(self, id, position):
+        """A robot like r1, elsewhere."""
+        arm = re.search(r'<prototype id="r1">.*?</prototype>', self.text, re.DOTALL)[0]
+        return arm.replace('"r1"', f'"{id}"').replace("0,1,0", position)
+
+    def begin(self, command, *arguments):
+        """A run that never ends, and its endpoint."""
+        self.url = f"ipc://{self.folder}/door"
+        process = self.start(command, self.scene, "--duration", 0, "--endpoint", self.url, *arguments)
+        self.wait_for(lambda: (self.folder / "door").exists(), bool, "endpoint")
+        return process
+
+    def begin_undriven(self, *arguments):
+        """A paused world, of whose robots none has a script."""
+        self.change('script="swing.lua" ', "")
+        process = self.begin("serve", *arguments)
+        self.wait_for(lambda: self.ctl("status"), lambda text: "paused" in text, "pause")
+        return process
+
+    def ctl(self, *words, text=None, code=0):
+        outcome = subprocess.run([ZIGGURAT, "ctl", self.url, *map(str, words)], input=text,
+                                 capture_output=True, text=True, timeout=30, cwd=self.folder)
+        self.assertEqual(outcome.returncode, code, outcome.stderr)
+        return outcome.stderr if code else outcome.stdout
+
+    def spawn(self, text, **options):
+        return self.ctl("spawn", "-", text=text, **options)
+
+    def read(self, *patterns):
+        return json.loads(self.ctl("read", *patterns, "--json"))
+
+    def end(self, process):
+        self.interrupt(process)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, INTERRUPTED, outcome.err)
+        return outcome
+
+    def test_a_lua_robot_gets_a_process_and_both_go_when_it_is_removed(self):
+        process = self.begin("run")
+        self.read_until(process.stdout, r"^\[5 r0\]")
+        self.spawn(self.arm("late", "0,2,0"))
+        self.read_until(process.stdout, r"^\[\d+ late\] init")
+        self.read_until(process.stdout, r"^\[\d+ late\] step 20")
+        self.assertEqual(len(self.lua_processes(2)), 2)
+        self.ctl("remove", "late")
+        self.read_until(process.stdout, r"^\[\d+ late\] destroy")
+        self.wait_for(self.lua_processes, lambda ids: len(ids) == 1, "end of its process")
+        tick = int(self.read_until(process.stdout, r"^\[(\d+) r0\]")[1])
+        self.read_until(process.stdout, rf"^\[{tick + 20} r0\]")
+        self.assertNotIn("late", self.end(process).out)
+
+    def test_a_robot_that_nobody_drives_is_waited_for(self):
+        process = self.begin("serve")
+        scripted = [subprocess.Popen([LUA, "--connect", self.url, "--quiet"], cwd=self.folder,
+                                     env=self.environment)]
+        self.started += scripted
+        self.read_until(process.stdout, r"^\[5 r0\]")
+        self.spawn(self.arm("late", "0,2,0"))
+        self.read_until(process.stderr, r"waiting for robot late \(controller 'swing'\) to connect to ipc")
+        scripted.append(subprocess.Popen([LUA, "--connect", self.url, "--robot", "late", "--quiet"],
+                                         cwd=self.folder, env=self.environment))
+        self.started.append(scripted[-1])
+        self.read_until(process.stdout, r"^\[\d+ late\] step 5")
+        self.ctl("remove", "r1")
+        self.read_until(process.stdout, r"^\[\d+ late\] step 30")
+        self.ctl("reset")
+        self.assertEqual(scripted[1].wait(20), 0, "it was spawned, so its session is over")
+        self.read_until(process.stdout, r"^\[20 r0\]")
+        self.assertEqual([e["id"] for e in self.read("r*")["entities"]],
+                         ["r0", "r1", "r2"])
+        self.end(process)
+        self.assertEqual(scripted[0].wait(20), 0)
+
+    def test_the_same_spawn_gives_the_same_states_and_a_reset_the_scene(self):
+        process = self.begin_undriven("--seed", 5)
+        fresh = self.read()["hash"]
+        hashes = []
+        for _ in range(2):
+            self.ctl("step", 5)
+            self.spawn(BOX.format("crate", "0.05,0.08,0.2"))
+            self.spawn(self.arm("late", "0,2,0"))
+            self.ctl("step", 5)
+            self.ctl("remove", "box1")
+            self.ctl("step", 5)
+            state = self.read()
+            hashes.append(state["hash"])
+            self.assertEqual([e["id"] for e in state["entities"]][-2:], ["crate", "late"])
+            self.assertNotIn("box1", [e["id"] for e in state["entities"]])
+            self.ctl("reset")
+            self.assertEqual(self.read()["hash"], fresh)
+            self.assertIn("UNKNOWN_ENTITY", self.ctl("read", "crate", code=1))
+            self.assertEqual(len(self.read("box1")["entities"]), 1)
+        self.assertEqual(*hashes)
+        self.end(process)
+
+    def test_what_is_wrong_is_said_and_has_no_effect(self):
+        process = self.begin_undriven()
+        before = self.read()["hash"]
+        for text, reason in (
+                ("<box/>", "spawn:1:1: <box> lacks the attribute id"),
+                (BOX.format("r0", "0,3,0"), "is the id of another entity"),
+                (BOX.format("b", "0,0,0"), "spawn:1:1: 'b' overlaps 'r0' where it is placed"),
+                (self.arm("x", "0,3,0").replace('config="swing"', 'config="sing"'),
+                 'did you mean "swing"?'),
+                (self.arm("x", "0,3,0").replace(
+                    'config="swing" />', 'config="swing"><params script="no.lua"/></controller>'),
+                 "spawn:3:"),
+                ('<distribute/>', "unknown element <distribute> in <spawn>"),
+                (BOX.format("b", "0,3,0") + " " * (1 << 20), "TOO_LARGE")):
+            with self.subTest(reason=reason):
+                self.assertIn(reason, self.spawn(text, code=1))
+        self.assertIn("UNKNOWN_ENTITY", self.ctl("remove", "nobody", code=1))
+        self.assertEqual(self.read()["hash"], before)
+        self.end(process)
+
+    def test_traces_and_readings_have_what_is_there(self):
+        process = self.begin_undriven("--trace", "trace.csv", "--readings", "readings.jsonl")
+        self.ctl("step", 3)
+        self.spawn(self.arm("late", "0,2,0"))
+        self.ctl("step", 4)
+        self.ctl("remove", "late")
+        self.ctl("remove", "r1")
+        self.ctl("step", 2)
+        self.spawn(BOX.format("late", "0,2,0"))
+        self.ctl("step", 1)
+        self.ctl("reset")
+        self.spawn(BOX.format("other", "0,2,0"))
+        self.ctl("step", 2)
+        self.end(process)
+        ticks = {}
+        for row in csv.DictReader((self.folder / "trace.csv").read_text().splitlines()):
+            if not row["link"]:
+                ticks.setdefault(row["entity"], []).append(int(row["tick"]))
+        self.assertEqual(ticks["late"], [4, 5, 6, 7, 10])
+        self.assertEqual(ticks["r1"], [*range(8), 0, 1, 2])
+        self.assertEqual(ticks["other"], [1, 2])
+        self.assertEqual(ticks["r0"], [*range(11), 0, 1, 2])
+        seen = {}
+        for line in (self.folder / "readings.jsonl").read_text().splitlines():
+            reading = json.loads(line)
+            seen.setdefault(reading["robot"], []).append(int(reading["tick"]))
+        self.assertEqual(seen["late"], [3, 4, 5, 6])
+        self.assertEqual(seen["r1"][:7], [*range(7)])
+
+
+if __name__ == "__main__":
+    main()
