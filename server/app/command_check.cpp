@@ -26,9 +26,16 @@ struct ModelUse {
   std::size_t entities = 0;
 };
 
+// What happens when a controller is late, where the scene says it.
+struct ControllerDeadline {
+  std::string id;
+  scene::DeadlinePolicy policy;
+};
+
 struct Finding {
   std::vector<scene::Problem> problems;
   std::vector<ModelUse> models;
+  std::vector<ControllerDeadline> deadlines;
   std::size_t entities = 0;  ///< of the world that was built; 0 if it could not be
   std::size_t robots = 0;
 
@@ -69,10 +76,18 @@ std::vector<ModelUse> uses_of_models(const scene::Scene& scene) {
   return uses;
 }
 
+std::vector<ControllerDeadline> deadlines_of(const scene::Scene& scene) {
+  std::vector<ControllerDeadline> deadlines;
+  for (const auto& controller : scene.controllers) {
+    if (controller.deadline) deadlines.push_back({controller.id, *controller.deadline});
+  }
+  return deadlines;
+}
+
 // Reads the file, compiles the scripts and, if all is well so far, places everything.
 Finding examine(const std::string& path, const Options& options) {
   auto read = scene::read_file(path, options.reading);
-  Finding finding{std::move(read.problems), uses_of_models(read.scene)};
+  Finding finding{std::move(read.problems), uses_of_models(read.scene), deadlines_of(read.scene)};
   const auto add = [&](const std::vector<scene::Problem>& more) {
     finding.problems.insert(finding.problems.end(), more.begin(), more.end());
   };
@@ -105,11 +120,16 @@ nlohmann::ordered_json to_json(const std::string& path, const Finding& finding) 
   for (const auto& model : finding.models) {
     models.push_back({{"id", model.id}, {"entities", model.entities}});
   }
+  auto deadlines = nlohmann::ordered_json::array();
+  for (const auto& [id, policy] : finding.deadlines) {
+    deadlines.push_back({{"controller", id}, {"policy", scene::to_text(policy)}});
+  }
   return {{"scene", path},
           {"ok", finding.count(Severity::fault) == 0},
           {"entities", finding.entities},
           {"robots", finding.robots},
           {"models", models},
+          {"deadlines", deadlines},
           {"problems", problems}};
 }
 
@@ -127,10 +147,16 @@ std::string verdict(const std::string& path, const Finding& finding) {
                           scene::in_quotes(model.id));
   }
   if (!models.empty()) models += ")";
+  std::string deadlines;
+  for (const auto& [id, policy] : finding.deadlines) {
+    deadlines += fmt::format("{}{}={}", deadlines.empty() ? " (deadlines: " : ", ", id,
+                             scene::to_text(policy));
+  }
+  if (!deadlines.empty()) deadlines += ")";
   return fmt::format(
-      "{}: good; {}{}, {} with a controller; {}", path,
+      "{}: good; {}{}, {} with a controller{}; {}", path,
       finding.entities == 1 ? "1 entity" : fmt::format("{} entities", finding.entities), models,
-      finding.robots, counted(notices, "notice"));
+      finding.robots, deadlines, counted(notices, "notice"));
 }
 
 }  // namespace

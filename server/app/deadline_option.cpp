@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <utility>
 
 #include "app/arguments.h"
 
@@ -13,14 +11,6 @@ namespace ziggurat::app {
 namespace {
 
 using scene::DeadlineAction;
-
-constexpr std::array<std::pair<std::string_view, DeadlineAction>, 5> actions{{
-    {"wait", DeadlineAction::wait},
-    {"hold", DeadlineAction::hold},
-    {"zero", DeadlineAction::zero},
-    {"drop", DeadlineAction::drop},
-    {"stop", DeadlineAction::stop},
-}};
 
 [[noreturn]] void refuse(const std::string& value, std::string_view why) {
   throw UsageError(
@@ -54,10 +44,10 @@ DeadlineOption to_deadline(const std::string& value) {
   const bool has_budget = std::ranges::count(rest, ':') > 1;
   if (std::ranges::count(rest, ':') > 2) refuse(value, "more than three parts");
   const std::string name = next_part(rest);
-  const auto action = std::ranges::find(actions, name, &decltype(actions)::value_type::first);
-  if (action == actions.end()) refuse(value, fmt::format("there is no action '{}'", name));
-  option.policy.action = action->second;
-  if (action->second == DeadlineAction::wait) {
+  const auto action = scene::deadline_action(name);
+  if (!action) refuse(value, fmt::format("there is no action '{}'", name));
+  option.policy.action = *action;
+  if (*action == DeadlineAction::wait) {
     if (!rest.empty()) refuse(value, "wait has no deadline");
     return option;
   }
@@ -70,7 +60,10 @@ DeadlineOption to_deadline(const std::string& value) {
 
 std::vector<network::Config::Deadline> deadlines_of(const std::vector<DeadlineOption>& options,
                                                     const scene::Scene& scene) {
-  std::vector<network::Config::Deadline> deadlines(scene.controllers.size());
+  std::vector<network::Config::Deadline> deadlines;
+  for (const auto& controller : scene.controllers) {
+    deadlines.push_back({controller.deadline.value_or(scene::DeadlinePolicy{}), false});
+  }
   for (const bool by_name : {false, true}) {
     for (const DeadlineOption& option : options) {
       if (option.controller.empty() == by_name) continue;

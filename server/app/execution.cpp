@@ -39,10 +39,9 @@ void wait_for_nobody(const Options& options, const scene::Scene& scene,
   const double factor = options.real_time.value_or(1);
   const double tick_ms = 1000.0 / scene.experiment.ticks_per_second / factor;
   const auto ms = static_cast<std::uint32_t>(std::max(1.0, std::floor(0.9 * tick_ms)));
-  deadlines.resize(scene.controllers.size());
-  for (auto& deadline : deadlines) {
-    if (deadline.policy.action != scene::DeadlineAction::wait || deadline.is_fixed) continue;
-    deadline.policy = {scene::DeadlineAction::hold, ms, 0};
+  for (std::size_t c = 0; c < deadlines.size(); ++c) {
+    if (deadlines[c].is_fixed || scene.controllers[c].deadline) continue;
+    deadlines[c].policy = {scene::DeadlineAction::hold, ms, 0};
   }
 }
 

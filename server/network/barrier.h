@@ -36,9 +36,6 @@ using Send = std::function<Delivery(const std::string& peer, const wire::Outbox&
 /// The text with control characters replaced, so that a line stays a line on any terminal.
 std::string printable(std::string_view text);
 
-/// As on the command line: "hold:50:10".
-std::string to_text(const scene::DeadlinePolicy& policy);
-
 class Barrier {
  public:
   /// What the run refers to must outlive the barrier.

@@ -19,30 +19,7 @@ namespace {
 constexpr unsigned most_heartbeats = 60;
 constexpr milliseconds rare_heartbeat{60'000};
 
-const char* to_string(DeadlineAction action) {
-  switch (action) {
-    case DeadlineAction::wait:
-      return "wait";
-    case DeadlineAction::hold:
-      return "hold";
-    case DeadlineAction::zero:
-      return "zero";
-    case DeadlineAction::drop:
-      return "drop";
-    case DeadlineAction::stop:
-      return "stop";
-  }
-  return "";
-}
-
 }  // namespace
-
-std::string to_text(const scene::DeadlinePolicy& policy) {
-  if (policy.action == DeadlineAction::wait) return "wait";
-  std::string text = fmt::format("{}:{}", to_string(policy.action), policy.wall_deadline_ms);
-  if (policy.miss_budget > 0) text += fmt::format(":{}", policy.miss_budget);
-  return text;
-}
 
 /// What holds for a robot unless its session wishes otherwise.
 scene::DeadlinePolicy Barrier::policy_of(std::size_t robot) const {

@@ -48,7 +48,8 @@ void take_id(Reading& reading, const Element& element, const Controller& control
                                           : "the controller at " + reading.report.place(where)));
 }
 
-void read_controller(Reading& reading, Element& element, bool included) {
+void read_controller(Reading& reading, Element& element, bool included,
+                     const std::optional<DeadlinePolicy>& usual) {
   Controller controller;
   ControllerUse use;
   if (included) reading.lacks = &use.lacks;
@@ -61,6 +62,7 @@ void read_controller(Reading& reading, Element& element, bool included) {
   if (controller.type == "external_controller") {
     controller.command = element.optional("command", text, "");
   }
+  controller.deadline = read_deadline(element, usual);
   if (auto actuators = element.child("actuators")) {
     use.has_actuators = true;
     read_actuators(reading, *actuators, controller.devices, use);
@@ -240,6 +242,7 @@ void check_use(Reading& reading, const Entity& entity) {
 }
 
 void read_list(Reading& reading, Element& controllers, bool included) {
+  const auto deadline = read_deadline(controllers, std::nullopt);
   for (Element& element : controllers.children()) {
     if (element.name().size() > longest_type) {
       reading.report.fault(element.where(), fmt::format("{} is too long for a type of controller; "
@@ -249,7 +252,7 @@ void read_list(Reading& reading, Element& controllers, bool included) {
       reading.report.fault(element.where(),
                            fmt::format("<{}> is not supported; {}", element.name(), *why));
     } else {
-      read_controller(reading, element, included);
+      read_controller(reading, element, included, deadline);
     }
   }
   controllers.done();

@@ -2,6 +2,10 @@
 // What happens when a controller does not answer in time.
 
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 
 namespace ziggurat::scene {
 
@@ -21,5 +25,13 @@ struct DeadlinePolicy {
                                        ///< which robots leave (hold, zero; 0 is never)
   bool operator==(const DeadlinePolicy&) const = default;
 };
+
+/// The words for actions in scenes and on the command line.
+std::span<const std::string_view> deadline_actions();
+/// The action of that name; nothing if there is none.
+std::optional<DeadlineAction> deadline_action(std::string_view name);
+
+/// As on the command line: "hold:50:10".
+std::string to_text(const DeadlinePolicy& policy);
 
 }  // namespace ziggurat::scene

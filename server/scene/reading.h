@@ -125,6 +125,11 @@ std::vector<Camera> read_cameras(Reading& reading, Element& sensor, ControllerUs
 /// The last child of each name, in the order of those; earlier ones of the name are a notice.
 std::vector<Element> last_of_each_name(Element& list);
 
+/// Reads what happens when a controller is late. Attributes of an element belong together: one that
+/// says `deadline` takes nothing from `usual`, one that does not takes it whole.
+std::optional<DeadlinePolicy> read_deadline(Element& element,
+                                            const std::optional<DeadlinePolicy>& usual);
+
 /// Reads `<controller>` of an entity or a model.
 std::optional<ControllerChoice> read_controller_choice(Reading& reading, Element& element);
 

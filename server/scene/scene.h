@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "math/pose.h"
+#include "scene/deadline.h"
 #include "scene/devices.h"
 #include "scene/location.h"
 
@@ -204,6 +205,7 @@ struct Controller {
   std::string type;     ///< the element's name: lua_controller, external_controller, …
   bool lua = false;     ///< driven by ziggurat-lua; otherwise somebody connects
   std::string command;  ///< external_controller only: what `run` starts; may be empty
+  std::optional<DeadlinePolicy> deadline;  ///< for when it is late; nothing: the scene has no say
   ControllerDevices devices;  ///< what <actuators> and <sensors> enable
   std::vector<std::pair<std::string, std::string>> params;  ///< all attributes of <params>
   Location where;         ///< of the controller's element

@@ -90,6 +90,20 @@ class Deadlines(SceneTest):
         outcome = self.finish(process)
         self.assertEqual((outcome.code, outcome.lines[-1]), (FINISHED, expected))
 
+    def test_the_scene_says_what_holds_and_the_command_line_says_otherwise(self):
+        self.change('<lua_controller id="swing">',
+                    '<lua_controller id="swing" deadline="drop" deadline_ms="30" miss_budget="2">')
+        checked = self.ziggurat("check", self.scene)
+        self.assertIn("(deadlines: swing=drop:30:2)", checked.out)
+        for options, policy in (((), "drop:30:2"),
+                                (("--hil", "--real-time", 10), "drop:30:2"),
+                                (("--deadline", "drop:40:1"), "drop:40:1")):
+            with self.subTest(options=options):
+                process = self.disturb(signal.SIGSTOP, *options)
+                self.goes_on(process)
+                self.assertRegex(self.interrupted(process).err,
+                                 rf"robot r1 .* is dropped .* in a row, {policy}\b")
+
     def test_a_controller_that_does_not_exist(self):
         outcome = self.run_scene("--deadline", "swong=hold:5", code=FAULT)
         self.assert_is_sentence(outcome, "no controller 'swong'")

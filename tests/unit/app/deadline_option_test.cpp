@@ -49,6 +49,19 @@ TEST(DeadlineOption, ThoseThatNameAControllerWin) {
   EXPECT_THROW(deadlines_of({to_deadline("nobody=wait")}, scene), UsageError);
 }
 
+TEST(DeadlineOption, TheSceneHasASayWhereTheCommandLineHasNone) {
+  scene::Scene scene;
+  scene.controllers.resize(2);
+  scene.controllers[0].id = "drive";
+  scene.controllers[1].id = "lift";
+  for (auto& each : scene.controllers) each.deadline = {DeadlineAction::zero, 30, 2};
+  const auto deadlines = deadlines_of({to_deadline("lift=hold:5")}, scene);
+  EXPECT_EQ(deadlines[0].policy, (DeadlinePolicy{DeadlineAction::zero, 30, 2}));
+  EXPECT_FALSE(deadlines[0].is_fixed);  // a Hello may wish for another
+  EXPECT_EQ(deadlines[1].policy, (DeadlinePolicy{DeadlineAction::hold, 5, 0}));
+  EXPECT_TRUE(deadlines[1].is_fixed);
+}
+
 TEST(Options, KeysBelongTogether) {
   EXPECT_THROW(parse_options({"s", "--curve-secret", "x"}, serve_options()), UsageError);
   EXPECT_THROW(parse_options({"s", "--curve-clients", "x"}, run_options()), UsageError);

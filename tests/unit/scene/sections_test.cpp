@@ -43,6 +43,36 @@ TEST(Framework, TheFirstOfTwoCounts) {
   EXPECT_EQ(count_containing(notices(result), "a second <framework>"), 1u);
 }
 
+TEST(Controllers, DeadlinesOfTheirOwnOrOfAll) {
+  const auto read = [](const std::string& controllers) {
+    SceneText text;
+    text.controllers = controllers;
+    const ReadResult result = text.read();
+    EXPECT_TRUE(result.ok()) << all_problems(result);
+    return result.scene.controllers;
+  };
+  EXPECT_FALSE(read(R"(<controllers><lua_controller id="a"/></controllers>)")[0].deadline);
+  const auto controllers =
+      read(R"(<controllers deadline="hold" deadline_ms="50" miss_budget="3">)"
+           R"(<lua_controller id="a"/><lua_controller id="b" deadline="zero" deadline_ms="20"/>)"
+           R"(<lua_controller id="c" deadline="wait"/></controllers>)");
+  EXPECT_EQ(controllers[0].deadline, (DeadlinePolicy{DeadlineAction::hold, 50, 3}));
+  EXPECT_EQ(controllers[1].deadline, (DeadlinePolicy{DeadlineAction::zero, 20, 0}));
+  EXPECT_EQ(controllers[2].deadline, DeadlinePolicy{});  // said, so that nothing else fills in
+  EXPECT_EQ(read(R"(<controllers><x id="a" deadline="drop" deadline_ms="1"/></controllers>)")[0]
+                .deadline->action,
+            DeadlineAction::drop);
+  EXPECT_EQ(read(R"(<controllers><x id="a" deadline="stop" deadline_ms="1"/></controllers>)")[0]
+                .deadline->action,
+            DeadlineAction::stop);
+}
+
+TEST(Controllers, DeadlinesAsText) {
+  EXPECT_EQ(to_text(DeadlinePolicy{}), "wait");
+  EXPECT_EQ(to_text({DeadlineAction::hold, 50, 0}), "hold:50");
+  EXPECT_EQ(to_text({DeadlineAction::stop, 7, 10}), "stop:7:10");
+}
+
 TEST(Engines, DefaultsAndValues) {
   SceneText text;
   const ReadResult plain = text.read();
