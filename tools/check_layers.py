@@ -28,7 +28,7 @@ MODULES = {
                    "math"],
     "wire": ["scene", "world", "protocol", "math"],
     "recording": ["scene", "world", "simulation", "wire", "protocol", "math"],
-    "network": ["scene", "world", "wire", "protocol"],
+    "network": ["scene", "world", "wire", "protocol", "math"],
     "app": ["scene", "world", "magnetism", "physics", "media", "camera", "render", "devices",
             "simulation", "wire", "recording", "network", "clients/cpp",
             "math"],

@@ -166,13 +166,17 @@ void complete(Summary& summary, const simulation::Simulation& simulation,
 // How controllers kept up, if anybody asks. False if the gate was missed.
 bool report_hil(const Options& options, const scene::Scene& scene, const network::Server& server,
                 const Summary& summary, Console& console) {
-  if (!options.hil && options.gate.empty() && options.report_card.empty()) return true;
+  const bool is_wanted = options.hil || !options.injections.empty() || !options.gate.empty() ||
+                         !options.report_card.empty();
+  if (!is_wanted) return true;
   ReportCard card{{}, summary.ticks, summary.late_ticks, options.gate};
   const auto missed = server.missed_ticks();
+  const auto injections = injections_of(options.injections, scene);
   for (std::size_t c = 0; c < scene.controllers.size(); ++c) {
     const auto& latencies = server.latencies()[c];
     if (latencies.count() == 0 && missed[c] == 0) continue;  // drives no robot
-    card.controllers.push_back({scene.controllers[c].id, latencies, missed[c]});
+    card.controllers.push_back({scene.controllers[c].id, latencies, missed[c], injections[c],
+                                server.lost_messages()[c]});
   }
   if (!options.report_card.empty()) {
     const bool is_picture = options.report_card.ends_with(".svg");
@@ -219,6 +223,8 @@ int execute(const Options& options, Service service) {
   const auto run = wire_run(scene, simulation, scripts, seed, options.hil);
   config.deadlines = deadlines_of(options.deadlines, scene);
   if (options.hil) wait_for_nobody(options, scene, config.deadlines);
+  config.injections = injections_of(options.injections, scene);
+  check_losses(config.injections, scene, config.deadlines);
   if (service == Service::run) config.private_endpoint = "ipc://" + folder.path() + "/run";
   network::Server server(config, run, reception);
   // A picture of tick 0 is taken before anybody had a say.

@@ -66,6 +66,10 @@ po::options_description hil_options() {
       ("hil",
        "pace to the wall clock and wait for nobody: a controller that has not answered after nine "
        "tenths of a tick is held to its last command, unless --deadline says otherwise")  //
+      ("inject", texts("[CONTROLLER=][DIRECTION:]WHAT"),
+       "hold back or lose messages as a network would: latency=5ms,jitter=2ms,loss=1% to a "
+       "controller (all, if none is named) and from it, or in the DIRECTION observations or commands "
+       "only; may be repeated")  //
       ("gate", text("CONDITIONS"),
        "exit with 4 unless every controller meets them: p99<2ms,misses<0.1% (p50, p90, p99, p99.9, "
        "max, misses, late)")  //
@@ -200,6 +204,7 @@ Options parse_options(const Arguments& arguments, const po::options_description&
   options.endpoints = list("endpoint");
   options.without_controllers = flag("without-controllers");
   for (const auto& each : list("deadline")) options.deadlines.push_back(to_deadline(each));
+  for (const auto& each : list("inject")) options.injections.push_back(to_injection(each));
   if (flag("lease")) {
     options.lease = to_number("--lease", value("lease"));
     if (options.lease < 0 || options.lease > 4e6) {

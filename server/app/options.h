@@ -12,6 +12,7 @@
 #include "app/commands.h"
 #include "app/deadline_option.h"
 #include "app/gate.h"
+#include "app/inject_option.h"
 #include "app/pictures.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
@@ -32,6 +33,7 @@ struct Options {
   std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command
   std::vector<std::string> endpoints;
   std::vector<DeadlineOption> deadlines;
+  std::vector<InjectOption> injections;
   double lease = 0;  ///< [s] of the wall that robots of a lost session are kept for it
   bool without_controllers = false;  ///< nobody drives the robots
   std::string curve_secret, curve_clients;  ///< paths; both or none

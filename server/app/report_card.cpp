@@ -6,6 +6,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "app/inject_option.h"
 #include "app/plot.h"
 
 namespace ziggurat::app {
@@ -64,6 +65,20 @@ std::string conditions(const ReportCard& card, const ControllerCard& controller)
   return text;
 }
 
+std::string injected(const ControllerCard& controller) {
+  if (!controller.injected.any()) return {};
+  return fmt::format("\n    injected: {}; {} observations and {} commands were lost by it",
+                     to_text(controller.injected), controller.lost.observations,
+                     controller.lost.commands);
+}
+
+nlohmann::ordered_json to_json(const network::Disturbance& disturbance, std::uint64_t lost) {
+  return {{"latency_s", static_cast<double>(disturbance.latency.count()) * 1e-9},
+          {"jitter_s", static_cast<double>(disturbance.jitter.count()) * 1e-9},
+          {"loss", disturbance.loss},
+          {"lost", lost}};
+}
+
 }  // namespace
 
 bool meets(const ReportCard& card, const ControllerCard& controller, const Condition& condition) {
@@ -94,7 +109,7 @@ std::string to_text(const ReportCard& card) {
       text += fmt::format("{}{:.3f} ms at tick {}", i == 0 ? "\n    worst: " : ", ",
                           worst[i].seconds * 1e3, worst[i].tick);
     }
-    text += bars(controller.latencies) + conditions(card, controller);
+    text += injected(controller) + bars(controller.latencies) + conditions(card, controller);
   }
   if (!card.gate.empty()) text += passes(card) ? "\n  gate: met" : "\n  gate: not met";
   return text;
@@ -124,6 +139,9 @@ std::string to_json(const ReportCard& card) {
         {{"controller", controller.controller},
          {"answers", controller.latencies.count()},
          {"misses", controller.misses},
+         {"injected",
+          {{"observations", to_json(controller.injected.observations, controller.lost.observations)},
+           {"commands", to_json(controller.injected.commands, controller.lost.commands)}}},
          {"wall_latency_s",
           {{"p50", p.p50}, {"p90", p.p90}, {"p99", p.p99}, {"p99.9", p.p999}, {"max", p.max}}},
          {"worst", worst},
@@ -145,6 +163,7 @@ std::string to_svg(const ReportCard& card) {
                 "answers",
                 {},
                 {}};
+    if (controller.injected.any()) panel.title += ", injected: " + to_text(controller.injected);
     Curve curve{"answers per bin", "#2563a8", false, {}};
     const auto& histogram = controller.latencies.histogram();
     const auto is_used = [](std::uint64_t count) { return count > 0; };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/gate.h"
+#include "network/delays.h"
 #include "network/latencies.h"
 
 namespace ziggurat::app {
@@ -14,6 +15,8 @@ struct ControllerCard {
   std::string controller;        ///< id in the scene
   network::Latencies latencies;  ///< from observation to command
   std::uint64_t misses = 0;      ///< ticks at which a robot of it missed its deadline
+  network::Injection injected{};  ///< done to its messages on purpose
+  network::Lost lost{};           ///< by that
 };
 
 struct ReportCard {

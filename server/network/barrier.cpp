@@ -34,16 +34,14 @@ std::string printable(std::string_view text) {
 Barrier::Barrier(const Config& config, const wire::Run& run, Send send, Clock::time_point now)
     : config_(config),
       run_(run),
-      send_([this, send = std::move(send)](const std::string& peer, wire::Outbox& message) {
-        message.encode(encoding_of(peer));
-        return send(peer, message);
-      }),
+      send_(std::move(send)),
       now_(now),
       seats_(run.layout.robots.size()),
       free_(seats_.size()),
       next_heartbeat_(now + config.heartbeat),
       missed_ticks_(run.controllers.size()),
       last_missed_(run.controllers.size()),
+      lost_(run.controllers.size()),
       latencies_(run.controllers.size()) {
   run_.max_message_bytes = config.max_message_bytes;
   for (std::size_t i = 0; i < seats_.size(); ++i) {
@@ -54,6 +52,7 @@ Barrier::Barrier(const Config& config, const wire::Run& run, Send send, Clock::t
 
 void Barrier::advance(Clock::time_point now) {
   now_ = now;
+  if (now_ >= next_departure_) send_due();
   if (now_ >= next_deadline_) check_deadlines();
   if (now_ >= next_heartbeat_) send_heartbeats();
 }
@@ -83,24 +82,29 @@ void Barrier::receive(const std::string& peer, std::string_view bytes, world::Co
         peer, nullptr,
         make_fault(ErrorCode::out_of_state, {}, "The first message of a session is Hello."));
   }
+  if (!is_held_back(*session, kind, bytes)) take(*session, kind, commands);
+  if (is_paused_) stand();
+}
+
+/// The message in hand, which is one of the session's.
+void Barrier::take(Session& session, wire::Inbox::Kind kind, world::Commands* commands) {
   switch (kind) {
     case wire::Inbox::Kind::command:
-      if (say_command(*session, commands)) from.allowance.give_back();
+      if (say_command(session, commands)) peers_.at(session.peer).allowance.give_back();
       break;
     case wire::Inbox::Kind::leave:
-      say_leave(*session);
+      say_leave(session);
       break;
     case wire::Inbox::Kind::heartbeat:
-      say_heartbeat(peer);
+      say_heartbeat(session.peer);
       break;
     case wire::Inbox::Kind::request:
-      say_request(*session);
+      say_request(session);
       break;
     default:
-      fail(peer, session,
+      fail(session.peer, &session,
            make_fault(ErrorCode::out_of_state, {}, "This session has had its Hello already."));
   }
-  if (is_paused_) stand();
 }
 
 void Barrier::receive_malformed(const std::string& peer) {
@@ -159,7 +163,7 @@ bool Barrier::afford(const std::string& id, Peer& peer) {
   fault.severity = Severity::fatal;
   fault.tick = observations_ ? observations_->tick : 0;
   outbox_.error(fault);
-  send_(id, outbox_);
+  send(id, outbox_);
   if (peer.session != nullptr) {
     lose(*peer.session, "it was thrown out for its many messages");
   } else {
@@ -168,9 +172,18 @@ bool Barrier::afford(const std::string& id, Peer& peer) {
   return false;
 }
 
+/// In the peer's form, and behind what is held back for it.
+Delivery Barrier::send(const std::string& peer, wire::Outbox& message) {
+  message.encode(encoding_of(peer));
+  const auto found = peers_.find(peer);
+  Session* session = found == peers_.end() ? nullptr : found->second.session;
+  if (session == nullptr || session->outgoing.empty()) return send_(peer, message);
+  return hold_back(*session, message, Clock::duration::zero());
+}
+
 Delivery Barrier::deliver(Session& session, wire::Outbox& message) {
   session.last_sent = now_;
-  return send_(session.peer, message);
+  return send(session.peer, message);
 }
 
 /// Answers a bad message, and throws out whoever sends nothing else.
@@ -190,7 +203,7 @@ void Barrier::fail(const std::string& peer, Session* session, wire::Fault fault,
   } else {
     outbox_.error(fault);
   }
-  const Delivery delivery = send_(peer, outbox_);
+  const Delivery delivery = send(peer, outbox_);
   if (session == nullptr) {
     note(fmt::format("A peer without session was answered {}: {}", to_string(fault.code),
                      fault.message));
@@ -204,7 +217,7 @@ void Barrier::fail(const std::string& peer, Session* session, wire::Fault fault,
 
 void Barrier::say_heartbeat(const std::string& peer) {
   outbox_.heartbeat(inbox_.heartbeat());
-  send_(peer, outbox_);  // if it is gone, the next observation or probe finds out
+  send(peer, outbox_);  // if it is gone, the next observation or probe finds out
 }
 
 void Barrier::say_leave(Session& session) {
@@ -239,6 +252,7 @@ void Barrier::finish(const wire::End& end) {
   for (const auto& session : sessions_) {
     if (session->state == SessionState::draining) continue;  // it is told already
     settle(*session);
+    stop_delays(*session);
     const bool waits = session->role == wire::Role::controller;  // for its last words
     if (session->state == SessionState::lost || deliver(*session, outbox_) != Delivery::sent ||
         !waits) {

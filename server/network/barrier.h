@@ -47,13 +47,17 @@ class Barrier {
   /// time that was last told.
   void advance(Clock::time_point now);
   /// When advance() has something to do next.
-  Clock::time_point due() const { return std::min(next_deadline_, next_heartbeat_); }
+  Clock::time_point due() const {
+    return std::min({next_deadline_, next_heartbeat_, next_departure_, next_arrival_});
+  }
 
   /// One message of a peer.
   /// @param commands  where values go while a tick is being collected; null otherwise
   /// @param roles     that its key allows
   void receive(const std::string& peer, std::string_view bytes, world::Commands* commands,
                const Roles& roles = all_roles);
+  /// Messages that were held back, as far as their time has come. `commands` as above.
+  void receive_due(world::Commands* commands);
   /// A message that is no message of the protocol: of several frames, say.
   void receive_malformed(const std::string& peer);
 
@@ -91,6 +95,8 @@ class Barrier {
 
   std::vector<RobotStatus> status() const;
   std::vector<std::uint64_t> missed_ticks() const { return missed_ticks_; }
+  /// Per controller of the scene: messages lost on purpose.
+  const std::vector<Lost>& lost_messages() const { return lost_; }
   Report take_report();
 
   struct Known {
@@ -127,9 +133,20 @@ class Barrier {
             std::optional<std::uint64_t> request = {});
   void say_leave(Session& session);
   void say_heartbeat(const std::string& peer);
+  void take(Session& session, wire::Inbox::Kind kind, world::Commands* commands);
+  Delivery send(const std::string& peer, wire::Outbox& message);
   Delivery deliver(Session& session, wire::Outbox& message);
   void note(std::string text);
   std::string robots_of(const Session& session) const;
+
+  // barrier_delays.cpp
+  void set_paths(Session& session);
+  Fate fate_of(const Session& session, Direction direction, std::uint64_t tick);
+  Delivery send_observation(Session& session);
+  Delivery hold_back(Session& session, wire::Outbox& message, Clock::duration delay);
+  bool is_held_back(Session& session, wire::Inbox::Kind kind, std::string_view bytes);
+  void send_due();
+  void stop_delays(Session& session);
 
   // barrier_seats.cpp
   void take_seat(std::size_t robot, Session& session);
@@ -182,7 +199,7 @@ class Barrier {
 
   Config config_;
   wire::Run run_;
-  std::function<Delivery(const std::string& peer, wire::Outbox& message)> send_;  // in its form
+  Send send_;
   Clock::time_point now_;
   wire::Inbox inbox_;
   wire::Outbox outbox_;  // everything but observations
@@ -202,9 +219,12 @@ class Barrier {
   bool is_stopped_ = false;  // by a deadline: the tick is never over
   Clock::time_point next_deadline_ = Clock::time_point::max();
   Clock::time_point next_heartbeat_;
+  Clock::time_point next_departure_ = Clock::time_point::max();  // of what is held back
+  Clock::time_point next_arrival_ = Clock::time_point::max();    // likewise
   std::uint64_t heartbeats_ = 0;
   std::vector<std::uint64_t> missed_ticks_;                 // per controller of the scene
   std::vector<std::optional<std::uint64_t>> last_missed_;  // likewise
+  std::vector<Lost> lost_;                                  // per controller of the scene
   std::vector<Call> calls_;            // not taken yet
   std::vector<Latencies> latencies_;   // per controller of the scene
   Report report_;

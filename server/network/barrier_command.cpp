@@ -53,7 +53,7 @@ bool Barrier::observe(Session& session) {
   session.owes = true;
   session.owes_since = now_;
   if (session.patience) next_deadline_ = std::min(next_deadline_, now_ + *session.patience);
-  const Delivery delivery = deliver(session, session.observation);
+  const Delivery delivery = send_observation(session);
   const bool may_miss = delivery == Delivery::congested && session.patience;
   return delivery == Delivery::sent || may_miss;
 }

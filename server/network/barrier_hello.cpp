@@ -67,6 +67,7 @@ void Barrier::say_hello(const std::string& peer, const Roles& roles) {
     }
   }
   set_patience(session);
+  set_paths(session);
   const bool is_welcomed = welcome(session);
   // Who comes late gets the tick that the others are at.
   const bool is_there =
@@ -251,7 +252,7 @@ void Barrier::refuse(const std::string& peer, const wire::Hello& hello, wire::Re
   refused.fault.tick = observations_ ? observations_->tick : 0;
   refused.client_version = hello.version;
   outbox_.refusal(refused);
-  send_(peer, outbox_);
+  send(peer, outbox_);
   note(fmt::format("{} was refused with {}: {}", label(hello), to_string(refused.fault.code),
                    refused.fault.message));
 }

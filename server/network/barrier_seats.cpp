@@ -65,6 +65,9 @@ void Barrier::lose(Session& session, std::string_view why) {
     note(fmt::format("{} ({}) is lost: {}", session.client, robots_of(session), why));
   }
   settle(session);
+  stop_delays(session);
+  session.incoming.clear();
+  session.incoming_bytes = 0;
   peers_.at(session.peer).session = nullptr;
   const bool can_resume = session.state != SessionState::draining && !session.roster.empty();
   session.state = SessionState::lost;
@@ -85,6 +88,7 @@ void Barrier::displace(Session& session, const std::string& by) {
 
 void Barrier::erase(Session& session) {
   settle(session);
+  stop_delays(session);
   if (session.state != SessionState::lost) peers_.at(session.peer).session = nullptr;
   for (const std::size_t robot : session.roster.robots) {
     if (seats_[robot].holder == &session) free_seat(robot, nullptr);

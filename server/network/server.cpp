@@ -55,6 +55,8 @@ bool Server::State::receive(Done done, world::Commands* commands) {
   for (const auto& visitor : std::exchange(visitors, {})) {
     barrier.receive(visitor.peer, visitor.hello, commands, visitor.roles);
   }
+  barrier.receive_due(commands);
+  if (done()) return true;
   for (int i = 0; i < messages_at_once && socket->receive(received); ++i) {
     if (received.is_single_frame) {
       barrier.receive(received.peer, received.bytes, commands, received.roles);
@@ -155,6 +157,8 @@ void Server::answer(const Call& call, const std::function<void(wire::Outbox&)>& 
 void Server::fill(wire::Status& status) const { state_->barrier.fill(status); }
 
 const std::vector<Latencies>& Server::latencies() const { return state_->barrier.latencies(); }
+
+const std::vector<Lost>& Server::lost_messages() const { return state_->barrier.lost_messages(); }
 
 std::vector<RobotStatus> Server::status() const { return state_->barrier.status(); }
 

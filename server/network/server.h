@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "network/allowance.h"
+#include "network/delays.h"
 #include "network/endpoint.h"
 #include "network/keys.h"
 #include "network/latencies.h"
@@ -53,6 +54,7 @@ struct Config {
     bool is_fixed = false;  ///< no Hello may wish for another
   };
   std::vector<Deadline> deadlines;  ///< per controller of the scene; missing: wait
+  std::vector<Injection> injections;  ///< per controller of the scene; missing: none
   int io_threads = 1;
 };
 
@@ -185,6 +187,9 @@ class Server {
   void fill(wire::Status& status) const;
   /// Per controller of the scene: wall time from observation to command.
   const std::vector<Latencies>& latencies() const;
+
+  /// Per controller of the scene.
+  const std::vector<Lost>& lost_messages() const;
 
   std::vector<RobotStatus> status() const;  ///< per robot of the layout
   /// Per controller of the scene: ticks at which one of its robots or more missed a deadline.

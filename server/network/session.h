@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "network/delays.h"
 #include "network/latencies.h"
 #include "wire/outbox.h"
 #include "wire/roster.h"
@@ -49,6 +51,16 @@ struct Session {
   std::uint64_t misses = 0;    ///< deadlines
   Latencies latencies;         ///< from observation to command
   wire::Outbox observation;        ///< long-lived, for the tick path
+
+  /// A controller of its robots whose messages are disturbed.
+  struct Path {
+    std::size_t controller = 0;
+    std::string name;  ///< of the controller and its first robot here, for draw_fate()
+  };
+  std::vector<Path> paths;  ///< usually none
+  DelayLine<wire::Outbox> outgoing;
+  DelayLine<std::string> incoming;
+  std::size_t incoming_bytes = 0;  ///< of all that are held back
 };
 
 }  // namespace ziggurat::network

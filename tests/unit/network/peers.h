@@ -53,7 +53,10 @@ class Peers {
             now) {}
 
   /// Wall time goes on.
-  void pass(std::chrono::milliseconds time) { barrier.advance(now += time); }
+  void pass(std::chrono::milliseconds time) {
+    barrier.advance(now += time);
+    barrier.receive_due(&commands);
+  }
   /// Time enough for a heartbeat, which finds out whose connection is gone.
   void probe() { pass(std::chrono::milliseconds{1000}); }
 

@@ -1,0 +1,73 @@
+"""Hardware in the loop: messages that are delayed and lost on purpose, and what the card says."""
+
+import json
+import re
+
+from harness import FAULT, SceneTest, main
+
+EACH_ALONE = ("--lua-processes", 0)  # a session per robot, so that controllers have their own
+
+
+class Injected(SceneTest):
+    def setUp(self):
+        super().setUp()
+        controller = re.search(r"<lua_controller id=\"swing\">.*?</lua_controller>", self.text, re.S)
+        self.change("</controllers>",
+                    controller[0].replace('"swing"', '"other"') + "</controllers>")
+        self.change('<controller config="swing">', '<controller config="other">')  # that of r2
+
+    def cards(self, *arguments):
+        """The run's outcome and the report card of each controller."""
+        outcome = self.run_scene("--report-card", "card.json", *EACH_ALONE, *arguments)
+        card = json.loads((self.folder / "card.json").read_text())
+        return outcome, {each["controller"]: each for each in card["controllers"]}
+
+    def test_latency_is_in_the_report_card(self):
+        outcome, cards = self.cards("--hil", "--real-time", 2, "--ticks", 30, "--inject",
+                                    "swing=latency=5ms", "--deadline", "hold:5000")
+        self.assertGreaterEqual(cards["swing"]["wall_latency_s"]["p50"], 0.010)
+        worst = [each["wall_s"] for each in cards["swing"]["worst"]]
+        self.assertGreaterEqual(min(worst), 0.010)
+        self.assertEqual(cards["swing"]["injected"]["commands"],
+                         {"latency_s": 0.005, "jitter_s": 0.0, "loss": 0.0, "lost": 0})
+        self.assertEqual(cards["other"]["injected"]["commands"]["latency_s"], 0)
+        self.assertIn("injected: each way 5 ms; 0 observations and 0 commands", outcome.err)
+
+    def test_who_loses_all_commands_misses_every_tick_and_nobody_else(self):
+        _, cards = self.cards("--hil", "--real-time", 2, "--ticks", 20, "--inject",
+                              "swing=commands:loss=100%", "--deadline", "swing=hold:20",
+                              "--deadline", "other=hold:5000")
+        self.assertEqual(cards["swing"]["misses"], 21)  # of the ticks 0 to 20
+        self.assertEqual(cards["swing"]["answers"], 0)
+        self.assertEqual(cards["swing"]["injected"]["commands"]["lost"], 42)  # of two sessions
+        self.assertEqual((cards["other"]["misses"], cards["other"]["answers"]), (0, 21))
+
+    def test_a_seed_loses_the_same_messages_again(self):
+        def lines(seed):
+            outcome, cards = self.cards("--ticks", 30, "--seed", seed, "--hash", "--deadline",
+                                        "hold:250", "--inject", "swing=observations:loss=20%")
+            self.assertLess(cards["swing"]["misses"], 31)
+            # init and steps; destroy() comes in any case
+            steps = re.findall(r"^\[(\d+ r[01])\] [is]", outcome.out, re.M)
+            self.assertEqual(62 - len(steps), cards["swing"]["injected"]["observations"]["lost"])
+            self.assertEqual(len(re.findall(r"^\[\d+ r2\] [is]", outcome.out, re.M)), 31)
+            return steps, outcome.lines[-1]
+
+        first = lines(3)
+        self.assertLess(len(first[0]), 62)
+        self.assertEqual(lines(3), first)
+        self.assertNotEqual(lines(4)[0], first[0])
+
+    def test_delays_alone_change_no_result(self):
+        expected = self.hash_of("--ticks", 10)
+        self.assertEqual(self.hash_of("--ticks", 10, "--inject", "latency=3ms,jitter=3ms"), expected)
+
+    def test_what_would_wait_for_ever_is_refused(self):
+        outcome = self.run_scene("--inject", "loss=1%", code=FAULT)
+        self.assert_is_sentence(outcome, "controller 'swing', for which the world waits.*--hil")
+        outcome = self.run_scene("--inject", "swong=latency=1ms", code=FAULT)
+        self.assert_is_sentence(outcome, "no controller 'swong'")
+
+
+if __name__ == "__main__":
+    main()
