@@ -39,22 +39,23 @@ class Injected(SceneTest):
                               "--deadline", "other=hold:5000")
         self.assertEqual(cards["swing"]["misses"], 21)  # of the ticks 0 to 20
         self.assertEqual(cards["swing"]["answers"], 0)
-        self.assertEqual(cards["swing"]["injected"]["commands"]["lost"], 42)  # of two sessions
+        # Two sessions; the last of each may come when the run is over, and is not lost then.
+        self.assertIn(cards["swing"]["injected"]["commands"]["lost"], range(40, 43))
         self.assertEqual((cards["other"]["misses"], cards["other"]["answers"]), (0, 21))
 
     def test_a_seed_loses_the_same_messages_again(self):
         def lines(seed):
-            outcome, cards = self.cards("--ticks", 30, "--seed", seed, "--hash", "--deadline",
-                                        "hold:250", "--inject", "swing=observations:loss=20%")
-            self.assertLess(cards["swing"]["misses"], 31)
+            outcome, cards = self.cards("--ticks", 20, "--seed", seed, "--hash", "--deadline",
+                                        "hold:1000", "--inject", "swing=observations:loss=10%")
+            self.assertLess(cards["swing"]["misses"], 21)
             # init and steps; destroy() comes in any case
             steps = re.findall(r"^\[(\d+ r[01])\] [is]", outcome.out, re.M)
-            self.assertEqual(62 - len(steps), cards["swing"]["injected"]["observations"]["lost"])
-            self.assertEqual(len(re.findall(r"^\[\d+ r2\] [is]", outcome.out, re.M)), 31)
+            self.assertEqual(42 - len(steps), cards["swing"]["injected"]["observations"]["lost"])
+            self.assertEqual(len(re.findall(r"^\[\d+ r2\] [is]", outcome.out, re.M)), 21)
             return steps, outcome.lines[-1]
 
         first = lines(3)
-        self.assertLess(len(first[0]), 62)
+        self.assertLess(len(first[0]), 42)
         self.assertEqual(lines(3), first)
         self.assertNotEqual(lines(4)[0], first[0])
 

@@ -257,14 +257,14 @@ TEST(Delays, EndWithTheSession) {
 TEST(Delays, KeepNoMoreThanTwoOfTheLargestMessages) {
   const SmallRun small(1);
   Config config = config_with({{}, {5s, {}, 0}});
-  config.max_message_bytes = 1000;
+  auto command = Peers::command(0);
+  command.mutable_command()->add_log()->set_text(std::string(1000, 'x'));
+  config.max_message_bytes = bytes_of(command, talks_json()).size() / 2 * 3 + 2;
   config.deadlines[0].policy = {DeadlineAction::hold, 9000, 0};
   Peers peers(small, config);
   peers.join("a", "robot0");
   peers.publish(0);
   peers.told("a");
-  auto command = Peers::command(0);
-  command.mutable_command()->add_log()->set_text(std::string(510, 'x'));
   for (int i = 0; i < 3; ++i) peers.say("a", command);
   EXPECT_TRUE(peers.inboxes["a"].empty());
   peers.say("a", command);
