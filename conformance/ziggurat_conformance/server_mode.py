@@ -9,9 +9,11 @@ from . import wire
 from .case import Case, Failed, NonStrict, NotRun, Outcome, Unimplemented, Verdict
 from .keys import VARIANT, Keys
 from .say import hello
+from .peer import Peer, Transcript
 from .server_process import ServerProcess, check_listens
-from .server_scene import MAIN, path_of
+from .server_scene import CROWDED, MAIN, path_of
 from .steps import Hear, Join, Say, Stage
+from .wire import protocol
 
 _MOST_VAIN_STARTS = 3
 _MENDING = 3.0  # [s] that making a server usable again may take
@@ -53,6 +55,8 @@ class Servers:
             raise
         self._vain_starts = 0
         self._commands_started.add(command)
+        if scene != CROWDED:
+            _await_world(server.endpoint, self.keys.of("controller") if files else None)
         return server
 
     def done(self, case: Case, usable: bool) -> None:
@@ -67,6 +71,17 @@ class Servers:
             server.stop()
         self._shared.clear()
         self.keys.close()
+
+
+def _await_world(endpoint: str, keys: Optional[tuple]) -> None:
+    """Until a Hello, which is refused, is answered otherwise than by Loading: a server may listen
+    before its world is there. One that is mute is what the cases are for."""
+    probe = Peer("probe", endpoint, "binary", Transcript(), keys)
+    probe.say(wire.from_dict(protocol.ClientMessage, {"hello": {"version": {"major": 0}}}))
+    message = probe.hear(1.0)
+    while message is not None and wire.kind_of(message) == "loading":
+        message = probe.hear(10.0)
+    probe.close()
 
 
 class RunningServer:

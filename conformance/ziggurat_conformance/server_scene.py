@@ -12,4 +12,5 @@ def path_of(scene: str) -> Path:
 
 
 MAIN = "conformance"
+CROWDED = "crowded"  # takes a while to load
 SCENE = path_of(MAIN)

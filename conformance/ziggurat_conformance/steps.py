@@ -187,6 +187,8 @@ class Stage:
             message = _heard(peer, deadline - time.monotonic(), False)
             if message is not None and wire.kind_of(message) == step.kind:
                 return
+            if message is not None and wire.kind_of(message) == "loading":
+                deadline = time.monotonic() + self.patience
         raise Failed(f"{step.peer} heard no {step.kind} within {self.patience:g} s")
 
     def silence(self, step: Silence) -> None:

@@ -99,8 +99,8 @@ std::vector<ClientKey> parse_client_keys(const std::string& text, const std::str
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
-    const auto fault = [&](std::string_view text) {
-      faults += fmt::format("{}{}:{}: {}", faults.empty() ? "" : "\n", path, number, text);
+    const auto fault = [&](std::string_view sentence) {
+      faults += fmt::format("{}{}:{}: {}", faults.empty() ? "" : "\n", path, number, sentence);
     };
     // `#` is a character of keys, too: a comment begins a line, or follows a blank.
     std::istringstream words(line);

@@ -56,7 +56,6 @@ bool Server::State::receive(Done done, world::Commands* commands) {
     barrier.receive(visitor.peer, visitor.hello, commands, visitor.roles);
   }
   barrier.receive_due(commands);
-  if (done()) return true;
   for (int i = 0; i < messages_at_once && socket->receive(received); ++i) {
     if (received.is_single_frame) {
       barrier.receive(received.peer, received.bytes, commands, received.roles);

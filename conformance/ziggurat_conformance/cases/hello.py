@@ -2,7 +2,8 @@
 
 from ..case import Case
 from ..say import ALL, TWO, answer, hear_error, hear_refusal, hello, join, leave, observe, say_hello
-from ..steps import Check, Hang, Hear, Join, Silence
+from ..server_scene import CROWDED
+from ..steps import Check, Hang, Hear, Join, Silence, Skip
 from ..wire import Count, OneOf, Some
 
 
@@ -115,6 +116,14 @@ CASES = [
     Case("H10.many", "Ten refusals, then a welcome",
          (*[step for _ in range(10) for step in
             (say_hello("p", "nobody"), hear_refusal("p", "UNKNOWN_ROBOT"))], join("p", "arm0"))),
+    Case("T9.early", "Who comes while the world is loading is told so at once",
+         (say_hello("p", "*"), Hear("p", "loading", should=True)), fresh=True, scene=CROWDED),
+    Case("H12.welcome", "When the world is there, the Hello is handled without another one",
+         (say_hello("p", "*"), Skip("p", "welcome"), observe("p"), answer("p"), observe("p")),
+         fresh=True, scene=CROWDED),
+    Case("H12.leave", "A Leave takes the Hello back",
+         (say_hello("p", "*"), Hear("p", "loading", should=True), leave("p"),
+          say_hello("q", "*"), Skip("q", "welcome"), observe("q")), fresh=True, scene=CROWDED),
     Case("H11.late", "Who comes late gets the tick that the others are at",
          (TWO, answer("q"), Hang("p"), join("x", "arm0", "arm1"), Hear("x", "observation"),
           Check("tick", lambda stage: "" if stage.peer("x").tick == stage.peer("q").tick

@@ -12,8 +12,6 @@ DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "protocol.md"
 # Rules that no case can hold, and why.
 REASONS = {
     "T1": "the kit connects to the endpoint that it is told",
-    "T9": "needs a world that loads slowly: tests/unit/network/reception_test.cpp",
-    "H12": "needs a world that loads slowly: tests/unit/network/reception_test.cpp",
     "T10": "how the kit starts every client",
     "T8": "a matter of the server's command line",
     "P3": "advice to clients",

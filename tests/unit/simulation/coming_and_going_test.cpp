@@ -163,7 +163,7 @@ TEST(Spawn, IsInPicturesAndTakesThem) {
   world.step();
   const auto with_a = images[0].rgb;
   ASSERT_EQ(with_a.size(), 64u * 48 * 3);
-  world.spawn(box("b", "0.3,0,1.5", false));
+  world.spawn(box("b", "0.3,0,1.5"));
   world.step();
   EXPECT_NE(images[0].rgb, with_a);
   world.simulation.remove(2);
