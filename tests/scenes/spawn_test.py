@@ -8,6 +8,7 @@ import subprocess
 from harness import INTERRUPTED, LUA, ZIGGURAT, SceneTest, main
 
 BOX = '<box id="{}" size="0.1,0.1,0.1" movable="true" mass="1"><body position="{}"/></box>'
+PACED = "--real-time", 3  # so that nobody has to read all of its lines
 
 
 class Spawn(SceneTest):
@@ -49,7 +50,7 @@ class Spawn(SceneTest):
         return outcome
 
     def test_a_lua_robot_gets_a_process_and_both_go_when_it_is_removed(self):
-        process = self.begin("run")
+        process = self.begin("run", *PACED)
         self.read_until(process.stdout, r"^\[5 r0\]")
         self.spawn(self.arm("late", "0,2,0"))
         self.read_until(process.stdout, r"^\[\d+ late\] init")
@@ -63,7 +64,7 @@ class Spawn(SceneTest):
         self.assertNotIn("late", self.end(process).out)
 
     def test_a_robot_that_nobody_drives_is_waited_for(self):
-        process = self.begin("serve")
+        process = self.begin("serve", *PACED)
         scripted = [subprocess.Popen([LUA, "--connect", self.url, "--quiet"], cwd=self.folder,
                                      env=self.environment)]
         self.started += scripted
