@@ -174,7 +174,7 @@ Delivery Play::hear(const std::string& peer, const wire::Outbox& outbox) {
       told.welcomed = false;
       break;
     case v1::ServerMessage::kRefusal:
-      require(!told.welcomed || told.may_be_lost);
+      require(!told.welcomed || told.may_be_lost || told.draining);  // of which none may be left
       told.welcomed = false;
       break;
     case v1::ServerMessage::kError:
