@@ -9,8 +9,10 @@
 namespace ziggurat::network {
 namespace {
 
-constexpr int linger_ms = 1000;       // what is under way at the end may take this long
-constexpr int receive_queue = 8;      // messages of a peer that wait here; it waits beyond
+constexpr int linger_ms = 1000;            // what is under way at the end may take this long
+constexpr int receive_queue = 8;           // messages of a peer that wait here; it waits beyond
+constexpr int waiting_connections = 4096;  // until they are accepted; beyond the queue's end the
+                                           // kernel lets them try again, after seconds
 constexpr int handshake_ms = 10000;   // half-open connections hold a descriptor no longer than this
 constexpr int keepalive_idle_s = 30;  // tcp: answered by the peer's kernel, so that a controller
                                       // held in a debugger stays, and a vanished machine does not
@@ -72,6 +74,7 @@ zmq::socket_t Socket::make_router(const Config& config) {
   router.set(zmq::sockopt::linger, linger_ms);
   router.set(zmq::sockopt::router_mandatory, true);
   router.set(zmq::sockopt::rcvhwm, receive_queue);
+  router.set(zmq::sockopt::backlog, waiting_connections);
   router.set(zmq::sockopt::handshake_ivl, handshake_ms);
   router.set(zmq::sockopt::tcp_keepalive, 1);
   router.set(zmq::sockopt::tcp_keepalive_idle, keepalive_idle_s);
