@@ -6,7 +6,7 @@ from fnmatch import fnmatchcase
 from typing import Callable, Iterator, Optional
 
 from . import wire
-from .case import Case, Failed, NonStrict, NotRun, Outcome, Unimplemented, Verdict
+from .case import Case, Failed, Level, NonStrict, NotRun, Outcome, Unimplemented, Verdict
 from .keys import VARIANT, Keys
 from .say import hello
 from .peer import Peer, Transcript
@@ -16,6 +16,7 @@ from .steps import Hear, Join, Say, Stage
 from .wire import protocol
 
 _MOST_VAIN_STARTS = 3
+_TRIES_WITH_DEADLINES = 3
 _MENDING = 3.0  # [s] that making a server usable again may take
 
 
@@ -121,11 +122,21 @@ def play(cases: list, servers, patience: float, on_outcome: Callable) -> list:
     try:
         for case in cases:
             for form in case.forms:
-                outcomes.append(_play_one(case, form, servers, patience))
+                outcomes.append(_play_patiently(case, form, servers, patience))
                 on_outcome(outcomes[-1])
     finally:
         servers.stop()
     return outcomes
+
+
+def _play_patiently(case: Case, form: str, servers, patience: float) -> Outcome:
+    """Cases with deadlines up to three times: a busy machine misses some by itself."""
+    tries = _TRIES_WITH_DEADLINES if case.level is Level.HIL else 1
+    for _ in range(tries):
+        outcome = _play_one(case, form, servers, patience)
+        if outcome.verdict is not Verdict.FAIL:
+            break
+    return outcome
 
 
 def _play_one(case: Case, form: str, servers, patience: float) -> Outcome:
