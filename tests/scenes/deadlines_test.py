@@ -92,17 +92,28 @@ class Deadlines(SceneTest):
 
     def test_the_scene_says_what_holds_and_the_command_line_says_otherwise(self):
         self.change('<lua_controller id="swing">',
-                    '<lua_controller id="swing" deadline="drop" deadline_ms="30" miss_budget="2">')
+                    '<lua_controller id="swing" deadline="drop" deadline_ms="100" miss_budget="2">')
         checked = self.ziggurat("check", self.scene)
-        self.assertIn("(deadlines: swing=drop:30:2)", checked.out)
-        for options, policy in (((), "drop:30:2"),
-                                (("--hil", "--real-time", 10), "drop:30:2"),
-                                (("--deadline", "drop:40:1"), "drop:40:1")):
+        self.assertIn("(deadlines: swing=drop:100:2)", checked.out)
+        for options, policy in (((), "drop:100:2"),
+                                (("--hil", "--real-time", 10), "drop:100:2"),
+                                (("--deadline", "drop:120:1"), "drop:120:1")):
             with self.subTest(options=options):
-                process = self.disturb(signal.SIGSTOP, *options)
-                self.goes_on(process)
-                self.assertRegex(self.interrupted(process).err,
-                                 rf"robot r1 .* is dropped .* in a row, {policy}\b")
+                self.assertEqual(self.who_is_dropped(*options), ("r1", policy))
+
+    def who_is_dropped(self, *options):
+        """Who is, by which policy, after the controller of r1 was stopped."""
+        log = self.folder / "log"
+        with log.open("w") as stdout:
+            process = self.start("run", self.scene, "--duration", 0, "--lua-processes", 0, *options,
+                                 stdout=stdout)
+        self.wait_for(log.read_text, lambda text: "[20 r2]" in text, "tick 20")
+        [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
+        os.kill(victim, signal.SIGSTOP)
+        found = self.read_until(process.stderr,
+                                r"robot (\w+) .* is dropped at tick \d+: .* in a row, (\S+)")
+        self.interrupted(process)
+        return found[1], found[2]
 
     def test_a_controller_that_does_not_exist(self):
         outcome = self.run_scene("--deadline", "swong=hold:5", code=FAULT)
