@@ -60,6 +60,22 @@ network::Config network_config(const Options& options, Service service) {
   return config;
 }
 
+// What the scene and the command line say of each controller.
+void add_controllers(const Options& options, const scene::Scene& scene, network::Config& config) {
+  config.deadlines = deadlines_of(options.deadlines, scene);
+  if (options.hil) wait_for_nobody(options, scene, config.deadlines);
+  config.injections = injections_of(options.injections, scene);
+  check_losses(config.injections, scene, config.deadlines);
+}
+
+// A world that nobody drives would be over before anybody could look at it.
+void begin_paused(network::Server& server, Console& console) {
+  server.pause();
+  console.notice(
+      "paused: the scene has no controllers; --real-time or 'ziggurat ctl URL resume' "
+      "makes it run");
+}
+
 wire::Run wire_run(const scene::Scene& scene, const simulation::Simulation& simulation,
                    std::vector<std::string> scripts, std::uint64_t seed,
                    bool is_hardware_in_the_loop) {
@@ -221,10 +237,7 @@ int execute(const Options& options, Service service) {
 
   const PrivateFolder folder;
   const auto run = wire_run(scene, simulation, scripts, seed, options.hil);
-  config.deadlines = deadlines_of(options.deadlines, scene);
-  if (options.hil) wait_for_nobody(options, scene, config.deadlines);
-  config.injections = injections_of(options.injections, scene);
-  check_losses(config.injections, scene, config.deadlines);
+  add_controllers(options, scene, config);
   if (service == Service::run) config.private_endpoint = "ipc://" + folder.path() + "/run";
   network::Server server(config, run, reception);
   // A picture of tick 0 is taken before anybody had a say.
@@ -253,13 +266,8 @@ int execute(const Options& options, Service service) {
   Watch watch({scene, simulation.layout(), server, signals, processes, console, supervision,
                metrics ? &*metrics : nullptr, service == Service::serve},
               simulation.tick_length());
-  if (service == Service::serve && !plan.real_time &&
-      undriven.size() == simulation.layout().robots.size()) {
-    server.pause();
-    console.notice(
-        "paused: the scene has no controllers; --real-time or 'ziggurat ctl URL resume' "
-        "makes it run");
-  }
+  const bool drives_nobody = undriven.size() == simulation.layout().robots.size();
+  if (service == Service::serve && !plan.real_time && drives_nobody) begin_paused(server, console);
 
   Summary summary;
   summary.scene = path;
