@@ -58,10 +58,14 @@ class Wait:
     seconds: float
 
 
+_START = 10.0  # [s] until a program's first message
+
+
 @dataclass(frozen=True)
 class CheckClient:
     title: str
     check: Callable
+    should: bool = False
 
 
 class ClientStage:
@@ -72,12 +76,14 @@ class ClientStage:
         self.transcript = Transcript()
         self.form = wire.BINARY
         self.routing_id: Optional[bytes] = None
+        self.greeting: Optional[protocol.Hello] = None  # the last
         self.described: list = []  # RobotDescription as told
         self._socket = zmq.Context.instance().socket(zmq.ROUTER)
         self._socket.setsockopt(zmq.LINGER, 0)
         port = self._socket.bind_to_random_port("tcp://127.0.0.1")
+        self.endpoint = f"tcp://127.0.0.1:{port}"
         self._output = tempfile.TemporaryFile()
-        environment = {**os.environ, "ZIGGURAT_ENDPOINT": f"tcp://127.0.0.1:{port}",
+        environment = {**os.environ, "ZIGGURAT_ENDPOINT": self.endpoint,
                        "ZIGGURAT_CONTROLLER": "steady"}
         try:
             self.process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL,
@@ -120,13 +126,18 @@ class ClientStage:
         self._send(data)
 
     def hear(self, step: HearFrom) -> None:
-        message = self._receive(self.patience)
+        is_first = self.routing_id is None  # the program may take a while to start
+        message = self._receive(max(self.patience, _START) if is_first else self.patience)
         if message is None:
             complaint = f"the client said nothing; {step.kind} is due{self._gone()}"
+            if is_first:
+                complaint += f": nothing came to {self.endpoint}, its ZIGGURAT_ENDPOINT"
         elif wire.kind_of(message) != step.kind:
             complaint = f"the client said {wire.text_of(message, 300)}; {step.kind} is due"
         else:
             told = getattr(message, step.kind)
+            if step.kind == "hello":
+                self.greeting = told
             complaints = list(wire.mismatches(step.pattern, told, step.kind))
             if step.kind == "command":
                 complaints += command_faults(self.described, told)
@@ -154,7 +165,7 @@ class ClientStage:
 
     def check(self, step: CheckClient) -> None:
         complaint = step.check(self)
-        _judge(f"{step.title}: {complaint}" if complaint else "", False)
+        _judge(f"{step.title}: {complaint}" if complaint else "", step.should)
 
     def _send(self, data: bytes) -> None:
         if self.routing_id is None:

@@ -40,6 +40,7 @@ SERVER_BUGS = {
 
 CLIENT_BUGS = {
     "version-zero": "H2.version",
+    "asks-for-nothing": "H4.asks-for-robots",
     "command-first": "H1.hello-first",
     "impatient": "H1.waits-for-the-answer",
     "tick-ahead": "S3.answers-each",

@@ -19,7 +19,7 @@ def main(bug):
 
     def hello():
         version = protocol.Version(major=0 if bug == "version-zero" else 1)
-        say(hello=protocol.Hello(version=version, role=protocol.ROLE_CONTROLLER, robots=["*"],
+        say(hello=protocol.Hello(version=version, role=protocol.ROLE_CONTROLLER, robots=[] if bug == "asks-for-nothing" else ["*"],
                                  client_name="tiny"))
 
     if bug == "command-first":
