@@ -6,16 +6,24 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace ziggurat::bench {
 
+/// For connections that CURVE protects.
+struct Keys {
+  std::string server_secret, server_public, client_public;  ///< Z85
+  std::string client_secret;                                ///< path of a file
+};
+
 struct Setup {
   std::size_t processes = 1;
   std::size_t robots = 1;  ///< per process
   std::string transport = "ipc";
-  std::string client;  ///< path of bench_lockstep_client
+  std::string client;        ///< path of bench_lockstep_client
+  std::optional<Keys> keys;  ///< of ours; nothing: plain
 };
 
 /// Bytes of a tick's messages on the wire, for one session.

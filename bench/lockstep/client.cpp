@@ -1,7 +1,9 @@
 // One controller process of the lock-step benchmark.
 //
-// usage: bench_lockstep_client ziggurat ENDPOINT ROBOTS     through the client library
-//        bench_lockstep_client bare ENDPOINT BYTES          answers each message with BYTES bytes
+// usage: bench_lockstep_client ziggurat ENDPOINT ROBOTS [SERVER_KEY SECRET_FILE]
+//            through the client library
+//        bench_lockstep_client bare ENDPOINT BYTES
+//            answers each message with BYTES bytes
 
 #include <zmq.h>
 
@@ -14,10 +16,14 @@
 namespace {
 
 /// Reads every encoder and sets every target, each tick.
-void run_ziggurat(const std::string& endpoint, const std::string& robots) {
+void run_ziggurat(const std::vector<std::string>& arguments) {
   ziggurat::Options options;
-  options.endpoint = endpoint;
-  options.robots = {robots};
+  options.endpoint = arguments[0];
+  options.robots = {arguments[1]};
+  if (arguments.size() > 2) {
+    options.server_key = arguments[2];
+    options.curve_secret = arguments[3];
+  }
   ziggurat::Session session(options);
   std::vector<ziggurat::Joint*> joints;
   for (ziggurat::Robot& robot : session.robots()) {
@@ -48,11 +54,11 @@ void run_bare(const std::string& endpoint, std::size_t bytes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) return 1;
+  if (argc != 4 && argc != 6) return 1;
   if (std::string(argv[1]) == "bare") {
     run_bare(argv[2], std::strtoul(argv[3], nullptr, 10));
   } else {
-    run_ziggurat(argv[2], argv[3]);
+    run_ziggurat({argv + 2, argv + argc});
   }
   return 0;
 }

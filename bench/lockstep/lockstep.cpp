@@ -1,6 +1,7 @@
 // What a lock-step tick costs beside bare ZeroMQ with the same bytes and processes.
 //
 // usage: bench_lockstep [PAIRS [TRANSPORT]]     9 pairs over ipc by default
+//        bench_lockstep [PAIRS] curve           ours protected by CURVE beside ours plain, over tcp
 //
 // Each pair lets both take turns, burst by burst, and does so with fresh processes several times:
 // single figures depend on where the scheduler puts whom. The table has the median ratio of all
@@ -12,9 +13,13 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "lockstep/arena.h"
+#include "network/keys.h"
 
 namespace ziggurat::bench {
 namespace {
@@ -51,27 +56,40 @@ void run_burst(Arena& arena, std::vector<double>& times) {
 }
 
 struct Pair {
-  double bare = 0;       // median tick, mean of all restarts [µs]
+  double bare = 0;       // median tick of what ours is compared with, mean of all restarts [µs]
   double ours = 0;       // the same of ours [µs]
   double ours_late = 0;  // 99th percentile, mean of all restarts [µs]
 };
+
+/// Both in turn, burst by burst.
+template <class Arena>
+void take_turns(Arena& bare, Ours& ours, Pair& pair) {
+  for (int i = 0; i < warm_up; ++i) ours.tick();
+  for (int i = 0; i < warm_up; ++i) bare.tick();
+  std::vector<double> ours_times;
+  std::vector<double> bare_times;
+  for (int i = 0; i < bursts; ++i) {
+    run_burst(bare, bare_times);
+    run_burst(ours, ours_times);
+  }
+  pair.bare += quantile(bare_times, 0.5) / restarts;
+  pair.ours += quantile(ours_times, 0.5) / restarts;
+  pair.ours_late += quantile(ours_times, 0.99) / restarts;
+}
 
 Pair run_pair(const Setup& setup) {
   Pair pair;
   for (int restart = 0; restart < restarts; ++restart) {
     Ours ours(setup);
-    Bare bare(setup, ours.bytes());
-    for (int i = 0; i < warm_up; ++i) ours.tick();
-    for (int i = 0; i < warm_up; ++i) bare.tick();
-    std::vector<double> ours_times;
-    std::vector<double> bare_times;
-    for (int i = 0; i < bursts; ++i) {
-      run_burst(bare, bare_times);
-      run_burst(ours, ours_times);
+    if (setup.keys) {
+      Setup plain = setup;
+      plain.keys.reset();
+      Ours bare(plain);
+      take_turns(bare, ours, pair);
+    } else {
+      Bare bare(setup, ours.bytes());
+      take_turns(bare, ours, pair);
     }
-    pair.bare += quantile(bare_times, 0.5) / restarts;
-    pair.ours += quantile(ours_times, 0.5) / restarts;
-    pair.ours_late += quantile(ours_times, 0.99) / restarts;
   }
   return pair;
 }
@@ -88,12 +106,50 @@ void run_row(const Row& row, Setup setup, int pairs) {
     ratios.push_back(pair.ours / pair.bare);
   }
   const double ratio = quantile(ratios, 0.5);
-  std::printf(
-      "| %zu | %zu | %.0f | %.0f | %.0f | %.0f | **%.2f** | %.2f … %.2f | %.2f | %s |\n",
-      row.processes, row.robots, quantile(bare, 0.5), quantile(ours, 0.5), quantile(late, 0.5),
-      1e6 / quantile(ours, 0.5), ratio, *std::min_element(ratios.begin(), ratios.end()),
-      *std::max_element(ratios.begin(), ratios.end()), row.goal, ratio <= row.goal ? "yes" : "no");
+  std::printf("| %zu | %zu | %.0f | %.0f | %.0f | %.0f | **%.2f** | %.2f … %.2f |", row.processes,
+              row.robots, quantile(bare, 0.5), quantile(ours, 0.5), quantile(late, 0.5),
+              1e6 / quantile(ours, 0.5), ratio, *std::min_element(ratios.begin(), ratios.end()),
+              *std::max_element(ratios.begin(), ratios.end()));
+  if (!setup.keys) std::printf(" %.2f | %s |", row.goal, ratio <= row.goal ? "yes" : "no");
+  std::puts("");
   std::fflush(stdout);
+}
+
+/// A folder with keys, which ends with it.
+class Keyring {
+ public:
+  Keyring() {
+    if (::mkdtemp(folder_.data()) == nullptr) throw std::runtime_error("no folder for keys");
+    keys_.server_public = network::write_key_pair(folder_ + "/server");
+    keys_.server_secret = network::read_secret_key(folder_ + "/server.secret");
+    keys_.client_public = network::write_key_pair(folder_ + "/client");
+    keys_.client_secret = folder_ + "/client.secret";
+  }
+  ~Keyring() { std::filesystem::remove_all(folder_); }
+  Keyring(const Keyring&) = delete;
+  Keyring& operator=(const Keyring&) = delete;
+
+  const Keys& keys() const { return keys_; }
+
+ private:
+  std::string folder_ = (std::filesystem::temp_directory_path() / "bench-keys-XXXXXX").string();
+  Keys keys_;
+};
+
+void print_heading(const Setup& setup, int pairs) {
+  std::printf("Lock-step ticks over %s%s, no physics, 4 joints per robot each way; %d pairs.\n\n",
+              setup.transport.c_str(), setup.keys ? ", CURVE beside plain" : "", pairs);
+  if (setup.keys) {
+    std::puts(
+        "| Processes | Robots each | Plain [µs] | CURVE [µs] | CURVE p99 [µs] | Ticks/s | "
+        "Ratio | Range |");
+    std::puts("|---|---|---|---|---|---|---|---|");
+    return;
+  }
+  std::puts(
+      "| Processes | Robots each | Bare [µs] | Ours [µs] | Ours p99 [µs] | Ticks/s | Ratio | "
+      "Range | Goal | Met |");
+  std::puts("|---|---|---|---|---|---|---|---|---|---|");
 }
 
 }  // namespace
@@ -103,15 +159,15 @@ int main(int argc, char** argv) try {
   using namespace ziggurat::bench;
   const int pairs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 9;
   Setup setup;
+  std::optional<Keyring> keyring;
   if (argc > 2) setup.transport = argv[2];
+  if (setup.transport == "curve") {
+    setup.transport = "tcp";
+    setup.keys = keyring.emplace().keys();
+  }
   setup.client =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "bench_lockstep_client";
-  std::printf("Lock-step ticks over %s, no physics, 4 joints per robot each way; %d pairs.\n\n",
-              setup.transport.c_str(), pairs);
-  std::puts(
-      "| Processes | Robots each | Bare [µs] | Ours [µs] | Ours p99 [µs] | Ticks/s | Ratio | "
-      "Range | Goal | Met |");
-  std::puts("|---|---|---|---|---|---|---|---|---|---|");
+  print_heading(setup, pairs);
   for (const Row& row : rows) run_row(row, setup, pairs);
   return 0;
 } catch (const std::exception& error) {

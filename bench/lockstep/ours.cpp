@@ -37,6 +37,11 @@ network::Config config_for(const Setup& setup) {
   config.endpoints = {setup.transport == "ipc"
                           ? "ipc://@ziggurat-bench-" + std::to_string(::getpid())
                           : "tcp://127.0.0.1:*"};
+  if (setup.keys) {
+    network::Roles roles;
+    roles.controller = true;
+    config.curve = {setup.keys->server_secret, {{setup.keys->client_public, roles, "bench"}}};
+  }
   return config;
 }
 
@@ -63,8 +68,12 @@ Ours::Ours(const Setup& setup) : state_(std::make_unique<State>(setup)) {
   state.observations.joint_readings.assign(state.layout.joint_sensors.size(), 0.5);
   state.commands.joint_targets.assign(state.layout.joint_actuators.size(), 0.0);
   for (std::size_t i = 0; i < setup.processes; ++i) {
-    state.processes.start(setup.client, {"ziggurat", state.server.endpoints().front(),
-                                         "p" + std::to_string(i) + "_*"});
+    std::vector<std::string> arguments{"ziggurat", state.server.endpoints().front(),
+                                       "p" + std::to_string(i) + "_*"};
+    if (setup.keys) {
+      arguments.insert(arguments.end(), {setup.keys->server_public, setup.keys->client_secret});
+    }
+    state.processes.start(setup.client, arguments);
   }
   if (state.server.gather({std::chrono::seconds(20), {}}) != network::Outcome::complete) {
     throw std::runtime_error("not all controllers came");
