@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "scene/reading.h"
@@ -285,9 +286,11 @@ Anchor read_anchor(Reading& reading, Element& element) {
 }
 
 std::vector<std::string> anchor_names(const Reading& reading) {
-  std::vector<std::string> names(reading.anchors.size());
-  for (const auto& [id, link] : reading.anchors) names[link] = id;
-  names.insert(names.begin(), "origin");
+  // Of links with the same id only the first is an anchor: their numbers may have gaps.
+  std::map<std::size_t, std::string> by_link;
+  for (const auto& [id, link] : reading.anchors) by_link.emplace(link, id);
+  std::vector<std::string> names{"origin"};
+  for (auto& [link, id] : by_link) names.push_back(std::move(id));
   return names;
 }
 

@@ -394,5 +394,19 @@ TEST(Arena, LightsAndGroundsComeLater) {
   EXPECT_TRUE(result.scene.entities.empty());
 }
 
+TEST(Prototype, ALinkThatStandsTwiceLeavesTheOthersTheirNames) {
+  SceneText text;
+  text.arena = arena_with(
+      R"(<prototype id="p"><body/><links ref="a"><link id="a" geometry="sphere" radius="1" mass="1"/>)"
+      R"(<link id="a" geometry="sphere" radius="1" mass="1"/>)"
+      R"(<link id="b" geometry="sphere" radius="1" mass="1"/></links><joints>)"
+      R"(<joint id="j" type="fixed"><parent link="nowhere"/><child link="b"/></joint></joints>)"
+      R"(</prototype>)");
+  const auto found = faults(text.read());
+  EXPECT_EQ(
+      count_containing(found, R"(link="nowhere" of <parent> names no link; known here: a, b)"), 1u)
+      << all_problems(text.read());
+}
+
 }  // namespace
 }  // namespace ziggurat::scene
