@@ -41,22 +41,22 @@ class Laps {
 // does.
 std::optional<Ending> pace(double factor, const Driven& driven, clock::time_point start,
                            Summary& summary) {
-  const simulation::Simulation& simulation = driven.simulation;
+  simulation::Simulation& simulation = driven.simulation;
   const double due_s = static_cast<double>(simulation.state().tick + 1) * simulation.tick_length();
   const auto due =
       start + driven.supervision.paused_for() +
       std::chrono::duration_cast<clock::duration>(std::chrono::duration<double>(due_s / factor));
   if (clock::now() > due) ++summary.late_ticks;
-  return driven.watch.sleep_until(due);
+  return driven.watch.sleep_until(due, simulation.commands());
 }
 
-// Somebody may pause the world when its tick is complete already: then it stays where it is, and
-// who comes meanwhile is waited for, too.
-std::optional<Ending> stand(const Driven& driven) {
+// Until the tick is complete. Somebody may come when it was already, and is waited for, too; or pause
+// the world: then it stays where it is.
+std::optional<Ending> collect(const Driven& driven) {
   const auto& [simulation, server, watch, supervision] = driven;
-  while (server.paused()) {
+  do {
     if (auto stopped = watch.collect(simulation.commands(), simulation.state().tick)) return stopped;
-  }
+  } while (server.paused());
   return std::nullopt;
 }
 
@@ -74,13 +74,12 @@ Ending drive_once(const Plan& plan, const Driven& driven, Recorders& recorders, 
     recorders.tick(simulation);
     laps.charge(summary.recording_s, Phase::recording);
 
-    auto stopped = watch.collect(simulation.commands(), now.tick);
-    if (!stopped) stopped = stand(driven);
+    auto stopped = collect(driven);
     laps.charge(summary.exchange_s, Phase::exchange);
     const bool is_last = now.tick == plan.ticks;
     if (plan.real_time && !stopped && !is_last) {
       stopped = pace(*plan.real_time, driven, start, summary);
-      if (!stopped) stopped = stand(driven);
+      if (!stopped) stopped = collect(driven);
       laps.charge(summary.pacing_s, Phase::pacing);
     }
     if (stopped) return *stopped;

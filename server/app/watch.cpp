@@ -40,7 +40,7 @@ std::optional<Ending> Watch::collect(world::Commands& commands, std::uint64_t ti
   return until([&](const auto& wait) { return watched_.server.collect(commands, wait); });
 }
 
-std::optional<Ending> Watch::sleep_until(clock::time_point moment) {
+std::optional<Ending> Watch::sleep_until(clock::time_point moment, world::Commands& commands) {
   const std::array descriptors{watched_.signals.descriptor()};
   for (;;) {
     serve();
@@ -50,7 +50,7 @@ std::optional<Ending> Watch::sleep_until(clock::time_point moment) {
     if (left.count() <= 0) break;
     if (progress_.due()) progress_.show(tick_, "");
     watched_.console.flush();
-    watched_.server.linger({std::min(left, look_around), descriptors});
+    watched_.server.linger(commands, {std::min(left, look_around), descriptors});
     take_report();
   }
   std::this_thread::sleep_until(moment);

@@ -49,8 +49,8 @@ class Watch {
   std::optional<Ending> gather();
   /// Until every controller has answered `tick`.
   std::optional<Ending> collect(world::Commands& commands, std::uint64_t tick);
-  /// Until that moment.
-  std::optional<Ending> sleep_until(clock::time_point moment);
+  /// Until that moment. Who comes meanwhile may answer the tick.
+  std::optional<Ending> sleep_until(clock::time_point moment, world::Commands& commands);
 
   /// Ends the run: tells controllers, hears their last words, and sees every process end.
   /// An interruption meanwhile kills what still runs.

@@ -114,8 +114,8 @@ Outcome Server::drain(const Wait& wait) {
   return state_->wait_until([this] { return state_->barrier.drained(); }, wait, nullptr);
 }
 
-Outcome Server::linger(const Wait& wait) {
-  return state_->wait_until([] { return false; }, wait, nullptr);
+Outcome Server::linger(world::Commands& commands, const Wait& wait) {
+  return state_->wait_until([] { return false; }, wait, &commands);
 }
 
 void Server::add_robots(std::span<const std::string> scripts,

@@ -150,8 +150,9 @@ class Server {
   /// Peers may never do so: give it a time and stop.
   Outcome drain(const Wait& wait);
 
-  /// Nothing is waited for but the time: messages that arrive meanwhile are taken.
-  Outcome linger(const Wait& wait);
+  /// Nothing is waited for but the time: messages that arrive meanwhile are taken, also what those
+  /// command who come to a tick that was complete.
+  Outcome linger(world::Commands& commands, const Wait& wait);
 
   /// Robots have come: those of the layout that the server does not know yet. The tick in hand does
   /// not wait for them, the next one does.
