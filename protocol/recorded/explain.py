@@ -9,9 +9,13 @@ import re
 import struct
 import sys
 
-from google.protobuf.descriptor import FieldDescriptor as Field
+try:
+    from google.protobuf.descriptor import FieldDescriptor as Field
 
-from ziggurat import protocol_pb2 as v1
+    from ziggurat import protocol_pb2 as v1
+except ModuleNotFoundError as error:
+    sys.exit(f"explain.py: {error}. It needs Debian's python3-protobuf and the Python client: "
+             "PYTHONPATH=build/release/python /usr/bin/python3 explain.py FILE.bin")
 
 BLOCK = re.compile(r"(```hex (\S+)\n)(.*?)(```\n)", re.S)
 FOLDER = pathlib.Path(__file__).resolve().parent
