@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <optional>
 #include <sstream>
 
 #include "app/arguments.h"
@@ -82,12 +83,12 @@ std::string contents_of(const std::string& path) {
 
 void spawn(const Call& call) {
   if (call.words.size() != 1) misused("spawn FILE|-   (one element, as in <arena>)");
-  call.server.spawn(contents_of(call.words[0]));
+  say(call, "spawned", call.server.spawn(contents_of(call.words[0])));
 }
 
 void remove(const Call& call) {
   if (call.words.size() != 1) misused("remove ENTITY");
-  call.server.remove(call.words[0]);
+  say(call, "removed", call.server.remove(call.words[0]));
 }
 
 void move(const Call& call) {
@@ -103,12 +104,14 @@ void move(const Call& call) {
     return values;
   };
   const auto position = numbers("position", call.words[1]);
-  if (call.words.size() == 2) return call.server.move(call.words[0], position);
-  const auto angles = numbers("orientation", call.words[2]);
-  const math::Quaternion turned =
-      scene::orientation_from_degrees({angles[0], angles[1], angles[2]});
-  call.server.move(call.words[0], position,
-                   std::array<double, 4>{turned.w(), turned.x(), turned.y(), turned.z()});
+  std::optional<std::array<double, 4>> orientation;
+  if (call.words.size() == 3) {
+    const auto angles = numbers("orientation", call.words[2]);
+    const math::Quaternion turned =
+        scene::orientation_from_degrees({angles[0], angles[1], angles[2]});
+    orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
+  }
+  say(call, "moved", call.server.move(call.words[0], position, orientation));
 }
 
 void read(const Call& call) {

@@ -43,8 +43,9 @@ class Barrier {
   Barrier(const Barrier&) = delete;
   Barrier& operator=(const Barrier&) = delete;
 
-  /// Wall time goes on: deadlines pass and heartbeats are sent. Everything else happens at the
-  /// time that was last told.
+  /// Everything happens at the time that was last told.
+  void tell_time(Clock::time_point now) { now_ = now; }
+  /// Wall time goes on: deadlines pass and heartbeats are sent.
   void advance(Clock::time_point now);
   /// When advance() has something to do next.
   Clock::time_point due() const {

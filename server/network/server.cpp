@@ -72,16 +72,18 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
   const bool is_bounded = wait.timeout.count() >= 0;
   const auto end = Clock::now() + (is_bounded ? wait.timeout : milliseconds{0});
   for (;;) {
-    barrier.advance(Clock::now());
+    // What has arrived is not late, however long we were kept from looking.
+    barrier.tell_time(Clock::now());
     if (receive(done, commands)) return Outcome::complete;
+    barrier.advance(Clock::now());
+    if (done()) return Outcome::complete;
     if (barrier.has_news()) return Outcome::woken;
     const auto wake = is_bounded ? std::min(end, barrier.due()) : barrier.due();
     const auto rest = std::chrono::ceil<milliseconds>(wake - Clock::now());
     const auto ready = socket->poll({std::max(rest, milliseconds{0}), wait.descriptors});
     if (ready == Socket::Ready::woken) return Outcome::woken;
-    const auto now = Clock::now();
-    if (is_bounded && now >= end) {
-      barrier.advance(now);
+    if (is_bounded && Clock::now() >= end) {
+      barrier.tell_time(Clock::now());
       return receive(done, commands) ? Outcome::complete : Outcome::timed_out;
     }
   }

@@ -175,7 +175,14 @@ Supervisor::Supervisor(const SupervisorOptions& options)
   state_->open();
 }
 
-Supervisor::~Supervisor() = default;
+Supervisor::~Supervisor() {
+  try {
+    state_->outgoing.mutable_leave()->set_reason(v1::Leave::DONE);
+    state_->connection.send(state_->outgoing);
+  } catch (const std::exception&) {
+    // The server is gone: nobody is left to tell.
+  }
+}
 
 ServerStatus Supervisor::status() {
   state_->request().mutable_status();
@@ -206,17 +213,17 @@ void Supervisor::reset(std::optional<std::uint64_t> seed) {
   state_->ask();
 }
 
-void Supervisor::spawn(std::string_view xml) {
+std::uint64_t Supervisor::spawn(std::string_view xml) {
   state_->request().mutable_spawn()->set_xml(v1::valid_utf8(std::string(xml)));
-  state_->ask();
+  return state_->ask().tick();
 }
 
-void Supervisor::remove(std::string_view entity) {
+std::uint64_t Supervisor::remove(std::string_view entity) {
   state_->request().mutable_remove()->set_entity(v1::valid_utf8(std::string(entity)));
-  state_->ask();
+  return state_->ask().tick();
 }
 
-void Supervisor::move(std::string_view entity, const std::array<double, 3>& position,
+std::uint64_t Supervisor::move(std::string_view entity, const std::array<double, 3>& position,
                       const std::optional<std::array<double, 4>>& orientation) {
   v1::MoveRequest& move = *state_->request().mutable_move();
   move.set_entity(v1::valid_utf8(std::string(entity)));
@@ -224,7 +231,7 @@ void Supervisor::move(std::string_view entity, const std::array<double, 3>& posi
   if (orientation) {
     for (const double value : *orientation) move.add_orientation(value);
   }
-  state_->ask();
+  return state_->ask().tick();
 }
 
 WorldStates Supervisor::read(std::span<const std::string> entities) {

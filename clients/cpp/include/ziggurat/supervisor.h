@@ -97,11 +97,12 @@ class Supervisor {
   /// Connects and waits for the server's welcome.
   /// @throws ConnectionError, ProtocolError, std::invalid_argument for an unusable endpoint
   explicit Supervisor(const SupervisorOptions& options);
+  /// Leaves.
   ~Supervisor();
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
-  // All of them throw ConnectionError and ProtocolError.
+  // All of them throw ConnectionError and ProtocolError; ticks are those at which it was done.
 
   ServerStatus status();
   /// Returns when the world stands: the tick is complete. Also the tick that it stands at.
@@ -112,11 +113,11 @@ class Supervisor {
   /// Destroys the world and builds it anew; none = with the same seed.
   void reset(std::optional<std::uint64_t> seed = std::nullopt);
   /// One element as it may stand in <arena>.
-  void spawn(std::string_view xml);
-  void remove(std::string_view entity);
+  std::uint64_t spawn(std::string_view xml);
+  std::uint64_t remove(std::string_view entity);
   /// To rest at a pose, joints as assembled; none = as it is turned now.
-  void move(std::string_view entity, const std::array<double, 3>& position,
-            const std::optional<std::array<double, 4>>& orientation = std::nullopt);
+  std::uint64_t move(std::string_view entity, const std::array<double, 3>& position,
+                     const std::optional<std::array<double, 4>>& orientation = std::nullopt);
   /// Of the entities that ids or globs mean; none = of all.
   WorldStates read(std::span<const std::string> entities = {});
   /// Ends the run, as Ctrl-C does.
