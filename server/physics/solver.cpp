@@ -1,6 +1,5 @@
 #include "physics/solver.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 
 namespace ziggurat::physics {
@@ -9,11 +8,23 @@ namespace {
 // More makes rows overshoot and stacks tremble; less wastes sweeps.
 constexpr btScalar warm_start_share = 0.3;
 
-/// In several sums at once, always the same: one would be a chain of additions that wait for each
-/// other.
+/// In four sums at once: one would be a chain of additions that wait for each other.
 inline btScalar dot(const btScalar* a, const btScalar* b, int count) {
-  using Vector = Eigen::Map<const Eigen::VectorXd>;
-  return Vector(a, count).dot(Vector(b, count));
+  btScalar sum0 = 0, sum1 = 0, sum2 = 0, sum3 = 0;
+  int i = 0;
+  for (; i + 4 <= count; i += 4) {
+    sum0 += a[i] * b[i];
+    sum1 += a[i + 1] * b[i + 1];
+    sum2 += a[i + 2] * b[i + 2];
+    sum3 += a[i + 3] * b[i + 3];
+  }
+  btScalar even = sum0 + sum2, odd = sum1 + sum3;
+  if (i + 2 <= count) {
+    even += a[i] * b[i];
+    odd += a[i + 1] * b[i + 1];
+    i += 2;
+  }
+  return i < count ? even + odd + a[i] * b[i] : even + odd;
 }
 
 }  // namespace
