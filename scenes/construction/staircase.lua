@@ -66,11 +66,13 @@ local function on_floor(face) return math.abs(face.up) < 0.02 end
 -- from the other sides. The first is where the structure's frame hangs.
 local fronts = {{x = 0, y = 0, yaw = 0}}
 
--- Sets dead reckoning right by the nearest front in sight.
-local function find_oneself(faces)
+-- Sets dead reckoning right by the nearest front in sight, or only by one column's: what it holds
+-- for their places differs from where they stand by millimetres, and by other ones for each.
+local function find_oneself(faces, only)
   for _, face in ipairs(faces) do
-    local front = fronts[column_of(face)]
-    if front and on_floor(face) and face.forward < 0.6 and face.payload == front.payload then
+    local column = column_of(face)
+    local front = fronts[column]
+    if front and (not only or column == only) and on_floor(face) and face.forward < 0.6 and face.payload == front.payload then
       local pose = builder.pose
       pose.yaw = front.yaw - face.heading
       local c, s = math.cos(pose.yaw), math.sin(pose.yaw)
@@ -341,7 +343,7 @@ function step()
   since = since + 1
   builder.reckon()
   local faces = builder.faces()
-  find_oneself(faces)
+  find_oneself(faces, state == "approach_column" and reference() or nil)
   local next_state = states[state](faces)
   if next_state then
     state, since, turned = next_state, 0, 0
