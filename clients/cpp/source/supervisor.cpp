@@ -1,6 +1,5 @@
 #include "ziggurat/supervisor.h"
 
-#include <google/protobuf/util/json_util.h>
 
 #include <algorithm>
 #include <cctype>
@@ -9,6 +8,7 @@
 #include "session_state.h"
 #include "ziggurat/error.h"
 #include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/json.h"
 
 namespace ziggurat {
 namespace {
@@ -187,8 +187,7 @@ Supervisor::~Supervisor() {
 ServerStatus Supervisor::status() {
   state_->request().mutable_status();
   const v1::Response& response = state_->ask();
-  state_->json.clear();
-  google::protobuf::util::MessageToJsonString(response.status(), &state_->json);
+  state_->json = v1::to_json(response.status());
   return status_of(response.status());
 }
 
@@ -238,8 +237,7 @@ WorldStates Supervisor::read(std::span<const std::string> entities) {
   v1::ReadRequest& read = *state_->request().mutable_read();
   for (const std::string& entity : entities) read.add_entities(v1::valid_utf8(entity));
   const v1::Response& response = state_->ask();
-  state_->json.clear();
-  google::protobuf::util::MessageToJsonString(response.states(), &state_->json);
+  state_->json = v1::to_json(response.states());
   WorldStates states{response.tick(), response.states().hash(), {}};
   for (const v1::States::Entity& entity : response.states().entities()) {
     states.entities.push_back(entity_of(entity));
