@@ -5,7 +5,10 @@
 // Every radio sends one message of 8 bytes in every second tick and listens in the others, so that
 // each tick has as many senders as receivers. About ten radios are within the range of each.
 
+#include "media/radio.h"
+
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,17 +17,14 @@
 #include <string_view>
 #include <vector>
 
-#include <time.h>
-
 #include "media/devices_index.h"
-#include "media/radio.h"
 
 namespace {
 
 using namespace ziggurat;
 
-constexpr double range = 1.0;       // [m]
-constexpr double neighbours = 10;   // within range, on average
+constexpr double range = 1.0;      // [m]
+constexpr double neighbours = 10;  // within range, on average
 
 struct Crowd {
   world::Layout layout;
@@ -33,8 +33,8 @@ struct Crowd {
 
 Crowd make_crowd(std::size_t count, bool flat) {
   constexpr double pi = std::numbers::pi;
-  const double per_radio = flat ? pi * range * range / neighbours
-                                : 4.0 / 3 * pi * range * range * range / neighbours;
+  const double per_radio =
+      flat ? pi * range * range / neighbours : 4.0 / 3 * pi * range * range * range / neighbours;
   const double edge = flat ? std::sqrt(per_radio * static_cast<double>(count))
                            : std::cbrt(per_radio * static_cast<double>(count));
   std::mt19937_64 random(1);

@@ -47,7 +47,8 @@ Exit codes: 0 finished; 1 fault of arguments or environment.
 int execute_keygen(const Arguments& arguments) {
   const auto parsed = parse(arguments, keygen_options());
   if (!parsed.positional.empty()) {
-    throw UsageError(fmt::format("'{}' is one too many; --out PREFIX is due", parsed.positional[0]));
+    throw UsageError(
+        fmt::format("'{}' is one too many; --out PREFIX is due", parsed.positional[0]));
   }
   const std::string prefix =
       parsed.values.count("out") > 0 ? parsed.values["out"].as<std::string>() : "ziggurat";

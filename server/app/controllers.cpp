@@ -39,9 +39,9 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
     const auto block = [&](std::size_t n) {
       return robots.begin() + static_cast<std::ptrdiff_t>(n * robots.size() / count);
     };
-    launches.push_back(lua_launch(
-        count == 1 ? "ziggurat-lua" : fmt::format("ziggurat-lua {} of {}", i + 1, count),
-        {block(i), block(i + 1)}, fmt::format("robots-{}", i), surroundings));
+    launches.push_back(
+        lua_launch(count == 1 ? "ziggurat-lua" : fmt::format("ziggurat-lua {} of {}", i + 1, count),
+                   {block(i), block(i + 1)}, fmt::format("robots-{}", i), surroundings));
   }
   return launches;
 }

@@ -50,12 +50,13 @@ std::optional<Ending> pace(double factor, const Driven& driven, clock::time_poin
   return driven.watch.sleep_until(due, simulation.commands());
 }
 
-// Until the tick is complete. Somebody may come when it was already, and is waited for, too; or pause
-// the world: then it stays where it is.
+// Until the tick is complete. Somebody may come when it was already, and is waited for, too; or
+// pause the world: then it stays where it is.
 std::optional<Ending> collect(const Driven& driven) {
   const auto& [simulation, server, watch, supervision] = driven;
   do {
-    if (auto stopped = watch.collect(simulation.commands(), simulation.state().tick)) return stopped;
+    if (auto stopped = watch.collect(simulation.commands(), simulation.state().tick))
+      return stopped;
   } while (server.paused());
   return std::nullopt;
 }

@@ -115,8 +115,7 @@ std::vector<std::size_t> undriven_robots(const scene::Scene& scene, const world:
   return robots;
 }
 
-void announce(const Options& options, const std::vector<std::string>& endpoints,
-              Console& console) {
+void announce(const Options& options, const std::vector<std::string>& endpoints, Console& console) {
   if (options.json) {
     console.result(
         nlohmann::ordered_json{{"endpoint", endpoints.front()}, {"endpoints", endpoints}}.dump());
@@ -191,8 +190,8 @@ bool report_hil(const Options& options, const scene::Scene& scene, const network
   for (std::size_t c = 0; c < scene.controllers.size(); ++c) {
     const auto& latencies = server.latencies()[c];
     if (latencies.count() == 0 && missed[c] == 0) continue;  // drives no robot
-    card.controllers.push_back({scene.controllers[c].id, latencies, missed[c], injections[c],
-                                server.lost_messages()[c]});
+    card.controllers.push_back(
+        {scene.controllers[c].id, latencies, missed[c], injections[c], server.lost_messages()[c]});
   }
   if (!options.report_card.empty()) {
     const bool is_picture = options.report_card.ends_with(".svg");

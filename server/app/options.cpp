@@ -49,11 +49,11 @@ po::options_description world_options() {
        "hold, zero, drop or stop; BUDGET misses in a row are held before drop and stop, or drop "
        "the robots after hold and zero; may be repeated")  //
       ("lease", text("S"),
-       "keep the robots of a controller whose connection is gone for it, for S seconds")  //
+       "keep the robots of a controller whose connection is gone for it, for S seconds")     //
       ("curve-secret", text("FILE"), "protect endpoints with this key ('ziggurat keygen')")  //
       ("curve-clients", text("FILE"),
        "who may connect: lines with a public key, roles (controller, supervisor, observer) and a "
-       "name")  //
+       "name")                                                       //
       ("insecure", "allow endpoints that other machines can reach")  //
       ("metrics", text("HOST:PORT"),
        "serve the run's status over HTTP there: /metrics for Prometheus, /status as JSON");
@@ -68,7 +68,8 @@ po::options_description hil_options() {
        "tenths of a tick is held to its last command, unless --deadline says otherwise")  //
       ("inject", texts("[CONTROLLER=][DIRECTION:]WHAT"),
        "hold back or lose messages as a network would: latency=5ms,jitter=2ms,loss=1% to a "
-       "controller (all, if none is named) and from it, or in the DIRECTION observations or commands "
+       "controller (all, if none is named) and from it, or in the DIRECTION observations or "
+       "commands "
        "only; may be repeated")  //
       ("gate", text("CONDITIONS"),
        "exit with 4 unless every controller meets them: p99<2ms,misses<0.1% (p50, p90, p99, p99.9, "
@@ -140,7 +141,11 @@ std::pair<std::string, std::string> to_controller(const std::string& value) {
 po::options_description run_options() {
   const po::options_description processes = controller_options();
   po::options_description options("", width);
-  options.add(world_options()).add(hil_options()).add(processes).add(output_options()).add(reading_options());
+  options.add(world_options())
+      .add(hil_options())
+      .add(processes)
+      .add(output_options())
+      .add(reading_options());
   return options;
 }
 

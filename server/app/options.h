@@ -35,13 +35,13 @@ struct Options {
   std::vector<DeadlineOption> deadlines;
   std::vector<InjectOption> injections;
   double lease = 0;  ///< [s] of the wall that robots of a lost session are kept for it
-  bool without_controllers = false;  ///< nobody drives the robots
+  bool without_controllers = false;         ///< nobody drives the robots
   std::string curve_secret, curve_clients;  ///< paths; both or none
-  bool hil = false;              ///< hardware in the loop: paced, and nobody is waited for
-  std::vector<Condition> gate;   ///< for controllers to meet
-  std::string report_card;       ///< path; empty = none
-  std::string metrics;           ///< host:port; empty = none
-  bool insecure = false;             ///< endpoints may be reached from other machines
+  bool hil = false;             ///< hardware in the loop: paced, and nobody is waited for
+  std::vector<Condition> gate;  ///< for controllers to meet
+  std::string report_card;      ///< path; empty = none
+  std::string metrics;          ///< host:port; empty = none
+  bool insecure = false;        ///< endpoints may be reached from other machines
 
   bool quiet = false;
   bool json = false;

@@ -12,9 +12,9 @@
 namespace ziggurat::app {
 
 struct ControllerCard {
-  std::string controller;        ///< id in the scene
-  network::Latencies latencies;  ///< from observation to command
-  std::uint64_t misses = 0;      ///< ticks at which a robot of it missed its deadline
+  std::string controller;         ///< id in the scene
+  network::Latencies latencies;   ///< from observation to command
+  std::uint64_t misses = 0;       ///< ticks at which a robot of it missed its deadline
   network::Injection injected{};  ///< done to its messages on purpose
   network::Lost lost{};           ///< by that
 };

@@ -97,8 +97,8 @@ bool runs_script(const scene::Controller& controller) {
 
 std::string file_of_params(const scene::Scene& scene, const scene::Entity& entity) {
   return scene::file_of(scene, entity.overrides_params
-                            ? entity.params_where
-                            : scene.controllers[*entity.controller].params_where);
+                                   ? entity.params_where
+                                   : scene.controllers[*entity.controller].params_where);
 }
 
 std::vector<scene::Problem> check_scripts(const scene::Scene& scene, const fs::path& scene_file) {

@@ -41,9 +41,8 @@ bool is_by_controller(Ending ending) {
 std::string to_text(const Summary& summary) {
   std::string text = fmt::format(
       "{}: {} ticks, {:.3f} s simulated in {:.3f} s: real-time factor {:.2f}, {:.0f} ticks/s\n",
-      is_by_controller(summary.ending) ? "ended early" : to_string(summary.ending),
-      summary.ticks, summary.simulated_s, summary.wall_s,
-      ratio(summary.simulated_s, summary.wall_s),
+      is_by_controller(summary.ending) ? "ended early" : to_string(summary.ending), summary.ticks,
+      summary.simulated_s, summary.wall_s, ratio(summary.simulated_s, summary.wall_s),
       ratio(static_cast<double>(summary.ticks), summary.wall_s));
   text += fmt::format("  wall time: physics {:.3f} s, exchange {:.3f} s, recording {:.3f} s",
                       summary.physics_s, summary.exchange_s, summary.recording_s);

@@ -15,7 +15,7 @@ enum class Ending {
   forced,
   controller_vanished,
   deadline_missed,  ///< of a controller whose policy is to stop
-  reset,  ///< of this world; another one follows
+  reset,            ///< of this world; another one follows
 };
 
 struct Summary {

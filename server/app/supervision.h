@@ -27,8 +27,8 @@ class Supervision {
     const scene::Scene& scene;
     const scene::Additions& additions;  ///< to the scene
     std::size_t room = 0;               ///< of what is spawned, models written out [bytes]
-    std::string path;        ///< of the scene
-    std::string scene_hash;  ///< 16 hexadecimal digits
+    std::string path;                   ///< of the scene
+    std::string scene_hash;             ///< 16 hexadecimal digits
     std::uint64_t seed = 0;
     std::optional<scene::Clock> clock;  ///< overrides the scene's
     std::uint64_t last_tick = 0;        ///< 0: until stopped
@@ -85,9 +85,9 @@ class Supervision {
   std::vector<network::Call> waiting_;  // unanswered, in order of arrival
   std::optional<network::Call> stepping_, resetting_;
   std::uint64_t steps_left_ = 0;
-  std::size_t spawned_ = 0;       // entities, since the start or the last reset
-  std::size_t room_;              // that is left for more [bytes]
-  std::size_t launched_ = 0;      // Lua processes for them, ever
+  std::size_t spawned_ = 0;   // entities, since the start or the last reset
+  std::size_t room_;          // that is left for more [bytes]
+  std::size_t launched_ = 0;  // Lua processes for them, ever
   bool is_gathered_ = false, shutdown_ = false;
   clock::time_point start_ = clock::now();
   std::optional<clock::time_point> standing_since_;

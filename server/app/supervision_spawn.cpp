@@ -16,8 +16,8 @@ using wire::ErrorCode;
 
 namespace {
 
-constexpr std::size_t most_spawned = 10'000;                  // since the start or a reset
-constexpr std::size_t longest_text = std::size_t{1} << 20;    // of an element [bytes]
+constexpr std::size_t most_spawned = 10'000;                     // since the start or a reset
+constexpr std::size_t longest_text = std::size_t{1} << 20;       // of an element [bytes]
 constexpr std::size_t longest_complaint = std::size_t{1} << 14;  // [bytes]
 
 }  // namespace
@@ -25,22 +25,23 @@ constexpr std::size_t longest_complaint = std::size_t{1} << 14;  // [bytes]
 Supervision::Reply Supervision::spawn(const network::Call& call) {
   const std::string& text = call.request.text;
   if (text.size() > longest_text) {
-    return fail(call, ErrorCode::too_large, "spawn.xml",
-                fmt::format("The element has {} bytes; {} are allowed.", text.size(), longest_text));
+    return fail(
+        call, ErrorCode::too_large, "spawn.xml",
+        fmt::format("The element has {} bytes; {} are allowed.", text.size(), longest_text));
   }
   if (spawned_ == most_spawned) {
-    return fail(call, ErrorCode::too_many, {},
-                fmt::format("{} entities have been spawned; a reset makes room for more.",
-                            most_spawned));
+    return fail(
+        call, ErrorCode::too_many, {},
+        fmt::format("{} entities have been spawned; a reset makes room for more.", most_spawned));
   }
-  scene::Addition addition =
-      subject_.additions.read(text, subject_.scene, room_, [this](const std::string& id) {
-        return entity_named(id).has_value();
-      });
+  scene::Addition addition = subject_.additions.read(
+      text, subject_.scene, room_,
+      [this](const std::string& id) { return entity_named(id).has_value(); });
   const scene::Entity& entity = addition.entity;
   try {
-    if (addition.ok()) std::ranges::move(check_script(subject_.scene, entity, subject_.path),
-                                         std::back_inserter(addition.problems));
+    if (addition.ok())
+      std::ranges::move(check_script(subject_.scene, entity, subject_.path),
+                        std::back_inserter(addition.problems));
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
     subject_.simulation.spawn(subject_.scene, entity);
   } catch (const scene::SceneError& error) {
@@ -53,8 +54,8 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
   return done(call);
 }
 
-/// Lets the last robot of the layout, which has just come, have its controller: a Lua process if the
-/// run has started those of the others, else whoever connects.
+/// Lets the last robot of the layout, which has just come, have its controller: a Lua process if
+/// the run has started those of the others, else whoever connects.
 void Supervision::employ(const scene::Entity& entity) {
   const simulation::Simulation& simulation = subject_.simulation;
   const std::array scripts{script_path(subject_.scene, entity, subject_.path)};

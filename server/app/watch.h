@@ -83,7 +83,7 @@ class Watch {
   Progress progress_;
   bool gathered_ = false;
   std::uint64_t tick_ = 0;
-  std::vector<wire::LogLine> log_;  ///< of a tick that is not over
+  std::vector<wire::LogLine> log_;                                  ///< of a tick that is not over
   std::vector<std::pair<std::size_t, Summary::Failure>> failures_;  ///< with the robot's place
   std::string vanished_;
   bool is_stopped_ = false;                           ///< by a deadline

@@ -31,8 +31,8 @@ void Joints::add(const Setting& setting, physics::World& physics) {
       if (sensor.mode == scene::JointMode::disabled || !has_coordinate(entity.joints[joint])) {
         sensors_.push_back({{}, false, true});
       } else {
-        sensors_.push_back({physics.joint(robot.entity, joint),
-                            sensor.mode == scene::JointMode::velocity, false});
+        sensors_.push_back(
+            {physics.joint(robot.entity, joint), sensor.mode == scene::JointMode::velocity, false});
       }
     }
   }
@@ -53,8 +53,8 @@ void Joints::sense(Tick& tick) const {
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     const Sensor& sensor = sensors_[i];
     if (sensor.disabled) continue;
-    tick.observations.joint_readings[i] = sensor.velocity ? tick.physics.velocity(sensor.joint)
-                                                          : tick.physics.position(sensor.joint);
+    tick.observations.joint_readings[i] =
+        sensor.velocity ? tick.physics.velocity(sensor.joint) : tick.physics.position(sensor.joint);
   }
 }
 

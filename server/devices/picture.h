@@ -17,7 +17,8 @@ class Pictures {
 
   void add(const Setting& setting);
 
-  /// Empty pictures, as of tick 0, of cameras that are new. @throws render::RenderError if there can't be any
+  /// Empty pictures, as of tick 0, of cameras that are new. @throws render::RenderError if there
+  /// can't be any
   void start(Tick& tick);
 
   /// Replaces all of them. @throws render::RenderError

@@ -36,8 +36,7 @@ void Positioning::sense(Tick& tick, std::size_t first) {
     if (!is_silent(sensor.position)) pose.position += draw(sensor.position, sensor.random);
     if (!is_silent(sensor.angle) || !is_silent(sensor.axis)) {
       const Eigen::AngleAxisd turn(pose.orientation);
-      const double angle =
-          turn.angle() + sensor.random.uniform(sensor.angle.min, sensor.angle.max);
+      const double angle = turn.angle() + sensor.random.uniform(sensor.angle.min, sensor.angle.max);
       math::Vector3 axis = turn.axis();
       if (!is_silent(sensor.axis)) axis += draw(sensor.axis, sensor.random);
       if (axis.norm() < 1e-12) axis = turn.axis();  // the noise took it away

@@ -9,7 +9,8 @@ namespace ziggurat::devices {
 double proximity_reading(double distance, const scene::Response* response) {
   if (!response) return std::exp(-distance);
   const auto& points = response->points;
-  const auto next = std::ranges::upper_bound(points, distance, {}, &scene::Response::Point::distance);
+  const auto next =
+      std::ranges::upper_bound(points, distance, {}, &scene::Response::Point::distance);
   if (next == points.begin()) return points.front().reading;
   if (next == points.end()) return points.back().reading;
   const scene::Response::Point &near = *(next - 1), &far = *next;
@@ -18,8 +19,8 @@ double proximity_reading(double distance, const scene::Response* response) {
 }
 
 double footbot_proximity_reading(double distance) {
-  constexpr double saturated = 0.009889556;                       // [m]
-  constexpr double strength = 0.0100527, offset = 0.000163144;    // [m]
+  constexpr double saturated = 0.009889556;                     // [m]
+  constexpr double strength = 0.0100527, offset = 0.000163144;  // [m]
   if (distance < saturated) return 1;
   return std::min(1.0, strength / (distance + offset));
 }
@@ -48,9 +49,7 @@ void Proximity::add(const Setting& setting) {
   }
 }
 
-void Proximity::start(Tick& tick) const {
-  tick.observations.proximity.resize(sensors_.size(), 0);
-}
+void Proximity::start(Tick& tick) const { tick.observations.proximity.resize(sensors_.size(), 0); }
 
 void Proximity::sense(Tick& tick) {
   for (Robot& robot : robots_) sense(tick, robot);

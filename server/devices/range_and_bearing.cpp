@@ -14,10 +14,10 @@ void RangeAndBearing::add(const Setting& setting) {
     const std::size_t device = robot.range_and_bearing.begin;
     const std::size_t medium = layout.range_and_bearing[device].medium;
     const bool occludes = setting.scene.media[medium].checks_occlusions;
-    receivers_[device].emplace(Receiver{
-        r, enabled.range_and_bearing_noise, enabled.range_and_bearing_loss,
-        enabled.range_and_bearing_show_rays, occludes,
-        math::RandomStream(setting.seed, "range_and_bearing/" + robot.id)});
+    receivers_[device].emplace(
+        Receiver{r, enabled.range_and_bearing_noise, enabled.range_and_bearing_loss,
+                 enabled.range_and_bearing_show_rays, occludes,
+                 math::RandomStream(setting.seed, "range_and_bearing/" + robot.id)});
     needs_index_ = true;
     casts_rays_ = casts_rays_ || occludes;
   }

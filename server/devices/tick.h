@@ -18,10 +18,10 @@ namespace ziggurat::devices {
 /// The world at its start, or what has come since the devices were told of it last.
 struct Setting {
   const scene::Scene& scene;
-  std::span<const scene::Entity> entities;  ///< those that are new, placed, in scene order
-  const world::Layout& layout;              ///< of all; outlives the devices
-  std::uint64_t seed;                       ///< of random streams
-  double tick_length;                       ///< simulated time per tick [s]
+  std::span<const scene::Entity> entities;        ///< those that are new, placed, in scene order
+  const world::Layout& layout;                    ///< of all; outlives the devices
+  std::uint64_t seed;                             ///< of random streams
+  double tick_length;                             ///< simulated time per tick [s]
   std::size_t first_entity = 0, first_robot = 0;  ///< into the layout: those before are known
   /// All entities as they were placed, in scene order; costs time.
   std::function<std::vector<scene::Entity>()> all_entities = {};

@@ -1,7 +1,8 @@
 #include "math/random.h"
 
-#include <boost/random/normal_distribution.hpp>
 #include <xxhash.h>
+
+#include <boost/random/normal_distribution.hpp>
 
 namespace ziggurat::math {
 

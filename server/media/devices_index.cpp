@@ -7,7 +7,7 @@
 namespace ziggurat::media {
 namespace {
 
-constexpr double rounding = 1e-9;  // [m]
+constexpr double rounding = 1e-9;                                     // [m]
 constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();  // never found
 
 template <class List>

@@ -203,7 +203,7 @@ class Barrier {
   Send send_;
   Clock::time_point now_;
   wire::Inbox inbox_;
-  wire::Outbox outbox_;  // everything but observations
+  wire::Outbox outbox_;                               // everything but observations
   wire::Encoding stranger_ = wire::Encoding::binary;  // of the last peer without session
   std::vector<std::unique_ptr<Session>> sessions_;
   std::unordered_map<std::string, Peer> peers_;      // looked up; walked only to forget some
@@ -223,11 +223,11 @@ class Barrier {
   Clock::time_point next_departure_ = Clock::time_point::max();  // of what is held back
   Clock::time_point next_arrival_ = Clock::time_point::max();    // likewise
   std::uint64_t heartbeats_ = 0;
-  std::vector<std::uint64_t> missed_ticks_;                 // per controller of the scene
+  std::vector<std::uint64_t> missed_ticks_;                // per controller of the scene
   std::vector<std::optional<std::uint64_t>> last_missed_;  // likewise
-  std::vector<Lost> lost_;                                  // per controller of the scene
-  std::vector<Call> calls_;            // not taken yet
-  std::vector<Latencies> latencies_;   // per controller of the scene
+  std::vector<Lost> lost_;                                 // per controller of the scene
+  std::vector<Call> calls_;                                // not taken yet
+  std::vector<Latencies> latencies_;                       // per controller of the scene
   Report report_;
 };
 

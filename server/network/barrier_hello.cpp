@@ -110,9 +110,8 @@ std::optional<wire::Refusal> Barrier::check_hello(const wire::Hello& hello,
   const auto connected = static_cast<std::size_t>(std::ranges::count_if(
       sessions_, [](const auto& each) { return each->state != SessionState::lost; }));
   if (connected >= config_.max_sessions) {
-    auto refused = refusal(
-        ErrorCode::too_many, {},
-        fmt::format("The server has {} sessions and takes no more.", connected));
+    auto refused = refusal(ErrorCode::too_many, {},
+                           fmt::format("The server has {} sessions and takes no more.", connected));
     refused.fault.retryable = true;
     return refused;
   }
@@ -138,10 +137,9 @@ std::optional<wire::Refusal> Barrier::check_deadline(const wire::Hello& hello,
     if (controller >= config_.deadlines.size()) continue;
     const Config::Deadline& deadline = config_.deadlines[controller];
     if (!deadline.is_fixed || deadline.policy == wish) continue;
-    auto refused = refusal(
-        ErrorCode::forbidden, "deadline_policy",
-        fmt::format("The deadline policy of controller '{}' is fixed: {}.",
-                    run_.controllers[controller].id, to_text(deadline.policy)));
+    auto refused = refusal(ErrorCode::forbidden, "deadline_policy",
+                           fmt::format("The deadline policy of controller '{}' is fixed: {}.",
+                                       run_.controllers[controller].id, to_text(deadline.policy)));
     refused.fault.robot = run_.layout.robots[robot].id;
     return refused;
   }

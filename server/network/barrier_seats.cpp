@@ -153,8 +153,9 @@ bool Barrier::say_end(Session& session, std::string why) {
 void Barrier::forget(Session& session) {
   if (session.state == SessionState::lost) return erase(session);
   const bool is_told = session.state == SessionState::draining ||
-                       say_end(session, "The world was reset, and has not all robots of this "
-                                        "session any more.");
+                       say_end(session,
+                               "The world was reset, and has not all robots of this "
+                               "session any more.");
   if (!is_told) return erase(session);
   for (const std::size_t robot : session.roster.robots) {
     if (seats_[robot].holder == &session) free_seat(robot, nullptr);

@@ -45,17 +45,15 @@ void Gatekeeper::answer() {
   const bool is_curve = request.size() == 7 && request[0] == "1.0" && request[5] == "CURVE";
   const auto found = is_curve ? clients_.find(request[6]) : clients_.end();
   const bool is_known = found != clients_.end();
-  const std::array<std::string, 6> reply{
-      "1.0",
-      request.size() > 1 ? request[1] : "",
-      is_known ? "200" : "400",
-      is_known ? "welcome" : "this key is not on the list",
-      is_known ? std::to_string(found->second) : "",
-      ""};
+  const std::array<std::string, 6> reply{"1.0",
+                                         request.size() > 1 ? request[1] : "",
+                                         is_known ? "200" : "400",
+                                         is_known ? "welcome" : "this key is not on the list",
+                                         is_known ? std::to_string(found->second) : "",
+                                         ""};
   for (std::size_t i = 0; i < reply.size(); ++i) {
     const bool is_last = i + 1 == reply.size();
-    socket_.send(zmq::buffer(reply[i]),
-                 is_last ? zmq::send_flags::none : zmq::send_flags::sndmore);
+    socket_.send(zmq::buffer(reply[i]), is_last ? zmq::send_flags::none : zmq::send_flags::sndmore);
   }
 }
 

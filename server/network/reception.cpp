@@ -68,9 +68,8 @@ Reception::HandedOver Reception::hand_over() {
   stop();
   // Who went away meanwhile shall have no session, and no lease.
   say(1, "The world is there.");
-  std::erase_if(visitors_, [&](const Visitor& each) {
-    return tell_loading(each) == Delivery::unreachable;
-  });
+  std::erase_if(visitors_,
+                [&](const Visitor& each) { return tell_loading(each) == Delivery::unreachable; });
   return {std::move(socket_), std::exchange(visitors_, {})};
 }
 
@@ -109,8 +108,8 @@ void Reception::take() {
                             max_message_bytes_),
                 Severity::fatal);
   }
-  const auto kind = received_.is_single_frame ? inbox_.parse(received_.bytes)
-                                              : wire::Inbox::Kind::malformed;
+  const auto kind =
+      received_.is_single_frame ? inbox_.parse(received_.bytes) : wire::Inbox::Kind::malformed;
   if (kind == wire::Inbox::Kind::malformed) {
     return fail(ErrorCode::malformed,
                 "Not a ClientMessage of ziggurat.v1: one ZeroMQ frame holds one message.",

@@ -108,9 +108,7 @@ Outcome Server::collect(world::Commands& commands, const Wait& wait) {
   return outcome;
 }
 
-void Server::finish(const wire::End& end) {
-  state_->barrier.finish(end);
-}
+void Server::finish(const wire::End& end) { state_->barrier.finish(end); }
 
 Outcome Server::drain(const Wait& wait) {
   return state_->wait_until([this] { return state_->barrier.drained(); }, wait, nullptr);

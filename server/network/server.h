@@ -53,7 +53,7 @@ struct Config {
     scene::DeadlinePolicy policy;
     bool is_fixed = false;  ///< no Hello may wish for another
   };
-  std::vector<Deadline> deadlines;  ///< per controller of the scene; missing: wait
+  std::vector<Deadline> deadlines;    ///< per controller of the scene; missing: wait
   std::vector<Injection> injections;  ///< per controller of the scene; missing: none
   int io_threads = 1;
 };

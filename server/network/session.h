@@ -27,10 +27,10 @@ enum class SessionState {
 };
 
 struct Session {
-  std::string peer;         ///< routing id of its connection
-  std::string token;        ///< to resume with
-  std::string client;       ///< name and version, for messages
-  std::uint32_t minor = 0;  ///< of the protocol, as agreed
+  std::string peer;                                  ///< routing id of its connection
+  std::string token;                                 ///< to resume with
+  std::string client;                                ///< name and version, for messages
+  std::uint32_t minor = 0;                           ///< of the protocol, as agreed
   wire::Encoding encoding = wire::Encoding::binary;  ///< of its messages, both ways
   wire::Role role = wire::Role::controller;
   wire::Roster roster;  ///< of other roles: empty
@@ -47,9 +47,9 @@ struct Session {
   Clock::time_point last_message;  ///< from it
   Clock::time_point last_sent;     ///< to it
   Clock::time_point lease_end;     ///< lost: until then nobody else gets its robots
-  std::size_t unanswered = 0;  ///< its requests
-  std::uint64_t misses = 0;    ///< deadlines
-  Latencies latencies;         ///< from observation to command
+  std::size_t unanswered = 0;      ///< its requests
+  std::uint64_t misses = 0;        ///< deadlines
+  Latencies latencies;             ///< from observation to command
   wire::Outbox observation;        ///< long-lived, for the tick path
 
   /// A controller of its robots whose messages are disturbed.

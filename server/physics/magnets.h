@@ -32,11 +32,11 @@ class Magnets final : public Plugin {
   /// A magnet, and what it moves with.
   struct Placed {
     std::size_t entity = 0;
-    std::size_t part = 0;                ///< that moves and feels the force
-    std::size_t link = 0;                ///< in whose shape it sits
-    std::optional<std::size_t> turning;  ///< the link that shows its orientation
-    magnetism::Magnet magnet;            ///< its body not yet numbered
-    std::size_t number = 0;              ///< among all that were ever added
+    std::size_t part = 0;                  ///< that moves and feels the force
+    std::size_t link = 0;                  ///< in whose shape it sits
+    std::optional<std::size_t> turning;    ///< the link that shows its orientation
+    magnetism::Magnet magnet;              ///< its body not yet numbered
+    std::size_t number = 0;                ///< among all that were ever added
     std::optional<math::Quaternion> turn;  ///< where it was when the field was given up
   };
 

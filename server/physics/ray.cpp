@@ -156,7 +156,8 @@ void Rays::add(const scene::Entity& entity) {
   Parts& p = *parts_;
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     const scene::Link& link = entity.links[i];
-    if (link.collides) p.solids.push_back({link.geometry, p.entities, p.links + i, {}, nullptr, false});
+    if (link.collides)
+      p.solids.push_back({link.geometry, p.entities, p.links + i, {}, nullptr, false});
   }
   p.links += entity.links.size();
   p.entities += 1;

@@ -71,9 +71,9 @@ struct World::Parts {
   void detach(Body& body);
 
   scene::Physics settings;
-  double gravity;  // [m/s^2]
-  int splits;      // internal substeps per substep
-  double length;   // of an internal substep [s]
+  double gravity;           // [m/s^2]
+  int splits;               // internal substeps per substep
+  double length;            // of an internal substep [s]
   std::size_t stepped = 0;  // so many bodies have been through a step; the rest is as placed
 
   /// Room that read() works in, kept so that a tick does not allocate it.

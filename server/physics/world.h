@@ -30,8 +30,8 @@ class World {
   void add(const scene::Entity& entity);
 
   /// Takes an entity out: its bodies, joints and magnets are gone, and what rested on it falls. Its
-  /// number and its places in State::links stay its own, and read() leaves them as they are. Nothing
-  /// else may be asked of it afterwards but its joints, which are at 0.
+  /// number and its places in State::links stay its own, and read() leaves them as they are.
+  /// Nothing else may be asked of it afterwards but its joints, which are at 0.
   void remove(std::size_t entity);
 
   /// The first entity, in order of adding, that another would overlap at its pose as all stand now.

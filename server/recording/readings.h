@@ -9,8 +9,8 @@
 
 namespace ziggurat::recording {
 
-/// One line per tick and robot that is there, in scene order: ziggurat.v1.Reading as protobuf JSON with the
-/// field names of recording.proto, devices sorted by id.
+/// One line per tick and robot that is there, in scene order: ziggurat.v1.Reading as protobuf JSON
+/// with the field names of recording.proto, devices sorted by id.
 class Readings {
  public:
   /// Keeps a reference to `layout`. @throws WriteError

@@ -29,7 +29,7 @@ class Trace {
   struct Row {
     std::string names;  ///< `,entity,link,` as it stands in the file
     std::size_t entity;
-    bool origin;        ///< whether `index` counts State::origins or State::links
+    bool origin;  ///< whether `index` counts State::origins or State::links
     std::size_t index;
   };
 

@@ -41,10 +41,10 @@ struct Additions::Parts {
 
 Additions::Additions() = default;
 Additions::Additions(Reading& reading)
-    : parts_(std::make_unique<Parts>(
-          Parts{reading.options, reading.defaults, reading.has_engine, std::move(reading.models),
-                std::move(reading.model_ids), std::move(reading.uses), std::move(reading.media),
-                std::move(reading.controllers)})) {}
+    : parts_(std::make_unique<Parts>(Parts{reading.options, reading.defaults, reading.has_engine,
+                                           std::move(reading.models), std::move(reading.model_ids),
+                                           std::move(reading.uses), std::move(reading.media),
+                                           std::move(reading.controllers)})) {}
 Additions::~Additions() = default;
 Additions::Additions(Additions&&) noexcept = default;
 Additions& Additions::operator=(Additions&&) noexcept = default;
@@ -67,7 +67,8 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t room,
   around.media = scene.media;
   Report report(around.files);
   if (text.size() > room) {
-    addition.problems = {{Problem::Severity::fault, name_of_additions, {}, "the file " + too_large(room)}};
+    addition.problems = {
+        {Problem::Severity::fault, name_of_additions, {}, "the file " + too_large(room)}};
     return addition;
   }
   Reading reading(report, around, parts_->options);

@@ -16,15 +16,15 @@ struct Reading;
 
 /// An entity that was read by itself.
 struct Addition {
-  Entity entity;                  ///< complete only if no problem is a fault; what it says itself is
-                                  ///< in the file number Scene::files.size()
+  Entity entity;  ///< complete only if no problem is a fault; what it says itself is
+                  ///< in the file number Scene::files.size()
   std::vector<Problem> problems;  ///< in the order of the text
   std::size_t size = 0;           ///< as written, its model written out [bytes]
   bool ok() const;                ///< no fault
 };
 
-/// What a scene knows for later elements beyond the plain data of Scene: its models, what its engine
-/// says for all bodies, what its controllers need.
+/// What a scene knows for later elements beyond the plain data of Scene: its models, what its
+/// engine says for all bodies, what its controllers need.
 class Additions {
  public:
   /// Of no scene. All that can be done with it is to assign another.

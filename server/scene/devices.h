@@ -62,16 +62,16 @@ struct Radio {
 /// The body of a magnet that is uniformly magnetised, centred on the magnet's offset.
 struct MagnetShape {
   enum class Kind { box, cylinder, sphere } kind = Kind::sphere;
-  math::Vector3 size = math::Vector3::Zero();  ///< of a box: full extents [m]
-  double radius = 0;                           ///< of a cylinder or sphere [m]
-  double height = 0;                           ///< of a cylinder, along its z [m]
+  math::Vector3 size = math::Vector3::Zero();                   ///< of a box: full extents [m]
+  double radius = 0;                                            ///< of a cylinder or sphere [m]
+  double height = 0;                                            ///< of a cylinder, along its z [m]
   math::Quaternion orientation = math::Quaternion::Identity();  ///< in the anchor frame
 };
 
 struct Magnet {
   std::string id;
   Anchor anchor;
-  math::Vector3 offset;         ///< in the anchor frame [m]
+  math::Vector3 offset;                                 ///< in the anchor frame [m]
   math::Vector3 passive_field = math::Vector3::Zero();  ///< the dialect's unit (docs/magnetism.md)
   math::Vector3 active_field = math::Vector3::Zero();   ///< added per unit of current
   Location where;
@@ -92,9 +92,9 @@ struct Response {
 
 struct ProximitySensor {
   Anchor anchor;
-  math::Vector3 offset;     ///< start of the ray in the anchor frame [m]
-  math::Vector3 direction;  ///< unit, in the anchor frame
-  double range;             ///< length of the ray [m]
+  math::Vector3 offset;              ///< start of the ray in the anchor frame [m]
+  math::Vector3 direction;           ///< unit, in the anchor frame
+  double range;                      ///< length of the ray [m]
   std::optional<bool> sees_floor;    ///< none: as the controller's sensor says
   std::optional<Response> response;  ///< none: as the controller's sensor says
   Location where;
@@ -162,11 +162,11 @@ struct Detector {
 
 struct Camera {
   std::string id;
-  std::string anchor;       ///< resolved against each entity that uses the controller
-  math::Pose pose;          ///< in the anchor frame; +z forward, +x right, +y down
-  double near = 0, far = 0; ///< range along the optical axis [m]
-  math::Vector2 focal_length;     ///< fx, fy [px]
-  math::Vector2 principal_point;  ///< cx, cy [px]
+  std::string anchor;                    ///< resolved against each entity that uses the controller
+  math::Pose pose;                       ///< in the anchor frame; +z forward, +x right, +y down
+  double near = 0, far = 0;              ///< range along the optical axis [m]
+  math::Vector2 focal_length;            ///< fx, fy [px]
+  math::Vector2 principal_point;         ///< cx, cy [px]
   std::array<unsigned, 2> resolution{};  ///< width, height [px]
   bool image = false;                    ///< it takes a picture at every tick
   std::vector<Detector> detectors;
@@ -199,7 +199,7 @@ struct ControllerDevices {
   bool proximity_sensor = false;
   bool footbot_proximity = false;  ///< that sensor is the foot-bot's own: its response, with angles
   bool proximity_show_rays = false;
-  double proximity_noise = 0;  ///< uniform in ± this, >= 0
+  double proximity_noise = 0;                  ///< uniform in ± this, >= 0
   bool proximity_sees_floor = false;           ///< of sensors that don't say
   std::optional<Response> proximity_response;  ///< of sensors that don't say; none: exp(-distance)
   bool range_and_bearing_actuator = false;

@@ -65,12 +65,12 @@ struct Damping {
 };
 
 struct Link {
-  std::string id;       ///< also the name of the link's anchor
+  std::string id;  ///< also the name of the link's anchor
   Geometry geometry;
-  bool collides = true; ///< false: a frame without body (a foot-bot's turret), its shape a point
-  double mass = 0;      ///< [kg]; > 0 unless the link is static
-  math::Pose offset;    ///< X_EL as written: only the reference link's decides where it stands,
-                        ///< joints place all others
+  bool collides = true;  ///< false: a frame without body (a foot-bot's turret), its shape a point
+  double mass = 0;       ///< [kg]; > 0 unless the link is static
+  math::Pose offset;     ///< X_EL as written: only the reference link's decides where it stands,
+                         ///< joints place all others
   Surface surface;
   Damping damping;
   Location where;
@@ -108,19 +108,19 @@ struct Traction {
 struct Entity {
   std::string id;
   EntityKind kind = EntityKind::prototype;
-  bool movable = true;             ///< false: the reference link is welded to the world
-  math::Pose pose;                 ///< X_WE at tick 0 (a distributed entity: set when placed)
-  std::vector<Link> links;         ///< in document order, at least one
-  std::size_t reference_link = 0;  ///< index into links: the root of the tree
-  std::vector<Joint> joints;       ///< ordered from the root outwards: a joint's parent link is
-                                   ///< the reference link or the child of an earlier joint
-  std::optional<Traction> traction;      ///< robots on wheels; their body is the reference link
-  std::optional<double> axle_length;     ///< distance between its two driven wheels [m]
-  std::optional<std::size_t> turret;     ///< index into links: a frame that turns about its z
+  bool movable = true;                ///< false: the reference link is welded to the world
+  math::Pose pose;                    ///< X_WE at tick 0 (a distributed entity: set when placed)
+  std::vector<Link> links;            ///< in document order, at least one
+  std::size_t reference_link = 0;     ///< index into links: the root of the tree
+  std::vector<Joint> joints;          ///< ordered from the root outwards: a joint's parent link is
+                                      ///< the reference link or the child of an earlier joint
+  std::optional<Traction> traction;   ///< robots on wheels; their body is the reference link
+  std::optional<double> axle_length;  ///< distance between its two driven wheels [m]
+  std::optional<std::size_t> turret;  ///< index into links: a frame that turns about its z
   Devices devices;
-  std::optional<std::size_t> controller;  ///< index into Scene::controllers
+  std::optional<std::size_t> controller;                    ///< index into Scene::controllers
   std::vector<std::pair<std::string, std::string>> params;  ///< the entity's own <params>, if
-  bool overrides_params = false;                            ///< it has one, replacing the controller's
+  bool overrides_params = false;     ///< it has one, replacing the controller's
   Location params_where;             ///< of that <params>
   std::optional<std::size_t> model;  ///< index into Scene::models; none: written out
   Location where;
@@ -158,26 +158,26 @@ struct Floor {
 struct Magnetism {
   double force_constant = 7.0500949e-13;  ///< k of the dialect's pair force
   std::optional<double> max_distance;     ///< pair cut-off [m]; none = unlimited
-  bool adaptive = false;   ///< magnets with a shape are as many sources as the tolerance asks for
-  double tolerance = 0.01; ///< relative, of the force and torque of a pair; adaptive only
-  double taper = 0;        ///< share of max_distance over which forces fade out, 0 to 1
+  bool adaptive = false;    ///< magnets with a shape are as many sources as the tolerance asks for
+  double tolerance = 0.01;  ///< relative, of the force and torque of a pair; adaptive only
+  double taper = 0;         ///< share of max_distance over which forces fade out, 0 to 1
 };
 
 /// A `<dynamics2d>`: what stands at its elevation keeps that height.
 struct Plane {
-  double elevation = 0;                 ///< [m]
-  Traction box{1.49, 1.49};             ///< how its ground brakes boxes
-  Traction cylinder{1.49, 1.49};        ///< and cylinders
+  double elevation = 0;           ///< [m]
+  Traction box{1.49, 1.49};       ///< how its ground brakes boxes
+  Traction cylinder{1.49, 1.49};  ///< and cylinders
 };
 
 struct Physics {
   std::string id;
   unsigned iterations = 10;  ///< substeps per tick, >= 1
   Clock clock = Clock::nominal;
-  std::optional<double> max_substep;         ///< [s]: longer substeps are split inside
-  std::optional<unsigned> solver_iterations; ///< constraint solver sweeps per substep
+  std::optional<double> max_substep;          ///< [s]: longer substeps are split inside
+  std::optional<unsigned> solver_iterations;  ///< constraint solver sweeps per substep
   std::optional<Floor> floor;
-  std::optional<double> gravity;             ///< downward acceleration [m/s^2]
+  std::optional<double> gravity;  ///< downward acceleration [m/s^2]
   std::optional<Magnetism> magnetism;
   std::vector<Plane> planes;  ///< in document order
   bool flat = false;          ///< there are planes only: they hold boxes and cylinders, too
@@ -206,10 +206,10 @@ struct Controller {
   bool lua = false;     ///< driven by ziggurat-lua; otherwise somebody connects
   std::string command;  ///< external_controller only: what `run` starts; may be empty
   std::optional<DeadlinePolicy> deadline;  ///< for when it is late; nothing: the scene has no say
-  ControllerDevices devices;  ///< what <actuators> and <sensors> enable
+  ControllerDevices devices;               ///< what <actuators> and <sensors> enable
   std::vector<std::pair<std::string, std::string>> params;  ///< all attributes of <params>
-  Location where;         ///< of the controller's element
-  Location params_where;  ///< of <params>
+  Location where;                                           ///< of the controller's element
+  Location params_where;                                    ///< of <params>
 };
 
 /// Something that many entities are alike in, `<models>` in the file.

@@ -208,9 +208,8 @@ void Outbox::response(std::uint64_t request, const Status& status) {
   finish();
 }
 
-void Outbox::response(std::uint64_t request, const world::Layout& layout,
-                      const world::State& state, std::span<const std::size_t> entities,
-                      std::string_view hash) {
+void Outbox::response(std::uint64_t request, const world::Layout& layout, const world::State& state,
+                      std::span<const std::size_t> entities, std::string_view hash) {
   v1::Response& response = *message_->message.mutable_response();
   response.Clear();
   response.set_id(request);

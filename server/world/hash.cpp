@@ -1,7 +1,7 @@
-#include "world/state.h"
-
 #include <span>
 #include <string_view>
+
+#include "world/state.h"
 
 namespace ziggurat::world {
 namespace {

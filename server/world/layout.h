@@ -1,7 +1,7 @@
 #pragma once
 // Who is in the world, in scene order: the names and positions that every flat array of State,
-// Observations and Commands is indexed by. While a world runs it only grows: who comes stands behind
-// all others, who goes leaves its places empty (State::absent).
+// Observations and Commands is indexed by. While a world runs it only grows: who comes stands
+// behind all others, who goes leaves its places empty (State::absent).
 
 #include <array>
 #include <cstddef>

@@ -15,16 +15,15 @@ using nlohmann::json;
 struct Twin : ::testing::Test {
   Twin()
       : small(2),
-        barrier(
-            {}, small.run(),
-            [this](const std::string& peer, const auto& message) {
-              if (peer == dead) return Delivery::unreachable;
-              std::string bytes(message.size(), '\0');
-              message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
-              inboxes[peer].push_back(bytes);
-              return Delivery::sent;
-            },
-            {}) {}
+        barrier({}, small.run(),
+                [this](const std::string& peer, const auto& message) {
+                  if (peer == dead) return Delivery::unreachable;
+                  std::string bytes(message.size(), '\0');
+                  message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
+                  inboxes[peer].push_back(bytes);
+                  return Delivery::sent;
+                },
+                {}) {}
 
   void say(const std::string& peer, const std::string& bytes) {
     barrier.receive(peer, bytes, &commands);

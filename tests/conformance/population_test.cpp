@@ -31,9 +31,7 @@ class Population : public ::testing::Test {
     const std::string script = "/scenes/spawned.lua";
     peers.barrier.add_robots({&script, 1}, small.observations(published), {});
   }
-  void remove(std::size_t robot) {
-    peers.barrier.remove_robots({&robot, 1}, "It was removed.");
-  }
+  void remove(std::size_t robot) { peers.barrier.remove_robots({&robot, 1}, "It was removed."); }
   /// The scene has two robots.
   void reset() {
     world::Layout& layout = small.layout();

@@ -27,7 +27,9 @@ void set_option(void* socket, int option, int value) {
 }  // namespace
 
 Connection::Connection(const Options& options)
-    : endpoint_(options.endpoint), context_(zmq_ctx_new()), socket_(zmq_socket(context_, ZMQ_DEALER)) {
+    : endpoint_(options.endpoint),
+      context_(zmq_ctx_new()),
+      socket_(zmq_socket(context_, ZMQ_DEALER)) {
   zmq_msg_init(&frame_);
   set_option(socket_, ZMQ_IPV6, endpoint_.find('[') == std::string::npos ? 0 : 1);
   set_option(socket_, ZMQ_TCP_KEEPALIVE, 1);

@@ -1,6 +1,5 @@
 #include "ziggurat/supervisor.h"
 
-
 #include <algorithm>
 #include <cctype>
 
@@ -223,7 +222,7 @@ std::uint64_t Supervisor::remove(std::string_view entity) {
 }
 
 std::uint64_t Supervisor::move(std::string_view entity, const std::array<double, 3>& position,
-                      const std::optional<std::array<double, 4>>& orientation) {
+                               const std::optional<std::array<double, 4>>& orientation) {
   v1::MoveRequest& move = *state_->request().mutable_move();
   move.set_entity(v1::valid_utf8(std::string(entity)));
   for (const double value : position) move.add_position(value);

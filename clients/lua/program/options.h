@@ -14,7 +14,7 @@ struct ProgramOptions {
   std::vector<std::string> robots;  ///< ids or globs, those of the robots' file included
   std::string controller;           ///< id in the scene; empty for all
   std::optional<std::filesystem::path> script;  ///< instead of the one the scene names
-  std::string server_key, curve_secret;  ///< as in ziggurat::Options
+  std::string server_key, curve_secret;         ///< as in ziggurat::Options
   std::string name = "ziggurat-lua";
   std::size_t max_memory = std::size_t{1} << 30;  ///< per robot [bytes]
   bool echo = false;                              ///< log lines are printed here too

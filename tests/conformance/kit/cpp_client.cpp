@@ -1,4 +1,5 @@
-// A controller on the C++ library for the conformance kit: all motors at one speed, all it hears back.
+// A controller on the C++ library for the conformance kit: all motors at one speed, all it hears
+// back.
 
 #include <exception>
 #include <iostream>

@@ -14,11 +14,11 @@ using namespace testing;
 
 /// How a drop went.
 struct Outcome {
-  int moving = 0;           ///< bodies faster than 2 mm/s over the last tick
-  int outside = 0;          ///< bodies beyond the walls' outer faces
-  double lowest = 0;        ///< of all bodies at all ticks [m]
-  double most_gain = 0;     ///< of energy over any earlier tick, in energies at release
-  double mean_height = 0;   ///< of the bodies' origins at the end [m]
+  int moving = 0;          ///< bodies faster than 2 mm/s over the last tick
+  int outside = 0;         ///< bodies beyond the walls' outer faces
+  double lowest = 0;       ///< of all bodies at all ticks [m]
+  double most_gain = 0;    ///< of energy over any earlier tick, in energies at release
+  double mean_height = 0;  ///< of the bodies' origins at the end [m]
 };
 
 Outcome drop(const scene::Scene& scene, std::uint64_t seed, int ticks) {
@@ -86,8 +86,7 @@ TEST(Drop, FreeFallIsSemiImplicitEuler) {
         const double n = tick * substeps;
         const double z = from.z() - gravity * h * h * n * (n + 1) / 2;
         // Who may have met the floor, or another body that fell alike: nobody turns in flight.
-        const bool turned =
-            run.state().links[link].angular_velocity.norm() > 0 || z < 2 * half;
+        const bool turned = run.state().links[link].angular_velocity.norm() > 0 || z < 2 * half;
         if (turned) continue;
         EXPECT_NEAR(to.z(), z, 1e-9) << entities[i].id << " at tick " << tick;
         EXPECT_NEAR(to.x(), from.x(), 1e-9) << entities[i].id;

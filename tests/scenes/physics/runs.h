@@ -27,8 +27,8 @@ inline scene::Scene vehicle_scene() {
 }
 
 /// Entities of the drop scene that fall: 1 cm boxes and cylinders, of 0.25 kg each.
-constexpr double half = 0.005;  // [m]
-constexpr double mass = 0.25;   // [kg]
+constexpr double half = 0.005;   // [m]
+constexpr double mass = 0.25;    // [kg]
 constexpr double gravity = 9.8;  // [m/s^2]
 
 inline bool falls(const world::EntityLayout& entity) { return entity.id.substr(1, 1) == "0"; }
@@ -50,8 +50,9 @@ inline double energy(const world::EntityLayout& entity, const world::LinkState& 
   const math::Vector3 spin = link.pose.orientation.conjugate() * link.angular_velocity;
   const double cube = mass * 4 * half * half / 6;
   const double across = mass * (3 * half * half + 4 * half * half) / 12;
-  const math::Vector3 inertia = is_box(entity) ? math::Vector3(cube, cube, cube)
-                                               : math::Vector3(across, across, mass * half * half / 2);
+  const math::Vector3 inertia = is_box(entity)
+                                    ? math::Vector3(cube, cube, cube)
+                                    : math::Vector3(across, across, mass * half * half / 2);
   return mass * (velocity.squaredNorm() / 2 + gravity * (link.pose.position + arm).z()) +
          spin.dot(inertia.cwiseProduct(spin)) / 2;
 }

@@ -11,10 +11,10 @@ using namespace testing;
 
 /// How a run of the vehicle went.
 struct Drive {
-  double turned = 0;         ///< about z, summed over the ticks [rad]
-  double away = 0;           ///< farthest from the start at any tick, in the plane [m]
-  double most_deviation = 0; ///< of an encoder from its target, from tick 1 on [rad/s]
-  math::Vector3 end;         ///< where the origin is at last [m]
+  double turned = 0;          ///< about z, summed over the ticks [rad]
+  double away = 0;            ///< farthest from the start at any tick, in the plane [m]
+  double most_deviation = 0;  ///< of an encoder from its target, from tick 1 on [rad/s]
+  math::Vector3 end;          ///< where the origin is at last [m]
 };
 
 /// @param left,right  targets of the wheels on either side, each about its own outward axis [rad/s]

@@ -21,9 +21,9 @@ TEST(DeadlineOption, ActionDeadlineAndBudget) {
 }
 
 TEST(DeadlineOption, NonsenseIsRefusedWithAnExample) {
-  for (const char* text : {"", "hold", "hold:", "hold:0", "hold:-1", "hold:50:", "hold:5:1:2",
-                           "wait:5", "kill:5", "=hold:5", "drive=", "hold:99999999999",
-                           "hold:5:x", "hold:5.5"}) {
+  for (const char* text :
+       {"", "hold", "hold:", "hold:0", "hold:-1", "hold:50:", "hold:5:1:2", "wait:5", "kill:5",
+        "=hold:5", "drive=", "hold:99999999999", "hold:5:x", "hold:5.5"}) {
     EXPECT_THROW(to_deadline(text), UsageError) << text;
   }
 }
@@ -34,10 +34,10 @@ TEST(DeadlineOption, ThoseThatNameAControllerWin) {
   scene.controllers[0].id = "drive";
   scene.controllers[1].id = "lift";
   scene.controllers[2].id = "look";
-  const auto options = parse_options({"s", "--deadline", "lift=drop:7", "--deadline", "hold:50",
-                                      "--deadline", "look=zero:1", "--deadline", "look=zero:2",
-                                      "--lease", "2.5"},
-                                     serve_options());
+  const auto options =
+      parse_options({"s", "--deadline", "lift=drop:7", "--deadline", "hold:50", "--deadline",
+                     "look=zero:1", "--deadline", "look=zero:2", "--lease", "2.5"},
+                    serve_options());
   EXPECT_EQ(options.lease, 2.5);
   const auto deadlines = deadlines_of(options.deadlines, scene);
   ASSERT_EQ(deadlines.size(), 3U);

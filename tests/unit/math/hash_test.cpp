@@ -5,7 +5,9 @@
 namespace ziggurat::math {
 namespace {
 
-TEST(Hash, OfNothingIsXxh64sPublishedValue) { EXPECT_EQ(to_hex(Hash().digest()), "ef46db3751d8e999"); }
+TEST(Hash, OfNothingIsXxh64sPublishedValue) {
+  EXPECT_EQ(to_hex(Hash().digest()), "ef46db3751d8e999");
+}
 
 TEST(Hash, SeesEveryBit) {
   Hash zero, minus_zero, twice;

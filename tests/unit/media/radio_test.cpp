@@ -52,9 +52,8 @@ TEST(Radio, ReachesStrictlyCloserThanTheSendersRange) {
 TEST(Radio, OrdersByReceiverSenderAndCallWhateverTheOrderOfArrival) {
   Scattered world;
   for (int i = 0; i < 5; ++i) world.add_radio({0.1 * i, 0, 0}, 10);
-  const Received expected{{0, "1a"}, {0, "1b"}, {0, ""}, {0, "3a"},
-                          {2, "1a"}, {2, "1b"}, {2, ""}, {2, "3a"},
-                          {4, "1a"}, {4, "1b"}, {4, ""}, {4, "3a"}};
+  const Received expected{{0, "1a"}, {0, "1b"}, {0, ""},   {0, "3a"}, {2, "1a"}, {2, "1b"},
+                          {2, ""},   {2, "3a"}, {4, "1a"}, {4, "1b"}, {4, ""},   {4, "3a"}};
   EXPECT_EQ(deliver(world, {{1, "1a"}, {1, "1b"}, {1, ""}, {3, "3a"}}), expected);
   EXPECT_EQ(deliver(world, {{3, "3a"}, {1, "1a"}, {1, "1b"}, {1, ""}}), expected);
   EXPECT_EQ(deliver(world, {{1, "1a"}, {3, "3a"}, {1, "1b"}, {1, ""}}), expected);
@@ -100,8 +99,8 @@ TEST(Radio, FollowsTheLinkItIsFixedTo) {
   world.add_radio({0, 0, 0}, 1);
   world.add_radio({9, 9, 9}, 1);
   world.state.links.resize(1);
-  world.state.links[0].pose = {{1.5, 0, 0},
-                               math::Quaternion(Eigen::AngleAxisd(M_PI / 2, math::Vector3::UnitZ()))};
+  world.state.links[0].pose = {
+      {1.5, 0, 0}, math::Quaternion(Eigen::AngleAxisd(M_PI / 2, math::Vector3::UnitZ()))};
   world.layout.radios[1].mount.link = 0;
   world.layout.radios[1].mount.pose.position = {0, 0.6, 0};  // turned: at x = 0.9
   EXPECT_EQ(deliver(world, {{0, "x"}}), (Received{{1, "x"}}));

@@ -68,9 +68,9 @@ TEST_F(Keys, ASecretThatOthersCanReadIsRefused) {
 
 TEST_F(Keys, TheListHasKeysRolesAndNames) {
   const std::string a = write_key_pair(path("a")), b = write_key_pair(path("b"));
-  const auto clients = read_client_keys(
-      write("list", "# who may connect\n\n" + a + " controller,observer Alice's robots\n" + b +
-                        "\tsupervisor\n"));
+  const auto clients = read_client_keys(write("list", "# who may connect\n\n" + a +
+                                                          " controller,observer Alice's robots\n" +
+                                                          b + "\tsupervisor\n"));
   ASSERT_EQ(clients.size(), 2U);
   EXPECT_EQ(clients[0].public_key, a);
   EXPECT_EQ(clients[0].name, "Alice's robots");

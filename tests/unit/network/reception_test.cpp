@@ -3,7 +3,6 @@
 #include "network/reception.h"
 
 #include <gtest/gtest.h>
-
 #include <unistd.h>
 
 #include <atomic>

@@ -26,9 +26,9 @@ Vector3 position(const World& world, std::size_t entity) {
 
 /// A pendulum that swings about y, held by a base in the air.
 scene::Entity pendulum(const Vector3& at) {
-  scene::Entity entity = prototype("pendulum", {at, math::Quaternion::Identity()}, false,
-                                   {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1),
-                                    link("bob", scene::Sphere{0.01}, 0.1)});
+  scene::Entity entity = prototype(
+      "pendulum", {at, math::Quaternion::Identity()}, false,
+      {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("bob", scene::Sphere{0.01}, 0.1)});
   entity.joints.push_back(joint(scene::JointType::revolute, Vector3::UnitY(),
                                 {{0, 0, 0}, math::Quaternion::Identity()},
                                 {{0.1, 0, 0.01}, math::Quaternion::Identity()}));

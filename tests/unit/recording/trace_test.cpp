@@ -90,11 +90,11 @@ TEST(Trace, FollowsWhoComesAndGoesAndBeginsAnewWithAWorld) {
   std::istringstream lines(text_of(path));
   std::vector<std::string> rows;
   for (std::string line; std::getline(lines, line);) rows.push_back(line.substr(0, 14));
-  EXPECT_EQ(rows, (std::vector<std::string>{
-                      "tick,time_s,en", "1,0,box,,0,0,0", "1,0,robot,,0,0", "1,0,robot,base",
-                      "1,0,robot,arm,", "2,0,robot,,0,0", "2,0,robot,base", "2,0,robot,arm,",
-                      "2,0,late,,0,0,", "0,0,other,,0,0", "0,0,robot,,0,0", "0,0,robot,base",
-                      "0,0,robot,arm,"}));
+  EXPECT_EQ(rows, (std::vector<std::string>{"tick,time_s,en", "1,0,box,,0,0,0", "1,0,robot,,0,0",
+                                            "1,0,robot,base", "1,0,robot,arm,", "2,0,robot,,0,0",
+                                            "2,0,robot,base", "2,0,robot,arm,", "2,0,late,,0,0,",
+                                            "0,0,other,,0,0", "0,0,robot,,0,0", "0,0,robot,base",
+                                            "0,0,robot,arm,"}));
 }
 
 TEST(Trace, QuotesIdsThatHoldCommasOrQuotes) {

@@ -21,12 +21,14 @@ SceneText scene_with_everything() {
       R"(</external_controller></controllers>)";
   text.arena = arena_with(R"(<box id="wall" size="1,1,1" movable="false"><body position="0,0,0"/>)"
                           R"(</box>)");
-  text.engines = R"(<physics_engines><dynamics3d id="dyn" default_friction="7"/></physics_engines>)";
+  text.engines =
+      R"(<physics_engines><dynamics3d id="dyn" default_friction="7"/></physics_engines>)";
   text.media = R"(<media><tag id="tags"/><led id="leds"/><range_and_bearing id="rab"/></media>)";
-  text.rest = R"(<models><prototype id="block"><links ref="core"><link id="core" geometry="box" )"
-              R"(size="1,1,1" mass="2"/></links><devices><tags medium="tags"><tag anchor="core" )"
-              R"(position="0,0,1" orientation="0,0,0" payload="7" side_length="0.1" )"
-              R"(observable_angle="90"/></tags></devices><controller config="lua"/></prototype></models>)";
+  text.rest =
+      R"(<models><prototype id="block"><links ref="core"><link id="core" geometry="box" )"
+      R"(size="1,1,1" mass="2"/></links><devices><tags medium="tags"><tag anchor="core" )"
+      R"(position="0,0,1" orientation="0,0,0" payload="7" side_length="0.1" )"
+      R"(observable_angle="90"/></tags></devices><controller config="lua"/></prototype></models>)";
   return text;
 }
 
@@ -64,8 +66,8 @@ TEST_F(Additions, ABoxIsReadAsInTheArena) {
 }
 
 TEST_F(Additions, AModelBringsItsDevicesAndItsController) {
-  const Addition addition =
-      add(R"(<prototype id="p" model="block" movable="false"><body position="0,0,3"/></prototype>)");
+  const Addition addition = add(
+      R"(<prototype id="p" model="block" movable="false"><body position="0,0,3"/></prototype>)");
   ASSERT_TRUE(addition.ok());
   EXPECT_EQ(addition.entity.model, 0u);
   EXPECT_EQ(addition.entity.controller, 0u);
@@ -76,9 +78,9 @@ TEST_F(Additions, AModelBringsItsDevicesAndItsController) {
 }
 
 TEST_F(Additions, ARobotTakesAControllerOfTheScene) {
-  const Addition addition = add(
-      R"(<foot-bot id="fb"><body position="0,0,0"/><controller config="wheels">)"
-      R"(<params speed="3"/></controller></foot-bot>)");
+  const Addition addition =
+      add(R"(<foot-bot id="fb"><body position="0,0,0"/><controller config="wheels">)"
+          R"(<params speed="3"/></controller></foot-bot>)");
   ASSERT_TRUE(addition.ok());
   EXPECT_EQ(addition.entity.controller, 1u);
   EXPECT_EQ(addition.entity.params.at(0).second, "3");
@@ -86,9 +88,11 @@ TEST_F(Additions, ARobotTakesAControllerOfTheScene) {
 }
 
 TEST_F(Additions, AreFaultyAsInTheArena) {
-  EXPECT_EQ(fault("<box id="), "spawn:1:9: malformed XML: the file ends too early; close every "
-                              "element that was opened");
-  EXPECT_EQ(fault("<box id=\"x\"\n movable=\"maybe\" size=\"1,1,1\" mass=\"1\"><body position=\"0,0,0\"/></box>"),
+  EXPECT_EQ(fault("<box id="),
+            "spawn:1:9: malformed XML: the file ends too early; close every "
+            "element that was opened");
+  EXPECT_EQ(fault("<box id=\"x\"\n movable=\"maybe\" size=\"1,1,1\" mass=\"1\"><body "
+                  "position=\"0,0,0\"/></box>"),
             "spawn:2:11: movable=\"maybe\" of <box> is not a truth value; write true or false (in "
             "box \"x\")");
   EXPECT_EQ(fault(R"(<prototype id="p" model="blok"><body position="0,0,3"/></prototype>)"),
@@ -114,9 +118,8 @@ TEST_F(Additions, HaveAnIdOfTheirOwn) {
 }
 
 TEST_F(Additions, SayTheSameWhenTheyAreWrongAgain) {
-  const std::string wrong =
-      R"(<box id="b" size="1,1,1" movable="false"><body position="5,0,0"/>)"
-      R"(<controller config="wheels"/></box>)";
+  const std::string wrong = R"(<box id="b" size="1,1,1" movable="false"><body position="5,0,0"/>)"
+                            R"(<controller config="wheels"/></box>)";
   const std::string unlike =
       R"(<prototype id="p" model="block"><body position="0,0,3"/><controller config="wheels"/>)"
       R"(</prototype>)";
@@ -127,7 +130,8 @@ TEST_F(Additions, SayTheSameWhenTheyAreWrongAgain) {
 TEST_F(Additions, HaveOnlySoMuchRoom) {
   EXPECT_TRUE(add(box, box.size()).ok());
   EXPECT_EQ(fault(box, 50).substr(0, 42), "spawn: the file is larger than 50 bytes; s");
-  const std::string small = R"(<prototype id="p" model="block"><body position="0,0,3"/></prototype>)";
+  const std::string small =
+      R"(<prototype id="p" model="block"><body position="0,0,3"/></prototype>)";
   EXPECT_NE(fault(small, 100).find("is one too many"), std::string::npos);
 }
 

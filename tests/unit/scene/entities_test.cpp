@@ -313,10 +313,10 @@ TEST(Distribute, TwoGroupsMayNotMakeTheSameIds) {
 
 TEST(Robots, FootBotHasTheDialectsGeometryAndDevices) {
   SceneText text = driven("", "");
-  text.arena = arena_with(
-      R"(<foot-bot id="f" rab_range="2" rab_data_size="4"><body position="1,2,0"/>)"
-      R"(<battery start_charge="0.5"/><controller config="c"/><dynamics2d>)"
-      R"(<differential_steering max_force="7"/></dynamics2d></foot-bot>)");
+  text.arena =
+      arena_with(R"(<foot-bot id="f" rab_range="2" rab_data_size="4"><body position="1,2,0"/>)"
+                 R"(<battery start_charge="0.5"/><controller config="c"/><dynamics2d>)"
+                 R"(<differential_steering max_force="7"/></dynamics2d></foot-bot>)");
   const ReadResult result = text.read();
   ASSERT_TRUE(result.problems.empty()) << all_problems(result);
   const Entity& robot = result.scene.entities.at(0);
@@ -330,10 +330,12 @@ TEST(Robots, FootBotHasTheDialectsGeometryAndDevices) {
   EXPECT_EQ(robot.traction->max_torque, 150);
   ASSERT_EQ(robot.devices.leds.size(), 13u);
   EXPECT_EQ(robot.devices.leds[0].anchor.link, 1);
-  EXPECT_NEAR(robot.devices.leds[3].offset.x(), 0.090036758 * std::cos(105 * std::numbers::pi / 180), 1e-15);
+  EXPECT_NEAR(robot.devices.leds[3].offset.x(),
+              0.090036758 * std::cos(105 * std::numbers::pi / 180), 1e-15);
   EXPECT_EQ(robot.devices.leds[12].offset, math::Vector3(0, 0, 0.174249733));
   ASSERT_EQ(robot.devices.proximity_sensors.size(), 24u);
-  EXPECT_NEAR(robot.devices.proximity_sensors[1].direction.y(), std::sin(22.5 * std::numbers::pi / 180), 1e-15);
+  EXPECT_NEAR(robot.devices.proximity_sensors[1].direction.y(),
+              std::sin(22.5 * std::numbers::pi / 180), 1e-15);
   EXPECT_EQ(robot.devices.range_and_bearing->range, 2);
   EXPECT_EQ(robot.devices.range_and_bearing->data_size, 4u);
   EXPECT_EQ(robot.devices.battery->start_charge, 0.5);
@@ -356,9 +358,9 @@ TEST(Robots, EPuckHasWhatItsDataSheetSays) {
 
 TEST(Robots, AreCheckedWhole) {
   SceneText text = driven("", "");
-  text.arena = arena_with(
-      R"(<foot-bot id="f" rab_range="-1" omnidirectional_camera_aperture="80"><body/>)"
-      R"(<dynamics2d><differential_steering max_force="0"/></dynamics2d></foot-bot>)");
+  text.arena =
+      arena_with(R"(<foot-bot id="f" rab_range="-1" omnidirectional_camera_aperture="80"><body/>)"
+                 R"(<dynamics2d><differential_steering max_force="0"/></dynamics2d></foot-bot>)");
   const auto said = faults(text.read());
   EXPECT_EQ(said.size(), 3u);
   EXPECT_EQ(count_containing(said, "rab_range=\"-1\""), 1u);
@@ -369,7 +371,8 @@ TEST(Robots, AreCheckedWhole) {
 TEST(Robots, HaveOnlyTheirOwnDevices) {
   const auto lacks = [](const std::string& device, const std::string& robot) {
     SceneText text = driven("<" + device + R"( implementation="default"/>)", "");
-    text.arena = arena_with("<" + robot + R"( id="r"><body/><controller config="c"/></)" + robot + ">");
+    text.arena =
+        arena_with("<" + robot + R"( id="r"><body/><controller config="c"/></)" + robot + ">");
     return count_containing(faults(text.read()), "are enabled for entity \"r\"");
   };
   EXPECT_EQ(lacks("differential_steering", "foot-bot"), 0u);

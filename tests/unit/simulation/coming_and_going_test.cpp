@@ -65,7 +65,8 @@ TEST(Spawn, ABoxFallsFromWhereItIsPlaced) {
 }
 
 TEST(Spawn, WhereSomethingStandsIsRefusedAndChangesNothing) {
-  World world({"", "", box("a", "0,0,5", false), gravity}), other({"", "", box("a", "0,0,5", false), gravity});
+  World world({"", "", box("a", "0,0,5", false), gravity}),
+      other({"", "", box("a", "0,0,5", false), gravity});
   world.step(3);
   other.step(3);
   try {
@@ -83,7 +84,8 @@ TEST(Spawn, WhereSomethingStandsIsRefusedAndChangesNothing) {
 
 TEST(Spawn, IsDeterministicAndGoneAfterAReset) {
   const SmallScene small{"", "<positioning implementation=\"default\"/>",
-                         box("a", "0,0,0.5") + robot("r", "2,0,0.3", tag("7")), gravity + "<floor/>"};
+                         box("a", "0,0,0.5") + robot("r", "2,0,0.3", tag("7")),
+                         gravity + "<floor/>"};
   World one(small), two(small), fresh(small);
   for (World* world : {&one, &two}) {
     world->step(4);
@@ -224,23 +226,26 @@ TEST(Spawn, RangeAndBearingReachesAsLongAsTheyAreThere) {
   ASSERT_EQ(packets.size(), 2u);
   EXPECT_EQ(packets[0].receiver, 0u);
   EXPECT_NEAR(packets[0].range, 1, 1e-12);
-  EXPECT_EQ(world.simulation.observations().range_and_bearing_data.at(packets[0].data.begin + 1), 9);
+  EXPECT_EQ(world.simulation.observations().range_and_bearing_data.at(packets[0].data.begin + 1),
+            9);
   world.simulation.remove(0);
   world.step();
   EXPECT_TRUE(packets.empty());
 }
 
 TEST(Spawn, LeavesWhatOthersCommandForTheTickInHand) {
-  const SmallScene small{R"(<leds implementation="default" medium="leds"/>)", "",
-                         robot("r", "0,0,0",
-                               R"(<leds medium="leds"><led anchor="base" offset="0,0,0" color="red"/></leds>)"),
-                         ""};
+  const SmallScene small{
+      R"(<leds implementation="default" medium="leds"/>)", "",
+      robot("r", "0,0,0",
+            R"(<leds medium="leds"><led anchor="base" offset="0,0,0" color="red"/></leds>)"),
+      ""};
   World world(small);
   world.step();
   world.simulation.commands().led_colors[0] = 0x00FF00;
   const auto before = world.simulation.state().led_colors;
-  world.spawn(robot("s", "3,0,0",
-                    R"(<leds medium="leds"><led anchor="base" offset="0,0,0" color="blue"/></leds>)"));
+  world.spawn(
+      robot("s", "3,0,0",
+            R"(<leds medium="leds"><led anchor="base" offset="0,0,0" color="blue"/></leds>)"));
   EXPECT_EQ(world.simulation.state().led_colors, (std::vector<world::Color>{0xFF0000, 0x0000FF}))
       << "nothing is applied before the tick";
   world.step();
@@ -256,7 +261,7 @@ TEST(Spawn, AFootBotIsDrivenAndItsPlacesStayWhenItIsRemoved) {
   };
   World world({wheels + R"(<footbot_turret implementation="default"/>)",
                wheels + R"(<footbot_turret_encoder implementation="default"/><footbot_proximity )"
-               R"(implementation="default"/><positioning implementation="default"/>)",
+                        R"(implementation="default"/><positioning implementation="default"/>)",
                foot_bot("a", "0,0,0"), gravity + "<floor/>"});
   world.step();
   world.spawn(foot_bot("b", "2,0,0"));
@@ -292,9 +297,10 @@ TEST(Remove, OfAJointedRobotLeavesItsReadings) {
       R"(<link id="arm" geometry="box" size=".5,.1,.1" mass="1"/></links><joints>)"
       R"(<joint id="hinge" type="revolute" axis="0,1,0"><parent link="base" position="0,0,0"/>)"
       R"(<child link="arm" position="-.25,0,0"/></joint></joints><controller config="c"/></prototype>)";
-  World world({R"(<joints implementation="default"><joint id="hinge" mode="velocity" max_impulse="1"/></joints>)",
-               R"(<joints implementation="default"><joint id="hinge" mode="position"/></joints>)", arm,
-               ""});
+  World world(
+      {R"(<joints implementation="default"><joint id="hinge" mode="velocity" max_impulse="1"/></joints>)",
+       R"(<joints implementation="default"><joint id="hinge" mode="position"/></joints>)", arm,
+       ""});
   world.simulation.commands().joint_targets[0] = 1;
   world.step(5);
   EXPECT_GT(world.simulation.observations().joint_readings[0], 0.3);

@@ -9,9 +9,8 @@ namespace {
 
 using testing::robot;
 
-const std::string leds =
-    R"(<leds medium="leds"><led anchor="origin" offset="1,2,3" color="red"/>)"
-    R"(<led anchor="base" offset="0,0,0" color="red"/></leds>)";
+const std::string leds = R"(<leds medium="leds"><led anchor="origin" offset="1,2,3" color="red"/>)"
+                         R"(<led anchor="base" offset="0,0,0" color="red"/></leds>)";
 const std::string radios =
     R"(<radios medium="air"><radio id="x" anchor="base" position="0,0,0" range="2"/></radios>)";
 
@@ -22,9 +21,8 @@ world::Layout layout_of(const std::string& actuators, const std::string& sensors
 }
 
 TEST(Layout, ListsLedsOfEverybodyAndThoseThatARobotSets) {
-  const std::string box =
-      R"(<box id="b" size="1,1,1" movable="false"><body/><leds medium="leds">)"
-      R"(<led anchor="origin" offset="0,0,0" color="blue"/></leds></box>)";
+  const std::string box = R"(<box id="b" size="1,1,1" movable="false"><body/><leds medium="leds">)"
+                          R"(<led anchor="origin" offset="0,0,0" color="blue"/></leds></box>)";
   const auto layout = layout_of(R"(<leds implementation="default" medium="leds"/>)", "",
                                 box + robot("r", "0,0,0", leds) + robot("s", "1,0,0", leds));
   ASSERT_EQ(layout.leds.size(), 5u);

@@ -86,10 +86,11 @@ TEST(Radio, MeasuresWithThePosesOfTheLastTick) {
   SmallScene small{both, both, testing::robot("a", "1.12,0,0", radio()) + arm, ""};
   std::string text = small.str();
   const std::string end = "</controllers>";
-  text.insert(text.find(end),
-              R"(<external_controller id="mover"><actuators><radios implementation="default"/>)"
-              R"(<joints implementation="default"><joint id="j" mode="velocity" max_impulse="100"/>)"
-              R"(</joints></actuators><sensors/><params/></external_controller>)");
+  text.insert(
+      text.find(end),
+      R"(<external_controller id="mover"><actuators><radios implementation="default"/>)"
+      R"(<joints implementation="default"><joint id="j" mode="velocity" max_impulse="100"/>)"
+      R"(</joints></actuators><sensors/><params/></external_controller>)");
   const auto read = scene::read_text(text, "small.argos");
   ASSERT_TRUE(read.ok()) << scene::to_string(read.problems.front());
   auto moved = read.scene;

@@ -105,11 +105,10 @@ std::string listening(const std::string& medium, const std::string& more = "") {
 constexpr const char* telling = R"(<range_and_bearing implementation="default"/>)";
 
 TEST(RangeAndBearing, TellsWhereTheOtherIsAndItsDataUntilChanged) {
-  Simulation simulation = SmallScene{telling, listening("rab"),
-                                     robot("a", "0,0,0", bearer()) +
-                                         robot("b", "0,2,0", bearer(), "90,0,0"),
-                                     ""}
-                              .run();
+  Simulation simulation =
+      SmallScene{telling, listening("rab"),
+                 robot("a", "0,0,0", bearer()) + robot("b", "0,2,0", bearer(), "90,0,0"), ""}
+          .run();
   EXPECT_TRUE(simulation.observations().range_and_bearing.empty());
   simulation.commands().range_and_bearing_data = {1, 2, 3, 4};
   for (int tick = 0; tick < 2; ++tick) {
@@ -129,12 +128,11 @@ TEST(RangeAndBearing, TellsWhereTheOtherIsAndItsDataUntilChanged) {
 
 TEST(RangeAndBearing, NeedsSightUnlessTheMediumSaysOtherwise) {
   const auto packets = [](const std::string& medium) {
-    Simulation simulation =
-        SmallScene{telling, listening(medium, "show_rays=\"true\""),
-                   robot("a", "-1,0,0", bearer(medium)) + robot("b", "1,0,0", bearer(medium)) +
-                       wall("0,0,-1"),
-                   ""}
-            .run();
+    Simulation simulation = SmallScene{telling, listening(medium, "show_rays=\"true\""),
+                                       robot("a", "-1,0,0", bearer(medium)) +
+                                           robot("b", "1,0,0", bearer(medium)) + wall("0,0,-1"),
+                                       ""}
+                                .run();
     simulation.step();
     EXPECT_EQ(simulation.state().rays.size(), 2u);
     return simulation.observations().range_and_bearing.size();
@@ -161,8 +159,7 @@ TEST(RangeAndBearing, LosesTheShareThatItShould) {
 
 TEST(Positioning, IsThePoseOfTheOriginWithNoiseInItsRange) {
   const std::string plain = R"(<positioning implementation="default"/>)";
-  const std::string noisy =
-      R"(<positioning implementation="default" pos_noise_range="0.1:0.2"/>)";
+  const std::string noisy = R"(<positioning implementation="default" pos_noise_range="0.1:0.2"/>)";
   const std::string at = robot("r", "1,2,3", "", "90,0,0");
   Simulation simulation = SmallScene{"", plain, at, ""}.run();
   simulation.step();

@@ -78,7 +78,8 @@ TEST(Outbox, InvalidTextOfASceneIsMadeValid) {
   const auto run = small.run();
   const std::vector<std::size_t> robots{0};
   Outbox outbox;
-  outbox.welcome(run, make_roster(run.layout, robots), Welcome{"token", 0, Role::controller, 0, 0, {}});
+  outbox.welcome(run, make_roster(run.layout, robots),
+                 Welcome{"token", 0, Role::controller, 0, 0, {}});
   v1::ServerMessage message;
   ASSERT_TRUE(message.ParseFromString(bytes_of(outbox)));
   EXPECT_EQ(message.welcome().robots(0).params(0).value(), "caf\xEF\xBF\xBD");

@@ -66,8 +66,9 @@ inline btScalar slab_gap(const Solid& a, const Solid& b, const btVector3& b_to_a
 }
 
 struct Gap {
-  btScalar distance = -BT_LARGE_FLOAT;  ///< of two bodies, or minus the least way out of overlap [m]
-  btVector3 b_to_a{0, 0, 1};            ///< unit
+  btScalar distance =
+      -BT_LARGE_FLOAT;        ///< of two bodies, or minus the least way out of overlap [m]
+  btVector3 b_to_a{0, 0, 1};  ///< unit
 };
 
 /// Directions spread evenly over the sphere.

@@ -69,7 +69,8 @@ btQuaternion random_rotation(math::RandomStream& random, int kind) {
 /// A pose of A against B from well inside to well apart.
 void place(math::RandomStream& random, int i, Solid& a, Solid& b) {
   const auto part = [&] { return random.gaussian(0, 1); };
-  const btVector3 origin(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+  const btVector3 origin(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3),
+                         random.uniform(-0.3, 0.3));
   b.pose = btTransform(random_rotation(random, i), origin);
   a.pose = btTransform(random_rotation(random, i / 2), origin);
   btVector3 direction = btVector3(part(), part(), part()).normalized();
@@ -88,7 +89,8 @@ void place(math::RandomStream& random, int i, Solid& a, Solid& b) {
 
 btScalar least(const Contacts& contacts) {
   btScalar distance = BT_LARGE_FLOAT;
-  for (int i = 0; i < contacts.count; ++i) distance = std::min(distance, contacts.points[i].distance);
+  for (int i = 0; i < contacts.count; ++i)
+    distance = std::min(distance, contacts.points[i].distance);
   return distance;
 }
 
@@ -134,7 +136,8 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
       EXPECT_LE(point.distance, reach + 1e-12);
       if (corners) continue;
       EXPECT_NEAR(b.distance(point.on_b), 0, pair.surface * size);
-      EXPECT_NEAR(a.distance(point.on_b + contacts.normal * point.distance), 0, pair.surface * size);
+      EXPECT_NEAR(a.distance(point.on_b + contacts.normal * point.distance), 0,
+                  pair.surface * size);
     }
   }
   EXPECT_GT(touching, 20);

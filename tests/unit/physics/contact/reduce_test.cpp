@@ -13,7 +13,8 @@ namespace {
 const Box cube{{0.005, 0.005, 0.005}};
 const Cylinder can{0.005, 0.005};
 
-btTransform at(btScalar x, btScalar y, btScalar z, const btVector3& axis = {0, 0, 1}, btScalar angle = 0) {
+btTransform at(btScalar x, btScalar y, btScalar z, const btVector3& axis = {0, 0, 1},
+               btScalar angle = 0) {
   return btTransform(btQuaternion(axis, angle), btVector3(x, y, z));
 }
 
@@ -87,13 +88,15 @@ TEST(Faces, ShareAtLeastThreePointsThatSpanTheOverlap) {
   for (const Face& face : faces) {
     for (const btScalar gap : {-5e-4, -1e-9, 0.0, 1e-9, 5e-4}) {
       for (const btScalar turn : {0.0, 1e-9, 0.1, 0.7853981633974483}) {
-        Contacts contacts = find(face.a, at(0, 0, 0.01 + gap, {0, 0, 1}, turn), face.b, at(0, 0, 0), 1e-3);
+        Contacts contacts =
+            find(face.a, at(0, 0, 0.01 + gap, {0, 0, 1}, turn), face.b, at(0, 0, 0), 1e-3);
         reduce(contacts, at(0, 0, 0));
         SCOPED_TRACE(::testing::Message() << face.name << ", gap " << gap << ", turn " << turn);
         EXPECT_GE(contacts.count, 3);
         EXPECT_NEAR(contacts.normal.z(), 1, 1e-6);
         EXPECT_GT(area(contacts), 0.65 * 2 * face.least_area / 2);
-        for (int i = 0; i < contacts.count; ++i) EXPECT_NEAR(contacts.points[i].distance, gap, 1e-9);
+        for (int i = 0; i < contacts.count; ++i)
+          EXPECT_NEAR(contacts.points[i].distance, gap, 1e-9);
       }
     }
   }
