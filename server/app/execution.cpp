@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -221,6 +222,8 @@ void conclude(const Options& options, const Summary& summary, Console& console) 
 int execute(const Options& options, Service service) {
   Console console({options.quiet, options.json});
   const auto& path = only_scene(options);
+  // Nobody shall connect for a scene that is not there, and that is told before anything listens.
+  if (!std::filesystem::exists(path)) load_scene(path, options, console);
   Signals signals;
   auto config = network_config(options, service);
   network::Reception reception(config, {signals.descriptor(), end_while_loading});

@@ -1,6 +1,7 @@
 #include "network/reception.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -79,6 +80,12 @@ void Reception::say(double progress, std::string message) {
   message_ = std::move(message);
 }
 
+/// A wait may also end because the process was stopped and goes on.
+bool Reception::is_readable() const {
+  pollfd descriptor{give_up_.descriptor, POLLIN, 0};
+  return ::poll(&descriptor, 1, 0) > 0;
+}
+
 void Reception::serve() {
   const std::array descriptors{wake_, give_up_.descriptor};
   const std::span watched(descriptors.data(), give_up_.end ? 2U : 1U);
@@ -86,7 +93,7 @@ void Reception::serve() {
   while (!is_over_) {
     const auto rest = std::chrono::ceil<milliseconds>(next - Clock::now());
     const auto ready = socket_->poll({std::max(rest, milliseconds{0}), watched});
-    if (ready == Socket::Ready::woken && !is_over_ && give_up_.end) {
+    if (ready == Socket::Ready::woken && !is_over_ && give_up_.end && is_readable()) {
       dismiss();
       return give_up_.end();
     }

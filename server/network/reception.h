@@ -52,6 +52,7 @@ class Reception {
   HandedOver hand_over();
 
  private:
+  bool is_readable() const;
   void serve();
   void take();
   void take_from(const Visitor& visitor, wire::Inbox::Kind kind);
