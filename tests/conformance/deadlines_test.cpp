@@ -1,0 +1,276 @@
+// The rules of docs/protocol.md on deadlines. A test is named after the rule it holds.
+
+#include <gtest/gtest.h>
+
+#include "pair.h"
+
+namespace ziggurat::network {
+namespace {
+
+using scene::DeadlineAction;
+using std::chrono::milliseconds;
+using Membership = RobotStatus::Membership;
+
+TEST(Deadline, HoldKeepsWhatWasCommanded) {
+  Pair pair(with_deadline(DeadlineAction::hold, 50));
+  pair.peers.pass(milliseconds{49});
+  EXPECT_FALSE(pair.peers.barrier.complete());
+  pair.peers.pass(milliseconds{1});
+  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_EQ(pair.target(), 3);
+  EXPECT_EQ(pair.peers.barrier.missed_ticks(), (std::vector<std::uint64_t>{1, 0}));
+}
+
+TEST(Deadline, ZeroStopsTheRobotUntilItIsCommandedAnew) {
+  Pair pair(with_deadline(DeadlineAction::zero, 50));
+  pair.peers.pass(milliseconds{50});
+  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_EQ(pair.target(), 0);
+  EXPECT_EQ(pair.peers.commands.joint_targets[1], 7);
+  pair.tick(6);
+  EXPECT_EQ(pair.target(), 0) << "W7";
+  pair.tick(7, {2});
+  EXPECT_EQ(pair.target(), 2);
+}
+
+TEST(Deadline, DropTakesTheRobotsOutForGood) {
+  Pair pair(with_deadline(DeadlineAction::drop, 50));
+  pair.peers.pass(milliseconds{50});
+  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_EQ(pair.target(), 0);
+  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::gone);
+  EXPECT_EQ(pair.peers.told("p").error().code(), v1::Error::DEADLINE_MISSED);
+  pair.peers.publish(6);
+  EXPECT_TRUE(pair.peers.inboxes["p"].empty()) << "L3";
+}
+
+TEST(Deadline, DropHoldsTheBudgetFirst) {
+  Pair pair(with_deadline(DeadlineAction::drop, 50, 2));
+  pair.miss_and_go_on(6);
+  pair.miss_and_go_on(7);
+  EXPECT_EQ(pair.target(), 3);
+  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::held);
+  pair.peers.pass(milliseconds{50});
+  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::gone);
+}
+
+TEST(Deadline, DropIsReportedWhateverNoiseStrangersMake) {
+  Pair pair(with_deadline(DeadlineAction::drop, 50));
+  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("stranger", "\xff");
+  pair.peers.pass(milliseconds{50});
+  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("stranger", "\xff");
+  const auto dropped = pair.peers.barrier.take_report().dropped;
+  ASSERT_EQ(dropped.size(), 1U);
+  EXPECT_NE(dropped[0].find("robot0"), std::string::npos);
+  EXPECT_TRUE(pair.peers.barrier.take_report().dropped.empty());
+}
+
+TEST(Deadline, HoldDropsBeyondTheBudget) {
+  for (const auto action : {DeadlineAction::hold, DeadlineAction::zero}) {
+    Pair pair(with_deadline(action, 50, 2));
+    pair.miss_and_go_on(6);
+    pair.miss_and_go_on(7);
+    EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::held);
+    pair.peers.pass(milliseconds{50});
+    EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::gone);
+  }
+}
+
+TEST(Deadline, StopEndsTheRunWithASentence) {
+  Pair pair(with_deadline(DeadlineAction::stop, 50, 1));
+  pair.miss_and_go_on(6);
+  EXPECT_TRUE(pair.peers.barrier.take_report().stopped.empty());
+  pair.peers.pass(milliseconds{50});
+  EXPECT_FALSE(pair.peers.barrier.complete());
+  const auto stopped = pair.peers.barrier.take_report().stopped;
+  EXPECT_NE(stopped.find("'lua'"), std::string::npos) << stopped;
+  EXPECT_NE(stopped.find("robot0"), std::string::npos);
+  EXPECT_NE(stopped.find("tick 6"), std::string::npos);
+  EXPECT_NE(stopped.find("stop:50:1"), std::string::npos);
+}
+
+TEST(Deadline, W1_TheLongestOfASessionCounts) {
+  Config config;
+  config.deadlines = {{{DeadlineAction::zero, 20, 0}, true}, {{DeadlineAction::hold, 60, 0}, true}};
+  const SmallRun small(2);
+  Peers peers(small, config);
+  const auto welcome = peers.join("p", "*");
+  EXPECT_FALSE(welcome.has_deadline_policy()) << "H14";
+  EXPECT_EQ(welcome.robots(0).deadline_policy().action(), v1::DeadlinePolicy::ZERO);
+  EXPECT_EQ(welcome.robots(1).deadline_policy().wall_deadline_ms(), 60U);
+  peers.publish(0);
+  peers.say("p", Peers::command(0, {3, 4}));
+  peers.publish(1);
+  peers.pass(milliseconds{59});
+  EXPECT_FALSE(peers.barrier.complete());
+  peers.pass(milliseconds{1});
+  EXPECT_TRUE(peers.barrier.complete());
+  peers.barrier.zero_missing(peers.commands);
+  EXPECT_EQ(peers.commands.joint_targets, (std::vector<double>{0, 4}));
+}
+
+TEST(Deadline, W1_ASessionWithARobotThatWaitsNeverMisses) {
+  Config config;
+  config.deadlines = {{{DeadlineAction::zero, 20, 0}, true}};
+  const SmallRun small(2);
+  Peers peers(small, config);
+  peers.join("p", "*");
+  peers.publish(0);
+  peers.pass(milliseconds{900'000});
+  EXPECT_FALSE(peers.barrier.complete());
+  peers.say("p", Peers::leave({1}));  // the one that waits
+  peers.pass(milliseconds{1});
+  EXPECT_TRUE(peers.barrier.complete());
+}
+
+TEST(Deadline, W1_ASessionWhoseRobotsHaveAllLeftIsNotLateForThat) {
+  for (const bool waits : {true, false}) {
+    const auto action = waits ? DeadlineAction::wait : DeadlineAction::hold;
+    Pair pair(with_deadline(action, 50));
+    pair.peers.say("p", Peers::leave({0}));
+    pair.peers.pass(milliseconds{49});
+    EXPECT_FALSE(pair.peers.barrier.complete()) << "L2: it still owes its Command";
+    EXPECT_TRUE(pair.peers.inboxes["p"].empty());
+    pair.peers.pass(milliseconds{1});
+    EXPECT_EQ(pair.peers.barrier.complete(), !waits);
+    if (waits) pair.peers.say("p", Peers::command(5));
+    EXPECT_TRUE(pair.peers.barrier.complete());
+  }
+}
+
+TEST(Deadline, W2_ADeadConnectionIsUnderTheSamePolicy) {
+  Pair pair(with_deadline(DeadlineAction::hold, 50));
+  pair.peers.unreachable.insert("p");
+  pair.peers.pass(milliseconds{50});  // it is told of its miss, and so found dead
+  EXPECT_TRUE(pair.peers.barrier.complete() || pair.peers.barrier.status()[0].awaited);
+  pair.peers.pass(milliseconds{50});
+  EXPECT_TRUE(pair.peers.barrier.complete());
+  pair.peers.publish(6);
+  pair.peers.say("q", Peers::command(6));
+  pair.peers.pass(milliseconds{0});
+  EXPECT_TRUE(pair.peers.barrier.complete()) << "nobody waits for it any more";
+  EXPECT_EQ(pair.target(), 3);
+  // Somebody comes: the tick in hand waits again, and the robot obeys.
+  pair.peers.publish(7);
+  pair.peers.say("q", Peers::command(7));
+  pair.peers.join("heir", "robot0");
+  EXPECT_FALSE(pair.peers.barrier.complete());
+  pair.peers.say("heir", Peers::command(7, {9}));
+  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_EQ(pair.target(), 9);
+}
+
+TEST(Deadline, W3_TheBeginningWaitsForEver) {
+  const SmallRun small(2);
+  Peers peers(small, with_deadline(DeadlineAction::drop, 50));
+  peers.join("p", "robot0");
+  peers.pass(milliseconds{10'000});
+  EXPECT_FALSE(peers.barrier.gathered());
+  EXPECT_EQ(peers.barrier.status()[1].membership, Membership::free);
+}
+
+TEST(Deadline, W4_AnAnswerSetsTheBudgetBack) {
+  Pair pair(with_deadline(DeadlineAction::drop, 50, 1));
+  pair.peers.pass(milliseconds{50});
+  pair.tick(6);
+  pair.peers.publish(7);
+  pair.peers.say("q", Peers::command(7));
+  pair.peers.pass(milliseconds{50});
+  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::held);
+  EXPECT_EQ(pair.peers.barrier.missed_ticks()[0], 2U);
+}
+
+TEST(Deadline, W5_TheSessionIsToldAndGetsWhatFollows) {
+  Pair pair(with_deadline(DeadlineAction::hold, 50));
+  pair.peers.pass(milliseconds{50});
+  const auto error = pair.peers.told("p").error();
+  EXPECT_EQ(error.code(), v1::Error::DEADLINE_MISSED);
+  EXPECT_EQ(error.severity(), v1::Error::WARNING);
+  EXPECT_EQ(error.tick(), 5U);
+  pair.peers.publish(6);
+  EXPECT_EQ(pair.peers.told("p").observation().tick(), 6U);
+}
+
+TEST(Deadline, W6_LateCommandsAreStaleAndNoOffence) {
+  Pair pair(with_deadline(DeadlineAction::hold, 50));
+  for (std::uint64_t tick = 5; tick < 300; ++tick) {
+    pair.miss_and_go_on(tick + 1);
+    pair.peers.inboxes.clear();
+    pair.peers.say("p", Peers::command(tick, {99}));
+    const auto error = pair.peers.told("p").error();
+    ASSERT_EQ(error.code(), v1::Error::STALE_TICK);
+    ASSERT_EQ(error.severity(), v1::Error::DISCARD);
+  }
+  EXPECT_EQ(pair.target(), 3);
+  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::held);
+}
+
+TEST(Deadline, W6_AlsoWhileTheTickIsInHand) {
+  Config config = with_deadline(DeadlineAction::hold, 50);
+  config.deadlines.pop_back();
+  Pair pair(config);
+  pair.peers.publish(6);
+  pair.peers.pass(milliseconds{50});
+  EXPECT_FALSE(pair.peers.barrier.complete()) << "q waits for ever";
+  pair.peers.inboxes.clear();
+  pair.peers.say("p", Peers::command(6, {99}));
+  EXPECT_EQ(pair.peers.told("p").error().code(), v1::Error::STALE_TICK);
+}
+
+TEST(Deadline, W8_AFullQueueIsAMissOrALoss) {
+  Pair held(with_deadline(DeadlineAction::hold, 50));
+  held.peers.say("p", Peers::command(5));
+  held.peers.congested.insert("p");
+  held.peers.publish(6);
+  EXPECT_EQ(held.peers.barrier.status()[0].membership, Membership::held);
+  held.peers.say("q", Peers::command(6));
+  held.peers.pass(milliseconds{50});
+  EXPECT_TRUE(held.peers.barrier.complete());
+  Pair waited{Config{}};
+  waited.peers.say("p", Peers::command(5));
+  waited.peers.congested.insert("p");
+  waited.peers.publish(6);
+  EXPECT_EQ(waited.peers.barrier.status()[0].membership, Membership::free);
+}
+
+TEST(Deadline, H8_AWishIsGrantedUnlessThePolicyIsFixed) {
+  const SmallRun small(2);
+  Config config;
+  config.deadlines = {{}, {{DeadlineAction::drop, 70, 3}, true}};
+  Peers peers(small, config);
+  peers.say("p", wish("robot0", v1::DeadlinePolicy::HOLD, 40, 5));
+  const auto policy = peers.told("p").welcome().deadline_policy();
+  EXPECT_EQ(policy.action(), v1::DeadlinePolicy::HOLD);
+  EXPECT_EQ(policy.wall_deadline_ms(), 40U);
+  EXPECT_EQ(policy.miss_budget(), 5U);
+  peers.say("q", wish("robot1", v1::DeadlinePolicy::HOLD, 40, 5));
+  EXPECT_EQ(peers.told("q").refusal().error().code(), v1::Error::FORBIDDEN);
+  peers.say("q", wish("robot1", v1::DeadlinePolicy::DROP, 70, 3));
+  EXPECT_EQ(peers.told("q").welcome().deadline_policy().action(), v1::DeadlinePolicy::DROP);
+}
+
+TEST(Deadline, H15_AWishThatIsNeverGrantedIsToldBeforeATakenRobot) {
+  const SmallRun small(1);
+  Peers peers(small, with_deadline(DeadlineAction::hold, 50));
+  peers.join("p", "robot0");
+  peers.say("q", wish("robot0", v1::DeadlinePolicy::WAIT, 0));
+  const auto error = peers.told("q").refusal().error();
+  EXPECT_EQ(error.code(), v1::Error::FORBIDDEN);
+  EXPECT_FALSE(error.retryable());
+}
+
+TEST(Deadline, H8_PoliciesThatMakeNoSense) {
+  const SmallRun small(1);
+  Peers peers(small);
+  peers.say("p", wish("*", v1::DeadlinePolicy::HOLD, 0));
+  EXPECT_EQ(peers.told("p").refusal().error().code(), v1::Error::BAD_VALUE);
+  for (const int action : {6, -1, 1'000'000}) {
+    peers.say("p", wish("*", static_cast<v1::DeadlinePolicy::Action>(action), 10));
+    EXPECT_EQ(peers.told("p").refusal().error().code(), v1::Error::BAD_VALUE) << action;
+  }
+  peers.say("p", wish("*", v1::DeadlinePolicy::ACTION_UNSPECIFIED, 0));
+  EXPECT_EQ(peers.told("p").welcome().deadline_policy().action(), v1::DeadlinePolicy::WAIT);
+}
+
+}  // namespace
+}  // namespace ziggurat::network
