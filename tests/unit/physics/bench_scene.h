@@ -68,6 +68,15 @@ inline scene::Joint joint(scene::JointType type, const math::Vector3& axis,
   return joint;
 }
 
+/// @param offset  [m]  @param field  the dialect's unit; both in the link's frame
+inline scene::Magnet magnet(int link, const math::Vector3& offset, const math::Vector3& field) {
+  scene::Magnet magnet;
+  magnet.anchor.link = link;
+  magnet.offset = offset;
+  magnet.passive_field = field;
+  return magnet;
+}
+
 inline world::State state_of(const World& world) {
   world::State state;
   world.read(state);

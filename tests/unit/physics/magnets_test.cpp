@@ -17,14 +17,6 @@ scene::Physics magnetic(double g) {
   return physics;
 }
 
-scene::Magnet magnet(int link, const Vector3& offset, const Vector3& field) {
-  scene::Magnet magnet;
-  magnet.anchor.link = link;
-  magnet.offset = offset;
-  magnet.passive_field = field;
-  return magnet;
-}
-
 /// A stigmergic block: a 55 mm cube with eight spherical magnets on spherical joints.
 scene::Entity block(const std::string& id, const Pose& pose, bool movable = true) {
   scene::Entity entity =

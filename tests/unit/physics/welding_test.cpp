@@ -292,14 +292,6 @@ scene::Physics magnetic() {
   return physics;
 }
 
-scene::Magnet magnet(int link, const Vector3& offset, const Vector3& field) {
-  scene::Magnet magnet;
-  magnet.anchor.link = link;
-  magnet.offset = offset;
-  magnet.passive_field = field;
-  return magnet;
-}
-
 Pose after_pull(const scene::Entity& bar, int link) {
   World world(magnetic(), 0.001);
   scene::Entity pole = prototype("pole", at(0.3, 0.25, 0.4), false,
