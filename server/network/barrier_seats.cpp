@@ -20,14 +20,19 @@ void Barrier::take_seat(std::size_t robot, Session& session) {
   seat.claimant = nullptr;
 }
 
+/// The tick does not wait again for a robot whose session has missed it.
+/// @param robot     held by a session
 /// @param claimant  the lost session that may take it up again; null: nobody
 void Barrier::free_seat(std::size_t robot, Session* claimant) {
   Seat& seat = seats_[robot];
+  const Session& holder = *seat.holder;
   ++free_;
+  seat.passed = holder.has_missed && observations_ && holder.tick == observations_->tick;
+  if (seat.passed) ++passed_;
+  seat.free_since = seat.passed ? holder.owes_since : now_;
   seat.holder = nullptr;
   seat.claimant = claimant;
-  seat.free_since = now_;
-  if (seat.deadline.action == scene::DeadlineAction::wait) return;
+  if (seat.passed || seat.deadline.action == scene::DeadlineAction::wait) return;
   const std::chrono::milliseconds deadline{seat.deadline.wall_deadline_ms};
   next_deadline_ = std::min(next_deadline_, now_ + deadline);
 }

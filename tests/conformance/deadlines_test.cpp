@@ -142,9 +142,9 @@ TEST(Deadline, W2_ADeadConnectionIsUnderTheSamePolicy) {
   Pair pair(with_deadline(DeadlineAction::hold, 50));
   pair.peers.unreachable.insert("p");
   pair.peers.pass(milliseconds{50});  // it is told of its miss, and so found dead
-  EXPECT_TRUE(pair.peers.barrier.complete() || pair.peers.barrier.status()[0].awaited);
-  pair.peers.pass(milliseconds{50});
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::free);
+  EXPECT_TRUE(pair.peers.barrier.complete()) << "a tick is missed once";
+  EXPECT_EQ(pair.peers.barrier.missed_ticks()[0], 1U);
   pair.peers.publish(6);
   pair.peers.say("q", Peers::command(6));
   pair.peers.pass(milliseconds{0});
@@ -158,6 +158,25 @@ TEST(Deadline, W2_ADeadConnectionIsUnderTheSamePolicy) {
   pair.peers.say("heir", Peers::command(7, {9}));
   EXPECT_TRUE(pair.peers.barrier.complete());
   EXPECT_EQ(pair.target(), 9);
+}
+
+TEST(Deadline, W2_ATickThatWasMissedIsNotAwaitedOnceMoreWhenTheConnectionGoes) {
+  Config config = with_deadline(DeadlineAction::stop, 50, 1);
+  config.deadlines.pop_back();
+  Pair pair(config);
+  pair.peers.publish(6);
+  pair.peers.pass(milliseconds{50});
+  pair.peers.unreachable.insert("p");
+  pair.peers.pass(milliseconds{100'000});  // a heartbeat finds it dead while q is waited for
+  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::free);
+  EXPECT_FALSE(pair.peers.barrier.status()[0].awaited);
+  pair.peers.pass(milliseconds{50});
+  EXPECT_TRUE(pair.peers.barrier.take_report().stopped.empty()) << "one miss is within the budget";
+  pair.peers.say("q", Peers::command(6));
+  EXPECT_TRUE(pair.peers.barrier.complete());
+  pair.peers.publish(7);
+  pair.peers.pass(milliseconds{0});
+  EXPECT_FALSE(pair.peers.barrier.take_report().stopped.empty()) << "and two are not";
 }
 
 TEST(Deadline, W3_TheBeginningWaitsForEver) {

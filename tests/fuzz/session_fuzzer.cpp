@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <optional>
@@ -27,10 +28,12 @@ using std::chrono::milliseconds;
 constexpr std::size_t robots = 4;
 constexpr std::size_t seats = 5;  // peers at a time
 constexpr std::size_t most_sessions = 3;
-constexpr int longest_deadline_ms = 400;
 
-void require(bool condition) {
-  if (!condition) std::abort();
+/// Ends the program, with the line that asked, unless the condition holds.
+void require(bool condition, int line = __builtin_LINE()) {
+  if (condition) return;
+  std::fprintf(stderr, "%s:%d: this does not hold\n", __FILE__, line);
+  std::abort();
 }
 
 struct Input {
@@ -135,7 +138,7 @@ class Play {
   Phase phase_ = Phase::gathering;
   std::uint64_t tick_ = 0;  // published
   bool is_paused_ = false, is_stopped_ = false;
-  bool has_waited_ = false;  // longer than any deadline, and nothing has happened since
+  bool has_looked_ = false;  // at deadlines, and nothing has happened since
   v1::ServerMessage heard_;
   std::vector<std::uint8_t> bytes_;
   Barrier barrier_;
@@ -293,7 +296,7 @@ void Play::pass() {
   static constexpr std::array<int, 8> times{1, 20, 99, 101, 500, 1000, 5000, 61'000};
   const int time = times[input_.below(times.size())];
   barrier_.advance(now_ += milliseconds{time});
-  has_waited_ = time > longest_deadline_ms;
+  has_looked_ = true;
   require(barrier_.due() > now_);  // or the server would never sleep
 }
 
@@ -371,7 +374,7 @@ void Play::supervise() {
 }
 
 void Play::step() {
-  has_waited_ = false;
+  has_looked_ = false;
   switch (input_.below(16)) {
     case 0:
     case 1:
@@ -413,19 +416,19 @@ void Play::check_robots(const wire::Status& status) const {
   require(std::ranges::all_of(places, [](int place) { return place == 1; }));
 }
 
-/// Unless somebody is waited for for ever, the tick is over.
+/// Unless somebody is waited for that is not due yet, the tick is over.
 void Play::check_deadlines(const wire::Status& status) {
-  if (!has_waited_ || phase_ != Phase::collecting || is_paused_ || barrier_.complete()) return;
+  if (!has_looked_ || phase_ != Phase::collecting || is_paused_ || barrier_.complete()) return;
   for (const wire::SessionStatus& session : status.sessions) {
     // Its robots have left; what it owes is due as it was for them.
     if (session.state == wire::SessionStatus::State::owing && session.robots.empty()) return;
   }
-  using Membership = RobotStatus::Membership;
-  const auto waits = [](const RobotStatus& robot) {
-    return robot.membership != Membership::gone &&
-           robot.deadline.action == scene::DeadlineAction::wait;
+  const auto is_not_due = [&](const RobotStatus& robot) {
+    const milliseconds deadline{robot.deadline.wall_deadline_ms};
+    return robot.awaited && (robot.deadline.action == scene::DeadlineAction::wait ||
+                             now_ < robot.awaited_since + deadline);
   };
-  if (std::ranges::any_of(barrier_.status(), waits)) return;
+  if (std::ranges::any_of(barrier_.status(), is_not_due)) return;
   is_stopped_ |= !barrier_.take_report().stopped.empty();
   require(is_stopped_);
 }
