@@ -1,40 +1,50 @@
-# With CMAKE_UNITY_BUILD (preset `sanitized`) several sources are compiled as one, which halves the
-# time: most of it is headers. These stand alone, as names in their anonymous namespaces are also
-# those of others.
-if(NOT CMAKE_UNITY_BUILD)
-  return()
-endif()
+# Compiling several sources as one halves the time, as most of it is headers: the tests are built so
+# (ZIGGURAT_UNITY_TESTS), with the preset `sanitized` everything (CMAKE_UNITY_BUILD). The sources
+# below stand alone, as names in their anonymous namespaces are also those of others.
 
-# stand_alone(target FILES...)
+# stand_alone(target FILES...): paths from the top of the tree.
 function(stand_alone target)
   if(NOT TARGET ${target})
     return()
   endif()
-  get_target_property(folder ${target} SOURCE_DIR)
-  list(TRANSFORM ARGN PREPEND ${folder}/)
+  list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/)
   set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target}
                               PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 set_target_properties(ziggurat_protocol PROPERTIES UNITY_BUILD OFF)  # generated
-stand_alone(ziggurat_scene robots/e_puck.cpp robots/reading.cpp values.cpp)
-stand_alone(ziggurat_magnetism adaptive.cpp charges.cpp kernel_avx2.cpp kernel_baseline.cpp)
-stand_alone(ziggurat_wire command_driving.cpp)
-stand_alone(ziggurat_network barrier_supervision.cpp reception.cpp)
-stand_alone(ziggurat_physics welding.cpp)
-stand_alone(ziggurat_app inject_option.cpp plot.cpp)
-stand_alone(ziggurat_client source/supervisor.cpp)
-stand_alone(test_app summary_test.cpp)
-stand_alone(test_scene models_test.cpp)
-stand_alone(test_physics coming_and_going_test.cpp joint_test.cpp welding_test.cpp contact/pairs_test.cpp contact/reduce_test.cpp)
-stand_alone(test_camera agreement_test.cpp)
-stand_alone(test_simulation coming_and_going_test.cpp robots_test.cpp)
-stand_alone(test_wire driving_test.cpp)
-stand_alone(test_network curve_test.cpp delays_test.cpp end_to_end_test.cpp reception_test.cpp)
-stand_alone(test_recording readings_test.cpp)
-stand_alone(test_client session_cameras_test.cpp)
+set(scene server/scene/robots/e_puck.cpp server/scene/robots/reading.cpp server/scene/values.cpp)
+set(magnetism server/magnetism/adaptive.cpp server/magnetism/charges.cpp
+    server/magnetism/kernel_avx2.cpp server/magnetism/kernel_baseline.cpp)
+set(physics server/physics/welding.cpp)
+stand_alone(ziggurat_scene ${scene})
+stand_alone(ziggurat_magnetism ${magnetism})
+stand_alone(ziggurat_wire server/wire/command_driving.cpp)
+stand_alone(ziggurat_network server/network/barrier_supervision.cpp server/network/reception.cpp)
+stand_alone(ziggurat_physics ${physics})
+stand_alone(ziggurat_app server/app/inject_option.cpp server/app/plot.cpp)
+stand_alone(ziggurat_client clients/cpp/source/supervisor.cpp)
+stand_alone(determinism_probe_other ${scene} ${magnetism} ${physics})
+stand_alone(test_app tests/unit/app/summary_test.cpp)
+stand_alone(test_scene tests/unit/scene/models_test.cpp)
+stand_alone(test_physics
+  tests/unit/physics/coming_and_going_test.cpp tests/unit/physics/joint_test.cpp
+  tests/unit/physics/welding_test.cpp tests/unit/physics/contact/pairs_test.cpp
+  tests/unit/physics/contact/reduce_test.cpp)
+stand_alone(test_camera tests/unit/camera/agreement_test.cpp)
+stand_alone(test_simulation
+  tests/unit/simulation/coming_and_going_test.cpp tests/unit/simulation/robots_test.cpp)
+stand_alone(test_wire tests/unit/wire/driving_test.cpp)
+stand_alone(test_network
+  tests/unit/network/curve_test.cpp tests/unit/network/delays_test.cpp
+  tests/unit/network/end_to_end_test.cpp tests/unit/network/reception_test.cpp)
+stand_alone(test_recording tests/unit/recording/readings_test.cpp)
+stand_alone(test_client tests/unit/clients/session_cameras_test.cpp)
 
 # Each device has a key of its own in Lua's registry, and all of them are called `key`.
 get_target_property(lua_script ziggurat_lua_script SOURCES)
+get_target_property(folder ziggurat_lua_script SOURCE_DIR)
+cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
 list(FILTER lua_script INCLUDE REGEX "^devices/")
+list(TRANSFORM lua_script PREPEND ${folder}/)
 stand_alone(ziggurat_lua_script ${lua_script})

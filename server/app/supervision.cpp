@@ -145,8 +145,7 @@ Supervision::Reply Supervision::read(const network::Call& call) {
     }
   }
   std::ranges::sort(entities);
-  const auto same = std::ranges::unique(entities);
-  entities.erase(same.begin(), same.end());
+  entities.erase(std::unique(entities.begin(), entities.end()), entities.end());
   const std::string hash = math::to_hex(subject_.simulation.hash());
   subject_.server.answer(call, [&](wire::Outbox& outbox) {
     outbox.response(call.request.id, layout, subject_.simulation.state(), entities, hash);

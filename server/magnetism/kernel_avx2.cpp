@@ -9,16 +9,24 @@
 #include "magnetism/kernel_avx2.h"
 
 #if defined(__x86_64__)
+#define ZIGGURAT_AVX2  // neither compiler defines __AVX2__ for its pragma
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
 #pragma GCC push_options
-#define ZIGGURAT_AVX2  // GCC 12 does not define __AVX2__ for the pragma
 #pragma GCC target("avx2")
+#endif
 
 namespace ziggurat::magnetism {
 namespace {
 #include "magnetism/kernel.inl"
 }  // namespace
 }  // namespace ziggurat::magnetism
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
 #pragma GCC pop_options
+#endif
 
 namespace ziggurat::magnetism {
 

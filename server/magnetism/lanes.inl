@@ -53,14 +53,14 @@ ZIGGURAT_INLINE Lanes square_root(const Lanes& a) {
 
 /// Rows to columns and back.
 ZIGGURAT_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
-  const Lanes ab_even = __builtin_shuffle(a, b, Mask{0, 4, 2, 6});
-  const Lanes ab_odd = __builtin_shuffle(a, b, Mask{1, 5, 3, 7});
-  const Lanes cd_even = __builtin_shuffle(c, d, Mask{0, 4, 2, 6});
-  const Lanes cd_odd = __builtin_shuffle(c, d, Mask{1, 5, 3, 7});
-  a = __builtin_shuffle(ab_even, cd_even, Mask{0, 1, 4, 5});
-  b = __builtin_shuffle(ab_odd, cd_odd, Mask{0, 1, 4, 5});
-  c = __builtin_shuffle(ab_even, cd_even, Mask{2, 3, 6, 7});
-  d = __builtin_shuffle(ab_odd, cd_odd, Mask{2, 3, 6, 7});
+  const Lanes ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const Lanes ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Lanes cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Lanes cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 
 /// Coordinates of four rows, one register each.

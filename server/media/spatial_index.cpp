@@ -128,8 +128,7 @@ namespace {
 /// Cells that share a bucket bring its items twice.
 void tidy(std::vector<std::size_t>& found) {
   std::ranges::sort(found);
-  const auto repeated = std::ranges::unique(found);
-  found.erase(repeated.begin(), repeated.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
 }  // namespace

@@ -12,8 +12,9 @@ namespace {
 /// Those of a camera; the readings ascend by camera.
 template <typename Reading>
 std::span<const Reading> seen_by(std::size_t camera, const std::vector<Reading>& readings) {
-  const auto range = std::ranges::equal_range(readings, camera, {}, &Reading::camera);
-  return {range.begin(), range.end()};
+  const auto first = std::ranges::lower_bound(readings, camera, {}, &Reading::camera);
+  const auto last = std::ranges::upper_bound(readings, camera, {}, &Reading::camera);
+  return {first, last};
 }
 
 void fill(const math::Vector2& from, v1::Pixel& to) {

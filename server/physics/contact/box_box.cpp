@@ -1,6 +1,8 @@
 // Box against box: separating axes with signed distance, then the incident face clipped
 // against the reference face (S. Gottschalk 1996 for the axes; the clipping is Sutherland and
-// Hodgman's).
+// Hodgman's). Boxes that overlap always get a contact. Of those that are apart, two that pass
+// diagonally may get none, as the clipped face is empty: so blocks of a lattice, which touch their
+// diagonal neighbours along an edge, can slide past them.
 
 #include "physics/contact/pairs.h"
 #include "physics/contact/polygon.h"

@@ -161,7 +161,9 @@ Pose anywhere(std::mt19937_64& random) {
   };
   const double distance = between(0.35, 0.9), azimuth = between(-1.6, 0.1),
                elevation = between(0.3, 1.2);
-  const Vector3 target(between(-0.3, 0.35), between(-0.05, 0.45), between(0.0, 0.12));
+  // One by one: compilers differ in the order of arguments.
+  const double z = between(0.0, 0.12), y = between(-0.05, 0.45), x = between(-0.3, 0.35);
+  const Vector3 target(x, y, z);
   const Vector3 eye =
       target + distance * Vector3(std::cos(azimuth) * std::cos(elevation),
                                   std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
