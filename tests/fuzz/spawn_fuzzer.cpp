@@ -1,0 +1,60 @@
+// Any text is read as an entity that a supervisor adds to a running scene: never a crash or a hang,
+// what is called free of faults holds together, and the scene stays as it is.
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+#include "small_scene.h"
+
+using namespace ziggurat::scene;
+
+namespace {
+
+constexpr std::size_t room = 8192;  // bytes of what is added
+
+ReadResult read_small_scene(bool is_lenient) {
+  static const std::string text = [] {
+    std::string whole = before;
+    whole.insert(whole.find("<framework>"), "<include file=\"models\"/>");
+    whole +=
+        "<box id=\"b\" size=\"1,1,1\" movable=\"true\" mass=\"1\"><body position=\"0,0,0\"/></box>";
+    return whole + after;
+  }();
+  ReadOptions options;
+  options.lenient = is_lenient;
+  options.open = [](const std::filesystem::path& path, std::size_t) {
+    std::string included = models;
+    const std::string itself = "<include file=\"models\"/>";  // which is a fault
+    included.erase(included.find(itself), itself.size());
+    return std::variant<File, std::string>{File{path.string(), included}};
+  };
+  ReadResult result = read_text(text, "folder/fuzz.argos", options);
+  if (!result.ok()) throw std::logic_error(to_string(result.problems.front()));
+  return result;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const ReadResult strictly = read_small_scene(false), leniently = read_small_scene(true);
+  const ReadResult& small = size % 2 == 1 ? leniently : strictly;
+  const std::size_t files = small.scene.files.size();
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  const auto is_taken = [](const std::string& id) { return id == "b"; };
+  const Addition addition = small.additions.read(text, small.scene, room, is_taken);
+  bool fault = false;
+  for (const Problem& problem : addition.problems) {
+    require(!problem.text.empty() && !to_string(problem).empty());
+    fault |= problem.severity == Problem::Severity::fault;
+  }
+  require(addition.ok() == !fault);
+  require(small.scene.files.size() == files && small.scene.entities.size() == 1);
+  if (fault) return 0;
+  require(addition.size <= room);
+  require(!addition.entity.id.empty() && !is_taken(addition.entity.id));
+  check_entity(addition.entity, small.scene);
+  return 0;
+}
