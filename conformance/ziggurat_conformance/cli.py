@@ -1,12 +1,14 @@
 """The command line."""
 
 import argparse
+import collections
 import shlex
 import sys
 import time
 from pathlib import Path
 
 from . import chaos, client_mode, report, server_mode, wire
+from .case import Level
 from .cases import SERVER_CASES
 from .server_scene import SCENE
 
@@ -22,6 +24,8 @@ examples:
       plays what can be played against a server that runs; it must have our scene (--scene says where)
   ziggurat-conformance client -- ./my_controller
       plays a server: ZIGGURAT_ENDPOINT and ZIGGURAT_CONTROLLER are in the controller's environment
+  ziggurat-conformance server --level core -- …
+      the cases of one badge: core, reconnect, hil, secure
   ziggurat-conformance server --only 'S9.*' --html report.html -- …
       some cases, and a page with the exchange of every failure
 
@@ -49,6 +53,8 @@ def _parser() -> argparse.ArgumentParser:
     for mode in (server, client):
         mode.add_argument("--only", action="append", default=[], metavar="GLOB",
                           help="only cases whose id fits; may be repeated")
+        mode.add_argument("--level", choices=[level.value.lower() for level in Level],
+                          help="only cases of this level")
         mode.add_argument("--form", choices=("binary", "json"), help="only cases in this form")
         mode.add_argument("--list", action="store_true", help="list the cases, and stop")
         mode.add_argument("--known-failing", type=Path, metavar="FILE",
@@ -94,10 +100,23 @@ def _known(path) -> set:
 
 
 def _chosen(cases: list, options) -> list:
-    chosen = list(server_mode.chosen(cases, options.only, options.form))
+    chosen = list(server_mode.chosen(cases, options.only, options.form, options.level))
     if not chosen:
-        raise _Mistake(f"no case fits --only {' '.join(options.only)}; --list lists them all")
+        raise _Mistake("no case is chosen; --list lists them all" if not options.only else
+                       f"no case fits --only {' '.join(options.only)}; --list lists them all")
     return chosen
+
+
+def _left_out(options, outcomes: list) -> collections.Counter:
+    """How many cases of each level were not chosen."""
+    there = collections.Counter()
+    if options.mode == "server":
+        for case in SERVER_CASES:
+            there[case.level] += len(case.forms)
+    else:  # the controller says which form it talks
+        there.update(case.level for case in client_mode.CASES)
+    there.subtract(outcome.level for outcome in outcomes)
+    return there
 
 
 def _server(options, terminal):
@@ -124,7 +143,7 @@ def _client(options, terminal):
 
 def _print_list(options) -> None:
     cases = SERVER_CASES if options.mode == "server" else client_mode.CASES
-    chosen = list(server_mode.chosen(cases, options.only, options.form))
+    chosen = list(server_mode.chosen(cases, options.only, options.form, options.level))
     for case in chosen:
         print(f"{case.id:<36} {case.level.value:<10} {case.title}")
     print(f"{len(chosen)} cases, {sum(len(case.forms) for case in chosen)} with their forms")
@@ -132,7 +151,10 @@ def _print_list(options) -> None:
 
 def main(arguments=None) -> int:
     parser = _parser()
-    options = parser.parse_args(arguments)
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    if words[:1] == ["help"]:
+        words = words[1:2] + ["--help"]
+    options = parser.parse_args(words)
     if options.scene:
         print(SCENE)
         return 0
@@ -153,12 +175,13 @@ def main(arguments=None) -> int:
         print(f"ziggurat-conformance: {error}", file=sys.stderr)
         return 2
     report.judge_known(outcomes, known)
-    terminal.end(outcomes, time.monotonic() - start)
+    left_out = _left_out(options, outcomes)
+    terminal.end(outcomes, left_out, time.monotonic() - start)
     title = f"Conformance of a {options.mode}: {shlex.join(options.target)}"
     if options.junit:
         report.write_junit(options.junit, outcomes, f"conformance.{options.mode}")
     if options.json:
-        report.write_json(options.json, outcomes)
+        report.write_json(options.json, outcomes, left_out)
     if options.html:
-        report.write_html(options.html, outcomes, title)
+        report.write_html(options.html, outcomes, left_out, title)
     return 0 if report.good(outcomes) else 1

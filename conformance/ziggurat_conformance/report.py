@@ -36,14 +36,18 @@ def good(outcomes: list) -> bool:
     return not any(outcome.verdict is Verdict.FAIL for outcome in outcomes)
 
 
-def badges(outcomes: list) -> dict:
-    """Level → whether all of its cases passed; None if none failed and some were not run."""
+def badges(outcomes: list, left_out: collections.Counter) -> dict:
+    """Level → whether all of its cases passed; None if none failed and some were not played.
+    left_out: how many cases of each level were not chosen."""
     result = {}
     for level in Level:
         counts = _counts(outcomes, level)
+        if counts.total() + left_out[level] == 0:
+            continue  # there is no case of it
         passed = counts[Verdict.PASS] + counts[Verdict.NON_STRICT]
-        is_open = passed + counts[Verdict.NOT_RUN] == counts.total()
-        result[level] = passed == counts.total() > 0 or (None if is_open else False)
+        is_good = passed + counts[Verdict.NOT_RUN] == counts.total()
+        is_whole = passed == counts.total() and not left_out[level]
+        result[level] = is_whole or (None if is_good else False)
     return result
 
 
@@ -51,14 +55,16 @@ def _counts(outcomes: list, level: Level) -> collections.Counter:
     return collections.Counter(outcome.verdict for outcome in outcomes if outcome.level is level)
 
 
-def _badge_text(outcomes: list, level: Level, reached) -> str:
+def _badge_text(outcomes: list, level: Level, reached, left_out: collections.Counter) -> str:
     """"reached", or why not."""
     if reached:
         return "reached"
     counts = _counts(outcomes, level)
     reasons = [f"{counts[verdict]} {verdict.value}" for verdict in Verdict
                if counts[verdict] and verdict not in (Verdict.PASS, Verdict.NON_STRICT)]
-    return f"{'open' if reached is None else 'not reached'}: {', '.join(reasons) or 'no case was chosen'}"
+    if left_out[level]:
+        reasons.append(f"{left_out[level]} not chosen")
+    return f"{'open' if reached is None else 'not reached'}: {', '.join(reasons)}"
 
 
 _LINES, _COLUMNS = 30, 200  # of an exchange on the terminal; the page has all
@@ -95,7 +101,7 @@ class Terminal:
             print("\n".join("               " + _cut(line)
                             for line in outcome.transcript.splitlines()[-_LINES:]))
 
-    def end(self, outcomes: list, seconds: float) -> None:
+    def end(self, outcomes: list, left_out: collections.Counter, seconds: float) -> None:
         if self._column % 80:
             print()
         counts = collections.Counter(outcome.verdict for outcome in outcomes)
@@ -104,8 +110,8 @@ class Terminal:
         reasons = collections.Counter(o.reason for o in outcomes if o.verdict is Verdict.NOT_RUN)
         for reason, count in reasons.items():
             print(f"  {count} not run: {reason}")
-        for level, reached in badges(outcomes).items():
-            print(f"  {level.value:<10} {_badge_text(outcomes, level, reached)}")
+        for level, reached in badges(outcomes, left_out).items():
+            print(f"  {level.value:<10} {_badge_text(outcomes, level, reached, left_out)}")
 
 
 def write_junit(path: Path, outcomes: list, suite: str) -> None:
@@ -129,9 +135,9 @@ def _plain(text: str) -> str:
     return "".join(c if c >= " " or c in "\n\t" else "?" for c in text)
 
 
-def write_json(path: Path, outcomes: list) -> None:
+def write_json(path: Path, outcomes: list, left_out: collections.Counter) -> None:
     document = {
-        "badges": {level.value: reached for level, reached in badges(outcomes).items()},
+        "badges": {level.value: reached for level, reached in badges(outcomes, left_out).items()},
         "cases": [
             {"id": o.id, "title": o.title, "level": o.level.value, "verdict": o.verdict.value,
              "seconds": round(o.seconds, 3), "reason": o.reason, "transcript": o.transcript}
@@ -171,7 +177,7 @@ def _why(outcome: Outcome) -> str:
     return f"<br><small>{html.escape(outcome.reason)}</small>"
 
 
-def write_html(path: Path, outcomes: list, title: str) -> None:
+def write_html(path: Path, outcomes: list, left_out: collections.Counter, title: str) -> None:
     """One page that needs nothing else: every verdict, and the exchange of every failure."""
     escape = html.escape
     rows = "\n".join(
@@ -183,8 +189,8 @@ def write_html(path: Path, outcomes: list, title: str) -> None:
     words = {True: "pass", False: "fail", None: "not"}
     shown = "".join(
         f'<span class="badge {words[reached]}">{level.value}: '
-        f"{escape(_badge_text(outcomes, level, reached))}</span>"
-        for level, reached in badges(outcomes).items())
+        f"{escape(_badge_text(outcomes, level, reached, left_out))}</span>"
+        for level, reached in badges(outcomes, left_out).items())
     counts = collections.Counter(o.verdict.value for o in outcomes)
     path.write_text(_PAGE.format(
         title=escape(title), badges=shown, rows=rows, failures=failures,

@@ -172,9 +172,13 @@ def _play_one(case: Case, form: str, servers, patience: float) -> Outcome:
     return outcome
 
 
-def chosen(cases: list, patterns: list, form: Optional[str] = None) -> Iterator[Case]:
-    """Those whose id fits one of the globs, all if there is none; in this form, or in all."""
+def chosen(cases: list, patterns: list, form: Optional[str] = None,
+           level: Optional[str] = None) -> Iterator[Case]:
+    """Those whose id fits one of the globs, all if there is none; in this form, or in all; of this level,
+    or of all."""
     for case in cases:
+        if level not in (None, case.level.value.lower()):
+            continue
         if patterns and not any(fnmatchcase(case.id, pattern) for pattern in patterns):
             continue
         forms = tuple(f for f in case.forms if form in (None, f))

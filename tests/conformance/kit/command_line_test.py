@@ -1,5 +1,6 @@
 """What the kit says to a stranger who gets the command line, or the program under test, wrong."""
 
+import collections
 import contextlib
 import io
 import json
@@ -7,9 +8,11 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
-from ziggurat_conformance import cli
+from ziggurat_conformance import cli, report
+from ziggurat_conformance.case import Level, Verdict
 
 HERE = Path(__file__).resolve().parent
 TINY = [sys.executable, str(HERE / "tiny_server.py"), "{endpoint}"]
@@ -63,6 +66,27 @@ class Mistakes(unittest.TestCase):
         self.expect("say what to test", "server")
 
 
+class Help(unittest.TestCase):
+    def test_is_a_command_too(self):
+        self.assertIn("server|client", run("help")[1])
+        self.assertIn("--variant", run("help", "server")[1])
+        self.assertEqual(0, run("help")[0])
+
+
+class Levels(unittest.TestCase):
+    def test_of_one_level(self):
+        listed = run("server", "--level", "hil", "--list")[1].splitlines()
+        self.assertGreater(len(listed), 2)
+        for line in listed[:-1]:
+            self.assertIn(" HIL ", line)
+
+    def test_are_reached_by_all_of_their_cases(self):
+        cases = [SimpleNamespace(level=level, verdict=Verdict.PASS) for level in Level]
+        left_out = collections.Counter({Level.HIL: 1})
+        reached = {level: level is not Level.HIL or None for level in Level}
+        self.assertEqual(reached, report.badges(cases, left_out))
+
+
 class Reports(unittest.TestCase):
     def setUp(self):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
@@ -77,13 +101,14 @@ class Reports(unittest.TestCase):
         self.server = TINY
         code, out, report = self.play("--only", "S9.*", "--only", "L7.*", "--only", "K1.listed")
         self.assertEqual(0, code, out)
-        self.assertEqual({"Core": True, "Reconnect": None, "HIL": None, "Secure": None},
-                         report["badges"])
+        self.assertEqual({"Core": None, "Reconnect": None, "HIL": None, "Secure": None},
+                         report["badges"], "some cases are no badge")
+        self.assertRegex(out, r"Core +open: \d+ not chosen\n")
         self.assertRegex(out, r"\d+ not run: give the server's command for it: --variant lease=…\n")
-        self.assertRegex(out, r"Reconnect +open: \d+ not run\n")
-        self.assertRegex(out, r"HIL +open: no case was chosen\n")
+        self.assertRegex(out, r"Reconnect +open: \d+ not run, \d+ not chosen\n")
+        self.assertRegex(out, r"HIL +open: \d+ not chosen\n")
         page = (self.folder / "r.html").read_text()
-        self.assertIn("Core: reached", page)
+        self.assertRegex(page, r"Core: open: \d+ not chosen")
         self.assertNotIn("<pre>", page)
         self.assertIn("not run<br><small>give the server&#x27;s command for it", page)
 
@@ -92,7 +117,7 @@ class Reports(unittest.TestCase):
         code, out, report = self.play("--only", "S9.*")
         self.assertEqual(1, code, out)
         self.assertFalse(report["badges"]["Core"])
-        self.assertRegex(out, r"Core +not reached: \d fail\n")
+        self.assertRegex(out, r"Core +not reached: \d fail, \d+ not chosen\n")
         page = (self.folder / "r.html").read_text()
         self.assertIn("<h2>S9.stale: A Command for an earlier tick is STALE_TICK</h2>", page)
         self.assertRegex(page, "<p>.* error is due</p><pre>")
