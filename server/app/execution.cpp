@@ -261,7 +261,7 @@ int execute(const Options& options, Service service) {
   }
   Supervision supervision({scene, additions, options.reading.max_size, path, run.scene_hash, seed,
                            options.clock, plan.ticks.value_or(0), options.hil, simulation, server,
-                           with_controllers, processes, surroundings});
+                           with_controllers, processes, surroundings, console});
   std::optional<MetricsPort> metrics;
   if (!options.metrics.empty()) metrics.emplace(options.metrics, options.insecure);
   if (metrics) console.notice("metrics at " + metrics->url());

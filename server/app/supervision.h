@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/console.h"
 #include "app/controllers.h"
 #include "network/latencies.h"
 #include "network/server.h"
@@ -38,6 +39,7 @@ class Supervision {
     bool with_controllers = true;  ///< else nobody drives robots, those that are spawned neither
     std::vector<ControllerProcess>& processes;
     std::optional<Surroundings> surroundings;  ///< of Lua processes that the run starts
+    Console& console;                          ///< for notices on what is spawned
   };
 
   explicit Supervision(const Subject& subject);

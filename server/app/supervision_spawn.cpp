@@ -48,6 +48,7 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
     return fail(call, ErrorCode::bad_value, "spawn.xml",
                 std::string(error.what()).substr(0, longest_complaint));
   }
+  for (const scene::Problem& notice : addition.problems) subject_.console.problem(notice);
   ++spawned_;
   room_ -= addition.size;
   if (entity.controller) employ(entity);

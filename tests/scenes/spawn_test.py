@@ -127,6 +127,11 @@ class Spawn(SceneTest):
         self.assertEqual(self.read()["hash"], before)
         self.end(process)
 
+    def test_what_is_doubtful_is_a_notice_of_the_server(self):
+        process = self.begin_undriven("--lenient")
+        self.spawn(BOX.format("crate", "0.05,0.08,0.2").replace("<box ", '<box flavour="oak" '))
+        self.assertRegex(self.end(process).err, r'spawn:1:\d+: unknown attribute "flavour" of <box>')
+
     def test_traces_and_readings_have_what_is_there(self):
         process = self.begin_undriven("--trace", "trace.csv", "--readings", "readings.jsonl")
         self.ctl("step", 3)
