@@ -111,7 +111,7 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
   const btScalar size = std::min(a.smallest(), b.smallest());
   math::RandomStream random(1, pair.name);
   const btScalar reach = 0.3 * size, tolerance = pair.tolerance * size;
-  int touching = 0, unseen = 0;
+  int touching = 0;
   for (int i = 0; i < poses; ++i) {
     SCOPED_TRACE("pose " + std::to_string(i));
     place(random, i, a, b);
@@ -124,10 +124,6 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
     }
     if (gap.distance > reach - tolerance || gap.distance < -0.2 * size) continue;
     ++touching;
-    if (pair.boxes && gap.distance > 0 && contacts.count + swapped.count == 0) {
-      ++unseen;  // as boxes may be that pass diagonally (contact/box_box.cpp)
-      continue;
-    }
     ASSERT_GT(contacts.count, 0);
     ASSERT_GT(swapped.count, 0);
     EXPECT_NEAR(contacts.normal.length(), 1, 1e-9);
@@ -151,7 +147,6 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
     }
   }
   EXPECT_GT(touching, 20);
-  EXPECT_LE(unseen, touching / 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Contact, AllPairs, ::testing::ValuesIn(pairs),
