@@ -8,13 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <vector>
 
 #include "connection.h"
 #include "program/exchange.h"
+#include "require.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 #include "ziggurat/supervisor.h"
@@ -22,12 +22,9 @@
 namespace {
 
 using namespace ziggurat;
+using fuzz::require;
 
 constexpr std::string_view separator = "\n--\n";
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
 
 std::vector<std::string_view> frames;  // not received yet, the first one last
 double seen = 0;                       // so that everything is read

@@ -3,18 +3,14 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "require.h"
 #include "wire/inbox.h"
 
 namespace ziggurat::fuzz {
-
-inline void require(bool condition) {
-  if (!condition) std::abort();
-}
 
 // Three robots with 2, 0 and 3 of each device; the session holds the first and the last. Each of
 // these drives wheels and a turret; wheels and turret 1 are only measured, by nobody.

@@ -1,18 +1,16 @@
 #pragma once
 // A scene with something of each kind in it, and what holds for every entity that was read.
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <variant>
 
+#include "require.h"
 #include "scene/reader.h"
 
 namespace ziggurat::scene {
 
-inline void require(bool condition) {
-  if (!condition) std::abort();
-}
+using fuzz::require;
 
 inline void check_entity(const Entity& entity, const Scene& scene) {
   require(!entity.links.empty());

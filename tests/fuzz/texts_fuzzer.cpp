@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,14 +14,12 @@
 #include "network/endpoint.h"
 #include "network/glob.h"
 #include "network/keys.h"
+#include "require.h"
 
 namespace {
 
 using namespace ziggurat;
-
-void require(bool condition) {
-  if (!condition) std::abort();
-}
+using fuzz::require;
 
 /// Calls the reader. An exception other than the one it names ends the fuzzer.
 template <typename Error, typename Read>
