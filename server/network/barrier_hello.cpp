@@ -205,7 +205,7 @@ std::variant<Session*, wire::Refusal> Barrier::take_robots(const wire::Hello& he
   return sessions_.back().get();
 }
 
-/// The session that the Hello's token is for, unless it is alive and not to be taken over.
+/// The session that has the Hello's token. Its older connection, if it still has one, is displaced.
 std::variant<Session*, wire::Refusal> Barrier::resume(const wire::Hello& hello) {
   const auto found = std::find_if(sessions_.begin(), sessions_.end(), [&](const auto& session) {
     return session->token == hello.session_token;
@@ -215,19 +215,12 @@ std::variant<Session*, wire::Refusal> Barrier::resume(const wire::Hello& hello) 
                    "No session of this run has that token, or none any more.");
   }
   Session& session = **found;  // has robots, so that it survives being lost
-  const bool is_connected = is_reachable(session);
-  if (is_connected && !hello.takeover) {
-    auto refused = refusal(ErrorCode::robot_taken, "session_token", "That session is connected.");
-    refused.fault.retryable = true;
-    refused.holder = session.client;
-    return refused;
-  }
   std::vector<std::size_t> robots;
   for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
     if (!session.roster.gone[i]) robots.push_back(session.roster.robots[i]);
   }
   if (auto refused = check_deadline(hello, robots)) return std::move(*refused);
-  if (is_connected) {
+  if (session.state != SessionState::lost) {
     outbox_.displaced(label(hello), "The session was taken up over another connection.");
     deliver(session, outbox_);
     lose(session, "it was taken up over another connection");

@@ -324,20 +324,55 @@ TEST(Takeover, H13_ARefusedOneDisplacesNobody) {
 }
 
 TEST(Takeover, L8_OfAConnectedSessionByItsToken) {
+  for (const bool with_takeover : {false, true}) {
+    const SmallRun small(2);
+    Peers peers(small);
+    const std::string token = peers.join("old", "*").session_token();
+    peers.publish(1);
+    peers.inboxes.clear();
+    peers.say("new", with_token(token, with_takeover));
+    EXPECT_TRUE(peers.told("old").has_displaced());
+    ASSERT_EQ(peers.inboxes["new"].size(), 2U);
+    EXPECT_EQ(peers.inboxes["new"][0].welcome().session_token(), token);
+    EXPECT_EQ(peers.inboxes["new"][1].observation().tick(), 1U);
+    peers.inboxes.clear();
+    peers.say("old", Peers::command(1, {9}));
+    EXPECT_EQ(peers.told("old").error().code(), v1::Error::OUT_OF_STATE);
+    EXPECT_FALSE(peers.barrier.complete());
+    peers.say("new", Peers::command(1));
+    EXPECT_TRUE(peers.barrier.complete());
+  }
+}
+
+TEST(Takeover, L8_TheOldConnectionNeedNotBeKnownToBeGone) {
   const SmallRun small(2);
   Peers peers(small);
-  const std::string token = peers.join("old", "*").session_token();
+  std::string token = peers.join("0", "*").session_token();
   peers.publish(1);
-  peers.inboxes.clear();
-  peers.say("new", with_token(token));
-  EXPECT_EQ(peers.told("new").refusal().error().code(), v1::Error::ROBOT_TAKEN);
-  peers.inboxes.clear();
-  peers.say("new", with_token(token, true));
-  EXPECT_TRUE(peers.inboxes["old"].back().has_displaced());
-  ASSERT_EQ(peers.inboxes["new"].size(), 2U);
-  EXPECT_EQ(peers.inboxes["new"][0].welcome().session_token(), token);
-  peers.say("new", Peers::command(1));
+  for (int i = 1; i < 100; ++i) {
+    const std::string peer = std::to_string(i);
+    peers.unreachable.insert(std::to_string(i - 1));  // found out by the attempt to tell it
+    peers.say(peer, with_token(token));
+    ASSERT_EQ(peers.inboxes[peer].size(), 2U);
+    EXPECT_EQ(peers.inboxes[peer][1].observation().tick(), 1U);
+  }
+  EXPECT_EQ(peers.barrier.known().sessions, 1U);
+  peers.say("99", Peers::command(1));
   EXPECT_TRUE(peers.barrier.complete());
+}
+
+TEST(Takeover, L8_ARefusedTokenDisplacesNoConnection) {
+  const SmallRun small(2);
+  Config config;
+  config.deadlines = {{{}, true}};
+  Peers peers(small, config);
+  auto hello = wish("", v1::DeadlinePolicy::HOLD, 10);
+  hello.mutable_hello()->set_session_token(peers.join("old", "*").session_token());
+  peers.say("new", hello);
+  EXPECT_EQ(peers.told("new").refusal().error().code(), v1::Error::FORBIDDEN);
+  EXPECT_TRUE(peers.inboxes["old"].empty());
+  peers.publish(1);
+  EXPECT_TRUE(peers.told("old").has_observation());
 }
 
 TEST(Takeover, L10_ADisplacedTokenIsGoodForNothing) {

@@ -16,6 +16,7 @@ PATIENCE = 1.0
 SERVER_BUGS = {
     "any-version": "H2.major-above",
     "any-token": "L4.unknown-token",
+    "token-waits": "L8.token-alone",
     "asked-order": "H4.some",
     "shares-robots": "H6.taken-twice",
     "late-waits": "H11.late",

@@ -130,15 +130,7 @@ class Server:
         if hello.role != protocol.ROLE_CONTROLLER:
             raise Fault(E.BAD_VALUE)
         if hello.session_token and self.bug != "any-token":
-            session = next((s for s in self.lost if s.token == hello.session_token), None)
-            for other in [p for p, s in self.sessions.items() if s.token == hello.session_token]:
-                if not self.tell(other, heartbeat=protocol.Heartbeat()):
-                    session = self.lost[-1]
-                else:
-                    raise Fault(E.ROBOT_TAKEN)
-            if session is None:
-                raise Fault(E.NO_SUCH_SESSION)
-            self.lost.remove(session)
+            session = self.resumed(hello.session_token)
         else:
             robots = self.wanted(hello) if hello.robots else []
             if not robots and not hello.session_token:
@@ -159,6 +151,18 @@ class Server:
             self.begun = True
             for other, s in list(self.sessions.items()):
                 self.observe(other, s)
+
+    def resumed(self, token):
+        """The session with this token, taken from its connection if it has one."""
+        for peer in [p for p, s in self.sessions.items() if s.token == token]:
+            if self.bug == "token-waits":
+                raise Fault(E.ROBOT_TAKEN)
+            if self.tell(peer, displaced=protocol.Displaced(by="its token", message="resumed")):
+                return self.sessions.pop(peer)
+        for session in [s for s in self.lost if s.token == token]:
+            self.lost.remove(session)
+            return session
+        raise Fault(E.NO_SUCH_SESSION)
 
     def welcome(self, session):
         welcome = protocol.Welcome(version={"major": 1}, session_token=session.token, seed=7,

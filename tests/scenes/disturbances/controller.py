@@ -57,14 +57,8 @@ def _begin(index, endpoint, token):
                                    connect_timeout=60)
         _write_whole(token, session.token)
         return session
-    while True:  # until the server has seen that the old connection is gone
-        try:
-            return ziggurat.resume(endpoint, token.read_bytes(), name=f"controller {index}",
-                                   connect_timeout=60)
-        except ziggurat.Refused as refused:
-            if not refused.retryable:
-                raise
-            time.sleep(0.005)
+    return ziggurat.resume(endpoint, token.read_bytes(), name=f"controller {index}",
+                           connect_timeout=60)
 
 
 def _write_whole(path, data):

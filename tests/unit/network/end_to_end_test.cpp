@@ -202,8 +202,7 @@ TEST(EndToEnd, ASessionIsTakenUpByItsToken) {
     EXPECT_TRUE(first->next());
     EXPECT_TRUE(first->next());
     options.session_token = first->token();
-    options.takeover = true;  // its connection is still there
-    Session second(options);
+    Session second(options);  // although the connection of the first one is still there
     EXPECT_EQ(second.token(), first->token());
     EXPECT_TRUE(second.next());
     EXPECT_EQ(second.tick(), 1U) << "the same tick again";
