@@ -22,10 +22,11 @@ stand_alone(ziggurat_magnetism ${magnetism})
 stand_alone(ziggurat_wire server/wire/command_driving.cpp)
 stand_alone(ziggurat_network server/network/barrier_supervision.cpp server/network/reception.cpp)
 stand_alone(ziggurat_physics ${physics})
-stand_alone(ziggurat_app server/app/inject_option.cpp server/app/plot.cpp)
+stand_alone(ziggurat_run server/run/inject_option.cpp)
+stand_alone(ziggurat_reports server/reports/plot.cpp)
 stand_alone(ziggurat_client clients/cpp/source/supervisor.cpp)
 stand_alone(determinism_probe_other ${scene} ${magnetism} ${physics})
-stand_alone(test_app tests/unit/app/summary_test.cpp)
+stand_alone(test_reports tests/unit/reports/summary_test.cpp)
 stand_alone(test_scene tests/unit/scene/models_test.cpp)
 stand_alone(test_physics
   tests/unit/physics/coming_and_going_test.cpp tests/unit/physics/joint_test.cpp

@@ -15,6 +15,7 @@ import sys
 # module -> modules whose headers it may include, besides its own.
 MODULES = {
     "protocol": [],
+    "text": [],
     "math": [],
     "scene": ["math"],
     "world": ["math"],
@@ -29,9 +30,14 @@ MODULES = {
     "wire": ["scene", "world", "protocol", "math"],
     "recording": ["scene", "world", "simulation", "wire", "protocol", "math"],
     "network": ["scene", "world", "wire", "protocol", "math"],
-    "app": ["scene", "world", "magnetism", "physics", "media", "camera", "render", "devices",
-            "simulation", "wire", "recording", "network", "clients/cpp",
-            "math"],
+    "reports": ["text", "scene", "wire", "network", "math"],
+    "processes": ["scene", "world", "recording"],
+    "supervision": ["reports", "processes", "network", "simulation", "wire", "scene", "world",
+                    "math"],
+    "run": ["supervision", "reports", "processes", "network", "recording", "simulation", "render",
+            "wire", "scene", "world", "math", "text"],
+    "cli": ["run", "reports", "processes", "network", "simulation", "physics", "magnetism", "scene",
+            "math", "text", "clients/cpp"],
     "clients/cpp": ["protocol"],
     "clients/lua": ["clients/cpp"],
 }
@@ -42,10 +48,10 @@ LIBRARIES = {
     "pugixml": (r"pugixml\.hpp$|pugiconfig\.hpp$", ["scene"]),
     "Bullet": (r"bullet/|bt[A-Z]\w*\.h$|Bullet\w*/|LinearMath/", ["physics"]),
     "protobuf": (r"google/protobuf/", ["protocol", "wire", "recording", "network", "clients/cpp"]),
-    "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "app", "clients/cpp"]),
+    "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "clients/cpp"]),
     "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
     "libpng": (r"png\.h$", ["recording"]),
-    "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua", "app"]),
+    "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua", "processes"]),
 }
 
 SUFFIXES = {".h", ".hpp", ".hh", ".inl", ".ipp", ".c", ".cc", ".cpp", ".cxx"}

@@ -8,13 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "app/arguments.h"
-#include "app/deadline_option.h"
-#include "app/gate.h"
 #include "network/endpoint.h"
 #include "network/glob.h"
 #include "network/keys.h"
+#include "reports/gate.h"
 #include "require.h"
+#include "run/deadline_option.h"
+#include "text/numbers.h"
 
 namespace {
 
@@ -83,8 +83,8 @@ void read_endpoint(const std::string& text, bool insecure) {
 }
 
 void read_deadline(const std::string& text) {
-  accept_or_refuse<app::UsageError>([&] {
-    const scene::DeadlinePolicy policy = app::to_deadline(text).policy;
+  accept_or_refuse<text::UsageError>([&] {
+    const scene::DeadlinePolicy policy = run::to_deadline(text).policy;
     require(policy.action >= scene::DeadlineAction::wait);
     require(policy.action <= scene::DeadlineAction::stop);
     require((policy.action == scene::DeadlineAction::wait) == (policy.wall_deadline_ms == 0));
@@ -92,8 +92,8 @@ void read_deadline(const std::string& text) {
 }
 
 void read_gate(const std::string& text) {
-  accept_or_refuse<app::UsageError>([&] {
-    for (const app::Condition& condition : app::parse_gate(text)) {
+  accept_or_refuse<text::UsageError>([&] {
+    for (const reports::Condition& condition : reports::parse_gate(text)) {
       require(std::isfinite(condition.limit) && condition.limit >= 0);
     }
   });

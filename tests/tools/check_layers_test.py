@@ -20,7 +20,7 @@ TREE = {
     "server/simulation/simulation.h": '#include "scene/scene.h"\n',
     "server/network/server.cpp":
         '#include <zmq.hpp>\n#include "ziggurat/v1/protocol.pb.h"\n#include "world/state.h"\n',
-    "server/app/main.cpp": '#include "simulation/simulation.h"\n#include <zmq.hpp>\n',
+    "server/cli/main.cpp": '#include "simulation/simulation.h"\n',
     "clients/cpp/include/ziggurat/session.h": "#include <string>\n",
     "clients/cpp/session.cpp":
         '#include "ziggurat/session.h"\n#include "ziggurat/v1/protocol.pb.h"\n',
@@ -68,7 +68,7 @@ class CheckLayers(unittest.TestCase):
         self.assert_caught("server/world/bad.cpp", "#include <pugixml.hpp>\n", "pugixml")
         self.assert_caught("server/devices/bad.cpp", "#include <bullet/any.h>\n", "Bullet")
         self.assert_caught("server/scene/bad.cpp", "#  include <LinearMath/btQuad.h>\n", "Bullet")
-        self.assert_caught("server/app/bad.cpp", "#include <google/protobuf/any.h>\n", "protobuf")
+        self.assert_caught("server/cli/bad.cpp", "#include <google/protobuf/any.h>\n", "protobuf")
         self.assert_caught("server/wire/bad.cpp", "#include <zmq.hpp>\n", "ZeroMQ")
         self.assert_caught("server/wire/bad.cpp", "#include <lua.hpp>\n", "Lua")
 
@@ -77,14 +77,14 @@ class CheckLayers(unittest.TestCase):
         self.assert_caught("server/simulation/bad.h", text, "protocol")
         self.assert_caught("clients/lua/bad.cpp", text, "protocol")
         self.assert_allowed("server/wire/good.cpp", text)
-        self.assert_caught("server/app/bad.h", '#include "ziggurat/v1/envelope.h"\n', "protocol")
+        self.assert_caught("server/cli/bad.h", '#include "ziggurat/v1/envelope.h"\n', "protocol")
 
     def test_catches_a_protocol_that_knows_the_server(self):
         self.assert_caught("protocol/ziggurat/v1/bad.h", '#include "world/state.h"\n', "world")
 
     def test_catches_a_server_that_knows_a_client_and_a_client_that_knows_the_server(self):
         self.assert_caught("server/network/bad.cpp", '#include "ziggurat/session.h"\n', "clients/cpp")
-        self.assert_allowed("server/app/top.cpp", '#include "ziggurat/session.h"\n')
+        self.assert_allowed("server/cli/top.cpp", '#include "ziggurat/session.h"\n')
         self.assert_caught("clients/lua/bad.cpp", '#include "world/state.h"\n', "world")
 
     def test_catches_modules_that_are_not_in_the_table(self):

@@ -1,0 +1,76 @@
+#include "cli/arguments.h"
+
+#include <fmt/format.h>
+
+#include <boost/program_options/errors.hpp>
+#include <boost/program_options/parsers.hpp>
+#include <boost/program_options/positional_options.hpp>
+#include <cstdlib>
+
+#include "text/names.h"
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+std::string unknown(const std::string& name, const po::options_description& known) {
+  std::vector<std::string> names;
+  for (const auto& option : known.options()) names.push_back("--" + option->long_name());
+  const auto suggestion = text::closest(name, names);
+  return fmt::format("unknown option '{}'{}", name,
+                     suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?");
+}
+
+// An option whose value may be left out takes the next word only if that is a number; left alone
+// Boost takes any word.
+Arguments join_optional_values(const Arguments& arguments) {
+  const auto is_number = [](const std::string& text) {
+    char* end = nullptr;
+    std::strtod(text.c_str(), &end);
+    return end != text.c_str() && *end == '\0';
+  };
+  Arguments joined;
+  bool options_ended = false;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    joined.push_back(arguments[i]);
+    options_ended = options_ended || arguments[i] == "--";
+    if (options_ended || arguments[i] != "--real-time") continue;
+    const bool has_value = i + 1 < arguments.size() && is_number(arguments[i + 1]);
+    joined.back() += "=" + (has_value ? arguments[++i] : "1");
+  }
+  return joined;
+}
+
+}  // namespace
+
+Parsed parse(const Arguments& arguments, const po::options_description& known) {
+  po::options_description all;
+  all.add(known).add_options()("positional", po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add("positional", -1);
+  Parsed parsed;
+  try {
+    const auto style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
+    po::store(po::command_line_parser(join_optional_values(arguments))
+                  .options(all)
+                  .positional(positional)
+                  .style(style)
+                  .run(),
+              parsed.values);
+  } catch (const po::unknown_option& error) {
+    throw text::UsageError(unknown(error.get_option_name(), known));
+  } catch (const po::multiple_occurrences& error) {
+    throw text::UsageError(
+        fmt::format("option '{}' is given more than once", error.get_option_name()));
+  } catch (const po::error& error) {
+    throw text::UsageError(error.what());
+  }
+  if (parsed.values.count("positional")) {
+    parsed.positional = parsed.values["positional"].as<std::vector<std::string>>();
+  }
+  return parsed;
+}
+
+}  // namespace ziggurat::cli

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "processes/scripts.h"
+#include "reports/console.h"
+#include "run/loading.h"
+#include "scene/tag_pattern.h"
+#include "scene/values.h"
+#include "simulation/simulation.h"
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+using Severity = scene::Problem::Severity;
+
+// A model of the scene and the number of entities that are of it.
+struct ModelUse {
+  std::string id;
+  std::size_t entities = 0;
+};
+
+// What happens when a controller is late, where the scene says it.
+struct ControllerDeadline {
+  std::string id;
+  scene::DeadlinePolicy policy;
+};
+
+struct Finding {
+  std::vector<scene::Problem> problems;
+  std::vector<ModelUse> models;
+  std::vector<ControllerDeadline> deadlines;
+  std::size_t entities = 0;  ///< of the world that was built; 0 if it could not be
+  std::size_t robots = 0;
+
+  std::size_t count(Severity severity) const {
+    return static_cast<std::size_t>(
+        std::ranges::count(problems, severity, &scene::Problem::severity));
+  }
+};
+
+// What pictures can't show; of a model once.
+void add_plain_tags(const scene::Scene& scene, std::vector<scene::Problem>& problems) {
+  std::set<scene::Location> seen;
+  const auto add = [&](const scene::Entity& entity) {
+    for (const auto& tag : entity.devices.tags) {
+      if (scene::tag_pattern(tag.payload) || !seen.insert(tag.where).second) continue;
+      const auto owner = entity.model ? fmt::format("model '{}'", scene.models[*entity.model].id)
+                                      : fmt::format("'{}'", entity.id);
+      problems.push_back({Severity::notice, scene.files[tag.where.file], tag.where,
+                          fmt::format("tag '{}' of {} is a plain white square in pictures; a "
+                                      "payload that is an integer 0 to 586 is drawn as that "
+                                      "pattern of AprilTag 36h11",
+                                      tag.id, owner)});
+    }
+  };
+  for (const auto& entity : scene.entities) add(entity);
+  for (const auto& distribution : scene.distributions) add(distribution.entity);
+}
+
+std::vector<ModelUse> uses_of_models(const scene::Scene& scene) {
+  std::vector<ModelUse> uses;
+  for (const auto& model : scene.models) uses.push_back({model.id});
+  for (const auto& entity : scene.entities) {
+    if (entity.model) ++uses[*entity.model].entities;
+  }
+  for (const auto& group : scene.distributions) {
+    if (group.entity.model) uses[*group.entity.model].entities += group.quantity;
+  }
+  return uses;
+}
+
+std::vector<ControllerDeadline> deadlines_of(const scene::Scene& scene) {
+  std::vector<ControllerDeadline> deadlines;
+  for (const auto& controller : scene.controllers) {
+    if (controller.deadline) deadlines.push_back({controller.id, *controller.deadline});
+  }
+  return deadlines;
+}
+
+// Reads the file, compiles the scripts and, if all is well so far, places everything.
+Finding examine(const std::string& path, const run::Options& options) {
+  auto read = scene::read_file(path, options.reading);
+  Finding finding{std::move(read.problems), uses_of_models(read.scene),
+                  deadlines_of(read.scene)};
+  const auto add = [&](const std::vector<scene::Problem>& more) {
+    finding.problems.insert(finding.problems.end(), more.begin(), more.end());
+  };
+  add(processes::check_scripts(read.scene, path));
+  if (finding.count(Severity::fault) > 0) return finding;
+  add_plain_tags(read.scene, finding.problems);
+  try {
+    const simulation::Simulation simulation(read.scene,
+                                            {run::choose_seed(options, read.scene), {}});
+    finding.entities = simulation.layout().entities.size();
+    finding.robots = simulation.layout().robots.size();
+    for (const auto& notice : simulation.notices()) {
+      add({{Severity::notice, path, read.scene.physics.where, notice}});
+    }
+  } catch (const scene::SceneError& error) {
+    add(error.problems());
+  }
+  return finding;
+}
+
+nlohmann::ordered_json to_json(const std::string& path, const Finding& finding) {
+  auto problems = nlohmann::ordered_json::array();
+  for (const auto& problem : finding.problems) {
+    problems.push_back({{"severity", problem.severity == Severity::fault ? "fault" : "notice"},
+                        {"file", problem.file},
+                        {"line", problem.where.line},
+                        {"column", problem.where.column},
+                        {"text", problem.text}});
+  }
+  auto models = nlohmann::ordered_json::array();
+  for (const auto& model : finding.models) {
+    models.push_back({{"id", model.id}, {"entities", model.entities}});
+  }
+  auto deadlines = nlohmann::ordered_json::array();
+  for (const auto& [id, policy] : finding.deadlines) {
+    deadlines.push_back({{"controller", id}, {"policy", scene::to_text(policy)}});
+  }
+  return {{"scene", path},
+          {"ok", finding.count(Severity::fault) == 0},
+          {"entities", finding.entities},
+          {"robots", finding.robots},
+          {"models", models},
+          {"deadlines", deadlines},
+          {"problems", problems}};
+}
+
+std::string verdict(const std::string& path, const Finding& finding) {
+  const auto faults = finding.count(Severity::fault), notices = finding.count(Severity::notice);
+  const auto counted = [](std::size_t n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  if (faults > 0) {
+    return fmt::format("{}: {}, {}", path, counted(faults, "fault"), counted(notices, "notice"));
+  }
+  std::string models;
+  for (const auto& model : finding.models) {
+    models += fmt::format("{}{} of model {}", models.empty() ? " (" : ", ", model.entities,
+                          scene::in_quotes(model.id));
+  }
+  if (!models.empty()) models += ")";
+  std::string deadlines;
+  for (const auto& [id, policy] : finding.deadlines) {
+    deadlines += fmt::format("{}{}={}", deadlines.empty() ? " (deadlines: " : ", ", id,
+                             scene::to_text(policy));
+  }
+  if (!deadlines.empty()) deadlines += ")";
+  return fmt::format(
+      "{}: good; {}{}, {} with a controller{}; {}", path,
+      finding.entities == 1 ? "1 entity" : fmt::format("{} entities", finding.entities), models,
+      finding.robots, deadlines, counted(notices, "notice"));
+}
+
+}  // namespace
+
+std::string help_check() {
+  std::ostringstream text;
+  text << R"(usage: ziggurat check SCENE... [OPTION]...
+
+Reports everything that is wrong with scene files, and everything in them that has no effect here:
+reads them whole, compiles their Lua scripts and places their entities, but starts nothing.
+
+  ziggurat check vehicle.argos
+  ziggurat check scenes/*.argos --quiet
+      faults only
+  ziggurat check vehicle.argos --json
+      an array with an object per scene
+
+Exit codes: 0 no scene has a fault; 1 one has.
+
+)" << check_options();
+  return text.str();
+}
+
+int execute_check(const Arguments& arguments) {
+  const auto options = parse_options(arguments, check_options());
+  if (options.scenes.empty())
+    throw text::UsageError("which scene? the path of a scene file is due");
+  reports::Console console({options.quiet, false});
+  auto report = nlohmann::ordered_json::array();
+  bool good = true;
+  for (const auto& path : options.scenes) {
+    const auto finding = examine(path, options);
+    good = good && finding.count(Severity::fault) == 0;
+    if (options.json) {
+      report.push_back(to_json(path, finding));
+      continue;
+    }
+    for (const auto& problem : finding.problems) console.problem(problem);
+    if (!options.quiet) console.result(verdict(path, finding));
+  }
+  if (options.json) {
+    console.result(report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  }
+  console.flush();
+  return good ? reports::exit_code::finished : reports::exit_code::fault;
+}
+
+}  // namespace ziggurat::cli

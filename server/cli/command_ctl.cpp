@@ -1,0 +1,203 @@
+// Steers a run from another terminal.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/supervision_client.h"
+#include "reports/console.h"
+#include "scene/values.h"
+#include "text/names.h"
+#include "text/numbers.h"
+#include "ziggurat/error.h"
+
+namespace ziggurat::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+po::options_description ctl_options() {
+  po::options_description options("Options", 96);
+  options.add_options()("seed", po::value<std::string>()->value_name("N"),
+                        "with reset: the new seed; the same as before without it")(
+      "json", "print answers as JSON");
+  add_key_options(options);
+  return options;
+}
+
+struct Call {
+  Supervisor& server;
+  reports::Console& console;
+  std::vector<std::string> words;  ///< behind the verb
+  po::variables_map values;
+};
+
+[[noreturn]] void misused(std::string_view usage) {
+  throw text::UsageError(fmt::format("write: ziggurat ctl URL {}", usage));
+}
+
+void say(const Call& call, std::string_view done, std::uint64_t tick) {
+  if (call.values.count("json") > 0) {
+    call.console.result(fmt::format(R"({{"tick":{}}})", tick));
+  } else {
+    call.console.result(fmt::format("{} at tick {}", done, tick));
+  }
+}
+
+void print_status(const Call& call) {
+  const ServerStatus status = call.server.status();
+  const bool json = call.values.count("json") > 0;
+  call.console.result(json ? call.server.last_answer_json() : to_text(status));
+}
+
+void pause(const Call& call) { say(call, "paused", call.server.pause()); }
+void resume(const Call& call) { say(call, "resumed", call.server.resume()); }
+
+void step(const Call& call) {
+  if (call.words.size() > 1) misused("step [TICKS]");
+  const std::uint64_t ticks = call.words.empty() ? 1 : text::to_integer("step", call.words[0]);
+  say(call, "paused", call.server.step(ticks));
+}
+
+void reset(const Call& call) {
+  const auto seed = call.values.find("seed");
+  if (seed == call.values.end()) {
+    call.server.reset();
+  } else {
+    call.server.reset(text::to_integer("--seed", seed->second.as<std::string>()));
+  }
+  say(call, "reset", 0);
+}
+
+std::string contents_of(const std::string& path) {
+  if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  std::ifstream file(path);
+  if (!file) throw text::UsageError(path + ": it can't be read");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void spawn(const Call& call) {
+  if (call.words.size() != 1) misused("spawn FILE|-   (one element, as in <arena>)");
+  say(call, "spawned", call.server.spawn(contents_of(call.words[0])));
+}
+
+void remove(const Call& call) {
+  if (call.words.size() != 1) misused("remove ENTITY");
+  say(call, "removed", call.server.remove(call.words[0]));
+}
+
+void move(const Call& call) {
+  if (call.words.size() != 2 && call.words.size() != 3) misused("move ENTITY x,y,z [z,y,x]");
+  const auto numbers = [](std::string_view what, const std::string& text) {
+    std::array<double, 3> values{};
+    std::istringstream fields(text);
+    std::string field;
+    for (double& value : values) {
+      if (!std::getline(fields, field, ',')) misused("move ENTITY x,y,z [z,y,x]");
+      value = text::to_number(what, field);
+    }
+    return values;
+  };
+  const auto position = numbers("position", call.words[1]);
+  std::optional<std::array<double, 4>> orientation;
+  if (call.words.size() == 3) {
+    const auto angles = numbers("orientation", call.words[2]);
+    const math::Quaternion turned =
+        scene::orientation_from_degrees({angles[0], angles[1], angles[2]});
+    orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
+  }
+  say(call, "moved", call.server.move(call.words[0], position, orientation));
+}
+
+void read(const Call& call) {
+  const WorldStates states = call.server.read(call.words);
+  if (call.values.count("json") > 0) {
+    return call.console.result(call.server.last_answer_json());
+  }
+  call.console.result(fmt::format("tick {}, hash {}", states.tick, states.hash));
+  for (const EntityState& entity : states.entities) {
+    const auto& p = entity.position;
+    const auto& q = entity.orientation;
+    call.console.result(
+        fmt::format("{:<20} {:9.4f} {:9.4f} {:9.4f} m   {:7.4f} {:7.4f} {:7.4f} {:7.4f}", entity.id,
+                    p[0], p[1], p[2], q[0], q[1], q[2], q[3]));
+  }
+}
+
+void shutdown(const Call& call) { call.server.shutdown(); }
+
+struct Verb {
+  std::string_view name;
+  std::string_view summary;
+  void (*execute)(const Call&);
+};
+
+constexpr Verb verbs[] = {
+    {"status", "whom the world waits for, and since when", print_status},
+    {"pause", "stop between two ticks; returns when the world stands", pause},
+    {"resume", "go on", resume},
+    {"step", "[TICKS] of a paused world, 1 if not said", step},
+    {"reset", "[--seed N]  build the world anew; controllers are told", reset},
+    {"spawn", "FILE|-  add an entity: one element, as in <arena>", spawn},
+    {"remove", "ENTITY  take it out", remove},
+    {"move", "ENTITY x,y,z [z,y,x]  put it to rest there [m], turned so [degrees]", move},
+    {"read", "[ID|GLOB]...  poses of entities: x y z, and the quaternion w x y z", read},
+    {"shutdown", "end the run, as Ctrl-C does", shutdown},
+};
+
+const Verb& verb_named(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs) {
+    if (verb.name == name) return verb;
+    names.emplace_back(verb.name);
+  }
+  const auto suggestion = text::closest(name, names);
+  throw text::UsageError(fmt::format("ctl: there is no '{}'; {}", name,
+                                     suggestion.empty() ? "'ziggurat help ctl' lists them"
+                                                        : "did you mean '" + suggestion + "'?"));
+}
+
+}  // namespace
+
+std::string help_ctl() {
+  std::ostringstream text;
+  text << R"(usage: ziggurat ctl URL WHAT [ARGUMENT]...
+
+Steers a run of `ziggurat run --endpoint URL` or `ziggurat serve` from another terminal. What it asks
+for is done between two ticks; it returns when that is true.
+
+)";
+  for (const Verb& verb : verbs) text << fmt::format("  {:<10} {}\n", verb.name, verb.summary);
+  text << R"(
+  ziggurat ctl tcp://127.0.0.1:5770 pause
+  ziggurat ctl tcp://127.0.0.1:5770 step 10
+  ziggurat ctl tcp://127.0.0.1:5770 read 'block*' --json
+  echo '<box id="b" size=".1,.1,.1" movable="true" mass="1"><body position="0,0,1"/></box>' |
+      ziggurat ctl tcp://127.0.0.1:5770 spawn -
+
+Exit codes: 0 it was done; 1 it was not.
+
+)" << ctl_options();
+  return text.str();
+}
+
+int execute_ctl(const Arguments& arguments) {
+  const Parsed parsed = parse(arguments, ctl_options());
+  if (parsed.positional.size() < 2) misused("WHAT   ('ziggurat help ctl' lists what there is)");
+  const Verb& verb = verb_named(parsed.positional[1]);
+  reports::Console console;
+  Supervisor server(supervisor_options(parsed.positional[0], parsed.values, false, "ziggurat ctl"));
+  verb.execute(
+      {server, console, {parsed.positional.begin() + 2, parsed.positional.end()}, parsed.values});
+  console.flush();
+  return reports::exit_code::finished;
+}
+
+}  // namespace ziggurat::cli

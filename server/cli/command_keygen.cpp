@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "network/keys.h"
+#include "reports/console.h"
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+po::options_description keygen_options() {
+  po::options_description options("", 96);
+  options.add_options()("out", po::value<std::string>()->value_name("PREFIX"),
+                        "where to: PREFIX.secret and PREFIX.public; 'ziggurat' if left out");
+  return options;
+}
+
+}  // namespace
+
+std::string help_keygen() {
+  std::ostringstream text;
+  text << R"text(usage: ziggurat keygen [--out PREFIX]
+
+Makes a pair of keys for protected connections (CURVE), and prints the public one. PREFIX.secret can
+be read by its owner only and stays where it is; PREFIX.public may be known to everybody. Files that
+exist are not replaced.
+
+  ziggurat keygen --out server
+  ziggurat keygen --out alice
+  echo "$(cat alice.public) controller Alice's robots" > clients.txt
+      keys of the server and of a client, and the list of who may connect
+  ziggurat serve vehicle.argos --endpoint tcp://0.0.0.0:5770 \
+                --curve-secret server.secret --curve-clients clients.txt
+  ziggurat-lua --connect tcp://192.0.2.1:5770 --server-key "$(cat server.public)" \
+               --curve-secret alice.secret
+
+Exit codes: 0 finished; 1 fault of arguments or environment.
+
+)text" << keygen_options();
+  return text.str();
+}
+
+int execute_keygen(const Arguments& arguments) {
+  const auto parsed = parse(arguments, keygen_options());
+  if (!parsed.positional.empty()) {
+    throw text::UsageError(
+        fmt::format("'{}' is one too many; --out PREFIX is due", parsed.positional[0]));
+  }
+  const std::string prefix =
+      parsed.values.count("out") > 0 ? parsed.values["out"].as<std::string>() : "ziggurat";
+  reports::Console console;
+  console.result(network::write_key_pair(prefix));
+  console.flush();
+  return reports::exit_code::finished;
+}
+
+}  // namespace ziggurat::cli

@@ -1,0 +1,84 @@
+// Who holds up the world: a table that renews itself.
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/supervision_client.h"
+#include "processes/signals.h"
+#include "reports/console.h"
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+po::options_description top_options() {
+  po::options_description options("Options", 96);
+  options.add_options()("interval", po::value<std::string>()->value_name("S"),
+                        "seconds of wall time between two looks (default 1)")(
+      "once", "look once, and end")("json", "a line of JSON for each look");
+  add_key_options(options);
+  return options;
+}
+
+/// Waits so long; true if it was interrupted.
+bool sleep(processes::Signals& signals, double seconds) {
+  pollfd descriptor{signals.descriptor(), POLLIN, 0};
+  poll(&descriptor, 1, static_cast<int>(std::lround(seconds * 1000)));
+  return signals.take().interruptions > 0;
+}
+
+}  // namespace
+
+std::string help_top() {
+  std::ostringstream text;
+  text << R"(usage: ziggurat top URL [OPTION]...
+
+Shows who holds up the world of `ziggurat run --endpoint URL` or `ziggurat serve`: every controller
+with its state, since when the world has waited for it, how long it takes to answer, its missed
+deadlines; and where the wall time of a tick goes. It never slows the run. Ctrl-C ends it.
+
+  ziggurat top tcp://127.0.0.1:5770
+  ziggurat top tcp://127.0.0.1:5770 --once --json
+
+)" << top_options();
+  return text.str();
+}
+
+int execute_top(const Arguments& arguments) {
+  const Parsed parsed = parse(arguments, top_options());
+  if (parsed.positional.size() != 1) throw text::UsageError("write: ziggurat top URL");
+  const bool once = parsed.values.count("once") > 0;
+  const bool json = parsed.values.count("json") > 0;
+  double interval = 1;
+  if (const auto given = parsed.values.find("interval"); given != parsed.values.end()) {
+    interval = text::to_number("--interval", given->second.as<std::string>());
+    if (!(interval >= 0.05 && interval <= 3600)) {
+      throw text::UsageError("--interval: seconds from 0.05 to 3600 are due");
+    }
+  }
+  reports::Console console;
+  processes::Signals signals;
+  SupervisorOptions options =
+      supervisor_options(parsed.positional[0], parsed.values, true, "ziggurat top");
+  bool is_interrupted = false;
+  options.is_interrupted = [&] { return is_interrupted |= signals.take().interruptions > 0; };
+  Supervisor server(options);
+  const bool redraws = !once && !json && isatty(STDOUT_FILENO) != 0;
+  do {
+    const ServerStatus status = server.status();
+    const std::string shown = json ? server.last_answer_json() : to_text(status);
+    console.result(redraws ? "\x1b[H\x1b[2J" + shown : shown);
+    console.flush();
+  } while (!once && !sleep(signals, interval));
+  return reports::exit_code::finished;
+}
+
+}  // namespace ziggurat::cli

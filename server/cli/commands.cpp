@@ -1,0 +1,42 @@
+#include "cli/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/arguments.h"
+#include "text/names.h"
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+constexpr Command table[] = {
+    {"run", "run a scene with its controllers", help_run, execute_run},
+    {"serve", "run a scene for controllers that connect from outside", help_serve, execute_serve},
+    {"check", "report every fault and notice of scene files", help_check, execute_check},
+    {"render", "draw a scene at given times", help_render, execute_render},
+    {"magnetism", "plot what two magnets of a scene do to each other", help_magnetism,
+     execute_magnetism},
+    {"keygen", "make a pair of keys that protect connections", help_keygen, execute_keygen},
+    {"top", "show who holds up a run", help_top, execute_top},
+    {"ctl", "steer a run: pause, step, reset, move, …", help_ctl, execute_ctl},
+    {"help", "explain a command", help_help, execute_help},
+};
+
+}  // namespace
+
+std::span<const Command> commands() { return table; }
+
+const Command& command_named(const std::string& name) {
+  const auto found = std::ranges::find(table, name, &Command::name);
+  if (found != std::end(table)) return *found;
+  std::vector<std::string> names;
+  for (const auto& command : table) names.emplace_back(command.name);
+  const auto suggestion = text::closest(name, names);
+  throw text::UsageError(fmt::format(
+      "there is no command '{}'; {}", name,
+      suggestion.empty() ? "'ziggurat help' lists them" : "did you mean '" + suggestion + "'?"));
+}
+
+}  // namespace ziggurat::cli

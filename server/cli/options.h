@@ -1,0 +1,21 @@
+#pragma once
+// The options of `run`, `serve`, `check` and `render`: their help, and what they ask for.
+
+#include <boost/program_options/options_description.hpp>
+
+#include "cli/commands.h"
+#include "run/options.h"
+
+namespace ziggurat::cli {
+
+/// What each command understands, in groups with headings as its help prints them.
+boost::program_options::options_description run_options();
+boost::program_options::options_description serve_options();
+boost::program_options::options_description check_options();
+boost::program_options::options_description render_options();
+
+/// @throws UsageError
+run::Options parse_options(const Arguments& arguments,
+                           const boost::program_options::options_description& known);
+
+}  // namespace ziggurat::cli

@@ -1,0 +1,22 @@
+#pragma once
+// What ctl and top share: how they connect, and what a status looks like.
+
+#include <boost/program_options/options_description.hpp>
+#include <boost/program_options/variables_map.hpp>
+#include <string>
+
+#include "ziggurat/supervisor.h"
+
+namespace ziggurat::cli {
+
+/// Options on keys, for servers that ask for them.
+void add_key_options(boost::program_options::options_description& options);
+
+SupervisorOptions supervisor_options(const std::string& endpoint,
+                                     const boost::program_options::variables_map& values,
+                                     bool only_observes, std::string name);
+
+/// Several lines without line feed at the end: the world, a row per session, where time goes.
+std::string to_text(const ServerStatus& status);
+
+}  // namespace ziggurat::cli

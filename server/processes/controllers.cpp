@@ -1,0 +1,127 @@
+#include "processes/controllers.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "processes/scripts.h"
+#include "recording/output_file.h"
+
+namespace ziggurat::processes {
+namespace {
+
+// The private endpoint is not protected, whatever keys our own surroundings name.
+const std::vector<std::pair<std::string, std::string>> no_keys{{"ZIGGURAT_SERVER_KEY", ""},
+                                                               {"ZIGGURAT_CURVE_SECRET", ""}};
+
+Launch lua_launch(std::string name, std::vector<std::size_t> robots, const std::string& list,
+                  const Surroundings& surroundings) {
+  Launch launch;
+  launch.name = std::move(name);
+  launch.robots = std::move(robots);
+  launch.robots_file = fmt::format("{}/{}", surroundings.folder, list);
+  launch.program.arguments = {surroundings.lua_runner, "--connect",        surroundings.endpoint,
+                              "--robots-file",         launch.robots_file, "--quiet"};
+  launch.program.environment = no_keys;
+  return launch;
+}
+
+std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
+                             const Surroundings& surroundings) {
+  const std::size_t wanted =
+      surroundings.lua_processes == 0 ? robots.size() : surroundings.lua_processes;
+  const std::size_t count = std::min(wanted, robots.size());
+  std::vector<Launch> launches;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto block = [&](std::size_t n) {
+      return robots.begin() + static_cast<std::ptrdiff_t>(n * robots.size() / count);
+    };
+    launches.push_back(
+        lua_launch(count == 1 ? "ziggurat-lua" : fmt::format("ziggurat-lua {} of {}", i + 1, count),
+                   {block(i), block(i + 1)}, fmt::format("robots-{}", i), surroundings));
+  }
+  return launches;
+}
+
+ControllerProcess start(const Launch& launch, const world::Layout& layout) {
+  if (!launch.robots_file.empty()) {
+    recording::OutputFile file(launch.robots_file);
+    for (const std::size_t robot : launch.robots) {
+      file.buffer().append(layout.robots[robot].id + "\n");
+    }
+    file.close();
+  }
+  try {
+    return {launch.name, launch.robots, ChildProcess(launch.program)};
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(fmt::format("{} cannot be started ({}): {}", launch.name,
+                                         launch.program.arguments[0], error.code().message()));
+  }
+}
+
+}  // namespace
+
+std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Layout& layout,
+                                     const std::vector<std::string>& scripts,
+                                     const Surroundings& surroundings) {
+  std::vector<std::size_t> lua;
+  std::vector<std::vector<std::size_t>> others(scene.controllers.size());
+  for (std::size_t r = 0; r < layout.robots.size(); ++r) {
+    const std::size_t controller = layout.robots[r].controller;
+    if (!runs_script(scene.controllers[controller])) {
+      others[controller].push_back(r);
+    } else if (!scripts[r].empty()) {
+      lua.push_back(r);
+    }
+  }
+  auto launches = plan_lua(lua, surroundings);
+  for (std::size_t c = 0; c < others.size(); ++c) {
+    const auto& controller = scene.controllers[c];
+    if (others[c].empty() || controller.command.empty()) continue;
+    Launch launch;
+    launch.name = fmt::format("the command of controller '{}'", controller.id);
+    launch.robots = others[c];
+    launch.program.arguments = {"/bin/sh", "-c", controller.command};
+    launch.program.environment = {{"ZIGGURAT_ENDPOINT", surroundings.endpoint},
+                                  {"ZIGGURAT_CONTROLLER", controller.id}};
+    launch.program.environment.insert(launch.program.environment.end(), no_keys.begin(),
+                                      no_keys.end());
+    launches.push_back(std::move(launch));
+  }
+  return launches;
+}
+
+Launch plan_spawned(std::size_t robot, std::size_t number, const world::Layout& layout,
+                    const Surroundings& surroundings) {
+  return lua_launch(fmt::format("ziggurat-lua of '{}'", layout.robots[robot].id), {robot},
+                    fmt::format("spawned-{}", number), surroundings);
+}
+
+std::vector<ControllerProcess> start_all(const std::vector<Launch>& launches,
+                                         const world::Layout& layout) {
+  std::vector<ControllerProcess> processes;
+  for (const auto& launch : launches) processes.push_back(start(launch, layout));
+  return processes;
+}
+
+std::string find_lua_runner() {
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto beside = self.parent_path() / "ziggurat-lua";
+  return !error && ::access(beside.c_str(), X_OK) == 0 ? beside.string() : "ziggurat-lua";
+}
+
+std::string names_of(const std::vector<std::size_t>& robots, const world::Layout& layout) {
+  constexpr std::size_t most = 8;
+  std::string text = robots.size() == 1 ? "robot " : "robots ";
+  for (std::size_t i = 0; i < std::min(most, robots.size()); ++i) {
+    text += (i ? ", " : "") + layout.robots[robots[i]].id;
+  }
+  if (robots.size() > most) text += fmt::format(" and {} more", robots.size() - most);
+  return text;
+}
+
+}  // namespace ziggurat::processes

@@ -1,0 +1,113 @@
+#include "reports/gate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "text/numbers.h"
+
+namespace ziggurat::reports {
+namespace {
+
+using Subject = Condition::Subject;
+
+constexpr std::array<std::pair<std::string_view, Subject>, 7> subjects{{
+    {"p50", Subject::p50},
+    {"p90", Subject::p90},
+    {"p99", Subject::p99},
+    {"p99.9", Subject::p999},
+    {"max", Subject::max},
+    {"misses", Subject::misses},
+    {"late", Subject::late},
+}};
+
+constexpr std::array<std::pair<std::string_view, double>, 3> units{
+    {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1}}};
+
+[[noreturn]] void wrong(const std::string& part) {
+  throw text::UsageError(fmt::format(
+      "--gate: '{}' is no condition; write for example p99<2ms, max<20ms, misses<0.1% or late<5 "
+      "(p50, p90, p99, p99.9, max: a time in us, ms or s; misses, late: a number or a share in %)",
+      part));
+}
+
+std::string trimmed(const std::string& text) {
+  const auto begin = text.find_first_not_of(' ');
+  if (begin == std::string::npos) return {};
+  return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
+}
+
+Condition parse_condition(const std::string& part) {
+  const auto sign = part.find('<');
+  if (sign == std::string::npos) wrong(part);
+  const std::string name = trimmed(part.substr(0, sign));
+  const std::string limit = trimmed(part.substr(sign + 1));
+  const auto subject =
+      std::ranges::find(subjects, std::string_view(name), [](const auto& s) { return s.first; });
+  if (subject == subjects.end()) wrong(part);
+  Condition condition{subject->second, false, 0, part};
+  std::size_t used = 0;
+  try {
+    condition.limit = std::stod(limit, &used);
+  } catch (const std::logic_error&) {
+    wrong(part);
+  }
+  const std::string unit = trimmed(limit.substr(used));
+  const bool is_time = condition.subject < Subject::misses;
+  if (!std::isfinite(condition.limit) || condition.limit < 0) wrong(part);
+  if (is_time) {
+    const auto found =
+        std::ranges::find(units, std::string_view(unit), [](const auto& u) { return u.first; });
+    if (found == units.end()) wrong(part);
+    condition.limit *= found->second;
+  } else if (unit == "%") {
+    condition.is_share = true;
+    condition.limit /= 100;
+  } else if (!unit.empty()) {
+    wrong(part);
+  }
+  return condition;
+}
+
+}  // namespace
+
+std::vector<Condition> parse_gate(const std::string& text) {
+  std::vector<Condition> conditions;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    conditions.push_back(parse_condition(trimmed(part)));
+  }
+  if (conditions.empty()) wrong(text);
+  return conditions;
+}
+
+double measured(const Condition& condition, const Performance& performance) {
+  const auto counted = [&](double ticks) {
+    if (!condition.is_share) return ticks;
+    return performance.ticks > 0 ? ticks / performance.ticks : 0;
+  };
+  switch (condition.subject) {
+    case Subject::p50:
+      return performance.p50;
+    case Subject::p90:
+      return performance.p90;
+    case Subject::p99:
+      return performance.p99;
+    case Subject::p999:
+      return performance.p999;
+    case Subject::max:
+      return performance.max;
+    case Subject::misses:
+      return counted(performance.misses);
+    case Subject::late:
+      return counted(performance.late);
+  }
+  return 0;
+}
+
+}  // namespace ziggurat::reports

@@ -1,0 +1,184 @@
+#include "reports/metrics.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <chrono>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "text/numbers.h"
+
+namespace ziggurat::reports {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds period{250};  // between copies
+constexpr std::size_t threads = 2;
+constexpr std::size_t most_waiting = 16;  // connections
+constexpr time_t most_seconds = 5;        // for a request to arrive, or an answer to be taken
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '\\' || c == '"') out += '\\';
+    if (c == '\n') {
+      out += "\\n";
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+void head(std::string& out, std::string_view name, std::string_view type, std::string_view help) {
+  out += fmt::format("# HELP {0} {2}\n# TYPE {0} {1}\n", name, type, help);
+}
+
+const char* name_of(wire::SessionStatus::State state) {
+  constexpr const char* names[] = {"unspecified", "ready",    "owing", "answered",
+                                   "paused",      "draining", "lost"};
+  return names[static_cast<std::size_t>(state)];
+}
+
+std::string label_of(const wire::SessionStatus& session, std::size_t number) {
+  return fmt::format("session=\"{}\",client={}", number, quoted(session.client));
+}
+
+void add_sessions(std::string& out, const wire::Status& status) {
+  const auto each = [&](auto write) {
+    for (std::size_t i = 0; i < status.sessions.size(); ++i) {
+      write(status.sessions[i], label_of(status.sessions[i], i));
+    }
+  };
+  head(out, "ziggurat_session_state", "gauge", "1 for the state that a session is in.");
+  each([&](const wire::SessionStatus& session, const std::string& label) {
+    out +=
+        fmt::format("ziggurat_session_state{{{},state=\"{}\"}} 1\n", label, name_of(session.state));
+  });
+  head(out, "ziggurat_session_waiting_seconds", "gauge",
+       "For how long the world has waited for a session.");
+  each([&](const wire::SessionStatus& session, const std::string& label) {
+    out +=
+        fmt::format("ziggurat_session_waiting_seconds{{{}}} {}\n", label, session.wall_waiting_s);
+  });
+  head(out, "ziggurat_session_latency_seconds", "gauge",
+       "From observation to command, over the last 1000 ticks.");
+  each([&](const wire::SessionStatus& session, const std::string& label) {
+    const auto& latency = session.latency;
+    for (const auto& [quantile, value] :
+         {std::pair{"0.5", latency.p50}, {"0.99", latency.p99}, {"1", latency.max}}) {
+      out += fmt::format("ziggurat_session_latency_seconds{{{},quantile=\"{}\"}} {}\n", label,
+                         quantile, value);
+    }
+  });
+  head(out, "ziggurat_session_deadline_misses_total", "counter", "Deadlines missed.");
+  each([&](const wire::SessionStatus& session, const std::string& label) {
+    out += fmt::format("ziggurat_session_deadline_misses_total{{{}}} {}\n", label, session.misses);
+  });
+}
+
+}  // namespace
+
+std::string to_prometheus(const wire::Status& status) {
+  std::string out;
+  const auto gauge = [&](std::string_view name, std::string_view help, auto value) {
+    head(out, name, "gauge", help);
+    out += fmt::format("{} {}\n", name, value);
+  };
+  head(out, "ziggurat_tick", "counter", "Ticks of the world.");
+  out += fmt::format("ziggurat_tick {}\n", status.tick);
+  gauge("ziggurat_simulated_seconds", "Simulated time.",
+        static_cast<double>(status.time_ns) * 1e-9);
+  gauge("ziggurat_paused", "1 if the world is paused.",
+        status.phase == wire::Status::Phase::paused ? 1 : 0);
+  gauge("ziggurat_free_robots", "Robots that nobody holds and the world waits for.",
+        status.free_robots.size());
+  gauge("ziggurat_gone_robots", "Robots that left for good.", status.gone_robots.size());
+  gauge("ziggurat_uptime_seconds", "Wall time since the start.", status.wall_uptime_s);
+  add_sessions(out, status);
+  head(out, "ziggurat_tick_phase_seconds", "gauge",
+       "Where the wall time of a tick goes, over the last 1000 ticks.");
+  for (const auto& phase : status.budget) {
+    for (const auto& [quantile, value] :
+         {std::pair{"0.5", phase.wall.p50}, {"0.99", phase.wall.p99}, {"1", phase.wall.max}}) {
+      out += fmt::format("ziggurat_tick_phase_seconds{{phase=\"{}\",quantile=\"{}\"}} {}\n",
+                         phase.phase, quantile, value);
+    }
+  }
+  return out;
+}
+
+struct MetricsPort::State {
+  httplib::Server server;
+  std::string url;
+  std::thread thread;
+  Clock::time_point published{};
+  std::mutex mutex;  // of the next two
+  std::string prometheus, json;
+
+  std::string read(const std::string& text) {
+    const std::lock_guard lock(mutex);
+    return text;
+  }
+};
+
+MetricsPort::MetricsPort(const std::string& address, bool insecure)
+    : state_(std::make_unique<State>()) {
+  const auto colon = address.rfind(':');
+  if (colon == std::string::npos) {
+    throw text::UsageError(
+        fmt::format("--metrics is '{}'; host:port is due, as 127.0.0.1:9464", address));
+  }
+  const std::string host = address.substr(0, colon);
+  const auto port = text::to_integer("--metrics", address.substr(colon + 1));
+  if (port > 65535) throw text::UsageError(fmt::format("--metrics: there is no port {}", port));
+  if (!insecure && host != "127.0.0.1" && host != "localhost" && host != "[::1]") {
+    throw text::UsageError(
+        fmt::format("--metrics: others can reach {}; --insecure says that they may", host));
+  }
+  State& s = *state_;
+  s.server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
+  s.server.set_read_timeout(most_seconds).set_write_timeout(most_seconds);
+  s.server.set_keep_alive_max_count(most_waiting).set_payload_max_length(0);
+  s.server.Get("/metrics", [&s](const httplib::Request&, httplib::Response& response) {
+    response.set_content(s.read(s.prometheus), "text/plain; version=0.0.4; charset=utf-8");
+  });
+  s.server.Get("/status", [&s](const httplib::Request&, httplib::Response& response) {
+    response.set_content(s.read(s.json), "application/json");
+  });
+  s.server.Get("/", [](const httplib::Request&, httplib::Response& response) {
+    response.set_content("Ziggurat: /metrics for Prometheus, /status for JSON\n", "text/plain");
+  });
+  const int bound = port == 0 ? s.server.bind_to_any_port(host.c_str())
+                    : s.server.bind_to_port(host.c_str(), static_cast<int>(port))
+                        ? static_cast<int>(port)
+                        : -1;
+  if (bound < 0) throw std::runtime_error(fmt::format("--metrics: {} is taken", address));
+  s.url = fmt::format("http://{}:{}", host, bound);
+  s.thread = std::thread([&s] { s.server.listen_after_bind(); });
+  // Before it runs, it can't be stopped.
+  while (!s.server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+MetricsPort::~MetricsPort() {
+  state_->server.stop();
+  if (state_->thread.joinable()) state_->thread.join();
+}
+
+const std::string& MetricsPort::url() const { return state_->url; }
+
+bool MetricsPort::is_due() const { return Clock::now() - state_->published >= period; }
+
+void MetricsPort::publish(const wire::Status& status) {
+  state_->published = Clock::now();
+  std::string prometheus = to_prometheus(status);
+  std::string json = wire::to_json(status);
+  const std::lock_guard lock(state_->mutex);
+  state_->prometheus.swap(prometheus);
+  state_->json.swap(json);
+}
+
+}  // namespace ziggurat::reports

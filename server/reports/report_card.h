@@ -1,0 +1,43 @@
+#pragma once
+// How controllers kept up with a run that waited for nobody: a histogram, misses, the worst ticks,
+// and whether the gate was met.
+
+#include <string>
+#include <vector>
+
+#include "network/delays.h"
+#include "network/latencies.h"
+#include "reports/gate.h"
+
+namespace ziggurat::reports {
+
+struct ControllerCard {
+  std::string controller;         ///< id in the scene
+  network::Latencies latencies;   ///< from observation to command
+  std::uint64_t misses = 0;       ///< ticks at which a robot of it missed its deadline
+  network::Injection injected{};  ///< done to its messages on purpose
+  network::Lost lost{};           ///< by that
+};
+
+struct ReportCard {
+  std::vector<ControllerCard> controllers;  ///< in scene order
+  std::uint64_t ticks = 0;
+  std::uint64_t late_ticks = 0;  ///< that began after their time
+  std::vector<Condition> gate;
+};
+
+/// Whether a controller meets a condition; one that never answered meets none on times.
+bool meets(const ReportCard& card, const ControllerCard& controller, const Condition& condition);
+/// Whether all meet all. True without a gate.
+bool passes(const ReportCard& card);
+
+/// For people: "observations 5 ms ± 2 ms, 1 % lost; commands 4 ms".
+std::string to_text(const network::Injection& injection);
+
+/// Several lines without line feed at the end.
+std::string to_text(const ReportCard& card);
+std::string to_json(const ReportCard& card);
+/// The histograms as a picture.
+std::string to_svg(const ReportCard& card);
+
+}  // namespace ziggurat::reports

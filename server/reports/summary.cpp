@@ -1,0 +1,106 @@
+#include "reports/summary.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "math/hash.h"
+
+namespace ziggurat::reports {
+namespace {
+
+const char* to_string(Ending ending) {
+  switch (ending) {
+    case Ending::finished:
+      return "finished";
+    case Ending::interrupted:
+      return "interrupted";
+    case Ending::forced:
+      return "forced";
+    case Ending::controller_vanished:
+      return "controller_vanished";
+    case Ending::deadline_missed:
+      return "deadline_missed";
+    case Ending::reset:
+      return "reset";
+  }
+  return "";
+}
+
+double ratio(double numerator, double denominator) {
+  return denominator > 0 ? numerator / denominator : 0;
+}
+
+bool is_by_controller(Ending ending) {
+  return ending == Ending::controller_vanished || ending == Ending::deadline_missed;
+}
+
+}  // namespace
+
+std::string to_text(const Summary& summary) {
+  std::string text = fmt::format(
+      "{}: {} ticks, {:.3f} s simulated in {:.3f} s: real-time factor {:.2f}, {:.0f} ticks/s\n",
+      is_by_controller(summary.ending) ? "ended early" : to_string(summary.ending), summary.ticks,
+      summary.simulated_s, summary.wall_s, ratio(summary.simulated_s, summary.wall_s),
+      ratio(static_cast<double>(summary.ticks), summary.wall_s));
+  text += fmt::format("  wall time: physics {:.3f} s, exchange {:.3f} s, recording {:.3f} s",
+                      summary.physics_s, summary.exchange_s, summary.recording_s);
+  if (summary.pacing_s > 0) {
+    text += fmt::format(", pacing {:.3f} s ({} ticks late)", summary.pacing_s, summary.late_ticks);
+  }
+  text += fmt::format("; before it, start-up {:.3f} s\n", summary.startup_s);
+  for (const auto& each : summary.missed) {
+    text += fmt::format("  controller '{}' missed its deadline at {} tick{}\n", each.controller,
+                        each.ticks, each.ticks == 1 ? "" : "s");
+  }
+  text += fmt::format("  seed {}, hash {}", summary.seed, math::to_hex(summary.hash));
+  return text;
+}
+
+std::string to_json(const Summary& summary) {
+  auto failures = nlohmann::ordered_json::array();
+  for (const auto& failure : summary.failures) {
+    failures.push_back({{"robot", failure.robot},
+                        {"controller", failure.controller},
+                        {"tick", failure.tick},
+                        {"message", failure.message}});
+  }
+  auto missed = nlohmann::ordered_json::array();
+  for (const auto& each : summary.missed) {
+    missed.push_back({{"controller", each.controller}, {"ticks", each.ticks}});
+  }
+  const nlohmann::ordered_json json{
+      {"scene", summary.scene},
+      {"ending", to_string(summary.ending)},
+      {"ticks", summary.ticks},
+      {"simulated_s", summary.simulated_s},
+      {"wall_s", summary.wall_s},
+      {"real_time_factor", ratio(summary.simulated_s, summary.wall_s)},
+      {"ticks_per_s", ratio(static_cast<double>(summary.ticks), summary.wall_s)},
+      {"wall_time_s",
+       {{"startup", summary.startup_s},
+        {"physics", summary.physics_s},
+        {"exchange", summary.exchange_s},
+        {"recording", summary.recording_s},
+        {"pacing", summary.pacing_s}}},
+      {"late_ticks", summary.late_ticks},
+      {"seed", summary.seed},
+      {"hash", math::to_hex(summary.hash)},
+      {"robots", summary.robots},
+      {"failures", failures},
+      {"missed_deadlines", missed},
+      {"vanished", summary.vanished}};
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+int exit_code_of(const Summary& summary) {
+  if (summary.ending == Ending::interrupted || summary.ending == Ending::forced) {
+    return exit_code::interrupted;
+  }
+  if (is_by_controller(summary.ending) || !summary.failures.empty()) {
+    return exit_code::controller_failed;
+  }
+  return exit_code::finished;
+}
+
+}  // namespace ziggurat::reports

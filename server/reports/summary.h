@@ -1,0 +1,68 @@
+#pragma once
+// How a run went, for people and as JSON.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ziggurat::reports {
+
+/// How the program ends.
+namespace exit_code {
+constexpr int finished = 0;
+constexpr int fault = 1;  ///< of scene, arguments or environment
+constexpr int controller_failed = 3;
+constexpr int gate_missed = 4;    ///< a controller did not keep up as --gate asks
+constexpr int interrupted = 130;  ///< Ctrl-C
+}  // namespace exit_code
+
+/// Why a run is over.
+enum class Ending {
+  finished,
+  interrupted,
+  forced,
+  controller_vanished,
+  deadline_missed,  ///< of a controller whose policy is to stop
+  reset,            ///< of this world; another one follows
+};
+
+struct Summary {
+  std::string scene;  ///< path as given
+  Ending ending = Ending::finished;
+  std::uint64_t ticks = 0;
+  double simulated_s = 0;
+  double startup_s = 0;  ///< wall time until every robot had its controller
+  double wall_s = 0;     ///< of the ticks; the next four are parts of it
+  double physics_s = 0;
+  double exchange_s = 0;  ///< sending, and waiting for controllers
+  double recording_s = 0;
+  double pacing_s = 0;           ///< waiting for the wall clock (--real-time)
+  std::uint64_t late_ticks = 0;  ///< paced ticks that began after their time
+  std::uint64_t seed = 0;
+  std::uint64_t hash = 0;
+  std::size_t robots = 0;
+
+  struct Failure {
+    std::string robot;
+    std::string controller;
+    std::uint64_t tick = 0;
+    std::string message;
+  };
+  std::vector<Failure> failures;  ///< robots whose controller failed, in order of time
+  std::string vanished;           ///< the sentence on the controller that ended the run
+
+  struct Missed {
+    std::string controller;
+    std::uint64_t ticks = 0;  ///< at which one of its robots or more missed a deadline
+  };
+  std::vector<Missed> missed;  ///< controllers that missed any, in scene order
+};
+
+/// Several lines without line feed at the end; on failures others have the word.
+std::string to_text(const Summary& summary);
+std::string to_json(const Summary& summary);  ///< one line
+
+int exit_code_of(const Summary& summary);
+
+}  // namespace ziggurat::reports

@@ -1,0 +1,85 @@
+#include "run/deadline_option.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "text/numbers.h"
+
+namespace ziggurat::run {
+namespace {
+
+using scene::DeadlineAction;
+
+[[noreturn]] void refuse(const std::string& value, std::string_view why) {
+  throw text::UsageError(
+      fmt::format("--deadline is '{}': {}; wait, hold:50, zero:50:10, drop:200 or "
+                  "CONTROLLER=stop:1000 would do",
+                  value, why));
+}
+
+std::uint32_t to_count(const std::string& value, const std::string& text) {
+  const auto number = text::to_integer("--deadline " + value, text);
+  if (number > std::numeric_limits<std::uint32_t>::max()) refuse(value, text + " is too much");
+  return static_cast<std::uint32_t>(number);
+}
+
+/// The text up to the next colon, which is taken away with it.
+std::string next_part(std::string& text) {
+  const auto colon = text.find(':');
+  std::string part = text.substr(0, colon);
+  text = colon == std::string::npos ? std::string() : text.substr(colon + 1);
+  return part;
+}
+
+}  // namespace
+
+DeadlineOption to_deadline(const std::string& value) {
+  DeadlineOption option;
+  const auto equals = value.rfind('=');  // ids may hold one
+  if (equals == 0) refuse(value, "no controller before the =");
+  if (equals != std::string::npos) option.controller = value.substr(0, equals);
+  std::string rest = equals == std::string::npos ? value : value.substr(equals + 1);
+  const bool has_budget = std::ranges::count(rest, ':') > 1;
+  if (std::ranges::count(rest, ':') > 2) refuse(value, "more than three parts");
+  const std::string name = next_part(rest);
+  const auto action = scene::deadline_action(name);
+  if (!action) refuse(value, fmt::format("there is no action '{}'", name));
+  option.policy.action = *action;
+  if (*action == DeadlineAction::wait) {
+    if (!rest.empty()) refuse(value, "wait has no deadline");
+    return option;
+  }
+  if (rest.empty()) refuse(value, fmt::format("{} needs a deadline in ms", name));
+  option.policy.wall_deadline_ms = to_count(value, next_part(rest));
+  if (option.policy.wall_deadline_ms == 0) refuse(value, "the deadline is 0 ms");
+  if (has_budget) option.policy.miss_budget = to_count(value, rest);
+  return option;
+}
+
+std::vector<network::Config::Deadline> deadlines_of(const std::vector<DeadlineOption>& options,
+                                                    const scene::Scene& scene) {
+  std::vector<network::Config::Deadline> deadlines;
+  for (const auto& controller : scene.controllers) {
+    deadlines.push_back({controller.deadline.value_or(scene::DeadlinePolicy{}), false});
+  }
+  for (const bool by_name : {false, true}) {
+    for (const DeadlineOption& option : options) {
+      if (option.controller.empty() == by_name) continue;
+      bool is_found = !by_name;
+      for (std::size_t i = 0; i < deadlines.size(); ++i) {
+        if (by_name && scene.controllers[i].id != option.controller) continue;
+        deadlines[i] = {option.policy, true};
+        is_found = true;
+      }
+      if (!is_found) {
+        throw text::UsageError(
+            fmt::format("--deadline: the scene has no controller '{}'", option.controller));
+      }
+    }
+  }
+  return deadlines;
+}
+
+}  // namespace ziggurat::run

@@ -1,0 +1,27 @@
+#pragma once
+// --deadline [CONTROLLER=]ACTION[:MS[:BUDGET]]
+
+#include <string>
+#include <vector>
+
+#include "network/server.h"
+#include "scene/deadline.h"
+#include "scene/scene.h"
+
+namespace ziggurat::run {
+
+struct DeadlineOption {
+  std::string controller;  ///< id in the scene; empty: all
+  scene::DeadlinePolicy policy;
+};
+
+/// @throws UsageError
+DeadlineOption to_deadline(const std::string& value);
+
+/// For each controller of the scene. Later options win over earlier ones, those that name a
+/// controller over those for all, and all of them over what the scene says.
+/// @throws UsageError if the scene has no such controller
+std::vector<network::Config::Deadline> deadlines_of(const std::vector<DeadlineOption>& options,
+                                                    const scene::Scene& scene);
+
+}  // namespace ziggurat::run

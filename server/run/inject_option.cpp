@@ -1,0 +1,165 @@
+#include "run/inject_option.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "text/numbers.h"
+
+namespace ziggurat::run {
+namespace {
+
+using network::Direction;
+using network::Disturbance;
+
+constexpr double longest_s = 10;  // that a message is held back
+
+[[noreturn]] void refuse(const std::string& value, const std::string& why) {
+  throw text::UsageError(
+      fmt::format("--inject is '{}': {}; latency=5ms,jitter=2ms,loss=1% or "
+                  "CONTROLLER=commands:loss=5% would do",
+                  value, why));
+}
+
+struct Quantity {
+  double number = 0;
+  std::string unit;
+};
+
+Quantity to_quantity(const std::string& value, const std::string& text) {
+  Quantity quantity;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), quantity.number);
+  if (error != std::errc() || !(quantity.number >= 0) || !std::isfinite(quantity.number)) {
+    refuse(value, fmt::format("'{}' is no number, or a negative one", text));
+  }
+  quantity.unit.assign(end, text.data() + text.size());
+  return quantity;
+}
+
+std::chrono::nanoseconds to_time(const std::string& value, const std::string& text) {
+  constexpr std::array<std::pair<std::string_view, double>, 3> units{
+      {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1}}};
+  const Quantity quantity = to_quantity(value, text);
+  const auto unit = std::ranges::find(units, std::string_view(quantity.unit),
+                                      [](const auto& each) { return each.first; });
+  if (unit == units.end()) refuse(value, fmt::format("'{}' is no time in us, ms or s", text));
+  const double seconds = quantity.number * unit->second;
+  if (seconds > longest_s) refuse(value, fmt::format("{} are more than 10 s", text));
+  return std::chrono::nanoseconds(std::llround(seconds * 1e9));
+}
+
+double to_share(const std::string& value, const std::string& text) {
+  const Quantity quantity = to_quantity(value, text);
+  if (quantity.unit != "%" || quantity.number > 100) {
+    refuse(value, fmt::format("'{}' is no share from 0% to 100%", text));
+  }
+  return quantity.number / 100;
+}
+
+constexpr std::array<std::string_view, 3> names{"latency", "jitter", "loss"};
+constexpr std::array<std::pair<std::string_view, Direction>, 2> directions{
+    {{"observations:", Direction::observations}, {"commands:", Direction::commands}}};
+
+/// Takes `NAME=VALUE` off the end of the text. Read from there, an id may hold any character.
+std::pair<std::string_view, std::string> take_last(const std::string& value, std::string& text) {
+  const auto equals = text.rfind('=');
+  if (equals == std::string::npos) refuse(value, fmt::format("'{}' gives nothing", text));
+  const std::string amount = text.substr(equals + 1);
+  text.resize(equals);
+  for (const std::string_view name : names) {
+    if (!text.ends_with(name)) continue;
+    const std::string_view before = std::string_view(text).substr(0, text.size() - name.size());
+    if (!before.empty() && std::string_view(",:=").find(before.back()) == std::string_view::npos)
+      continue;
+    text.resize(before.size());
+    return {name, amount};
+  }
+  const auto begin = text.find_last_of(",:=");
+  refuse(value, fmt::format("there is no '{}'; latency, jitter and loss are known",
+                            begin == std::string::npos ? text : text.substr(begin + 1)));
+}
+
+/// What stands before the numbers: `[CONTROLLER=][DIRECTION:]`.
+void read_subject(const std::string& value, std::string text, InjectOption& option) {
+  for (const auto& [name, direction] : directions) {
+    if (!text.ends_with(name)) continue;
+    option.direction = direction;
+    text.resize(text.size() - name.size());
+    break;
+  }
+  if (text.empty()) return;
+  if (text.back() != '=') {
+    refuse(value, fmt::format("'{}' is neither observations: nor commands: nor CONTROLLER=", text));
+  }
+  text.pop_back();
+  if (text.empty()) refuse(value, "no controller before the =");
+  option.controller = std::move(text);
+}
+
+void inject(const InjectOption& option, network::Injection& injection) {
+  if (option.direction != Direction::commands) injection.observations = option.disturbance;
+  if (option.direction != Direction::observations) injection.commands = option.disturbance;
+}
+
+}  // namespace
+
+InjectOption to_injection(const std::string& value) {
+  InjectOption option;
+  std::string rest = value;
+  std::array<bool, names.size()> is_given{};
+  for (;;) {
+    const auto [name, amount] = take_last(value, rest);
+    const auto index = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+    if (std::exchange(is_given[index], true)) refuse(value, fmt::format("{} stands twice", name));
+    if (name == "latency") option.disturbance.latency = to_time(value, amount);
+    if (name == "jitter") option.disturbance.jitter = to_time(value, amount);
+    if (name == "loss") option.disturbance.loss = to_share(value, amount);
+    if (!rest.ends_with(',')) break;
+    rest.pop_back();
+  }
+  read_subject(value, std::move(rest), option);
+  if (option.disturbance.jitter > option.disturbance.latency) {
+    refuse(value, "the jitter is above the latency, and no message arrives before it is sent");
+  }
+  return option;
+}
+
+std::vector<network::Injection> injections_of(const std::vector<InjectOption>& options,
+                                              const scene::Scene& scene) {
+  std::vector<network::Injection> injections(scene.controllers.size());
+  for (const bool by_name : {false, true}) {
+    for (const InjectOption& option : options) {
+      if (option.controller.empty() == by_name) continue;
+      bool is_found = !by_name;
+      for (std::size_t c = 0; c < injections.size(); ++c) {
+        if (by_name && scene.controllers[c].id != option.controller) continue;
+        inject(option, injections[c]);
+        is_found = true;
+      }
+      if (!is_found) {
+        throw text::UsageError(
+            fmt::format("--inject: the scene has no controller '{}'", option.controller));
+      }
+    }
+  }
+  return injections;
+}
+
+void check_losses(const std::vector<network::Injection>& injections, const scene::Scene& scene,
+                  const std::vector<network::Config::Deadline>& deadlines) {
+  for (std::size_t c = 0; c < injections.size(); ++c) {
+    const bool loses = injections[c].observations.loss > 0 || injections[c].commands.loss > 0;
+    if (!loses || deadlines[c].policy.action != scene::DeadlineAction::wait) continue;
+    throw text::UsageError(
+        fmt::format("--inject loses messages of controller '{0}', for which the world waits: it "
+                    "would wait for ever; add --hil, or --deadline '{0}=hold:50'",
+                    scene.controllers[c].id));
+  }
+}
+
+}  // namespace ziggurat::run

@@ -1,0 +1,34 @@
+#pragma once
+// --inject [CONTROLLER=][observations:|commands:]latency=TIME,jitter=TIME,loss=SHARE
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/delays.h"
+#include "network/server.h"
+#include "scene/scene.h"
+
+namespace ziggurat::run {
+
+struct InjectOption {
+  std::string controller;                       ///< id in the scene; empty: all
+  std::optional<network::Direction> direction;  ///< nothing: both
+  network::Disturbance disturbance;
+};
+
+/// @throws UsageError that says what is wrong, with an example
+InjectOption to_injection(const std::string& value);
+
+/// For each controller of the scene. Later options win over earlier ones, and those that name a
+/// controller over those for all; each replaces all three numbers of its direction.
+/// @throws UsageError if the scene has no such controller
+std::vector<network::Injection> injections_of(const std::vector<InjectOption>& options,
+                                              const scene::Scene& scene);
+
+/// @param deadlines  of the same controllers
+/// @throws UsageError if one loses messages that the world would wait for for ever
+void check_losses(const std::vector<network::Injection>& injections, const scene::Scene& scene,
+                  const std::vector<network::Config::Deadline>& deadlines);
+
+}  // namespace ziggurat::run

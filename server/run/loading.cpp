@@ -1,0 +1,103 @@
+#include "run/loading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "math/hash.h"
+#include "processes/scripts.h"
+#include "text/names.h"
+#include "text/numbers.h"
+
+namespace ziggurat::run {
+namespace {
+
+// `--controller ID=CMD`. A Lua controller stays one for whoever connects: its command may well be
+// ziggurat-lua under a debugger.
+void override_controllers(const Options& options, scene::Scene& scene) {
+  for (const auto& [id, command] : options.controllers) {
+    const auto found = std::ranges::find(scene.controllers, id, &scene::Controller::id);
+    if (found == scene.controllers.end()) {
+      std::vector<std::string> ids;
+      for (const auto& controller : scene.controllers) ids.push_back(controller.id);
+      const auto suggestion = text::closest(id, ids);
+      throw text::UsageError(
+          fmt::format("--controller names '{}', which the scene doesn't have{}", id,
+                      suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?"));
+    }
+    found->command = command;
+  }
+}
+
+// What the scene says of an entity of the layout: both have scene order, a pattern for its copies.
+const scene::Entity& as_written(const scene::Scene& scene, std::size_t entity) {
+  if (entity < scene.entities.size()) return scene.entities[entity];
+  entity -= scene.entities.size();
+  auto group = scene.distributions.begin();
+  for (; entity >= group->quantity; ++group) entity -= group->quantity;
+  return group->entity;
+}
+
+}  // namespace
+
+scene::OpenScene load_scene(const std::string& path, const Options& options,
+                            reports::Console& console) {
+  auto result = scene::read_file(path, options.reading);
+  auto problems = std::move(result.problems);
+  override_controllers(options, result.scene);
+  auto scripts = processes::check_scripts(result.scene, path);
+  problems.insert(problems.end(), scripts.begin(), scripts.end());
+  const auto faults = std::stable_partition(problems.begin(), problems.end(), [](const auto& each) {
+    return each.severity == scene::Problem::Severity::notice;
+  });
+  std::for_each(problems.begin(), faults, [&](const auto& each) { console.problem(each); });
+  if (faults != problems.end()) {
+    throw scene::SceneError(
+        {std::make_move_iterator(faults), std::make_move_iterator(problems.end())});
+  }
+  return {std::move(result.scene), std::move(result.additions)};
+}
+
+std::uint64_t choose_seed(const Options& options, const scene::Scene& scene) {
+  std::uint64_t seed = options.seed.value_or(scene.experiment.random_seed);
+  std::random_device system;
+  while (seed == 0) seed = system();
+  return seed;
+}
+
+std::optional<std::uint64_t> tick_count(const Options& options, const scene::Scene& scene) {
+  if (options.ticks) return options.ticks;
+  const double length = options.duration.value_or(scene.experiment.length);
+  if (length <= 0) return std::nullopt;
+  // 0.29 s at 100 ticks/s are 29 ticks, though the product is 28.999999999999996.
+  const double ticks = std::floor(length * scene.experiment.ticks_per_second * (1 + 1e-12));
+  if (ticks < 1) {
+    throw text::UsageError(fmt::format("{} s are shorter than one tick of 1/{} s", length,
+                                       scene.experiment.ticks_per_second));
+  }
+  return ticks < 0x1p63 ? static_cast<std::uint64_t>(ticks) : std::uint64_t{1} << 63;
+}
+
+std::string scene_hash(const scene::Scene& scene) {
+  math::Hash hash;
+  for (const auto& name : scene.files) {
+    std::ifstream file(name, std::ios::binary);
+    hash.add(std::string(std::istreambuf_iterator<char>(file), {}));
+  }
+  return math::to_hex(hash.digest());
+}
+
+std::vector<std::string> script_paths(const scene::Scene& scene, const world::Layout& layout,
+                                      const std::string& scene_path) {
+  std::vector<std::string> paths;
+  for (const auto& robot : layout.robots) {
+    paths.push_back(processes::script_path(scene, as_written(scene, robot.entity), scene_path));
+  }
+  return paths;
+}
+
+}  // namespace ziggurat::run

@@ -1,0 +1,54 @@
+#pragma once
+// What a run is asked for, as plain data.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reports/gate.h"
+#include "run/deadline_option.h"
+#include "run/inject_option.h"
+#include "run/pictures.h"
+#include "scene/reader.h"
+#include "scene/scene.h"
+
+namespace ziggurat::run {
+
+struct Options {
+  std::vector<std::string> scenes;  ///< exactly one for run and serve
+  scene::ReadOptions reading;
+
+  std::optional<std::uint64_t> ticks;  ///< replaces the scene's length
+  std::optional<double> duration;      ///< [s] simulated, likewise; 0 = until Ctrl-C
+  std::optional<std::uint64_t> seed;   ///< 0 = drawn from the system
+  std::optional<scene::Clock> clock;
+  std::optional<double> real_time;  ///< simulated seconds per second of the wall; > 0
+
+  unsigned lua_processes = 1;                                    ///< 0 = one per robot
+  std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command
+  std::vector<std::string> endpoints;
+  std::vector<DeadlineOption> deadlines;
+  std::vector<InjectOption> injections;
+  double lease = 0;  ///< [s] of the wall that robots of a lost session are kept for it
+  bool without_controllers = false;         ///< nobody drives the robots
+  std::string curve_secret, curve_clients;  ///< paths; both or none
+  bool hil = false;                      ///< hardware in the loop: paced, and nobody is waited for
+  std::vector<reports::Condition> gate;  ///< for controllers to meet
+  std::string report_card;               ///< path; empty = none
+  std::string metrics;                   ///< host:port; empty = none
+  bool insecure = false;                 ///< endpoints may be reached from other machines
+
+  bool quiet = false;
+  bool json = false;
+  bool hash = false;
+  std::string hash_file, trace, readings, rays, images, summary;  ///< paths; empty = none
+  std::optional<PictureOptions> pictures;  ///< the run ends with the last of them
+};
+
+/// The one scene of a run. @throws text::UsageError if there is none or more
+const std::string& only_scene(const Options& options);
+
+}  // namespace ziggurat::run

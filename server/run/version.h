@@ -1,0 +1,7 @@
+#pragma once
+
+namespace ziggurat::run {
+
+inline constexpr const char* version = ZIGGURAT_VERSION;
+
+}  // namespace ziggurat::run

@@ -1,0 +1,97 @@
+#include "run/viewpoint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <variant>
+
+namespace ziggurat::run {
+namespace {
+
+using math::Vector3;
+
+/// How far a shape reaches above the origin of its frame [m].
+double reach_above(const scene::Geometry& geometry, const math::Quaternion& orientation) {
+  if (const auto* sphere = std::get_if<scene::Sphere>(&geometry)) {
+    return sphere->radius * (1 + (orientation * Vector3::UnitZ()).z());
+  }
+  const Vector3 up = orientation.conjugate() * Vector3::UnitZ();
+  if (const auto* cylinder = std::get_if<scene::Cylinder>(&geometry)) {
+    return cylinder->radius * up.head<2>().norm() + std::max(cylinder->height * up.z(), 0.0);
+  }
+  const Vector3& size = std::get<scene::Box>(geometry).size;
+  return 0.5 * size.head<2>().dot(up.head<2>().cwiseAbs()) + std::max(size.z() * up.z(), 0.0);
+}
+
+/// A box's corners as a camera at the origin would have them, and how to see them all.
+struct Corners {
+  Corners(const Extent& box, const math::Quaternion& camera) {
+    for (unsigned i = 0; i < 8; ++i) {
+      const Vector3 point((i & 1u) ? box.high.x() : box.low.x(),
+                          (i & 2u) ? box.high.y() : box.low.y(),
+                          (i & 4u) ? box.high.z() : box.low.z());
+      seen[i] = camera.conjugate() * point;
+    }
+  }
+
+  /// The place nearest to them, in the camera's axes, from where all are within `half_width` and
+  /// `half_height` (as x / z and y / z) of the picture's middle.
+  Vector3 place(double half_width, double half_height) const {
+    // The four planes through the camera and the picture's edges each touch a corner: two of them
+    // give x and how far back, the other two y and how far back; the farther one counts.
+    const auto along = [&](int axis, double half) {
+      double low = -std::numeric_limits<double>::infinity(), high = low;
+      for (const Vector3& each : seen) {
+        high = std::max(high, each[axis] - half * each.z());
+        low = std::max(low, -each[axis] - half * each.z());
+      }
+      return std::pair((high - low) / 2, -(high + low) / (2 * half));
+    };
+    const auto [x, back_x] = along(0, half_width);
+    const auto [y, back_y] = along(1, half_height);
+    return {x, y, std::min(back_x, back_y)};
+  }
+
+  std::array<Vector3, 8> seen;
+};
+
+}  // namespace
+
+Extent extent_of(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
+                 const world::State& state) {
+  const Vector3 half = 0.5 * scene.arena.size;
+  Extent box{scene.arena.center - half, scene.arena.center + half};
+  if (!scene.physics.floor) return box;
+  double top = 0;
+  std::size_t next = 0;
+  for (const scene::Entity& entity : entities) {
+    for (const scene::Link& link : entity.links) {
+      const math::Pose& pose = state.links[next++].pose;
+      top = std::max(top, pose.position.z() + reach_above(link.geometry, pose.orientation));
+    }
+  }
+  box.low.z() = 0;
+  box.high.z() = std::min(std::max(box.high.z(), 0.0), top);
+  return box;
+}
+
+render::View choose_view(const ViewOptions& options, const Extent& box) {
+  const auto view_from = [&](const math::Pose& camera) {
+    return render::symmetric_view(camera, options.opening, options.width, options.height);
+  };
+  const Vector3 middle = 0.5 * (box.low + box.high);
+  if (options.eye)
+    return view_from(render::look_at(*options.eye, options.look_at.value_or(middle)));
+  math::Pose camera = render::look_at({0.45, -0.75, 0.62}, Vector3::Zero());
+  constexpr double margin = 0.95;  // of the picture's half size
+  const double half_width = margin * std::tan(0.5 * options.opening);
+  const double half_height = half_width * options.height / options.width;
+  camera.position =
+      camera.orientation * Corners(box, camera.orientation).place(half_width, half_height);
+  if (options.look_at) camera.position += *options.look_at - middle;
+  return view_from(camera);
+}
+
+}  // namespace ziggurat::run

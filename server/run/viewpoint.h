@@ -1,0 +1,33 @@
+#pragma once
+// From where a picture is taken.
+
+#include <optional>
+#include <vector>
+
+#include "math/pose.h"
+#include "render/view.h"
+#include "scene/scene.h"
+#include "world/state.h"
+
+namespace ziggurat::run {
+
+struct ViewOptions {
+  std::optional<math::Vector3> eye;      ///< in W [m]; none: from where the whole arena is seen
+  std::optional<math::Vector3> look_at;  ///< in W [m]; none: the middle of the arena
+  unsigned width = 1280, height = 720;   ///< [px]
+  double opening = 0.803;                ///< full angle from left to right [rad]
+};
+
+/// A box along the world's axes.
+struct Extent {
+  math::Vector3 low, high;  ///< [m]
+};
+
+/// The arena; where there is a floor, from there to as high as anything reaches.
+/// @param entities  all of them, in scene order
+Extent extent_of(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
+                 const world::State& state);
+
+render::View choose_view(const ViewOptions& options, const Extent& extent);
+
+}  // namespace ziggurat::run

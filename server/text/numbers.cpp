@@ -1,0 +1,39 @@
+#include "text/numbers.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace ziggurat::text {
+
+std::uint64_t to_integer(std::string_view option, const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw UsageError(fmt::format("{} is '{}'; a whole number, not negative, is due", option, text));
+  }
+  return value;
+}
+
+double to_number(std::string_view option, const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    throw UsageError(fmt::format("{} is '{}'; a finite number is due", option, text));
+  }
+  return value;
+}
+
+std::size_t to_size(std::string_view option, const std::string& text) {
+  const auto place = text.empty() ? std::string::npos : std::string("KMG").find(text.back());
+  const unsigned shift = place == std::string::npos ? 0 : 10 * (static_cast<unsigned>(place) + 1);
+  const auto number = to_integer(option, shift ? text.substr(0, text.size() - 1) : text);
+  if (number > (std::numeric_limits<std::size_t>::max() >> shift)) {
+    throw UsageError(fmt::format("{} is '{}', which is too large", option, text));
+  }
+  return static_cast<std::size_t>(number) << shift;
+}
+
+}  // namespace ziggurat::text

@@ -1,0 +1,62 @@
+#include "cli/arguments.h"
+
+#include <gtest/gtest.h>
+
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+po::options_description known() {
+  po::options_description options;
+  options.add_options()("ticks", po::value<std::string>())("quiet", "")(
+      "real-time", po::value<std::string>()->implicit_value("1"));
+  return options;
+}
+
+std::string complaint(const Arguments& arguments) {
+  try {
+    parse(arguments, known());
+  } catch (const text::UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Arguments, OptionsMayStandAnywhere) {
+  const auto parsed = parse({"a", "--ticks", "3", "b", "--quiet"}, known());
+  EXPECT_EQ(parsed.positional, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(parsed.values["ticks"].as<std::string>(), "3");
+  EXPECT_EQ(parsed.values.count("quiet"), 1u);
+}
+
+TEST(Arguments, TwoDashesEndTheOptions) {
+  const auto parsed = parse({"--", "--ticks", "--real-time", "2"}, known());
+  EXPECT_EQ(parsed.positional, (std::vector<std::string>{"--ticks", "--real-time", "2"}));
+}
+
+TEST(Arguments, OptionalValueIsTheNextWordOnlyIfThatIsANumber) {
+  const auto real_time = [](const Arguments& arguments) {
+    return parse(arguments, known()).values["real-time"].as<std::string>();
+  };
+  EXPECT_EQ(real_time({"--real-time"}), "1");
+  EXPECT_EQ(real_time({"--real-time", "scene.argos"}), "1");
+  EXPECT_EQ(real_time({"--real-time", "2.5", "scene.argos"}), "2.5");
+  EXPECT_EQ(real_time({"--real-time=4"}), "4");
+}
+
+TEST(Arguments, UnknownOptionsGetASuggestionIfOneIsNear) {
+  EXPECT_EQ(complaint({"--tikcs", "3"}), "unknown option '--tikcs'; did you mean '--ticks'?");
+  EXPECT_EQ(complaint({"--xyzzy"}), "unknown option '--xyzzy'");
+  EXPECT_NE(complaint({"--tick", "3"}), "") << "abbreviations are not guessed";
+}
+
+TEST(Arguments, MissingValuesAndRepetitionsAreFaults) {
+  EXPECT_NE(complaint({"--ticks"}), "");
+  EXPECT_NE(complaint({"--ticks", "1", "--ticks", "2"}).find("more than once"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ziggurat::cli

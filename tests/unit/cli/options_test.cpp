@@ -1,0 +1,80 @@
+#include "cli/options.h"
+
+#include <gtest/gtest.h>
+
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+run::Options run(const Arguments& arguments) { return parse_options(arguments, run_options()); }
+
+TEST(Options, DefaultsAreThoseOfTheHelp) {
+  const auto options = run({"scene.argos"});
+  EXPECT_EQ(run::only_scene(options), "scene.argos");
+  EXPECT_EQ(options.lua_processes, 1u);
+  EXPECT_EQ(options.reading.max_size, std::size_t{64} << 20);
+  EXPECT_FALSE(options.ticks || options.duration || options.seed || options.clock ||
+               options.real_time || options.hash || options.quiet || options.insecure);
+}
+
+TEST(Options, AreTakenFromTheCommandLine) {
+  const auto options = run({"s",
+                            "--ticks",
+                            "7",
+                            "--seed=0",
+                            "--clock",
+                            "beta50",
+                            "--real-time",
+                            "2",
+                            "--lua-processes",
+                            "0",
+                            "--controller",
+                            "a=x --y=z",
+                            "--endpoint",
+                            "tcp://127.0.0.1:1",
+                            "--endpoint",
+                            "ipc:///tmp/x",
+                            "--hash",
+                            "--trace",
+                            "t.csv",
+                            "--lenient"});
+  EXPECT_EQ(options.ticks, 7u);
+  EXPECT_EQ(options.seed, 0u);
+  EXPECT_EQ(options.clock, scene::Clock::beta50);
+  EXPECT_EQ(options.real_time, 2.0);
+  EXPECT_EQ(options.lua_processes, 0u);
+  ASSERT_EQ(options.controllers.size(), 1u);
+  EXPECT_EQ(options.controllers[0], (std::pair<std::string, std::string>("a", "x --y=z")));
+  EXPECT_EQ(options.endpoints, (std::vector<std::string>{"tcp://127.0.0.1:1", "ipc:///tmp/x"}));
+  EXPECT_TRUE(options.hash && options.reading.lenient);
+  EXPECT_EQ(options.trace, "t.csv");
+}
+
+TEST(Options, NonsenseIsRefused) {
+  for (const Arguments& arguments :
+       {Arguments{"--ticks", "-1"}, Arguments{"--duration", "-1"}, Arguments{"--duration", "nan"},
+        Arguments{"--real-time=0"}, Arguments{"--clock", "fast"}, Arguments{"--controller", "x"},
+        Arguments{"--controller", "=x"}, Arguments{"--ticks", "1", "--duration", "1"}}) {
+    EXPECT_THROW(run(arguments), text::UsageError) << arguments.front();
+  }
+}
+
+TEST(Options, ServeStartsNoProcesses) {
+  EXPECT_THROW(parse_options({"s", "--lua-processes", "2"}, serve_options()), text::UsageError);
+}
+
+TEST(Options, OneSceneIsDue) {
+  EXPECT_THROW(run::only_scene(run({})), text::UsageError);
+  EXPECT_THROW(run::only_scene(run({"a", "b"})), text::UsageError);
+}
+
+TEST(Options, KeysBelongTogether) {
+  EXPECT_THROW(parse_options({"s", "--curve-secret", "x"}, serve_options()), text::UsageError);
+  EXPECT_THROW(parse_options({"s", "--curve-clients", "x"}, run_options()), text::UsageError);
+  EXPECT_EQ(parse_options({"s", "--lease", "2.5"}, serve_options()).lease, 2.5);
+  EXPECT_THROW(parse_options({"s", "--lease", "-1"}, run_options()), text::UsageError);
+}
+
+}  // namespace
+}  // namespace ziggurat::cli

@@ -1,0 +1,38 @@
+#include "processes/private_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace ziggurat::processes {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(PrivateFolder, IsOursAloneAndGoesWithItsContents) {
+  std::string path;
+  {
+    const PrivateFolder folder;
+    path = folder.path();
+    EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_all);
+    std::ofstream(path + "/something") << "in it";
+  }
+  EXPECT_FALSE(fs::exists(path));
+}
+
+TEST(PrivateFolder, IsShortEvenIfTheRuntimeFolderIsNot) {
+  const PrivateFolder parent;
+  const auto deep = fs::path(parent.path()) / std::string(120, 'x');
+  fs::create_directories(deep);
+  const char* before = std::getenv("XDG_RUNTIME_DIR");
+  const std::string kept = before ? before : "";
+  ::setenv("XDG_RUNTIME_DIR", deep.c_str(), 1);
+  const PrivateFolder folder;
+  before ? ::setenv("XDG_RUNTIME_DIR", kept.c_str(), 1) : ::unsetenv("XDG_RUNTIME_DIR");
+  EXPECT_LT(folder.path().size(), 100u);
+}
+
+}  // namespace
+}  // namespace ziggurat::processes

@@ -1,0 +1,112 @@
+#include "processes/scripts.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "processes/private_folder.h"
+
+namespace ziggurat::processes {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Scripts : public testing::Test {
+ protected:
+  fs::path write(const fs::path& name, const std::string& text) {
+    const fs::path path = fs::path(folder_.path()) / name;
+    fs::create_directories(path.parent_path());
+    std::ofstream(path) << text;
+    return path;
+  }
+
+  // A scene with one Lua controller that names the script.
+  scene::Scene naming(const std::string& script) {
+    scene::Scene scene;
+    scene.files = {"a.argos"};
+    auto& controller = scene.controllers.emplace_back();
+    controller.lua = true;
+    controller.params = {{"speed", "1"}, {"script", script}};
+    controller.params_where = {0, 12, 7};
+    return scene;
+  }
+
+  PrivateFolder folder_;
+};
+
+TEST_F(Scripts, AreFoundBesideTheSceneAndAboveIt) {
+  const auto scene = write("a/b/scene.argos", "");
+  const auto beside = write("a/b/beside.lua", "");
+  const auto above = write("scripts/above.lua", "");
+  EXPECT_EQ(find_script("beside.lua", scene, scene), beside);
+  EXPECT_EQ(find_script("scripts/above.lua", scene, scene), above);
+  EXPECT_EQ(find_script(above.string(), scene, scene), above);
+  EXPECT_EQ(find_script("nowhere.lua", scene, scene), std::nullopt);
+  EXPECT_EQ(find_script("/nowhere.lua", scene, scene), std::nullopt);
+  EXPECT_EQ(find_script("scripts", scene, scene), std::nullopt) << "a folder is no script";
+}
+
+TEST_F(Scripts, AreFoundBesideTheFileThatNamesThem) {
+  const auto scene = write("a/scene.argos", "");
+  const auto models = write("parts/block.argos", "");
+  const auto beside = write("parts/block.lua", "");
+  const auto nearer = write("parts/both.lua", "");
+  const auto of_scene = write("a/both.lua", "");
+  EXPECT_EQ(find_script("block.lua", models, scene), beside);
+  EXPECT_EQ(find_script("block.lua", scene, scene), std::nullopt);
+  EXPECT_EQ(find_script("both.lua", models, scene), nearer);
+  EXPECT_EQ(find_script("both.lua", scene, scene), of_scene);
+}
+
+TEST_F(Scripts, WorkingDirectoryComesFirst) {
+  const auto scene = write("a/scene.argos", "");
+  write("a/drive.lua", "");
+  const auto here = write("b/drive.lua", "");
+  const auto former = fs::current_path();
+  fs::current_path(here.parent_path());
+  const auto found = find_script("drive.lua", scene, scene);
+  fs::current_path(former);
+  EXPECT_EQ(found, here);
+}
+
+TEST_F(Scripts, GoodOnesAreNoProblem) {
+  write("good.lua", "function init() end");
+  EXPECT_TRUE(check_scripts(naming("good.lua"), fs::path(folder_.path()) / "a.argos").empty());
+}
+
+TEST_F(Scripts, FaultsCarryTheLineOfParamsAndOfLua) {
+  write("bad.lua", "x = 1\nfunction init( end\n");
+  const auto problems = check_scripts(naming("bad.lua"), fs::path(folder_.path()) / "a.argos");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].severity, scene::Problem::Severity::fault);
+  EXPECT_EQ(problems[0].file, "a.argos");
+  EXPECT_EQ(problems[0].where.line, 12u);
+  EXPECT_NE(problems[0].text.find("bad.lua:2:"), std::string::npos) << problems[0].text;
+}
+
+TEST_F(Scripts, MissingOnesAreFaultsAndNoneIsANotice) {
+  const auto scene_file = fs::path(folder_.path()) / "a.argos";
+  const auto missing = check_scripts(naming("nowhere.lua"), scene_file);
+  ASSERT_EQ(missing.size(), 1u);
+  EXPECT_EQ(missing[0].severity, scene::Problem::Severity::fault);
+  EXPECT_NE(missing[0].text.find("'nowhere.lua'"), std::string::npos);
+  const auto none = check_scripts(naming(""), scene_file);
+  ASSERT_EQ(none.size(), 1u);
+  EXPECT_EQ(none[0].severity, scene::Problem::Severity::notice);
+}
+
+TEST_F(Scripts, BytecodeIsRefused) {
+  const auto path = write("code.lua", "\x1bLua rest");
+  EXPECT_TRUE(compile_error(path));
+}
+
+TEST_F(Scripts, OtherControllersHaveNone) {
+  auto external = naming("nowhere.lua"), replaced = naming("nowhere.lua");
+  external.controllers[0].lua = false;
+  replaced.controllers[0].command = "./drive";
+  EXPECT_TRUE(check_scripts(external, "a.argos").empty());
+  EXPECT_TRUE(check_scripts(replaced, "a.argos").empty());
+}
+
+}  // namespace
+}  // namespace ziggurat::processes

@@ -1,0 +1,43 @@
+#include "reports/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace ziggurat::reports {
+namespace {
+
+Panel panel(std::vector<double> y) {
+  return {
+      "Force <now>", "d [m]", "F [N]", {0.01, 0.02, 0.04}, {{"curve", "#c30", true, std::move(y)}}};
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+TEST(Plot, DrawsACurveThroughItsPoints) {
+  const std::string svg = to_svg("A & B", {panel({1, 0.1, 0.01})});
+  EXPECT_EQ(svg.find("<svg"), 0u);
+  EXPECT_EQ(count(svg, "<path"), 1u);
+  EXPECT_EQ(count(svg, "L"), 2u) << svg;
+  EXPECT_NE(svg.find("A &amp; B"), std::string::npos);
+  EXPECT_NE(svg.find("Force &lt;now>"), std::string::npos);
+}
+
+TEST(Plot, LiftsThePenWhereThereIsNoPoint) {
+  const std::string svg = to_svg("", {panel({1, std::nan(""), 0.01})});
+  EXPECT_EQ(count(svg, "L"), 0u);
+}
+
+TEST(Plot, SaysWhenAllIsZero) {
+  const std::string svg = to_svg("", {panel({0, 0, 0})});
+  EXPECT_NE(svg.find("zero everywhere"), std::string::npos);
+  EXPECT_EQ(count(svg, "<path"), 0u);
+}
+
+}  // namespace
+}  // namespace ziggurat::reports

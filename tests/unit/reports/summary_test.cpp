@@ -1,0 +1,47 @@
+#include "reports/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace ziggurat::reports {
+namespace {
+
+TEST(Summary, ExitCodeFollowsTheEnding) {
+  Summary summary;
+  EXPECT_EQ(exit_code_of(summary), 0);
+  summary.failures.push_back({"r0", "drive", 4, "why"});
+  EXPECT_EQ(exit_code_of(summary), 3);
+  summary.ending = Ending::interrupted;
+  EXPECT_EQ(exit_code_of(summary), 130);
+  summary.ending = Ending::forced;
+  EXPECT_EQ(exit_code_of(summary), 130);
+  summary.failures.clear();
+  summary.ending = Ending::controller_vanished;
+  EXPECT_EQ(exit_code_of(summary), 3);
+}
+
+TEST(Summary, JsonHasTheRatesAndTheHashInFull) {
+  Summary summary;
+  summary.ticks = 20;
+  summary.simulated_s = 4;
+  summary.wall_s = 0.5;
+  summary.seed = 7;
+  summary.hash = 0xAB;
+  summary.failures.push_back({"r\xff", "drive", 4, "not UTF-8: \xff"});
+  const auto json = nlohmann::json::parse(to_json(summary));
+  EXPECT_EQ(json["real_time_factor"], 8.0);
+  EXPECT_EQ(json["ticks_per_s"], 40.0);
+  EXPECT_EQ(json["seed"], 7);
+  EXPECT_EQ(json["hash"], "00000000000000ab");
+  EXPECT_EQ(json["failures"][0]["tick"], 4);
+  EXPECT_EQ(to_json(summary).find('\n'), std::string::npos);
+}
+
+TEST(Summary, TextSurvivesARunOfNoTime) {
+  EXPECT_NE(to_text({}).find("0 ticks"), std::string::npos);
+  EXPECT_EQ(to_text({}).find("nan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ziggurat::reports

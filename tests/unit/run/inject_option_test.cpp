@@ -1,0 +1,94 @@
+#include "run/inject_option.h"
+
+#include <gtest/gtest.h>
+
+#include "text/numbers.h"
+
+namespace ziggurat::run {
+namespace {
+
+using namespace std::chrono_literals;
+using network::Direction;
+using network::Disturbance;
+using network::Injection;
+
+TEST(InjectOption, ControllerDirectionAndNumbers) {
+  const auto all = to_injection("latency=5ms,jitter=500us,loss=1%");
+  EXPECT_EQ(all.controller, "");
+  EXPECT_FALSE(all.direction);
+  EXPECT_EQ(all.disturbance, (Disturbance{5ms, 500us, 0.01}));
+  EXPECT_EQ(to_injection("latency=0.25s").disturbance, (Disturbance{250ms, {}, 0}));
+  const auto one = to_injection("drive=commands:loss=100%");
+  EXPECT_EQ(one.controller, "drive");
+  EXPECT_EQ(one.direction, Direction::commands);
+  EXPECT_EQ(one.disturbance, (Disturbance{{}, {}, 1}));
+  EXPECT_EQ(to_injection("observations:latency=1ms").direction, Direction::observations);
+}
+
+TEST(InjectOption, IdsMayHoldAnything) {
+  EXPECT_EQ(to_injection("a=b,c:d=loss=1%,latency=1ms").controller, "a=b,c:d");
+  EXPECT_EQ(to_injection("latency=loss=1%").controller, "latency");
+}
+
+TEST(InjectOption, NonsenseIsRefusedWithAnExample) {
+  for (const char* text : {"",
+                           "5ms",
+                           "latency",
+                           "latency=",
+                           "latency=5",
+                           "latency=5 ms",
+                           "latency=-5ms",
+                           "latency=11s",
+                           "latency=nan",
+                           "jitter=1ms",
+                           "latency=1ms,jitter=2ms",
+                           "loss=1",
+                           "loss=101%",
+                           "loss=-1%",
+                           "lag=5ms",
+                           "latency=5ms,latency=6ms",
+                           "latency=5ms,",
+                           ",latency=5ms",
+                           "=latency=5ms",
+                           "drive:latency=5ms",
+                           "drive=command:latency=5ms",
+                           "drive=commands:"}) {
+    try {
+      to_injection(text);
+      ADD_FAILURE() << text;
+    } catch (const text::UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("would do"), std::string::npos) << error.what();
+    }
+  }
+}
+
+scene::Scene scene_of_two() {
+  scene::Scene scene;
+  scene.controllers.resize(2);
+  scene.controllers[0].id = "drive";
+  scene.controllers[1].id = "lift";
+  return scene;
+}
+
+TEST(InjectOption, ThoseThatNameAControllerWin) {
+  const std::vector options{to_injection("lift=commands:loss=5%"), to_injection("latency=5ms")};
+  const auto injections = injections_of(options, scene_of_two());
+  ASSERT_EQ(injections.size(), 2U);
+  EXPECT_EQ(injections[0], (Injection{{5ms, {}, 0}, {5ms, {}, 0}}));
+  EXPECT_EQ(injections[1], (Injection{{5ms, {}, 0}, {{}, {}, 0.05}}));
+  EXPECT_FALSE(injections_of({}, scene_of_two())[0].any());
+  EXPECT_THROW(injections_of({to_injection("nobody=loss=1%")}, scene_of_two()), text::UsageError);
+}
+
+TEST(InjectOption, WhoIsWaitedForLosesNothing) {
+  std::vector<network::Config::Deadline> deadlines(2);
+  const auto injections = injections_of({to_injection("lift=loss=1%")}, scene_of_two());
+  EXPECT_THROW(check_losses(injections, scene_of_two(), deadlines), text::UsageError);
+  deadlines[1].policy = {scene::DeadlineAction::hold, 50, 0};
+  EXPECT_NO_THROW(check_losses(injections, scene_of_two(), deadlines));
+  const auto delays = injections_of({to_injection("latency=1ms")}, scene_of_two());
+  EXPECT_NO_THROW(check_losses(delays, scene_of_two(), {{}, {}}));
+}
+
+}  // namespace
+}  // namespace ziggurat::run

@@ -1,0 +1,37 @@
+#include "run/pictures.h"
+
+#include <gtest/gtest.h>
+
+namespace ziggurat::run {
+namespace {
+
+TEST(TickAt, IsTheTickThatATimeFallsInto) {
+  scene::Experiment experiment;
+  experiment.ticks_per_second = 100;
+  EXPECT_EQ(tick_at(0, experiment), 0u);
+  EXPECT_EQ(tick_at(0.29, experiment), 29u);  // the product is 28.999999999999996
+  EXPECT_EQ(tick_at(0.299, experiment), 29u);
+  EXPECT_EQ(tick_at(1e30, experiment), std::uint64_t{1} << 63);
+  PictureOptions options;
+  options.times = {1, 3, 2};
+  EXPECT_EQ(last_tick(options, experiment), 300u);
+}
+
+TEST(PicturePath, IsTheNameItselfForOnePicture) {
+  EXPECT_EQ(picture_path("a/b.png", 0, 1), "a/b.png");
+  EXPECT_EQ(picture_path("b", 0, 1), "b");
+}
+
+TEST(PicturePath, NumbersSeveral) {
+  EXPECT_EQ(picture_path("a/b.png", 7, 8), "a/b_007.png");
+  EXPECT_EQ(picture_path("b", 1234, 2000), "b_1234");
+  EXPECT_EQ(picture_path("f%03d.png", 7, 8), "f007.png");
+  EXPECT_EQ(picture_path("f%d.png", 7, 8), "f7.png");
+  EXPECT_EQ(picture_path("100%/f%02d.png", 7, 8), "100%/f07.png");
+  EXPECT_EQ(picture_path("%d", 7, 1), "7");
+  EXPECT_EQ(picture_path("f%s.png", 7, 8), "f%s_007.png");
+  EXPECT_EQ(picture_path("f%99999999999999999999d.png", 7, 8), "f%99999999999999999999d_007.png");
+}
+
+}  // namespace
+}  // namespace ziggurat::run

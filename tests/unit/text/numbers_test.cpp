@@ -1,0 +1,31 @@
+#include "text/numbers.h"
+
+#include <gtest/gtest.h>
+
+namespace ziggurat::text {
+namespace {
+
+TEST(Numbers, IntegersAreWholeAndNotNegative) {
+  EXPECT_EQ(to_integer("--n", "18446744073709551615"), 18446744073709551615u);
+  for (const std::string text : {"", "-1", "1.5", "1x", " 1", "18446744073709551616", "0x10"}) {
+    EXPECT_THROW(to_integer("--n", text), UsageError) << text;
+  }
+}
+
+TEST(Numbers, NumbersAreFinite) {
+  EXPECT_EQ(to_number("--x", "2.5e-1"), 0.25);
+  for (const std::string text : {"", "nan", "inf", "1e999", "1,5", "fast"}) {
+    EXPECT_THROW(to_number("--x", text), UsageError) << text;
+  }
+}
+
+TEST(Numbers, SizesKnowTheirUnits) {
+  EXPECT_EQ(to_size("--s", "100"), 100u);
+  EXPECT_EQ(to_size("--s", "3K"), 3072u);
+  EXPECT_EQ(to_size("--s", "64M"), std::size_t{64} << 20);
+  EXPECT_THROW(to_size("--s", "M"), UsageError);
+  EXPECT_THROW(to_size("--s", "18446744073709551615G"), UsageError);
+}
+
+}  // namespace
+}  // namespace ziggurat::text
