@@ -24,7 +24,6 @@ stand_alone(ziggurat_network server/network/barrier_supervision.cpp server/netwo
 stand_alone(ziggurat_physics ${physics})
 stand_alone(ziggurat_run server/run/inject_option.cpp)
 stand_alone(ziggurat_reports server/reports/plot.cpp)
-stand_alone(ziggurat_client clients/cpp/source/supervisor.cpp)
 stand_alone(determinism_probe_other ${scene} ${magnetism} ${physics})
 stand_alone(test_reports tests/unit/reports/summary_test.cpp)
 stand_alone(test_scene tests/unit/scene/models_test.cpp)
@@ -41,11 +40,3 @@ stand_alone(test_network
   tests/unit/network/end_to_end_test.cpp tests/unit/network/reception_test.cpp)
 stand_alone(test_recording tests/unit/recording/readings_test.cpp)
 stand_alone(test_client tests/unit/clients/session_cameras_test.cpp)
-
-# Each device has a key of its own in Lua's registry, and all of them are called `key`.
-get_target_property(lua_script ziggurat_lua_script SOURCES)
-get_target_property(folder ziggurat_lua_script SOURCE_DIR)
-cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
-list(FILTER lua_script INCLUDE REGEX "^devices/")
-list(TRANSFORM lua_script PREPEND ${folder}/)
-stand_alone(ziggurat_lua_script ${lua_script})

@@ -1,5 +1,5 @@
 // Any bytes as a server's messages to the C++ client: its session ends with one of its two
-// exceptions or goes on, and what it hands to controllers and to Lua scripts holds together. Only
+// exceptions or goes on, and what it hands to controllers holds together. Only
 // the socket is replaced: messages are the input, cut at `separator`. The first byte says whether
 // they meet a controller's session or a supervisor.
 
@@ -8,12 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 #include <vector>
 
 #include "connection.h"
-#include "program/exchange.h"
 #include "require.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
@@ -44,10 +42,8 @@ void cut(std::string_view bytes) {
 
 namespace ziggurat {
 
-Connection::Connection(const Options& options) : endpoint_(options.endpoint) {
-  zmq_msg_init(&frame_);
-}
-Connection::~Connection() { zmq_msg_close(&frame_); }
+Connection::Connection(const Options& options) : endpoint_(options.endpoint) {}
+Connection::~Connection() = default;
 
 void Connection::send(const v1::ClientMessage& message) {
   static std::vector<std::uint8_t> bytes;
@@ -61,9 +57,7 @@ std::optional<Connection::Kind> Connection::receive(std::optional<std::chrono::m
     is_closed_ = true;
     throw ConnectionError("the server closed the connection");
   }
-  zmq_msg_close(&frame_);
-  zmq_msg_init_size(&frame_, frames.back().size());
-  std::memcpy(zmq_msg_data(&frame_), frames.back().data(), frames.back().size());
+  frame_.rebuild(frames.back().data(), frames.back().size());
   frames.pop_back();
   return parse();
 }
@@ -127,33 +121,17 @@ void set_robot(Robot& robot) {
   }
 }
 
-/// As the runner of Lua scripts has it.
-void exchange(Robot& robot, lua::ScriptedRobot& scripted) {
-  lua::sense(robot, scripted);
-  for (auto& led : scripted.leds) led.is_fresh = true;
-  for (auto& tag : scripted.tags) tag.is_fresh = true;
-  if (scripted.range_and_bearing) {
-    auto& data = scripted.range_and_bearing->data;
-    data.is_fresh = scripted.range_and_bearing->has_transmitter;
-  }
-  lua::act(scripted, robot);
-}
-
 void drive(const Options& options) {
   Session session(options);
-  std::vector<lua::ScriptedRobot> scripted;
-  for (Robot& robot : session.robots()) scripted.push_back(lua::describe(robot));
   while (!frames.empty()) {
     try {
       if (!session.next()) break;
     } catch (const ConnectionError&) {
       continue;  // after bytes that are no message it goes on, if somebody wants it to
     }
-    auto script = scripted.begin();
     for (Robot& robot : session.robots()) {
       see_robot(robot);
       set_robot(robot);
-      exchange(robot, *script++);
     }
   }
 }

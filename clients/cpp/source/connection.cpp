@@ -16,39 +16,39 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds slice{500};  // between looks at whether the connection still stands
-constexpr int linger_ms = 1000;     // for the last words, if the server is there
+constexpr milliseconds slice{500};    // between looks at whether the connection is still open
+constexpr milliseconds linger{1000};  // for the last messages, if the server is there
 constexpr const char* monitor_address = "inproc://monitor";
 
-void set_option(void* socket, int option, int value) {
-  zmq_setsockopt(socket, option, &value, sizeof(value));
+/// False if there is none yet, or a signal arrived.
+bool receive(zmq::socket_t& socket, zmq::message_t& message, zmq::recv_flags flags) {
+  try {
+    return socket.recv(message, flags).has_value();
+  } catch (const zmq::error_t& error) {
+    if (error.num() == EINTR) return false;
+    throw;
+  }
 }
 
 }  // namespace
 
 Connection::Connection(const Options& options)
     : endpoint_(options.endpoint),
-      context_(zmq_ctx_new()),
-      socket_(zmq_socket(context_, ZMQ_DEALER)) {
-  zmq_msg_init(&frame_);
-  set_option(socket_, ZMQ_IPV6, endpoint_.find('[') == std::string::npos ? 0 : 1);
-  set_option(socket_, ZMQ_TCP_KEEPALIVE, 1);
-  set_option(socket_, ZMQ_LINGER, 0);
-  zmq_socket_monitor(socket_, monitor_address, ZMQ_EVENT_DISCONNECTED);
-  monitor_ = zmq_socket(context_, ZMQ_PAIR);
-  set_option(monitor_, ZMQ_LINGER, 0);
-  zmq_connect(monitor_, monitor_address);
+      socket_(context_, zmq::socket_type::dealer),
+      monitor_(context_, zmq::socket_type::pair) {
+  socket_.set(zmq::sockopt::ipv6, endpoint_.find('[') != std::string::npos);
+  socket_.set(zmq::sockopt::tcp_keepalive, 1);
+  socket_.set(zmq::sockopt::linger, 0);
+  monitor_.set(zmq::sockopt::linger, 0);
+  zmq_socket_monitor(socket_.handle(), monitor_address, ZMQ_EVENT_DISCONNECTED);
+  monitor_.connect(monitor_address);
+  set_keys(options);
   try {
-    set_keys(options);
-  } catch (const std::invalid_argument&) {
-    close();
-    throw;
+    socket_.connect(endpoint_);
+  } catch (const zmq::error_t& error) {
+    throw std::invalid_argument("'" + endpoint_ + "': not an endpoint to connect to (" +
+                                error.what() + "); write ipc:///path or tcp://host:port");
   }
-  if (zmq_connect(socket_, endpoint_.c_str()) == 0) return;
-  const std::string reason = zmq_strerror(zmq_errno());
-  close();
-  throw std::invalid_argument("'" + endpoint_ + "': not an endpoint to connect to (" + reason +
-                              "); ipc:///path or tcp://host:port would do");
 }
 
 /// Encrypts the connection, if the options name keys.
@@ -65,37 +65,38 @@ void Connection::set_keys(const Options& options) {
     throw std::invalid_argument("'" + options.curve_secret +
                                 "': not a file with a secret key; 'ziggurat keygen' makes one");
   }
-  const auto set = [&](int option, const std::string& key) {
-    return zmq_setsockopt(socket_, option, key.c_str(), key.size() + 1) == 0;
-  };
-  if (options.server_key.size() != 40 || !set(ZMQ_CURVE_SERVERKEY, options.server_key)) {
+  try {
+    if (options.server_key.size() != 40) throw zmq::error_t(EINVAL);
+    socket_.set(zmq::sockopt::curve_serverkey, options.server_key);
+  } catch (const zmq::error_t&) {
     throw std::invalid_argument("'" + options.server_key +
                                 "': not a public key of 40 characters, as 'ziggurat keygen' "
                                 "prints it");
   }
-  set(ZMQ_CURVE_PUBLICKEY, own.data());
-  set(ZMQ_CURVE_SECRETKEY, secret);
+  socket_.set(zmq::sockopt::curve_publickey, own.data());
+  socket_.set(zmq::sockopt::curve_secretkey, secret);
 }
 
-Connection::~Connection() { close(); }
-
-void Connection::close() {
-  if (is_expected_open_ && !is_closed_) set_option(socket_, ZMQ_LINGER, linger_ms);
-  zmq_msg_close(&frame_);
-  zmq_socket_monitor(socket_, nullptr, 0);
-  zmq_close(monitor_);
-  zmq_close(socket_);
-  zmq_ctx_term(context_);
+Connection::~Connection() {
+  if (!is_expected_open_ || is_closed_) return;
+  try {
+    socket_.set(zmq::sockopt::linger, static_cast<int>(linger.count()));
+  } catch (const zmq::error_t&) {
+    // The last messages may be lost; there is nothing else to do.
+  }
 }
 
 void Connection::send(const v1::ClientMessage& message) {
-  zmq_msg_t frame;
-  zmq_msg_init_size(&frame, message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(static_cast<std::uint8_t*>(zmq_msg_data(&frame)));
-  while (zmq_msg_send(&frame, socket_, 0) < 0) {
-    if (zmq_errno() == EINTR) continue;
-    zmq_msg_close(&frame);
-    throw ConnectionError(endpoint_ + ": can't send: " + zmq_strerror(zmq_errno()));
+  zmq::message_t frame(message.ByteSizeLong());
+  message.SerializeWithCachedSizesToArray(frame.data<std::uint8_t>());
+  for (;;) {
+    try {
+      socket_.send(frame, zmq::send_flags::none);
+      return;
+    } catch (const zmq::error_t& error) {
+      if (error.num() == EINTR) continue;
+      throw ConnectionError(endpoint_ + ": can't send: " + error.what());
+    }
   }
 }
 
@@ -119,26 +120,24 @@ std::optional<Connection::Kind> Connection::receive(std::optional<milliseconds> 
 
 bool Connection::receive_frame(milliseconds timeout) {
   if (timeout != socket_timeout_) {
-    set_option(socket_, ZMQ_RCVTIMEO, static_cast<int>(timeout.count()));
+    socket_.set(zmq::sockopt::rcvtimeo, static_cast<int>(timeout.count()));
     socket_timeout_ = timeout;
   }
-  if (zmq_msg_recv(&frame_, socket_, 0) >= 0) return true;
-  if (zmq_errno() == EAGAIN || zmq_errno() == EINTR) return false;
-  throw ConnectionError(endpoint_ + ": can't receive: " + zmq_strerror(zmq_errno()));
+  try {
+    return ziggurat::receive(socket_, frame_, zmq::recv_flags::none);
+  } catch (const zmq::error_t& error) {
+    throw ConnectionError(endpoint_ + ": can't receive: " + error.what());
+  }
 }
 
 bool Connection::was_closed() {
-  zmq_msg_t event;
-  zmq_msg_init(&event);
-  while (zmq_msg_recv(&event, monitor_, ZMQ_DONTWAIT) >= 0) {
+  zmq::message_t event;
+  while (ziggurat::receive(monitor_, event, zmq::recv_flags::dontwait)) {
     std::uint16_t number = 0;
-    if (zmq_msg_size(&event) >= sizeof(number)) {
-      std::memcpy(&number, zmq_msg_data(&event), sizeof(number));
-    }
-    while (zmq_msg_more(&event) != 0) zmq_msg_recv(&event, monitor_, 0);  // the address
+    if (event.size() >= sizeof(number)) std::memcpy(&number, event.data(), sizeof(number));
+    while (event.more()) ziggurat::receive(monitor_, event, zmq::recv_flags::none);  // the address
     if (number == ZMQ_EVENT_DISCONNECTED && is_expected_open_) is_closed_ = true;
   }
-  zmq_msg_close(&event);
   return is_closed_;
 }
 

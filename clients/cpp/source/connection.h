@@ -1,13 +1,11 @@
 #pragma once
 // The client's end of the wire: one DEALER, messages in and out.
 
-#include <zmq.h>
-
 #include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <zmq.hpp>
 
 #include "ziggurat/session.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -47,7 +45,6 @@ class Connection {
   const v1::ServerMessage& message() const { return message_; }
 
  private:
-  void close();
   void set_keys(const Options& options);
   bool receive_frame(std::chrono::milliseconds timeout);
   bool was_closed();
@@ -55,13 +52,13 @@ class Connection {
   void forget(std::size_t size);
 
   std::string endpoint_;
-  void* context_ = nullptr;
-  void* socket_ = nullptr;
-  void* monitor_ = nullptr;  // tells when the connection closes
+  zmq::context_t context_;
+  zmq::socket_t socket_;
+  zmq::socket_t monitor_;  // reports that the connection was closed
   std::chrono::milliseconds socket_timeout_{-1};
   bool is_expected_open_ = false;
   bool is_closed_ = false;
-  zmq_msg_t frame_;
+  zmq::message_t frame_;
   v1::Observation observation_;
   std::size_t parsed_ = 0;  // [bytes] of observations since observation_ last began anew
   v1::ServerMessage message_;

@@ -17,15 +17,13 @@ void Connection::forget(std::size_t size) {
 }
 
 Connection::Kind Connection::parse() {
-  const std::string_view bytes(static_cast<const char*>(zmq_msg_data(&frame_)),
-                               zmq_msg_size(&frame_));
+  const std::string_view bytes = frame_.to_string_view();
   const auto observation = v1::sole_field(bytes, v1::ServerMessage::kObservationFieldNumber);
   const std::string_view content = observation.value_or(bytes);
   if (observation) forget(content.size());
   google::protobuf::MessageLite& message =
       observation ? static_cast<google::protobuf::MessageLite&>(observation_) : message_;
-  if (zmq_msg_more(&frame_) != 0 ||
-      !message.ParseFromArray(content.data(), static_cast<int>(content.size()))) {
+  if (frame_.more() || !message.ParseFromArray(content.data(), static_cast<int>(content.size()))) {
     throw ConnectionError(endpoint_ + ": what answers there does not speak ziggurat.v1");
   }
   if (observation) return Kind::kObservation;

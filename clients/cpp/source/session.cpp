@@ -61,42 +61,18 @@ void Session::State::answer() {
   v1::Command& command = *outgoing.mutable_command();
   command.Clear();
   command.set_tick(tick);
-  if (changed) command.mutable_joint_targets()->Add(targets.begin(), targets.end());
-  devices->write(command);
-  move_log_to(*command.mutable_log());
-  changed = false;
+  fleet->write(command);
   owes = false;
   connection.send(outgoing);
-  devices->sent(command);
-}
-
-/// Values that were set stay so here, and were perhaps not taken there.
-void Session::State::repeat() {
-  changed = true;
-  devices->repeat();
+  fleet->sent(command);
 }
 
 void Session::State::send_failures() {
-  for (Robot& robot : robots) {
-    if (robot.failure_.empty()) continue;
+  for (v1::Leave& leave : fleet->take_failures()) {
     v1::ClientMessage message;
-    v1::Leave& leave = *message.mutable_leave();
-    leave.add_robots(robot.position_);
-    leave.set_reason(v1::Leave::FAILED);
-    leave.set_message(std::exchange(robot.failure_, {}));
+    message.mutable_leave()->Swap(&leave);
     connection.send(message);
   }
-}
-
-void Session::State::move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines) {
-  for (Robot::Line& from : log.lines) {
-    v1::LogLine& line = *lines.Add();
-    line.set_robot(from.robot);
-    line.set_error(from.error);
-    line.set_text(std::move(from.text));
-  }
-  log.lines.clear();
-  log.bytes = 0;
 }
 
 bool Session::State::wait() {
@@ -131,7 +107,7 @@ bool Session::State::wait() {
         if (is_harmless(message.error(), was_put_back)) {
           if (message.error().code() == v1::Error::DEADLINE_MISSED) ++missed;
           // What was answered already counts, unless that was an answer to the world before.
-          if (message.error().code() != v1::Error::DUPLICATE_TICK || was_put_back) repeat();
+          if (message.error().code() != v1::Error::DUPLICATE_TICK || was_put_back) fleet->repeat();
           break;
         }
         is_over = message.error().severity() == v1::Error::FATAL;
@@ -146,18 +122,11 @@ bool Session::State::wait() {
 }
 
 void Session::State::read(const v1::Observation& observation) {
-  if (static_cast<std::size_t>(observation.joint_readings_size()) != readings.size()) {
-    throw ConnectionError(options.endpoint + ": the server sent " +
-                          std::to_string(observation.joint_readings_size()) +
-                          " joint readings; it had announced " + std::to_string(readings.size()));
-  }
   try {
-    devices->read(observation);
+    fleet->read(observation);
   } catch (const std::runtime_error& error) {
     throw ConnectionError(options.endpoint + ": " + error.what());
   }
-  std::copy(observation.joint_readings().begin(), observation.joint_readings().end(),
-            readings.begin());
   tick = observation.tick();
   time = std::chrono::nanoseconds(observation.time_ns());
   event = !has_begun ? Event::init : is_reset ? Event::reset : Event::step;
@@ -177,9 +146,7 @@ void Session::State::read(const v1::Reset& reset) {
   seed = reset.seed();
   is_reset = true;
   was_put_back = true;
-  std::fill(targets.begin(), targets.end(), 0.0);
-  changed = false;
-  devices->reset();
+  fleet->reset();
 }
 
 void Session::leave() { state_->leave(v1::Leave::DONE, {}); }
@@ -194,7 +161,7 @@ void Session::State::leave(v1::Leave::Reason reason, std::string_view message) {
   leave.Clear();
   leave.set_reason(reason);
   leave.set_message(v1::valid_utf8(message));
-  move_log_to(*leave.mutable_log());
+  fleet->move_log_to(*leave.mutable_log());
   connection.send(outgoing);
 }
 
@@ -202,7 +169,7 @@ Event Session::event() const noexcept { return state_->event; }
 std::uint64_t Session::tick() const noexcept { return state_->tick; }
 std::chrono::nanoseconds Session::time() const noexcept { return state_->time; }
 const std::optional<Ending>& Session::ending() const noexcept { return state_->ending; }
-std::span<Robot> Session::robots() noexcept { return state_->robots; }
+std::span<Robot> Session::robots() noexcept { return state_->fleet->robots(); }
 std::chrono::nanoseconds Session::tick_length() const noexcept { return state_->tick_length; }
 std::uint32_t Session::ticks_per_second() const noexcept { return state_->ticks_per_second; }
 std::uint64_t Session::seed() const noexcept { return state_->seed; }
@@ -212,12 +179,12 @@ const std::string& Session::token() const noexcept { return state_->token; }
 std::uint64_t Session::missed() const noexcept { return state_->missed; }
 
 Robot& Session::robot(std::string_view id) {
-  for (Robot& robot : state_->robots) {
+  for (Robot& robot : robots()) {
     if (robot.id() == id) return robot;
   }
   std::string message = "this session has no robot '" + std::string(id) + "'; it has ";
-  for (const Robot& robot : state_->robots) {
-    message += (&robot == state_->robots.data() ? "'" : ", '") + robot.id() + "'";
+  for (const Robot& robot : robots()) {
+    message += (&robot == robots().data() ? "'" : ", '") + robot.id() + "'";
   }
   throw std::out_of_range(message);
 }

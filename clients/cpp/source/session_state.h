@@ -4,7 +4,7 @@
 #include <exception>
 
 #include "connection.h"
-#include "session_devices.h"
+#include "fleet.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 
@@ -16,31 +16,22 @@ struct Session::State {
   // welcome.cpp
   void open();  // Hello … Welcome
   void read(const v1::Welcome& welcome);
-  void add_joints(const v1::RobotDescription& description, Robot& robot, const double*& reading,
-                  double*& target);
 
   // session.cpp
-  void answer();
-  void repeat();  // Command, after the Leaves of robots that failed
+  void answer();  // with a Command, after the Leaves of robots that failed
   void send_failures();
   bool wait();  // for the next observation; false if there is none
   bool is_interrupted() const { return options.is_interrupted && options.is_interrupted(); }
   void read(const v1::Observation& observation);
   void read(const v1::End& end);
   void read(const v1::Reset& reset);
-  void move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines);
   void leave(v1::Leave::Reason reason, std::string_view message);
 
   Options options;
   Connection connection;
   int exceptions = std::uncaught_exceptions();  // when the session began
 
-  std::vector<Robot> robots;
-  std::vector<double> readings;    // packed, over all robots
-  std::vector<double> targets;     // packed, over all robots
-  bool changed = false;            // some target, since the last answer
-  std::optional<Devices> devices;  // all others; there once the server welcomed us
-  Robot::Log log;
+  std::optional<Fleet> fleet;  // from Welcome on
   v1::ClientMessage outgoing;  // long-lived: keeps its memory
 
   Event event = Event::init;

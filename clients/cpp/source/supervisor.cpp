@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "connection.h"
+#include "convert.h"
 #include "session_state.h"
 #include "ziggurat/error.h"
 #include "ziggurat/v1/envelope.h"
@@ -18,12 +19,6 @@ std::string lower(std::string text) {
 }
 
 Latency latency_of(const v1::Latency& from) { return {from.p50(), from.p99(), from.max()}; }
-
-template <std::size_t size>
-void copy(const google::protobuf::RepeatedField<double>& from, std::array<double, size>& to) {
-  std::copy_n(from.begin(), std::min<std::size_t>(size, static_cast<std::size_t>(from.size())),
-              to.begin());
-}
 
 std::string policy_of(const v1::DeadlinePolicy& from) {
   if (from.action() == v1::DeadlinePolicy::ACTION_UNSPECIFIED) return "by robot";

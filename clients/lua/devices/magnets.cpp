@@ -1,29 +1,31 @@
-#include "devices/magnets.h"
+// robot.magnets.<id>: set_current(current)
 
+#include "devices/device_table.h"
 #include "script/arguments.h"
 #include "script/guarded.h"
+#include "script/tables.h"
 
 namespace ziggurat::lua {
 namespace {
 
 int set_current(lua_State* state) {
   check_count(state, 1, 1, "set_current(current)");
-  upvalue<Magnet>(state).current.set(check_number(state, 1));
+  upvalue<Magnet>(state).set_current(check_number(state, 1));
   return 0;
+}
+
+void make_magnets(lua_State* state, Robot& robot) {
+  lua_createtable(state, 0, static_cast<int>(robot.magnets().size()));
+  for (Magnet& magnet : robot.magnets()) {
+    lua_createtable(state, 0, 1);
+    set_function<set_current>(state, "set_current", &magnet);
+    set_element(state, -2, magnet.id());
+  }
 }
 
 }  // namespace
 
-bool has_magnets(const ScriptedRobot& robot) { return !robot.magnets.empty(); }
-
-void push_magnets(lua_State* state, ScriptedRobot& robot) {
-  lua_createtable(state, 0, static_cast<int>(robot.magnets.size()));
-  for (Magnet& magnet : robot.magnets) {
-    lua_pushlstring(state, magnet.id.data(), magnet.id.size());
-    lua_createtable(state, 0, 1);
-    set_function<set_current>(state, "set_current", &magnet);
-    lua_rawset(state, -3);
-  }
-}
+extern const DeviceKind magnets_kind{
+    "magnets", [](Robot& robot) { return !robot.magnets().empty(); }, make_magnets, nullptr};
 
 }  // namespace ziggurat::lua

@@ -1,33 +1,13 @@
-#include "devices/positioning.h"
+// robot.positioning: position, orientation
 
-#include "devices/kept.h"
-#include "script/vectors.h"
+#include "devices/device_table.h"
+#include "script/tables.h"
 
 namespace ziggurat::lua {
 namespace {
 
-// What is kept under its address: an array of position, orientation and its axis.
-constexpr char key = 0;
-
-/// Writes the three tables of the array on top.
-void fill(lua_State* state, const Positioning& positioning) {
-  lua_rawgeti(state, -1, 1);
-  set_vector(state, positioning.position);
-  lua_pop(state, 1);
-  const AngleAxis orientation = to_angle_axis(positioning.orientation);
-  lua_rawgeti(state, -1, 2);
-  set_number(state, "angle", orientation.angle);
-  lua_pop(state, 1);
-  lua_rawgeti(state, -1, 3);
-  set_vector(state, orientation.axis);
-  lua_pop(state, 1);
-}
-
-}  // namespace
-
-bool has_positioning(const ScriptedRobot& robot) { return robot.positioning.has_value(); }
-
-void push_positioning(lua_State* state, ScriptedRobot& robot) {
+/// Second, an array of position, orientation and its axis.
+void make_positioning(lua_State* state, Robot&) {
   lua_createtable(state, 0, 2);  // robot.positioning
   lua_createtable(state, 3, 0);  // the array
   lua_createtable(state, 0, 3);  // position
@@ -42,14 +22,25 @@ void push_positioning(lua_State* state, ScriptedRobot& robot) {
   lua_pushvalue(state, -1);
   lua_rawseti(state, -3, 2);
   lua_setfield(state, -3, "orientation");
-  fill(state, *robot.positioning);
-  keep(state, &key, robot);
 }
 
-void refresh_positioning(lua_State* state, const ScriptedRobot& robot) {
-  push_kept(state, &key, robot);
-  fill(state, *robot.positioning);
+void fill_positioning(lua_State* state, Robot& robot) {
+  lua_rawgeti(state, -1, 1);
+  set_vector(state, robot.positioning()->position);
+  lua_pop(state, 1);
+  const AngleAxis orientation = to_angle_axis(robot.positioning()->orientation);
+  lua_rawgeti(state, -1, 2);
+  set_number(state, "angle", orientation.angle);
+  lua_pop(state, 1);
+  lua_rawgeti(state, -1, 3);
+  set_vector(state, orientation.axis);
   lua_pop(state, 1);
 }
+
+}  // namespace
+
+extern const DeviceKind positioning_kind{
+    "positioning", [](Robot& robot) { return robot.positioning() != nullptr; }, make_positioning,
+    fill_positioning};
 
 }  // namespace ziggurat::lua

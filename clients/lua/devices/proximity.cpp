@@ -1,64 +1,55 @@
-#include "devices/proximity.h"
+// robot.proximity[i]: a number, or {value, angle} if all sensors have angles
 
-#include "devices/kept.h"
-#include "script/vectors.h"
+#include <algorithm>
+
+#include "devices/device_table.h"
+#include "script/tables.h"
 
 namespace ziggurat::lua {
 namespace {
 
-// What is kept under its address: the array of readings, or one of the tables that hold them.
-constexpr char key = 0;
+bool has_angles(const Robot& robot) {
+  return std::ranges::all_of(robot.proximity_sensors(), [](const ProximitySensor& sensor) {
+    return sensor.angle().has_value();
+  });
+}
 
-/// Writes the readings into the array on top.
-void fill(lua_State* state, const ScriptedRobot& robot) {
+/// With angles second, an array of its own with the same tables: scripts may change theirs.
+void make_proximity(lua_State* state, Robot& robot) {
+  const int count = static_cast<int>(robot.proximity_sensors().size());
+  lua_createtable(state, count, 0);
+  if (!has_angles(robot)) return;
+  lua_createtable(state, count, 0);
   lua_Integer position = 0;
-  for (const double reading : robot.proximity) {
-    ++position;
-    if (robot.proximity_angles.empty()) {
-      lua_pushnumber(state, reading);
-      lua_rawseti(state, -2, position);
-    } else {
-      lua_rawgeti(state, -1, position);
-      set_number(state, "value", reading);
-      lua_pop(state, 1);
-    }
+  for (const ProximitySensor& sensor : robot.proximity_sensors()) {
+    lua_createtable(state, 0, 2);
+    set_number(state, "angle", *sensor.angle());
+    lua_pushvalue(state, -1);
+    lua_rawseti(state, -4, ++position);
+    lua_rawseti(state, -2, position);
   }
 }
 
-/// Puts a table with the sensor's angle at each place of the two arrays on top.
-void add_tables(lua_State* state, const ScriptedRobot& robot) {
+void fill_proximity(lua_State* state, Robot& robot) {
+  const bool are_tables = has_angles(robot);
   lua_Integer position = 0;
-  for (const double angle : robot.proximity_angles) {
+  for (const ProximitySensor& sensor : robot.proximity_sensors()) {
     ++position;
-    lua_createtable(state, 0, 2);
-    set_number(state, "angle", angle);
-    lua_pushvalue(state, -1);
-    lua_rawseti(state, -3, position);
-    lua_rawseti(state, -3, position);
+    if (are_tables) {
+      lua_rawgeti(state, -1, position);
+      set_number(state, "value", sensor.reading());
+      lua_pop(state, 1);
+    } else {
+      lua_pushnumber(state, sensor.reading());
+      lua_rawseti(state, -2, position);
+    }
   }
 }
 
 }  // namespace
 
-bool has_proximity(const ScriptedRobot& robot) { return !robot.proximity.empty(); }
-
-void push_proximity(lua_State* state, ScriptedRobot& robot) {
-  const int size = static_cast<int>(robot.proximity.size());
-  lua_createtable(state, size, 0);
-  if (robot.proximity_angles.empty()) {
-    lua_pushvalue(state, -1);
-  } else {  // scripts may change their array, so it is another
-    lua_createtable(state, size, 0);
-    add_tables(state, robot);
-  }
-  fill(state, robot);
-  keep(state, &key, robot);
-}
-
-void refresh_proximity(lua_State* state, const ScriptedRobot& robot) {
-  push_kept(state, &key, robot);
-  fill(state, robot);
-  lua_pop(state, 1);
-}
+extern const DeviceKind proximity_kind{
+    "proximity", [](Robot& robot) { return !robot.proximity_sensors().empty(); }, make_proximity,
+    fill_proximity};
 
 }  // namespace ziggurat::lua

@@ -1,103 +1,71 @@
-#include "devices/range_and_bearing.h"
+// robot.range_and_bearing: [i], set_data(…), clear_data()
 
-#include <algorithm>
-
-#include "devices/kept.h"
+#include "devices/device_table.h"
 #include "script/arguments.h"
 #include "script/bytes.h"
 #include "script/guarded.h"
+#include "script/tables.h"
 
 namespace ziggurat::lua {
 namespace {
 
-// What is kept under its address: the table.
-constexpr char key = 0;
-
-constexpr double centimetres = 100;  // in a metre
-
-using Data = Setting<std::vector<std::uint8_t>>;
-
-int set_byte(lua_State* state, Data& data) {
-  const std::size_t position = check_position(state, 1, data.value.size(), "bytes of data");
-  data.value[position] = check_byte(state, 2);
-  data.is_fresh = true;
+int set_byte(lua_State* state, RangeAndBearing& device) {
+  const std::size_t position = check_position(state, 1, device.data_size(), "bytes of data");
+  const std::uint8_t byte = check_byte(state, 2);
+  std::vector<std::uint8_t> data(device.data().begin(), device.data().end());
+  data[position] = byte;
+  device.set_data(data);
   return 0;
 }
 
 int set_data(lua_State* state) {
   check_count(state, 1, 2, "set_data(table) or set_data(index, byte)");
-  Data& data = upvalue<Data>(state);
-  if (lua_gettop(state) == 2) return set_byte(state, data);
+  auto& device = upvalue<RangeAndBearing>(state);
+  if (lua_gettop(state) == 2) return set_byte(state, device);
   check_table(state, 1);
-  const std::size_t size = data.value.size();
-  if (lua_rawlen(state, 1) != size) {
+  const std::size_t size = lua_rawlen(state, 1);
+  if (size != device.data_size()) {
     luaL_argerror(state, 1,
                   lua_pushfstring(state, "%I numbers; this robot sends packets of %I bytes",
-                                  static_cast<LUAI_UACINT>(lua_rawlen(state, 1)),
-                                  static_cast<LUAI_UACINT>(size)));
+                                  static_cast<LUAI_UACINT>(size),
+                                  static_cast<LUAI_UACINT>(device.data_size())));
   }
-  append_bytes(state, 1, size, data.value);
-  data.value.erase(data.value.begin(), data.value.begin() + static_cast<std::ptrdiff_t>(size));
-  data.is_fresh = true;
+  check_bytes(state, 1, size);
+  device.set_data(to_bytes(state, 1, size));
   return 0;
 }
 
 int clear_data(lua_State* state) {
   check_count(state, 0, 0, "clear_data()");
-  Data& data = upvalue<Data>(state);
-  std::fill(data.value.begin(), data.value.end(), std::uint8_t{0});
-  data.is_fresh = true;
+  upvalue<RangeAndBearing>(state).clear_data();
   return 0;
 }
 
-void push_packet(lua_State* state, const Packet& packet) {
+void push_packet(lua_State* state, const RangeAndBearing::Packet& packet) {
   lua_createtable(state, 0, 4);
-  lua_pushnumber(state, packet.range * centimetres);
-  lua_setfield(state, -2, "range");
-  lua_pushnumber(state, packet.horizontal_bearing);
-  lua_setfield(state, -2, "horizontal_bearing");
-  lua_pushnumber(state, packet.vertical_bearing);
-  lua_setfield(state, -2, "vertical_bearing");
+  set_number(state, "range", packet.range * centimetres);
+  set_number(state, "horizontal_bearing", packet.horizontal_bearing);
+  set_number(state, "vertical_bearing", packet.vertical_bearing);
   push_bytes(state, packet.data);
   lua_setfield(state, -2, "data");
 }
 
-/// Puts the packets into the table on top, each as a table of its own that the script may keep.
-void fill(lua_State* state, const RangeAndBearing& from) {
-  lua_Integer position = 0;
-  for (const Packet& packet : from.packets) {
-    push_packet(state, packet);
-    lua_rawseti(state, -2, ++position);
-  }
-  for (auto left = static_cast<lua_Integer>(lua_rawlen(state, -1)); left > position; --left) {
-    lua_pushnil(state);
-    lua_rawseti(state, -2, left);
-  }
+void make_range_and_bearing(lua_State* state, Robot& robot) {
+  lua_createtable(state, 0, 2);
+  if (!robot.range_and_bearing()->sends()) return;
+  set_function<set_data>(state, "set_data", robot.range_and_bearing());
+  set_function<clear_data>(state, "clear_data", robot.range_and_bearing());
+}
+
+void fill_range_and_bearing(lua_State* state, Robot& robot) {
+  if (!robot.range_and_bearing()->receives()) return;
+  set_elements(state, robot.range_and_bearing()->packets(), push_packet);
 }
 
 }  // namespace
 
-bool has_range_and_bearing(const ScriptedRobot& robot) {
-  return robot.range_and_bearing.has_value();
-}
-
-void push_range_and_bearing(lua_State* state, ScriptedRobot& robot) {
-  RangeAndBearing& from = *robot.range_and_bearing;
-  lua_createtable(state, 0, 2);
-  if (from.has_transmitter) {
-    set_function<set_data>(state, "set_data", &from.data);
-    set_function<clear_data>(state, "clear_data", &from.data);
-  }
-  if (from.has_receiver) fill(state, from);
-  lua_pushvalue(state, -1);
-  keep(state, &key, robot);
-}
-
-void refresh_range_and_bearing(lua_State* state, const ScriptedRobot& robot) {
-  if (!robot.range_and_bearing->has_receiver) return;
-  push_kept(state, &key, robot);
-  fill(state, *robot.range_and_bearing);
-  lua_pop(state, 1);
-}
+extern const DeviceKind range_and_bearing_kind{
+    "range_and_bearing", [](Robot& robot) { return robot.range_and_bearing() != nullptr; },
+    make_range_and_bearing, fill_range_and_bearing};
 
 }  // namespace ziggurat::lua

@@ -1,52 +1,36 @@
-#include "devices/tags.h"
+// robot.tags: set_single_payload(index, payload), set_all_payloads(payload)
 
+#include "devices/device_table.h"
 #include "script/arguments.h"
 #include "script/guarded.h"
 
 namespace ziggurat::lua {
 namespace {
 
-using Tags = std::vector<Setting<std::string>>;
-
-void set(Setting<std::string>& tag, std::string_view payload) {
-  tag.value.assign(payload);
-  tag.is_fresh = true;
-}
-
-std::string_view check_payload(lua_State* state, int index) {
-  const std::string_view payload = check_text(state, index);
-  if (payload.size() > max_tag_payload) {
-    luaL_argerror(state, index,
-                  lua_pushfstring(state, "the payload has %I bytes; %I are the most",
-                                  static_cast<LUAI_UACINT>(payload.size()),
-                                  static_cast<LUAI_UACINT>(max_tag_payload)));
-  }
-  return payload;
-}
-
 int set_single_payload(lua_State* state) {
   check_count(state, 2, 2, "set_single_payload(index, payload)");
-  auto& tags = upvalue<Tags>(state);
+  const std::span<Tag> tags = upvalue<Robot>(state).tags();
   const std::size_t position = check_position(state, 1, tags.size(), "tags");
-  set(tags[position], check_payload(state, 2));
+  tags[position].set_payload(check_text(state, 2));
   return 0;
 }
 
 int set_all_payloads(lua_State* state) {
   check_count(state, 1, 1, "set_all_payloads(payload)");
-  const std::string_view payload = check_payload(state, 1);
-  for (auto& tag : upvalue<Tags>(state)) set(tag, payload);
+  const std::string_view payload = check_text(state, 1);
+  for (Tag& tag : upvalue<Robot>(state).tags()) tag.set_payload(payload);
   return 0;
+}
+
+void make_tags(lua_State* state, Robot& robot) {
+  lua_createtable(state, 0, 2);
+  set_function<set_single_payload>(state, "set_single_payload", &robot);
+  set_function<set_all_payloads>(state, "set_all_payloads", &robot);
 }
 
 }  // namespace
 
-bool has_tags(const ScriptedRobot& robot) { return !robot.tags.empty(); }
-
-void push_tags(lua_State* state, ScriptedRobot& robot) {
-  lua_createtable(state, 0, 2);
-  set_function<set_single_payload>(state, "set_single_payload", &robot.tags);
-  set_function<set_all_payloads>(state, "set_all_payloads", &robot.tags);
-}
+extern const DeviceKind tags_kind{"tags", [](Robot& robot) { return !robot.tags().empty(); },
+                                  make_tags, nullptr};
 
 }  // namespace ziggurat::lua

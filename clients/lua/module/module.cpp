@@ -6,18 +6,19 @@
 #include <vector>
 
 #include "module/options.h"
-#include "program/exchange.h"
 #include "script/arguments.h"
 #include "script/environment.h"
 #include "script/guarded.h"
 #include "script/log_functions.h"
+#include "script/tables.h"
+#include "ziggurat/session.h"
 
 namespace ziggurat::lua {
 namespace {
 
 struct Seat {
   ziggurat::Robot* robot = nullptr;
-  ScriptedRobot scripted;
+  LogLines log;
 };
 
 /// A session and its robots as Lua sees them; neither moves, because closures point to them.
@@ -39,17 +40,10 @@ std::function<bool()> interruption(lua_State* state) {
   return [main, before = lua_gethook(main)] { return lua_gethook(main) != before; };
 }
 
-void sense_all(Connected& connected) {
-  for (const auto& seat : connected.seats) sense(*seat->robot, seat->scripted);
-}
-
-/// Hands over what was set and logged.
-void act_all(Connected& connected) {
+void move_logs(Connected& connected) {
   for (const auto& seat : connected.seats) {
-    const Failure failure = act(seat->scripted, *seat->robot);
-    const bool fits = hand_over_log(seat->scripted, *seat->robot);
-    if (failure) throw std::length_error(*failure);
-    if (!fits) throw std::length_error("more log lines at one tick than a message can hold");
+    if (move_log(seat->log, *seat->robot)) continue;
+    throw std::length_error("more log lines at one tick than a message can hold");
   }
 }
 
@@ -80,10 +74,9 @@ const char* name_of(Ending::Reason reason) {
 /// Answers the tick and waits for the next: its number and event, or nothing after the last.
 int next(lua_State* state) {
   auto& connected = upvalue<Connected>(state);
-  act_all(connected);
+  move_logs(connected);
   if (!connected.session->next()) return 0;
-  sense_all(connected);
-  for (const auto& seat : connected.seats) refresh(state, seat->scripted);
+  for (const auto& seat : connected.seats) refresh(state, *seat->robot);
   lua_pushinteger(state, static_cast<lua_Integer>(connected.session->tick()));
   lua_pushstring(state, name_of(connected.session->event()));
   return 2;
@@ -104,7 +97,7 @@ int close(lua_State* state) {
   auto& connected = upvalue<Connected>(state);
   const int last = lua_gettop(state);  // session.close(m) and session:close(m) alike
   const bool has_message = last > 0 && lua_type(state, last) == LUA_TSTRING;
-  act_all(connected);
+  move_logs(connected);
   if (has_message) {
     connected.session->leave_failed(check_text(state, last));
   } else {
@@ -124,13 +117,12 @@ void push_robots(lua_State* state, Connected& connected) {
   lua_createtable(state, static_cast<int>(connected.seats.size()), 0);
   lua_Integer place = 0;
   for (const auto& seat : connected.seats) {
-    push_robot(state, seat->scripted);
-    set_log_functions(state, seat->scripted.log);
+    push_robot(state, *seat->robot);
+    set_log_functions(state, seat->log);
     set_function<fail>(state, "fail", seat.get());
-    lua_pushlstring(state, seat->scripted.id.data(), seat->scripted.id.size());
-    lua_pushvalue(state, -2);
-    lua_rawset(state, -4);
-    lua_rawseti(state, -2, ++place);
+    lua_pushvalue(state, -1);
+    lua_rawseti(state, -3, ++place);
+    set_element(state, -2, seat->robot->id());
   }
 }
 
@@ -155,7 +147,6 @@ Connected& open_session(lua_State* state, Sessions& sessions) {
   for (ziggurat::Robot& robot : connected->session->robots()) {
     connected->seats.push_back(std::make_unique<Seat>());
     connected->seats.back()->robot = &robot;
-    connected->seats.back()->scripted = describe(robot);
   }
   sessions.push_back(std::move(connected));
   return *sessions.back();

@@ -2,7 +2,6 @@
 
 #include <new>
 
-#include "program/exchange.h"
 #include "program/find_script.h"
 #include "script/interrupt.h"
 
@@ -33,21 +32,18 @@ void Runner::start(Seat& seat) {
   if (script.path.empty()) return fail(seat, script.fault);
   try {
     seat.controller = std::make_unique<Controller>(
-        describe(*seat.robot),
-        ControllerOptions{script.path, session_.seed(), options_.max_memory});
+        *seat.robot, ControllerOptions{script.path, session_.seed(), options_.max_memory});
   } catch (const std::bad_alloc&) {
     return fail(seat, "no memory for a Lua state");
   }
-  sense(*seat.robot, seat.controller->robot());
   const Failure failure = seat.controller->start();
-  hand_over(seat);
+  hand_over_log(seat);
   if (failure) fail(seat, *failure);
 }
 
 void Runner::answer(Seat& seat) {
-  sense(*seat.robot, seat.controller->robot());
   const Failure failure = call(*seat.controller);
-  hand_over(seat);
+  hand_over_log(seat);
   if (failure) fail(seat, *failure);
 }
 
@@ -62,21 +58,18 @@ void Runner::finish() {
     if (!seat.controller) continue;
     const Failure failure = seat.controller->destroy(session_.tick());
     // No robot can fail any more: the run is over. The message still goes to the server's log.
-    if (failure) seat.controller->robot().log.add(true, *failure);
-    hand_over(seat);
+    if (failure) seat.controller->log().add(true, *failure);
+    hand_over_log(seat);
     if (failure) fail(seat, *failure);
   }
 }
 
-void Runner::hand_over(Seat& seat) {
-  ScriptedRobot& scripted = seat.controller->robot();
-  if (options_.echo) echo(seat, scripted.log);
-  const Failure failure = act(scripted, *seat.robot);
-  if (!hand_over_log(scripted, *seat.robot)) {
-    std::fprintf(stderr, "ziggurat-lua: tick %llu: too many log lines for one message; dropped\n",
-                 static_cast<unsigned long long>(session_.tick()));
-  }
-  if (failure) fail(seat, *failure);
+void Runner::hand_over_log(Seat& seat) {
+  LogLines& log = seat.controller->log();
+  if (options_.echo) echo(seat, log);
+  if (move_log(log, *seat.robot)) return;
+  std::fprintf(stderr, "ziggurat-lua: tick %llu: too many log lines for one message; dropped\n",
+               static_cast<unsigned long long>(session_.tick()));
 }
 
 // A script that a signal ended has not failed.

@@ -34,7 +34,7 @@ class Runner {
   void answer(Seat& seat);
   void finish();
   Failure call(Controller& controller);
-  void hand_over(Seat& seat);
+  void hand_over_log(Seat& seat);
   void fail(Seat& seat, const std::string& message);
   void echo(const Seat& seat, const LogLines& log) const;
 

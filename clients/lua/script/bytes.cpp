@@ -12,24 +12,26 @@ std::optional<std::uint8_t> to_byte(lua_State* state, int index) {
   return static_cast<std::uint8_t>(static_cast<int>(std::fmod(std::trunc(number), 256.0)));
 }
 
-void append_bytes(lua_State* state, int index, std::size_t count,
-                  std::vector<std::uint8_t>& bytes) {
-  const std::size_t before = bytes.size();
-  bytes.resize(before + count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto position = static_cast<lua_Integer>(i + 1);
-    lua_rawgeti(state, index, position);
-    if (const auto byte = to_byte(state, -1)) {
-      bytes[before + i] = *byte;
-    } else {
-      bytes.resize(before);
-      const bool is_number = lua_type(state, -1) == LUA_TNUMBER;
+void check_bytes(lua_State* state, int index, std::size_t count) {
+  for (std::size_t i = 1; i <= count; ++i) {
+    const int type = lua_rawgeti(state, index, static_cast<lua_Integer>(i));
+    if (!to_byte(state, -1)) {
       luaL_error(state, "finite number expected as element %I of the table, got %s",
-                 static_cast<LUAI_UACINT>(position),
-                 is_number ? "inf or nan" : luaL_typename(state, -1));
+                 static_cast<LUAI_UACINT>(i),
+                 type == LUA_TNUMBER ? "inf or nan" : lua_typename(state, type));
     }
     lua_pop(state, 1);
   }
+}
+
+std::vector<std::uint8_t> to_bytes(lua_State* state, int index, std::size_t count) {
+  std::vector<std::uint8_t> bytes(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    lua_rawgeti(state, index, static_cast<lua_Integer>(i + 1));
+    bytes[i] = to_byte(state, -1).value_or(0);
+    lua_pop(state, 1);
+  }
+  return bytes;
 }
 
 void push_bytes(lua_State* state, Bytes bytes) {

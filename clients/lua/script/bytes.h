@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "script/scripted_devices.h"
+#include "ziggurat/radio.h"
 
 namespace ziggurat::lua {
 
@@ -15,9 +15,12 @@ namespace ziggurat::lua {
 /// number. Strings are no numbers.
 std::optional<std::uint8_t> to_byte(lua_State* state, int index);
 
-/// Appends elements 1 … count of the table at `index`, without calling its metamethods. If one is
-/// not a finite number, a Lua error says which, and `bytes` is as it was.
-void append_bytes(lua_State* state, int index, std::size_t count, std::vector<std::uint8_t>& bytes);
+/// Elements 1 … count of the table at `index` are finite numbers; otherwise raises a Lua error that
+/// names the first that is not. Calls no metamethods.
+void check_bytes(lua_State* state, int index, std::size_t count);
+
+/// Elements 1 … count of a table that check_bytes() has passed. Raises nothing.
+std::vector<std::uint8_t> to_bytes(lua_State* state, int index, std::size_t count);
 
 /// Pushes a new array.
 void push_bytes(lua_State* state, Bytes bytes);

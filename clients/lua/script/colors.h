@@ -1,10 +1,10 @@
 #pragma once
-// Colours as scripts write them.
+// Colors as scripts write them.
 
 #include <optional>
 #include <string_view>
 
-#include "script/scripted_devices.h"
+#include "ziggurat/led.h"
 
 namespace ziggurat::lua {
 

@@ -2,7 +2,6 @@
 
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 #include "script/error_message.h"
 #include "script/guarded.h"
@@ -41,9 +40,9 @@ void get_global_if_any(lua_State* state, const char* name) {
 
 }  // namespace
 
-Controller::Controller(ScriptedRobot robot, const ControllerOptions& options)
-    : robot_(std::move(robot)),
-      random_(options.seed, robot_.id),
+Controller::Controller(Robot& robot, const ControllerOptions& options)
+    : robot_(robot),
+      random_(options.seed, robot_.id()),
       max_memory_(options.max_memory),
       script_(shown(options.script).string()),
       folder_(shown(options.script).parent_path().string()),
@@ -63,7 +62,7 @@ Failure Controller::step(std::uint64_t tick) {
 }
 
 Failure Controller::reset(std::uint64_t seed) {
-  random_ = RandomStreams(seed, robot_.id);
+  random_ = RandomStreams(seed, robot_.id());
   const Running running(state_.get());
   return call("reset", false, "reset, tick 0");
 }
@@ -113,7 +112,7 @@ void Controller::push_protected(int (*function)(lua_State*)) {
 int Controller::build(lua_State* state) {
   auto& self = *static_cast<Controller*>(lua_touserdata(state, 1));
   prepare_error_messages(state);
-  set_up(state, {self.robot_, self.random_, self.folder_});
+  set_up(state, {self.robot_, self.log_, self.random_, self.folder_});
   return 0;
 }
 

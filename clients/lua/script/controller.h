@@ -8,8 +8,9 @@
 #include <string>
 
 #include "script/environment.h"
+#include "script/log_lines.h"
 #include "script/memory.h"
-#include "script/scripted_robot.h"
+#include "ziggurat/robot.h"
 
 namespace ziggurat::lua {
 
@@ -26,14 +27,14 @@ using Failure = std::optional<std::string>;
 /// Runs the script of one robot. Whatever the script does wrong is a Failure, never an exception.
 class Controller {
  public:
+  /// @param robot  outlives the controller and does not move
   /// @throws std::bad_alloc if max_memory does not hold an empty state
-  Controller(ScriptedRobot robot, const ControllerOptions& options);
+  Controller(Robot& robot, const ControllerOptions& options);
   Controller(const Controller&) = delete;
   Controller& operator=(const Controller&) = delete;
 
-  /// Readings are written here before a call; targets and log lines are taken from here after it,
-  /// also after one that failed.
-  ScriptedRobot& robot() { return robot_; }
+  /// What the script logged, also in a call that failed. The caller clears it.
+  LogLines& log() { return log_; }
 
   /// At tick 0: makes `robot` and `log`, runs the script's chunk, then init().
   Failure start();
@@ -63,7 +64,8 @@ class Controller {
   void push_protected(int (*function)(lua_State*));
   std::string describe_error(const std::string& moment);
 
-  ScriptedRobot robot_;
+  Robot& robot_;
+  LogLines log_;
   RandomStreams random_;
   std::size_t max_memory_;
   std::string script_;  // as it shall appear in messages

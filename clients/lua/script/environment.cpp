@@ -8,6 +8,7 @@
 #include "script/math_random.h"
 #include "script/ordered_pairs.h"
 #include "script/robot_random.h"
+#include "script/tables.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -50,28 +51,39 @@ void prepend_to_package_path(lua_State* state, const std::string& folder) {
   lua_pop(state, 2);
 }
 
-void push_params(lua_State* state, const ScriptedRobot& robot) {
-  lua_createtable(state, 0, static_cast<int>(robot.params.size()));
-  for (const auto& [name, value] : robot.params) {
-    lua_pushlstring(state, name.data(), name.size());
+void push_params(lua_State* state, const Robot& robot) {
+  lua_createtable(state, 0, static_cast<int>(robot.params().size()));
+  for (const auto& [name, value] : robot.params()) {
     lua_pushlstring(state, value.data(), value.size());
-    lua_rawset(state, -3);
+    set_element(state, -2, name);
   }
+}
+
+/// Sets robot.<name>, and in the table `kept` what its fill() gets. The table of the robot is
+/// beneath that table, which is on top.
+void add_devices(lua_State* state, const DeviceKind& kind, Robot& robot) {
+  const int kept = lua_gettop(state);
+  kind.make(state, robot);
+  if (lua_gettop(state) == kept + 1) lua_pushvalue(state, -1);
+  if (kind.fill != nullptr) kind.fill(state, robot);
+  lua_rawsetp(state, kept, &kind);
+  lua_setfield(state, kept - 1, kind.name);
 }
 
 }  // namespace
 
-void push_robot(lua_State* state, ScriptedRobot& robot) {
+// The registry has a table for each robot, under the robot's address: a state may have several.
+void push_robot(lua_State* state, Robot& robot) {
   lua_newtable(state);
-  lua_pushlstring(state, robot.id.data(), robot.id.size());
+  lua_pushlstring(state, robot.id().data(), robot.id().size());
   lua_setfield(state, -2, "id");
   push_params(state, robot);
   lua_setfield(state, -2, "params");
-  for (const DeviceKind& kind : device_kinds()) {
-    if (!kind.is_present(robot)) continue;
-    kind.push(state, robot);
-    lua_setfield(state, -2, kind.name);
+  lua_newtable(state);
+  for (const DeviceKind* kind : device_kinds()) {
+    if (kind->is_present(robot)) add_devices(state, *kind, robot);
   }
+  lua_rawsetp(state, LUA_REGISTRYINDEX, &robot);
 }
 
 void set_up(lua_State* state, const Environment& environment) {
@@ -79,7 +91,7 @@ void set_up(lua_State* state, const Environment& environment) {
   confine_libraries(state, environment.random.math_random);
   prepend_to_package_path(state, environment.folder);
   lua_pushglobaltable(state);
-  set_log_functions(state, environment.robot.log);
+  set_log_functions(state, environment.log);
   lua_pop(state, 1);
   push_robot(state, environment.robot);
   push_robot_random(state, environment.random.robot_random);
@@ -87,10 +99,15 @@ void set_up(lua_State* state, const Environment& environment) {
   lua_setglobal(state, "robot");
 }
 
-void refresh(lua_State* state, const ScriptedRobot& robot) {
-  for (const DeviceKind& kind : device_kinds()) {
-    if (kind.is_present(robot)) kind.refresh(state, robot);
+void refresh(lua_State* state, Robot& robot) {
+  lua_rawgetp(state, LUA_REGISTRYINDEX, &robot);
+  for (const DeviceKind* kind : device_kinds()) {
+    if (kind->fill == nullptr || !kind->is_present(robot)) continue;
+    lua_rawgetp(state, -1, kind);
+    kind->fill(state, robot);
+    lua_pop(state, 1);
   }
+  lua_pop(state, 1);
 }
 
 }  // namespace ziggurat::lua

@@ -4,8 +4,9 @@
 #include <lua.hpp>
 #include <string>
 
+#include "script/log_lines.h"
 #include "script/random_stream.h"
-#include "script/scripted_robot.h"
+#include "ziggurat/robot.h"
 
 namespace ziggurat::lua {
 
@@ -21,7 +22,8 @@ struct RandomStreams {
 
 /// Where the pieces of a script's world live. All of it outlives the state, at the same place.
 struct Environment {
-  ScriptedRobot& robot;
+  Robot& robot;
+  LogLines& log;
   RandomStreams& random;
   const std::string& folder;  ///< of the script; modules are looked for there first
 };
@@ -31,9 +33,9 @@ void set_up(lua_State* state, const Environment& environment);
 
 /// Pushes a table with the robot's id, params and devices. The robot outlives the state and does
 /// not move; a state may have several. May raise a Lua error.
-void push_robot(lua_State* state, ScriptedRobot& robot);
+void push_robot(lua_State* state, Robot& robot);
 
 /// Writes what the robot senses into its tables. May raise a Lua error.
-void refresh(lua_State* state, const ScriptedRobot& robot);
+void refresh(lua_State* state, Robot& robot);
 
 }  // namespace ziggurat::lua

@@ -1,5 +1,6 @@
 #include "script/log_lines.h"
 
+#include <stdexcept>
 #include <utility>
 
 namespace ziggurat::lua {
@@ -19,6 +20,19 @@ void LogLines::clear() {
   lines.clear();
   bytes = 0;
   is_full = false;
+}
+
+bool move_log(LogLines& from, Robot& to) {
+  bool fits = true;
+  try {
+    for (const LogLine& line : from.lines) {
+      line.is_error ? to.log_error(line.text) : to.log(line.text);
+    }
+  } catch (const std::length_error&) {
+    fits = false;
+  }
+  from.clear();
+  return fits;
 }
 
 }  // namespace ziggurat::lua

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "ziggurat/robot.h"
+
 namespace ziggurat::lua {
 
 struct LogLine {
@@ -25,5 +27,9 @@ struct LogLines {
   void add(bool is_error, std::string text);
   void clear();  ///< keeps its memory for the next tick
 };
+
+/// Moves the lines to the robot's log. False if the session takes no more of them at this tick; the
+/// rest is dropped.
+bool move_log(LogLines& from, Robot& to);
 
 }  // namespace ziggurat::lua

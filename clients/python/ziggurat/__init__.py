@@ -7,8 +7,7 @@
 """
 
 from .connection import Curve
-from .devices import OFF, Battery, Camera, Color, Joint, Led, LedReading, Magnet, Packet, Pose, \
-    ProximitySensor, Radio, RangeAndBearing, Tag, TagReading, Turret, Wheels
+from .devices import *
 from .errors import ConnectionLost, Displaced, ProtocolError, Refused, Timeout, ZigguratError
 from .parallel import ParallelEnv, all_readings, joint_targets, parallel_env
 from .robot import Named, Robot

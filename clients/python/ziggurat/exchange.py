@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from itertools import accumulate
-from typing import Any, Dict, List, Set, Tuple
+from typing import Any, Callable, Dict, Generic, List, Optional, Sequence, Set, Tuple, TypeVar
 
 from . import protocol_pb2 as v1
 
-# Fields of Command that hold a value per device; handles name them.
-FIELDS = ("joint_targets", "led_colors", "directional_led_colors", "tag_payloads",
-          "magnet_currents", "wheel_velocities", "turret_modes", "turret_rotations",
-          "turret_speeds")
+T = TypeVar("T")
 
 
 class Exchange:
@@ -21,10 +19,12 @@ class Exchange:
         self.heard: Dict[int, List[bytes]] = {}  # by radio
         self.packets: Dict[int, List[Any]] = {}  # by robot
         self.begins: Dict[str, List[int]] = {}  # by kind of detector: first reading of each camera
-        self.values: Dict[str, List[Any]] = {field: [] for field in FIELDS}
+        # By field of Command, a value for each device.
+        self.values: Dict[str, List[Any]] = defaultdict(list)
         self.data = bytearray()  # of all range-and-bearing actuators
         self.messages: List[Tuple[int, bytes]] = []
         self.log: List[v1.LogLine] = []
+        self._places: Counter = Counter()
         self._initial: Dict[str, List[Any]] = {}
         self._new: Set[str] = set()  # fields that changed since the last command
         self._used: Set[str] = set()  # fields that ever did
@@ -33,6 +33,13 @@ class Exchange:
         """Lays out one more device; returns its place."""
         self.values[field].append(value)
         return len(self.values[field]) - 1
+
+    def place(self, kind: str, is_there: bool = True) -> int:
+        """The next place among the readings of a kind of device; -1 for one that is not there."""
+        if not is_there:
+            return -1
+        self._places[kind] += 1
+        return self._places[kind] - 1
 
     def begin(self) -> None:
         """Everything is laid out."""
@@ -77,9 +84,8 @@ class Exchange:
         command = message.command
         command.SetInParent()
         command.tick = tick
-        for field in FIELDS:
-            if field in self._new:
-                getattr(command, field).extend(self.values[field])
+        for field in self._new & self.values.keys():
+            getattr(command, field).extend(self.values[field])
         if "data" in self._new:
             command.range_and_bearing_data = bytes(self.data)
         for radio, payload in self.messages:
@@ -93,3 +99,25 @@ class Exchange:
         self._new.clear()
         self.messages.clear()
         self.log.clear()
+
+
+class Readings(Generic[T]):
+    """A property of robots: a fixed number of values of the last observation. None for a robot
+    without the sensor, or before the first tick."""
+
+    def __init__(self, field: str, count: int, make: Callable[[Sequence[float]], T],
+                 is_there: Callable[[v1.RobotDescription], bool]):
+        self._field = field  # of Observation
+        self._count = count
+        self._make = make
+        self._is_there = is_there
+
+    def place(self, exchange: Exchange, given: v1.RobotDescription) -> int:
+        return exchange.place(self._field, self._is_there(given))
+
+    def __get__(self, robot: Any, owner: Any = None) -> Optional[T]:
+        place = robot._places[self]
+        values = getattr(robot._exchange.seen, self._field)
+        if place < 0 or not values:
+            return None
+        return self._make(values[place * self._count:(place + 1) * self._count])

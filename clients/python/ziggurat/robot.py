@@ -1,19 +1,20 @@
-"""A robot of a session, and how its devices are laid out over the session's packed arrays."""
+"""A robot of a session and its devices."""
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import Any, Callable, Dict, Generic, Iterable, Iterator, List, Optional, Sequence, \
     TypeVar, Union
 
 from . import protocol_pb2 as v1
-from .devices import Battery, Camera, Joint, Led, Magnet, Pose, ProximitySensor, Radio, \
-    RangeAndBearing, Tag, Turret, Wheels
-from .exchange import Exchange
+from .devices import Camera, Joint, Led, Magnet, ProximitySensor, Radio, RangeAndBearing, Tag, \
+    Turret, Wheels
+from .devices.battery import battery
+from .devices.joint import joints_of
+from .devices.positioning import pose
+from .devices.proximity import proximity_sensor
+from .exchange import Exchange, Readings
 
 T = TypeVar("T")
-_MODES = {v1.JointDescription.POSITION: "position", v1.JointDescription.VELOCITY: "velocity",
-          v1.JointDescription.DISABLED: "disabled"}
 
 
 class Named(Sequence, Generic[T]):
@@ -47,26 +48,16 @@ class Named(Sequence, Generic[T]):
         return f"[{', '.join(map(repr, self._things))}]"
 
 
-class Places:
-    """Counts the places of readings that one kind of device has in a packed array."""
-
-    def __init__(self) -> None:
-        self._next: Counter = Counter()
-
-    def take(self, kind: str, is_there: bool = True) -> int:
-        """The next place, or -1 for a device that is not there."""
-        if not is_there:
-            return -1
-        self._next[kind] += 1
-        return self._next[kind] - 1
-
-
 class Robot:
     """Devices are those that the scene's controller enables; range_and_bearing, wheels and turret
     are None for robots without."""
 
-    def __init__(self, exchange: Exchange, places: Places, position: int,
-                 given: v1.RobotDescription, tell_leave: Callable[["Robot", str], None]):
+    # Of the positioning sensor and of the battery.
+    pose = pose
+    battery = battery
+
+    def __init__(self, exchange: Exchange, position: int, given: v1.RobotDescription,
+                 tell_leave: Callable[["Robot", str], None]):
         self.id: str = given.id
         self.controller: str = given.controller
         self.params: Dict[str, str] = {p.name: p.value for p in given.params}
@@ -74,76 +65,34 @@ class Robot:
         self._exchange = exchange
         self._position = position
         self._tell_leave = tell_leave
+        self._places = {readings: readings.place(exchange, given)
+                        for readings in vars(Robot).values() if isinstance(readings, Readings)}
 
-        self.joints: Named[Joint] = Named(self._lay_out_joints(places, given), "joint")
-        self.radios: Named[Radio] = Named(
-            [Radio(exchange, places.take("radio"), radio) for radio in given.radios], "radio")
-        self.leds: Named[Led] = Named(
-            [Led(exchange, "led_colors", led) for led in given.leds], "LED")
+        self.joints: Named[Joint] = Named(joints_of(exchange, given), "joint")
+        self.radios: Named[Radio] = Named([Radio(exchange, r) for r in given.radios], "radio")
+        self.leds: Named[Led] = Named([Led(exchange, "led_colors", l) for l in given.leds], "LED")
         self.directional_leds: Named[Led] = Named(
-            [Led(exchange, "directional_led_colors", led) for led in given.directional_leds],
+            [Led(exchange, "directional_led_colors", l) for l in given.directional_leds],
             "directional LED")
         self.tags: Named[Tag] = Named([Tag(exchange, tag) for tag in given.tags], "tag")
-        self.magnets: Named[Magnet] = Named(
-            [Magnet(exchange, magnet) for magnet in given.magnets], "magnet")
-        self.proximity_sensors: List[ProximitySensor] = [
-            ProximitySensor(sensor.anchor, tuple(sensor.position), tuple(sensor.direction),
-                            sensor.range,
-                            sensor.angle if sensor.HasField("angle") else None) for sensor in given.proximity_sensors]
-        first = [places.take("proximity") for _ in self.proximity_sensors][:1]
-        self._proximity = first[0] if first else 0
-        self.range_and_bearing: Optional[RangeAndBearing] = None
-        if given.HasField("range_and_bearing"):
-            self.range_and_bearing = RangeAndBearing(exchange, position, given.range_and_bearing)
-        self._positioning = places.take("positioning", given.positioning)
-        self._battery = places.take("battery", given.battery)
-        self.cameras: Named[Camera] = Named(
-            [Camera(exchange, camera, places) for camera in given.cameras], "camera")
-        self.wheels: Optional[Wheels] = None
-        if given.HasField("wheels"):
-            self.wheels = Wheels(exchange, places.take("wheels", given.wheels.measures),
-                                 given.wheels)
-        self.turret: Optional[Turret] = None
-        if given.HasField("turret"):
-            self.turret = Turret(exchange, places.take("turret", given.turret.measures),
-                                 given.turret)
-
-    def _lay_out_joints(self, places: Places, given: v1.RobotDescription) -> List[Joint]:
-        joints: Dict[str, Joint] = {}
-        for sensor in given.joint_sensors:
-            joint = joints.setdefault(sensor.id, Joint(self._exchange, sensor.id))
-            joint.sensor_mode = _MODES.get(sensor.mode)
-            joint._sensor = places.take("joint")
-        for actuator in given.joint_actuators:
-            joint = joints.setdefault(actuator.id, Joint(self._exchange, actuator.id))
-            joint.actuator_mode = _MODES.get(actuator.mode)
-            joint.max_impulse = actuator.max_impulse
-            joint._actuator = self._exchange.add("joint_targets", 0.0)
-        return list(joints.values())
+        self.magnets: Named[Magnet] = Named([Magnet(exchange, m) for m in given.magnets], "magnet")
+        self.proximity_sensors: List[ProximitySensor] = \
+            [proximity_sensor(sensor) for sensor in given.proximity_sensors]
+        self._proximity = [exchange.place("proximity") for _ in self.proximity_sensors]
+        self.range_and_bearing: Optional[RangeAndBearing] = \
+            RangeAndBearing(exchange, position, given.range_and_bearing) \
+            if given.HasField("range_and_bearing") else None
+        self.cameras: Named[Camera] = Named([Camera(exchange, c) for c in given.cameras], "camera")
+        self.wheels: Optional[Wheels] = \
+            Wheels(exchange, given.wheels) if given.HasField("wheels") else None
+        self.turret: Optional[Turret] = \
+            Turret(exchange, given.turret) if given.HasField("turret") else None
 
     @property
     def proximity(self) -> Sequence[float]:
         """One reading per proximity sensor: 0 (nothing) … 1 (contact)."""
         readings = self._exchange.seen.proximity
-        count = len(self.proximity_sensors)
-        return readings[self._proximity:self._proximity + count] if readings else [0.0] * count
-
-    @property
-    def pose(self) -> Optional[Pose]:
-        """What the positioning sensor says; None for a robot without, or before the first tick."""
-        values = self._exchange.seen.positioning
-        if self._positioning < 0 or not values:
-            return None
-        at = 7 * self._positioning
-        return Pose(tuple(values[at:at + 3]), tuple(values[at + 3:at + 7]))
-
-    @property
-    def battery(self) -> Optional[Battery]:
-        """None for a robot without, or before the first tick."""
-        values = self._exchange.seen.batteries
-        if self._battery < 0 or not values:
-            return None
-        return Battery(values[2 * self._battery], values[2 * self._battery + 1])
+        return [readings[place] if readings else 0.0 for place in self._proximity]
 
     def log(self, text: str, error: bool = False) -> None:
         """The server prints it, with the command of this tick."""

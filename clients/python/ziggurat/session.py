@@ -10,7 +10,7 @@ from . import protocol_pb2 as v1
 from .connection import Connection, Curve
 from .errors import Displaced, ProtocolError
 from .exchange import Exchange
-from .robot import Named, Places, Robot
+from .robot import Named, Robot
 
 # Errors that say that a command came late or twice: harmless, the next observation is there or on its
 # way. One that meets a reset on its way is for a future tick.
@@ -109,9 +109,8 @@ class Session:
         except BaseException:
             self._connection.close()
             raise
-        places = Places()
         self.robots: Named[Robot] = Named(
-            [Robot(self._exchange, places, position, given, self._leave_one)
+            [Robot(self._exchange, position, given, self._leave_one)
              for position, given in enumerate(self.welcome.robots)], "robot")
         self._exchange.begin()
         self.tick: Optional[Tick] = None  # the one that was given last

@@ -7,7 +7,8 @@ from typing import Any, List, Optional, Sequence, Tuple, Union
 
 from . import protocol_pb2 as v1
 from .connection import Connection, Curve
-from .devices import Color, Quaternion, Vector, _color
+from .devices import Color, Quaternion, Vector
+from .devices.led import color_of
 from .errors import ConnectionLost, ProtocolError
 from .session import Ending
 
@@ -193,4 +194,4 @@ def _entity(given: v1.States.Entity) -> EntityState:
         LinkState(link.id, tuple(link.position), tuple(link.orientation), tuple(link.velocity),
                   tuple(link.angular_velocity)) for link in given.links]
     return EntityState(given.id, tuple(given.position), tuple(given.orientation), tuple(links),
-                       tuple(map(_color, given.led_colors)))
+                       tuple(map(color_of, given.led_colors)))

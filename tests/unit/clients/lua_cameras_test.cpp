@@ -1,33 +1,36 @@
 // robot.cameras, robot.wheels and robot.turret as scripts find them.
 
-#include <array>
 #include <numbers>
 
+#include "equipped_robots.h"
 #include "lua_devices.h"
 
 namespace ziggurat::lua {
 namespace {
 
-Camera eye() {
-  Camera camera;
-  camera.id = "eye";
-  camera.anchor = "turret";
-  camera.position = {0.1, 0.2, 0.3};
-  camera.orientation = {0.5, -0.5, 0.5, -0.5};
-  camera.near = 0.125;
-  camera.far = 2;
-  camera.focal_length = {800, 900};
-  camera.principal_point = {320, 240.5};
-  camera.resolution = {640, 480};
-  camera.detects_leds = camera.detects_directional_leds = camera.detects_tags = true;
+v1::CameraDescription& add_camera(v1::RobotDescription& robot, const char* id) {
+  v1::CameraDescription& camera = *robot.add_cameras();
+  camera.set_id(id);
+  camera.set_anchor("turret");
+  for (const double value : {0.1, 0.2, 0.3}) camera.add_position(value);
+  for (const double value : {0.5, -0.5, 0.5, -0.5}) camera.add_orientation(value);
+  camera.set_near(0.125);
+  camera.set_far(2);
+  for (const double value : {800.0, 900.0}) camera.add_focal_length(value);
+  for (const double value : {320.0, 240.5}) camera.add_principal_point(value);
+  camera.set_width(640);
+  camera.set_height(480);
+  camera.set_detects_leds(true);
+  camera.set_detects_directional_leds(true);
+  camera.set_detects_tags(true);
   return camera;
 }
 
 // ---- cameras ------------------------------------------------------------------------------------
 
 TEST_F(Devices, CamerasHaveTheDetectorsThatTheSceneGives) {
-  robot_.cameras = {eye(), {}};
-  robot_.cameras[1].id = "blind eye";
+  add_camera(robot_, "eye");
+  robot_.add_cameras()->set_id("blind eye");
   EXPECT_RUNS(start(R"lua(
     local function keys(of)
       local names = {}
@@ -47,7 +50,7 @@ TEST_F(Devices, CamerasHaveTheDetectorsThatTheSceneGives) {
 }
 
 TEST_F(Devices, CamerasTellWhereAndHowTheyLook) {
-  robot_.cameras = {eye()};
+  add_camera(robot_, "eye");
   EXPECT_RUNS(start(R"lua(
     local eye = robot.cameras.eye
     assert(eye.anchor == "turret" and eye.near == 0.125 and eye.far == 2)
@@ -62,8 +65,8 @@ TEST_F(Devices, CamerasTellWhereAndHowTheyLook) {
 }
 
 TEST_F(Devices, CameraReadingsReplaceThoseBeforeAndMayBeKept) {
-  robot_.cameras = {eye(), eye()};
-  robot_.cameras[1].id = "lens";
+  add_camera(robot_, "eye");
+  add_camera(robot_, "lens");
   EXPECT_RUNS(start(R"lua(
     eye, lens = robot.cameras.eye, robot.cameras.lens
     tags, leds = eye.tag_detector, eye.led_detector
@@ -93,18 +96,23 @@ TEST_F(Devices, CameraReadingsReplaceThoseBeforeAndMayBeKept) {
       end
     end
   )lua"));
-  Camera& camera = robot().cameras[0];
-  camera.leds = {{{255, 128, 1}, {10.5, 20}}};
-  camera.directional_leds = {{{0, 255, 0}, {3, -4}}};
-  camera.tags = {{{"a\0b", 3}, {1, 2}, {{{3, 4}, {5, 6}, {7, 8}, {9, 10}}}}, {}};
+  const v1::Observation nothing = seen();
+  seen().set_led_counts(0, 1);
+  add_led(seen(), 0xFF8001, 10.5, 20);
+  seen().set_directional_led_counts(0, 1);
+  add_directional_led(seen(), 0x00FF00, 3, -4);
+  seen().set_tag_counts(0, 2);
+  add_tag(seen(), std::string("a\0b", 3), 1, 2, 3);
+  add_tag(seen(), "", 0, 0, 0);
   EXPECT_RUNS(step());
-  camera.leds.clear();
-  camera.tags = {{"next", {}, {}}};
+  seen() = nothing;
+  seen().set_tag_counts(0, 1);
+  add_tag(seen(), "next", 0, 0, -2);
   EXPECT_RUNS(step());
 }
 
 TEST_F(Devices, CameraReadingsOutliveWhatAScriptDoesToRobot) {
-  robot_.cameras = {eye()};
+  add_camera(robot_, "eye");
   EXPECT_RUNS(start(R"lua(
     tags = robot.cameras.eye.tag_detector
     robot.cameras.eye.tag_detector = nil
@@ -112,14 +120,17 @@ TEST_F(Devices, CameraReadingsOutliveWhatAScriptDoesToRobot) {
     tags[7] = "mine"
     function step() assert(#tags == 1 and tags[1].payload == "x") end
   )lua"));
-  robot().cameras[0].tags = {{"x", {}, {}}};
+  seen().set_tag_counts(0, 1);
+  add_tag(seen(), "x", 0, 0, 0);
   EXPECT_RUNS(step());
 }
 
 TEST_F(Devices, CameraImagesAreStrings) {
-  robot_.cameras = {eye(), eye()};
-  robot_.cameras[0].takes_images = true;
-  robot_.cameras[1].id = "lens";
+  v1::CameraDescription& eye = add_camera(robot_, "eye");
+  eye.set_image(true);
+  eye.set_width(2);
+  eye.set_height(1);
+  add_camera(robot_, "lens");
   EXPECT_RUNS(start(R"lua(
     eye = robot.cameras.eye
     assert(eye.image == "" and robot.cameras.lens.image == nil)
@@ -128,8 +139,7 @@ TEST_F(Devices, CameraImagesAreStrings) {
       assert(robot.cameras.lens.image == nil)
     end
   )lua"));
-  const std::array<std::uint8_t, 6> image{0, 1, 2, 3, 4, 255};
-  robot().cameras[0].image = image;
+  seen().set_camera_images(0, std::string("\0\1\2\3\4\xff", 6));
   EXPECT_RUNS(step());
 }
 
@@ -149,13 +159,12 @@ TEST_F(Devices, WheelsAreInCentimetres) {
       assert(wheels.distance_left == 2.5 and wheels.distance_right == -5)
     end
   )lua"));
-  EXPECT_TRUE(robot().wheels->velocities.is_fresh);
-  EXPECT_EQ(robot().wheels->velocities.value, (std::array<double, 2>{0.05, -0.025}));
-  Wheels& wheels = *robot().wheels;
-  wheels.velocity_left = 0.25;
-  wheels.velocity_right = -0.5;
-  wheels.distance_left = 0.025;
-  wheels.distance_right = -0.05;
+  const v1::Command sent = command();
+  ASSERT_EQ(sent.wheel_velocities_size(), 2);
+  EXPECT_EQ(sent.wheel_velocities(0), 0.05);
+  EXPECT_EQ(sent.wheel_velocities(1), -0.025);
+  int i = 0;
+  for (const double value : {0.25, -0.5, 0.025, -0.05}) seen().set_wheels(i++, value);
   EXPECT_RUNS(step());
 }
 
@@ -170,13 +179,13 @@ TEST_F(Devices, WheelsRefuseWhatIsNoSpeed) {
     refused("number expected, got string", set, "1", 1)
     refused("number expected, got nil", set, 1, nil)
   )lua"));
-  EXPECT_FALSE(robot().wheels->velocities.is_fresh);
+  EXPECT_EQ(command().wheel_velocities_size(), 0);
 }
 
 TEST_F(Devices, WheelsAndTurretHaveWhatIsEnabled) {
   add_driving(robot_);
-  robot_.wheels->has_sensor = false;
-  robot_.turret->has_actuator = false;
+  robot_.mutable_wheels()->set_measures(false);
+  robot_.mutable_turret()->set_drives(false);
   EXPECT_RUNS(start(R"lua(
     assert(robot.wheels.set_velocity and not robot.wheels.velocity_left)
     assert(not robot.wheels.axis_length)
@@ -184,7 +193,7 @@ TEST_F(Devices, WheelsAndTurretHaveWhatIsEnabled) {
     assert(not robot.turret.set_passive_mode)
     function step() assert(robot.wheels.velocity_left == nil and robot.turret.rotation == -2) end
   )lua"));
-  robot().turret->rotation = -2;
+  seen().set_turret_rotations(0, -2);
   EXPECT_RUNS(step());
 }
 
@@ -205,15 +214,15 @@ TEST_F(Devices, TurretSpeedsAreWholeTurnsPerMinute) {
       turret.set_rotation_speed(0.99)
     end
   )lua"));
-  Turret& turret = *robot().turret;
-  EXPECT_TRUE(turret.mode.is_fresh && turret.speed.is_fresh);
-  EXPECT_FALSE(turret.target.is_fresh);
-  EXPECT_EQ(turret.mode.value, TurretMode::speed);
-  EXPECT_DOUBLE_EQ(turret.speed.value, 2 * std::numbers::pi / 30);
+  const v1::Command sent = command();
+  ASSERT_EQ(sent.turret_modes_size(), 1);
+  EXPECT_EQ(sent.turret_modes(0), v1::TURRET_SPEED);
+  EXPECT_EQ(sent.turret_rotations_size(), 0);
+  EXPECT_DOUBLE_EQ(sent.turret_speeds(0), 2 * std::numbers::pi / 30);
   EXPECT_RUNS(step());
-  EXPECT_DOUBLE_EQ(turret.speed.value, -2 * std::numbers::pi / 30);
+  EXPECT_DOUBLE_EQ(command().turret_speeds(0), -2 * std::numbers::pi / 30);
   EXPECT_RUNS(step());
-  EXPECT_EQ(turret.speed.value, 0);
+  EXPECT_EQ(command().turret_speeds(0), 0);
 }
 
 TEST_F(Devices, TurretModesAndRotation) {
@@ -228,11 +237,12 @@ TEST_F(Devices, TurretModesAndRotation) {
       turret.set_passive_mode()
     end
   )lua"));
-  EXPECT_EQ(robot().turret->mode.value, TurretMode::position);
-  EXPECT_EQ(robot().turret->target.value, -1.5);
-  robot().turret->rotation = 0.75;
+  const v1::Command sent = command();
+  EXPECT_EQ(sent.turret_modes(0), v1::TURRET_POSITION);
+  EXPECT_EQ(sent.turret_rotations(0), -1.5);
+  seen().set_turret_rotations(0, 0.75);
   EXPECT_RUNS(step());
-  EXPECT_EQ(robot().turret->mode.value, TurretMode::passive);
+  EXPECT_EQ(command().turret_modes(0), v1::TURRET_PASSIVE);
 }
 
 TEST_F(Devices, TurretRefusesWrongArguments) {
@@ -249,8 +259,8 @@ TEST_F(Devices, TurretRefusesWrongArguments) {
     refused("set_speed_control_mode%(%) expected, got 1", turret.set_speed_control_mode, 1)
     refused("set_position_control_mode%(%) expected, got 1", turret.set_position_control_mode, 1)
   )lua"));
-  EXPECT_FALSE(robot().turret->mode.is_fresh || robot().turret->target.is_fresh ||
-               robot().turret->speed.is_fresh);
+  const v1::Command sent = command();
+  EXPECT_EQ(sent.turret_modes_size() + sent.turret_rotations_size() + sent.turret_speeds_size(), 0);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
-// A robot whose script runs against values of the test's. A script's fault fails its assert.
+// A robot whose script runs against values that the test sets. A wrong value fails an assert of the
+// script.
 
 #include <gtest/gtest.h>
 
@@ -7,8 +8,10 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "one_robot.h"
 #include "script/controller.h"
 
 namespace ziggurat::lua {
@@ -28,23 +31,30 @@ class Devices : public ::testing::Test {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::path(::testing::TempDir()) /
             (std::string("devices_") + test->name() + ".lua");
-    robot_.id = "robot";
+    robot_.set_id("robot");
   }
   ~Devices() override { std::filesystem::remove(path_); }
 
   /// Runs the chunk and its init().
   Failure start(const std::string& script) {
     std::ofstream(path_) << prelude << script;
-    controller_ = std::make_unique<Controller>(robot_, ControllerOptions{path_});
+    one_.emplace(robot_);
+    controller_ = std::make_unique<Controller>(one_->robot(), ControllerOptions{path_});
     return controller_->start();
   }
-  Failure step() { return controller_->step(++tick_); }
-  ScriptedRobot& robot() { return controller_->robot(); }
+  Failure step() {
+    one_->sense();
+    return controller_->step(++tick_);
+  }
+  Robot& robot() { return one_->robot(); }
+  v1::Observation& seen() { return one_->seen; }     ///< what step() begins with
+  v1::Command command() { return one_->command(); }  ///< what was set since the last call
 
-  ScriptedRobot robot_;  ///< that start() begins with
+  v1::RobotDescription robot_;  ///< that start() begins with
 
  private:
   std::filesystem::path path_;
+  std::optional<OneRobot> one_;
   std::unique_ptr<Controller> controller_;
   std::uint64_t tick_ = 0;
 };
@@ -55,13 +65,20 @@ class Devices : public ::testing::Test {
     EXPECT_FALSE(failure) << failure.value_or(""); \
   } while (false)
 
+inline void add_radio(v1::RobotDescription& robot, const char* id, bool receives, bool sends) {
+  v1::RadioDescription& radio = *robot.add_radios();
+  radio.set_id(id);
+  radio.set_receives(receives);
+  radio.set_sends(sends);
+}
+
 /// Wheels and a turret, each with sensor and actuator.
-inline void add_driving(ScriptedRobot& robot) {
-  Wheels& wheels = robot.wheels.emplace();
-  wheels.axle_length = 0.14;
-  wheels.has_sensor = wheels.has_actuator = true;
-  Turret& turret = robot.turret.emplace();
-  turret.has_encoder = turret.has_actuator = true;
+inline void add_driving(v1::RobotDescription& robot) {
+  robot.mutable_wheels()->set_axle_length(0.14);
+  robot.mutable_wheels()->set_measures(true);
+  robot.mutable_wheels()->set_drives(true);
+  robot.mutable_turret()->set_measures(true);
+  robot.mutable_turret()->set_drives(true);
 }
 
 }  // namespace ziggurat::lua

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,15 +12,25 @@
 namespace ziggurat::lua {
 namespace {
 
-std::vector<std::vector<int>> messages_of(const Outgoing& sent) {
+/// Of one radio, each as the values of its bytes.
+std::vector<std::vector<int>> messages_of(const v1::Command& command, std::uint32_t radio) {
   std::vector<std::vector<int>> messages;
-  std::size_t begin = 0;
-  for (const std::size_t end : sent.ends) {
-    messages.emplace_back(sent.bytes.begin() + static_cast<std::ptrdiff_t>(begin),
-                          sent.bytes.begin() + static_cast<std::ptrdiff_t>(end));
-    begin = end;
+  for (const v1::RadioMessage& message : command.radio_messages()) {
+    if (message.radio() != radio) continue;
+    auto& bytes = messages.emplace_back();
+    for (const char byte : message.payload()) bytes.push_back(static_cast<unsigned char>(byte));
   }
   return messages;
+}
+
+void assign(google::protobuf::RepeatedField<double>& to, std::initializer_list<double> values) {
+  to.Clear();
+  to.Add(values.begin(), values.end());
+}
+
+void receive(v1::Observation& seen, std::uint32_t radio, const std::string& payload) {
+  seen.add_radio_messages()->set_radio(radio);
+  seen.mutable_radio_messages()->rbegin()->set_payload(payload);
 }
 
 // ---- presence -----------------------------------------------------------------------------------
@@ -35,8 +44,9 @@ TEST_F(Devices, AreThereOnlyIfTheControllerHasThem) {
 }
 
 TEST_F(Devices, HaveTheFunctionsAndReadingsThatAreEnabled) {
-  robot_.radios = {{"ears", true, {}, false, {}}, {"mouth", false, {}, true, {}}};
-  robot_.range_and_bearing.emplace().has_receiver = true;
+  add_radio(robot_, "ears", true, false);
+  add_radio(robot_, "mouth", false, true);
+  robot_.mutable_range_and_bearing()->set_receives(true);
   EXPECT_RUNS(start(R"lua(
     assert(robot.radios.ears.tx_data == nil and #robot.radios.ears.rx_data == 0)
     assert(robot.radios.mouth.rx_data == nil and robot.radios.mouth.tx_data)
@@ -53,7 +63,8 @@ TEST_F(Devices, HaveTheFunctionsAndReadingsThatAreEnabled) {
 // ---- radios -------------------------------------------------------------------------------------
 
 TEST_F(Devices, RadioMessagesAreArraysOfIntegers) {
-  robot_.radios = {{"a", true, {}, false, {}}, {"b", true, {}, false, {}}};
+  add_radio(robot_, "a", true, false);
+  add_radio(robot_, "b", true, false);
   EXPECT_RUNS(start(R"lua(
     a, b = robot.radios.a.rx_data, robot.radios.b.rx_data
     function step()
@@ -72,20 +83,18 @@ TEST_F(Devices, RadioMessagesAreArraysOfIntegers) {
       end
     end
   )lua"));
-  const std::array<std::uint8_t, 3> bytes{0, 128, 255};
-  const std::array<std::uint8_t, 1> seven{7};
-  const std::vector<Bytes> first{bytes, {}};
-  const std::vector<Bytes> second{seven};
-  robot().radios[0].received = first;
+  receive(seen(), 0, std::string("\0\x80\xff", 3));
+  receive(seen(), 0, "");
   EXPECT_RUNS(step());
-  robot().radios[0].received = second;
+  seen().clear_radio_messages();
+  receive(seen(), 0, "\7");
   EXPECT_RUNS(step());
-  robot().radios[0].received = {};
+  seen().clear_radio_messages();
   EXPECT_RUNS(step());
 }
 
 TEST_F(Devices, RadioNumbersBecomeBytes) {
-  robot_.radios = {{"r", false, {}, true, {}}};
+  add_radio(robot_, "r", false, true);
   EXPECT_RUNS(start(R"lua(
     local tx = robot.radios.r.tx_data
     tx({0, 255, 256, 257, -1, -256, -257})
@@ -93,13 +102,13 @@ TEST_F(Devices, RadioNumbersBecomeBytes) {
     tx({})
     tx({n = 1, 5})
   )lua"));
-  EXPECT_EQ(messages_of(robot().radios[0].sent),
+  EXPECT_EQ(messages_of(command(), 0),
             (std::vector<std::vector<int>>{
                 {0, 255, 0, 1, 255, 0, 255}, {2, 0, 255, 255, 0, 254, 0, 0, 255}, {}, {5}}));
 }
 
 TEST_F(Devices, RadioRefusesWhatIsNoMessageAndSendsNothingOfIt) {
-  robot_.radios = {{"r", false, {}, true, {}}};
+  add_radio(robot_, "r", false, true);
   EXPECT_RUNS(start(R"lua(
     local tx = robot.radios.r.tx_data
     refused("tx_data%(table%) expected, got 0", tx)
@@ -112,44 +121,44 @@ TEST_F(Devices, RadioRefusesWhatIsNoMessageAndSendsNothingOfIt) {
     refused("element 1 of the table, got inf or nan", tx, {math.huge})
     tx({9})
   )lua"));
-  EXPECT_EQ(messages_of(robot().radios[0].sent), (std::vector<std::vector<int>>{{9}}));
+  EXPECT_EQ(messages_of(command(), 0), (std::vector<std::vector<int>>{{9}}));
 }
 
 TEST_F(Devices, RadioMessagesMayBeLongAndMany) {
-  robot_.radios = {{"r", false, {}, true, {}}};
+  add_radio(robot_, "r", false, true);
   EXPECT_RUNS(start(R"lua(
     local long = {}
     for i = 1, 65536 do long[i] = i end
     robot.radios.r.tx_data(long)
     for i = 1, 1000 do robot.radios.r.tx_data({i}) end
   )lua"));
-  const auto messages = messages_of(robot().radios[0].sent);
+  const auto messages = messages_of(command(), 0);
   ASSERT_EQ(messages.size(), 1001U);
   EXPECT_EQ(messages[0].size(), 65536U);
   EXPECT_EQ(messages[1000], std::vector<int>{1000 % 256});
 }
 
 TEST_F(Devices, RadioLimitsAreErrorsThatAScriptMayCatch) {
-  robot_.radio_limits = {4, 10, 5};
-  robot_.radios = {{"r", false, {}, true, {}}, {"s", false, {}, true, {}}};
+  add_radio(robot_, "r", false, true);
+  add_radio(robot_, "s", false, true);
   EXPECT_RUNS(start(R"lua(
     local r, s = robot.radios.r.tx_data, robot.radios.s.tx_data
-    refused("the message has 5 bytes; 4 are the most", r, {1, 2, 3, 4, 5})
-    r({1, 2, 3, 4})
-    s({1, 2, 3, 4})
-    refused("sends 11 bytes at this tick; 10 are the most", r, {1, 2, 3})
-    r({})
-    s({})
-    r({})
-    refused("message 6 of the robot at this tick; 5 are the most", r, {})
+    local long = {}
+    for i = 1, 1 << 20 do long[i] = 0 end
+    for i = 1, 8 do r(long) s(long) end
+    refused("sends 16777217 bytes at this tick; at most 16777216 are allowed", r, {1})
+    for i = 17, 65536 do s({}) end
+    refused("sends 65537 messages at this tick; at most 65536 are allowed", r, {})
+    long[#long + 1] = 0
+    refused("a message of 1048577 bytes; at most 1048576 are allowed", r, long)
   )lua"));
-  EXPECT_EQ(robot().radios[0].sent.ends.size(), 3U);
+  EXPECT_EQ(messages_of(command(), 0).size(), 8U);
 }
 
 // ---- LEDs ---------------------------------------------------------------------------------------
 
 TEST_F(Devices, LedColorsInAllForms) {
-  robot_.leds.resize(6);
+  for (int i = 0; i < 6; ++i) robot_.add_leds()->set_color(0x010101);
   EXPECT_RUNS(start(R"lua(
     local set = robot.leds.set_single_color
     set(1, "red")
@@ -158,31 +167,31 @@ TEST_F(Devices, LedColorsInAllForms) {
     set(4, " 4 , 5, 6,255")
     set(5, -1, 256, 0)
   )lua"));
-  const auto& leds = robot().leds;
-  EXPECT_EQ(leds[0].value, (Color{255, 0, 0}));
-  EXPECT_EQ(leds[1].value, (Color{1, 2, 3}));
-  EXPECT_EQ(leds[2].value, (Color{10, 20, 44}));
-  EXPECT_EQ(leds[3].value, (Color{4, 5, 6}));
-  EXPECT_EQ(leds[4].value, (Color{255, 0, 0}));
-  EXPECT_TRUE(leds[4].is_fresh);
-  EXPECT_FALSE(leds[5].is_fresh) << "the scene's color stays";
+  const auto leds = robot().leds();
+  EXPECT_EQ(leds[0].color(), (Color{255, 0, 0}));
+  EXPECT_EQ(leds[1].color(), (Color{1, 2, 3}));
+  EXPECT_EQ(leds[2].color(), (Color{10, 20, 44}));
+  EXPECT_EQ(leds[3].color(), (Color{4, 5, 6}));
+  EXPECT_EQ(leds[4].color(), (Color{255, 0, 0}));
+  EXPECT_EQ(leds[5].color(), (Color{1, 1, 1})) << "the scene's color stays";
+  EXPECT_EQ(command().led_colors_size(), 6);
 }
 
 TEST_F(Devices, AllLedsAtOnceAndEachKindByItself) {
-  robot_.leds.resize(3);
-  robot_.directional_leds.resize(2);
+  for (int i = 0; i < 3; ++i) robot_.add_leds();
+  for (int i = 0; i < 2; ++i) robot_.add_directional_leds();
   EXPECT_RUNS(start(R"lua(
     robot.leds.set_all_colors(255,0,0)
     robot.directional_leds.set_all_colors("gray40")
     robot.directional_leds.set_single_color(2, 1, 2, 3)
   )lua"));
-  for (const auto& led : robot().leds) EXPECT_EQ(led.value, (Color{255, 0, 0}));
-  EXPECT_EQ(robot().directional_leds[0].value, (Color{102, 102, 102}));
-  EXPECT_EQ(robot().directional_leds[1].value, (Color{1, 2, 3}));
+  for (const Led& led : robot().leds()) EXPECT_EQ(led.color(), (Color{255, 0, 0}));
+  EXPECT_EQ(robot().directional_leds()[0].color(), (Color{102, 102, 102}));
+  EXPECT_EQ(robot().directional_leds()[1].color(), (Color{1, 2, 3}));
 }
 
 TEST_F(Devices, LedsRefuseWhatIsNoColorOrNoLed) {
-  robot_.leds.resize(2);
+  for (int i = 0; i < 2; ++i) robot_.add_leds();
   EXPECT_RUNS(start(R"lua(
     local one, all = robot.leds.set_single_color, robot.leds.set_all_colors
     for _, index in ipairs({0, 3, -1, 1e9, 10^300, 0.9, math.mininteger}) do
@@ -190,11 +199,11 @@ TEST_F(Devices, LedsRefuseWhatIsNoColorOrNoLed) {
     end
     refused("number expected, got string", one, "1", "red")
     refused("finite number expected", one, 0/0, "red")
-    refused("is no colour", one, 1, "reddish")
-    refused("is no colour", one, 1, "1,2,3")
-    refused("is no colour", one, 1, "1,2,3,256")
-    refused("is no colour", one, 1, "1,2,3,4,5")
-    refused("is no colour", one, 1, "")
+    refused("is no color", one, 1, "reddish")
+    refused("is no color", one, 1, "1,2,3")
+    refused("is no color", one, 1, "1,2,3,256")
+    refused("is no color", one, 1, "1,2,3,4,5")
+    refused("is no color", one, 1, "")
     refused("string expected, got nil", one, 1, nil)
     refused("string expected, got number", one, 1, 5)
     refused("finite number expected", one, 1, 0, 0/0, 0)
@@ -206,7 +215,7 @@ TEST_F(Devices, LedsRefuseWhatIsNoColorOrNoLed) {
     refused("got 2$", all, 1, 2)
     refused("got 4$", all, 1, 2, 3, 4)
   )lua"));
-  EXPECT_FALSE(robot().leds[0].is_fresh);
+  EXPECT_EQ(command().led_colors_size(), 0);
 }
 
 TEST(Colors, AreThoseOfTheSceneFormat) {
@@ -222,7 +231,7 @@ TEST(Colors, AreThoseOfTheSceneFormat) {
 // ---- tags and magnets ---------------------------------------------------------------------------
 
 TEST_F(Devices, TagPayloads) {
-  robot_.tags.resize(3);
+  for (int i = 0; i < 3; ++i) robot_.add_tags();
   EXPECT_RUNS(start(R"lua(
     local one, all = robot.tags.set_single_payload, robot.tags.set_all_payloads
     all("x")
@@ -230,17 +239,19 @@ TEST_F(Devices, TagPayloads) {
     refused("this robot has 3 tags", one, 4, "x")
     refused("string expected, got number", one, 1, 5)
     refused("string expected, got nil", all, nil)
-    refused("65537 bytes; 65536 are the most", all, ("x"):rep(65537))
+    refused("65537 bytes; at most 65536 are allowed", all, ("x"):rep(65537))
     refused("got 1$", one, 1)
     refused("got 0$", all)
   )lua"));
-  EXPECT_EQ(robot().tags[0].value, "x");
-  EXPECT_EQ(robot().tags[1].value, std::string("zero \0 inside", 13));
-  EXPECT_TRUE(robot().tags[2].is_fresh);
+  const v1::Command sent = command();
+  ASSERT_EQ(sent.tag_payloads_size(), 3);
+  EXPECT_EQ(sent.tag_payloads(0), "x");
+  EXPECT_EQ(sent.tag_payloads(1), std::string("zero \0 inside", 13));
 }
 
 TEST_F(Devices, MagnetCurrents) {
-  robot_.magnets = {{"magnet_0", {}}, {"grip per", {}}};
+  robot_.add_magnets()->set_id("magnet_0");
+  robot_.add_magnets()->set_id("grip per");
   EXPECT_RUNS(start(R"lua(
     robot.magnets["grip per"].set_current(-2)
     local set = robot.magnets.magnet_0.set_current
@@ -249,27 +260,27 @@ TEST_F(Devices, MagnetCurrents) {
     refused("number expected, got string", set, "1")
     refused("set_current%(current%) expected, got 0", set)
   )lua"));
-  EXPECT_EQ(robot().magnets[1].current.value, -2);
-  EXPECT_TRUE(robot().magnets[1].current.is_fresh);
-  EXPECT_FALSE(robot().magnets[0].current.is_fresh);
+  const v1::Command sent = command();
+  ASSERT_EQ(sent.magnet_currents_size(), 2);
+  EXPECT_EQ(sent.magnet_currents(0), 0);
+  EXPECT_EQ(sent.magnet_currents(1), -2);
 }
 
 // ---- sensors ------------------------------------------------------------------------------------
 
 TEST_F(Devices, ProximityIsAnArray) {
-  robot_.proximity = {0, 0, 0};
+  for (int i = 0; i < 3; ++i) robot_.add_proximity_sensors();
   EXPECT_RUNS(start(R"lua(
     kept = robot.proximity
     assert(#kept == 3 and kept[1] == 0 and kept[3] == 0)
     function step() assert(kept[1] == 0.25 and robot.proximity[3] == 1 and #kept == 3) end
   )lua"));
-  robot().proximity = {0.25, 0, 1};
+  assign(*seen().mutable_proximity(), {0.25, 0, 1});
   EXPECT_RUNS(step());
 }
 
 TEST_F(Devices, ProximityThatTellsItsAnglesIsAnArrayOfTables) {
-  robot_.proximity = {0, 0, 0};
-  robot_.proximity_angles = {0.5, 1.5, -3};
+  for (const double angle : {0.5, 1.5, -3.0}) robot_.add_proximity_sensors()->set_angle(angle);
   EXPECT_RUNS(start(R"lua(
     local all = robot.proximity
     local second, third = all[2], all[3]
@@ -280,12 +291,12 @@ TEST_F(Devices, ProximityThatTellsItsAnglesIsAnArrayOfTables) {
       assert(robot.proximity == all and all[2] == second and all[1] == nil)
     end
   )lua"));
-  robot().proximity = {0.75, 0.25, 1};
+  assign(*seen().mutable_proximity(), {0.75, 0.25, 1});
   EXPECT_RUNS(step());
 }
 
 TEST_F(Devices, PositioningIsPositionAngleAndAxis) {
-  robot_.positioning.emplace();
+  robot_.set_positioning(true);
   EXPECT_RUNS(start(R"lua(
     position, orientation = robot.positioning.position, robot.positioning.orientation
     assert(position.x == 0 and position.y == 0 and position.z == 0)
@@ -297,25 +308,25 @@ TEST_F(Devices, PositioningIsPositionAngleAndAxis) {
     end
   )lua"));
   const double half = 3 * std::acos(-1.0) / 4;
-  *robot().positioning = {{1, -2, 3}, {std::cos(half), -std::sin(half), 0, 0}};
+  assign(*seen().mutable_positioning(), {1, -2, 3, std::cos(half), -std::sin(half), 0, 0});
   EXPECT_RUNS(step());
 }
 
 TEST_F(Devices, BatteryReads) {
-  robot_.battery.emplace();
+  robot_.set_battery(true);
   EXPECT_RUNS(start(R"lua(
     battery = robot.battery
     assert(battery.available_charge == 0 and battery.time_left == 0)
     function step() assert(battery.available_charge == 0.5 and battery.time_left == math.huge) end
   )lua"));
-  *robot().battery = {0.5, std::numeric_limits<double>::infinity()};
+  assign(*seen().mutable_batteries(), {0.5, std::numeric_limits<double>::infinity()});
   EXPECT_RUNS(step());
 }
 
 // ---- range and bearing --------------------------------------------------------------------------
 
 TEST_F(Devices, RangeAndBearingPacketsAreInCentimetres) {
-  robot_.range_and_bearing.emplace().has_receiver = true;
+  robot_.mutable_range_and_bearing()->set_receives(true);
   EXPECT_RUNS(start(R"lua(
     heard = robot.range_and_bearing
     assert(#heard == 0)
@@ -327,17 +338,20 @@ TEST_F(Devices, RangeAndBearingPacketsAreInCentimetres) {
       function step() assert(#heard == 0) end
     end
   )lua"));
-  const std::array<std::uint8_t, 2> data{1, 255};
-  robot().range_and_bearing->packets = {{1.5, -0.5, 0.25, data}, {0, 0, 0, data}};
+  v1::RangeAndBearingPacket& far = *seen().add_range_and_bearing();
+  far.set_range(1.5);
+  far.set_horizontal_bearing(-0.5);
+  far.set_vertical_bearing(0.25);
+  far.set_data("\1\xff");
+  seen().add_range_and_bearing()->set_data("\1\xff");
   EXPECT_RUNS(step());
-  robot().range_and_bearing->packets.clear();
+  seen().clear_range_and_bearing();
   EXPECT_RUNS(step());
 }
 
 TEST_F(Devices, RangeAndBearingData) {
-  RangeAndBearing& device = robot_.range_and_bearing.emplace();
-  device.has_transmitter = true;
-  device.data.value.resize(3);
+  robot_.mutable_range_and_bearing()->set_sends(true);
+  robot_.mutable_range_and_bearing()->set_data_size(3);
   EXPECT_RUNS(start(R"lua(
     local device = robot.range_and_bearing
     device.set_data({1, 2, 3})
@@ -353,24 +367,21 @@ TEST_F(Devices, RangeAndBearingData) {
     refused("clear_data%(%) expected, got 1", device.clear_data, 1)
     function step() robot.range_and_bearing.clear_data() end
   )lua"));
-  auto& data = robot().range_and_bearing->data;
-  EXPECT_EQ(data.value, (std::vector<std::uint8_t>{1, 2, 3}));
-  EXPECT_TRUE(data.is_fresh);
+  EXPECT_EQ(command().range_and_bearing_data(), "\1\2\3");
   EXPECT_RUNS(step());
-  EXPECT_EQ(data.value, (std::vector<std::uint8_t>{0, 0, 0}));
+  EXPECT_EQ(command().range_and_bearing_data(), std::string(3, '\0'));
 }
 
 // ---- memory -------------------------------------------------------------------------------------
 
 TEST_F(Devices, TablesAreMadeOnce) {
-  robot_.radios = {{"r", true, {}, true, {}}};
-  robot_.leds.resize(4);
-  robot_.proximity.resize(24);
-  robot_.positioning.emplace();
-  robot_.battery.emplace();
+  add_radio(robot_, "r", true, true);
+  for (int i = 0; i < 4; ++i) robot_.add_leds();
+  for (int i = 0; i < 24; ++i) robot_.add_proximity_sensors();
+  robot_.set_positioning(true);
+  robot_.set_battery(true);
   add_driving(robot_);
-  robot_.cameras.resize(1);
-  robot_.cameras[0].detects_tags = true;
+  robot_.add_cameras()->set_detects_tags(true);
   EXPECT_RUNS(start(R"lua(
     collectgarbage("stop")
     function step()

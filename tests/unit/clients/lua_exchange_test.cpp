@@ -162,7 +162,7 @@ TEST_F(Exchange, ASessionThatSendsTooMuchLosesTheRobotThatDoes) {
     ASSERT_EQ(leave.robots_size(), 1);
     EXPECT_EQ(leave.robots(0), 2U);
     EXPECT_EQ(leave.reason(), v1::Leave::FAILED);
-    EXPECT_NE(leave.message().find("this session sends by radio"), std::string::npos);
+    EXPECT_NE(leave.message().find("bytes by radio at this tick"), std::string::npos);
     EXPECT_GE(self.heard().command().radio_messages_size(), 3);
     self.end();
     self.heard();

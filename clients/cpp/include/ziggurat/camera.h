@@ -61,7 +61,7 @@ class Camera {
   Bytes image() const noexcept { return image_; }
 
  private:
-  friend class Session;
+  friend struct Layout;
   std::string id_;
   std::string anchor_;
   std::array<double, 3> position_{};

@@ -18,11 +18,11 @@ class Joint {
  public:
   const std::string& id() const noexcept { return id_; }
 
-  bool has_encoder() const noexcept { return reading_ != nullptr; }
+  bool has_encoder() const noexcept { return has_encoder_; }
   JointMode encoder_mode() const noexcept { return encoder_mode_; }
   /// What the encoder read at the session's tick, in the unit of encoder_mode(); 0 at tick 0 and
   /// without an encoder.
-  double encoder() const noexcept { return reading_ == nullptr ? 0.0 : *reading_; }
+  double encoder() const noexcept { return encoder_; }
 
   bool has_motor() const noexcept { return target_ != nullptr; }
   JointMode motor_mode() const noexcept { return motor_mode_; }
@@ -36,14 +36,15 @@ class Joint {
   double target() const noexcept { return target_ == nullptr ? 0.0 : *target_; }
 
  private:
-  friend class Session;
+  friend struct Layout;
   std::string id_;
   JointMode encoder_mode_ = JointMode::disabled;
   JointMode motor_mode_ = JointMode::disabled;
   double max_impulse_ = 0;
-  const double* reading_ = nullptr;  // into the session's packed observation
-  double* target_ = nullptr;         // into the session's packed command
-  bool* changed_ = nullptr;          // the session's: some target was set since the last answer
+  bool has_encoder_ = false;
+  double encoder_ = 0;
+  double* target_ = nullptr;  // into the session's packed command
+  bool* changed_ = nullptr;   // the session's: some target was set since the last answer
 };
 
 }  // namespace ziggurat

@@ -22,7 +22,7 @@ class Led {
   Color color() const noexcept;
 
  private:
-  friend class Session;
+  friend struct Layout;
   std::string id_;
   std::uint32_t* color_ = nullptr;  // 0xRRGGBB, into the session's packed command
   bool* changed_ = nullptr;

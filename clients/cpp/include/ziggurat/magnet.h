@@ -17,7 +17,7 @@ class Magnet {
   double current() const noexcept { return *current_; }
 
  private:
-  friend class Session;
+  friend struct Layout;
   std::string id_;
   double* current_ = nullptr;  // into the session's packed command
   bool* changed_ = nullptr;

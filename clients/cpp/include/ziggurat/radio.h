@@ -12,6 +12,8 @@ namespace ziggurat {
 /// What radios and range-and-bearing devices carry. May be empty.
 using Bytes = std::span<const std::uint8_t>;
 
+class RadioTraffic;
+
 /// A handle into its session, valid as long as that lives.
 class Radio {
  public:
@@ -40,15 +42,14 @@ class Radio {
   void send(Bytes message);
 
  private:
-  friend class Session;
-  struct Traffic;  // of the session, not yet sent
+  friend struct Layout;
   std::string id_;
   double range_ = 0;
   bool receives_ = false;
-  std::vector<Bytes> received_;  // into the session's observation
-  Traffic* traffic_ = nullptr;
-  std::uint32_t index_ = 0;  // among the radios of the session
-  std::uint32_t robot_ = 0;  // position in the session
+  std::vector<Bytes> received_;      // into the session's observation
+  RadioTraffic* traffic_ = nullptr;  // the session's
+  std::uint32_t index_ = 0;          // among the radios of the session
+  std::uint32_t robot_ = 0;          // position in the session
 };
 
 }  // namespace ziggurat

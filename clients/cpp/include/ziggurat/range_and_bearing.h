@@ -42,7 +42,7 @@ class RangeAndBearing {
   Bytes data() const noexcept { return data_; }
 
  private:
-  friend class Session;
+  friend struct Layout;
   double range_ = 0;
   std::size_t data_size_ = 0;
   bool receives_ = false;

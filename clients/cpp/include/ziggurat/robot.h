@@ -81,7 +81,8 @@ class Robot {
   bool failed() const noexcept { return failed_; }
 
  private:
-  friend class Session;
+  friend class Fleet;
+  friend struct Layout;
   struct Line {
     std::uint32_t robot;  // position in the session
     bool error;

@@ -24,16 +24,16 @@ class ProximitySensor {
 
   /// From 0, nothing in range, to 1, contact; exp(-distance in metres) unless the scene says
   /// otherwise.
-  double reading() const noexcept { return *reading_; }
+  double reading() const noexcept { return reading_; }
 
  private:
-  friend class Session;
+  friend struct Layout;
   std::string anchor_;
   std::array<double, 3> position_{};
   std::array<double, 3> direction_{};
   double range_ = 0;
   std::optional<double> angle_;
-  const double* reading_ = nullptr;  // into the session's packed observation
+  double reading_ = 0;
 };
 
 /// Where the robot is: the pose of its origin in the world.

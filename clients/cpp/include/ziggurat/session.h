@@ -129,9 +129,6 @@ class Session {
   void leave_failed(std::string_view message);
 
  private:
-  struct Cameras;
-  struct Devices;
-  struct Driving;
   struct State;
   std::unique_ptr<State> state_;
 };

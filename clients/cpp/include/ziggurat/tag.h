@@ -20,7 +20,7 @@ class Tag {
   const std::string& payload() const noexcept { return *payload_; }
 
  private:
-  friend class Session;
+  friend struct Layout;
   std::string id_;
   std::string* payload_ = nullptr;  // into the session's packed command
   bool* changed_ = nullptr;

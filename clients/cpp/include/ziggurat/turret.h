@@ -32,12 +32,12 @@ class Turret {
   double rotation() const noexcept { return rotation_; }
 
  private:
-  friend class Session;
+  friend struct Layout;
   bool measures_ = false;
   double rotation_ = 0;
 
   // Into the session's packed commands.
-  TurretMode* mode_ = nullptr;
+  int* mode_ = nullptr;  // as in messages
   double* target_ = nullptr;
   double* speed_ = nullptr;
   bool* mode_changed_ = nullptr;

@@ -14,7 +14,7 @@ class Wheels {
   double axle_length() const noexcept { return axle_length_; }  ///< between the wheels [m]
 
   /// The controller has an actuator for them.
-  bool drives() const noexcept { return velocities_ != nullptr; }
+  bool drives() const noexcept { return changed_ != nullptr; }
   /// Speeds over the floor [m/s]. Sent with the answer to this tick; stay until changed.
   /// @throws std::invalid_argument if not finite; std::logic_error if it does not drive
   void set_velocity(double left, double right);
@@ -25,11 +25,12 @@ class Wheels {
   const Reading& reading() const noexcept { return reading_; }
 
  private:
-  friend class Session;
+  friend struct Layout;
   double axle_length_ = 0;
   bool measures_ = false;
   Reading reading_;
-  double* velocities_ = nullptr;  // left and right, into the session's packed command
+  double* left_ = nullptr;  // into the session's packed command
+  double* right_ = nullptr;
   bool* changed_ = nullptr;
 };
 

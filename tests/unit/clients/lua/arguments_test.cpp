@@ -12,10 +12,9 @@ class Arguments : public ScriptTest {};
 TEST_F(Arguments, BothNumberSubtypesAreNumbers) {
   ASSERT_EQ(start("robot.joints.both.set_target(2) robot.joints.motor.set_target(0.5)"),
             std::nullopt);
-  EXPECT_EQ(joint(0).target, 2);
-  EXPECT_EQ(joint(2).target, 0.5);
-  EXPECT_TRUE(joint(0).is_target_fresh);
-  EXPECT_FALSE(joint(1).is_target_fresh);
+  EXPECT_EQ(joint(0).target(), 2);
+  EXPECT_EQ(joint(2).target(), 0.5);
+  EXPECT_EQ(command().joint_targets_size(), 2);
 }
 
 TEST_F(Arguments, WrongOnesAreErrorsThatScriptsCanCatch) {
@@ -36,8 +35,8 @@ TEST_F(Arguments, WrongOnesAreErrorsThatScriptsCanCatch) {
     EXPECT_NE(lines[i].find("finite number expected"), std::string::npos) << lines[i];
   }
   EXPECT_NE(lines[9].find("number expected, got nil"), std::string::npos) << lines[9];
-  EXPECT_FALSE(joint(0).is_target_fresh);
-  EXPECT_EQ(joint(0).target, 0);
+  EXPECT_EQ(command().joint_targets_size(), 0);
+  EXPECT_EQ(joint(0).target(), 0);
 }
 
 TEST_F(Arguments, OnesTypedWrongNameTheLineOfTheScript) {
@@ -63,9 +62,9 @@ TEST_F(Arguments, KeptTablesAndFunctionsStayGood) {
                   "function step() set(both.encoder * 2) end"),
             std::nullopt);
   for (int tick = 1; tick <= 3; ++tick) {
-    joint(0).encoder = tick;
+    sense(0, tick);
     ASSERT_EQ(controller().step(tick), std::nullopt);
-    EXPECT_EQ(joint(2).target, 2 * tick);
+    EXPECT_EQ(joint(2).target(), 2 * tick);
   }
 }
 
@@ -73,9 +72,9 @@ TEST_F(Arguments, AScriptThatSpoilsItsTablesHurtsNobody) {
   ASSERT_EQ(start("robot.joints.both.encoder = nil robot.joints.sensor = 5 "
                   "function step() log(robot.joints.both.encoder) end"),
             std::nullopt);
-  joint(0).encoder = 0.5;
+  sense(0, 0.5);
   ASSERT_EQ(controller().step(1), std::nullopt);
-  EXPECT_EQ(controller().robot().log.lines.at(0).text, "0.5");
+  EXPECT_EQ(controller().log().lines.at(0).text, "0.5");
 }
 
 TEST_F(Arguments, WritingReadingsAllocatesNothing) {
@@ -83,7 +82,7 @@ TEST_F(Arguments, WritingReadingsAllocatesNothing) {
   ASSERT_EQ(controller().step(1), std::nullopt);
   const auto before = controller().used_memory();
   for (int tick = 2; tick < 1000; ++tick) {
-    joint(0).encoder = 0.1 * tick;
+    sense(0, 0.1 * tick);
     ASSERT_EQ(controller().step(tick), std::nullopt);
   }
   EXPECT_EQ(controller().used_memory(), before);

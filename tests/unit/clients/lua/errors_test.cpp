@@ -51,14 +51,16 @@ TEST_F(Errors, InSyntax) { expect_contains(start("\n\nfunction ("), "main.lua:3:
 
 TEST_F(Errors, NoSuchScript) {
   options_.script = folder() / "missing.lua";
-  Controller other(robot_, options_);
+  OneRobot another(robot_);
+  Controller other(another.robot(), options_);
   expect_contains(other.start(), "missing.lua");
 }
 
 TEST_F(Errors, PrecompiledChunksAreRefused) {
   write("main.lua", std::string("\x1bLua") + "garbage");
   options_.script = folder() / "main.lua";
-  Controller other(robot_, options_);
+  OneRobot another(robot_);
+  Controller other(another.robot(), options_);
   expect_contains(other.start(), "attempt to load a binary chunk");
 }
 
@@ -120,18 +122,19 @@ TEST_F(Errors, WhatWasLoggedAndSetBeforeIsKept) {
   ASSERT_EQ(start("function step() log('before') robot.joints.both.set_target(3) error('no') end"),
             std::nullopt);
   EXPECT_TRUE(controller().step(1));
-  EXPECT_EQ(controller().robot().log.lines.at(0).text, "before");
-  EXPECT_EQ(joint(0).target, 3);
+  EXPECT_EQ(controller().log().lines.at(0).text, "before");
+  EXPECT_EQ(joint(0).target(), 3);
 }
 
 TEST_F(Errors, OfOneRobotDoNotReachAnother) {
   ASSERT_EQ(start("n = 0 function step() n = n + 1 log(n) end"), std::nullopt);
   write("other.lua", "function init() end n = 100 function step() n = nil + 1 end");
-  Controller other(robot_, {folder() / "other.lua"});
+  OneRobot another(robot_);
+  Controller other(another.robot(), {folder() / "other.lua"});
   ASSERT_EQ(other.start(), std::nullopt);
   EXPECT_TRUE(other.step(1));
   ASSERT_EQ(controller().step(1), std::nullopt);
-  EXPECT_EQ(controller().robot().log.lines.at(0).text, "1");
+  EXPECT_EQ(controller().log().lines.at(0).text, "1");
 }
 
 /// Interrupts scripts from a signal handler after 20 ms.

@@ -25,7 +25,7 @@ TEST_F(Globals, LogConcatenatesWithoutSeparator) {
 
 TEST_F(Globals, LogAndLogerrAreToldApart) {
   ASSERT_EQ(start("log('out') logerr('err ', 1.5)"), std::nullopt);
-  const auto& lines = controller().robot().log.lines;
+  const auto& lines = controller().log().lines;
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_FALSE(lines[0].is_error);
   EXPECT_TRUE(lines[1].is_error);
@@ -36,7 +36,7 @@ TEST_F(Globals, LogIsBounded) {
   ASSERT_EQ(start("local line = ('x'):rep(1000) for i = 1, 100000 do log(line) end "
                   "function step() log('again') end"),
             std::nullopt);
-  auto& log = controller().robot().log;
+  auto& log = controller().log();
   EXPECT_LE(log.lines.size(), LogLines::max_bytes / 1000 + 1);
   EXPECT_TRUE(log.lines.back().is_error);
   log.clear();
@@ -51,7 +51,8 @@ TEST_F(Globals, RobotIsThereBeforeTheChunkRuns) {
 }
 
 TEST_F(Globals, RobotHasOnlyWhatTheControllerHas) {
-  robot_.joints.clear();
+  robot_.clear_joint_sensors();
+  robot_.clear_joint_actuators();
   EXPECT_EQ(logged("log(robot.joints)"), (Lines{"nil"}));
 }
 

@@ -9,7 +9,7 @@ class LifeCycle : public ScriptTest {
  protected:
   Lines lines() {
     Lines result;
-    for (const LogLine& line : controller().robot().log.lines) result.push_back(line.text);
+    for (const LogLine& line : controller().log().lines) result.push_back(line.text);
     return result;
   }
 };
@@ -61,7 +61,8 @@ TEST_F(LifeCycle, MissingStepIsAnError) {
 TEST_F(LifeCycle, MissingInitIsAnError) {
   write("main.lua", "function step() end");
   options_.script = folder() / "main.lua";
-  Controller other(robot_, options_);
+  OneRobot another(robot_);
+  Controller other(another.robot(), options_);
   const Failure failure = other.start();
   ASSERT_TRUE(failure);
   EXPECT_NE(failure->find("no function init() (in init, tick 0)"), std::string::npos) << *failure;
@@ -77,9 +78,9 @@ TEST_F(LifeCycle, FunctionsAreLookedUpAtEveryCall) {
 
 TEST_F(LifeCycle, ReadingsArriveBeforeEachCall) {
   ASSERT_EQ(start("function step() log(robot.joints.sensor.encoder) end"), std::nullopt);
-  joint(1).encoder = 0.25;
+  sense(1, 0.25);
   ASSERT_EQ(controller().step(1), std::nullopt);
-  joint(1).encoder = -1;
+  sense(1, -1);
   ASSERT_EQ(controller().step(2), std::nullopt);
   EXPECT_EQ(lines(), (Lines{"0.25", "-1"}));
 }
@@ -87,9 +88,10 @@ TEST_F(LifeCycle, ReadingsArriveBeforeEachCall) {
 TEST_F(LifeCycle, GlobalsAreTheRobotsOwn) {
   ASSERT_EQ(start("shared = 1"), std::nullopt);
   write("other.lua", "function init() log(shared) end");
-  Controller other(robot_, {folder() / "other.lua"});
+  OneRobot another(robot_);
+  Controller other(another.robot(), {folder() / "other.lua"});
   ASSERT_EQ(other.start(), std::nullopt);
-  EXPECT_EQ(other.robot().log.lines.at(0).text, "nil");
+  EXPECT_EQ(other.log().lines.at(0).text, "nil");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ class Random : public ScriptTest {
  protected:
   Lines drawn(std::uint64_t seed, const std::string& id, const std::string& script = draw_ten) {
     options_.seed = seed;
-    robot_.id = id;
+    robot_.set_id(id);
     return logged(script);
   }
 };
@@ -33,7 +33,7 @@ TEST_F(Random, TheFirstNumbersAreTheSameOnEveryMachine) {
 TEST_F(Random, BeginsAnewAtReset) {
   ASSERT_EQ(start("function reset() log(robot.random.uniform(), ' ', math.random()) end reset()"),
             std::nullopt);
-  auto& log = controller().robot().log;
+  auto& log = controller().log();
   ASSERT_EQ(controller().reset(1), std::nullopt);
   ASSERT_EQ(log.lines.size(), 2u);
   EXPECT_EQ(log.lines[0].text, log.lines[1].text);

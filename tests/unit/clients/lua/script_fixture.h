@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "clients/one_robot.h"
 #include "script/controller.h"
 
 namespace ziggurat::lua {
@@ -19,11 +21,14 @@ class ScriptTest : public ::testing::Test {
   ScriptTest() {
     std::string folder = (std::filesystem::temp_directory_path() / "lua-XXXXXX").string();
     folder_ = ::mkdtemp(folder.data());
-    robot_.id = "r0";
-    robot_.params = {{"script", "main.lua"}, {"speed", "2"}};
-    robot_.joints = {{.id = "both", .has_encoder = true, .has_motor = true},
-                     {.id = "sensor", .has_encoder = true},
-                     {.id = "motor", .has_motor = true}};
+    robot_.set_id("r0");
+    for (const auto& [name, value] : {std::pair{"script", "main.lua"}, std::pair{"speed", "2"}}) {
+      v1::Parameter& param = *robot_.add_params();
+      param.set_name(name);
+      param.set_value(value);
+    }
+    for (const char* id : {"both", "sensor"}) robot_.add_joint_sensors()->set_id(id);
+    for (const char* id : {"both", "motor"}) robot_.add_joint_actuators()->set_id(id);
   }
   ~ScriptTest() override {
     controller_.reset();
@@ -40,7 +45,7 @@ class ScriptTest : public ::testing::Test {
         "main.lua",
         (script.find("function init") == std::string::npos ? "function init() end " : "") + script);
     options_.script = folder_ / "main.lua";
-    controller_ = std::make_unique<Controller>(robot_, options_);
+    controller_ = std::make_unique<Controller>(one_.emplace(robot_).robot(), options_);
     return controller_->start();
   }
 
@@ -48,19 +53,25 @@ class ScriptTest : public ::testing::Test {
   std::vector<std::string> logged(const std::string& script) {
     if (const Failure failure = start(script)) return {*failure};
     std::vector<std::string> lines;
-    for (const LogLine& line : controller_->robot().log.lines) lines.push_back(line.text);
+    for (const LogLine& line : controller_->log().lines) lines.push_back(line.text);
     return lines;
   }
 
   Controller& controller() { return *controller_; }
-  Joint& joint(std::size_t i) { return controller_->robot().joints[i]; }
+  Joint& joint(std::size_t i) { return one_->robot().joints()[i]; }  ///< both, sensor, motor
+  v1::Command command() { return one_->command(); }  ///< what was set since the last call
+  void sense(int joint, double reading) {
+    one_->seen.set_joint_readings(joint, reading);
+    one_->sense();
+  }
   const std::filesystem::path& folder() const { return folder_; }
 
-  ScriptedRobot robot_;  ///< that start() begins with
+  v1::RobotDescription robot_;  ///< that start() begins with
   ControllerOptions options_;
 
  private:
   std::filesystem::path folder_;
+  std::optional<OneRobot> one_;
   std::unique_ptr<Controller> controller_;
 };
 

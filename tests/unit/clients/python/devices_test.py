@@ -4,15 +4,15 @@ import unittest
 
 from ziggurat import Color, protocol_pb2 as v1
 from ziggurat.exchange import Exchange
-from ziggurat.robot import Places, Robot
+from ziggurat.robot import Robot
 
 from fake_server import equipped
 
 
 class Devices(unittest.TestCase):
     def setUp(self):
-        self.exchange, places = Exchange(), Places()
-        self.robots = [Robot(self.exchange, places, i, equipped(id), lambda *_: None)
+        self.exchange = Exchange()
+        self.robots = [Robot(self.exchange, i, equipped(id), lambda *_: None)
                        for i, id in enumerate(("one", "two"))]
         self.exchange.begin()
         self.one, self.two = self.robots

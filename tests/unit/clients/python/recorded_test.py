@@ -9,7 +9,7 @@ from google.protobuf import json_format
 
 from ziggurat import protocol_pb2 as v1
 from ziggurat.exchange import Exchange
-from ziggurat.robot import Places, Robot
+from ziggurat.robot import Robot
 
 ROOT = pathlib.Path(__file__).resolve().parents[4]
 RECORDED = ROOT / "protocol" / "recorded"
@@ -44,8 +44,8 @@ class Recorded(unittest.TestCase):
         folder = RECORDED / "1.0"
         welcome = v1.ServerMessage.FromString((folder / "server_welcome.bin").read_bytes()).welcome
         seen = v1.ServerMessage.FromString((folder / "server_observation.bin").read_bytes())
-        exchange, places = Exchange(), Places()
-        robots = [Robot(exchange, places, position, given, lambda *_: None)
+        exchange = Exchange()
+        robots = [Robot(exchange, position, given, lambda *_: None)
                   for position, given in enumerate(welcome.robots)]
         exchange.observe(seen.observation)
         self.assertEqual(robots[0].id, "id é")

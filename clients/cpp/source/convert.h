@@ -1,0 +1,34 @@
+#pragma once
+// Values of messages as values of handles.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "ziggurat/led.h"
+#include "ziggurat/radio.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat {
+
+inline std::size_t size(int count) { return static_cast<std::size_t>(count); }
+
+/// Numbers that are missing in the list leave those of the array as they are.
+template <std::size_t n>
+void copy(const google::protobuf::RepeatedField<double>& from, std::array<double, n>& to) {
+  std::copy_n(from.begin(), std::min(n, size(from.size())), to.begin());
+}
+
+/// @param packed  0xRRGGBB
+inline Color color_of(std::uint32_t packed) {
+  return {static_cast<std::uint8_t>(packed >> 16), static_cast<std::uint8_t>(packed >> 8),
+          static_cast<std::uint8_t>(packed)};
+}
+
+inline Bytes bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace ziggurat

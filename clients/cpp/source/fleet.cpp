@@ -1,0 +1,84 @@
+#include "fleet.h"
+
+#include <cmath>
+
+#include "layout.h"
+
+namespace ziggurat {
+
+Fleet::Fleet(const v1::Welcome& welcome) : robots_(size(welcome.robots_size())) {
+  log_.max_bytes = std::max<std::size_t>(welcome.max_message_bytes() / 4, std::size_t{1} << 16);
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const v1::RobotDescription& from = welcome.robots(static_cast<int>(i));
+    Robot& robot = robots_[i];
+    robot.id_ = from.id();
+    robot.controller_ = from.controller();
+    robot.script_ = from.script();
+    for (const v1::Parameter& param : from.params()) {
+      robot.params_.emplace_back(param.name(), param.value());
+    }
+    robot.position_ = static_cast<std::uint32_t>(i);
+    robot.log_ = &log_;
+  }
+  Layout{welcome, robots_, channels_}.add_all();
+}
+
+void Fleet::read(const v1::Observation& observation) {
+  for (const auto& channel : channels_) channel->check(observation);
+  for (const auto& channel : channels_) channel->read(observation);
+}
+
+void Fleet::write(v1::Command& command) {
+  for (const auto& channel : channels_) channel->write(command);
+  move_log_to(*command.mutable_log());
+}
+
+void Fleet::sent(v1::Command& command) {
+  for (const auto& channel : channels_) channel->sent(command);
+}
+
+void Fleet::repeat() {
+  for (const auto& channel : channels_) channel->repeat();
+}
+
+void Fleet::reset() {
+  for (const auto& channel : channels_) channel->reset();
+}
+
+void Fleet::move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines) {
+  for (Robot::Line& from : log_.lines) {
+    v1::LogLine& line = *lines.Add();
+    line.set_robot(from.robot);
+    line.set_error(from.error);
+    line.set_text(std::move(from.text));
+  }
+  log_.lines.clear();
+  log_.bytes = 0;
+}
+
+std::vector<v1::Leave> Fleet::take_failures() {
+  std::vector<v1::Leave> failures;
+  for (Robot& robot : robots_) {
+    if (robot.failure_.empty()) continue;
+    v1::Leave& leave = failures.emplace_back();
+    leave.add_robots(robot.position_);
+    leave.set_reason(v1::Leave::FAILED);
+    leave.set_message(std::exchange(robot.failure_, {}));
+  }
+  return failures;
+}
+
+void check_finite(double value, std::string_view what, std::string_view id) {
+  if (std::isfinite(value)) return;
+  std::string whose(what);
+  if (!id.empty()) whose.append(" '").append(id).append("'");
+  throw std::invalid_argument(whose + " is " + std::to_string(value) + "; it must be finite");
+}
+
+void check_drives(bool drives, const char* device) {
+  if (drives) return;
+  throw std::logic_error(std::string("the robot does not drive its ") + device +
+                         ": the controller's <actuators> do not list it");
+}
+
+}  // namespace ziggurat

@@ -1,0 +1,44 @@
+#pragma once
+// The robots of a session with all their devices; knows messages, but no connection.
+
+#include <span>
+#include <vector>
+
+#include "channel.h"
+#include "ziggurat/robot.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat {
+
+class Fleet {
+ public:
+  /// @throws std::runtime_error if a device is not as it may be
+  explicit Fleet(const v1::Welcome& welcome);
+  Fleet(const Fleet&) = delete;
+  Fleet& operator=(const Fleet&) = delete;
+
+  std::span<Robot> robots() { return robots_; }
+
+  /// The message stays unchanged until the next is read: readings point into it.
+  /// @throws std::runtime_error, saying what, if it is not what was announced; nothing is read
+  void read(const v1::Observation& observation);
+  /// Adds what was set, and moves what was logged, since the last call.
+  void write(v1::Command& command);
+  /// After the command was sent.
+  void sent(v1::Command& command);
+  /// The next command has all values: some of the last were not taken.
+  void repeat();
+  /// What was set becomes what it was in the beginning.
+  void reset();
+
+  void move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines);
+  /// A message for each robot that failed since the last call.
+  std::vector<v1::Leave> take_failures();
+
+ private:
+  std::vector<Robot> robots_;
+  Channels channels_;
+  Robot::Log log_;
+};
+
+}  // namespace ziggurat

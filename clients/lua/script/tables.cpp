@@ -1,0 +1,47 @@
+#include "script/tables.h"
+
+#include <cmath>
+
+namespace ziggurat::lua {
+
+void set_number(lua_State* state, const char* name, double number) {
+  lua_pushnumber(state, number);
+  lua_setfield(state, -2, name);
+}
+
+void set_integer(lua_State* state, const char* name, lua_Integer number) {
+  lua_pushinteger(state, number);
+  lua_setfield(state, -2, name);
+}
+
+void set_vector(lua_State* state, const std::array<double, 3>& vector) {
+  set_number(state, "x", vector[0]);
+  set_number(state, "y", vector[1]);
+  set_number(state, "z", vector[2]);
+}
+
+void push_vector(lua_State* state, const std::array<double, 2>& vector) {
+  lua_createtable(state, 0, 2);
+  set_number(state, "x", vector[0]);
+  set_number(state, "y", vector[1]);
+}
+
+void push_vector(lua_State* state, const std::array<double, 3>& vector) {
+  lua_createtable(state, 0, 3);
+  set_vector(state, vector);
+}
+
+void set_element(lua_State* state, int table, std::string_view key) {
+  lua_pushlstring(state, key.data(), key.size());
+  lua_insert(state, -2);
+  lua_rawset(state, table - 1);
+}
+
+AngleAxis to_angle_axis(const std::array<double, 4>& quaternion) {
+  const auto [w, x, y, z] = quaternion;
+  const double sine = std::hypot(x, y, z);  // of half the angle
+  if (sine == 0) return {};
+  return {2 * std::atan2(sine, w), {x / sine, y / sine, z / sine}};
+}
+
+}  // namespace ziggurat::lua

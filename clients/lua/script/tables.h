@@ -1,0 +1,52 @@
+#pragma once
+// Values in tables, as scripts have them: numbers, arrays, {x, y}, {x, y, z}, {angle, axis}.
+
+#include <array>
+#include <lua.hpp>
+#include <string_view>
+
+namespace ziggurat::lua {
+
+constexpr double centimetres = 100;  // in a metre
+
+/// Sets field `name` of the table on top.
+void set_number(lua_State* state, const char* name, double number);
+void set_integer(lua_State* state, const char* name, lua_Integer number);
+
+/// Sets x, y and z of the table on top.
+void set_vector(lua_State* state, const std::array<double, 3>& vector);
+
+/// Pushes {x, y}.
+void push_vector(lua_State* state, const std::array<double, 2>& vector);
+
+/// Pushes {x, y, z}.
+void push_vector(lua_State* state, const std::array<double, 3>& vector);
+
+/// Sets element `key` (any bytes) of a table to the value on top, and pops it.
+/// @param table  stack index of the table, at least two below the top
+void set_element(lua_State* state, int table, std::string_view key);
+
+/// Replaces the elements of the array on top by one for each value, which push(state, value)
+/// pushes: what was there before may be kept by the script.
+template <typename Values, typename Push>
+void set_elements(lua_State* state, const Values& values, Push push) {
+  lua_Integer position = 0;
+  for (const auto& value : values) {
+    push(state, value);
+    lua_rawseti(state, -2, ++position);
+  }
+  for (auto left = static_cast<lua_Integer>(lua_rawlen(state, -1)); left > position; --left) {
+    lua_pushnil(state);
+    lua_rawseti(state, -2, left);
+  }
+}
+
+struct AngleAxis {
+  double angle = 0;                     ///< [0, 2 pi] [rad]
+  std::array<double, 3> axis{0, 0, 1};  ///< unit
+};
+
+/// @param quaternion  unit, w, x, y, z
+AngleAxis to_angle_axis(const std::array<double, 4>& quaternion);
+
+}  // namespace ziggurat::lua

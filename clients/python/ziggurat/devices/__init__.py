@@ -1,0 +1,22 @@
+"""Handles of a robot's devices, a file for each kind. Reading and setting takes the same time
+whatever the session holds.
+
+Numbers are SI: m, rad, s, m/s, rad/s; pixels are counted from the top left corner of the image, u
+to the right and v down.
+"""
+
+from .battery import Battery
+from .camera import Camera, LedReading, TagReading
+from .device import Device, Quaternion, Vector
+from .joint import Joint
+from .led import OFF, Color, Led
+from .magnet import Magnet
+from .positioning import Pose
+from .proximity import ProximitySensor
+from .radio import MAX_MESSAGE, Radio
+from .range_and_bearing import Packet, RangeAndBearing
+from .tag import MAX_PAYLOAD, Tag
+from .turret import Turret
+from .wheels import Wheels
+
+__all__ = [name for name in dir() if name[0].isupper()]  # without the modules

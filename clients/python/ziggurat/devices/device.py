@@ -1,0 +1,31 @@
+"""What all handles share."""
+
+from __future__ import annotations
+
+import math
+from typing import Tuple
+
+from ..exchange import Exchange
+
+Vector = Tuple[float, float, float]
+Quaternion = Tuple[float, float, float, float]  # w, x, y, z
+
+
+def finite(value: float, what: str) -> float:
+    value = float(value)
+    if not math.isfinite(value):
+        raise ValueError(f"{what} must be finite, not {value}")
+    return value
+
+
+class Device:
+    """What all handles share."""
+
+    __slots__ = ("id", "_exchange")
+
+    def __init__(self, exchange: Exchange, id: str):
+        self.id = id
+        self._exchange = exchange
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.id!r})"

@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+from typing import Dict, List, Optional
+
+from .. import protocol_pb2 as v1
+from ..exchange import Exchange
+from .device import Device, finite
+
+_MODES = {v1.JointDescription.POSITION: "position", v1.JointDescription.VELOCITY: "velocity",
+          v1.JointDescription.DISABLED: "disabled"}
+
+
+class Joint(Device):
+    """A joint with an encoder, a motor, or both."""
+
+    __slots__ = ("sensor_mode", "actuator_mode", "max_impulse", "_sensor", "_actuator")
+
+    def __init__(self, exchange: Exchange, id: str):
+        super().__init__(exchange, id)
+        self.sensor_mode: Optional[str] = None  # "position", "velocity" or "disabled"
+        self.actuator_mode: Optional[str] = None  # None: it has no motor
+        self.max_impulse = 0.0  # of the motor, a substep [N s] or [N m s]
+        self._sensor = self._actuator = -1
+
+    @property
+    def encoder(self) -> float:
+        """[m], [rad], [m/s] or [rad/s], by sensor_mode; 0 at tick 0."""
+        if self._sensor < 0:
+            raise AttributeError(f"joint {self.id!r} has no encoder")
+        readings = self._exchange.seen.joint_readings
+        return readings[self._sensor] if readings else 0.0
+
+    @property
+    def target(self) -> float:
+        """[m], [rad], [m/s] or [rad/s], by actuator_mode. Stays until changed."""
+        if self._actuator < 0:
+            raise AttributeError(f"joint {self.id!r} has no motor")
+        return self._exchange.values["joint_targets"][self._actuator]
+
+    @target.setter
+    def target(self, value: float) -> None:
+        if self._actuator < 0:
+            raise AttributeError(f"joint {self.id!r} has no motor")
+        self._exchange.set("joint_targets", self._actuator, finite(value, "a target"))
+
+
+def joints_of(exchange: Exchange, given: v1.RobotDescription) -> List[Joint]:
+    """A sensor and an actuator with the same id are one joint."""
+    joints: Dict[str, Joint] = {}
+    for sensor in given.joint_sensors:
+        joint = joints.setdefault(sensor.id, Joint(exchange, sensor.id))
+        joint.sensor_mode = _MODES.get(sensor.mode)
+        joint._sensor = exchange.place("joint")
+    for actuator in given.joint_actuators:
+        joint = joints.setdefault(actuator.id, Joint(exchange, actuator.id))
+        joint.actuator_mode = _MODES.get(actuator.mode)
+        joint.max_impulse = actuator.max_impulse
+        joint._actuator = exchange.add("joint_targets", 0.0)
+    return list(joints.values())

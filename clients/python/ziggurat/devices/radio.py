@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+from typing import List
+
+from .. import protocol_pb2 as v1
+from ..exchange import Exchange
+from .device import Device
+
+MAX_MESSAGE = 1 << 20  # bytes of a radio message
+
+
+class Radio(Device):
+    __slots__ = ("range", "sends", "receives", "_place")
+
+    def __init__(self, exchange: Exchange, given: v1.RadioDescription):
+        super().__init__(exchange, given.id)
+        self.range = given.range  # of sending [m]
+        self.sends = given.sends
+        self.receives = given.receives
+        self._place = exchange.place("radio")
+
+    @property
+    def received(self) -> List[bytes]:
+        """Messages since the last tick."""
+        return self._exchange.heard.get(self._place, [])
+
+    def send(self, message: bytes) -> None:
+        """Any number of messages a tick, of at most 1 MiB; each is sent once."""
+        if not self.sends:
+            raise AttributeError(f"radio {self.id!r} does not send")
+        message = bytes(message)
+        if len(message) > MAX_MESSAGE:
+            raise ValueError(f"a radio message has at most {MAX_MESSAGE} bytes, not {len(message)}")
+        self._exchange.messages.append((self._place, message))

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+from typing import List, NamedTuple
+
+from .. import protocol_pb2 as v1
+from ..exchange import Exchange
+
+
+class Packet(NamedTuple):
+    """What a range-and-bearing sensor received, in the receiver's frame."""
+
+    range: float  # [m]
+    horizontal_bearing: float  # from +x towards +y, -pi … pi [rad]
+    vertical_bearing: float  # above the xy plane, -pi/2 … pi/2 [rad]
+    data: bytes
+
+
+class RangeAndBearing:
+    __slots__ = ("range", "data_size", "sends", "receives", "_exchange", "_robot", "_begin")
+
+    def __init__(self, exchange: Exchange, robot: int, given: v1.RangeAndBearingDescription):
+        self.range = given.range  # of sending [m]
+        self.data_size = given.data_size  # bytes of each packet
+        self.sends = given.sends
+        self.receives = given.receives
+        self._exchange = exchange
+        self._robot = robot
+        self._begin = len(exchange.data)
+        if self.sends:
+            exchange.data.extend(bytes(self.data_size))
+
+    @property
+    def packets(self) -> List[Packet]:
+        return [Packet(p.range, p.horizontal_bearing, p.vertical_bearing, p.data)
+                for p in self._exchange.packets.get(self._robot, [])]
+
+    @property
+    def data(self) -> bytes:
+        """Broadcast at every tick until changed; data_size bytes."""
+        return bytes(self._exchange.data[self._begin:self._begin + self.data_size])
+
+    @data.setter
+    def data(self, data: bytes) -> None:
+        if not self.sends:
+            raise AttributeError("this range-and-bearing device does not send")
+        if len(data) != self.data_size:
+            raise ValueError(f"data have {self.data_size} bytes, not {len(data)}")
+        self._exchange.set_data(self._begin, bytes(data))

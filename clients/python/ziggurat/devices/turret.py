@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+from .. import protocol_pb2 as v1
+from ..exchange import Exchange
+from .device import finite
+
+
+class Turret:
+    __slots__ = ("drives", "measures", "_exchange", "_place", "_reading")
+
+    def __init__(self, exchange: Exchange, given: v1.TurretDescription):
+        self.drives = given.drives
+        self.measures = given.measures
+        self._exchange = exchange
+        self._reading = exchange.place("turret", given.measures)
+        if self.drives:
+            self._place = exchange.add("turret_modes", v1.TURRET_PASSIVE)
+            exchange.add("turret_rotations", 0.0)
+            exchange.add("turret_speeds", 0.0)
+
+    @property
+    def rotation(self) -> float:
+        """Relative to the robot, -pi … pi [rad]."""
+        if not self.measures:
+            raise AttributeError("this robot does not measure its turret")
+        rotations = self._exchange.seen.turret_rotations
+        return rotations[self._reading] if rotations else 0.0
+
+    def _set(self, mode: int, field: str = "", value: float = 0.0) -> None:
+        if not self.drives:
+            raise AttributeError("this robot does not drive its turret")
+        if field:
+            self._exchange.set(field, self._place, finite(value, field))
+        self._exchange.set("turret_modes", self._place, mode)
+
+    def rotate_to(self, rotation: float) -> None:
+        """Relative to the robot [rad]."""
+        self._set(v1.TURRET_POSITION, "turret_rotations", rotation)
+
+    def rotate_at(self, speed: float) -> None:
+        """Relative to the robot [rad/s]."""
+        self._set(v1.TURRET_SPEED, "turret_speeds", speed)
+
+    def release(self) -> None:
+        """It turns with the robot."""
+        self._set(v1.TURRET_PASSIVE)
