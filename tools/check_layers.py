@@ -70,7 +70,7 @@ def target_of(header, root, including):
     if header.endswith(".pb.h"):
         return "protocol"
     servers = [root / "server", root / "protocol"]
-    clients = [root / "clients/cpp/include", root / "clients/cpp", root / "clients/lua"]
+    clients = [root / "clients/cpp/include", root / "clients/cpp/source", root / "clients/lua"]
     if root / "clients" in including.parents:  # whose folders may be called as the server's
         bases = [including.parent, *clients, *servers]
     else:
