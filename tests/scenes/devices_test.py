@@ -251,8 +251,8 @@ class Errors(DeviceTest):
         scene = self.one("function init() end function step() robot.leds.set_single_color(2, 'red') end",
                          devices, actuators=LEDS)
         outcome = self.run_scene("--ticks", 2, "--quiet", scene=scene, code=CONTROLLER_FAILED)
-        self.assert_is_sentence(outcome, r"one\.lua:1:.*set_single_color.*there is none at 2: this "
-                                         r"robot has 1 LEDs")
+        self.assert_is_sentence(outcome, r"one\.lua:1:.*set_single_color.*no such position: 2; "
+                                         r"this robot has 1 LEDs")
 
     def test_devices_that_are_not_enabled_are_not_there(self):
         devices = """

@@ -1,5 +1,5 @@
-// The repeaters of Listing 2.8: what comes in on one radio goes out on the other, one more. All
-// robots of the controller in one process.
+// The repeaters of Listing 2.8: each number received by one radio is sent by the other, plus one.
+// One process controls all robots of the controller.
 
 #include <cstdint>
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 namespace {
 
-/// A robot's devices, found once.
+/// The devices of a robot, looked up once.
 struct Repeater {
   ziggurat::Radio& in;
   ziggurat::Radio& out;

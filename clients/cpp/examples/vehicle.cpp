@@ -1,7 +1,7 @@
 // Drives the four-wheeled vehicle of scenes/vehicle.argos: sets the target speed of each wheel
 // once, then logs the speeds that the encoders measure.
 //
-// Start it from a scene, as the command of an <external_controller>, or by hand:
+// The command of an <external_controller> in a scene starts it; or start it by hand:
 //   ZIGGURAT_ENDPOINT=tcp://127.0.0.1:7400 example_vehicle
 
 #include <ziggurat/ziggurat.h>
@@ -13,13 +13,13 @@
 int main() try {
   ziggurat::Session session(ziggurat::Options::from_environment());
 
-  // Names are looked up once; from here on a wheel is a reference.
+  // Ids are looked up once, before the loop.
   ziggurat::Robot& vehicle = session.robots().front();
   const std::array<ziggurat::Joint*, 4> wheels = {
       &vehicle.joint("base_wheel_bl"), &vehicle.joint("base_wheel_fl"),
       &vehicle.joint("base_wheel_br"), &vehicle.joint("base_wheel_fr")};
 
-  // next() sends what was set since the last tick, and waits for the tick that follows.
+  // next() sends the values that were set in this tick and waits for the next tick.
   while (session.next()) {
     if (session.event() == ziggurat::Event::step) {
       char text[80];
@@ -27,7 +27,7 @@ int main() try {
                     wheels[0]->encoder(), wheels[1]->encoder(), wheels[2]->encoder(),
                     wheels[3]->encoder());
       vehicle.log(text);
-    } else {  // init, or reset: the world stands at tick 0
+    } else {                                                         // init or reset: tick 0
       for (ziggurat::Joint* wheel : wheels) wheel->set_target(1.0);  // [rad/s]
     }
   }

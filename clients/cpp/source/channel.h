@@ -27,14 +27,14 @@ inline void expect(std::size_t received, std::size_t announced, const char* what
 class Channel {
  public:
   virtual ~Channel() = default;
-  /// @throws std::runtime_error, saying what, if the message is not what Welcome announced
+  /// @throws std::runtime_error if the message is not what Welcome announced
   virtual void check(const v1::Observation&) const {}
   /// Of a checked message, which stays unchanged until the next is read: handles may point into it.
   virtual void read(const v1::Observation&) {}
-  virtual void write(v1::Command&) {}  ///< adds what was set since sent()
+  virtual void write(v1::Command&) {}  ///< adds the values that were set after sent()
   virtual void sent(v1::Command&) {}   ///< after the command was sent
-  virtual void repeat() {}             ///< the next command has all values: some were not taken
-  virtual void reset() {}              ///< values that are set become the initial ones
+  virtual void repeat() {}             ///< the next command has all values
+  virtual void reset() {}              ///< all values become the initial ones
 };
 
 /// Sensors that read a fixed number of values each.

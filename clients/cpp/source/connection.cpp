@@ -16,8 +16,8 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr milliseconds slice{500};    // between looks at whether the connection is still open
-constexpr milliseconds linger{1000};  // for the last messages, if the server is there
+constexpr milliseconds slice{500};    // between checks of whether the connection is open
+constexpr milliseconds linger{1000};  // time to send the last messages
 constexpr const char* monitor_address = "inproc://monitor";
 
 /// False if there is none yet, or a signal arrived.
@@ -56,22 +56,23 @@ void Connection::set_keys(const Options& options) {
   if (options.server_key.empty() && options.curve_secret.empty()) return;
   if (options.server_key.empty() || options.curve_secret.empty()) {
     throw std::invalid_argument(
-        "the server's public key and a file with a secret key belong together; one is missing");
+        "only one of server_key and curve_secret is set; an encrypted connection needs both");
   }
   std::ifstream file(options.curve_secret);
   std::string secret;
   std::array<char, 41> own;
   if (!(file >> secret) || zmq_curve_public(own.data(), secret.c_str()) != 0) {
-    throw std::invalid_argument("'" + options.curve_secret +
-                                "': not a file with a secret key; 'ziggurat keygen' makes one");
+    throw std::invalid_argument(
+        "'" + options.curve_secret +
+        "': not a file with a secret key; create one with 'ziggurat keygen'");
   }
   try {
     if (options.server_key.size() != 40) throw zmq::error_t(EINVAL);
     socket_.set(zmq::sockopt::curve_serverkey, options.server_key);
   } catch (const zmq::error_t&) {
     throw std::invalid_argument("'" + options.server_key +
-                                "': not a public key of 40 characters, as 'ziggurat keygen' "
-                                "prints it");
+                                "': not a public key; it has 40 characters and is printed by "
+                                "'ziggurat keygen'");
   }
   socket_.set(zmq::sockopt::curve_publickey, own.data());
   socket_.set(zmq::sockopt::curve_secretkey, secret);
@@ -107,7 +108,7 @@ std::optional<Connection::Kind> Connection::receive(std::optional<milliseconds> 
   for (;;) {
     if (receive_frame(std::clamp(rest, milliseconds{0}, slice))) return parse();
     if (was_closed()) {
-      // What was sent before the end may still be in the queue.
+      // Messages that the server sent before may still be in the queue.
       if (receive_frame(milliseconds{0})) return parse();
       throw ConnectionError(endpoint_ + ": the server closed the connection");
     }

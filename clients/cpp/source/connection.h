@@ -1,5 +1,5 @@
 #pragma once
-// The client's end of the wire: one DEALER, messages in and out.
+// The client's socket: one DEALER that sends and receives messages.
 
 #include <chrono>
 #include <functional>
@@ -16,7 +16,7 @@ class Connection {
  public:
   using Kind = v1::ServerMessage::MessageCase;
 
-  /// Starts to connect; the server may come up later.
+  /// Starts to connect; the server may start later.
   /// @throws std::invalid_argument for an unusable endpoint or keys
   explicit Connection(const Options& options);
   ~Connection();
@@ -27,20 +27,20 @@ class Connection {
 
   void send(const v1::ClientMessage& message);
 
-  /// From now on a connection that closes is an error; before, it is tried again.
+  /// From now on a closed connection is an error; before, ZeroMQ retries it.
   void expect_open() { is_expected_open_ = true; }
   bool is_closed() const { return is_closed_; }
 
-  /// Waits for a message: which one, or none when the time is over. Kinds that this client does
-  /// not know are MESSAGE_NOT_SET.
-  /// @param timeout  wall time; none = for ever
-  /// @param is_interrupted  if given, asked now and then: true ends the wait with no message
-  /// @throws ConnectionError if the server closed the connection, or sent what is no message
+  /// Waits for a message; its kind, or none after the time-out. Kinds that this client does not
+  /// know are MESSAGE_NOT_SET.
+  /// @param timeout  wall time; none = forever
+  /// @param is_interrupted  if given, called regularly: true ends the wait without a message
+  /// @throws ConnectionError if the server closed the connection or sent invalid bytes
   std::optional<Kind> receive(std::optional<std::chrono::milliseconds> timeout,
                               const std::function<bool()>& is_interrupted);
 
-  // What came last, valid until the next is received. Observations have a message of their own
-  // that keeps its memory.
+  // The last message, valid until the next is received. Observations are in a separate message,
+  // which keeps its memory.
   const v1::Observation& observation() const { return observation_; }
   const v1::ServerMessage& message() const { return message_; }
 
@@ -60,7 +60,7 @@ class Connection {
   bool is_closed_ = false;
   zmq::message_t frame_;
   v1::Observation observation_;
-  std::size_t parsed_ = 0;  // [bytes] of observations since observation_ last began anew
+  std::size_t parsed_ = 0;  // [bytes] since observation_ last released its memory
   v1::ServerMessage message_;
 };
 

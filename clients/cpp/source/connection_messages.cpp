@@ -1,4 +1,4 @@
-// What a frame from the server says: no sockets here.
+// Parsing of the frames from the server; no sockets.
 
 #include "connection.h"
 #include "ziggurat/error.h"
@@ -6,12 +6,12 @@
 
 namespace ziggurat {
 
-/// What protobuf keeps for reuse is as large as the largest of each part ever was: now and then
-/// the observation begins anew.
+/// Protobuf keeps memory for the largest value that each part ever had: after many bytes the
+/// observation releases it.
 void Connection::forget(std::size_t size) {
-  constexpr std::size_t enough = std::size_t{64} << 20;
+  constexpr std::size_t max_parsed = std::size_t{64} << 20;
   parsed_ += size;
-  if (parsed_ < enough) return;
+  if (parsed_ < max_parsed) return;
   parsed_ = size;
   v1::Observation().Swap(&observation_);
 }
@@ -24,7 +24,9 @@ Connection::Kind Connection::parse() {
   google::protobuf::MessageLite& message =
       observation ? static_cast<google::protobuf::MessageLite&>(observation_) : message_;
   if (frame_.more() || !message.ParseFromArray(content.data(), static_cast<int>(content.size()))) {
-    throw ConnectionError(endpoint_ + ": what answers there does not speak ziggurat.v1");
+    throw ConnectionError(
+        endpoint_ +
+        ": the answer is not a message of ziggurat.v1; is this the endpoint of a server?");
   }
   if (observation) return Kind::kObservation;
   if (message_.has_observation()) observation_.Swap(message_.mutable_observation());

@@ -12,7 +12,7 @@ namespace ziggurat {
 
 class Fleet {
  public:
-  /// @throws std::runtime_error if a device is not as it may be
+  /// @throws std::runtime_error if a device is described wrongly
   explicit Fleet(const v1::Welcome& welcome);
   Fleet(const Fleet&) = delete;
   Fleet& operator=(const Fleet&) = delete;
@@ -20,15 +20,15 @@ class Fleet {
   std::span<Robot> robots() { return robots_; }
 
   /// The message stays unchanged until the next is read: readings point into it.
-  /// @throws std::runtime_error, saying what, if it is not what was announced; nothing is read
+  /// @throws std::runtime_error if it is not what Welcome announced; nothing is read
   void read(const v1::Observation& observation);
   /// Adds what was set, and moves what was logged, since the last call.
   void write(v1::Command& command);
   /// After the command was sent.
   void sent(v1::Command& command);
-  /// The next command has all values: some of the last were not taken.
+  /// The next command has all values: the server may have discarded the last.
   void repeat();
-  /// What was set becomes what it was in the beginning.
+  /// All values that were set become the initial ones.
   void reset();
 
   void move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines);

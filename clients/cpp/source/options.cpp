@@ -9,7 +9,7 @@ Options Options::from_environment() {
   const char* endpoint = std::getenv("ZIGGURAT_ENDPOINT");
   if (endpoint == nullptr || *endpoint == '\0') {
     throw std::invalid_argument(
-        "ZIGGURAT_ENDPOINT is not set; it says where the server listens, for example "
+        "ZIGGURAT_ENDPOINT is not set; set it to the server's endpoint, for example "
         "tcp://127.0.0.1:7400");
   }
   Options options;

@@ -8,7 +8,7 @@ namespace ziggurat {
 
 namespace {
 
-/// @throws std::out_of_range, naming those there are
+/// @throws std::out_of_range, listing the ids that exist
 template <typename Devices>
 auto& find(Devices& devices, std::string_view id, const std::string& robot,
            const std::string& kind) {
@@ -16,7 +16,7 @@ auto& find(Devices& devices, std::string_view id, const std::string& robot,
     if (device.id() == id) return device;
   }
   std::string message = "robot '" + robot + "' has no " + kind + " '" + std::string(id) +
-                        "' that its controller senses or sets; it has ";
+                        "' that its controller has a sensor or an actuator for; it has ";
   if (devices.empty()) message += "none";
   for (const auto& device : devices) {
     message += (&device == devices.data() ? "'" : ", '") + device.id() + "'";
@@ -40,7 +40,7 @@ void Robot::log(std::string_view text) { add_line(false, text); }
 void Robot::log_error(std::string_view text) { add_line(true, text); }
 
 void Robot::add_line(bool error, std::string_view text) {
-  constexpr std::size_t overhead = 16;  // bytes around a line's text, at most
+  constexpr std::size_t overhead = 16;  // of a line, besides its text, at most [bytes]
   if (log_->bytes + text.size() + overhead > log_->max_bytes) {
     throw std::length_error("the session logs more than " + std::to_string(log_->max_bytes) +
                             " bytes at one tick");

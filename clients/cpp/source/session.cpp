@@ -16,14 +16,14 @@ ProtocolError displaced(const v1::Displaced& by) {
   return ProtocolError("DISPLACED: " + by.message(), details);
 }
 
-/// A tick went on without our answer, or had it already: the next one comes all the same.
-/// @param was_put_back  the world has gone back to an earlier tick: an answer that met that on its
-///                      way is for a tick to come
-bool is_harmless(const v1::Error& error, bool was_put_back) {
+/// The tick did not wait for our answer, or already had it: the next observation arrives anyway.
+/// @param was_reset  the world was reset at some time: an answer that was sent before the Reset
+///                   arrived may have a future tick
+bool is_harmless(const v1::Error& error, bool was_reset) {
   if (error.severity() == v1::Error::FATAL) return false;
   return error.severity() == v1::Error::WARNING || error.code() == v1::Error::STALE_TICK ||
          error.code() == v1::Error::DUPLICATE_TICK ||
-         (error.code() == v1::Error::FUTURE_TICK && was_put_back);
+         (error.code() == v1::Error::FUTURE_TICK && was_reset);
 }
 
 }  // namespace
@@ -35,12 +35,12 @@ Session::Session(const Options& options) : state_(std::make_unique<State>(option
 Session::~Session() {
   try {
     if (std::uncaught_exceptions() > state_->exceptions) {
-      leave_failed("the controller was ended by an exception");
+      leave_failed("an exception ended the controller");
     } else {
       leave();
     }
   } catch (const std::exception&) {
-    // The server is gone: nobody is left to tell.
+    // The server is gone.
   }
 }
 
@@ -76,7 +76,7 @@ void Session::State::send_failures() {
 }
 
 bool Session::State::wait() {
-  // Heartbeats say that the server is there; the world may keep us waiting all the same.
+  // Heartbeats come in between: they do not extend the time-out.
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + options.wait_timeout.value_or(std::chrono::milliseconds{0});
   auto rest = options.wait_timeout;
@@ -104,10 +104,10 @@ bool Session::State::wait() {
         read(message.reset());
         break;
       case Connection::Kind::kError:
-        if (is_harmless(message.error(), was_put_back)) {
+        if (is_harmless(message.error(), was_reset)) {
           if (message.error().code() == v1::Error::DEADLINE_MISSED) ++missed;
-          // What was answered already counts, unless that was an answer to the world before.
-          if (message.error().code() != v1::Error::DUPLICATE_TICK || was_put_back) fleet->repeat();
+          // The first answer counts, unless it was for the world before the reset.
+          if (message.error().code() != v1::Error::DUPLICATE_TICK || was_reset) fleet->repeat();
           break;
         }
         is_over = message.error().severity() == v1::Error::FATAL;
@@ -116,7 +116,7 @@ bool Session::State::wait() {
         is_over = true;
         throw displaced(message.displaced());
       default:
-        break;  // signs of life, or news of a later version
+        break;  // a heartbeat, or a message of a later version
     }
   }
 }
@@ -145,7 +145,7 @@ void Session::State::read(const v1::End& end) {
 void Session::State::read(const v1::Reset& reset) {
   seed = reset.seed();
   is_reset = true;
-  was_put_back = true;
+  was_reset = true;
   fleet->reset();
 }
 

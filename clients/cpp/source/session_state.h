@@ -1,5 +1,5 @@
 #pragma once
-// What a Session keeps.
+// The members of a Session.
 
 #include <exception>
 
@@ -35,11 +35,11 @@ struct Session::State {
   v1::ClientMessage outgoing;  // long-lived: keeps its memory
 
   Event event = Event::init;
-  bool has_begun = false;     // an observation was delivered
-  bool is_reset = false;      // the next observation is the first after a reset
-  bool was_put_back = false;  // the world, to its start, at some time
-  bool owes = false;          // the observation in hand is not answered yet
-  bool is_over = false;       // nothing is to be said any more
+  bool has_begun = false;  // an observation was delivered
+  bool is_reset = false;   // the next observation is the first after a reset
+  bool was_reset = false;  // at some time
+  bool owes = false;       // the current observation is not answered yet
+  bool is_over = false;    // nothing is sent any more
   std::uint64_t tick = 0;
   std::chrono::nanoseconds time{0};
   std::optional<Ending> ending;
@@ -53,7 +53,8 @@ struct Session::State {
   std::uint64_t missed = 0;
 };
 
-/// The server's words as an exception; `holder` if it refused for somebody else's sake.
+/// The error as an exception.
+/// @param holder  of a refusal: the client that owns the robot
 ProtocolError to_exception(const v1::Error& error, const std::string& holder = {});
 
 }  // namespace ziggurat

@@ -104,7 +104,7 @@ struct Supervisor::State {
   explicit State(const SupervisorOptions& wanted) : options(wanted), connection(where(wanted)) {}
 
   void open();
-  /// Sends the request in hand and waits for its answer. @throws ProtocolError if it was not done
+  /// Sends the current request and waits for its answer. @throws ProtocolError if it was refused
   const v1::Response& ask();
   v1::Request& request() {
     v1::Request& fresh = *outgoing.mutable_request();
@@ -125,12 +125,12 @@ Connection::Kind Supervisor::State::hear(const std::optional<std::chrono::millis
                                          const char* what) {
   const auto kind = connection.receive(timeout, options.is_interrupted);
   if (!kind) {
-    throw ConnectionError(std::string("interrupted, or too long: no ") + what + " from " +
+    throw ConnectionError(std::string("interrupted or timed out: no ") + what + " from " +
                           options.endpoint);
   }
   if (*kind == Connection::Kind::kError) throw to_exception(connection.message().error());
   if (*kind == Connection::Kind::kEnd) {
-    throw ConnectionError(options.endpoint + ": the run is over");
+    throw ConnectionError(options.endpoint + ": the run has ended");
   }
   return *kind;
 }
@@ -174,7 +174,7 @@ Supervisor::~Supervisor() {
     state_->outgoing.mutable_leave()->set_reason(v1::Leave::DONE);
     state_->connection.send(state_->outgoing);
   } catch (const std::exception&) {
-    // The server is gone: nobody is left to tell.
+    // The server is gone.
   }
 }
 

@@ -1,4 +1,4 @@
-// How a session begins: Hello, and what Welcome says.
+// The start of a session: Hello and Welcome.
 
 #include "session_state.h"
 #include "ziggurat/v1/envelope.h"
@@ -42,7 +42,7 @@ void Session::State::open() {
       throw ConnectionError("interrupted while waiting for a welcome at " + options.endpoint);
     }
     if (!kind) {
-      throw ConnectionError("no server welcomed us at " + options.endpoint + " within " +
+      throw ConnectionError("no welcome from a server at " + options.endpoint + " within " +
                             std::to_string(options.connect_timeout.count()) + " ms");
     }
     switch (*kind) {
@@ -57,7 +57,7 @@ void Session::State::open() {
       case Connection::Kind::kError:
         throw to_exception(connection.message().error());
       default:
-        break;  // still loading, or news of a later version
+        break;  // still loading, or a message of a later version
     }
   }
 }

@@ -1,5 +1,5 @@
-// require "ziggurat": sessions for programs that bring their own Lua 5.3. docs/lua-module.md has
-// the functions; robots are the tables that scripts of ziggurat-lua find as `robot`.
+// require "ziggurat": sessions for programs with their own Lua 5.3. docs/lua-module.md lists the
+// functions; robots are the same tables as `robot` in scripts of ziggurat-lua.
 
 #include <lua.hpp>
 #include <memory>
@@ -27,12 +27,13 @@ struct Connected {
   std::vector<std::unique_ptr<Seat>> seats;
 };
 
-/// All sessions of a Lua state. They live as long as the state: scripts may keep any function of
-/// theirs. Made when the module is loaded, so that it is collected after what uses it.
+/// All sessions of a Lua state. They live as long as the state, because scripts may keep their
+/// functions. Created when the module is loaded, so that it is collected after everything that uses
+/// it.
 using Sessions = std::vector<std::unique_ptr<Connected>>;
 
-/// A signal handler of the interpreter (Ctrl-C) does its work in a hook, which runs as soon as we
-/// return: one that was not there when the wait began ends the wait.
+/// The interpreter's handler of Ctrl-C sets a hook, which runs when we return: a new hook ends the
+/// wait.
 std::function<bool()> interruption(lua_State* state) {
   lua_rawgeti(state, LUA_REGISTRYINDEX, LUA_RIDX_MAINTHREAD);
   lua_State* const main = lua_tothread(state, -1);
@@ -71,7 +72,8 @@ const char* name_of(Ending::Reason reason) {
   return "failed";
 }
 
-/// Answers the tick and waits for the next: its number and event, or nothing after the last.
+/// Answers the tick and waits for the next. Returns its number and event, or nothing after the
+/// last.
 int next(lua_State* state) {
   auto& connected = upvalue<Connected>(state);
   move_logs(connected);
@@ -82,7 +84,7 @@ int next(lua_State* state) {
   return 2;
 }
 
-/// Why there are no more ticks: reason, message, tick; nothing while there are.
+/// Reason, message and tick of the end of the run; nothing before it.
 int ending(lua_State* state) {
   const auto& ending = upvalue<Connected>(state).session->ending();
   if (!ending) return 0;
@@ -92,7 +94,7 @@ int ending(lua_State* state) {
   return 3;
 }
 
-/// Leaves: as done, or as failed with a message.
+/// Leaves the run: as done, or as failed with a message.
 int close(lua_State* state) {
   auto& connected = upvalue<Connected>(state);
   const int last = lua_gettop(state);  // session.close(m) and session:close(m) alike
@@ -106,7 +108,7 @@ int close(lua_State* state) {
   return 0;
 }
 
-/// Takes one robot out of the run for good.
+/// The robot leaves the run forever.
 int fail(lua_State* state) {
   check_count(state, 1, 1, "fail(message)");
   upvalue<Seat>(state).robot->fail(check_text(state, 1));

@@ -24,11 +24,12 @@ bool is_duration(lua_State* state) {
 
 void check_robots(lua_State* state) {
   if (lua_type(state, -1) == LUA_TSTRING) return;
-  if (!lua_istable(state, -1)) luaL_error(state, "connect: robots is a string or an array of them");
+  if (!lua_istable(state, -1))
+    luaL_error(state, "connect: robots must be a string or an array of strings");
   const auto count = static_cast<lua_Integer>(lua_rawlen(state, -1));
   for (lua_Integer i = 1; i <= count; ++i) {
     if (lua_rawgeti(state, -1, i) != LUA_TSTRING) {
-      luaL_error(state, "connect: robots[%I] is no string", static_cast<LUAI_UACINT>(i));
+      luaL_error(state, "connect: robots[%I] must be a string", static_cast<LUAI_UACINT>(i));
     }
     lua_pop(state, 1);
   }
@@ -37,9 +38,10 @@ void check_robots(lua_State* state) {
 void check_option(lua_State* state, const char* name) {
   if (std::strcmp(name, "robots") == 0) return check_robots(state);
   if (std::strstr(name, "timeout") != nullptr) {
-    if (!is_duration(state)) luaL_error(state, "connect: %s is a number of seconds", name);
+    if (!is_duration(state))
+      luaL_error(state, "connect: %s must be a number of seconds from 0 to 1e6", name);
   } else if (lua_type(state, -1) != LUA_TSTRING) {
-    luaL_error(state, "connect: %s is a string", name);
+    luaL_error(state, "connect: %s must be a string", name);
   }
 }
 
@@ -87,14 +89,15 @@ void check_options(lua_State* state) {
   luaL_checktype(state, 1, LUA_TTABLE);
   lua_settop(state, 1);
   for (lua_pushnil(state); lua_next(state, 1) != 0; lua_pop(state, 1)) {
-    if (lua_type(state, -2) != LUA_TSTRING) luaL_error(state, "connect: options have names");
+    if (lua_type(state, -2) != LUA_TSTRING) luaL_error(state, "connect: options must have names");
     const char* const name = lua_tostring(state, -2);
-    if (!is_known(name)) luaL_error(state, "connect: there is no option '%s'", name);
+    if (!is_known(name)) luaL_error(state, "connect: unknown option '%s'", name);
     check_option(state, name);
   }
   lua_getfield(state, 1, "endpoint");
   if (lua_isnil(state, -1) && std::getenv("ZIGGURAT_ENDPOINT") == nullptr) {
-    luaL_error(state, "connect: neither endpoint nor ZIGGURAT_ENDPOINT says where the server is");
+    luaL_error(state,
+               "connect: the endpoint is missing; set the option endpoint or ZIGGURAT_ENDPOINT");
   }
   lua_pop(state, 1);
 }

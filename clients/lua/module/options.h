@@ -1,5 +1,5 @@
 #pragma once
-// What ziggurat.connect is given.
+// The options of ziggurat.connect.
 
 #include <lua.hpp>
 
@@ -7,11 +7,11 @@
 
 namespace ziggurat::lua {
 
-/// Of the table at stack index 1, or of the environment where that says nothing. Raises a Lua error
-/// for what is not as docs/lua-module.md says.
+/// Checks the table at stack index 1 and the environment. Raises a Lua error for an option that
+/// docs/lua-module.md does not allow.
 void check_options(lua_State* state);
 
-/// Of a table that check_options() has passed. Raises nothing.
+/// The options in a table that check_options() has accepted. Raises no error.
 Options take_options(lua_State* state);
 
 }  // namespace ziggurat::lua

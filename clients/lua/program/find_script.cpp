@@ -24,14 +24,14 @@ FoundScript find_script(const std::string& resolved,
   }
   if (!written.empty() && is_readable(written)) return {written, {}};
   if (resolved.empty() && written.empty()) {
-    return {{}, "the scene names no Lua script for it; --script FILE gives it one"};
+    return {{}, "the scene has no Lua script for it; set one with --script FILE"};
   }
   std::error_code error;
   std::string fault = resolved.empty() ? written : resolved;
   fault += ": the script can't be read on this machine";
   if (!written.empty())
     fault += ", nor is '" + written + "' in " + fs::current_path(error).string();
-  return {{}, fault + "; --script FILE names another"};
+  return {{}, fault + "; set another with --script FILE"};
 }
 
 }  // namespace ziggurat::lua

@@ -1,5 +1,5 @@
 #pragma once
-// Where the script of a robot is on this machine.
+// The path of a robot's script on this machine.
 
 #include <filesystem>
 #include <string>
@@ -10,13 +10,13 @@ namespace ziggurat::lua {
 
 struct FoundScript {
   std::filesystem::path path;  ///< empty if there is none
-  std::string fault;           ///< then: why, and what was tried
+  std::string fault;           ///< then: why, and which paths were tried
 };
 
-/// The server's path if it can be read here, else the scene's own words for it, seen from the
-/// working directory: the server may run on another machine.
-/// @param resolved  as the server says
-/// @param params    of the robot; `script` is what the scene says
+/// The server's path if it can be read here, otherwise the scene's, relative to the working
+/// directory: the server may run on another machine.
+/// @param resolved  the server's path
+/// @param params    of the robot; `script` is the scene's path
 FoundScript find_script(const std::string& resolved,
                         const std::vector<std::pair<std::string, std::string>>& params);
 

@@ -25,7 +25,7 @@ Options session_options(const lua::ProgramOptions& from) {
   options.curve_secret = from.curve_secret;
   options.controller = from.controller;
   options.robots = from.robots;
-  options.lua_only = !from.script;  // with a script of ours, any robot will do
+  options.lua_only = !from.script;  // --script runs robots with any controller
   options.name = from.name;
   options.version = ZIGGURAT_VERSION;
   options.is_interrupted = [] { return lua::arrived_signal() != 0; };

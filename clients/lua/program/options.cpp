@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "script/trimmed.h"
+
 namespace ziggurat::lua {
 namespace {
 
@@ -20,12 +22,12 @@ usage: ziggurat-lua --connect URL [--robot GLOB]... [--script FILE]
   ziggurat-lua --connect tcp://127.0.0.1:5770                      in another: all robots of the
                                                                    scene that have a Lua script
   ziggurat-lua --connect tcp://127.0.0.1:5770 --robot 'scout*'     some of them
-  ziggurat-lua --connect tcp://127.0.0.1:5770 --script other.lua   with a script of yours
+  ziggurat-lua --connect tcp://127.0.0.1:5770 --script other.lua   with your own script
 
-`ziggurat run` starts this program by itself. A script finds robot, log and logerr, and defines
-init, step, reset and destroy: see docs/lua-api.md. A script that fails ends only its own robot.
+`ziggurat run` starts this program itself. A script has robot, log and logerr, and defines init,
+step, reset and destroy: see docs/lua-api.md. A script that fails ends only its own robot.
 
-Exit codes: 0 the run is over; 1 an argument, the connection or the server's answer is at fault;
+Exit codes: 0 the run is over; 1 an error in an argument, the connection or the server's answer;
 3 a script failed; 130 Ctrl-C.)";
 
 auto text(const char* name) { return po::value<std::string>()->value_name(name); }
@@ -34,20 +36,21 @@ po::options_description description() {
   po::options_description options("Options", 96);
   options.add_options()  //
       ("connect", text("URL"),
-       "where the server listens: tcp://host:port or ipc:///path; "
+       "endpoint of the server: tcp://host:port or ipc:///path; "
        "ZIGGURAT_ENDPOINT if left out")  //
       ("robot", po::value<std::vector<std::string>>()->composing()->value_name("GLOB"),
-       "robots to run: an id or a pattern of * ? [a-z]; may be repeated")                  //
-      ("robots-file", text("FILE"), "robots to run: one id or pattern per line")           //
-      ("controller", text("ID"), "robots that have this controller in the scene")          //
-      ("server-key", text("KEY"), "public key of a server that protects its endpoint")     //
-      ("curve-secret", text("FILE"), "our own secret key for it ('ziggurat keygen')")      //
-      ("script", text("FILE"), "run this script instead of those that the scene names")    //
-      ("name", text("NAME"), "what the server calls this program in its messages")         //
-      ("max-memory", text("MIB"), "memory that the script of a robot may have; 1024")      //
-      ("echo", "print log lines here too, as is done on a terminal; the server has them")  //
-      ("quiet", "print nothing but faults and what scripts print themselves")              //
-      ("version", "print the version")                                                     //
+       "robots to run: an id or a pattern of * ? [a-z]; may be repeated")                      //
+      ("robots-file", text("FILE"), "robots to run: one id or pattern per line")               //
+      ("controller", text("ID"), "robots that have this controller in the scene")              //
+      ("server-key", text("KEY"), "public key of a server with an encrypted endpoint")         //
+      ("curve-secret", text("FILE"), "secret key of this program for it ('ziggurat keygen')")  //
+      ("script", text("FILE"), "run this script instead of those of the scene")                //
+      ("name", text("NAME"), "name of this program in the server's messages")                  //
+      ("max-memory", text("MIB"), "largest memory of the script of a robot; 1024")             //
+      ("echo",
+       "print log lines here too; the default on a terminal. The server always gets them")  //
+      ("quiet", "print only errors and what scripts print themselves")                      //
+      ("version", "print the version")                                                      //
       ("help", "print this");
   return options;
 }
@@ -58,22 +61,16 @@ std::string help() {
   return out.str();
 }
 
-std::string trimmed(const std::string& line) {
-  constexpr const char* space = " \t\r";
-  const auto begin = line.find_first_not_of(space);
-  if (begin == std::string::npos) return {};
-  return line.substr(begin, line.find_last_not_of(space) + 1 - begin);
-}
-
 void append_robots(const std::string& path, std::vector<std::string>& robots) {
   std::ifstream file(path);
-  if (!file) throw std::runtime_error("--robots-file " + path + ": it can't be read");
+  if (!file) throw std::runtime_error("--robots-file " + path + ": can't be read");
   const auto before = robots.size();
   for (std::string line; std::getline(file, line);) {
-    if (auto id = trimmed(line); !id.empty()) robots.push_back(std::move(id));
+    if (const auto id = trimmed(line); !id.empty()) robots.emplace_back(id);
   }
   if (file.bad() || robots.size() == before) {
-    throw std::runtime_error("--robots-file " + path + ": no robot stands in it");
+    throw std::runtime_error("--robots-file " + path +
+                             ": has no robot; write one id or pattern per line");
   }
 }
 
@@ -86,7 +83,8 @@ std::size_t to_bytes(const std::string& mebibytes) {
   } catch (const std::logic_error&) {
   }
   if (used != mebibytes.size() || mebibytes[0] == '-' || number == 0 || number > most) {
-    throw std::runtime_error("--max-memory " + mebibytes + ": a number of MiB from 1 to 1048576");
+    throw std::runtime_error("--max-memory " + mebibytes +
+                             ": must be a number of MiB from 1 to 1048576");
   }
   return static_cast<std::size_t>(number) << 20;
 }
@@ -101,7 +99,7 @@ po::variables_map parse(int count, const char* const* arguments) {
   constexpr int exact = style::unix_style & ~style::allow_guessing;
   po::variables_map found;
   try {
-    // No positional arguments: boost names the first one that is there.
+    // No positional arguments: boost's message names the first one.
     po::store(po::command_line_parser(count, arguments)
                   .options(description())
                   .positional({})
@@ -109,7 +107,7 @@ po::variables_map parse(int count, const char* const* arguments) {
                   .run(),
               found);
   } catch (const po::error& error) {
-    throw std::runtime_error(std::string(error.what()) + "; ziggurat-lua --help tells what can be");
+    throw std::runtime_error(std::string(error.what()) + "; see ziggurat-lua --help");
   }
   return found;
 }
@@ -130,8 +128,8 @@ Request read_arguments(int count, const char* const* arguments, bool is_terminal
   options.endpoint = value("connect", environment("ZIGGURAT_ENDPOINT"));
   if (options.endpoint.empty()) {
     throw std::runtime_error(
-        "--connect is missing: where the server listens, for example tcp://127.0.0.1:5770 "
-        "(or ZIGGURAT_ENDPOINT); ziggurat-lua --help tells more");
+        "--connect is missing; write the server's endpoint, for example "
+        "--connect tcp://127.0.0.1:5770, or set ZIGGURAT_ENDPOINT; see ziggurat-lua --help");
   }
   if (found.count("robot")) options.robots = found["robot"].as<std::vector<std::string>>();
   if (found.count("robots-file")) append_robots(value("robots-file"), options.robots);

@@ -11,26 +11,26 @@ namespace ziggurat::lua {
 
 struct ProgramOptions {
   std::string endpoint;
-  std::vector<std::string> robots;  ///< ids or globs, those of the robots' file included
-  std::string controller;           ///< id in the scene; empty for all
-  std::optional<std::filesystem::path> script;  ///< instead of the one the scene names
+  std::vector<std::string> robots;              ///< ids or globs, with those of --robots-file
+  std::string controller;                       ///< id in the scene; empty for all
+  std::optional<std::filesystem::path> script;  ///< instead of the scene's
   std::string server_key, curve_secret;         ///< as in ziggurat::Options
   std::string name = "ziggurat-lua";
   std::size_t max_memory = std::size_t{1} << 30;  ///< per robot [bytes]
-  bool echo = false;                              ///< log lines are printed here too
+  bool echo = false;                              ///< print log lines here too
   bool quiet = false;
 };
 
-/// What the arguments ask for: to run, or to print a text and be done.
+/// What the arguments request: a run, or only a text.
 struct Request {
   ProgramOptions options;
   std::string text;  ///< of --help or --version; empty otherwise
 };
 
 /// Reads the arguments, and ZIGGURAT_ENDPOINT, ZIGGURAT_CONTROLLER, ZIGGURAT_SERVER_KEY and
-/// ZIGGURAT_CURVE_SECRET for what they leave open.
-/// @param is_terminal  stdout is one: log lines are printed here unless quiet
-/// @throws std::runtime_error that says what is wrong and what would be right
+/// ZIGGURAT_CURVE_SECRET for those that are missing.
+/// @param is_terminal  stdout is a terminal: log lines are printed here unless quiet
+/// @throws std::runtime_error, naming the wrong argument and the allowed values
 Request read_arguments(int count, const char* const* arguments, bool is_terminal);
 
 }  // namespace ziggurat::lua

@@ -57,7 +57,7 @@ void Runner::finish() {
     if (are_scripts_interrupted()) return;
     if (!seat.controller) continue;
     const Failure failure = seat.controller->destroy(session_.tick());
-    // No robot can fail any more: the run is over. The message still goes to the server's log.
+    // The run is over, so the robot can't fail; the server's log gets the message.
     if (failure) seat.controller->log().add(true, *failure);
     hand_over_log(seat);
     if (failure) fail(seat, *failure);
@@ -68,11 +68,11 @@ void Runner::hand_over_log(Seat& seat) {
   LogLines& log = seat.controller->log();
   if (options_.echo) echo(seat, log);
   if (move_log(log, *seat.robot)) return;
-  std::fprintf(stderr, "ziggurat-lua: tick %llu: too many log lines for one message; dropped\n",
+  std::fprintf(stderr, "ziggurat-lua: tick %llu: more log lines than a message can hold; dropped\n",
                static_cast<unsigned long long>(session_.tick()));
 }
 
-// A script that a signal ended has not failed.
+// A script that was ended by a signal has not failed.
 void Runner::fail(Seat& seat, const std::string& message) {
   seat.controller.reset();
   if (are_scripts_interrupted()) return;

@@ -18,7 +18,7 @@ void handle(int number) {
   if (number == SIGALRM || arrived != 0) ::_exit(128 + (arrived != 0 ? arrived : number));
   arrived = number;
   interrupt_scripts();
-  ::alarm(patience_s);  // a coroutine or a library function may never come back
+  ::alarm(patience_s);  // a coroutine or a library function may never return
 }
 
 }  // namespace

@@ -16,9 +16,9 @@ void check_type(lua_State* state, int index, int type) {
 
 }  // namespace
 
-void check_count(lua_State* state, int least, int most, const char* usage) {
+void check_count(lua_State* state, int min, int max, const char* usage) {
   const int count = lua_gettop(state);
-  if (count >= least && count <= most) return;
+  if (count >= min && count <= max) return;
   luaL_error(state, "wrong number of arguments: %s expected, got %d", usage, count);
 }
 
@@ -46,7 +46,7 @@ std::size_t check_position(lua_State* state, int index, std::size_t count, const
   }
   lua_pushvalue(state, index);
   const char* message =
-      lua_pushfstring(state, "there is none at %s: this robot has %d %s, counted from 1",
+      lua_pushfstring(state, "no such position: %s; this robot has %d %s, counted from 1",
                       lua_tostring(state, -1), static_cast<int>(count), devices);
   luaL_argerror(state, index, message);
   return 0;  // not reached

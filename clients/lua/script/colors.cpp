@@ -5,10 +5,12 @@
 #include <charconv>
 #include <utility>
 
+#include "script/trimmed.h"
+
 namespace ziggurat::lua {
 namespace {
 
-// As docs/scene-format.md has them.
+// The same as in docs/scene-format.md.
 constexpr std::array<std::pair<std::string_view, Color>, 20> named_colors{{
     {"black", {0, 0, 0}},        {"white", {255, 255, 255}},  {"red", {255, 0, 0}},
     {"green", {0, 255, 0}},      {"blue", {0, 0, 255}},       {"magenta", {255, 0, 255}},
@@ -18,13 +20,6 @@ constexpr std::array<std::pair<std::string_view, Color>, 20> named_colors{{
     {"gray50", {127, 127, 127}}, {"gray60", {153, 153, 153}}, {"gray70", {179, 179, 179}},
     {"gray80", {204, 204, 204}}, {"gray90", {229, 229, 229}},
 }};
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view space = " \t\r\n";
-  const std::size_t begin = text.find_first_not_of(space);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(space) + 1 - begin);
-}
 
 std::optional<std::uint8_t> parse_channel(std::string_view text) {
   text = trimmed(text);

@@ -12,10 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int handler = 1;  // where keep_traceback lies on the stack during every call
+constexpr int handler = 1;  // stack index of keep_traceback during every call
 
-// Messages show the path from the working directory if the script lies below it: Lua cuts paths
-// of more than 60 bytes.
+// In messages the path is relative to the working directory if the script is below it: Lua shortens
+// paths of more than 60 bytes.
 fs::path shown(const fs::path& script) {
   std::error_code error;
   const fs::path here = fs::current_path(error);
@@ -29,7 +29,7 @@ int get_global(lua_State* state) {
   return 1;
 }
 
-// A metatable of _G may raise an error for what is not there; then it is not there.
+// A metatable of _G may raise an error for an unknown global: then there is none.
 void get_global_if_any(lua_State* state, const char* name) {
   lua_pushcfunction(state, get_global);
   lua_pushstring(state, name);
@@ -103,7 +103,7 @@ Failure Controller::call_prepared(const std::string& moment) {
   return std::nullopt;
 }
 
-// Everything that may raise a Lua error runs as a protected function with us as its argument.
+// Everything that may raise a Lua error runs as a protected function; its argument is this object.
 void Controller::push_protected(int (*function)(lua_State*)) {
   lua_pushcfunction(state_.get(), function);
   lua_pushlightuserdata(state_.get(), this);
@@ -136,7 +136,7 @@ int Controller::prepare(lua_State* state) {
 
 std::string Controller::describe_error(const std::string& moment) {
   auto [text, traceback] = take_error_message(state_.get());
-  // Lua begins most messages with file and line, long paths cut; some have neither.
+  // Most messages of Lua begin with file and line (long paths are shortened), some have neither.
   const auto end = script_.size() < LUA_IDSIZE ? script_ : script_.substr(script_.size() - 40);
   if (text.substr(0, LUA_IDSIZE + 1).find(end + ":") == std::string::npos) {
     text = script_ + ": " + text;

@@ -1,5 +1,5 @@
 #pragma once
-// One robot's script: its Lua state and its life cycle.
+// The script of a robot: its Lua state and its life cycle.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,11 +20,11 @@ struct ControllerOptions {
   std::size_t max_memory = std::size_t{1} << 30;  ///< of the script's Lua state [bytes]
 };
 
-/// How a script failed: `scenes/x.lua:12: attempt to … (in step 37)`, a line feed, and Lua's
-/// traceback. The script is not to be called again.
+/// The error of a script: `scenes/x.lua:12: attempt to … (in step 37)`, a line feed, and Lua's
+/// traceback. Do not call the script again.
 using Failure = std::optional<std::string>;
 
-/// Runs the script of one robot. Whatever the script does wrong is a Failure, never an exception.
+/// Runs the script of one robot. Every error of the script is a Failure, never an exception.
 class Controller {
  public:
   /// @param robot  outlives the controller and does not move
@@ -36,15 +36,15 @@ class Controller {
   /// What the script logged, also in a call that failed. The caller clears it.
   LogLines& log() { return log_; }
 
-  /// At tick 0: makes `robot` and `log`, runs the script's chunk, then init().
+  /// At tick 0: creates `robot` and `log`, runs the script's chunk, then init().
   Failure start();
   /// @param tick  >= 1
   Failure step(std::uint64_t tick);
-  /// The world went back to tick 0; random streams begin anew. Does nothing more if the script
-  /// has no reset().
+  /// The world was reset to tick 0: restarts the random streams and calls reset(), if the script
+  /// has one.
   /// @param seed  of the new run
   Failure reset(std::uint64_t seed);
-  /// After the last tick. Does nothing if the script has no destroy().
+  /// After the last tick: calls destroy(), if the script has one.
   Failure destroy(std::uint64_t last_tick);
 
   std::size_t used_memory() const { return state_.used_bytes(); }  ///< [bytes]
@@ -68,7 +68,7 @@ class Controller {
   LogLines log_;
   RandomStreams random_;
   std::size_t max_memory_;
-  std::string script_;  // as it shall appear in messages
+  std::string script_;  // path for messages
   std::string folder_;  // of the script
   Wanted wanted_;       // by prepare()
   BoundedState state_;  // last: its finalizers may use the others

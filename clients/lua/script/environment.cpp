@@ -15,11 +15,11 @@ namespace {
 
 int refuse_exit(lua_State* state) {
   return luaL_error(state,
-                    "os.exit would end the controllers of other robots too; "
+                    "os.exit is not allowed, as it ends other robots' controllers too; "
                     "error(message) ends this one");
 }
 
-// The locale belongs to the process. Like Lua's with a locale that does not exist: nil.
+// The locale belongs to the process. Other locales give nil, as unknown ones do in Lua.
 int keep_locale(lua_State* state) {
   const char* const wanted = luaL_optstring(state, 1, nullptr);
   const bool is_c = wanted == nullptr || *wanted == '\0' || std::strcmp(wanted, "C") == 0;
@@ -31,7 +31,8 @@ int keep_locale(lua_State* state) {
   return 1;
 }
 
-// Functions of the standard libraries that reach beyond the robot, or whose results do.
+// Replaces the functions of the standard libraries that would affect other robots or depend on
+// them.
 void confine_libraries(lua_State* state, RandomStream& math_random) {
   lua_getglobal(state, LUA_OSLIBNAME);
   set_function<refuse_exit>(state, "exit", nullptr);

@@ -38,7 +38,7 @@ int keep_traceback(lua_State* state) {
   return 1;
 }
 
-// Nothing in here allocates Lua memory: there may be none left.
+// Allocates no Lua memory: there may be none left.
 ErrorMessage take_error_message(lua_State* state) {
   ErrorMessage message;
   message.text = lua_type(state, -1) == LUA_TSTRING ? shortened(state, -1) : "unknown error";

@@ -1,12 +1,12 @@
 #pragma once
-// What a Lua error says, with the traceback of where it was raised.
+// Message and traceback of a Lua error.
 
 #include <lua.hpp>
 #include <string>
 
 namespace ziggurat::lua {
 
-/// Makes room for tracebacks. May raise a Lua error.
+/// Reserves memory for tracebacks. May raise a Lua error.
 void prepare_error_messages(lua_State* state);
 
 /// The message handler for lua_pcall: turns the error object into a string and keeps the
@@ -18,7 +18,7 @@ struct ErrorMessage {
   std::string traceback;  ///< "stack traceback:\n…"; empty if there was no memory for it
 };
 
-/// Of the error that lua_pcall left on top; pops it. Long ones are shortened.
+/// Of the error on top of the stack, from lua_pcall; pops it. Shortens long messages.
 ErrorMessage take_error_message(lua_State* state);
 
 }  // namespace ziggurat::lua

@@ -1,6 +1,6 @@
 #pragma once
-// Functions that Lua calls. Lua's errors are jumps over our frames and ours are exceptions that
-// must not pass Lua's, so:
+// Functions that Lua calls. A Lua error jumps over C++ frames, and an exception must not pass
+// through Lua's frames. Therefore:
 //  - every function given to Lua is guarded<function>;
 //  - no object with a destructor lives across a call of the Lua API that may raise an error.
 
@@ -9,7 +9,7 @@
 
 namespace ziggurat::lua {
 
-/// An exception that leaves `body` becomes a Lua error that says the same.
+/// An exception that leaves `body` becomes a Lua error with the same message.
 template <int (*body)(lua_State*)>
 int guarded(lua_State* state) {
   try {
@@ -28,8 +28,8 @@ T& upvalue(lua_State* state, int n = 1) {
   return *static_cast<T*>(lua_touserdata(state, lua_upvalueindex(n)));
 }
 
-/// Sets field `name` of the table on top to a closure over `subject`, which must outlive the
-/// state: scripts may keep the function for as long as they live.
+/// Sets field `name` of the table on top to a closure over `subject`, which must outlive the state:
+/// scripts may keep the function.
 template <int (*body)(lua_State*)>
 void set_function(lua_State* state, const char* name, void* subject) {
   lua_pushlightuserdata(state, subject);

@@ -12,7 +12,7 @@ static_assert(std::atomic<bool>::is_always_lock_free &&
 
 void raise(lua_State* state, lua_Debug*) { luaL_error(state, "interrupted"); }
 
-// Raises again at each instruction: a script that catches the error goes no further.
+// Raises again at each instruction: a script that catches the error does not continue.
 void set_hook(lua_State* state) {
   constexpr int each = LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT;
   lua_sethook(state, raise, each, 1);

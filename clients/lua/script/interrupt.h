@@ -1,22 +1,22 @@
 #pragma once
-// How a signal handler ends scripts, endless loops included. Signals belong to the process, hence
-// the only state of this program that does.
+// Lets a signal handler end scripts, also in endless loops. Signals belong to the process, and so
+// does this state; nothing else in this program does.
 
 #include <lua.hpp>
 
 namespace ziggurat::lua {
 
-/// The script that runs now, and each that is called later, ends with the Lua error
-/// "interrupted". May be called from a signal handler. A coroutine, or a library function that
-/// takes its time, is not ended before it comes back.
+/// The running script, and each one that is called later, ends with the Lua error "interrupted".
+/// May be called from a signal handler. A coroutine or a long library function ends only when it
+/// returns.
 void interrupt_scripts() noexcept;
 
 bool are_scripts_interrupted() noexcept;
 
-/// For tests: from now on scripts run again.
+/// For tests: scripts run again.
 void allow_scripts() noexcept;
 
-/// While it lives, `state` is what interrupt_scripts() ends. Don't nest.
+/// While it lives, interrupt_scripts() ends the script of `state`. Do not nest.
 class Running {
  public:
   explicit Running(lua_State* state) noexcept;

@@ -15,7 +15,7 @@ void append(std::string& text, Format... number_and_format) {
   text.append(digits, end);
 }
 
-// Nothing in here raises a Lua error: the text it appends to would leak.
+// Raises no Lua error: the memory of `text` would leak.
 void append_value(lua_State* state, int index, std::string& text) {
   switch (lua_type(state, index)) {
     case LUA_TBOOLEAN:
@@ -25,7 +25,7 @@ void append_value(lua_State* state, int index, std::string& text) {
       if (lua_isinteger(state, index)) {
         append(text, lua_tointeger(state, index));
       } else {
-        // As a C++ stream prints a double: at most 6 significant digits.
+        // The format of C++ streams: at most 6 significant digits.
         append(text, lua_tonumber(state, index), std::chars_format::general, 6);
       }
       break;

@@ -1,5 +1,5 @@
 #pragma once
-// What a script logged at one tick.
+// The log lines of a script at one tick.
 
 #include <cstddef>
 #include <string>
@@ -14,15 +14,15 @@ struct LogLine {
   std::string text;       ///< any bytes; no line feed at the end
 };
 
-/// Lines of one robot at one tick. Bounded: a script that logs in an endless loop must neither
-/// fill the memory nor block the session's other robots.
+/// Log lines of one robot at one tick. Bounded: a script that logs in an endless loop must not use
+/// up the memory or block the session's other robots.
 struct LogLines {
   static constexpr std::size_t max_bytes = std::size_t{1} << 20;
-  static constexpr std::size_t overhead = 64;  ///< that a line counts besides its text [bytes]
+  static constexpr std::size_t overhead = 64;  ///< of a line, besides its text [bytes]
 
   std::vector<LogLine> lines;
   std::size_t bytes = 0;
-  bool is_full = false;  ///< lines were dropped; the last one says so
+  bool is_full = false;  ///< lines were dropped; the last line reports it
 
   void add(bool is_error, std::string text);
   void clear();  ///< keeps its memory for the next tick

@@ -1,6 +1,6 @@
 #pragma once
-// math.random and math.randomseed. Lua's own draw from the process: what a robot got would depend
-// on who else runs in it.
+// math.random and math.randomseed. Lua's own functions share one state per process: a robot's
+// numbers would depend on the other robots in it.
 
 #include <lua.hpp>
 
@@ -8,8 +8,7 @@
 
 namespace ziggurat::lua {
 
-/// Replaces both by functions of the same meaning that draw from `stream`; randomseed(x) restarts
-/// it.
+/// Replaces both by functions with the same meaning that use `stream`; randomseed(x) restarts it.
 void set_math_random(lua_State* state, RandomStream& stream);
 
 }  // namespace ziggurat::lua

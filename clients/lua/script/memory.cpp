@@ -13,13 +13,13 @@ BoundedState::BoundedState(std::size_t max_bytes)
 void* BoundedState::allocate(void* budget_of_state, void* block, std::size_t old_size,
                              std::size_t new_size) {
   auto& budget = *static_cast<Budget*>(budget_of_state);
-  if (block == nullptr) old_size = 0;  // it was the kind of the new object
+  if (block == nullptr) old_size = 0;  // old_size is the type of the new object
   if (new_size == 0) {
     std::free(block);
     budget.used -= old_size;
     return nullptr;
   }
-  // Lua relies on shrinking to succeed.
+  // Lua requires that shrinking succeeds.
   if (new_size > old_size && new_size - old_size > budget.max - budget.used) return nullptr;
   void* const moved = std::realloc(block, new_size);
   if (moved == nullptr) return new_size <= old_size ? block : nullptr;

@@ -7,11 +7,11 @@
 
 namespace ziggurat::lua {
 
-/// A Lua state with an upper bound on its memory: a script that asks for more gets Lua's error
-/// "not enough memory", and other scripts don't notice.
+/// A Lua state with limited memory: a script that needs more gets Lua's error "not enough memory";
+/// other scripts are not affected.
 class BoundedState {
  public:
-  /// @throws std::bad_alloc if not even an empty state fits
+  /// @throws std::bad_alloc if an empty state does not fit
   explicit BoundedState(std::size_t max_bytes);
   BoundedState(const BoundedState&) = delete;
   BoundedState& operator=(const BoundedState&) = delete;

@@ -5,7 +5,7 @@
 namespace ziggurat::lua {
 namespace {
 
-// Like Lua's: honours __pairs, and fields may be changed or cleared, but not added, on the way.
+// As in Lua: uses __pairs, and the loop may change or clear fields, but not add any.
 constexpr std::string_view source = R"lua(
 local next, type, error, select = next, type, error, select
 local rawget, sort, metatable_of = rawget, table.sort, debug.getmetatable

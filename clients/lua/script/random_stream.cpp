@@ -9,7 +9,7 @@
 
 namespace ziggurat::lua {
 
-// The standard library's distributions are not specified: ours or Boost's.
+// Not the standard library's distributions: their algorithms are not specified.
 
 RandomStream::RandomStream(std::uint64_t seed, std::string_view purpose)
     : engine_(XXH64(purpose.data(), purpose.size(), seed)) {}

@@ -1,6 +1,6 @@
 #pragma once
-// A robot's own stream of random numbers. Which process runs the robot, and what other robots
-// draw, never changes what it draws.
+// A stream of random numbers for one robot. It does not depend on the process that runs the robot,
+// nor on other robots.
 
 #include <cstdint>
 #include <random>
@@ -11,7 +11,7 @@ namespace ziggurat::lua {
 class RandomStream {
  public:
   /// @param seed     of the run
-  /// @param purpose  names the stream among those of the run, for example "lua/robot0"
+  /// @param purpose  name of the stream, unique in the run, for example "lua/robot0"
   RandomStream(std::uint64_t seed, std::string_view purpose);
 
   std::uint64_t bits() { return engine_(); }  ///< 64 independent bits

@@ -14,7 +14,7 @@ void check_order(lua_State* state, bool is_ordered, const char* message) {
   if (!is_ordered) luaL_argerror(state, lua_gettop(state), message);
 }
 
-// A number and not a boolean: 0 is true in Lua, and old scripts compare with 1.
+// A number, not a boolean: old scripts compare it with 1.
 int bernoulli(lua_State* state) {
   check_count(state, 0, 1, "bernoulli([probability])");
   const double probability = lua_gettop(state) == 0 ? 0.5 : check_number(state, 1);
@@ -32,7 +32,7 @@ int uniform(lua_State* state) {
   return 1;
 }
 
-// `max` is never drawn, unless it is `min`.
+// `max` is excluded, unless it equals `min`.
 int uniform_int(lua_State* state) {
   check_count(state, 1, 2, "uniform_int(max) or uniform_int(min, max)");
   const int count = lua_gettop(state);

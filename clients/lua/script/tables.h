@@ -1,5 +1,5 @@
 #pragma once
-// Values in tables, as scripts have them: numbers, arrays, {x, y}, {x, y, z}, {angle, axis}.
+// Values in tables of scripts: numbers, arrays, {x, y}, {x, y, z}, {angle, axis}.
 
 #include <array>
 #include <lua.hpp>
@@ -23,11 +23,11 @@ void push_vector(lua_State* state, const std::array<double, 2>& vector);
 void push_vector(lua_State* state, const std::array<double, 3>& vector);
 
 /// Sets element `key` (any bytes) of a table to the value on top, and pops it.
-/// @param table  stack index of the table, at least two below the top
+/// @param table  negative stack index of the table
 void set_element(lua_State* state, int table, std::string_view key);
 
-/// Replaces the elements of the array on top by one for each value, which push(state, value)
-/// pushes: what was there before may be kept by the script.
+/// Replaces the elements of the array on top: push(state, value) pushes the element for a value.
+/// The script may keep the former elements.
 template <typename Values, typename Push>
 void set_elements(lua_State* state, const Values& values, Push push) {
   lua_Integer position = 0;

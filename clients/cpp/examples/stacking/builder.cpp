@@ -9,13 +9,13 @@
 namespace stacking {
 namespace {
 
-// The robot's own measures [m]. None of them says where anything stands.
-constexpr double reach = 0.080;  // from its middle to the face of a block under the end effector
+// Dimensions of the robot [m]. It does not know the positions of the blocks.
+constexpr double reach = 0.080;  // from its centre to the face of a block under the end effector
 constexpr double wheel_radius = 0.025, half_track = 0.052;
-constexpr double slip = 1.32;           // skidding wheels turn it this much less than they rolled
-constexpr double front_sensor = 0.065;  // where the front proximity sensors sit
+constexpr double slip = 1.32;           // rotation of the wheels / rotation of the robot: they skid
+constexpr double front_sensor = 0.065;  // position of the front proximity sensors
 constexpr double tag_side = 0.024;
-constexpr double settle = 0.03;  // in a few of these it comes into line [m]
+constexpr double settle = 0.03;  // distance constant of the approach to the line [m]
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -28,7 +28,7 @@ constexpr Point calibration[] = {{0.0035, 65535}, {0.005, 32000}, {0.0075, 14222
                                  {0.06, 222},     {0.08, 125},    {0.1, 80},       {0.15, 36},
                                  {0.2, 20}};
 
-/// Turn rate that brings the robot onto the line before a face, forwards or back [rad/s].
+/// Turn rate that moves the robot onto the line in front of a face, forwards or backwards [rad/s].
 double steer(const Face& face, double speed) {
   const double wanted = std::clamp(face.offset() / (2 * settle), -0.25, 0.25);
   return std::abs(speed) * 2 / settle * (face.heading - (speed > 0 ? wanted : -wanted));
@@ -71,7 +71,7 @@ void Builder::set_current(double current) {
   for (ziggurat::Magnet& magnet : magnets_) magnet.set_current(current);
 }
 
-/// @param sensor  from 1, as the scene's comments and the Lua script count them
+/// @param sensor  from 1, as in the scene's comments and in the Lua script
 double Builder::distance(std::size_t sensor) const {
   const double reading = proximity_[sensor - 1].reading();
   for (std::size_t i = 1; i < std::size(calibration); ++i) {
@@ -84,7 +84,7 @@ double Builder::distance(std::size_t sensor) const {
   return infinity;
 }
 
-/// From the robot's middle to the nearest thing in front of the deck.
+/// From the robot's centre to the nearest object in front of the deck.
 double Builder::ahead() const {
   return front_sensor + std::min({distance(1), distance(2), distance(12)});
 }

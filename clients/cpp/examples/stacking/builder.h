@@ -1,7 +1,6 @@
 #pragma once
-// The construction robot's body as its controller uses it: wheels, lift, magnets, proximity sensors
-// and docking at a block by the camera. Positions are forward and left of the point between the
-// four wheels.
+// The construction robot for its controller: wheels, lift, magnets, proximity sensors, and docking
+// at a block with the camera. Positions are forward and left of the point between the four wheels.
 
 #include <ziggurat/ziggurat.h>
 
@@ -14,14 +13,13 @@ namespace stacking {
 inline constexpr double tick = 0.1;     ///< between two steps [s]
 inline constexpr double block = 0.055;  ///< edge of a block [m]
 
-/// The side of a block that is seen.
+/// The side of a block that the camera sees.
 struct Face {
-  double forward = 0;  ///< of its middle [m]
+  double forward = 0;  ///< of its centre [m]
   double left = 0;     ///< [m]
   double heading = 0;  ///< direction into the face, from straight ahead to the left [rad]
 
-  /// How far the robot stands to the left of the line through its middle, at right angles to it
-  /// [m].
+  /// Distance of the robot to the left of the face's normal through its centre [m].
   double offset() const;
 };
 
@@ -35,24 +33,25 @@ class Builder {
   void drive(double speed, double turn);
   void stop() { drive(0, 0); }
 
-  /// Sends the lift to a height [m] at up to this speed [m/s]. True once it is there.
+  /// Moves the lift to a height [m] with at most this speed [m/s]. True when it has arrived.
   bool lift_to(double height, double speed);
-  /// Moves the lift on, or holds it; to be called at every step, last.
+  /// Moves or holds the lift; call it last in every step.
   void move_lift();
 
   /// -1 cancels the end effector's permanent magnets, 0 leaves them, +1 doubles them.
   void set_current(double current);
-  /// Whether a block hangs at the end effector: all sensors that look down touch it.
+  /// A block is attached to the end effector: all sensors that look down touch it.
   bool holds() const;
-  /// To the block that hangs there.
+  /// To the attached block.
   void send(std::uint8_t byte);
 
-  /// At floor level, towards the robot; nothing if none is seen.
+  /// At floor level, facing the robot; none if the camera sees none.
   std::optional<Face> nearest_face() const;
-  /// Drives up to the nearest face; to be called at every step. `askew` if it came close without
-  /// being in line, `lost` if there is none to drive up to.
+  /// Drives to the nearest face; call it in every step. `askew` if the robot came close but is not
+  /// on the line, `lost` if the camera sees no face.
   Docking dock(double fastest);
-  /// Backs away along the line before the nearest face. How far away that is [m]; 0 if unseen.
+  /// Drives backwards along the line in front of the nearest face. The distance to that face [m]; 0
+  /// if the camera does not see it.
   double back_away(double speed);
 
  private:
@@ -66,10 +65,10 @@ class Builder {
   ziggurat::Radio& radio_;
   std::span<ziggurat::Magnet> magnets_;
   std::span<const ziggurat::ProximitySensor> proximity_;
-  double lift_height_ = 0;       // it is sent to [m]
+  double lift_height_ = 0;       // target [m]
   double lift_speed_limit_ = 0;  // [m/s]
-  double lift_speed_ = 0;        // now [m/s]
-  int unseen_ = 0;               // steps since a face was seen
+  double lift_speed_ = 0;        // present [m/s]
+  int unseen_ = 0;               // steps since the camera saw a face
 };
 
 }  // namespace stacking

@@ -1,4 +1,4 @@
-// Stacks the first block it meets on top of the second, as
+// Stacks the first block that it finds on top of the second, as
 // scenes/prototype_srocs_system_arcontrol.lua does:
 //   ziggurat run scenes/prototype_srocs_system.argos --controller robot=example_stacking
 
@@ -38,7 +38,8 @@ constexpr const char* names[] = {"start",    "approach", "retreat", "search",   
                                  "energise", "raise",    "signal",  "look",     "let_go",
                                  "place",    "release",  "rise",    "back_off", "done"};
 
-/// A state machine; knows proximity, camera, radio and encoders, and nothing of where things stand.
+/// A state machine. Its inputs are proximity, camera, radio and encoders; it does not know
+/// positions.
 class Stacker {
  public:
   explicit Stacker(ziggurat::Robot& robot) : robot_(robot), builder_(robot) {}
@@ -85,7 +86,7 @@ State Stacker::approach() {
   return ++blocks_met_ == 1 ? State::lower : State::place;
 }
 
-/// Turns to and fro until a face is seen.
+/// Turns to both sides until the camera sees a face.
 State Stacker::search() {
   const double phase = std::fmod(seconds(), 8);
   builder_.drive(0, phase < 2 || phase >= 6 ? 0.2 : -0.2);
@@ -94,7 +95,7 @@ State Stacker::search() {
   return State::approach;
 }
 
-/// Until the second block is met.
+/// Until it finds the second block.
 State Stacker::fetch() {
   switch (state_) {
     case State::start:
@@ -111,7 +112,7 @@ State Stacker::fetch() {
     case State::lower:
       return builder_.lift_to(gap - 0.0005, 0.03) ? State::energise : state_;
     case State::energise:
-      // Slowly: before the block jumps, it loses weight on the floor and slides into line.
+      // Slowly: before the block jumps, its weight on the floor becomes less and it aligns.
       builder_.set_current(std::min(1.0, -1 + seconds()));
       if (seconds() <= 2.5) return state_;
       return builder_.holds() ? State::raise : State::let_go;
@@ -140,7 +141,7 @@ State Stacker::fetch() {
 State Stacker::put_down() {
   switch (state_) {
     case State::place:
-      // Slowly: the lower block, pulled by the carried one, slides into line under it.
+      // Slowly: the carried block pulls the lower one, which aligns with it.
       return builder_.lift_to(placed, 0.008) ? State::release : state_;
     case State::release:
       builder_.set_current(std::max(-1.0, -2 * seconds()));
@@ -165,7 +166,7 @@ int main() try {
   while (session.next()) {
     if (session.event() == ziggurat::Event::step) {
       stacker.step();
-    } else {  // init, or reset: the world stands at tick 0
+    } else {  // init or reset: tick 0
       stacker.restart();
     }
   }

@@ -16,7 +16,7 @@ struct TagPose {
 };
 
 /// Exact for corners without noise.
-/// @param corners  as the camera counts them: (-,-), (-,+), (+,+), (+,-) of the tag's own x and y
+/// @param corners  in the camera's order: (-,-), (-,+), (+,+), (+,-) of the tag's own x and y
 /// @param side     outer edge of the tag [m]
 /// @return nothing if the corners are no convex quadrilateral
 std::optional<TagPose> tag_pose(const std::array<ziggurat::Camera::Pixel, 4>& corners,

@@ -15,8 +15,8 @@ namespace ziggurat {
 
 /// A pinhole camera. A point at (X, Y, Z) in its frame, +z forward, +x right, +y down, is seen at
 /// u = fx X/Z + cx, v = fy Y/Z + cy: real pixels from the image's top left corner, u to the right,
-/// v down. A handle into its session, valid as long as that lives; readings and pictures are valid
-/// until the session's next().
+/// v down. A handle into its session, valid while the session lives; readings and pictures are
+/// valid until the session's next().
 class Camera {
  public:
   using Pixel = std::array<double, 2>;  ///< u, v [px]
@@ -33,7 +33,7 @@ class Camera {
   };
 
   const std::string& id() const noexcept { return id_; }
-  /// Of its mounting: id of a link, or `origin`.
+  /// Id of the link that carries it, or `origin`.
   const std::string& anchor() const noexcept { return anchor_; }
   /// In the anchor's frame: x, y, z [m].
   const std::array<double, 3>& position() const noexcept { return position_; }
@@ -46,7 +46,7 @@ class Camera {
   std::uint32_t width() const noexcept { return width_; }                     ///< [px]
   std::uint32_t height() const noexcept { return height_; }                   ///< [px]
 
-  // Which detectors it has. Without one, the list of its readings is empty; so it is at tick 0.
+  // Its detectors. The list of readings is empty at tick 0, and always without the detector.
   bool detects_leds() const noexcept { return detects_leds_; }
   bool detects_directional_leds() const noexcept { return detects_directional_leds_; }
   bool detects_tags() const noexcept { return detects_tags_; }
@@ -57,7 +57,7 @@ class Camera {
 
   bool takes_images() const noexcept { return takes_images_; }
   /// width() x height() x 3 bytes: rows from the top, pixels from the left, red, green, blue.
-  /// Empty at tick 0 and if it takes none.
+  /// Empty at tick 0, and always if takes_images() is false.
   Bytes image() const noexcept { return image_; }
 
  private:

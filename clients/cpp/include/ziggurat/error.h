@@ -1,6 +1,6 @@
 #pragma once
-// What can go wrong between a controller and the server. Unknown robot and joint names are
-// std::out_of_range, unusable values std::invalid_argument; both say what would have been right.
+// Errors between a controller and the server. Besides, unknown ids are std::out_of_range and
+// invalid values std::invalid_argument; their messages name what is allowed.
 
 #include <cstdint>
 #include <stdexcept>
@@ -8,24 +8,24 @@
 
 namespace ziggurat {
 
-/// No server answered, it went away, or it stayed silent for longer than Options allow. what()
-/// says who was waited for, at which endpoint, and how long.
+/// No server answered, the connection was closed, or no message arrived within the time-outs of
+/// Options. what() names the endpoint and the time-out.
 class ConnectionError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The server refused the session or one of its messages. what() is the server's sentence.
+/// The server refused the session or one of its messages. what() is the server's message.
 class ProtocolError : public std::runtime_error {
  public:
   /// As in docs/protocol.md: `code` is the name there, for example "ROBOT_TAKEN".
   struct Details {
     std::string code;
-    bool retryable = false;  ///< the same message may succeed later
-    std::uint64_t tick = 0;  ///< that the server was at
-    std::string robot;       ///< id, where one is concerned
-    std::string field;       ///< of the message, where one is concerned
-    std::string holder;      ///< ROBOT_TAKEN: name of the client that drives the robot
+    bool retryable = false;  ///< a retry of the same message may succeed
+    std::uint64_t tick = 0;  ///< of the server
+    std::string robot;       ///< id, if the error concerns one
+    std::string field;       ///< of the message, if the error concerns one
+    std::string holder;      ///< ROBOT_TAKEN: name of the client that owns the robot
   };
 
   ProtocolError(const std::string& message, Details details)

@@ -5,31 +5,31 @@
 
 namespace ziggurat {
 
-/// What an encoder reads or a motor controls.
+/// What an encoder measures or a motor controls.
 enum class JointMode {
-  disabled,  ///< reads 0; targets have no effect
+  disabled,  ///< the encoder is 0; targets have no effect
   position,  ///< [m] (prismatic) or [rad] (revolute), from the assembled pose
   velocity,  ///< [m/s] or [rad/s]
 };
 
-/// A handle into its session, valid as long as that lives. Reading and setting is O(1) and
-/// allocates nothing.
+/// A handle into its session, valid while the session lives. Reading and setting take O(1) and
+/// allocate nothing.
 class Joint {
  public:
   const std::string& id() const noexcept { return id_; }
 
   bool has_encoder() const noexcept { return has_encoder_; }
   JointMode encoder_mode() const noexcept { return encoder_mode_; }
-  /// What the encoder read at the session's tick, in the unit of encoder_mode(); 0 at tick 0 and
-  /// without an encoder.
+  /// The reading at the session's tick, in the unit of encoder_mode(); 0 at tick 0 and without an
+  /// encoder.
   double encoder() const noexcept { return encoder_; }
 
   bool has_motor() const noexcept { return target_ != nullptr; }
   JointMode motor_mode() const noexcept { return motor_mode_; }
-  /// Largest impulse per physics substep, as the scene says [N s] or [N m s].
+  /// Largest impulse per physics substep, from the scene [N s] or [N m s].
   double max_impulse() const noexcept { return max_impulse_; }
-  /// Where the motor shall go, in the unit of motor_mode(); sent with the answer to this tick,
-  /// has effect from the start of the next, and stays until changed.
+  /// In the unit of motor_mode(); sent with the answer to this tick, takes effect at the start of
+  /// the next, and stays until changed.
   /// @throws std::invalid_argument if not finite; std::logic_error without a motor
   void set_target(double target);
   /// The last target set; 0 before the first and without a motor.
@@ -44,7 +44,7 @@ class Joint {
   bool has_encoder_ = false;
   double encoder_ = 0;
   double* target_ = nullptr;  // into the session's packed command
-  bool* changed_ = nullptr;   // the session's: some target was set since the last answer
+  bool* changed_ = nullptr;   // the session's: some target was set after the last answer
 };
 
 }  // namespace ziggurat

@@ -6,19 +6,19 @@
 
 namespace ziggurat {
 
-/// Black is off: no camera sees it.
+/// Black is off: cameras do not see it.
 struct Color {
   std::uint8_t red = 0, green = 0, blue = 0;
   bool operator==(const Color&) const = default;
 };
 
-/// A handle into its session, valid as long as that lives.
+/// A handle into its session, valid while the session lives.
 class Led {
  public:
   const std::string& id() const noexcept { return id_; }
   /// Sent with the answer to this tick; stays until changed.
   void set_color(Color color) noexcept;
-  /// The last one set; before the first, the scene's.
+  /// The last color set; before that, the scene's.
   Color color() const noexcept;
 
  private:

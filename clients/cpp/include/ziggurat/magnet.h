@@ -5,15 +5,15 @@
 
 namespace ziggurat {
 
-/// A handle into its session, valid as long as that lives.
+/// A handle into its session, valid while the session lives.
 class Magnet {
  public:
   const std::string& id() const noexcept { return id_; }
-  /// The magnet's field is passive + current × active field, as the scene gives them; any sign.
+  /// The magnet's field is passive + current × active field, both from the scene; any sign.
   /// Sent with the answer to this tick; stays until changed.
   /// @throws std::invalid_argument if not finite
   void set_current(double current);
-  /// The last one set; 0 before the first.
+  /// The last current set; before that, 0.
   double current() const noexcept { return *current_; }
 
  private:

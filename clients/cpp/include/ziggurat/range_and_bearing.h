@@ -1,5 +1,6 @@
 #pragma once
-// Situated communication: a few bytes, broadcast all the time, received with where they come from.
+// Range and bearing: a few bytes, broadcast at every tick; receivers also get the distance and the
+// direction of the sender.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,15 +11,16 @@
 
 namespace ziggurat {
 
-/// A handle into its session, valid as long as that lives.
+/// A handle into its session, valid while the session lives.
 class RangeAndBearing {
  public:
-  /// One packet, from one other device.
+  /// A packet from another device.
   struct Packet {
-    double range = 0;               ///< distance to the sender [m]
-    double horizontal_bearing = 0;  ///< in our frame, from +x towards +y, in [-π, π] [rad]
-    double vertical_bearing = 0;    ///< above the x-y plane of our frame, in [-π/2, π/2] [rad]
-    Bytes data;                     ///< valid until the session's next()
+    double range = 0;  ///< distance to the sender [m]
+    double horizontal_bearing =
+        0;  ///< in the receiver's frame, from +x towards +y, in [-π, π] [rad]
+    double vertical_bearing = 0;  ///< above the receiver's x-y plane, in [-π/2, π/2] [rad]
+    Bytes data;                   ///< valid until the session's next()
   };
 
   double range() const noexcept { return range_; }  ///< of sending [m]
@@ -27,18 +29,18 @@ class RangeAndBearing {
 
   /// The controller has a sensor for it.
   bool receives() const noexcept { return receives_; }
-  /// Heard at this tick, by sender in scene order. Valid until the session's next().
+  /// Received at this tick, by sender in scene order. Valid until the session's next().
   std::span<const Packet> packets() const noexcept { return packets_; }
 
   /// The controller has an actuator for it.
   bool sends() const noexcept { return changed_ != nullptr; }
-  /// Broadcast from the next tick on, until changed.
+  /// Broadcasts these data from the next tick on, until changed.
   /// @throws std::invalid_argument if not data_size() long; std::logic_error if it does not send
   void set_data(Bytes data);
-  /// All zeros, as in the beginning.
+  /// Sets all bytes to 0, the initial value.
   /// @throws std::logic_error if it does not send
   void clear_data();
-  /// The last data set; zeros before the first. Empty if it does not send.
+  /// The last data set; before that, zeros. Empty if it does not send.
   Bytes data() const noexcept { return data_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// A robot that a session drives.
+// A robot of a session.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,8 +23,8 @@
 
 namespace ziggurat {
 
-/// A handle into its session, valid as long as that lives. Resolve devices by name once, before
-/// the loop; keep the references.
+/// A handle into its session, valid while the session lives. Look up devices by id once, before
+/// the loop, and keep the references.
 class Robot {
  public:
   const std::string& id() const noexcept { return id_; }
@@ -40,11 +40,11 @@ class Robot {
   /// All joints with an encoder or a motor: first those with an encoder in the order of the
   /// scene's <sensors>, then the others in the order of <actuators>.
   std::span<Joint> joints() noexcept { return joints_; }
-  /// @throws std::out_of_range, naming the joints there are
+  /// @throws std::out_of_range, listing the ids that exist
   Joint& joint(std::string_view id);
 
-  // The other devices, if the controller has a sensor or an actuator for them, in scene order. By
-  // id they throw std::out_of_range, naming those there are.
+  // The other devices that the controller has a sensor or an actuator for, in scene order. An
+  // unknown id is std::out_of_range, listing the ids that exist.
   std::span<Radio> radios() noexcept { return radios_; }
   Radio& radio(std::string_view id);
   std::span<Led> leds() noexcept { return leds_; }
@@ -58,7 +58,7 @@ class Robot {
   std::span<const ProximitySensor> proximity_sensors() const noexcept { return proximity_; }
   std::span<const Camera> cameras() const noexcept { return cameras_; }
   const Camera& camera(std::string_view id) const;
-  /// Null without such a device, as are those that follow.
+  // These are null if the robot has no such device.
   RangeAndBearing* range_and_bearing() noexcept {
     return range_and_bearing_ ? &*range_and_bearing_ : nullptr;
   }
@@ -69,14 +69,14 @@ class Robot {
   Wheels* wheels() noexcept { return wheels_ ? &*wheels_ : nullptr; }
   Turret* turret() noexcept { return turret_ ? &*turret_ : nullptr; }
 
-  /// A line for the server's log, without a line feed at its end; sent with the answer to this
+  /// Adds a line to the server's log, without a line feed at its end; sent with the answer to this
   /// tick. `log` goes to the server's standard output, `log_error` to its standard error.
   /// @throws std::length_error if the session logs more at one tick than a message can hold
   void log(std::string_view text);
   void log_error(std::string_view text);
 
-  /// The controller of this robot failed: with the answer to this tick the robot leaves the
-  /// barrier for good and its commands become zero; the session's other robots go on.
+  /// Reports that the controller of this robot failed: with the answer to this tick the robot
+  /// leaves the run forever and its commands become zero. The session's other robots continue.
   void fail(std::string_view message);
   bool failed() const noexcept { return failed_; }
 

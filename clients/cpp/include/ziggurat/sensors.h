@@ -1,5 +1,5 @@
 #pragma once
-// What a robot senses of its surroundings and itself. Readings belong to the session's tick.
+// Sensors of a robot. Readings belong to the session's tick.
 
 #include <array>
 #include <optional>
@@ -7,23 +7,23 @@
 
 namespace ziggurat {
 
-/// A ray that meets what is in front of it. A handle into its session, valid as long as that
-/// lives.
+/// A ray that measures the distance to the first object. A handle into its session, valid while the
+/// session lives.
 class ProximitySensor {
  public:
-  /// Of its mounting: id of a link, or `origin`.
+  /// Id of the link that carries it, or `origin`.
   const std::string& anchor() const noexcept { return anchor_; }
   /// Start of the ray in the anchor's frame: x, y, z [m].
   const std::array<double, 3>& position() const noexcept { return position_; }
   /// Of the ray in the anchor's frame: x, y, z, of length 1.
   const std::array<double, 3>& direction() const noexcept { return direction_; }
   double range() const noexcept { return range_; }  ///< length of the ray [m]
-  /// Of the ray about the robot's +z from +x, in (-pi, pi] [rad]; of foot-bots' own sensors, which
-  /// are told with it.
+  /// Direction of the ray about the robot's +z from +x, in (-pi, pi] [rad]. Only the foot-bot's own
+  /// sensors have one.
   std::optional<double> angle() const noexcept { return angle_; }
 
-  /// From 0, nothing in range, to 1, contact; exp(-distance in metres) unless the scene says
-  /// otherwise.
+  /// From 0 (nothing in range) to 1 (contact); exp(-distance in metres) unless the scene has
+  /// another response.
   double reading() const noexcept { return reading_; }
 
  private:
@@ -36,7 +36,7 @@ class ProximitySensor {
   double reading_ = 0;
 };
 
-/// Where the robot is: the pose of its origin in the world.
+/// The pose of the robot's origin in the world.
 struct Positioning {
   std::array<double, 3> position{};               ///< x, y, z [m]
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z, robot to world

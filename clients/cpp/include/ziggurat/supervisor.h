@@ -1,5 +1,5 @@
 #pragma once
-// Watching and steering a run from outside: status, pause, reset, entities. Never waited for.
+// Supervision of a run: status, pause, reset, entities. The world never waits for a supervisor.
 
 #include <array>
 #include <chrono>
@@ -16,35 +16,35 @@ namespace ziggurat {
 
 struct SupervisorOptions {
   std::string endpoint;  ///< `ipc://…` or `tcp://host:port`
-  // Keys, for a server that protects its endpoint (--curve-secret). Both or none.
+  // Keys, for a server with an encrypted endpoint (--curve-secret). Both or none.
   std::string server_key;    ///< the server's public key, Z85: 40 characters
-  std::string curve_secret;  ///< path of a file with our own secret key, Z85
+  std::string curve_secret;  ///< path of a file with this client's secret key, Z85
 
-  bool only_observes = false;       ///< may ask for status and states, and nothing else
+  bool only_observes = false;       ///< may request status and states only
   std::string name = "supervisor";  ///< of this program, for the server's messages
   std::string version;              ///< of this program, for the server's messages
   std::chrono::milliseconds connect_timeout{10'000};  ///< wall time until the server's welcome
-  /// Wall time that an answer may take; none = for ever: pause() and step() wait for controllers.
+  /// Wall time to wait for an answer; none = forever, as pause() and step() wait for controllers.
   std::optional<std::chrono::milliseconds> answer_timeout;
-  /// Asked while waiting, at least every half second of wall time: true ends the wait with a
-  /// ConnectionError. None = nothing interrupts.
+  /// Called while waiting, at least every half second of wall time: true ends the wait with a
+  /// ConnectionError. None = no interruption.
   std::function<bool()> is_interrupted;
 };
 
-/// Wall time of something that is repeated, over the last 1000 times [s].
+/// Wall time of a repeated step, over the last 1000 times [s].
 struct Latency {
   double p50 = 0, p99 = 0, max = 0;
 };
 
-/// A session of the server, as it sees it.
+/// A session of the server.
 struct SessionStatus {
   std::string client;  ///< name and version
   std::string role;    ///< "controller", "supervisor" or "observer"
   std::string state;   ///< "ready", "owing", "answered", "paused", "draining" or "lost"
   std::vector<std::string> robots;  ///< ids
   std::uint64_t tick = 0;           ///< of its last observation
-  double waiting = 0;        ///< owing or lost: for how long the world has waited for it [s, wall]
-  double last_message = 0;   ///< since it was last heard of [s, wall]
+  double waiting = 0;        ///< owing or lost: how long the world has waited for it [s, wall]
+  double last_message = 0;   ///< time since its last message [s, wall]
   Latency latency;           ///< from observation to command
   std::uint64_t misses = 0;  ///< deadlines missed
   std::string policy;        ///< "wait", or an action with its deadline: "hold after 50 ms"
@@ -57,10 +57,10 @@ struct ServerStatus {
   bool hardware_in_the_loop = false;
   std::uint64_t seed = 0;
   std::string scene, scene_hash;
-  std::uint64_t last_tick = 0;  ///< 0: until somebody stops it
+  std::uint64_t last_tick = 0;  ///< 0: no last tick
   std::vector<SessionStatus> sessions;
-  std::vector<std::string> free_robots;  ///< ids: nobody holds them, and the world waits for them
-  std::vector<std::string> gone_robots;  ///< ids: they left for good
+  std::vector<std::string> free_robots;  ///< ids: without a session; the world waits for them
+  std::vector<std::string> gone_robots;  ///< ids: they left the run forever
   struct Phase {
     std::string name;  ///< "exchange", "physics", "recording" or "pacing"
     Latency wall;
@@ -90,8 +90,8 @@ struct WorldStates {
   std::vector<EntityState> entities;
 };
 
-/// A session without robots. Every call waits for its answer, which is true at the tick that the
-/// server names; what could not be done is a ProtocolError. Not thread-safe.
+/// A session without robots. Every call waits for the server's answer, which holds at the tick that
+/// it names. A refused request is a ProtocolError. Not thread-safe.
 class Supervisor {
  public:
   /// Connects and waits for the server's welcome.
@@ -102,23 +102,25 @@ class Supervisor {
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
-  // All of them throw ConnectionError and ProtocolError; ticks are those at which it was done.
+  // All of them throw ConnectionError and ProtocolError. A returned tick is the one at which the
+  // request took effect.
 
   ServerStatus status();
-  /// Returns when the world stands: the tick is complete. Also the tick that it stands at.
+  /// Returns when the tick is complete and the world has stopped; the tick at which it stopped.
   std::uint64_t pause();
   std::uint64_t resume();
-  /// Moves a paused world by so many ticks; returns when it stands again.
+  /// Runs this many ticks of a paused world; returns when it has stopped again.
   std::uint64_t step(std::uint64_t ticks);
-  /// Destroys the world and builds it anew; none = with the same seed.
+  /// Builds the world again; none = with the same seed.
   void reset(std::optional<std::uint64_t> seed = std::nullopt);
-  /// One element as it may stand in <arena>.
+  /// @param xml  one element, as in <arena>
   std::uint64_t spawn(std::string_view xml);
   std::uint64_t remove(std::string_view entity);
-  /// To rest at a pose, joints as assembled; none = as it is turned now.
+  /// The entity is at rest at the pose, its joints in their initial positions; no orientation = the
+  /// present one.
   std::uint64_t move(std::string_view entity, const std::array<double, 3>& position,
                      const std::optional<std::array<double, 4>>& orientation = std::nullopt);
-  /// Of the entities that ids or globs mean; none = of all.
+  /// @param entities  ids or globs; none = all
   WorldStates read(std::span<const std::string> entities = {});
   /// Ends the run, as Ctrl-C does.
   void shutdown();

@@ -1,5 +1,5 @@
 #pragma once
-// A tag of a robot that the robot may rewrite.
+// A tag of a robot; the robot may change its payload.
 
 #include <cstddef>
 #include <string>
@@ -7,16 +7,16 @@
 
 namespace ziggurat {
 
-/// A handle into its session, valid as long as that lives.
+/// A handle into its session, valid while the session lives.
 class Tag {
  public:
   static constexpr std::size_t max_payload_bytes = std::size_t{64} << 10;
 
   const std::string& id() const noexcept { return id_; }
-  /// What cameras read from it, any bytes. Sent with the answer to this tick; stays until changed.
+  /// What cameras detect, any bytes. Sent with the answer to this tick; stays until changed.
   /// @throws std::length_error beyond max_payload_bytes
   void set_payload(std::string_view payload);
-  /// The last one set; before the first, the scene's.
+  /// The last payload set; before that, the scene's.
   const std::string& payload() const noexcept { return *payload_; }
 
  private:

@@ -5,18 +5,18 @@
 
 namespace ziggurat {
 
-/// How a turret turns.
+/// How a turret rotates.
 enum class TurretMode : std::uint8_t {
-  passive,   ///< with the robot; the mode in the beginning
+  passive,   ///< with the robot; the initial mode
   position,  ///< to set_rotation()
   speed,     ///< at set_rotation_speed()
 };
 
-/// A handle into its session, valid as long as that lives. What is set is sent with the answer to
-/// this tick and stays until changed; setting a value does not change the mode.
+/// A handle into its session, valid while the session lives. Values that are set are sent with the
+/// answer to this tick and stay until changed; they do not change the mode.
 class Turret {
  public:
-  /// The controller has an actuator for it. Without, the setters throw std::logic_error.
+  /// The controller has an actuator for it. Otherwise the setters throw std::logic_error.
   bool drives() const noexcept { return mode_ != nullptr; }
   void set_mode(TurretMode mode);
   /// Relative to the robot, about its +z [rad].

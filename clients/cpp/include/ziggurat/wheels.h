@@ -3,7 +3,7 @@
 
 namespace ziggurat {
 
-/// A handle into its session, valid as long as that lives.
+/// A handle into its session, valid while the session lives.
 class Wheels {
  public:
   struct Reading {

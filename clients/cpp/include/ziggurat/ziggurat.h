@@ -1,5 +1,5 @@
 #pragma once
-// The Ziggurat controller library: everything a controller needs. See docs/cpp-client.md.
+// The C++ client library: all headers that a controller needs. See docs/cpp-client.md.
 
 #include "ziggurat/camera.h"
 #include "ziggurat/error.h"
