@@ -1,4 +1,4 @@
--- Drives the four-wheeled vehicle of scenes/dynamics3d_multi_body_test.argos from a Lua of one's own:
+-- Drives the four-wheeled vehicle of scenes/dynamics3d_multi_body_test.argos from your own Lua:
 --
 --   ziggurat serve scenes/dynamics3d_multi_body_test.argos &
 --   lua5.3 vehicle.lua tcp://127.0.0.1:5770
@@ -16,4 +16,4 @@ for tick, event in session.next do
    end
 end
 session:close()
-print("the run is over: " .. session.ending())
+print("the run has ended: " .. session.ending())

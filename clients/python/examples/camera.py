@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Says what the cameras of all robots see, and keeps the last picture of each as a PPM file.
+"""Logs what the cameras of all robots detect, and writes the last picture of each to a PPM file.
 
     camera.py [ENDPOINT]
 """
@@ -9,15 +9,16 @@ import sys
 import ziggurat
 
 
-def say_what_is_seen(robot, camera):
+def log_readings(robot, camera):
     for tag in camera.tags if camera.detects("tag") else []:
         robot.log(f"{camera.id}: tag {tag.payload.decode(errors='replace')} at "
                   f"{tag.center[0]:.1f}, {tag.center[1]:.1f}")
     for led in camera.leds if camera.detects("led") else []:
-        robot.log(f"{camera.id}: LED {tuple(led.color)} at {led.center[0]:.1f}, {led.center[1]:.1f}")
+        robot.log(f"{camera.id}: LED {tuple(led.color)} at "
+                  f"{led.center[0]:.1f}, {led.center[1]:.1f}")
 
 
-def keep_picture(robot, camera):
+def write_picture(robot, camera):
     with open(f"{robot.id}_{camera.id}.ppm", "wb") as file:
         file.write(f"P6 {camera.width} {camera.height} 255\n".encode() + camera.image)
 
@@ -28,10 +29,10 @@ def main():
         cameras = [(robot, camera) for robot in session.robots for camera in robot.cameras]
         for _ in session:
             for robot, camera in cameras:
-                say_what_is_seen(robot, camera)
+                log_readings(robot, camera)
         for robot, camera in cameras:
             if camera.takes_pictures and camera.image:
-                keep_picture(robot, camera)
+                write_picture(robot, camera)
 
 
 if __name__ == "__main__":

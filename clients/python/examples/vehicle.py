@@ -4,7 +4,7 @@
     ziggurat serve scenes/dynamics3d_multi_body_test.argos &
     vehicle.py [ENDPOINT]
 
-A scene can start it, too: as the command of an <external_controller>.
+It can also be the command of an <external_controller> in a scene.
 """
 
 import os
@@ -21,12 +21,12 @@ def main():
     with ziggurat.connect(endpoint, controller=os.environ.get("ZIGGURAT_CONTROLLER", ""),
                           name="vehicle.py") as session:
         vehicle = session.robots[0]
-        wheels = [vehicle.joints[name] for name in WHEELS]  # looked up once
+        wheels = [vehicle.joints[name] for name in WHEELS]  # looked up once, before the loop
         for tick in session:
             if tick.event is ziggurat.Event.STEP:
                 speeds = ", ".join(f"{wheel.encoder:.2f}" for wheel in wheels)
                 vehicle.log(f"wheel velocities: {speeds}")
-            else:  # INIT, or RESET: the world stands at tick 0
+            else:  # INIT or RESET: tick 0
                 for wheel in wheels:
                     wheel.target = 1.0  # [rad/s]
 

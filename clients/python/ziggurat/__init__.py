@@ -1,4 +1,4 @@
-"""Controllers for robots of a Ziggurat simulation server; docs/python-client.md tells how.
+"""Controllers for robots of a Ziggurat simulation server. See docs/python-client.md.
 
     with ziggurat.connect("tcp://127.0.0.1:5770", robots="*") as session:
         for tick in session:

@@ -1,4 +1,4 @@
-"""One DEALER: messages out and in, time-outs, and the end of the connection."""
+"""One DEALER: sends and receives messages, with time-outs, and detects a closed connection."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import protocol_pb2 as v1
 from .errors import ConnectionLost, Refused, Timeout
 
 VERSION = v1.Version(major=1, minor=0)
-LINGER_MS = 1000  # what is under way when a session is closed may take this long
+LINGER_MS = 1000  # time to send the last messages when a session is closed
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Curve:
 
 
 class Connection:
-    """Connects at once, in the background; the server need not be there yet."""
+    """Connects in the background; the server may start later."""
 
     def __init__(self, endpoint: str, curve: Optional[Curve] = None):
         self.endpoint = endpoint
@@ -36,8 +36,8 @@ class Connection:
             self.socket.curve_serverkey = curve.server_key.encode()
             self.socket.curve_publickey = curve.public_key.encode()
             self.socket.curve_secretkey = curve.secret_key.encode()
-        # A connection that comes back on its own would be a stranger to the server: its end has to
-        # be seen.
+        # ZeroMQ reconnects by itself, but the server does not know the new connection:
+        # detect the end of the first one.
         self.monitor = self.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)
         self.poller = zmq.Poller()
         self.poller.register(self.socket, zmq.POLLIN)
@@ -63,9 +63,9 @@ class Connection:
         self.socket.send(message.SerializeToString())
 
     def receive(self, timeout: Optional[float]) -> v1.ServerMessage:
-        """The next message. `timeout` is wall time [s]; None waits for ever.
+        """The next message. `timeout` is wall time [s]; None waits forever.
 
-        Raises Timeout, and ConnectionLost once all that had arrived before is read.
+        Raises Timeout, and ConnectionLost when all messages that arrived before have been read.
         """
         if self.closed:
             raise ConnectionLost("the session is closed")
@@ -80,12 +80,12 @@ class Connection:
                 if self.socket.poll(0):
                     continue
                 self.close()
-                raise ConnectionLost(f"the connection to {self.endpoint} is gone")
+                raise ConnectionLost(f"the connection to {self.endpoint} was closed")
             if end is not None and time.monotonic() >= end:
                 raise Timeout(f"{self.endpoint}: no message for {timeout:g} s")
 
     def begin(self, hello: v1.Hello, connect_timeout: float) -> v1.Welcome:
-        """Says Hello and waits for the Welcome, as long as the server says that it is loading."""
+        """Sends Hello and waits for the Welcome. Each Loading restarts the time-out."""
         hello.version.CopyFrom(VERSION)
         self.send(v1.ClientMessage(hello=hello))
         while True:
@@ -93,7 +93,7 @@ class Connection:
                 message = self.receive(connect_timeout)
             except Timeout:
                 raise ConnectionLost(
-                    f"nobody welcomed us at {self.endpoint} within {connect_timeout:g} s") from None
+                    f"no welcome at {self.endpoint} within {connect_timeout:g} s") from None
             kind = message.WhichOneof("message")
             if kind == "welcome":
                 return message.welcome

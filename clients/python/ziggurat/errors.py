@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions."""
+"""The exceptions of the client."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ from . import protocol_pb2 as v1
 
 
 class ZigguratError(Exception):
-    """All of the client's own exceptions are one of these."""
+    """The base of the client's own exceptions."""
 
 
 class ConnectionLost(ZigguratError, ConnectionError):
-    """Nobody listens, or the connection is gone. `ziggurat.resume` takes up the session."""
+    """No server answered, or the connection was closed. `ziggurat.resume` resumes the session."""
 
 
 class Timeout(ZigguratError, TimeoutError):
-    """The server was silent for longer than was asked for."""
+    """No message arrived within the time-out."""
 
 
 class Displaced(ZigguratError):
-    """Another client took robots of this session; it is over."""
+    """Another client took robots of this session, which has ended."""
 
 
 class ProtocolError(ZigguratError):
-    """The server answered a message with an error, which is in the fields of the same names."""
+    """The server answered a message with an error, whose fields have the same names here."""
 
     def __init__(self, error: v1.Error):
         self.code: str = v1.Error.Code.Name(error.code) if error.code in v1.Error.Code.values() \
@@ -38,7 +38,7 @@ class ProtocolError(ZigguratError):
 
 
 class Refused(ProtocolError):
-    """The session did not come about. `holder` names who drives the robot, for ROBOT_TAKEN."""
+    """The server refused the session. For ROBOT_TAKEN, `holder` is the robot's owner."""
 
     def __init__(self, refusal: v1.Refusal):
         super().__init__(refusal.error)

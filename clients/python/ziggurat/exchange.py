@@ -1,4 +1,4 @@
-"""The packed arrays of a session: what handles of devices read from and write to."""
+"""The packed arrays of a session, which handles of devices read and write."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ class Exchange:
     """Values of all robots of a session, in Welcome's order."""
 
     def __init__(self) -> None:
-        self.seen = v1.Observation()  # of the last tick
+        self.seen = v1.Observation()  # the last one
         self.heard: Dict[int, List[bytes]] = {}  # by radio
         self.packets: Dict[int, List[Any]] = {}  # by robot
-        self.begins: Dict[str, List[int]] = {}  # by kind of detector: first reading of each camera
+        self.begins: Dict[str, List[int]] = {}  # by detector: each camera's first reading
         # By field of Command, a value for each device.
         self.values: Dict[str, List[Any]] = defaultdict(list)
         self.data = bytearray()  # of all range-and-bearing actuators
@@ -26,11 +26,11 @@ class Exchange:
         self.log: List[v1.LogLine] = []
         self._places: Counter = Counter()
         self._initial: Dict[str, List[Any]] = {}
-        self._new: Set[str] = set()  # fields that changed since the last command
-        self._used: Set[str] = set()  # fields that ever did
+        self._new: Set[str] = set()  # fields that were set after the last command
+        self._used: Set[str] = set()  # fields that were ever set
 
     def add(self, field: str, value: Any) -> int:
-        """Lays out one more device; returns its place."""
+        """Adds the value of the next device; returns its place."""
         self.values[field].append(value)
         return len(self.values[field]) - 1
 
@@ -42,11 +42,11 @@ class Exchange:
         return self._places[kind] - 1
 
     def begin(self) -> None:
-        """Everything is laid out."""
+        """All devices have been added."""
         self._initial = {field: list(values) for field, values in self.values.items()}
 
     def reset(self) -> None:
-        """The world is as at the start, and so are all commands."""
+        """The world was reset, and so are all values."""
         for field, values in self._initial.items():
             self.values[field][:] = values
         self.data[:] = bytes(len(self.data))
@@ -55,7 +55,7 @@ class Exchange:
         self._used.clear()
 
     def repeat(self) -> None:
-        """The last command may be lost: the next one says everything again."""
+        """The server may have discarded the last command: the next one has all values again."""
         self._new |= self._used
 
     def set(self, field: str, place: int, value: Any) -> None:
@@ -79,7 +79,7 @@ class Exchange:
             self.begins[kind] = [0, *accumulate(counts)]
 
     def command(self, tick: int) -> v1.ClientMessage:
-        """What was set since the last command."""
+        """A command with the values that were set after the last one."""
         message = v1.ClientMessage()
         command = message.command
         command.SetInParent()
@@ -94,7 +94,7 @@ class Exchange:
         return message
 
     def sent(self) -> None:
-        """The command is on its way."""
+        """The command was sent."""
         self._used |= self._new
         self._new.clear()
         self.messages.clear()

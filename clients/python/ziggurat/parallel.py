@@ -1,5 +1,5 @@
-"""An environment for multi-agent learning with the methods of PettingZoo's ParallelEnv, which is
-not needed for it: agents are robots, a step is a tick."""
+"""An environment for multi-agent learning with the methods of PettingZoo's ParallelEnv, without
+that package: agents are robots, a step is a tick."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Act = Callable[[Robot, Any], None]
 
 
 def all_readings(robot: Robot) -> List[float]:
-    """Encoders, proximity, pose (7 numbers) and available charge, of the devices that there are."""
+    """Encoders, proximity, pose (7 numbers) and available charge, of the robot's devices."""
     values = [joint.encoder for joint in robot.joints if joint.sensor_mode is not None]
     values.extend(robot.proximity)
     if robot.pose is not None:
@@ -30,7 +30,7 @@ def joint_targets(robot: Robot, action: Sequence[float]) -> None:
     """A target for each motor of the robot, in order."""
     motors = [joint for joint in robot.joints if joint.actuator_mode is not None]
     if len(action) != len(motors):
-        raise ValueError(f"{robot.id}: {len(motors)} targets are due, not {len(action)}")
+        raise ValueError(f"{robot.id}: an action has {len(motors)} targets, not {len(action)}")
     for motor, target in zip(motors, action):
         motor.target = target
 
@@ -43,14 +43,14 @@ def parallel_env(scene: Optional[str] = None, **options: Any) -> "ParallelEnv":
 class ParallelEnv:
     """Starts a server for `scene`, or attaches to the one at `endpoint`.
 
-    observe     what an agent sees of its robot; default all_readings
-    act         carries out an action; default joint_targets
+    observe     returns an agent's observation of its robot; default all_readings
+    act         performs an action; default joint_targets
     reward      of an agent, after each tick; default 0
     terminated  whether an agent's task is over; default never
-    max_ticks   truncates episodes; by default they are as long as the scene
-    command     the server's program; arguments: its further options
+    max_ticks   length of an episode; default the length of the scene
+    command     the server's program; arguments: its other options
 
-    Robots whose agents are terminated keep what they were last commanded until the next reset.
+    The robot of a terminated agent keeps its last commands until the next reset.
     """
 
     metadata = {"name": "ziggurat", "render_modes": []}
@@ -63,7 +63,7 @@ class ParallelEnv:
                  arguments: Sequence[str] = (), observation_spaces: Optional[Dict] = None,
                  action_spaces: Optional[Dict] = None):
         if (scene is None) == (endpoint is None):
-            raise ValueError("either a scene or an endpoint is due")
+            raise ValueError("give either a scene or an endpoint")
         self._scene, self._endpoint = scene, endpoint
         self._robots = robots
         self._observe, self._act = observe, act
@@ -86,14 +86,14 @@ class ParallelEnv:
 
     @property
     def session(self) -> Session:
-        """The session beneath, for devices that actions and observations do not cover."""
+        """The session, for devices that actions and observations do not include."""
         if self._session is None:
-            raise RuntimeError("reset() comes first")
+            raise RuntimeError("call reset() first")
         return self._session
 
     def reset(self, seed: Optional[int] = None,
               options: Optional[Dict] = None) -> Tuple[Dict[str, Any], Dict[str, Dict]]:
-        """Back to tick 0: observations and infos by agent. Without a seed, the one before."""
+        """Back to tick 0: observations and infos by agent. Without a seed, the last one again."""
         if not self._reset_world(seed):
             self._start(seed)
         next(self.session)
@@ -123,7 +123,7 @@ class ParallelEnv:
         return {agent: {"tick": self.session.tick.number} for agent in self.agents}
 
     def _reset_world(self, seed: Optional[int]) -> bool:
-        """By the supervisor, if the run is not over and there is such a role."""
+        """By a supervisor, if the run has not ended and the server allows supervisors."""
         if self._session is None or self._session.ending is not None:
             return False
         try:
@@ -138,9 +138,9 @@ class ParallelEnv:
         return True
 
     def _start(self, seed: Optional[int]) -> None:
-        """A fresh server, or a first session with the one that is there."""
+        """Starts a new server, or a first session at the endpoint."""
         if self._session is not None and self._scene is None:
-            raise RuntimeError("the run is over, and its server is not ours to start again")
+            raise RuntimeError("the run has ended; only a server of parallel_env itself can restart")
         seed = seed if seed is not None or self._session is None else self._session.seed
         self.close()
         if self._scene is not None:
@@ -159,7 +159,7 @@ class ParallelEnv:
             raise RuntimeError(f"the server runs with seed {self.session.seed} and can't be reset")
 
     def render(self) -> None:
-        """There is nothing to see here."""
+        """Does nothing: there are no pictures."""
 
     def close(self) -> None:
         for part in (self._session, self._supervisor, self._server):

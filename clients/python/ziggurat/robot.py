@@ -18,7 +18,7 @@ T = TypeVar("T")
 
 
 class Named(Sequence, Generic[T]):
-    """Things in order, found by place or by id."""
+    """A list with access by position or by id."""
 
     def __init__(self, things: Iterable[T], kind: str):
         self._things: List[T] = list(things)
@@ -32,7 +32,7 @@ class Named(Sequence, Generic[T]):
             return self._things[key]
         if key in self._by_id:
             return self._by_id[key]
-        raise KeyError(f"no {self._kind} {key!r}; there are: "
+        raise KeyError(f"no {self._kind} {key!r}; known: "
                        + (", ".join(map(repr, self._by_id)) or "none"))
 
     def __len__(self) -> int:
@@ -49,8 +49,8 @@ class Named(Sequence, Generic[T]):
 
 
 class Robot:
-    """Devices are those that the scene's controller enables; range_and_bearing, wheels and turret
-    are None for robots without."""
+    """It has the devices that the scene's controller enables. range_and_bearing, wheels and turret
+    are None for robots without them."""
 
     # Of the positioning sensor and of the battery.
     pose = pose
@@ -95,16 +95,16 @@ class Robot:
         return [readings[place] if readings else 0.0 for place in self._proximity]
 
     def log(self, text: str, error: bool = False) -> None:
-        """The server prints it, with the command of this tick."""
+        """Sends a line to the server's log with the command of this tick."""
         self._exchange.log.append(v1.LogLine(robot=self._position, error=error,
                                              text=text.rstrip("\n")))
 
     def leave(self) -> None:
-        """Out of the run for good: nobody waits for it any more."""
+        """Leaves the run forever: the world no longer waits for this robot."""
         self._tell_leave(self, "")
 
     def fail(self, message: str) -> None:
-        """The same, as a failure: the run goes on and exits with 3 in the end."""
+        """Leaves as failed: the run continues, and exits with code 3 at its end."""
         self._tell_leave(self, message or "failed")
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""A server of one's own, for programs that want a run at hand."""
+"""A server as a child process, for programs that start a run themselves."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any, Optional, Sequence
 class Server:
     """Runs `ziggurat serve SCENE` on a free port of this machine until it is closed.
 
-    command    the program, if it is not on the PATH
-    arguments  more options of `ziggurat serve`
+    command    path of the program, if it is not on the PATH
+    arguments  other options of `ziggurat serve`
     """
 
     def __init__(self, scene: str, *, command: str = "ziggurat", arguments: Sequence[str] = ()):
@@ -29,7 +29,7 @@ class Server:
             raise RuntimeError(f"ziggurat serve did not start: {line}{errors}") from None
 
     def wait(self, timeout: Optional[float] = None) -> int:
-        """Until the run is over [s]; the exit code."""
+        """Waits for the end of the run [s]; returns the exit code."""
         self.process.communicate(timeout=timeout)
         return self.process.returncode
 

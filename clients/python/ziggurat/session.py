@@ -1,4 +1,4 @@
-"""The tick as a controller sees it."""
+"""Sessions of controllers: ticks, commands, the end."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from .errors import Displaced, ProtocolError
 from .exchange import Exchange
 from .robot import Named, Robot
 
-# Errors that say that a command came late or twice: harmless, the next observation is there or on its
-# way. One that meets a reset on its way is for a future tick.
+# Errors for a command that came too late or twice: harmless, as the next observation arrives anyway.
+# A command that was sent before a Reset arrived may have a future tick.
 _LATE = (v1.Error.STALE_TICK, v1.Error.DUPLICATE_TICK)
 
 
 class Event(enum.Enum):
-    """What a tick is to a controller."""
+    """The kind of a tick."""
 
     INIT = "init"  # the first observation of a session
     STEP = "step"
-    RESET = "reset"  # the world went back to its start, and all commands with it
-    RESUME = "resume"  # the first observation of a session that was taken up
+    RESET = "reset"  # the world was reset, and all commands with it
+    RESUME = "resume"  # the first observation of a resumed session
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class Ending:
 
 @dataclass(frozen=True)
 class Deadline:
-    """What shall happen when this controller does not answer in time: "wait", "hold", "zero",
-    "drop" or "stop"; a wish, which the server may refuse."""
+    """The action if this controller does not answer in time: "wait", "hold", "zero", "drop" or
+    "stop". A wish, which the server may refuse."""
 
     action: str
     wall_ms: int = 0
@@ -63,13 +63,13 @@ def connect(endpoint: str, robots: Union[str, Sequence[str]] = (), *, controller
             name: str = "python", version: str = "", deadline: Optional[Deadline] = None,
             takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
             wait_timeout: Optional[float] = None) -> "Session":
-    """A session with all robots that fit both `robots` (ids, or globs with * ? [a-z]) and
+    """A session with all robots that match both `robots` (ids, or globs with * ? [a-z]) and
     `controller` (its id in the scene); with neither, all robots.
 
-    connect_timeout  how long to wait until somebody listens [s]
-    wait_timeout     how long the server may be silent [s]; None: for ever
+    connect_timeout  wall time to wait for the server's welcome [s]
+    wait_timeout     wall time to wait for a message [s]; None: forever
 
-    Raises ConnectionLost if nobody listens and Refused if the server does not want us.
+    Raises ConnectionLost if no server answers, and Refused if the server refuses the session.
     """
     wanted = [robots] if isinstance(robots, str) else list(robots)
     if not wanted and not controller:
@@ -84,17 +84,17 @@ def connect(endpoint: str, robots: Union[str, Sequence[str]] = (), *, controller
 def resume(endpoint: str, token: bytes, *, name: str = "python", version: str = "",
            takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
            wait_timeout: Optional[float] = None) -> "Session":
-    """Takes up the session of this token after its connection was lost: same robots, same tick.
-    What was commanded before holds; the first tick's event is RESUME."""
+    """Resumes the session with this token after its connection was lost: same robots, same tick.
+    The last commands hold; the first tick's event is RESUME."""
     hello = v1.Hello(role=v1.ROLE_CONTROLLER, robots=["*"], client_name=name,
                      client_version=version, session_token=token, takeover=takeover)
     return Session(endpoint, hello, curve, connect_timeout, wait_timeout)
 
 
 class Session:
-    """An iterator over ticks. Taking the next one sends what was set since the last.
+    """An iterator over ticks. The next tick sends the values that were set in this one.
 
-    As a context manager it leaves at the end of the block: as failed while an exception passes.
+    As a context manager it leaves the run at the end of the block: as failed after an exception.
     """
 
     def __init__(self, endpoint: str, hello: v1.Hello, curve: Optional[Curve],
@@ -103,7 +103,7 @@ class Session:
         self._exchange = Exchange()
         self._wait_timeout = wait_timeout
         self._event = Event.RESUME if hello.session_token else Event.INIT
-        self._owes: Optional[int] = None  # the tick that was not answered yet
+        self._owes: Optional[int] = None  # the tick that is not answered yet
         try:
             self.welcome = self._connection.begin(hello, connect_timeout)
         except BaseException:
@@ -113,12 +113,12 @@ class Session:
             [Robot(self._exchange, position, given, self._leave_one)
              for position, given in enumerate(self.welcome.robots)], "robot")
         self._exchange.begin()
-        self.tick: Optional[Tick] = None  # the one that was given last
+        self.tick: Optional[Tick] = None  # the current one
         self.ending: Optional[Ending] = None
         self.paused = False
-        self._was_put_back = False  # the world, by a reset
+        self._was_reset = False  # at some time
         self.missed = 0  # deadlines
-        self.late = 0  # commands that came too late, or twice
+        self.late = 0  # commands that came too late or twice
 
     @property
     def endpoint(self) -> str:
@@ -126,7 +126,7 @@ class Session:
 
     @property
     def token(self) -> bytes:
-        """To `resume` this session with."""
+        """For `resume`."""
         return self.welcome.session_token
 
     @property
@@ -162,15 +162,15 @@ class Session:
             self._take(kind, message)
 
     def expect_reset(self) -> None:
-        """The tick in hand is not answered: somebody resets the world, and awaits no answer."""
+        """Does not answer the current tick, because the world is being reset."""
         self._owes = None
 
     def _take(self, kind: Optional[str], message: v1.ServerMessage) -> None:
-        """What is neither tick nor end; kinds that are not known are nothing."""
+        """Handles messages other than ticks and the end; ignores unknown kinds."""
         if kind == "reset":
             self._exchange.reset()
             self._event = Event.RESET
-            self._was_put_back = True
+            self._was_reset = True
             self._owes = None
         elif kind == "paused":
             self.paused = True
@@ -186,10 +186,10 @@ class Session:
             self.missed += 1
             self._exchange.repeat()
             return
-        met_reset = error.code == v1.Error.FUTURE_TICK and self._was_put_back
+        met_reset = error.code == v1.Error.FUTURE_TICK and self._was_reset
         if (error.code in _LATE or met_reset) and error.severity != v1.Error.FATAL:
             self.late += 1
-            if self._was_put_back:  # the world may have taken an answer of before in place of ours
+            if self._was_reset:  # an answer from before the reset may have been taken instead
                 self._exchange.repeat()
             return
         if error.severity == v1.Error.WARNING:
@@ -197,7 +197,7 @@ class Session:
         if error.severity == v1.Error.FATAL:
             self._connection.close()
         elif self.tick is not None:
-            self._owes = self.tick.number  # the command had no effect; a right one may follow
+            self._owes = self.tick.number  # the command was discarded; send another
             self._exchange.repeat()
         raise ProtocolError(error)
 
@@ -213,7 +213,7 @@ class Session:
         message = self._exchange.command(self._owes)
         size = message.ByteSize()
         if 0 < self.welcome.max_message_bytes < size:
-            raise ValueError(f"the command has {size} bytes; the server takes "
+            raise ValueError(f"the command has {size} bytes; the server accepts at most "
                              f"{self.welcome.max_message_bytes}")
         self._connection.send(message)
         self._exchange.sent()
@@ -240,7 +240,7 @@ class Session:
         self._connection.close()
 
     def abandon(self) -> None:
-        """Closes the connection without a word, as a crash would: the session can be resumed."""
+        """Closes the connection without a Leave, as in a crash: the session can be resumed."""
         self._connection.close(linger_ms=0)
 
     def __enter__(self) -> "Session":

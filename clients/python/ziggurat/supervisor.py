@@ -1,4 +1,4 @@
-"""The run from above: pausing, stepping, resetting, moving and reading. Not part of the tick."""
+"""Supervision of a run: pause, step, reset, move, read. The world never waits for a supervisor."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class SessionStatus:
     state: str  # "ready", "owing", "answered", "paused", "draining" or "lost"
     robots: Tuple[str, ...]
     tick: int  # of its last observation
-    wall_waiting: float  # how long the barrier has waited for it [s]
-    wall_last_message: float  # since it was last heard of [s]
+    wall_waiting: float  # how long the world has waited for it [s]
+    wall_last_message: float  # since its last message [s]
     wall_latency: Tuple[float, float, float]  # median, 99th percentile, longest [s]
     misses: int
 
@@ -34,15 +34,15 @@ class Status:
     seed: int
     scene: str
     scene_hash: str
-    last_tick: int  # 0: until somebody stops it
+    last_tick: int  # 0: no last tick
     sessions: Tuple[SessionStatus, ...]
-    free_robots: Tuple[str, ...]  # whom the world waits for, without controller
+    free_robots: Tuple[str, ...]  # without a session; the world waits for them
     gone_robots: Tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class LinkState:
-    """In the world: centre of the link's bottom."""
+    """In the world, of the link's frame: its origin is the centre of the link's bottom."""
 
     id: str
     position: Vector  # [m]
@@ -79,10 +79,10 @@ def supervise(endpoint: str, **options: Any) -> "Supervisor":
 
 
 class Supervisor:
-    """Each call waits for the server's answer, and what it asked for is true then. All but status
-    and read raise ProtocolError with FORBIDDEN for an observer.
+    """Each call returns when the server has carried it out. For an observer, all but status and
+    read raise ProtocolError with FORBIDDEN.
 
-    connect_timeout, wait_timeout  wall time [s]; None waits for ever
+    connect_timeout, wait_timeout  wall time [s]; None waits forever
     """
 
     def __init__(self, endpoint: str, *, observer: bool = False, name: str = "python",
@@ -116,30 +116,30 @@ class Supervisor:
             if kind == "end":
                 self.ending = Ending(v1.End.Reason.Name(message.end.reason).lower(),
                                      message.end.message, message.end.tick)
-                raise ConnectionLost(f"the run is over: {self.ending.reason}")
+                raise ConnectionLost(f"the run has ended: {self.ending.reason}")
 
     def status(self) -> Status:
-        """Who holds the tick, and since when."""
+        """Tick, sessions and robots: for which sessions the world waits, and how long."""
         return _status(self._ask(status=v1.StatusRequest()).status)
 
     def pause(self) -> int:
-        """The world stands when this returns; the tick that it stands at."""
+        """Stops the world after the current tick; returns that tick."""
         return self._ask(pause=v1.PauseRequest()).tick
 
     def resume(self) -> int:
-        """Lets a paused world go on."""
+        """Continues a paused world."""
         return self._ask(resume=v1.ResumeRequest()).tick
 
     def step(self, ticks: int = 1) -> int:
-        """Moves a paused world by so many ticks; the tick that it stands at then."""
+        """Runs this many ticks of a paused world; returns the tick at which it stopped."""
         return self._ask(step=v1.StepRequest(ticks=ticks)).tick
 
     def reset(self, seed: Optional[int] = None) -> int:
-        """Builds the world anew, with the same seed if none is given."""
+        """Builds the world again, with the same seed if none is given."""
         return self._ask(reset=v1.ResetRequest(seed=seed)).tick
 
     def spawn(self, xml: str) -> int:
-        """Adds one element as it may stand in <arena>."""
+        """Adds an element, written as in <arena>."""
         return self._ask(spawn=v1.SpawnRequest(xml=xml)).tick
 
     def remove(self, entity: str) -> int:
@@ -147,12 +147,12 @@ class Supervisor:
 
     def move(self, entity: str, position: Sequence[float],
              orientation: Sequence[float] = ()) -> int:
-        """To rest with its origin at a position in the world [m]; orientation w, x, y, z."""
+        """The entity is at rest with its origin at `position` [m]; orientation w, x, y, z."""
         return self._ask(move=v1.MoveRequest(entity=entity, position=position,
                                              orientation=orientation)).tick
 
     def read(self, entities: Union[str, Sequence[str]] = ()) -> States:
-        """Of the entities that these ids or globs mean; without any, of all."""
+        """States of the entities that match these ids or globs; without any, of all."""
         wanted = [entities] if isinstance(entities, str) else list(entities)
         response = self._ask(read=v1.ReadRequest(entities=wanted))
         return States(response.tick, response.states.hash,

@@ -52,11 +52,11 @@ TEST(TickPath, SensingAndDrivingAllocateNothing) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
     for (std::uint64_t tick = 0; tick < ticks; ++tick) {
-      self.say(sight(tick));
-      EXPECT_EQ(self.heard().command().wheel_velocities_size(), 4);
+      self.send(sight(tick));
+      EXPECT_EQ(self.receive().command().wheel_velocities_size(), 4);
     }
     self.end();
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   std::size_t before = 0;

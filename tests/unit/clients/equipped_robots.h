@@ -1,5 +1,5 @@
 #pragma once
-// What a server says of robots that have every device, and of what they sense.
+// Messages about robots with every device: a Welcome, and observations.
 
 #include <cstdint>
 #include <string>
@@ -31,7 +31,7 @@ inline void add_cameras(v1::RobotDescription& robot) {
   lens.set_detects_tags(true);
 }
 
-/// Robots "a" without devices and "b", "c" with everything; b's radio "mouth" only sends.
+/// Robots "a" without devices and "b", "c" with all devices; the radio "mouth" only sends.
 inline v1::ServerMessage welcome() {
   v1::ServerMessage message;
   v1::Welcome& welcome = *message.mutable_welcome();
@@ -76,7 +76,7 @@ inline v1::ServerMessage welcome() {
   return message;
 }
 
-/// Of two robots with everything, whose cameras see nothing.
+/// Of the robots of welcome(); their cameras see nothing.
 inline v1::ServerMessage observation(std::uint64_t tick) {
   v1::ServerMessage message;
   v1::Observation& observation = *message.mutable_observation();
@@ -95,7 +95,7 @@ inline v1::ServerMessage observation(std::uint64_t tick) {
   return message;
 }
 
-/// To the end of the lists: the counts are the caller's to set.
+/// Appends to the lists; the caller sets the counts.
 inline void add_led(v1::Observation& observation, std::uint32_t color, double u, double v) {
   observation.add_led_colors(color);
   observation.add_led_centers(u);
@@ -118,10 +118,10 @@ inline void add_tag(v1::Observation& observation, const std::string& payload, do
   for (int i = 0; i < 8; ++i) observation.add_tag_corners(first + i);
 }
 
-inline void hear(v1::ServerMessage& message, std::uint32_t radio, const std::string& payload) {
-  v1::RadioMessage& heard = *message.mutable_observation()->add_radio_messages();
-  heard.set_radio(radio);
-  heard.set_payload(payload);
+inline void receive(v1::ServerMessage& message, std::uint32_t radio, const std::string& payload) {
+  v1::RadioMessage& received = *message.mutable_observation()->add_radio_messages();
+  received.set_radio(radio);
+  received.set_payload(payload);
 }
 
 }  // namespace ziggurat

@@ -1,5 +1,5 @@
 #pragma once
-// A server that says exactly what the test wants.
+// A server whose messages the test chooses.
 
 #include <gtest/gtest.h>
 #include <zmq.h>
@@ -41,7 +41,7 @@ class FakeServer {
   }
 
   /// The client's next message; empty if none comes.
-  v1::ClientMessage heard() {
+  v1::ClientMessage receive() {
     std::array<char, 64> peer{};
     const int size = zmq_recv(router_, peer.data(), peer.size(), 0);
     if (size < 0) return {};
@@ -55,21 +55,21 @@ class FakeServer {
     zmq_msg_close(&frame);
     return message;
   }
-  void say(const v1::ServerMessage& message) { say_bytes(message.SerializeAsString()); }
-  void say_bytes(const std::string& bytes) {
+  void send(const v1::ServerMessage& message) { send_bytes(message.SerializeAsString()); }
+  void send_bytes(const std::string& bytes) {
     zmq_send(router_, peer_.data(), peer_.size(), ZMQ_SNDMORE);
     zmq_send(router_, bytes.data(), bytes.size(), 0);
   }
 
-  /// What the server says of itself and the run is up to the caller.
+  /// Answers Hello with this message.
   void welcome(const v1::ServerMessage& message) {
-    EXPECT_TRUE(heard().has_hello());
-    say(message);
+    EXPECT_TRUE(receive().has_hello());
+    send(message);
   }
 
   /// Two robots "a" and "b", each with joint "slide" (encoder) and "hinge" (encoder and motor).
   void welcome() {
-    EXPECT_TRUE(heard().has_hello());
+    EXPECT_TRUE(receive().has_hello());
     v1::ServerMessage message;
     v1::Welcome& welcome = *message.mutable_welcome();
     welcome.set_seed(7);
@@ -90,19 +90,19 @@ class FakeServer {
       actuator.set_mode(v1::JointDescription::VELOCITY);
       actuator.set_max_impulse(0.5);
     }
-    say(message);
+    send(message);
   }
   void observe(std::uint64_t tick, std::vector<double> readings) {
     v1::ServerMessage message;
     message.mutable_observation()->set_tick(tick);
     message.mutable_observation()->set_time_ns(static_cast<std::int64_t>(tick) * 50'000'000);
     message.mutable_observation()->mutable_joint_readings()->Add(readings.begin(), readings.end());
-    say(message);
+    send(message);
   }
   void end() {
     v1::ServerMessage message;
     message.mutable_end()->set_reason(v1::End::FINISHED);
-    say(message);
+    send(message);
   }
 
   std::string endpoint;

@@ -49,7 +49,7 @@ TEST_F(Devices, CamerasHaveTheDetectorsThatTheSceneGives) {
   )lua"));
 }
 
-TEST_F(Devices, CamerasTellWhereAndHowTheyLook) {
+TEST_F(Devices, CamerasHavePoseAndIntrinsics) {
   add_camera(robot_, "eye");
   EXPECT_RUNS(start(R"lua(
     local eye = robot.cameras.eye
@@ -64,7 +64,7 @@ TEST_F(Devices, CamerasTellWhereAndHowTheyLook) {
   )lua"));
 }
 
-TEST_F(Devices, CameraReadingsReplaceThoseBeforeAndMayBeKept) {
+TEST_F(Devices, CameraReadingsAreReplacedAndMayBeKept) {
   add_camera(robot_, "eye");
   add_camera(robot_, "lens");
   EXPECT_RUNS(start(R"lua(
@@ -111,7 +111,7 @@ TEST_F(Devices, CameraReadingsReplaceThoseBeforeAndMayBeKept) {
   EXPECT_RUNS(step());
 }
 
-TEST_F(Devices, CameraReadingsOutliveWhatAScriptDoesToRobot) {
+TEST_F(Devices, CameraReadingsDoNotDependOnTheTableRobot) {
   add_camera(robot_, "eye");
   EXPECT_RUNS(start(R"lua(
     tags = robot.cameras.eye.tag_detector
@@ -168,7 +168,7 @@ TEST_F(Devices, WheelsAreInCentimetres) {
   EXPECT_RUNS(step());
 }
 
-TEST_F(Devices, WheelsRefuseWhatIsNoSpeed) {
+TEST_F(Devices, WheelsRefuseInvalidSpeeds) {
   add_driving(robot_);
   EXPECT_RUNS(start(R"lua(
     local set = robot.wheels.set_velocity
@@ -182,7 +182,7 @@ TEST_F(Devices, WheelsRefuseWhatIsNoSpeed) {
   EXPECT_EQ(command().wheel_velocities_size(), 0);
 }
 
-TEST_F(Devices, WheelsAndTurretHaveWhatIsEnabled) {
+TEST_F(Devices, WheelsAndTurretHaveTheEnabledParts) {
   add_driving(robot_);
   robot_.mutable_wheels()->set_measures(false);
   robot_.mutable_turret()->set_drives(false);

@@ -28,14 +28,14 @@ void assign(google::protobuf::RepeatedField<double>& to, std::initializer_list<d
   to.Add(values.begin(), values.end());
 }
 
-void receive(v1::Observation& seen, std::uint32_t radio, const std::string& payload) {
+void add_received(v1::Observation& seen, std::uint32_t radio, const std::string& payload) {
   seen.add_radio_messages()->set_radio(radio);
   seen.mutable_radio_messages()->rbegin()->set_payload(payload);
 }
 
 // ---- presence -----------------------------------------------------------------------------------
 
-TEST_F(Devices, AreThereOnlyIfTheControllerHasThem) {
+TEST_F(Devices, ExistOnlyIfTheControllerHasThem) {
   EXPECT_RUNS(start(R"lua(
     for name, value in pairs(robot) do
       assert(name == "id" or name == "params" or name == "random", name)
@@ -77,17 +77,17 @@ TEST_F(Devices, RadioMessagesAreArraysOfIntegers) {
       assert(a[1][3] + 1 .. "" == "256")
       kept = a[1]
       function expect()
-        assert(#a == 1 and a[2] == nil and a[1][1] == 7, "what was heard before is gone")
+        assert(#a == 1 and a[2] == nil and a[1][1] == 7, "earlier messages are removed")
         assert(#kept == 3, "but may be kept")
         function expect() assert(next(a) == nil) end
       end
     end
   )lua"));
-  receive(seen(), 0, std::string("\0\x80\xff", 3));
-  receive(seen(), 0, "");
+  add_received(seen(), 0, std::string("\0\x80\xff", 3));
+  add_received(seen(), 0, "");
   EXPECT_RUNS(step());
   seen().clear_radio_messages();
-  receive(seen(), 0, "\7");
+  add_received(seen(), 0, "\7");
   EXPECT_RUNS(step());
   seen().clear_radio_messages();
   EXPECT_RUNS(step());
@@ -107,7 +107,7 @@ TEST_F(Devices, RadioNumbersBecomeBytes) {
                 {0, 255, 0, 1, 255, 0, 255}, {2, 0, 255, 255, 0, 254, 0, 0, 255}, {}, {5}}));
 }
 
-TEST_F(Devices, RadioRefusesWhatIsNoMessageAndSendsNothingOfIt) {
+TEST_F(Devices, RadioRefusesInvalidMessages) {
   add_radio(robot_, "r", false, true);
   EXPECT_RUNS(start(R"lua(
     local tx = robot.radios.r.tx_data
@@ -190,7 +190,7 @@ TEST_F(Devices, AllLedsAtOnceAndEachKindByItself) {
   EXPECT_EQ(robot().directional_leds()[1].color(), (Color{1, 2, 3}));
 }
 
-TEST_F(Devices, LedsRefuseWhatIsNoColorOrNoLed) {
+TEST_F(Devices, LedsRefuseInvalidColorsAndPositions) {
   for (int i = 0; i < 2; ++i) robot_.add_leds();
   EXPECT_RUNS(start(R"lua(
     local one, all = robot.leds.set_single_color, robot.leds.set_all_colors
@@ -279,7 +279,7 @@ TEST_F(Devices, ProximityIsAnArray) {
   EXPECT_RUNS(step());
 }
 
-TEST_F(Devices, ProximityThatTellsItsAnglesIsAnArrayOfTables) {
+TEST_F(Devices, ProximityWithAnglesIsAnArrayOfTables) {
   for (const double angle : {0.5, 1.5, -3.0}) robot_.add_proximity_sensors()->set_angle(angle);
   EXPECT_RUNS(start(R"lua(
     local all = robot.proximity

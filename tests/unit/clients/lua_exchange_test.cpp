@@ -1,5 +1,4 @@
-// From a session to a script and back: every device, against a server that says exactly what the
-// test wants.
+// Every device from a session to a script and back, against a server that the test scripts.
 
 #include <gtest/gtest.h>
 
@@ -39,14 +38,14 @@ class Exchange : public ::testing::Test {
   std::filesystem::path path_;
 };
 
-TEST_F(Exchange, WhatIsSensedReachesTheScript) {
+TEST_F(Exchange, ReadingsReachTheScript) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.say(observation(0));
-    self.heard();
+    self.send(observation(0));
+    self.receive();
     auto message = observation(1);
-    hear(message, 2, std::string("\0\xff", 2));
-    hear(message, 2, "");
+    receive(message, 2, std::string("\0\xff", 2));
+    receive(message, 2, "");
     v1::RangeAndBearingPacket& packet = *message.mutable_observation()->add_range_and_bearing();
     packet.set_robot(2);
     packet.set_range(0.5);
@@ -59,11 +58,11 @@ TEST_F(Exchange, WhatIsSensedReachesTheScript) {
     seen.set_tag_counts(3, 1);
     add_tag(seen, "42", 5, 6, 10);
     seen.set_camera_images(1, "123456");
-    self.say(message);
-    const auto answer = self.heard();
+    self.send(message);
+    const auto answer = self.receive();
     EXPECT_TRUE(answer.has_command()) << answer.ShortDebugString();
     self.end();
-    self.heard();
+    self.receive();
   });
   EXPECT_TRUE(runs(server, R"lua(
     function init()
@@ -102,11 +101,11 @@ TEST_F(Exchange, WhatIsSensedReachesTheScript) {
   )lua"));
 }
 
-TEST_F(Exchange, WhatIsCommandedReachesTheServer) {
+TEST_F(Exchange, CommandsReachTheServer) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.say(observation(0));
-    const auto command = self.heard().command();
+    self.send(observation(0));
+    const auto command = self.receive().command();
     EXPECT_EQ(command.led_colors_size(), 4);
     EXPECT_EQ(command.led_colors(3), 0xFF0000U);
     EXPECT_EQ(command.led_colors(1), 0x010203U) << "the scene's color";
@@ -127,13 +126,13 @@ TEST_F(Exchange, WhatIsCommandedReachesTheServer) {
     EXPECT_EQ(command.turret_modes(1), v1::TURRET_POSITION);
     EXPECT_EQ(command.turret_rotations(1), 1.5);
     EXPECT_NEAR(command.turret_speeds(1), 0.2094395, 1e-6);
-    self.say(observation(1));
-    const auto second = self.heard().command();
+    self.send(observation(1));
+    const auto second = self.receive().command();
     EXPECT_EQ(second.radio_messages_size() + second.led_colors_size() +
                   second.wheel_velocities_size() + second.turret_modes_size(),
               0);
     self.end();
-    self.heard();
+    self.receive();
   });
   EXPECT_TRUE(runs(server, R"lua(
     function init()
@@ -154,18 +153,18 @@ TEST_F(Exchange, WhatIsCommandedReachesTheServer) {
   )lua"));
 }
 
-TEST_F(Exchange, ASessionThatSendsTooMuchLosesTheRobotThatDoes) {
+TEST_F(Exchange, ARobotThatSendsTooMuchForTheSessionFails) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());  // a session may send 4 MiB at a tick
-    self.say(observation(0));
-    const auto leave = self.heard().leave();
+    self.send(observation(0));
+    const auto leave = self.receive().leave();
     ASSERT_EQ(leave.robots_size(), 1);
     EXPECT_EQ(leave.robots(0), 2U);
     EXPECT_EQ(leave.reason(), v1::Leave::FAILED);
     EXPECT_NE(leave.message().find("bytes by radio at this tick"), std::string::npos);
-    EXPECT_GE(self.heard().command().radio_messages_size(), 3);
+    EXPECT_GE(self.receive().command().radio_messages_size(), 3);
     self.end();
-    self.heard();
+    self.receive();
   });
   EXPECT_FALSE(runs(server, R"lua(
     function init()

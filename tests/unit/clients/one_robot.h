@@ -28,7 +28,7 @@ class OneRobot {
 
   Robot& robot() { return fleet_.robots()[0]; }
 
-  v1::Observation seen;  ///< zeros, and nothing seen or received, in the beginning
+  v1::Observation seen;  ///< initially zeros, without camera readings, messages and packets
   void sense() { fleet_.read(seen); }
 
   /// What was set since the last call.

@@ -1,4 +1,4 @@
-// Cameras of the client, against a server that says exactly what the test wants.
+// Cameras of the client, against a server that the test scripts.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using Pixel = Camera::Pixel;
 TEST(Cameras, AreDescribed) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   EXPECT_TRUE(session.robot("a").cameras().empty());
@@ -73,10 +73,10 @@ v1::ServerMessage sight(std::uint64_t tick) {
 TEST(Cameras, ReadingsBelongToTheirTick) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.say(sight(0));
-    self.heard();
-    self.say(observation(1));
-    self.heard();
+    self.send(sight(0));
+    self.receive();
+    self.send(observation(1));
+    self.receive();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -107,14 +107,14 @@ TEST(Cameras, ReadingsBelongToTheirTick) {
   EXPECT_TRUE(lens.tags().empty() && eye_of_b.directional_leds().empty());
 }
 
-TEST(Cameras, WhatWasNotAnnouncedIsNotRead) {
+TEST(Cameras, UnannouncedValuesAreRefused) {
   const auto refused = [](const v1::Observation& seen, const char* words) {
     v1::ServerMessage message;
     *message.mutable_observation() = seen;
     FakeServer server([message](FakeServer& self) {
       self.welcome(welcome());
-      self.say(message);
-      self.heard();
+      self.send(message);
+      self.receive();
     });
     Session session(options_for(server));
     try {

@@ -1,4 +1,4 @@
-// The client's devices other than joints, against a server that says exactly what the test wants.
+// The client's devices other than joints, against a server that the test scripts.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ std::string text_of(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 TEST(Devices, AreDescribed) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   Robot& a = session.robot("a");
@@ -59,18 +59,18 @@ TEST(Devices, ReadingsBelongToTheirTick) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
     auto first = observation(0);
-    hear(first, 2, std::string("\0\xff", 2));
-    hear(first, 2, "");
+    receive(first, 2, std::string("\0\xff", 2));
+    receive(first, 2, "");
     v1::RangeAndBearingPacket& packet = *first.mutable_observation()->add_range_and_bearing();
     packet.set_robot(1);
     packet.set_range(1.5);
     packet.set_horizontal_bearing(-0.5);
     packet.set_vertical_bearing(0.25);
     packet.set_data("xy");
-    self.say(first);
-    self.heard();
-    self.say(observation(1));
-    self.heard();
+    self.send(first);
+    self.receive();
+    self.send(observation(1));
+    self.receive();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -98,11 +98,11 @@ TEST(Devices, ReadingsBelongToTheirTick) {
   EXPECT_TRUE(b.range_and_bearing()->packets().empty());
 }
 
-TEST(Devices, WhatIsSetIsSentOnce) {
+TEST(Devices, ValuesAreSentOnce) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.say(observation(0));
-    const auto first = self.heard().command();
+    self.send(observation(0));
+    const auto first = self.receive().command();
     ASSERT_EQ(first.led_colors_size(), 4);
     EXPECT_EQ(first.led_colors(1), 0x010203U) << "the scene's color";
     EXPECT_EQ(first.led_colors(2), 0xFF8001U);
@@ -118,19 +118,19 @@ TEST(Devices, WhatIsSetIsSentOnce) {
     EXPECT_EQ(first.radio_messages(0).payload(), "one");
     EXPECT_EQ(first.radio_messages(1).radio(), 1U);
     EXPECT_EQ(first.radio_messages(2).payload(), "");
-    self.say(observation(1));
-    const auto second = self.heard().command();
+    self.send(observation(1));
+    const auto second = self.receive().command();
     EXPECT_EQ(second.led_colors_size() + second.tag_payloads_size() +
                   second.magnet_currents_size() + second.radio_messages_size(),
               0);
     EXPECT_EQ(second.range_and_bearing_data(), "");
-    self.say(observation(2));
-    const auto third = self.heard().command();
+    self.send(observation(2));
+    const auto third = self.receive().command();
     EXPECT_EQ(third.radio_messages_size(), 1);
     EXPECT_EQ(third.led_colors_size(), 4);
     EXPECT_EQ(third.led_colors(2), 0xFF8001U) << "stays until changed";
     self.end();
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -151,10 +151,10 @@ TEST(Devices, WhatIsSetIsSentOnce) {
   EXPECT_FALSE(session.next());
 }
 
-TEST(Devices, RefuseWhatCannotBe) {
+TEST(Devices, RefuseInvalidValues) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   Robot& b = session.robot("b");
@@ -170,10 +170,10 @@ TEST(Devices, RefuseWhatCannotBe) {
   EXPECT_THROW(b.radio("mouth").send({}), std::length_error);
 }
 
-TEST(Devices, ASessionSendsNoMoreThanAMessageHolds) {
+TEST(Devices, ASessionSendsAtMostAMessageFull) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());  // allows 8 MiB
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   Radio& mouth = session.robot("b").radio("mouth");
@@ -182,20 +182,20 @@ TEST(Devices, ASessionSendsNoMoreThanAMessageHolds) {
   EXPECT_THROW(mouth.send(bytes_of(message)), std::length_error);
 }
 
-TEST(Devices, AResetTakesThemBackToTheScene) {
+TEST(Devices, AResetRestoresTheScenesValues) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.say(observation(0));
-    self.heard();
+    self.send(observation(0));
+    self.receive();
     v1::ServerMessage reset;
     reset.mutable_reset();
-    self.say(reset);
-    self.say(observation(0));
-    const auto command = self.heard().command();
+    self.send(reset);
+    self.send(observation(0));
+    const auto command = self.receive().command();
     EXPECT_EQ(command.led_colors_size(), 0);
     EXPECT_EQ(command.radio_messages_size(), 0);
     self.end();
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   Robot& b = session.robot("b");
@@ -210,12 +210,12 @@ TEST(Devices, AResetTakesThemBackToTheScene) {
   EXPECT_FALSE(session.next());
 }
 
-TEST(Devices, ObservationsThatWereNotAnnouncedAreNotRead) {
+TEST(Devices, UnannouncedObservationsAreRefused) {
   const auto refused = [](const v1::ServerMessage& message, const char* words) {
     FakeServer server([message](FakeServer& self) {
       self.welcome(welcome());
-      self.say(message);
-      self.heard();
+      self.send(message);
+      self.receive();
     });
     Session session(options_for(server));
     try {
@@ -236,7 +236,7 @@ TEST(Devices, ObservationsThatWereNotAnnouncedAreNotRead) {
   refused(message, "5 numbers of batteries");
   for (const std::uint32_t radio : {1U, 4U, ~0U}) {  // one that does not receive, two beyond
     message = observation(0);
-    hear(message, radio, "x");
+    receive(message, radio, "x");
     refused(message, "which receives nothing");
   }
   message = observation(0);
@@ -244,7 +244,7 @@ TEST(Devices, ObservationsThatWereNotAnnouncedAreNotRead) {
   refused(message, "which receives none");
 }
 
-TEST(Devices, NothingIsAllocatedBecauseANumberSaysSo) {
+TEST(Devices, AnnouncedSizesAreLimited) {
   auto message = welcome();
   message.mutable_welcome()->mutable_robots(1)->mutable_range_and_bearing()->set_data_size(~0U);
   FakeServer server([message](FakeServer& self) { self.welcome(message); });

@@ -1,4 +1,4 @@
-// Wheels and turrets of the client, against a server that says exactly what the test wants.
+// Wheels and turrets of the client, against a server that the test scripts.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ std::vector<double> list(const google::protobuf::RepeatedField<double>& values) 
 TEST(Driving, IsDescribedAndRead) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.say(observation(0));
-    self.heard();
+    self.send(observation(0));
+    self.receive();
   });
   Session session(options_for(server));
   EXPECT_EQ(session.robot("a").wheels(), nullptr);
@@ -39,29 +39,29 @@ TEST(Driving, IsDescribedAndRead) {
   EXPECT_EQ(session.robot("c").turret()->rotation(), -3);
 }
 
-TEST(Driving, WhatIsSetIsSentOnce) {
+TEST(Driving, ValuesAreSentOnce) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.say(observation(0));
-    const auto first = self.heard().command();
+    self.send(observation(0));
+    const auto first = self.receive().command();
     EXPECT_EQ(list(first.wheel_velocities()), (std::vector<double>{0, 0, 0.25, -0.5}));
     ASSERT_EQ(first.turret_modes_size(), 2);
     EXPECT_EQ(first.turret_modes(0), v1::TURRET_SPEED);
     EXPECT_EQ(first.turret_modes(1), v1::TURRET_PASSIVE);
     EXPECT_EQ(list(first.turret_speeds()), (std::vector<double>{-2, 0}));
     EXPECT_EQ(first.turret_rotations_size(), 0) << "nothing new";
-    self.say(observation(1));
-    const auto second = self.heard().command();
+    self.send(observation(1));
+    const auto second = self.receive().command();
     EXPECT_EQ(second.wheel_velocities_size() + second.turret_modes_size() +
                   second.turret_speeds_size() + second.turret_rotations_size(),
               0);
-    self.say(observation(2));
-    const auto third = self.heard().command();
+    self.send(observation(2));
+    const auto third = self.receive().command();
     EXPECT_EQ(list(third.wheel_velocities()), (std::vector<double>{1, 1, 0.25, -0.5}));
     EXPECT_EQ(third.turret_modes(1), v1::TURRET_POSITION);
     EXPECT_EQ(list(third.turret_rotations()), (std::vector<double>{0, 1.5}));
     self.end();
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   Robot& b = session.robot("b");
@@ -81,17 +81,17 @@ TEST(Driving, WhatIsSetIsSentOnce) {
 TEST(Driving, AResetStopsIt) {
   FakeServer server([](FakeServer& self) {
     self.welcome(welcome());
-    self.say(observation(0));
-    self.heard();
+    self.send(observation(0));
+    self.receive();
     v1::ServerMessage reset;
     reset.mutable_reset();
-    self.say(reset);
-    self.say(observation(0));
-    const auto command = self.heard().command();
+    self.send(reset);
+    self.send(observation(0));
+    const auto command = self.receive().command();
     EXPECT_EQ(list(command.wheel_velocities()), (std::vector<double>{1, 2, 0, 0}));
     EXPECT_EQ(command.turret_modes_size() + command.turret_speeds_size(), 0);
     self.end();
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -103,13 +103,13 @@ TEST(Driving, AResetStopsIt) {
   EXPECT_FALSE(session.next());
 }
 
-TEST(Driving, RefusesWhatCannotBe) {
+TEST(Driving, RefusesInvalidValues) {
   FakeServer server([](FakeServer& self) {
     auto message = welcome();
     message.mutable_welcome()->mutable_robots(1)->mutable_wheels()->set_drives(false);
     message.mutable_welcome()->mutable_robots(1)->mutable_turret()->set_drives(false);
     self.welcome(message);
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   Robot& b = session.robot("b");
@@ -126,12 +126,12 @@ TEST(Driving, RefusesWhatCannotBe) {
   EXPECT_THROW(c.turret()->set_rotation_speed(nan), std::invalid_argument);
 }
 
-TEST(Driving, WhatWasNotAnnouncedIsNotRead) {
+TEST(Driving, UnannouncedValuesAreRefused) {
   const auto refused = [](const v1::ServerMessage& message, const char* words) {
     FakeServer server([message](FakeServer& self) {
       self.welcome(welcome());
-      self.say(message);
-      self.heard();
+      self.send(message);
+      self.receive();
     });
     Session session(options_for(server));
     try {

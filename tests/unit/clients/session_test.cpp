@@ -1,4 +1,4 @@
-// The client against a server that says exactly what the test wants.
+// The client against a server that the test scripts.
 
 #include <gtest/gtest.h>
 
@@ -18,15 +18,15 @@ TEST(Session, DevicesAreFoundByNameOnce) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
     self.observe(0, {0, 0, 0, 0});
-    EXPECT_EQ(self.heard().command().joint_targets_size(), 0);  // nothing new
+    EXPECT_EQ(self.receive().command().joint_targets_size(), 0);  // nothing new
     self.observe(1, {1, 2, 3, 4});
-    const auto command = self.heard().command();
+    const auto command = self.receive().command();
     EXPECT_EQ(command.tick(), 1U);
     ASSERT_EQ(command.joint_targets_size(), 2);
     EXPECT_EQ(command.joint_targets(0), 0);
     EXPECT_EQ(command.joint_targets(1), 9);
     self.end();
-    EXPECT_EQ(self.heard().leave().reason(), v1::Leave::DONE);
+    EXPECT_EQ(self.receive().leave().reason(), v1::Leave::DONE);
   });
   Session session(options_for(server));
   EXPECT_EQ(session.seed(), 7U);
@@ -56,10 +56,10 @@ TEST(Session, DevicesAreFoundByNameOnce) {
   EXPECT_FALSE(session.next());
 }
 
-TEST(Session, UnknownNamesSayWhatThereIs) {
+TEST(Session, UnknownIdsListTheKnownOnes) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   try {
@@ -76,18 +76,18 @@ TEST(Session, UnknownNamesSayWhatThereIs) {
   }
 }
 
-TEST(Session, ResetIsDeliveredOnTheObservationThatFollows) {
+TEST(Session, ResetIsDeliveredWithTheNextObservation) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
     self.observe(0, {0, 0, 0, 0});
-    EXPECT_EQ(self.heard().command().joint_targets_size(), 2);
+    EXPECT_EQ(self.receive().command().joint_targets_size(), 2);
     v1::ServerMessage reset;
     reset.mutable_reset()->set_seed(8);
-    self.say(reset);
+    self.send(reset);
     self.observe(0, {0, 0, 0, 0});
-    EXPECT_EQ(self.heard().command().joint_targets_size(), 0);  // the server's targets are 0, too
+    EXPECT_EQ(self.receive().command().joint_targets_size(), 0);  // the server's targets are 0, too
     self.end();
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -99,7 +99,7 @@ TEST(Session, ResetIsDeliveredOnTheObservationThatFollows) {
   EXPECT_FALSE(session.next());
 }
 
-TEST(Session, AnAnswerThatMetAResetOnItsWayIsPassedOver) {
+TEST(Session, AnAnswerThatCrossedAResetIsIgnored) {
   for (const auto code :
        {v1::Error::FUTURE_TICK, v1::Error::STALE_TICK, v1::Error::DUPLICATE_TICK}) {
     FakeServer server([code](FakeServer& self) {
@@ -107,20 +107,20 @@ TEST(Session, AnAnswerThatMetAResetOnItsWayIsPassedOver) {
       self.observe(5, {0, 0, 0, 0});
       v1::ServerMessage reset, error;
       reset.mutable_reset()->set_seed(8);
-      self.say(reset);
+      self.send(reset);
       self.observe(0, {0, 0, 0, 0});
-      EXPECT_EQ(self.heard().command().tick(), 5U);
+      EXPECT_EQ(self.receive().command().tick(), 5U);
       error.mutable_error()->set_code(code);
       error.mutable_error()->set_severity(v1::Error::DISCARD);
-      self.say(error);
-      EXPECT_EQ(self.heard().command().joint_targets(1), 4);
+      self.send(error);
+      EXPECT_EQ(self.receive().command().joint_targets(1), 4);
       self.observe(1, {0, 0, 0, 0});
-      const auto command = self.heard().command();
+      const auto command = self.receive().command();
       EXPECT_EQ(command.tick(), 1U);
       ASSERT_EQ(command.joint_targets_size(), 2);  // in case that the answer to 0 was the lost one
       EXPECT_EQ(command.joint_targets(1), 4);
       self.end();
-      self.heard();
+      self.receive();
     });
     Session session(options_for(server));
     ASSERT_TRUE(session.next());
@@ -133,39 +133,39 @@ TEST(Session, AnAnswerThatMetAResetOnItsWayIsPassedOver) {
   }
 }
 
-TEST(Session, AnAnswerForATickToComeIsAFaultOtherwise) {
+TEST(Session, AnAnswerForAFutureTickIsOtherwiseAnError) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
     self.observe(5, {0, 0, 0, 0});
-    self.heard();
+    self.receive();
     v1::ServerMessage error;
     error.mutable_error()->set_code(v1::Error::FUTURE_TICK);
     error.mutable_error()->set_severity(v1::Error::DISCARD);
-    self.say(error);
-    self.heard();
+    self.send(error);
+    self.receive();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
   EXPECT_THROW(session.next(), ProtocolError);
 }
 
-TEST(Session, LogsAndFailuresGoWithTheAnswer) {
+TEST(Session, LogsAndFailuresAreSentWithTheAnswer) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
     self.observe(0, {0, 0, 0, 0});
-    const auto leave = self.heard().leave();
+    const auto leave = self.receive().leave();
     ASSERT_EQ(leave.robots_size(), 1);
     EXPECT_EQ(leave.robots(0), 1U);
     EXPECT_EQ(leave.reason(), v1::Leave::FAILED);
     EXPECT_EQ(leave.message(), "oh");
-    const auto command = self.heard().command();
+    const auto command = self.receive().command();
     ASSERT_EQ(command.log_size(), 2);
     EXPECT_EQ(command.log(0).text(), "one");
     EXPECT_FALSE(command.log(0).error());
     EXPECT_EQ(command.log(1).text(), "two \xEF\xBF\xBD");
     EXPECT_TRUE(command.log(1).error());
     self.end();
-    const auto last = self.heard().leave();
+    const auto last = self.receive().leave();
     EXPECT_EQ(last.robots_size(), 0);
     ASSERT_EQ(last.log_size(), 1);
     EXPECT_EQ(last.log(0).text(), "three");
@@ -181,10 +181,10 @@ TEST(Session, LogsAndFailuresGoWithTheAnswer) {
   session.robot("a").log("three");
 }
 
-TEST(Session, AFloodOfLogLinesIsTheControllersFault) {
+TEST(Session, TooManyLogLinesAreAnError) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   const std::string line(100'000, 'x');
@@ -193,15 +193,15 @@ TEST(Session, AFloodOfLogLinesIsTheControllersFault) {
 
 TEST(Session, ARefusalIsATypedException) {
   FakeServer server([](FakeServer& self) {
-    self.heard();
+    self.receive();
     v1::ServerMessage message;
     auto& refusal = *message.mutable_refusal();
     refusal.mutable_error()->set_code(v1::Error::ROBOT_TAKEN);
     refusal.mutable_error()->set_robot("a");
     refusal.mutable_error()->set_retryable(true);
-    refusal.mutable_error()->set_message("Robot 'a' is driven by somebody.");
-    refusal.set_holder("somebody");
-    self.say(message);
+    refusal.mutable_error()->set_message("Robot 'a' belongs to another client.");
+    refusal.set_holder("another client");
+    self.send(message);
   });
   try {
     const Session session(options_for(server));
@@ -209,22 +209,22 @@ TEST(Session, ARefusalIsATypedException) {
   } catch (const ProtocolError& error) {
     EXPECT_EQ(error.details().code, "ROBOT_TAKEN");
     EXPECT_EQ(error.details().robot, "a");
-    EXPECT_EQ(error.details().holder, "somebody");
+    EXPECT_EQ(error.details().holder, "another client");
     EXPECT_TRUE(error.details().retryable);
-    EXPECT_STREQ(error.what(), "ROBOT_TAKEN: Robot 'a' is driven by somebody.");
+    EXPECT_STREQ(error.what(), "ROBOT_TAKEN: Robot 'a' belongs to another client.");
   }
 }
 
-TEST(Session, AnErrorEndsTheLoopAndTheServerIsTold) {
+TEST(Session, AnErrorEndsTheLoopAndIsSentToTheServer) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
     self.observe(0, {0, 0, 0, 0});
-    self.heard();
+    self.receive();
     v1::ServerMessage message;
     message.mutable_error()->set_code(v1::Error::BAD_VALUE);
     message.mutable_error()->set_severity(v1::Error::DISCARD);
-    self.say(message);
-    EXPECT_EQ(self.heard().leave().reason(), v1::Leave::FAILED);
+    self.send(message);
+    EXPECT_EQ(self.receive().leave().reason(), v1::Leave::FAILED);
   });
   EXPECT_THROW(
       {
@@ -235,47 +235,47 @@ TEST(Session, AnErrorEndsTheLoopAndTheServerIsTold) {
       ProtocolError);
 }
 
-TEST(Session, UnknownMessagesAndSignsOfLifeAreIgnored) {
+TEST(Session, UnknownMessagesAndHeartbeatsAreIgnored) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
     v1::ServerMessage message;
     message.mutable_heartbeat()->set_sequence(1);
-    self.say(message);
+    self.send(message);
     message.mutable_paused();
-    self.say(message);
-    self.say_bytes("\xfa\x01\x01x");  // field 31, of a later version
+    self.send(message);
+    self.send_bytes("\xfa\x01\x01x");  // field 31, of a later version
     self.observe(0, {0, 0, 0, 0});
-    EXPECT_TRUE(self.heard().has_command());  // and no answer to the heartbeat
+    EXPECT_TRUE(self.receive().has_command());  // and no answer to the heartbeat
     self.end();
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   EXPECT_TRUE(session.next());
   EXPECT_FALSE(session.next());
 }
 
-TEST(Session, AnObservationOfTheWrongShapeIsNotRead) {
+TEST(Session, AnObservationOfTheWrongSizeIsRefused) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
     self.observe(0, {1, 2, 3});
-    self.heard();
+    self.receive();
   });
   Session session(options_for(server));
   EXPECT_THROW(session.next(), ConnectionError);
 }
 
-TEST(Session, GarbageIsNotAMessage) {
+TEST(Session, InvalidBytesAreAnError) {
   FakeServer server([](FakeServer& self) {
-    self.heard();
-    self.say_bytes("HTTP/1.1 400 Bad Request");
+    self.receive();
+    self.send_bytes("HTTP/1.1 400 Bad Request");
   });
   EXPECT_THROW(Session(options_for(server)), ConnectionError);
 }
 
-TEST(Session, SilenceHasItsTimes) {
+TEST(Session, SilenceIsATimeOut) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
-    self.heard();
+    self.receive();
   });
   Options options = options_for(server);
   options.wait_timeout = milliseconds{50};
@@ -290,9 +290,9 @@ TEST(Session, SilenceHasItsTimes) {
   EXPECT_THROW(session.next(), ConnectionError);  // still waiting
 }
 
-TEST(Session, NobodyThere) {
+TEST(Session, NoServer) {
   Options options;
-  options.endpoint = "ipc://@ziggurat-nobody-listens-here";
+  options.endpoint = "ipc://@ziggurat-no-server";
   options.connect_timeout = milliseconds{50};
   EXPECT_THROW(Session{options}, ConnectionError);
   options.endpoint = "nonsense";

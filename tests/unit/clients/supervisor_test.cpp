@@ -1,4 +1,4 @@
-// The supervisor's client against a server that says exactly what the test wants.
+// Supervisor against a server that the test scripts.
 
 #include "ziggurat/supervisor.h"
 
@@ -25,10 +25,10 @@ v1::ServerMessage answer(const v1::ClientMessage& question) {
   return message;
 }
 
-TEST(Supervisor, TellsWhoIsThere) {
+TEST(Supervisor, ListsTheSessions) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
-    auto message = answer(self.heard());
+    auto message = answer(self.receive());
     v1::Status& status = *message.mutable_response()->mutable_status();
     status.set_tick(7);
     status.set_phase(v1::Status::RUNNING);
@@ -36,7 +36,7 @@ TEST(Supervisor, TellsWhoIsThere) {
     session.set_role(v1::ROLE_OBSERVER);
     session.set_state(v1::SessionStatus::OWING);
     session.add_robots("a");
-    self.say(message);
+    self.send(message);
   });
   Supervisor supervisor(supervise(server));
   const ServerStatus status = supervisor.status();
@@ -52,11 +52,11 @@ TEST(Supervisor, TellsWhoIsThere) {
 TEST(Supervisor, ServersOfLaterVersionsMayHaveMoreRoles) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
-    auto message = answer(self.heard());
+    auto message = answer(self.receive());
     auto& session = *message.mutable_response()->mutable_status()->add_sessions();
     session.set_role(static_cast<v1::Role>(77));
     session.set_state(static_cast<v1::SessionStatus::State>(77));
-    self.say(message);
+    self.send(message);
   });
   Supervisor supervisor(supervise(server));
   EXPECT_EQ(supervisor.status().sessions.at(0).role, "role 77");
@@ -65,29 +65,29 @@ TEST(Supervisor, ServersOfLaterVersionsMayHaveMoreRoles) {
 TEST(Supervisor, WaitsForTheAnswerToItsOwnRequest) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
-    auto message = answer(self.heard());
+    auto message = answer(self.receive());
     const auto id = message.response().id();
     message.mutable_response()->set_id(id + 1);
     message.mutable_response()->set_tick(1);
-    self.say(message);
+    self.send(message);
     message.mutable_response()->set_id(id);
     message.mutable_response()->set_tick(2);
-    self.say(message);
+    self.send(message);
   });
   Supervisor supervisor(supervise(server));
   EXPECT_EQ(supervisor.pause(), 2U);
 }
 
-TEST(Supervisor, WhatWasNotDoneIsAnException) {
+TEST(Supervisor, ARefusedRequestIsAnException) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
-    auto message = answer(self.heard());
+    auto message = answer(self.receive());
     message.mutable_response()->mutable_error()->set_code(v1::Error::UNKNOWN_ENTITY);
-    self.say(message);
+    self.send(message);
   });
   Supervisor supervisor(supervise(server));
   try {
-    supervisor.remove("nobody");
+    supervisor.remove("unknown");
     FAIL() << "nothing was thrown";
   } catch (const ProtocolError& error) {
     EXPECT_EQ(error.details().code, "UNKNOWN_ENTITY");

@@ -1,5 +1,5 @@
-"""Handles of a robot's devices, a file for each kind. Reading and setting takes the same time
-whatever the session holds.
+"""Handles of a robot's devices, a file for each kind. Reading and setting take the same time in a
+session of any size.
 
 Numbers are SI: m, rad, s, m/s, rad/s; pixels are counted from the top left corner of the image, u
 to the right and v down.

@@ -6,7 +6,7 @@ from ..exchange import Readings
 
 
 class Battery(NamedTuple):
-    available_charge: float  # share of the full one, 0 … 1
+    available_charge: float  # share of the full charge, 0 … 1
     time_left: float  # [s], may be infinite
 
 

@@ -60,7 +60,8 @@ class Camera(Device):
         found = self._found(kind, place)
         colors = getattr(self._exchange.seen, kind + "_colors")
         centers = getattr(self._exchange.seen, kind + "_centers")
-        return [LedReading(color_of(colors[i]), (centers[2 * i], centers[2 * i + 1])) for i in found]
+        return [LedReading(color_of(colors[i]), (centers[2 * i], centers[2 * i + 1]))
+                for i in found]
 
     @property
     def leds(self) -> List[LedReading]:
@@ -75,7 +76,8 @@ class Camera(Device):
         found = self._found("tag", self._tags)
         seen = self._exchange.seen
         return [TagReading(seen.tag_payloads[i], tuple(seen.tag_centers[2 * i:2 * i + 2]),
-                           tuple(tuple(seen.tag_corners[j:j + 2]) for j in range(8 * i, 8 * i + 8, 2)))
+                           tuple(tuple(seen.tag_corners[j:j + 2])
+                                 for j in range(8 * i, 8 * i + 8, 2)))
                 for i in found]
 
     @property

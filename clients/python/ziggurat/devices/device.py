@@ -1,4 +1,4 @@
-"""What all handles share."""
+"""Common parts of the handles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def finite(value: float, what: str) -> float:
 
 
 class Device:
-    """What all handles share."""
+    """The base of handles with an id."""
 
     __slots__ = ("id", "_exchange")
 

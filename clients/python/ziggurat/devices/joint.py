@@ -18,7 +18,7 @@ class Joint(Device):
     def __init__(self, exchange: Exchange, id: str):
         super().__init__(exchange, id)
         self.sensor_mode: Optional[str] = None  # "position", "velocity" or "disabled"
-        self.actuator_mode: Optional[str] = None  # None: it has no motor
+        self.actuator_mode: Optional[str] = None  # the same; None without a motor
         self.max_impulse = 0.0  # of the motor, a substep [N s] or [N m s]
         self._sensor = self._actuator = -1
 

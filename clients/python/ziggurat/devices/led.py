@@ -41,7 +41,7 @@ class Led(Device):
 
     @property
     def color(self) -> Color:
-        """As it was last set; stays until changed."""
+        """The last color set, or the scene's. Stays until changed."""
         return color_of(self._exchange.values[self._field][self._place])
 
     @color.setter

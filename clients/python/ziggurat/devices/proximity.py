@@ -9,13 +9,13 @@ from .device import Vector
 
 @dataclass(frozen=True)
 class ProximitySensor:
-    """The mount of a sensor whose reading is in Robot.proximity at the same place."""
+    """The position of a sensor. Its reading is at the same index of Robot.proximity."""
 
     anchor: str  # id of a link, or "origin"
     position: Vector  # start of the ray in the anchor's frame [m]
     direction: Vector  # in the anchor's frame, of length 1
     range: float  # [m]
-    angle: Optional[float] = None  # about +z from +x [rad], of foot-bots' own sensors
+    angle: Optional[float] = None  # of the ray about +z from +x [rad]; only foot-bots
 
 
 def proximity_sensor(given: v1.ProximityDescription) -> ProximitySensor:

@@ -21,14 +21,15 @@ class Radio(Device):
 
     @property
     def received(self) -> List[bytes]:
-        """Messages since the last tick."""
+        """Messages received in the last tick."""
         return self._exchange.heard.get(self._place, [])
 
     def send(self, message: bytes) -> None:
-        """Any number of messages a tick, of at most 1 MiB; each is sent once."""
+        """Sends a message of at most 1 MiB once. Each call sends a message."""
         if not self.sends:
             raise AttributeError(f"radio {self.id!r} does not send")
         message = bytes(message)
         if len(message) > MAX_MESSAGE:
-            raise ValueError(f"a radio message has at most {MAX_MESSAGE} bytes, not {len(message)}")
+            raise ValueError(
+                f"a radio message of {len(message)} bytes; at most {MAX_MESSAGE} are allowed")
         self._exchange.messages.append((self._place, message))

@@ -7,7 +7,7 @@ from ..exchange import Exchange
 
 
 class Packet(NamedTuple):
-    """What a range-and-bearing sensor received, in the receiver's frame."""
+    """A received packet; range and bearings are in the receiver's frame."""
 
     range: float  # [m]
     horizontal_bearing: float  # from +x towards +y, -pi … pi [rad]
@@ -36,7 +36,7 @@ class RangeAndBearing:
 
     @property
     def data(self) -> bytes:
-        """Broadcast at every tick until changed; data_size bytes."""
+        """data_size bytes, broadcast at every tick until changed."""
         return bytes(self._exchange.data[self._begin:self._begin + self.data_size])
 
     @data.setter
@@ -44,5 +44,6 @@ class RangeAndBearing:
         if not self.sends:
             raise AttributeError("this range-and-bearing device does not send")
         if len(data) != self.data_size:
-            raise ValueError(f"data have {self.data_size} bytes, not {len(data)}")
+            raise ValueError(
+                f"{len(data)} bytes of data; this robot sends packets of {self.data_size}")
         self._exchange.set_data(self._begin, bytes(data))

@@ -24,5 +24,6 @@ class Tag(Device):
     def payload(self, payload: Union[bytes, str]) -> None:
         payload = payload.encode() if isinstance(payload, str) else bytes(payload)
         if len(payload) > MAX_PAYLOAD:
-            raise ValueError(f"a payload has at most {MAX_PAYLOAD} bytes, not {len(payload)}")
+            raise ValueError(
+                f"a payload of {len(payload)} bytes; at most {MAX_PAYLOAD} are allowed")
         self._exchange.set("tag_payloads", self._place, payload)

@@ -42,5 +42,5 @@ class Turret:
         self._set(v1.TURRET_SPEED, "turret_speeds", speed)
 
     def release(self) -> None:
-        """It turns with the robot."""
+        """The turret turns with the robot, as it does in the beginning."""
         self._set(v1.TURRET_PASSIVE)

@@ -8,7 +8,7 @@ from .device import finite
 
 
 class Wheels:
-    """Differential steering."""
+    """The two driven wheels."""
 
     __slots__ = ("axle_length", "drives", "measures", "_exchange", "_place", "_reading")
 

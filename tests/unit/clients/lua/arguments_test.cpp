@@ -17,7 +17,7 @@ TEST_F(Arguments, BothNumberSubtypesAreNumbers) {
   EXPECT_EQ(command().joint_targets_size(), 2);
 }
 
-TEST_F(Arguments, WrongOnesAreErrorsThatScriptsCanCatch) {
+TEST_F(Arguments, WrongArgumentsAreErrorsThatScriptsCanCatch) {
   const std::string script = R"(
     for _, argument in ipairs{{}, {1, 2}, {"1"}, {"x"}, {true}, {{}}, {1/0}, {-1/0}, {0/0}} do
       local ok, message = pcall(robot.joints.both.set_target, table.unpack(argument))
@@ -39,7 +39,7 @@ TEST_F(Arguments, WrongOnesAreErrorsThatScriptsCanCatch) {
   EXPECT_EQ(joint(0).target(), 0);
 }
 
-TEST_F(Arguments, OnesTypedWrongNameTheLineOfTheScript) {
+TEST_F(Arguments, WrongTypesNameTheLineOfTheScript) {
   const auto failure = start("\n\nrobot.joints.both.set_target('fast')");
   ASSERT_TRUE(failure);
   EXPECT_NE(failure->find("main.lua:3: bad argument #1 to 'set_target' "
@@ -56,7 +56,7 @@ TEST_F(Arguments, SensorAndActuatorShareATable) {
             (Lines{"0function", "0nil", "nilfunction"}));
 }
 
-TEST_F(Arguments, KeptTablesAndFunctionsStayGood) {
+TEST_F(Arguments, KeptTablesAndFunctionsStayValid) {
   ASSERT_EQ(start("local both, set = robot.joints.both, robot.joints.motor.set_target "
                   "robot.joints = nil robot = nil collectgarbage() "
                   "function step() set(both.encoder * 2) end"),
@@ -68,7 +68,7 @@ TEST_F(Arguments, KeptTablesAndFunctionsStayGood) {
   }
 }
 
-TEST_F(Arguments, AScriptThatSpoilsItsTablesHurtsNobody) {
+TEST_F(Arguments, AScriptMayOverwriteItsTables) {
   ASSERT_EQ(start("robot.joints.both.encoder = nil robot.joints.sensor = 5 "
                   "function step() log(robot.joints.both.encoder) end"),
             std::nullopt);

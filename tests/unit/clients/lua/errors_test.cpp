@@ -1,4 +1,4 @@
-// A script that fails says who, where and when, and takes nobody with it.
+// The message of a failed script names robot, line and tick; other scripts are not affected.
 
 #include <csignal>
 #include <thread>
@@ -64,7 +64,7 @@ TEST_F(Errors, PrecompiledChunksAreRefused) {
   expect_contains(other.start(), "attempt to load a binary chunk");
 }
 
-TEST_F(Errors, ThatAreNoStringsStillNameTheScript) {
+TEST_F(Errors, OtherThanStringsNameTheScriptToo) {
   expect_contains(start("error({})"), "main.lua: (the error is a table value) (in its chunk");
   expect_contains(start("error()"), "main.lua: (the error is a nil value)");
   expect_contains(start("error(setmetatable({}, {__tostring = function() return 'mine' end}))"),
@@ -83,7 +83,7 @@ TEST_F(Errors, LongOnesAreShortened) {
   EXPECT_LT(failure->size(), 40000u);
 }
 
-TEST_F(Errors, CaughtByTheScriptAreNone) {
+TEST_F(Errors, CaughtByTheScriptDoNotFail) {
   EXPECT_EQ(logged("log(pcall(error, 'mine', 0)) log((select(2, xpcall(function() error('x') end, "
                    "function(m) return 'handled' end))))"),
             (Lines{"0mine", "handled"}));
@@ -126,7 +126,7 @@ TEST_F(Errors, WhatWasLoggedAndSetBeforeIsKept) {
   EXPECT_EQ(joint(0).target(), 3);
 }
 
-TEST_F(Errors, OfOneRobotDoNotReachAnother) {
+TEST_F(Errors, OfOneRobotDoNotAffectAnother) {
   ASSERT_EQ(start("n = 0 function step() n = n + 1 log(n) end"), std::nullopt);
   write("other.lua", "function init() end n = 100 function step() n = nil + 1 end");
   OneRobot another(robot_);
@@ -163,7 +163,7 @@ TEST_F(Interrupts, EndALoopThatCatchesErrors) {
                   "interrupted");
 }
 
-TEST_F(Interrupts, EndWhatIsCalledLater) {
+TEST_F(Interrupts, EndLaterCalls) {
   ASSERT_EQ(start("function step() end"), std::nullopt);
   signaller_.join();
   ASSERT_TRUE(are_scripts_interrupted());

@@ -23,7 +23,7 @@ TEST_F(Globals, LogConcatenatesWithoutSeparator) {
             (Lines{"", "a110nilb", "tablefunction1", std::string("x\0y", 3)}));
 }
 
-TEST_F(Globals, LogAndLogerrAreToldApart) {
+TEST_F(Globals, LogAndLogerrDiffer) {
   ASSERT_EQ(start("log('out') logerr('err ', 1.5)"), std::nullopt);
   const auto& lines = controller().log().lines;
   ASSERT_EQ(lines.size(), 2u);
@@ -44,13 +44,13 @@ TEST_F(Globals, LogIsBounded) {
   EXPECT_EQ(log.lines.at(0).text, "again");
 }
 
-TEST_F(Globals, RobotIsThereBeforeTheChunkRuns) {
+TEST_F(Globals, RobotExistsBeforeTheChunkRuns) {
   EXPECT_EQ(logged("log(robot.id, ' ', robot.params.speed, ' ', type(robot.params.speed), ' ', "
                    "robot.params.script, ' ', robot.params.none, ' ', type(robot.random.uniform))"),
             (Lines{"r0 2 string main.lua nil function"}));
 }
 
-TEST_F(Globals, RobotHasOnlyWhatTheControllerHas) {
+TEST_F(Globals, RobotHasOnlyTheControllersDevices) {
   robot_.clear_joint_sensors();
   robot_.clear_joint_actuators();
   EXPECT_EQ(logged("log(robot.joints)"), (Lines{"nil"}));
@@ -69,13 +69,13 @@ TEST_F(Globals, StandardLibrariesAreOpen) {
             (Lines{"functionfunctionfunctionfunctionfunctionfunctionfunctionLua 5.3"}));
 }
 
-TEST_F(Globals, ExitIsRefusedForTheOthersSake) {
+TEST_F(Globals, ExitIsRefused) {
   const auto failure = start("os.exit(0)");
   ASSERT_TRUE(failure);
   EXPECT_NE(failure->find("os.exit is not allowed"), std::string::npos);
 }
 
-TEST_F(Globals, TheLocaleStays) {
+TEST_F(Globals, TheLocaleCannotBeChanged) {
   EXPECT_EQ(logged("log(os.setlocale('de_DE.UTF-8'), os.setlocale(), os.setlocale('C'))"),
             (Lines{"nilCC"}));
 }

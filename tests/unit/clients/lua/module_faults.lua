@@ -1,4 +1,4 @@
--- What goes wrong is a Lua error that says so: module_faults.lua ENDPOINT (of the vehicle's scene)
+-- Errors are Lua errors with a message: module_faults.lua ENDPOINT (of the vehicle's scene)
 local ziggurat = require "ziggurat"
 
 local function fails(with, ...)
@@ -14,8 +14,8 @@ fails("robots[2] must be a string", ziggurat.connect, {endpoint = "tcp://127.0.0
 fails("connect_timeout must be a number", ziggurat.connect, {endpoint = "x", connect_timeout = -1})
 fails("ZIGGURAT_ENDPOINT", ziggurat.connect)
 fails("not an endpoint", ziggurat.connect, {endpoint = "nonsense"})
-fails("nobody-here", ziggurat.connect, {endpoint = "ipc://@nobody-here", connect_timeout = 0.05})
-fails("nobody", ziggurat.connect, {endpoint = arg[1], robots = "nobody"})
+fails("no-server", ziggurat.connect, {endpoint = "ipc://@no-server", connect_timeout = 0.05})
+fails("unknown", ziggurat.connect, {endpoint = arg[1], robots = "unknown"})
 
 local session = ziggurat.connect{endpoint = arg[1], robots = "vehicle"}
 fails("vehicle", ziggurat.connect, {endpoint = arg[1]}) -- it is taken

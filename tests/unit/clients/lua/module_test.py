@@ -59,7 +59,7 @@ class Module(unittest.TestCase):
             self.assertIn("that was enough", errors)
 
     def test_ctrl_c_ends_the_wait(self):
-        script = "require('ziggurat').connect{endpoint = 'ipc://@nobody-at-all', connect_timeout = 60}"
+        script = "require('ziggurat').connect{endpoint = 'ipc://@no-server', connect_timeout = 60}"
         lua = subprocess.Popen(["lua5.3", "-e", "print('begun') io.flush() " + script], text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.assertEqual(lua.stdout.readline(), "begun\n")

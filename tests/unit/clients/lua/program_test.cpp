@@ -48,7 +48,7 @@ TEST_F(Program, ReadsItsArguments) {
   EXPECT_FALSE(options.echo);
 }
 
-TEST_F(Program, TakesFromTheEnvironmentWhatIsLeftOpen) {
+TEST_F(Program, ReadsMissingOptionsFromTheEnvironment) {
   ::setenv("ZIGGURAT_ENDPOINT", "tcp://e:1", 1);
   ::setenv("ZIGGURAT_CONTROLLER", "drive", 1);
   EXPECT_EQ(read({}).options.endpoint, "tcp://e:1");
@@ -75,7 +75,7 @@ TEST_F(Program, ReadsRobotsFromAFile) {
             std::string::npos);
 }
 
-TEST_F(Program, SaysWhatIsWrong) {
+TEST_F(Program, ReportsWrongArguments) {
   EXPECT_NE(fault_of({}).find("--connect is missing"), std::string::npos);
   EXPECT_NE(fault_of({"--connect", "x", "--bogus"}).find("bogus"), std::string::npos);
   EXPECT_NE(fault_of({"--connect", "x", "stray"}).find("--help"), std::string::npos);
@@ -84,7 +84,7 @@ TEST_F(Program, SaysWhatIsWrong) {
   }
 }
 
-TEST_F(Program, TeachesWithHelp) {
+TEST_F(Program, HasAHelpText) {
   const auto text = read({"--help"}).text;
   for (const char* part : {"--connect", "--robots-file", "Exit codes", "ziggurat serve"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part;
@@ -92,7 +92,7 @@ TEST_F(Program, TeachesWithHelp) {
   EXPECT_EQ(read({"--version"}).text.substr(0, 13), "ziggurat-lua ");
 }
 
-TEST_F(Program, FindsTheScriptThatTheServerNames) {
+TEST_F(Program, FindsTheServersScript) {
   write("main.lua", "");
   const auto path = (folder() / "main.lua").string();
   EXPECT_EQ(find_script(path, {{"script", "other.lua"}}).path, path);
@@ -105,7 +105,7 @@ TEST_F(Program, FindsTheScriptFromTheWorkingDirectory) {
             relative);
 }
 
-TEST_F(Program, SaysWhereItLookedForAScript) {
+TEST_F(Program, NamesThePathsOfAMissingScript) {
   const auto found = find_script("/elsewhere/main.lua", {{"script", "no/main.lua"}});
   EXPECT_TRUE(found.path.empty());
   EXPECT_NE(found.fault.find("/elsewhere/main.lua"), std::string::npos);

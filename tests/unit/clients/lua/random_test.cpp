@@ -19,7 +19,7 @@ class Random : public ScriptTest {
   }
 };
 
-TEST_F(Random, DependsOnSeedAndRobotAndNothingElse) {
+TEST_F(Random, DependsOnlyOnSeedAndRobot) {
   EXPECT_EQ(drawn(1, "r0"), drawn(1, "r0"));
   EXPECT_NE(drawn(1, "r0"), drawn(2, "r0"));
   EXPECT_NE(drawn(1, "r0"), drawn(1, "r1"));
@@ -30,7 +30,7 @@ TEST_F(Random, TheFirstNumbersAreTheSameOnEveryMachine) {
             (Lines{"129580 340050"}));
 }
 
-TEST_F(Random, BeginsAnewAtReset) {
+TEST_F(Random, RestartsAtReset) {
   ASSERT_EQ(start("function reset() log(robot.random.uniform(), ' ', math.random()) end reset()"),
             std::nullopt);
   auto& log = controller().log();
@@ -84,7 +84,7 @@ TEST_F(Random, ReachesEveryInteger) {
             (Lines{"good"}));
 }
 
-TEST_F(Random, HasTheMomentsItsNamesPromise) {
+TEST_F(Random, HasTheRightMoments) {
   EXPECT_EQ(logged(R"(
     local function check(name, mean, variance, draw)
       local n, sum, squares = 20000, 0, 0
@@ -107,7 +107,7 @@ TEST_F(Random, HasTheMomentsItsNamesPromise) {
             (Lines{"good"}));
 }
 
-TEST_F(Random, RefusesWhatItCannotUse) {
+TEST_F(Random, RefusesInvalidArguments) {
   EXPECT_EQ(logged(R"(
     local r = robot.random
     local function refused(f, ...) assert(not pcall(f, ...)) end

@@ -87,7 +87,7 @@ class RunnerTest : public ScriptTest {
   }
 };
 
-TEST_F(RunnerTest, ReadingsComeInAndTargetsAndLinesGoOut) {
+TEST_F(RunnerTest, ReadingsArriveAndTargetsAndLinesAreSent) {
   run("function init() log('init ', robot.joints.hinge.encoder) end "
       "function step() local hinge = robot.joints.hinge "
       "  log('step ', hinge.encoder) hinge.set_target(hinge.encoder / 2) end "
@@ -118,7 +118,7 @@ TEST_F(RunnerTest, AFailureEndsOnlyItsRobot) {
   EXPECT_EQ(commands_.joint_targets, (std::vector<double>{3, 0, 3}));
 }
 
-TEST_F(RunnerTest, AllMayFailAndTheRunGoesOn) {
+TEST_F(RunnerTest, AllMayFailAndTheRunContinues) {
   run("function init() error('no') end");
   EXPECT_TRUE(has_failures_);
   EXPECT_EQ(reports_[0].failures.size(), 3u);
@@ -132,7 +132,7 @@ TEST_F(RunnerTest, AFailureInDestroyIsLogged) {
       << logged_at(5);
 }
 
-TEST_F(RunnerTest, LinesThatAreNoTextAndTooManyLinesDisturbNobody) {
+TEST_F(RunnerTest, InvalidAndTooManyLinesAreHandled) {
   run("function init() end function step() if robot.id == 'robot0' then "
       "log('\\xff\\0\\x80') for i = 1, 100 do log(('x'):rep(100000)) end end "
       "log('here') end");

@@ -24,7 +24,7 @@ def serve(scene, *arguments):
 
 
 class EndToEnd(unittest.TestCase):
-    def test_the_vehicle_goes_as_its_script_drives_it(self):
+    def test_the_vehicle_moves_as_with_its_script(self):
         with serve(VEHICLE, "--ticks", "100") as server:
             with ziggurat.connect(server.endpoint) as session:
                 wheels = list(session.robots["vehicle"].joints)
@@ -37,7 +37,7 @@ class EndToEnd(unittest.TestCase):
                     self.assertAlmostEqual(wheel.encoder, 1.0, delta=0.03)
             self.assertEqual(server.wait(10), 0)
 
-    def test_a_robot_that_is_spawned_is_driven_until_it_is_removed(self):
+    def test_a_spawned_robot_is_controlled_until_it_is_removed(self):
         text = re.search(r'<prototype id="vehicle".*?</prototype>', VEHICLE.read_text(), re.DOTALL)[0]
         late = text.replace('id="vehicle"', 'id="late"').replace('position="0,0,0"',
                                                                  'position="0,3,0"', 1)
@@ -115,7 +115,7 @@ class EndToEnd(unittest.TestCase):
         for robot in ("arm0", "arm1", "arm2", "arm3"):
             self.assertRegex(output, rf"\[2 {robot}\] eye: LED \(255, 0, 0\) at 320\.0, ")
 
-    def test_a_lost_session_is_taken_up_at_the_same_tick(self):
+    def test_a_lost_session_is_resumed_at_the_same_tick(self):
         with serve(VEHICLE, "--ticks", "10") as server:
             session = ziggurat.connect(server.endpoint)
             for tick in session:
@@ -127,7 +127,7 @@ class EndToEnd(unittest.TestCase):
             self.assertEqual(numbers, list(range(4, 11)))
             self.assertEqual(server.wait(10), 0)
 
-    def test_a_server_that_is_killed_is_noticed(self):
+    def test_a_killed_server_is_detected(self):
         with serve(VEHICLE) as server:
             session = ziggurat.connect(server.endpoint)
             next(session)

@@ -1,4 +1,4 @@
-"""A server that says what a test tells it to, over a real socket."""
+"""A server whose messages a test chooses, over a real socket."""
 
 import zmq
 
@@ -18,19 +18,19 @@ class FakeServer:
         self.endpoint = f"tcp://127.0.0.1:{self.socket.bind_to_random_port('tcp://127.0.0.1')}"
         self.peer = None
 
-    def hear(self):
-        """The next message of a client, as its own kind."""
+    def receive(self):
+        """The content of the client's next message."""
         if not self.socket.poll(PATIENCE_MS):
-            raise TimeoutError("the client says nothing")
+            raise TimeoutError("no message from the client")
         self.peer, data = self.socket.recv_multipart()
         message = v1.ClientMessage.FromString(data)
         return getattr(message, message.WhichOneof("message"))
 
-    def say(self, **fields):
+    def send(self, **fields):
         self.socket.send_multipart([self.peer, v1.ServerMessage(**fields).SerializeToString()])
 
     def observe(self, tick, **fields):
-        self.say(observation=v1.Observation(tick=tick, time_ns=tick * 100_000_000, **fields))
+        self.send(observation=v1.Observation(tick=tick, time_ns=tick * 100_000_000, **fields))
 
     def close(self):
         self.socket.close()

@@ -1,4 +1,4 @@
-"""The package as pip builds it: whole, with its messages, and without anything of the checkout."""
+"""The package as pip builds it: complete, with its messages, without access to the checkout."""
 
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""A controller for the conformance kit to judge the package by: it uses every device it has."""
+"""A controller for the conformance kit, which tests the package with it: it uses every device."""
 
 import os
 import sys

@@ -12,24 +12,24 @@ from session_test import SessionCase
 class Parallel(SessionCase):
     def test_reset_asks_the_supervisor(self):
         def part(server):
-            server.hear()
-            server.say(welcome=welcome(equipped("one"), equipped("two")))
+            server.receive()
+            server.send(welcome=welcome(equipped("one"), equipped("two")))
             controller = server.peer
             server.observe(0)
-            self.assertEqual(list(server.hear().joint_targets), [1, 2, 0, 0])
+            self.assertEqual(list(server.receive().joint_targets), [1, 2, 0, 0])
             server.observe(1, joint_readings=[1, 2, 3, 4])
-            self.assertEqual(server.hear().role, v1.ROLE_SUPERVISOR)
-            server.say(welcome=welcome(role=v1.ROLE_SUPERVISOR))
-            request, supervisor = server.hear(), server.peer
+            self.assertEqual(server.receive().role, v1.ROLE_SUPERVISOR)
+            server.send(welcome=welcome(role=v1.ROLE_SUPERVISOR))
+            request, supervisor = server.receive(), server.peer
             self.assertEqual(request.reset.seed, 5)
             server.peer = controller
-            server.say(reset=v1.Reset(seed=5))
+            server.send(reset=v1.Reset(seed=5))
             server.observe(0)
             server.peer = supervisor
-            server.say(response=v1.Response(id=request.id))
-            command = server.hear()
+            server.send(response=v1.Response(id=request.id))
+            command = server.receive()
             self.assertEqual((command.tick, list(command.joint_targets)), (0, []))
-            server.say(end=v1.End(reason=v1.End.FINISHED))
+            server.send(end=v1.End(reason=v1.End.FINISHED))
 
         def client():
             env = ziggurat.parallel_env(
@@ -54,15 +54,15 @@ class Parallel(SessionCase):
             result = env.step({})
             self.assertEqual(result[3], {"one": True, "two": True}, "the run is over")
             self.assertEqual(env.agents, [])
-            with self.assertRaisesRegex(RuntimeError, "over"):
+            with self.assertRaisesRegex(RuntimeError, "ended"):
                 env.reset()
 
         self.play(part, client)
 
     def test_all_readings(self):
         def part(server):
-            server.hear()
-            server.say(welcome=welcome(equipped("one")))
+            server.receive()
+            server.send(welcome=welcome(equipped("one")))
             server.observe(1, joint_readings=[1, 2], proximity=[3, 4], positioning=range(7),
                            batteries=[0.5, 9])
 

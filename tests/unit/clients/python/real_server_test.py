@@ -23,7 +23,7 @@ def serve(*arguments):
 
 
 def aside(function):
-    """The result of a function that runs in a thread, once somebody asks for it."""
+    """Runs a function in a thread; returns its result on request."""
     results = []
     thread = threading.Thread(target=lambda: results.append(function()), daemon=True)
     thread.start()
@@ -102,7 +102,7 @@ class Supervising(unittest.TestCase):
             self.assertEqual(ended, ["interrupted"])
             self.assertEqual(server.wait(20), 130)
 
-    def test_a_world_that_is_said_to_stand_stands(self):
+    def test_a_paused_world_does_not_move(self):
         """Whenever the pause comes: with the last answer of a tick, and between the ticks of a pace."""
         for pace in (), ("--real-time", "5"):
             with self.subTest(pace), serve(*pace) as server:
@@ -120,11 +120,11 @@ class Supervising(unittest.TestCase):
                     world.shutdown()
                     driver.join(20)
 
-    def test_what_cannot_be_done_says_why(self):
+    def test_refused_requests_have_a_reason(self):
         with serve() as server, ziggurat.supervise(server.endpoint) as world:
             for call, code in ((lambda: world.step(1), "OUT_OF_STATE"),
-                               (lambda: world.read("nobody"), "UNKNOWN_ENTITY"),
-                               (lambda: world.move("nobody", (0, 0, 0)), "UNKNOWN_ENTITY"),
+                               (lambda: world.read("unknown"), "UNKNOWN_ENTITY"),
+                               (lambda: world.move("unknown", (0, 0, 0)), "UNKNOWN_ENTITY"),
                                (lambda: world.move("arm0", (0, 0, float("nan"))), "BAD_VALUE")):
                 with self.assertRaises(ziggurat.ProtocolError) as caught:
                     call()
@@ -137,7 +137,7 @@ class Supervising(unittest.TestCase):
 
 
 class Holding(unittest.TestCase):
-    def test_a_takeover_displaces_whoever_drives(self):
+    def test_a_takeover_displaces_the_owner(self):
         with serve() as server:
             first = ziggurat.connect(server.endpoint, name="first")
             tick = next(first)
@@ -181,7 +181,7 @@ class Holding(unittest.TestCase):
 
 
 class Deadlines(unittest.TestCase):
-    def test_who_is_late_is_told_and_gets_every_tick(self):
+    def test_a_late_session_is_told_and_gets_every_tick(self):
         deadline = ziggurat.Deadline("hold", wall_ms=300)
         with serve() as server:
             with ziggurat.connect(server.endpoint, "arm0", deadline=deadline) as late:
@@ -193,12 +193,12 @@ class Deadlines(unittest.TestCase):
                 self.assertEqual([tick.number, *numbers_of(late, 5)], list(range(6)))
                 self.assertEqual(their_numbers(), list(range(6)))
                 self.assertGreaterEqual(late.missed, 1)
-                self.assertGreaterEqual(late.late, 1)  # what it said to the tick that was over
-                # It was said again: the joint turned, although the first command was lost.
+                self.assertGreaterEqual(late.late, 1)  # its command for the past tick
+                # It was sent again: the joint turned, although the first command was lost.
                 self.assertGreater(late.robots[0].joints["hinge"].encoder, 0.05)
                 rest.abandon()
 
-    def test_who_is_dropped_gets_no_tick_any_more_but_the_end(self):
+    def test_a_dropped_session_gets_only_the_end(self):
         deadline = ziggurat.Deadline("drop", wall_ms=100)
         with serve() as server, ziggurat.supervise(server.endpoint) as world:
             late = ziggurat.connect(server.endpoint, "arm0", deadline=deadline)
@@ -211,7 +211,7 @@ class Deadlines(unittest.TestCase):
                 self.assertEqual((late.missed, late.ending.reason), (1, "interrupted"))
                 late.close()
 
-    def test_a_wish_that_the_server_has_fixed_otherwise_is_refused(self):
+    def test_a_deadline_other_than_the_servers_is_refused(self):
         with serve("--deadline", "hold:5000") as server:
             with self.assertRaises(ziggurat.Refused) as caught:
                 ziggurat.connect(server.endpoint, deadline=ziggurat.Deadline("stop", wall_ms=10))
@@ -219,7 +219,7 @@ class Deadlines(unittest.TestCase):
 
 
 class Keys(unittest.TestCase):
-    def test_who_is_listed_connects_in_its_roles(self):
+    def test_a_listed_key_connects_in_its_roles(self):
         server_key, server_secret = zmq.curve_keypair()
         public, secret = zmq.curve_keypair()
         folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))

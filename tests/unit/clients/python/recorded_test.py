@@ -16,7 +16,7 @@ RECORDED = ROOT / "protocol" / "recorded"
 
 
 def messages():
-    """(path, message) of everything that was recorded."""
+    """(path, message) of all recorded messages."""
     for path in sorted(RECORDED.glob("*/*.bin")):
         kind = v1.ClientMessage if "client_" in path.name else v1.ServerMessage
         yield path, kind.FromString(path.read_bytes())
@@ -29,7 +29,7 @@ def is_subset(old, today):
 
 
 class Recorded(unittest.TestCase):
-    def test_every_message_is_its_json_twin(self):
+    def test_every_message_equals_its_json(self):
         seen = list(messages())
         self.assertGreaterEqual(len(seen), 37)
         for path, message in seen:
@@ -40,7 +40,7 @@ class Recorded(unittest.TestCase):
                 today = json_format.MessageToDict(message, including_default_value_fields=True)
                 self.assertTrue(is_subset(json.loads(text), today))
 
-    def test_the_client_lays_out_what_was_recorded(self):
+    def test_the_client_reads_the_recorded_messages(self):
         folder = RECORDED / "1.0"
         welcome = v1.ServerMessage.FromString((folder / "server_welcome.bin").read_bytes()).welcome
         seen = v1.ServerMessage.FromString((folder / "server_observation.bin").read_bytes())

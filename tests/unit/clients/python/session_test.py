@@ -41,13 +41,13 @@ class SessionCase(unittest.TestCase):
 
 
 def open_with(server, *robots, **fields):
-    hello = server.hear()
-    server.say(welcome=welcome(*(robots or [equipped("one")]), **fields))
+    hello = server.receive()
+    server.send(welcome=welcome(*(robots or [equipped("one")]), **fields))
     return hello
 
 
 class Beginning(SessionCase):
-    def test_hello_says_what_is_wanted(self):
+    def test_hello_has_the_options(self):
         def part(server):
             hello = open_with(server)
             self.assertEqual((hello.version.major, hello.version.minor), (1, 0))
@@ -59,7 +59,7 @@ class Beginning(SessionCase):
             self.assertEqual(hello.deadline_policy.action, v1.DeadlinePolicy.HOLD)
             self.assertEqual(hello.deadline_policy.wall_deadline_ms, 20)
             self.assertEqual(hello.deadline_policy.miss_budget, 3)
-            self.assertEqual(server.hear().reason, v1.Leave.DONE)
+            self.assertEqual(server.receive().reason, v1.Leave.DONE)
 
         def client():
             with self.connect(["a*", "b"], controller="some", name="me", takeover=True,
@@ -71,7 +71,7 @@ class Beginning(SessionCase):
 
         self.play(part, client)
 
-    def test_no_wish_is_all_robots(self):
+    def test_no_option_means_all_robots(self):
         def part(server):
             self.assertEqual(list(open_with(server).robots), ["*"])
 
@@ -79,35 +79,35 @@ class Beginning(SessionCase):
 
     def test_loading_is_waited_for(self):
         def part(server):
-            server.hear()
+            server.receive()
             for progress in (0.1, 0.5):
-                server.say(loading=v1.Loading(progress=progress))
-            server.say(welcome=welcome())
+                server.send(loading=v1.Loading(progress=progress))
+            server.send(welcome=welcome())
 
         self.play(part, lambda: self.connect().abandon())
 
     def test_a_refusal_names_the_holder(self):
         def part(server):
-            server.hear()
+            server.receive()
             error = v1.Error(code=v1.Error.ROBOT_TAKEN, severity=v1.Error.FATAL, retryable=True,
                              robot="one", message="Taken.")
-            server.say(refusal=v1.Refusal(error=error, holder="somebody 1"))
+            server.send(refusal=v1.Refusal(error=error, holder="other 1"))
 
         def client():
             with self.assertRaises(ziggurat.Refused) as caught:
                 self.connect()
             self.assertEqual(caught.exception.code, "ROBOT_TAKEN")
-            self.assertEqual(caught.exception.holder, "somebody 1")
+            self.assertEqual(caught.exception.holder, "other 1")
             self.assertTrue(caught.exception.retryable)
             self.assertIn("one", str(caught.exception))
 
         self.play(part, client)
 
-    def test_nobody_listens(self):
+    def test_no_server(self):
         with self.assertRaises(ziggurat.ConnectionLost):
-            ziggurat.connect("ipc://@nobody-listens-here", connect_timeout=0.05)
+            ziggurat.connect("ipc://@no-server", connect_timeout=0.05)
 
-    def test_an_endpoint_that_is_none(self):
+    def test_an_invalid_endpoint(self):
         with self.assertRaises(ValueError):
             ziggurat.connect("nonsense")
 
@@ -138,9 +138,9 @@ class Ticks(SessionCase):
             open_with(server)
             for tick in range(3):
                 server.observe(tick)
-                self.assertEqual(server.hear().tick, tick)
-            server.say(end=v1.End(reason=v1.End.FINISHED, tick=2))
-            leave = server.hear()
+                self.assertEqual(server.receive().tick, tick)
+            server.send(end=v1.End(reason=v1.End.FINISHED, tick=2))
+            leave = server.receive()
             self.assertEqual(leave.reason, v1.Leave.DONE)
             self.assertEqual([line.text for line in leave.log], ["last words"])
 
@@ -154,17 +154,17 @@ class Ticks(SessionCase):
 
         self.play(part, client)
 
-    def test_what_is_no_tick_is_passed_over(self):
+    def test_messages_other_than_ticks_are_handled(self):
         def part(server):
             open_with(server)
-            server.say(heartbeat=v1.Heartbeat(sequence=1))
+            server.send(heartbeat=v1.Heartbeat(sequence=1))
             server.observe(4)
-            server.hear()
-            server.say(paused=v1.Paused(tick=4))
+            server.receive()
+            server.send(paused=v1.Paused(tick=4))
             server.socket.send_multipart([server.peer, b"\x9a\x06\x00"])  # an unknown kind, 99
             server.observe(5)
-            self.assertEqual(server.hear().tick, 5, "heartbeats and pauses are not answered")
-            server.say(end=v1.End(reason=v1.End.INTERRUPTED, message="enough", tick=5))
+            self.assertEqual(server.receive().tick, 5, "heartbeats and pauses are not answered")
+            server.send(end=v1.End(reason=v1.End.INTERRUPTED, message="enough", tick=5))
 
         def client():
             session = self.connect()
@@ -179,15 +179,15 @@ class Ticks(SessionCase):
         def part(server):
             open_with(server)
             server.observe(0)
-            self.assertEqual(list(server.hear().joint_targets), [0.0, 2.5])
+            self.assertEqual(list(server.receive().joint_targets), [0.0, 2.5])
             server.observe(1)
-            self.assertEqual(list(server.hear().joint_targets), [])
+            self.assertEqual(list(server.receive().joint_targets), [])
             server.observe(2)
-            self.assertEqual(list(server.hear().joint_targets), [1.0, 2.5])
-            server.say(error=v1.Error(code=v1.Error.DEADLINE_MISSED, severity=v1.Error.WARNING))
+            self.assertEqual(list(server.receive().joint_targets), [1.0, 2.5])
+            server.send(error=v1.Error(code=v1.Error.DEADLINE_MISSED, severity=v1.Error.WARNING))
             server.observe(3)
-            self.assertEqual(list(server.hear().joint_targets), [1.0, 2.5], "the last may be lost")
-            server.say(end=v1.End())
+            self.assertEqual(list(server.receive().joint_targets), [1.0, 2.5], "the last may be lost")
+            server.send(end=v1.End())
 
         def client():
             session = self.connect()
@@ -202,21 +202,21 @@ class Ticks(SessionCase):
 
         self.play(part, client)
 
-    def test_reset_takes_commands_back(self):
+    def test_reset_restores_the_commands(self):
         def part(server):
             open_with(server)
             server.observe(0)
-            server.hear()
+            server.receive()
             server.observe(1)
-            server.say(reset=v1.Reset(seed=7))  # what is owed is void
+            server.send(reset=v1.Reset(seed=7))  # what is owed is void
             server.observe(0)
-            command = server.hear()
+            command = server.receive()
             self.assertEqual(command.tick, 1, "it was on its way")
-            server.say(error=v1.Error(code=v1.Error.FUTURE_TICK, severity=v1.Error.DISCARD))
-            command = server.hear()
+            server.send(error=v1.Error(code=v1.Error.FUTURE_TICK, severity=v1.Error.DISCARD))
+            command = server.receive()
             self.assertEqual(command.tick, 0)
             self.assertEqual(list(command.joint_targets), [])
-            server.say(end=v1.End())
+            server.send(end=v1.End())
 
         def client():
             session = self.connect()
@@ -235,15 +235,15 @@ class Ticks(SessionCase):
 
         self.play(part, client)
 
-    def test_a_command_that_was_refused_is_owed_still(self):
+    def test_after_a_refused_command_an_answer_is_expected(self):
         def part(server):
             open_with(server)
             server.observe(0)
-            server.hear()
-            server.say(error=v1.Error(code=v1.Error.BAD_VALUE, severity=v1.Error.DISCARD,
+            server.receive()
+            server.send(error=v1.Error(code=v1.Error.BAD_VALUE, severity=v1.Error.DISCARD,
                                       field="joint_targets", message="No."))
-            self.assertEqual(server.hear().tick, 0)
-            server.say(error=v1.Error(code=v1.Error.DUPLICATE_TICK, severity=v1.Error.DISCARD))
+            self.assertEqual(server.receive().tick, 0)
+            server.send(error=v1.Error(code=v1.Error.DUPLICATE_TICK, severity=v1.Error.DISCARD))
             server.observe(1)
 
         def client():
@@ -260,7 +260,7 @@ class Ticks(SessionCase):
 
         self.play(part, client)
 
-    def test_commands_keep_to_the_servers_limit(self):
+    def test_commands_obey_the_servers_limit(self):
         def part(server):
             open_with(server)
             server.observe(0)
@@ -282,7 +282,7 @@ class Leaving(SessionCase):
         def part(server):
             open_with(server)
             server.observe(0)
-            leave = server.hear()
+            leave = server.receive()
             self.assertEqual(leave.reason, v1.Leave.FAILED)
             self.assertEqual(leave.message, "ZeroDivisionError: division by zero")
 
@@ -294,19 +294,19 @@ class Leaving(SessionCase):
 
         self.play(part, client)
 
-    def test_a_robot_fails_and_the_others_go_on(self):
+    def test_a_robot_fails_and_the_others_continue(self):
         def part(server):
             open_with(server, equipped("one"), equipped("two"))
             server.observe(0)
-            leave = server.hear()
+            leave = server.receive()
             self.assertEqual(list(leave.robots), [1])
             self.assertEqual(leave.message, "oh")
             self.assertEqual([line.text for line in leave.log], ["before"])
-            command = server.hear()
+            command = server.receive()
             self.assertEqual([(line.robot, line.text, line.error) for line in command.log],
                              [(0, "fine", True)])
             self.assertEqual(len(command.joint_targets), 4, "those that left keep their place")
-            server.say(end=v1.End())
+            server.send(end=v1.End())
 
         def client():
             session = self.connect()
@@ -324,11 +324,11 @@ class Leaving(SessionCase):
 
 
 class Losing(SessionCase):
-    def test_a_server_that_dies_is_noticed(self):
+    def test_a_closed_connection_is_detected(self):
         def part(server):
             open_with(server)
             server.observe(0)
-            server.hear()
+            server.receive()
             server.close()
 
         def client():
@@ -357,7 +357,7 @@ class Losing(SessionCase):
             hello = open_with(server)
             self.assertEqual(hello.session_token, b"token")
             server.observe(3)
-            self.assertEqual(server.hear().tick, 3)
+            self.assertEqual(server.receive().tick, 3)
             server.observe(4)
 
         def client():
@@ -375,7 +375,7 @@ class Losing(SessionCase):
     def test_being_displaced(self):
         def part(server):
             open_with(server)
-            server.say(displaced=v1.Displaced(by="usurper", message="Go."))
+            server.send(displaced=v1.Displaced(by="usurper", message="Go."))
 
         def client():
             with self.assertRaisesRegex(ziggurat.Displaced, "usurper"):
@@ -387,7 +387,7 @@ class Losing(SessionCase):
     def test_a_fatal_error_ends_the_session(self):
         def part(server):
             open_with(server)
-            server.say(error=v1.Error(code=v1.Error.TOO_MANY, severity=v1.Error.FATAL))
+            server.send(error=v1.Error(code=v1.Error.TOO_MANY, severity=v1.Error.FATAL))
 
         def client():
             session = self.connect()

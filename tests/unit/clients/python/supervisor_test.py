@@ -11,17 +11,17 @@ from session_test import SessionCase
 
 class Supervision(SessionCase):
     def ask(self, call, answer, role=v1.ROLE_SUPERVISOR, **options):
-        """What `call` returns if its request is answered by `answer(request)`; keeps the request."""
+        """The result of `call`, with `answer(request)` as the answer; keeps the request."""
         def part(server):
-            hello = server.hear()
+            hello = server.receive()
             self.assertEqual(hello.role, role)
             self.assertEqual(len(hello.robots), 0)
-            server.say(welcome=welcome(role=role))
-            self.request = server.hear()
-            server.say(heartbeat=v1.Heartbeat(sequence=1))
-            server.say(response=v1.Response(id=self.request.id + 7, tick=1))  # not ours
-            server.say(response=v1.Response(id=self.request.id, **answer))
-            server.hear()
+            server.send(welcome=welcome(role=role))
+            self.request = server.receive()
+            server.send(heartbeat=v1.Heartbeat(sequence=1))
+            server.send(response=v1.Response(id=self.request.id + 7, tick=1))  # not ours
+            server.send(response=v1.Response(id=self.request.id, **answer))
+            server.receive()
 
         def client():
             with ziggurat.supervise(self.server.endpoint, wait_timeout=5, **options) as world:
@@ -80,7 +80,7 @@ class Supervision(SessionCase):
         self.assertEqual(status.sessions[0].state, "owing")
         self.assertEqual(status.sessions[0].wall_waiting, 2.5)
 
-    def test_what_could_not_be_done_is_an_exception(self):
+    def test_a_refused_request_is_an_exception(self):
         error = v1.Error(code=v1.Error.UNKNOWN_ENTITY, severity=v1.Error.DISCARD, message="No.")
         with self.assertRaises(ziggurat.ProtocolError) as caught:
             self.ask(lambda world: world.remove("x"), {"error": error})
