@@ -1,4 +1,4 @@
--- The tower turns its head, lights up at every post and counts them; the watcher listens.
+-- The tower rotates, lights its LEDs at every post and counts the posts; the watcher receives.
 
 local posts, at_post, heard
 

@@ -1,4 +1,4 @@
--- Hands a token on: what comes in on one radio goes out on the other, one more (Listing 2.8).
+-- Passes a token on: the other radio sends each number that one received, plus one (Listing 2.8).
 
 function init()
    reset()

@@ -1,7 +1,7 @@
--- Stacks the first block it meets on top of the second (section 3.3 of the report).
+-- Stacks the first block that it finds on top of the second (section 3.3 of the report).
 --
--- A state machine that knows proximity, camera, radio and joint encoders, and nothing of where it
--- or the blocks are. Each state is a function, called at every tick; it returns the name of the next.
+-- A state machine. Its inputs are proximity, camera, radio and joint encoders; it knows no positions.
+-- Each state is a function, called at every tick; it returns the name of the next.
 
 local builder = require "construction.builder"
 
@@ -11,7 +11,7 @@ local carrying = builder.block + 0.017  -- lift, with a block carried over anoth
 local placed = builder.block - 0.0002  -- lift, with the carried block on top of another
 
 local states = {}
-local state, since = "start", 0  -- and how many ticks ago it began
+local state, since = "start", 0  -- and its age in ticks
 local blocks_met = 0
 
 local function seconds() return since * builder.tick end
@@ -33,7 +33,7 @@ function states.approach()
   if outcome == "lost" then return "search" end
 end
 
--- Backs away for another approach.
+-- Drives back for another approach.
 function states.retreat()
   if builder.back_away(0.04) > 0.2 or seconds() > 4 then
     builder.stop()
@@ -41,7 +41,7 @@ function states.retreat()
   end
 end
 
--- Turns to and fro, each time farther, until a face is seen.
+-- Turns to both sides, each time farther, until the camera sees a face.
 function states.search()
   builder.drive(0, seconds() % 8 < 2 and 0.2 or (seconds() % 8 < 6 and -0.2 or 0.2))
   if builder.nearest_face() then
@@ -54,7 +54,7 @@ function states.lower()
   if builder.lift_to(gap - 0.0005, 0.03) then return "energise" end
 end
 
--- The current rises slowly: before the block jumps, it loses weight and slides into line.
+-- The current rises slowly: before the block jumps, its weight on the floor is less and it aligns.
 function states.energise()
   builder.current(math.min(1, -1 + seconds()))
   if seconds() > 2.5 then return builder.holds() and "raise" or "let_go" end
@@ -64,14 +64,14 @@ function states.raise()
   if builder.lift_to(carrying, 0.03) then return builder.holds() and "signal" or "let_go" end
 end
 
--- Tells the block that it is held. The permanent magnets hold it from now on.
+-- Tells the block that it is held. From now on the permanent magnets hold it.
 function states.signal()
   builder.current(0)
   robot.radios.nfc.tx_data({1})
   if seconds() >= 1 then return "leave_gap" end
 end
 
--- What was in the way is gone; look for the next block.
+-- The first block is lifted; look for the next.
 function states.leave_gap()
   if builder.nearest_face() then return "approach" end
   builder.drive(0.03, 0)
@@ -90,7 +90,7 @@ function states.let_go()
   end
 end
 
--- Slowly: the lower block, pulled by the carried one, slides into line under it.
+-- Slowly: the carried block pulls the lower one, which aligns under it.
 function states.place()
   if builder.lift_to(placed, 0.008) then return "release" end
 end

@@ -1,4 +1,4 @@
--- A stigmergic block: its LEDs turn red once any of its radios receives something.
+-- A stigmergic block: its LEDs turn red when any of its radios receives a message.
 
 function init() robot.directional_leds.set_all_colors("black") end
 

@@ -1,5 +1,5 @@
--- What the construction robot's controllers share: its measures, wheels, lift, proximity sensors,
--- and how it docks at a block by the camera. Distances in m, times in s, angles in rad; positions
+-- Common functions of the construction robot's controllers: dimensions, wheels, lift, proximity
+-- sensors, docking at a block with the camera. Distances in m, times in s, angles in rad; positions
 -- in the robot's frame are {forward, left} of the point between the four wheels.
 
 local here = (...):match("^(.*%.)") or ""
@@ -7,19 +7,19 @@ local tag_pose = require(here .. "tag_pose")
 
 local builder = {}
 
--- The robot's own measures, which its maker knows. None of them says where anything stands.
+-- Dimensions of the robot. They contain no position of a block.
 builder.tick = 0.1                -- s between two steps
 builder.block = 0.055             -- edge of a block
 builder.tag_side = 0.024
 builder.face_height = 0.0555      -- of the end effector's face above the floor, lift at 0
-builder.reach = 0.080             -- from the robot's middle to the face of a block it holds
+builder.reach = 0.080             -- from the robot's centre to the face of a held block
 local wheel_radius, half_track = 0.025, 0.052
--- Skidding wheels turn the robot this much less than they roll: without a block, and with one,
--- whose weight takes load off the rear wheels.
+-- Rotation of the wheels / rotation of the robot, as they skid: without a block, and with one,
+-- whose weight reduces the load on the rear wheels.
 local slip = {[false] = 1.32, [true] = 1.08}
-builder.loaded = false            -- for those who reckon their way: whether it carries a block
-local front_sensor = 0.065        -- where the front proximity sensors sit
-local camera_forward = 0.0055     -- where the camera sits
+builder.loaded = false            -- for the odometry: whether the robot carries a block
+local front_sensor = 0.065        -- position of the front proximity sensors
+local camera_forward = 0.0055     -- position of the camera
 local camera = {focal_length = {884, 884}, principal_point = {320, 180}}
 
 --------------------------------------------------------------------------------------- wheels, lift
@@ -36,10 +36,10 @@ end
 
 function builder.stop() builder.drive(0, 0) end
 
--- Where dead reckoning has the robot: {x, y, yaw} in a frame of the robot's own choice.
+-- The robot's pose by odometry: {x, y, yaw} in a frame that the controller chooses.
 builder.pose = {x = 0, y = 0, yaw = 0}
 
--- Moves that on by what the wheels rolled; to be called at every step, first.
+-- Updates it from the rotation of the wheels; call it first in every step.
 function builder.reckon()
   local joints, pose = robot.joints, builder.pose
   local left = (joints.base_wheel_fl.encoder + joints.base_wheel_bl.encoder) / 2
@@ -51,18 +51,18 @@ function builder.reckon()
   pose.yaw = pose.yaw + turn
 end
 
--- An angle's equal within half a turn of 0.
+-- The equivalent angle within half a turn of 0.
 function builder.wrapped(angle) return math.atan(math.sin(angle), math.cos(angle)) end
 
 local lift = {height = 0, speed = 0, now = 0}
 
--- Sends the lift to a height at up to this speed. True once it is there.
+-- Moves the lift to a height with at most this speed. True when it has arrived.
 function builder.lift_to(height, speed)
   lift.height, lift.speed = height, speed
   return math.abs(height - robot.joints.lift.encoder) < 3e-4
 end
 
--- Moves the lift on, or holds it; to be called at every step, last. It starts and stops gently.
+-- Moves or holds the lift; call it last in every step. It starts and stops slowly.
 function builder.move_lift()
   local wanted = 3 * (lift.height - robot.joints.lift.encoder)
   wanted = math.max(-lift.speed, math.min(lift.speed, wanted))
@@ -83,7 +83,7 @@ local counts = {{0.0035, 65535}, {0.005, 32000}, {0.0075, 14222}, {0.01, 8000}, 
                 {0.02, 2000}, {0.03, 889}, {0.04, 500}, {0.06, 222}, {0.08, 125}, {0.1, 80},
                 {0.15, 36}, {0.2, 20}}
 
--- What a sensor's reading means [m]; infinity if it sees nothing.
+-- The distance for a sensor's reading [m]; infinity if there is no object.
 function builder.distance(sensor)
   local reading = robot.proximity[sensor]
   for i = 2, #counts do
@@ -96,16 +96,16 @@ function builder.distance(sensor)
   return math.huge
 end
 
--- From the robot's middle to the nearest thing in front of the deck; infinity beyond 0.2 m of it.
+-- From the robot's centre to the nearest object in front of the deck; infinity beyond 0.2 m of it.
 function builder.ahead()
   local nearest = math.min(builder.distance(1), builder.distance(2), builder.distance(12))
   return front_sensor + nearest
 end
 
--- From the end effector's face down to what is below; the sensor sits 4 mm inside.
+-- From the end effector's face down to the object below; the sensor is 4 mm inside.
 function builder.below() return builder.distance(13) - 0.004 end
 
--- Whether a block hangs at the end effector: all three sensors that look down touch it.
+-- True if a block is attached to the end effector: all three sensors that look down touch it.
 function builder.holds()
   return math.max(builder.distance(13), builder.distance(15), builder.distance(16)) < 0.0045
 end
@@ -124,7 +124,7 @@ local function color_around(centre, normal)
   end
 end
 
--- All faces that stand upright and are seen, nearest first: {forward, left, up, heading, payload,
+-- All seen faces that are upright, nearest first: {forward, left, up, heading, payload,
 -- color}. up counts from the camera, heading is the direction into the face.
 function builder.faces()
   local found = {}
@@ -144,28 +144,28 @@ function builder.faces()
   return found
 end
 
--- The nearest face at floor level that looks towards the robot; nil if none is seen.
+-- The nearest face at floor level that faces the robot; nil if the camera sees none.
 function builder.nearest_face()
   for _, face in ipairs(builder.faces()) do
     if math.abs(face.up) < 0.02 and math.abs(face.heading) < 0.7 then return face end
   end
 end
 
--- How far the robot stands to the left of the line through a face's middle, at right angles to it.
+-- Distance of the robot to the left of the normal through a face's centre.
 function builder.offset(face)
   return face.forward * math.sin(face.heading) - face.left * math.cos(face.heading)
 end
 
--- Turn rate that brings the robot onto that line within a few of these lengths, forwards or back.
+-- Turn rate that moves the robot onto that line with this distance constant, forwards or backwards.
 local function steer(face, speed)
   local settle = 0.03
   local wanted = math.max(-0.25, math.min(0.25, builder.offset(face) / (2 * settle)))
   return math.abs(speed) * 2 / settle * (face.heading - (speed > 0 and wanted or -wanted))
 end
 
--- Drives up to a face; to be called at every step with where it is by then. Returns "docked" once
--- it stands under the end effector, "askew" if it came close without being in line. With `touch`
--- the proximity sensors say how far it is at last.
+-- Drives to a face; call it in every step with the present face. Returns "docked" when the face is
+-- under the end effector, "askew" if the robot came close but is not on the line. With `touch` the
+-- proximity sensors measure the last part of the distance.
 function builder.dock_at(face, fastest, touch)
   local to_go = math.min(face.forward, touch and builder.ahead() or math.huge) - builder.reach
   if to_go < 0.03 and (math.abs(builder.offset(face)) > 0.006 or math.abs(face.heading) > 0.12) then
@@ -180,9 +180,9 @@ function builder.dock_at(face, fastest, touch)
   builder.drive(speed, steer(face, speed))
 end
 
-local unseen = 0  -- steps since a face was seen
+local unseen = 0  -- steps since the camera saw a face
 
--- Drives up to the nearest face, as above; "lost" if there is none to drive up to.
+-- Drives to the nearest face, as above; "lost" if the camera sees none.
 function builder.dock(fastest)
   local face = builder.nearest_face()
   unseen = face and 0 or unseen + 1
@@ -191,8 +191,8 @@ function builder.dock(fastest)
   if unseen > 5 then return "lost" end
 end
 
--- Backs away along the line before the nearest face; to be called at every step. How far away that
--- face is, 0 if none is seen.
+-- Drives backwards along the line in front of the nearest face; call it in every step. Returns the
+-- distance of that face, 0 if the camera sees none.
 function builder.back_away(speed)
   local face = builder.nearest_face()
   builder.drive(-speed, face and steer(face, -speed) or 0)

@@ -1,27 +1,27 @@
--- Builds a staircase of three steps, 1 + 2 + 3 blocks, beside a block that stands there already,
--- lit in red. Unlit blocks are what there is to build with; a block that was placed is lit in the
--- colour of its column, so the structure itself says where to go on.
+-- Builds a staircase of three steps, 1 + 2 + 3 blocks, beside an existing block, which is lit in
+-- red. Unlit blocks are material; a placed block is lit in the colour of its column, so the
+-- structure itself stores the progress.
 --
--- The robot reckons its way by its wheels in a frame that hangs at the structure, and sets it right
--- whenever it sees a lit face. It knows neither where it starts nor where any block stands.
+-- The robot uses the odometry of its wheels in a frame of the structure, and corrects it whenever
+-- it sees a lit face. It does not know its start or the position of any block.
 
 local builder = require "builder"
 
-local pitch = 0.078         -- from column to column: magnets of neighbours must not join [m]
+local pitch = 0.078         -- distance of columns: magnets of neighbours must not join [m]
 local clearance = 0.03      -- lift, on approach without a block
 local gap = 0.003           -- over the block when the magnets are energised
 local travel = 0.075        -- lift, with a block, out of the camera's sight
-local hub = 0.42            -- where the robot looks around: so far before the first column
+local hub = 0.42            -- distance before the first column where the robot looks around
 
 local colors = {{"red", {255, 0, 0}}, {"green", {0, 255, 0}}, {"blue", {0, 0, 255}}}
 local plan = {{column = 2, level = 1}, {column = 3, level = 1}, {column = 2, level = 2},
               {column = 3, level = 2}, {column = 3, level = 3}}
 
 local states = {}
-local state, since = "start", 0  -- and how many ticks ago it began
+local state, since = "start", 0  -- and its age in ticks
 local step_of_plan = 1
-local target                     -- {x, y, yaw}: the face to drive up to, in the structure's frame
-local payload                    -- of the face that the carried block shows
+local target                     -- {x, y, yaw}: the face to approach, in the structure's frame
+local payload                    -- of the visible face of the carried block
 local arrived                    -- the state after the hub
 local turned = 0                 -- while looking around [rad]
 local turning = 1                -- to the left
@@ -31,7 +31,7 @@ local function task() return plan[step_of_plan] end
 
 ---------------------------------------------------------------------------------------- places
 
--- A face that is seen, in the structure's frame.
+-- A seen face, in the structure's frame.
 local function place_of(face)
   local pose = builder.pose
   local c, s = math.cos(pose.yaw), math.sin(pose.yaw)
@@ -40,7 +40,7 @@ local function place_of(face)
           yaw = builder.wrapped(pose.yaw + face.heading)}
 end
 
--- A place, as a face from where the robot stands.
+-- A place in the structure's frame, as a face in the robot's frame.
 local function face_of(place)
   local pose = builder.pose
   local c, s = math.cos(pose.yaw), math.sin(pose.yaw)
@@ -62,12 +62,12 @@ end
 
 local function on_floor(face) return math.abs(face.up) < 0.02 end
 
--- The columns' front faces: where they are, and the number on their lowest tag, which tells them
--- from the other sides. The first is where the structure's frame hangs.
+-- The columns' front faces: their places, and the number on their lowest tag, which differs from
+-- the other sides. The first is the origin of the structure's frame.
 local fronts = {{x = 0, y = 0, yaw = 0}}
 
--- Sets dead reckoning right by the nearest front in sight, or only by one column's: what it holds
--- for their places differs from where they stand by millimetres, and by other ones for each.
+-- Corrects the odometry by the nearest front in sight, or by one column's only: the assumed places
+-- of the columns have errors of millimetres, different for each.
 local function find_oneself(faces, only)
   for _, face in ipairs(faces) do
     local column = column_of(face)
@@ -91,7 +91,7 @@ local function nearest_unlit(faces)
   end
 end
 
--- The face in sight that is at a place, if any.
+-- The seen face at a place, if any.
 local function seen_at(faces, place)
   for _, face in ipairs(faces) do
     local there = place_of(face)
@@ -104,7 +104,7 @@ end
 
 ---------------------------------------------------------------------------------------- driving
 
--- Drives to a point; true once it is there.
+-- Drives to a point; true when it has arrived.
 local function drive_to(x, y)
   local face = face_of({x = x, y = y, yaw = 0})
   local distance = math.sqrt(face.forward ^ 2 + face.left ^ 2)
@@ -120,7 +120,7 @@ local function drive_to(x, y)
   end
 end
 
--- Turns on the spot to a direction; true once it looks there.
+-- Turns on the spot to a direction; true when it has arrived.
 local function turn_to(yaw)
   local error = builder.wrapped(yaw - builder.pose.yaw)
   if math.abs(error) < 0.02 then
@@ -130,7 +130,7 @@ local function turn_to(yaw)
   builder.drive(0, math.max(-0.4, math.min(0.4, 2 * error)) + (error > 0 and 0.03 or -0.03))
 end
 
--- Turns to and fro with growing swings, from where it looks now.
+-- Turns to both sides, each time farther, from its present direction.
 local function look_around()
   builder.drive(0, 0.35 * turning)
   turned = turned + 0.35 * builder.tick
@@ -166,7 +166,7 @@ function states.seek_block(faces)
   look_around()
 end
 
--- To a point on the line before the target's face, from where driving up to it is easy.
+-- To a point on the line in front of the target's face, from which the approach is easy.
 function states.line_up(faces)
   local _, place = seen_at(faces, target)
   target = place or target
@@ -231,7 +231,7 @@ function states.raise()
   end
 end
 
--- Tells the block its column; it lights up.
+-- Sends the block its column; it lights up.
 function states.leave()
   robot.radios.nfc.tx_data({task().column})
   builder.drive(-0.05, 0)
@@ -243,7 +243,7 @@ end
 
 ------------------------------------------------------------------------------- placing a block
 
--- The column that shows where to go, and how far to the left of it.
+-- The column to steer by, and the distance to the left of it.
 local function reference()
   if task().level == 1 then return task().column - 1, pitch end
   return task().column, 0
@@ -257,7 +257,7 @@ local function seen_column(faces, column)
   end
 end
 
--- Turns the shorter way to where it thinks the structure is, and looks around until it sees it.
+-- Turns the shorter way to the assumed direction of the structure, and looks around for it.
 function states.seek_column(faces)
   local column = reference()
   if seconds() <= builder.tick then turning = builder.wrapped(builder.pose.yaw) > 0 and -1 or 1 end

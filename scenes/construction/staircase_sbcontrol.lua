@@ -1,6 +1,6 @@
--- A stigmergic block that lights up in the colour it is told: the first byte of what any of its
--- radios receives is 1 for red, 2 for green, 3 for blue. The script's parameter `color` lights it
--- from the start.
+-- A stigmergic block that lights up in the colour that it receives: the first byte of a message to
+-- any of its radios is 1 for red, 2 for green, 3 for blue. The script's parameter `color` is the
+-- initial colour.
 
 local colors = {"red", "green", "blue"}
 

@@ -13,10 +13,10 @@ end
 
 local function length(a) return math.sqrt(a[1] * a[1] + a[2] * a[2] + a[3] * a[3]) end
 
--- corners: four {x =, y =} [px], counted as the camera does: (-,-), (-,+), (+,+), (+,-) of the
+-- corners: four {x =, y =} [px], in the camera's order: (-,-), (-,+), (+,+), (+,-) of the
 -- tag's own x and y. camera: {focal_length = {x, y}, principal_point = {x, y}} [px]. side: outer
 -- edge [m]. Returns the tag's centre and its outward normal (unit) in the camera's frame: x right,
--- y down, z forward [m]; nothing if the corners are no convex quadrilateral.
+-- y down, z forward [m]; nothing if the corners are not a convex quadrilateral.
 function tag_pose.solve(corners, camera, side)
   local x, y = {}, {}
   for i = 1, 4 do

@@ -127,7 +127,7 @@ void drive(const Options& options) {
     try {
       if (!session.next()) break;
     } catch (const ConnectionError&) {
-      continue;  // after bytes that are no message it goes on, if somebody wants it to
+      continue;  // after invalid bytes the session can continue
     }
     for (Robot& robot : session.robots()) {
       see_robot(robot);

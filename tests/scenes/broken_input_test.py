@@ -84,7 +84,7 @@ class BrokenScene(SceneTest):
         self.change('speed="2"', 'speed="&a29;"')
         self.fails(r"arms\.argos:\d+")
 
-    def test_nobody_at_that_path(self):
+    def test_no_file_at_that_path(self):
         outcome = self.run_scene(code=FAULT, scene="nowhere.argos")
         self.assert_is_sentence(outcome, r"nowhere\.argos")
 

@@ -1,4 +1,4 @@
-"""Devices from end to end: what scripts set and sense, whoever runs them."""
+"""Devices from end to end: scripts set and read them, in one or several processes."""
 
 import math
 import resource
@@ -138,7 +138,7 @@ class DeviceTest(SceneTest):
 
 
 class Ring(DeviceTest):
-    def test_the_token_goes_round_the_same_whoever_runs_the_robots(self):
+    def test_the_token_passes_the_same_with_any_distribution_of_robots(self):
         scene = self.ring(4)
         expected = [f"[{tick} repeater{tick % 4}] {tick - 1}" for tick in range(1, 33)]
         hashes = set()
@@ -207,7 +207,7 @@ class Radio(DeviceTest):
         outcome = self.run_scene("--ticks", 3, "--quiet", scene=scene)
         self.assertEqual(outcome.lines, ["[1 l] all"])
 
-    def test_what_nobody_takes_is_gone(self):
+    def test_a_message_that_no_robot_reads_is_dropped(self):
         scene = self.two(
             """
             local text = {}

@@ -79,7 +79,7 @@ class SceneTest(unittest.TestCase):
             stdin=subprocess.DEVNULL, stdout=options.pop("stdout", subprocess.PIPE),
             stderr=options.pop("stderr", subprocess.PIPE), text=True, errors="replace", **options)
         self.started.append(process)
-        limit = threading.Timer(seconds, process.kill)  # so that nobody reads for ever
+        limit = threading.Timer(seconds, process.kill)  # so that no read waits forever
         limit.start()
         self.addCleanup(limit.cancel)
         return process

@@ -33,7 +33,7 @@ class Injected(SceneTest):
         self.assertEqual(cards["other"]["injected"]["commands"]["latency_s"], 0)
         self.assertIn("injected: each way 5 ms; 0 observations and 0 commands", outcome.err)
 
-    def test_who_loses_all_commands_misses_every_tick_and_nobody_else(self):
+    def test_only_a_session_without_commands_misses_every_tick(self):
         _, cards = self.cards("--hil", "--real-time", 2, "--ticks", 20, "--inject",
                               "swing=commands:loss=100%", "--deadline", "swing=hold:20",
                               "--deadline", "other=hold:5000")

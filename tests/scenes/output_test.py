@@ -10,7 +10,7 @@ from harness import FAULT, FINISHED, SceneTest, main
 
 
 class Log(SceneTest):
-    def test_lines_stand_in_the_order_of_ticks_and_robots_whoever_runs_them(self):
+    def test_lines_are_in_the_order_of_ticks_and_robots_in_any_process(self):
         expected = [f"[0 {robot}] init" for robot in ("r0", "r1", "r2")]
         for tick in range(1, 6):
             expected += [f"[{tick} {robot}] step {tick}" for robot in ("r0", "r1", "r2")]

@@ -127,7 +127,7 @@ class Interruption(SceneTest):
         process.kill()
         process.communicate()
         self.assertEqual(self.left_processes(), [])
-        for left in self.runtime.glob("ziggurat-*"):  # nobody was there to remove it
+        for left in self.runtime.glob("ziggurat-*"):  # no process was left to remove it
             for file in left.iterdir():
                 file.unlink()
             left.rmdir()

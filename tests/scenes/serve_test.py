@@ -1,4 +1,4 @@
-"""`ziggurat serve`: controllers come from outside, strangers too."""
+"""`ziggurat serve`: controllers connect from outside, and so do unknown peers."""
 
 import json
 import os

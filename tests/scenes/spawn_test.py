@@ -8,7 +8,7 @@ import subprocess
 from harness import INTERRUPTED, LUA, ZIGGURAT, SceneTest, main
 
 BOX = '<box id="{}" size="0.1,0.1,0.1" movable="true" mass="1"><body position="{}"/></box>'
-PACED = "--real-time", 3  # so that nobody has to read all of its lines
+PACED = "--real-time", 3  # so that it prints fewer lines
 
 
 class Spawn(SceneTest):
@@ -63,7 +63,7 @@ class Spawn(SceneTest):
         self.read_until(process.stdout, rf"^\[{tick + 20} r0\]")
         self.assertNotIn("late", self.end(process).out)
 
-    def test_a_robot_that_nobody_drives_is_waited_for(self):
+    def test_the_world_waits_for_a_robot_without_session(self):
         process = self.begin("serve", *PACED)
         scripted = [subprocess.Popen([LUA, "--connect", self.url, "--quiet"], cwd=self.folder,
                                      env=self.environment)]
@@ -123,7 +123,7 @@ class Spawn(SceneTest):
                 (BOX.format("b", "0,3,0") + " " * (1 << 20), "TOO_LARGE")):
             with self.subTest(reason=reason):
                 self.assertIn(reason, self.spawn(text, code=1))
-        self.assertIn("UNKNOWN_ENTITY", self.ctl("remove", "nobody", code=1))
+        self.assertIn("UNKNOWN_ENTITY", self.ctl("remove", "unknown", code=1))
         self.assertEqual(self.read()["hash"], before)
         self.end(process)
 

@@ -69,7 +69,7 @@ class Ctl(unittest.TestCase):
             moved = server.read(entity)["entities"][0]
             self.assertEqual([0.1, 0.2, 0.3], [round(v, 9) for v in moved["position"]])
             self.assertAlmostEqual(0.5**0.5, moved["orientation"][3], places=9)
-            for words, reason in ((("move", "nobody", "0,0,0"), "UNKNOWN_ENTITY"),
+            for words, reason in ((("move", "unknown", "0,0,0"), "UNKNOWN_ENTITY"),
                                   (("step", "0"), "BAD_VALUE"),
                                   (("spawn", os.devnull), "BAD_VALUE"),
                                   (("paus",), "did you mean 'pause'?")):
@@ -77,7 +77,7 @@ class Ctl(unittest.TestCase):
                 self.assertEqual(1, outcome.returncode, words)
                 self.assertIn(reason, outcome.stderr)
 
-    def test_a_step_that_nobody_waits_for_any_more_is_in_nobodys_way(self):
+    def test_an_abandoned_step_does_not_block_later_requests(self):
         with Server(DROP, "--duration", "0") as server:
             impatient = subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "1000000"])
             time.sleep(0.3)

@@ -131,7 +131,7 @@ class Transports(unittest.TestCase):
         server = self.start(perturb.BIN / "ziggurat", "serve", perturb.STACKING, "--json",
                             "--endpoint", "tcp://127.0.0.1:*", "--endpoint", socket,
                             "--trace", trace, "--readings", readings)
-        signal.alarm(300)  # nobody waits for ever
+        signal.alarm(300)  # limits the wait
         self.addCleanup(signal.alarm, 0)
         tcp = json.loads(server.stdout.readline())["endpoint"]
         self.start(perturb.BIN / "ziggurat-lua", "--connect", socket, "--controller", "block")

@@ -150,6 +150,6 @@ def _command_slowly(session):
         for due in ("welcome", "observation"):
             kind = v1.ServerMessage.FromString(peer.hear()).WhichOneof("message")
             if kind != due:
-                raise AssertionError(f"{due} is due, not {kind}")
+                raise AssertionError(f"expected {due}, got {kind}")
         peer.say_half(command)
         time.sleep(0.05)

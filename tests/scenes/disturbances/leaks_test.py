@@ -58,7 +58,7 @@ def lost_in_the_tick(endpoint, number):
 
 def refused(endpoint, number):
     with RawPeer(endpoint) as peer:
-        peer.say(hello(robots=[f"nobody{number}"]))
+        peer.say(hello(robots=[f"unknown{number}"]))
         hear(peer, "refusal")
 
 
@@ -104,7 +104,7 @@ def hear(peer, *kinds):
         while kind == "loading":
             kind = v1.ServerMessage.FromString(peer.hear()).WhichOneof("message")
         if kind != due:
-            raise AssertionError(f"{due} is due, not {kind}")
+            raise AssertionError(f"expected {due}, got {kind}")
 
 
 def break_off(connection):
@@ -145,7 +145,7 @@ class Leaks(SceneTest):
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
-    def test_half_open_connections_keep_nobody_out(self):
+    def test_half_open_connections_do_not_block_others(self):
         """More of them than a shell usually grants open files; they are hung up on in the end."""
         soft, hard = 256, resource.getrlimit(resource.RLIMIT_NOFILE)[1]
         process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--quiet", limit=120,

@@ -85,7 +85,7 @@ TEST(Drop, FreeFallIsSemiImplicitEuler) {
         const math::Vector3 to = run.state().links[link].pose * centre;
         const double n = tick * substeps;
         const double z = from.z() - gravity * h * h * n * (n + 1) / 2;
-        // Who may have met the floor, or another body that fell alike: nobody turns in flight.
+        // Bodies that may have hit the floor or another body: in flight none rotates.
         const bool turned = run.state().links[link].angular_velocity.norm() > 0 || z < 2 * half;
         if (turned) continue;
         EXPECT_NEAR(to.z(), z, 1e-9) << entities[i].id << " at tick " << tick;

@@ -19,7 +19,7 @@ const math::Pose& box(const world::State& state, std::size_t row, std::size_t nu
   return state.origins[walls + row * boxes + number];
 }
 
-/// Nobody left the floor, tilted, or moved sideways.
+/// No body left the floor, tilted, or moved sideways.
 void expect_orderly(const world::State& state) {
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 0; i < boxes; ++i) {

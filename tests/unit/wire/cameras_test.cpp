@@ -15,7 +15,7 @@ std::array<math::Vector2, 4> corners(double first) {
 }
 
 /// a sees an LED and two tags and takes a picture; c's cameras see one tag each, the second two
-/// LEDs. Readings of LEDs by c's first camera, which has no such detector, are nobody's.
+/// LEDs. c's first camera has no such detector: its LED readings are not sent.
 world::Observations seen(const EquippedRun& run) {
   world::Observations seen = run.observations();
   seen.leds = {{0, 0xFF0000, {10.5, 20}},

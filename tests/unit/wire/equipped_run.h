@@ -13,7 +13,7 @@ namespace ziggurat::wire {
 
 /// Robots "a" (everything once, radios twice), "b" (nothing) and "c" (everything twice, one radio
 /// that only sends, one that only receives). Everything of c comes after that of a, and LED,
-/// magnet and tag 1 belong to somebody who is no robot. a's camera sees LEDs and tags and takes
+/// magnet and tag 1 belong to an entity that is not a robot. a's camera sees LEDs and tags and takes
 /// pictures of 2 x 1 pixels, c's first sees tags and directional LEDs, c's second all but takes no
 /// pictures. a drives wheels and turret and measures neither; c does both.
 class EquippedRun {
@@ -87,7 +87,7 @@ class EquippedRun {
     return commands;
   }
 
-  /// What nobody senses, but of the right size.
+  /// Zeros of the right size.
   world::Observations observations() const {
     world::Observations observations;
     observations.proximity.resize(3);
