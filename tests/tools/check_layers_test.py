@@ -92,7 +92,7 @@ class CheckLayers(unittest.TestCase):
         self.assert_caught("server/loose.h", "", "'loose.h'")
         self.assert_caught("clients/rust/new.cpp", "", "'clients/rust'")
 
-    def test_catches_headers_that_do_not_exist(self):
+    def test_catches_includes_in_another_form(self):
         self.assert_caught("server/scene/bad.cpp", '#include "scene.h"\n', "module/file.h")
         self.assert_caught("server/scene/bad.cpp", "#include HEADER\n", "HEADER")
 
