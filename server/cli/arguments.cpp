@@ -23,8 +23,8 @@ std::string unknown(const std::string& name, const po::options_description& know
                      suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?");
 }
 
-// An option whose value may be left out takes the next word only if that is a number; left alone
-// Boost takes any word.
+// An option with an optional value takes the next word only if it is a number. Boost would take any
+// word.
 Arguments join_optional_values(const Arguments& arguments) {
   const auto is_number = [](const std::string& text) {
     char* end = nullptr;

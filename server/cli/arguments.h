@@ -1,5 +1,5 @@
 #pragma once
-// Command lines: parsed against what a command knows, with a suggestion for what it doesn't.
+// Parses command lines, with a suggestion for a misspelt option.
 
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>

@@ -21,13 +21,13 @@ namespace {
 
 using Severity = scene::Problem::Severity;
 
-// A model of the scene and the number of entities that are of it.
+// A model of the scene and the number of its entities.
 struct ModelUse {
   std::string id;
   std::size_t entities = 0;
 };
 
-// What happens when a controller is late, where the scene says it.
+// The deadline policy that the scene sets for a controller.
 struct ControllerDeadline {
   std::string id;
   scene::DeadlinePolicy policy;
@@ -37,7 +37,7 @@ struct Finding {
   std::vector<scene::Problem> problems;
   std::vector<ModelUse> models;
   std::vector<ControllerDeadline> deadlines;
-  std::size_t entities = 0;  ///< of the world that was built; 0 if it could not be
+  std::size_t entities = 0;  ///< in the world; 0 if it could not be built
   std::size_t robots = 0;
 
   std::size_t count(Severity severity) const {
@@ -46,7 +46,7 @@ struct Finding {
   }
 };
 
-// What pictures can't show; of a model once.
+// Notices on tags that pictures cannot show; one per tag of a model.
 void add_plain_tags(const scene::Scene& scene, std::vector<scene::Problem>& problems) {
   std::set<scene::Location> seen;
   const auto add = [&](const scene::Entity& entity) {
@@ -85,11 +85,10 @@ std::vector<ControllerDeadline> deadlines_of(const scene::Scene& scene) {
   return deadlines;
 }
 
-// Reads the file, compiles the scripts and, if all is well so far, places everything.
+// Reads the file, compiles the scripts and, if there is no fault so far, builds the world.
 Finding examine(const std::string& path, const run::Options& options) {
-  auto read = scene::read_file(path, options.reading);
-  Finding finding{std::move(read.problems), uses_of_models(read.scene),
-                  deadlines_of(read.scene)};
+  auto read = scene::read_file(path, options.scene_file);
+  Finding finding{std::move(read.problems), uses_of_models(read.scene), deadlines_of(read.scene)};
   const auto add = [&](const std::vector<scene::Problem>& more) {
     finding.problems.insert(finding.problems.end(), more.begin(), more.end());
   };
@@ -168,8 +167,8 @@ std::string help_check() {
   std::ostringstream text;
   text << R"(usage: ziggurat check SCENE... [OPTION]...
 
-Reports everything that is wrong with scene files, and everything in them that has no effect here:
-reads them whole, compiles their Lua scripts and places their entities, but starts nothing.
+Reports every fault of scene files, and everything in them that has no effect here: reads them
+completely, compiles their Lua scripts and places their entities, but starts no controller.
 
   ziggurat check vehicle.argos
   ziggurat check scenes/*.argos --quiet
@@ -177,7 +176,7 @@ reads them whole, compiles their Lua scripts and places their entities, but star
   ziggurat check vehicle.argos --json
       an array with an object per scene
 
-Exit codes: 0 no scene has a fault; 1 one has.
+Exit codes: 0 no scene has a fault; 1 at least one has.
 
 )" << check_options();
   return text.str();
@@ -186,7 +185,7 @@ Exit codes: 0 no scene has a fault; 1 one has.
 int execute_check(const Arguments& arguments) {
   const auto options = parse_options(arguments, check_options());
   if (options.scenes.empty())
-    throw text::UsageError("which scene? the path of a scene file is due");
+    throw text::UsageError("no scene is given; write: ziggurat check SCENE...");
   reports::Console console({options.quiet, false});
   auto report = nlohmann::ordered_json::array();
   bool good = true;

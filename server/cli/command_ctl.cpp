@@ -1,4 +1,4 @@
-// Steers a run from another terminal.
+// Controls a run from another terminal.
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ namespace po = boost::program_options;
 po::options_description ctl_options() {
   po::options_description options("Options", 96);
   options.add_options()("seed", po::value<std::string>()->value_name("N"),
-                        "with reset: the new seed; the same as before without it")(
+                        "with reset: the new seed; without it the seed stays")(
       "json", "print answers as JSON");
   add_key_options(options);
   return options;
@@ -35,7 +35,7 @@ po::options_description ctl_options() {
 struct Call {
   Supervisor& server;
   reports::Console& console;
-  std::vector<std::string> words;  ///< behind the verb
+  std::vector<std::string> words;  ///< after the verb
   po::variables_map values;
 };
 
@@ -43,7 +43,7 @@ struct Call {
   throw text::UsageError(fmt::format("write: ziggurat ctl URL {}", usage));
 }
 
-void say(const Call& call, std::string_view done, std::uint64_t tick) {
+void print_result(const Call& call, std::string_view done, std::uint64_t tick) {
   if (call.values.count("json") > 0) {
     call.console.result(fmt::format(R"({{"tick":{}}})", tick));
   } else {
@@ -57,13 +57,13 @@ void print_status(const Call& call) {
   call.console.result(json ? call.server.last_answer_json() : to_text(status));
 }
 
-void pause(const Call& call) { say(call, "paused", call.server.pause()); }
-void resume(const Call& call) { say(call, "resumed", call.server.resume()); }
+void pause(const Call& call) { print_result(call, "paused", call.server.pause()); }
+void resume(const Call& call) { print_result(call, "resumed", call.server.resume()); }
 
 void step(const Call& call) {
   if (call.words.size() > 1) misused("step [TICKS]");
   const std::uint64_t ticks = call.words.empty() ? 1 : text::to_integer("step", call.words[0]);
-  say(call, "paused", call.server.step(ticks));
+  print_result(call, "paused", call.server.step(ticks));
 }
 
 void reset(const Call& call) {
@@ -73,24 +73,24 @@ void reset(const Call& call) {
   } else {
     call.server.reset(text::to_integer("--seed", seed->second.as<std::string>()));
   }
-  say(call, "reset", 0);
+  print_result(call, "reset", 0);
 }
 
 std::string contents_of(const std::string& path) {
   if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
   std::ifstream file(path);
-  if (!file) throw text::UsageError(path + ": it can't be read");
+  if (!file) throw text::UsageError("'" + path + "' cannot be read");
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
 void spawn(const Call& call) {
   if (call.words.size() != 1) misused("spawn FILE|-   (one element, as in <arena>)");
-  say(call, "spawned", call.server.spawn(contents_of(call.words[0])));
+  print_result(call, "spawned", call.server.spawn(contents_of(call.words[0])));
 }
 
 void remove(const Call& call) {
   if (call.words.size() != 1) misused("remove ENTITY");
-  say(call, "removed", call.server.remove(call.words[0]));
+  print_result(call, "removed", call.server.remove(call.words[0]));
 }
 
 void move(const Call& call) {
@@ -113,7 +113,7 @@ void move(const Call& call) {
         scene::orientation_from_degrees({angles[0], angles[1], angles[2]});
     orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
   }
-  say(call, "moved", call.server.move(call.words[0], position, orientation));
+  print_result(call, "moved", call.server.move(call.words[0], position, orientation));
 }
 
 void read(const Call& call) {
@@ -140,14 +140,15 @@ struct Verb {
 };
 
 constexpr Verb verbs[] = {
-    {"status", "whom the world waits for, and since when", print_status},
-    {"pause", "stop between two ticks; returns when the world stands", pause},
-    {"resume", "go on", resume},
-    {"step", "[TICKS] of a paused world, 1 if not said", step},
-    {"reset", "[--seed N]  build the world anew; controllers are told", reset},
+    {"status", "the controllers that the world waits for, and how long", print_status},
+    {"pause", "stop between two ticks; returns when the world has stopped", pause},
+    {"resume", "continue", resume},
+    {"step", "[TICKS]  advance a paused world, by 1 tick if TICKS is missing", step},
+    {"reset", "[--seed N]  build the world again; controllers are told", reset},
     {"spawn", "FILE|-  add an entity: one element, as in <arena>", spawn},
-    {"remove", "ENTITY  take it out", remove},
-    {"move", "ENTITY x,y,z [z,y,x]  put it to rest there [m], turned so [degrees]", move},
+    {"remove", "ENTITY  remove it from the world", remove},
+    {"move", "ENTITY x,y,z [z,y,x]  put it at rest there [m], with this orientation [degrees]",
+     move},
     {"read", "[ID|GLOB]...  poses of entities: x y z, and the quaternion w x y z", read},
     {"shutdown", "end the run, as Ctrl-C does", shutdown},
 };
@@ -159,7 +160,7 @@ const Verb& verb_named(const std::string& name) {
     names.emplace_back(verb.name);
   }
   const auto suggestion = text::closest(name, names);
-  throw text::UsageError(fmt::format("ctl: there is no '{}'; {}", name,
+  throw text::UsageError(fmt::format("ctl: there is no request '{}'; {}", name,
                                      suggestion.empty() ? "'ziggurat help ctl' lists them"
                                                         : "did you mean '" + suggestion + "'?"));
 }
@@ -168,10 +169,10 @@ const Verb& verb_named(const std::string& name) {
 
 std::string help_ctl() {
   std::ostringstream text;
-  text << R"(usage: ziggurat ctl URL WHAT [ARGUMENT]...
+  text << R"(usage: ziggurat ctl URL REQUEST [ARGUMENT]...
 
-Steers a run of `ziggurat run --endpoint URL` or `ziggurat serve` from another terminal. What it asks
-for is done between two ticks; it returns when that is true.
+Controls a run of `ziggurat run --endpoint URL` or `ziggurat serve` from another terminal. Requests are
+carried out between two ticks; the command returns when its request is done.
 
 )";
   for (const Verb& verb : verbs) text << fmt::format("  {:<10} {}\n", verb.name, verb.summary);
@@ -182,7 +183,7 @@ for is done between two ticks; it returns when that is true.
   echo '<box id="b" size=".1,.1,.1" movable="true" mass="1"><body position="0,0,1"/></box>' |
       ziggurat ctl tcp://127.0.0.1:5770 spawn -
 
-Exit codes: 0 it was done; 1 it was not.
+Exit codes: 0 the request was done; 1 it was not.
 
 )" << ctl_options();
   return text.str();
@@ -190,7 +191,7 @@ Exit codes: 0 it was done; 1 it was not.
 
 int execute_ctl(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, ctl_options());
-  if (parsed.positional.size() < 2) misused("WHAT   ('ziggurat help ctl' lists what there is)");
+  if (parsed.positional.size() < 2) misused("REQUEST   ('ziggurat help ctl' lists the requests)");
   const Verb& verb = verb_named(parsed.positional[1]);
   reports::Console console;
   Supervisor server(supervisor_options(parsed.positional[0], parsed.values, false, "ziggurat ctl"));

@@ -16,7 +16,7 @@ namespace po = boost::program_options;
 po::options_description keygen_options() {
   po::options_description options("", 96);
   options.add_options()("out", po::value<std::string>()->value_name("PREFIX"),
-                        "where to: PREFIX.secret and PREFIX.public; 'ziggurat' if left out");
+                        "files to write: PREFIX.secret and PREFIX.public (default: ziggurat)");
   return options;
 }
 
@@ -26,14 +26,14 @@ std::string help_keygen() {
   std::ostringstream text;
   text << R"text(usage: ziggurat keygen [--out PREFIX]
 
-Makes a pair of keys for protected connections (CURVE), and prints the public one. PREFIX.secret can
-be read by its owner only and stays where it is; PREFIX.public may be known to everybody. Files that
-exist are not replaced.
+Makes a pair of keys for protected connections (CURVE), and prints the public key. Only its owner can
+read PREFIX.secret; keep it on its machine. PREFIX.public is no secret. Existing files are not
+replaced.
 
   ziggurat keygen --out server
   ziggurat keygen --out alice
   echo "$(cat alice.public) controller Alice's robots" > clients.txt
-      keys of the server and of a client, and the list of who may connect
+      keys of the server and of a client, and the list of allowed clients
   ziggurat serve vehicle.argos --endpoint tcp://0.0.0.0:5770 \
                 --curve-secret server.secret --curve-clients clients.txt
   ziggurat-lua --connect tcp://192.0.2.1:5770 --server-key "$(cat server.public)" \
@@ -48,8 +48,8 @@ Exit codes: 0 finished; 1 fault of arguments or environment.
 int execute_keygen(const Arguments& arguments) {
   const auto parsed = parse(arguments, keygen_options());
   if (!parsed.positional.empty()) {
-    throw text::UsageError(
-        fmt::format("'{}' is one too many; --out PREFIX is due", parsed.positional[0]));
+    throw text::UsageError(fmt::format("unexpected '{}'; write: ziggurat keygen [--out PREFIX]",
+                                       parsed.positional[0]));
   }
   const std::string prefix =
       parsed.values.count("out") > 0 ? parsed.values["out"].as<std::string>() : "ziggurat";

@@ -57,7 +57,7 @@ Chosen choose(const scene::Entity& entity, const scene::Magnet& magnet,
   return chosen;
 }
 
-/// Placed and to be distributed alike.
+/// The placed ones, and the patterns of the distributed ones.
 std::vector<const scene::Entity*> all_entities(const scene::Scene& scene) {
   std::vector<const scene::Entity*> entities;
   for (const auto& entity : scene.entities) entities.push_back(&entity);
@@ -85,7 +85,8 @@ std::vector<Chosen> choose_pair(const scene::Scene& scene, const scene::Magnetis
     const auto names = values["magnets"].as<std::string>();
     const auto comma = names.find(',');
     if (comma == std::string::npos)
-      throw text::UsageError("--magnets: two names with a comma between them are due");
+      throw text::UsageError(
+          "--magnets must be two names with a comma between them, as left,right/magnet_2");
     return {find_magnet(scene, settings, names.substr(0, comma)),
             find_magnet(scene, settings, names.substr(comma + 1))};
   }
@@ -95,13 +96,12 @@ std::vector<Chosen> choose_pair(const scene::Scene& scene, const scene::Magnetis
       if (pair.size() < 2) pair.push_back(choose(*entity, magnet, settings));
     }
   }
-  if (pair.empty()) throw text::UsageError("the scene has no magnets");
-  if (pair.size() == 1)
-    pair.push_back(pair[0]);  // a pattern to distribute, or a magnet and its like
+  if (pair.empty()) throw text::UsageError("the scene has no magnets; at least one is needed");
+  if (pair.size() == 1) pair.push_back(pair[0]);  // against another one of the same kind
   return pair;
 }
 
-/// What A does to B at a place.
+/// Force and torque of A on B at a pose in the frame of A.
 Wrench act(std::vector<magnetism::Magnet> pair, const math::Pose& second,
            magnetism::Precision precision, double tolerance) {
   pair[0].body = 0;
@@ -117,7 +117,7 @@ Wrench act(std::vector<magnetism::Magnet> pair, const math::Pose& second,
   return wrenches[1];
 }
 
-/// The force on B by a formula of the literature, where there is one for this pair and place.
+/// The force on B [N] by a formula of the literature, if there is one for this pair and pose.
 std::optional<double> closed_form(const magnetism::Magnet& a, const magnetism::Magnet& b,
                                   const Vector3& offset, bool turned) {
   const auto ball = [](const magnetism::Shape& shape) {
@@ -169,10 +169,10 @@ Vector3 direction_of(const po::variables_map& values, const Vector3& moment) {
   if (axis == "x") return Vector3::UnitX();
   if (axis == "y") return Vector3::UnitY();
   if (axis == "z") return Vector3::UnitZ();
-  throw text::UsageError("--axis: '" + axis + "' is no axis; write x, y or z");
+  throw text::UsageError("--axis is '" + axis + "'; write x, y or z");
 }
 
-/// What cancels but for rounding is no torque.
+/// The torque [N m], or 0 if it is a rounding error.
 double torque_beyond_rounding(const Wrench& wrench, double distance) {
   const double torque = wrench.torque.norm();
   return torque > 1e-12 * wrench.force.norm() * distance ? torque : 0;
@@ -188,7 +188,8 @@ std::vector<reports::Panel> plot(const std::vector<Chosen>& pair, const scene::M
       magnetism::bounding_radius(magnets[0].shape) + magnetism::bounding_radius(magnets[1].shape);
   const double from = option_number(values, "from", touching > 0 ? 1.02 * touching : 0.005);
   const double to = option_number(values, "to", 20 * from);
-  if (!(from > 0) || !(to > from)) throw text::UsageError("--from and --to: 0 < from < to is due");
+  if (!(from > 0) || !(to > from))
+    throw text::UsageError("--from must be more than 0, and --to more than --from");
   reports::Panel force{"Force on B",
                        "distance of the centres [m]",
                        "|F| [N]",
@@ -224,10 +225,10 @@ std::vector<reports::Panel> plot(const std::vector<Chosen>& pair, const scene::M
 std::string help_magnetism() {
   return fmt::format(R"(usage: ziggurat magnetism plot SCENE [OPTION]...
 
-Draws force and torque between two magnets of a scene against their distance: each as one dipole,
-with adaptive precision at the scene's tolerance, and by the closed form where the literature has
+Plots force and torque between two magnets of a scene over their distance: each as one dipole, with
+adaptive precision at the scene's tolerance, and by a closed form of the literature where there is
 one (spheres and points; parallel boxes and coaxial cylinders of one radius, magnetised along z).
-Both magnets stand as in their anchor frames, without current.
+Both magnets are oriented as in their anchor frames, without current.
 
   ziggurat magnetism plot scenes/dynamics3d_magnetism_test.argos --out rows.svg
   ziggurat magnetism plot scene.argos --magnets left,right/magnet_2 --axis z --turn 30
@@ -239,7 +240,8 @@ Both magnets stand as in their anchor frames, without current.
 int execute_magnetism(const Arguments& arguments) {
   const auto parsed = parse(arguments, plot_options());
   if (parsed.positional.size() != 2 || parsed.positional[0] != "plot") {
-    throw text::UsageError("what of magnetism? write: ziggurat magnetism plot SCENE");
+    throw text::UsageError(
+        "the arguments are not understood; write: ziggurat magnetism plot SCENE");
   }
   reports::Console console;
   const auto read = scene::read_file(parsed.positional[1]);
@@ -252,7 +254,7 @@ int execute_magnetism(const Arguments& arguments) {
   std::ofstream file(path);
   file << to_svg(fmt::format("A = {}, B = {}", pair[0].name, pair[1].name), panels);
   file.close();
-  if (!file) throw text::UsageError(fmt::format("--out: '{}' can't be written", path));
+  if (!file) throw text::UsageError(fmt::format("--out: '{}' cannot be written", path));
   console.result(fmt::format("{}: {} and {}", path, pair[0].name, pair[1].name));
   console.flush();
   return reports::exit_code::finished;

@@ -7,7 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "run/execution.h"
+#include "run/run.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
@@ -33,7 +33,8 @@ std::vector<std::string> split(const std::string& text, char separator) {
 math::Vector3 to_point(std::string_view option, const std::string& text) {
   const auto parts = split(text, ',');
   if (parts.size() != 3) {
-    throw text::UsageError(fmt::format("{} is '{}'; x,y,z in metres is due", option, text));
+    throw text::UsageError(
+        fmt::format("{} is '{}'; it must be x,y,z in metres, as 1,-1,0.5", option, text));
   }
   return {text::to_number(option, parts[0]), text::to_number(option, parts[1]),
           text::to_number(option, parts[2])};
@@ -42,7 +43,8 @@ math::Vector3 to_point(std::string_view option, const std::string& text) {
 unsigned to_side(const std::string& text) {
   const auto side = text::to_integer("--size", text);
   if (side < 1 || side > largest_side) {
-    throw text::UsageError(fmt::format("--size: {} is not 1 to {} pixels", text, largest_side));
+    throw text::UsageError(
+        fmt::format("--size: {} is not from 1 to {} pixels", text, largest_side));
   }
   return static_cast<unsigned>(side);
 }
@@ -50,7 +52,8 @@ unsigned to_side(const std::string& text) {
 void read_size(const std::string& text, run::PictureOptions& pictures) {
   const auto sides = split(text, 'x');
   if (sides.size() != 2) {
-    throw text::UsageError(fmt::format("--size is '{}'; WIDTHxHEIGHT in pixels is due", text));
+    throw text::UsageError(
+        fmt::format("--size is '{}'; it must be WIDTHxHEIGHT in pixels, as 1280x720", text));
   }
   pictures.view.width = to_side(sides[0]);
   pictures.view.height = to_side(sides[1]);
@@ -60,7 +63,8 @@ std::vector<double> to_times(const std::string& text) {
   std::vector<double> times;
   for (const auto& part : split(text, ',')) {
     times.push_back(text::to_number("--at", part));
-    if (times.back() < 0) throw text::UsageError("--at is negative; simulated seconds are due");
+    if (times.back() < 0)
+      throw text::UsageError("--at is negative; write simulated seconds from 0 on");
   }
   return times;
 }
@@ -68,7 +72,7 @@ std::vector<double> to_times(const std::string& text) {
 run::PictureOptions picture_options(const po::variables_map& values) {
   run::PictureOptions pictures;
   const auto text = [&](const char* name) { return values[name].as<std::string>(); };
-  if (!values.count("out")) throw text::UsageError("where to? --out FILE.png is due");
+  if (!values.count("out")) throw text::UsageError("no output file is given; write --out FILE.png");
   pictures.out = text("out");
   if (values.count("at")) pictures.times = to_times(text("at"));
   if (values.count("eye")) pictures.view.eye = to_point("--eye", text("eye"));
@@ -77,7 +81,8 @@ run::PictureOptions picture_options(const po::variables_map& values) {
   if (values.count("fov")) {
     const double degrees = text::to_number("--fov", text("fov"));
     if (!(degrees >= 0.1 && degrees <= 170)) {
-      throw text::UsageError(fmt::format("--fov is {}; 0.1 to 170 degrees are due", text("fov")));
+      throw text::UsageError(
+          fmt::format("--fov is {}; it must be 0.1 to 170 degrees", text("fov")));
     }
     pictures.view.opening = degrees * std::numbers::pi / 180;
   }
@@ -90,36 +95,36 @@ std::string help_render() {
   std::ostringstream text;
   text << R"(usage: ziggurat render SCENE --out FILE.png [OPTION]...
 
-Draws a scene, off-screen and on the CPU: no display is needed. A picture of a later time is taken
-of a run with the scene's controllers, exactly as `ziggurat run` moves it.
+Draws a scene, off-screen and on the CPU: no display is needed. For a picture of a later time the scene
+runs with its controllers, exactly as with `ziggurat run`.
 
   ziggurat render vehicle.argos --out start.png
-      the whole arena, as placed
+      the whole arena at the start
   ziggurat render vehicle.argos --at 5 --eye 1,-1,0.5 --look-at 0,0,0.1 --out later.png
-      after five simulated seconds, from a place of your own
+      after five simulated seconds, from a given viewpoint
   ziggurat render vehicle.argos --at 0,1,2,3 --out 'frame_%03d.png'
       several pictures of one run: frame_000.png to frame_003.png
   ziggurat render drop.argos --at 2 --without-controllers --out drop.png
-      what physics alone does
+      physics alone
 
-World's z is up in the picture. Links are coloured by what they are: grey stands fast, brown boxes
-and teal cylinders lie around, blue is a robot. Tags whose payload is an integer 0 to 586 have that
-pattern of AprilTag 36h11, others are white. LEDs are discs in their colour, dark ones are off; they
+The world's z axis points up in the picture. Links are coloured by their kind: fixed links are grey,
+movable boxes brown, movable cylinders teal, robots blue. Tags whose payload is an integer 0 to 586 have
+that pattern of AprilTag 36h11, others are white. LEDs are discs in their colour, dark ones are off; they
 are drawn at least three pixels wide. Squares on the floor have a side of 1, 2 or 5 times a power of
 ten in metres, ten or more to the arena's shorter side.
 
-stdout has what controllers log, and the names of the pictures. Exit codes are those of `run`.
+stdout has the lines that controllers log, and the names of the pictures. Exit codes are those of `run`.
 
 )" << render_options();
   return text.str();
 }
 
-int execute_render(const Arguments& arguments) {
+int execute_render(const Arguments& arguments, processes::Signals& signals) {
   const auto known = render_options();
   run::Options options = parse_options(arguments, known);
   run::only_scene(options);
   options.pictures = picture_options(parse(arguments, known).values);
-  return execute(options, run::Service::run);
+  return run::Run(options, run::Service::run, signals).execute();
 }
 
 }  // namespace ziggurat::cli

@@ -2,7 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "run/execution.h"
+#include "run/run.h"
 
 namespace ziggurat::cli {
 
@@ -10,8 +10,8 @@ std::string help_serve() {
   std::ostringstream text;
   text << R"(usage: ziggurat serve SCENE [OPTION]...
 
-Runs a scene for controllers that connect from outside, Lua controllers included. It waits for them
-for ever, says for whom, and ends after the scene's length.
+Runs a scene for controllers that connect from outside, also Lua controllers. The server waits for
+them forever, prints which robots it waits for, and ends after the scene's length.
 
   ziggurat serve vehicle.argos
       listens on tcp://127.0.0.1:5770, and prints that
@@ -22,27 +22,28 @@ for ever, says for whom, and ends after the scene's length.
   ziggurat-lua --connect tcp://127.0.0.1:5770
       in another terminal: the scene's Lua controllers
   ziggurat serve stacking.argos --real-time
-      a scene without controllers stays paused unless it is paced
+      without --real-time a scene without controllers starts paused
 
   ziggurat serve vehicle.argos --endpoint tcp://0.0.0.0:5770 \
                 --curve-secret server.secret --curve-clients clients.txt
-      for controllers on other machines whose keys are listed; 'ziggurat help keygen' tells more
+      for controllers on other machines whose keys are listed; see 'ziggurat help keygen'
   ziggurat serve vehicle.argos --deadline hold:50:100 --lease 30
-      a controller that is late by 50 ms is not waited for, and dropped after 100 ticks in a row;
-      one whose connection is gone may take up its session within 30 s
+      a controller that has not answered after 50 ms holds its last command, and is dropped after
+      100 misses in a row; a disconnected one may take its robots back within 30 s
 
-A tcp address that isn't loopback is refused without keys or --insecure: whoever reaches it drives
-robots.
+A tcp address that is not loopback needs keys or --insecure, because every program that can connect
+controls robots.
 
-Exit codes: 0 finished; 1 fault of scene, arguments or environment; 3 a controller failed; 130
-interrupted.
+Exit codes: 0 finished; 1 fault of scene, arguments or environment; 3 a controller failed; 4 the gate
+was missed; 130 interrupted.
 
 )" << serve_options();
   return text.str();
 }
 
-int execute_serve(const Arguments& arguments) {
-  return execute(parse_options(arguments, serve_options()), run::Service::serve);
+int execute_serve(const Arguments& arguments, processes::Signals& signals) {
+  return run::Run(parse_options(arguments, serve_options()), run::Service::serve, signals)
+      .execute();
 }
 
 }  // namespace ziggurat::cli

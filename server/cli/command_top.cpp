@@ -1,4 +1,4 @@
-// Who holds up the world: a table that renews itself.
+// Which controllers the world waits for: a table that is printed again and again.
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -22,13 +22,13 @@ namespace po = boost::program_options;
 po::options_description top_options() {
   po::options_description options("Options", 96);
   options.add_options()("interval", po::value<std::string>()->value_name("S"),
-                        "seconds of wall time between two looks (default 1)")(
-      "once", "look once, and end")("json", "a line of JSON for each look");
+                        "seconds of wall time between two tables (default 1)")(
+      "once", "print one table, and end")("json", "a line of JSON for each table");
   add_key_options(options);
   return options;
 }
 
-/// Waits so long; true if it was interrupted.
+/// Waits for this wall time; true if it was interrupted.
 bool sleep(processes::Signals& signals, double seconds) {
   pollfd descriptor{signals.descriptor(), POLLIN, 0};
   poll(&descriptor, 1, static_cast<int>(std::lround(seconds * 1000)));
@@ -41,9 +41,9 @@ std::string help_top() {
   std::ostringstream text;
   text << R"(usage: ziggurat top URL [OPTION]...
 
-Shows who holds up the world of `ziggurat run --endpoint URL` or `ziggurat serve`: every controller
-with its state, since when the world has waited for it, how long it takes to answer, its missed
-deadlines; and where the wall time of a tick goes. It never slows the run. Ctrl-C ends it.
+Shows which controllers a run of `ziggurat run --endpoint URL` or `ziggurat serve` waits for: every
+controller with its state, how long the world has waited for it, how long it takes to answer, its
+missed deadlines; and where the wall time of a tick goes. It does not slow the run. Ctrl-C ends it.
 
   ziggurat top tcp://127.0.0.1:5770
   ziggurat top tcp://127.0.0.1:5770 --once --json
@@ -52,7 +52,7 @@ deadlines; and where the wall time of a tick goes. It never slows the run. Ctrl-
   return text.str();
 }
 
-int execute_top(const Arguments& arguments) {
+int execute_top(const Arguments& arguments, processes::Signals& signals) {
   const Parsed parsed = parse(arguments, top_options());
   if (parsed.positional.size() != 1) throw text::UsageError("write: ziggurat top URL");
   const bool once = parsed.values.count("once") > 0;
@@ -61,11 +61,10 @@ int execute_top(const Arguments& arguments) {
   if (const auto given = parsed.values.find("interval"); given != parsed.values.end()) {
     interval = text::to_number("--interval", given->second.as<std::string>());
     if (!(interval >= 0.05 && interval <= 3600)) {
-      throw text::UsageError("--interval: seconds from 0.05 to 3600 are due");
+      throw text::UsageError("--interval must be 0.05 to 3600 seconds");
     }
   }
   reports::Console console;
-  processes::Signals signals;
   SupervisorOptions options =
       supervisor_options(parsed.positional[0], parsed.values, true, "ziggurat top");
   bool is_interrupted = false;

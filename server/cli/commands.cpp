@@ -16,11 +16,11 @@ constexpr Command table[] = {
     {"serve", "run a scene for controllers that connect from outside", help_serve, execute_serve},
     {"check", "report every fault and notice of scene files", help_check, execute_check},
     {"render", "draw a scene at given times", help_render, execute_render},
-    {"magnetism", "plot what two magnets of a scene do to each other", help_magnetism,
+    {"magnetism", "plot force and torque between two magnets of a scene", help_magnetism,
      execute_magnetism},
     {"keygen", "make a pair of keys that protect connections", help_keygen, execute_keygen},
-    {"top", "show who holds up a run", help_top, execute_top},
-    {"ctl", "steer a run: pause, step, reset, move, …", help_ctl, execute_ctl},
+    {"top", "show which controllers a run waits for", help_top, execute_top},
+    {"ctl", "control a run: pause, step, reset, move, …", help_ctl, execute_ctl},
     {"help", "explain a command", help_help, execute_help},
 };
 

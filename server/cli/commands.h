@@ -4,27 +4,34 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
+#include "processes/signals.h"
 #include "reports/summary.h"
 
 namespace ziggurat::cli {
 
-/// What stands on the command line behind the command's name.
+namespace exit_code = reports::exit_code;
+
+/// The command line after the name of the command.
 using Arguments = std::vector<std::string>;
 
-namespace exit_code = reports::exit_code;
+/// Both return an exit code, and throw what main() prints as a message.
+using Execute = int (*)(const Arguments&);
+/// For commands that end in good order on a signal; the others are ended by it.
+using ExecuteWithSignals = int (*)(const Arguments&, processes::Signals&);
 
 struct Command {
   std::string_view name;
   std::string_view summary;  ///< one line for the list of commands
   std::string (*help)();     ///< what `ziggurat help NAME` prints
-  int (*execute)(const Arguments&);
+  std::variant<Execute, ExecuteWithSignals> execute;
 };
 
 std::span<const Command> commands();
 
-/// The command with that name. @throws UsageError with a suggestion
+/// The command with that name. @throws text::UsageError with a suggestion
 const Command& command_named(const std::string& name);
 
 std::string help_run();
@@ -37,15 +44,14 @@ std::string help_ctl();
 std::string help_top();
 std::string help_help();
 
-/// Each returns an exit code and throws what main() turns into one.
-int execute_run(const Arguments& arguments);
-int execute_serve(const Arguments& arguments);
+int execute_run(const Arguments& arguments, processes::Signals& signals);
+int execute_serve(const Arguments& arguments, processes::Signals& signals);
 int execute_check(const Arguments& arguments);
-int execute_render(const Arguments& arguments);
+int execute_render(const Arguments& arguments, processes::Signals& signals);
 int execute_keygen(const Arguments& arguments);
 int execute_magnetism(const Arguments& arguments);
 int execute_ctl(const Arguments& arguments);
-int execute_top(const Arguments& arguments);
+int execute_top(const Arguments& arguments, processes::Signals& signals);
 int execute_help(const Arguments& arguments);
 
 }  // namespace ziggurat::cli

@@ -1,14 +1,15 @@
 // The program `ziggurat`: finds the command, and turns what it throws into a message and an exit
-// code.
+// code. What belongs to the whole process, signals and limits, is set here and nowhere else.
 
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <exception>
 #include <string>
+#include <variant>
 
-#include "cli/arguments.h"
 #include "cli/commands.h"
+#include "processes/signals.h"
 #include "reports/console.h"
 #include "run/version.h"
 #include "scene/reader.h"
@@ -22,8 +23,8 @@ bool asks_for_help(const Arguments& arguments) {
                      [](const auto& each) { return each == "--help" || each == "-h"; });
 }
 
-/// As many open files as we may have: each connection is one, and the usual 1024 would be fewer
-/// than the sessions that the protocol promises room for.
+/// Raises the limit of open files as far as allowed: each connection is an open file, and the usual
+/// 1024 are fewer than the sessions that the protocol promises.
 void allow_many_connections() {
   rlimit limit;
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -31,22 +32,28 @@ void allow_many_connections() {
   (void)::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+int execute(const Command& command, const Arguments& arguments) {
+  if (const auto* plain = std::get_if<Execute>(&command.execute)) return (*plain)(arguments);
+  processes::Signals signals;
+  return std::get<ExecuteWithSignals>(command.execute)(arguments, signals);
+}
+
 int dispatch(Arguments arguments, reports::Console& console) {
   if (arguments.empty()) {
     console.report(help_help());
-    return reports::exit_code::fault;
+    return exit_code::fault;
   }
   const std::string name = arguments.front();
   arguments.erase(arguments.begin());
   if (name == "--version") {
     console.result(std::string("ziggurat ") + run::version);
     console.flush();
-    return reports::exit_code::finished;
+    return exit_code::finished;
   }
   if (name == "--help" || name == "-h") return execute_help({});
   const Command& command = command_named(name);
   if (asks_for_help(arguments)) return execute_help({name});
-  return command.execute(arguments);
+  return execute(command, arguments);
 }
 
 }  // namespace
@@ -54,18 +61,17 @@ int dispatch(Arguments arguments, reports::Console& console) {
 
 int main(int count, char** texts) {
   using namespace ziggurat;
-  using namespace ziggurat::cli;
-  const Arguments arguments(texts + std::min(count, 1), texts + count);
+  const cli::Arguments arguments(texts + std::min(count, 1), texts + count);
   reports::Console::Style style;
   style.json = std::ranges::find(arguments, "--json") != arguments.end();
   reports::Console console(style);
-  allow_many_connections();
+  cli::allow_many_connections();
   try {
-    return dispatch(arguments, console);
-  } catch (const ziggurat::scene::SceneError& error) {
+    return cli::dispatch(arguments, console);
+  } catch (const scene::SceneError& error) {
     for (const auto& problem : error.problems()) console.problem(problem);
   } catch (const std::exception& error) {
     console.fault(error.what());
   }
-  return reports::exit_code::fault;
+  return cli::exit_code::fault;
 }

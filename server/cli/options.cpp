@@ -17,9 +17,10 @@ auto texts(const char* name) {
   return po::value<std::vector<std::string>>()->composing()->value_name(name);
 }
 
-constexpr unsigned width = 96;
+constexpr unsigned width = 96;         // of the help [characters]
+constexpr double longest_lease = 4e6;  // [s]
 
-po::options_description reading_options() {
+po::options_description scene_options() {
   po::options_description options("Reading the scene", width);
   options.add_options()                                          //
       ("lenient", "unknown attributes are notices, not faults")  //
@@ -33,28 +34,28 @@ constexpr const char* clock_help =
 
 po::options_description world_options() {
   po::options_description options("The run", width);
-  options.add_options()                                                  //
-      ("ticks", text("N"), "N ticks, whatever the scene's length says")  //
+  options.add_options()                                              //
+      ("ticks", text("N"), "N ticks instead of the scene's length")  //
       ("duration", text("S"),
-       "S simulated seconds, whatever the scene's length says; "
+       "S simulated seconds instead of the scene's length; "
        "0 is until Ctrl-C")                          //
       ("seed", text("N"), seed_help)                 //
       ("clock", text("nominal|beta50"), clock_help)  //
       ("real-time", po::value<std::string>()->implicit_value("1")->value_name("FACTOR"),
-       "pace to the wall clock, FACTOR times as fast (1 if left out)")  //
+       "pace to the wall clock, FACTOR times as fast (default 1)")  //
       ("endpoint", texts("URL"),
        "listen here too: tcp://127.0.0.1:5770, tcp://127.0.0.1:* or "
        "ipc:///short/path; may be repeated")  //
       ("deadline", texts("[CONTROLLER=]ACTION[:MS[:BUDGET]]"),
        "when a controller (all, if none is named) has not answered after MS milliseconds: wait, "
-       "hold, zero, drop or stop; BUDGET misses in a row are held before drop and stop, or drop "
-       "the robots after hold and zero; may be repeated")  //
+       "hold, zero, drop or stop; drop and stop hold the last command for BUDGET misses in a row "
+       "first; hold and zero drop the robots after BUDGET misses; may be repeated")  //
       ("lease", text("S"),
-       "keep the robots of a controller whose connection is gone for it, for S seconds")     //
+       "when a controller disconnects, keep its robots for it for S seconds")                //
       ("curve-secret", text("FILE"), "protect endpoints with this key ('ziggurat keygen')")  //
       ("curve-clients", text("FILE"),
-       "who may connect: lines with a public key, roles (controller, supervisor, observer) and a "
-       "name")                                                       //
+       "the allowed clients: lines with a public key, roles (controller, supervisor, observer) and "
+       "a name")                                                     //
       ("insecure", "allow endpoints that other machines can reach")  //
       ("metrics", text("HOST:PORT"),
        "serve the run's status over HTTP there: /metrics for Prometheus, /status as JSON");
@@ -65,13 +66,12 @@ po::options_description hil_options() {
   po::options_description options("Hardware in the loop", width);
   options.add_options()  //
       ("hil",
-       "pace to the wall clock and wait for nobody: a controller that has not answered after nine "
-       "tenths of a tick is held to its last command, unless --deadline says otherwise")  //
+       "pace to the wall clock and never wait: a controller that has not answered after nine "
+       "tenths of a tick holds its last command, unless --deadline sets another policy")  //
       ("inject", texts("[CONTROLLER=][DIRECTION:]WHAT"),
-       "hold back or lose messages as a network would: latency=5ms,jitter=2ms,loss=1% to a "
-       "controller (all, if none is named) and from it, or in the DIRECTION observations or "
-       "commands "
-       "only; may be repeated")  //
+       "delay or lose messages, as a network does: latency=5ms,jitter=2ms,loss=1% to a controller "
+       "(all, if none is named) and from it, or only in the DIRECTION observations or commands; "
+       "may be repeated")  //
       ("gate", text("CONDITIONS"),
        "exit with 4 unless every controller reports::meets them: p99<2ms,misses<0.1% (p50, p90, "
        "p99, p99.9, "
@@ -82,17 +82,17 @@ po::options_description hil_options() {
 }
 
 po::options_description output_options() {
-  po::options_description options("What comes out", width);
+  po::options_description options("Outputs", width);
   options.add_options()                                                                      //
       ("quiet", "no progress, notices and summary on stderr")                                //
-      ("json", "messages for machines: one JSON object a line")                              //
+      ("json", "messages as JSON for programs: one object per line")                         //
       ("hash", "last line of stdout: hash TICK DIGITS of the final state")                   //
-      ("hash-file", text("FILE"), "such a line for every tick")                              //
+      ("hash-file", text("FILE"), "the same line for every tick")                            //
       ("trace", text("FILE.csv"), "world poses of everything at every tick")                 //
-      ("readings", text("FILE.jsonl"), "what robots sensed and answered at every tick")      //
+      ("readings", text("FILE.jsonl"), "readings and commands of all robots at every tick")  //
       ("rays", text("FILE.jsonl"), "tested rays and radio links of devices with show_rays")  //
       ("images", text("DIR"), "PNG per tick and camera with image: ROBOT.CAMERA.TICK.png")   //
-      ("summary", text("FILE.json"), "the summary for machines");
+      ("summary", text("FILE.json"), "the summary as JSON");
   return options;
 }
 
@@ -100,43 +100,122 @@ po::options_description controller_options() {
   po::options_description options("Controllers", width);
   options.add_options()  //
       ("lua-processes", text("N"),
-       "share the Lua robots among N processes; 1 if left out, "
+       "share the Lua robots among N processes; default 1, "
        "0 is one for each robot")  //
-      ("controller", texts("ID=CMD"), "the scene's controller ID is CMD, whatever the scene says");
+      ("controller", texts("ID=CMD"), "start CMD for the scene's controller ID");
   return options;
 }
 
 po::options_description picture_options() {
   po::options_description options("The picture", width);
-  options.add_options()                                                                      //
-      ("out", text("FILE.png"), "where to; of several pictures, %03d in it is the number")   //
-      ("at", text("S,S,..."), "simulated seconds, of a picture each; 0 if left out")         //
-      ("eye", text("X,Y,Z"), "from where [m]; so that the whole arena is seen if left out")  //
-      ("look-at", text("X,Y,Z"), "to where [m]; the middle of the arena if left out")        //
-      ("size", text("WxH"), "pixels; 1280x720 if left out")                                  //
-      ("fov", text("DEGREES"), "angle from the left edge to the right; 46 if left out");
+  options.add_options()                                                                         //
+      ("out", text("FILE.png"), "output file; for several pictures, %03d in it is the number")  //
+      ("at", text("S,S,..."), "simulated seconds, one picture each (default 0)")                //
+      ("eye", text("X,Y,Z"), "viewpoint [m] (default: the whole arena is in view)")             //
+      ("look-at", text("X,Y,Z"), "point in the centre [m] (default: the middle of the arena)")  //
+      ("size", text("WxH"), "pixels (default 1280x720)")                                        //
+      ("fov", text("DEGREES"), "angle from the left edge to the right edge (default 46)");
   return options;
 }
 
 double positive_number(std::string_view option, const std::string& value) {
   const auto number = text::to_number(option, value);
   if (number <= 0)
-    throw text::UsageError(fmt::format("{} is {}; more than 0 is due", option, value));
+    throw text::UsageError(fmt::format("{} is {}; it must be more than 0", option, value));
   return number;
 }
 
 scene::Clock to_clock(const std::string& value) {
   if (value == "nominal") return scene::Clock::nominal;
   if (value == "beta50") return scene::Clock::beta50;
-  throw text::UsageError(fmt::format("--clock is '{}'; nominal or beta50 is due", value));
+  throw text::UsageError(fmt::format("--clock is '{}'; write nominal or beta50", value));
 }
 
 std::pair<std::string, std::string> to_controller(const std::string& value) {
   const auto equals = value.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == value.size()) {
-    throw text::UsageError(fmt::format("--controller is '{}'; ID=COMMAND is due", value));
+    throw text::UsageError(fmt::format("--controller is '{}'; write ID=COMMAND", value));
   }
   return {value.substr(0, equals), value.substr(equals + 1)};
+}
+
+/// The values of a parsed command line, by the names of the options.
+class Values {
+ public:
+  explicit Values(const po::variables_map& values) : values_(values) {}
+
+  bool has(const char* name) const { return values_.count(name) > 0; }
+  std::string text(const char* name) const {
+    return has(name) ? values_[name].as<std::string>() : std::string();
+  }
+  std::vector<std::string> texts(const char* name) const {
+    return has(name) ? values_[name].as<std::vector<std::string>>() : std::vector<std::string>();
+  }
+
+ private:
+  const po::variables_map& values_;
+};
+
+void read_length(const Values& values, run::Options& options) {
+  if (values.has("ticks")) options.ticks = text::to_integer("--ticks", values.text("ticks"));
+  if (values.has("duration")) {
+    options.duration = text::to_number("--duration", values.text("duration"));
+    if (*options.duration < 0) {
+      throw text::UsageError("--duration is negative; write seconds, or 0 for until Ctrl-C");
+    }
+  }
+  if (options.ticks && options.duration) {
+    throw text::UsageError("--ticks and --duration both set the length; give one of them");
+  }
+}
+
+void read_controllers(const Values& values, run::Options& options) {
+  if (values.has("lua-processes")) {
+    constexpr std::uint64_t most = std::uint64_t{1} << 20;
+    options.lua_processes = static_cast<unsigned>(
+        std::min(text::to_integer("--lua-processes", values.text("lua-processes")), most));
+  }
+  for (const auto& each : values.texts("controller")) {
+    options.controllers.push_back(to_controller(each));
+  }
+  options.without_controllers = values.has("without-controllers");
+  for (const auto& each : values.texts("deadline")) {
+    options.deadlines.push_back(run::to_deadline(each));
+  }
+  for (const auto& each : values.texts("inject")) {
+    options.injections.push_back(run::to_injection(each));
+  }
+}
+
+void read_network(const Values& values, run::Options& options) {
+  options.endpoints = values.texts("endpoint");
+  if (values.has("lease")) {
+    options.lease = text::to_number("--lease", values.text("lease"));
+    if (options.lease < 0 || options.lease > longest_lease) {
+      throw text::UsageError(fmt::format("--lease is '{}'; it must be 0 to {} seconds",
+                                         values.text("lease"), longest_lease));
+    }
+  }
+  options.curve_secret = values.text("curve-secret");
+  options.curve_clients = values.text("curve-clients");
+  if (options.curve_secret.empty() != options.curve_clients.empty()) {
+    throw text::UsageError("--curve-secret and --curve-clients need each other; give both");
+  }
+  options.insecure = values.has("insecure");
+  options.metrics = values.text("metrics");
+}
+
+void read_outputs(const Values& values, run::Options& options) {
+  options.report_card = values.text("report-card");
+  options.quiet = values.has("quiet");
+  options.json = values.has("json");
+  options.hash = values.has("hash");
+  options.hash_file = values.text("hash-file");
+  options.trace = values.text("trace");
+  options.readings = values.text("readings");
+  options.rays = values.text("rays");
+  options.images = values.text("images");
+  options.summary = values.text("summary");
 }
 
 }  // namespace
@@ -148,19 +227,19 @@ po::options_description run_options() {
       .add(hil_options())
       .add(processes)
       .add(output_options())
-      .add(reading_options());
+      .add(scene_options());
   return options;
 }
 
 po::options_description serve_options() {
   po::options_description options("", width);
-  options.add(world_options()).add(hil_options()).add(output_options()).add(reading_options());
+  options.add(world_options()).add(hil_options()).add(output_options()).add(scene_options());
   return options;
 }
 
 po::options_description check_options() {
   po::options_description options("", width);
-  options.add(reading_options())
+  options.add(scene_options())
       .add_options()("json", "the report as JSON on stdout")("quiet", "faults only");
   return options;
 }
@@ -170,74 +249,34 @@ po::options_description render_options() {
   run.add_options()                                  //
       ("seed", text("N"), seed_help)                 //
       ("clock", text("nominal|beta50"), clock_help)  //
-      ("without-controllers", "nobody drives the robots")("quiet", "no notices and no summary")(
-          "json", "messages for machines: one JSON object a line");
+      ("without-controllers", "start no controllers; the robots do nothing")(
+          "quiet", "no notices and no summary")(
+          "json", "messages as JSON for programs: one object per line");
   po::options_description options("", width);
-  options.add(picture_options()).add(run).add(controller_options()).add(reading_options());
+  options.add(picture_options()).add(run).add(controller_options()).add(scene_options());
   return options;
 }
 
 run::Options parse_options(const Arguments& arguments, const po::options_description& known) {
   const Parsed parsed = parse(arguments, known);
-  const auto flag = [&](const char* name) { return parsed.values.count(name) > 0; };
-  const auto value = [&](const char* name) {
-    return flag(name) ? parsed.values[name].as<std::string>() : std::string();
-  };
-  const auto list = [&](const char* name) {
-    return flag(name) ? parsed.values[name].as<std::vector<std::string>>()
-                      : std::vector<std::string>();
-  };
+  const Values values(parsed.values);
   run::Options options;
   options.scenes = parsed.positional;
-  options.reading.lenient = flag("lenient");
-  if (flag("max-scene-size")) {
-    options.reading.max_size = text::to_size("--max-scene-size", value("max-scene-size"));
+  options.scene_file.lenient = values.has("lenient");
+  if (values.has("max-scene-size")) {
+    options.scene_file.max_size = text::to_size("--max-scene-size", values.text("max-scene-size"));
   }
-  if (flag("ticks")) options.ticks = text::to_integer("--ticks", value("ticks"));
-  if (flag("duration")) {
-    options.duration = text::to_number("--duration", value("duration"));
-    if (*options.duration < 0) throw text::UsageError("--duration is negative; seconds are due");
+  read_length(values, options);
+  if (values.has("seed")) options.seed = text::to_integer("--seed", values.text("seed"));
+  if (values.has("clock")) options.clock = to_clock(values.text("clock"));
+  if (values.has("real-time")) {
+    options.real_time = positive_number("--real-time", values.text("real-time"));
   }
-  if (options.ticks && options.duration) {
-    throw text::UsageError("--ticks and --duration both say how long; give one of them");
-  }
-  if (flag("seed")) options.seed = text::to_integer("--seed", value("seed"));
-  if (flag("clock")) options.clock = to_clock(value("clock"));
-  if (flag("real-time")) options.real_time = positive_number("--real-time", value("real-time"));
-  if (flag("lua-processes")) {
-    options.lua_processes = static_cast<unsigned>(std::min<std::uint64_t>(
-        text::to_integer("--lua-processes", value("lua-processes")), 1u << 20));
-  }
-  for (const auto& each : list("controller")) options.controllers.push_back(to_controller(each));
-  options.endpoints = list("endpoint");
-  options.without_controllers = flag("without-controllers");
-  for (const auto& each : list("deadline")) options.deadlines.push_back(run::to_deadline(each));
-  for (const auto& each : list("inject")) options.injections.push_back(run::to_injection(each));
-  if (flag("lease")) {
-    options.lease = text::to_number("--lease", value("lease"));
-    if (options.lease < 0 || options.lease > 4e6) {
-      throw text::UsageError("--lease is no number of seconds from 0 to 4000000");
-    }
-  }
-  options.curve_secret = value("curve-secret");
-  options.curve_clients = value("curve-clients");
-  if (options.curve_secret.empty() != options.curve_clients.empty()) {
-    throw text::UsageError("--curve-secret and --curve-clients belong together");
-  }
-  options.insecure = flag("insecure");
-  options.metrics = value("metrics");
-  options.hil = flag("hil");
-  if (flag("gate")) options.gate = reports::parse_gate(value("gate"));
-  options.report_card = value("report-card");
-  options.quiet = flag("quiet");
-  options.json = flag("json");
-  options.hash = flag("hash");
-  options.hash_file = value("hash-file");
-  options.trace = value("trace");
-  options.readings = value("readings");
-  options.rays = value("rays");
-  options.images = value("images");
-  options.summary = value("summary");
+  options.hil = values.has("hil");
+  if (values.has("gate")) options.gate = reports::parse_gate(values.text("gate"));
+  read_controllers(values, options);
+  read_network(values, options);
+  read_outputs(values, options);
   return options;
 }
 

@@ -31,11 +31,11 @@ std::string waited_for(const ServerStatus& status) {
   std::string text;
   for (const SessionStatus& session : status.sessions) {
     if (session.state != "owing") continue;
-    text += fmt::format("\nwaiting for {} ({}) since {}", session.client, some_of(session.robots),
+    text += fmt::format("\nwaiting for {} ({}) for {}", session.client, some_of(session.robots),
                         duration(session.waiting));
   }
   if (!status.free_robots.empty()) {
-    text += fmt::format("\nwaiting for somebody to drive {}", some_of(status.free_robots));
+    text += fmt::format("\nwaiting for a client to connect for {}", some_of(status.free_robots));
   }
   return text;
 }
@@ -45,9 +45,9 @@ std::string waited_for(const ServerStatus& status) {
 void add_key_options(boost::program_options::options_description& options) {
   namespace po = boost::program_options;
   options.add_options()("server-key", po::value<std::string>()->value_name("KEY"),
-                        "the server's public key, if it protects its endpoint")(
+                        "the server's public key, if its endpoint is protected")(
       "curve-secret", po::value<std::string>()->value_name("FILE"),
-      "with it: our own secret key ('ziggurat keygen')");
+      "with --server-key: the secret key of this client ('ziggurat keygen')");
 }
 
 SupervisorOptions supervisor_options(const std::string& endpoint,
@@ -84,7 +84,7 @@ std::string to_text(const ServerStatus& status) {
                     duration(s.latency.p99), s.misses, s.policy, some_of(s.robots));
   }
   if (!status.gone_robots.empty()) {
-    text += fmt::format("\n\nleft for good: {}", some_of(status.gone_robots));
+    text += fmt::format("\n\nwithout controller from now on: {}", some_of(status.gone_robots));
   }
   if (!status.budget.empty()) text += "\n\na tick's wall time:";
   for (const ServerStatus::Phase& phase : status.budget) {

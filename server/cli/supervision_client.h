@@ -1,5 +1,5 @@
 #pragma once
-// What ctl and top share: how they connect, and what a status looks like.
+// What ctl and top share: how they connect, and how they print a status.
 
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>
@@ -9,14 +9,15 @@
 
 namespace ziggurat::cli {
 
-/// Options on keys, for servers that ask for them.
+/// The options with keys, for protected servers.
 void add_key_options(boost::program_options::options_description& options);
 
 SupervisorOptions supervisor_options(const std::string& endpoint,
                                      const boost::program_options::variables_map& values,
                                      bool only_observes, std::string name);
 
-/// Several lines without line feed at the end: the world, a row per session, where time goes.
+/// Several lines without line feed at the end: the world, one row per session, where the wall time
+/// goes.
 std::string to_text(const ServerStatus& status);
 
 }  // namespace ziggurat::cli

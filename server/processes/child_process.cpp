@@ -42,7 +42,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
                          int report) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(127);  // it died before we asked to die with it
+  if (::getppid() != parent) ::_exit(127);  // the parent died before prctl()
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD}) ::signal(number, SIG_DFL);
   sigset_t none;
   ::sigemptyset(&none);
@@ -73,7 +73,7 @@ ChildProcess::ChildProcess(const Program& program) {
     ::close(report[0]);
     throw std::system_error(fork_error, std::generic_category());
   }
-  ::setpgid(id_, id_);  // both sides do it, so that neither has to wait for the other
+  ::setpgid(id_, id_);  // in both processes, so that neither must wait for the other
   int error = 0;
   ssize_t count;
   do {
@@ -91,7 +91,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
 
 ChildProcess::~ChildProcess() {
   if (id_ < 0) return;
-  // While the leader is not waited for its group's number can't be given to anybody else.
+  // Until waitpid() the id of the group cannot be reused.
   if (!status_) {
     signal(SIGKILL);
     ::waitpid(id_, nullptr, 0);
@@ -105,7 +105,7 @@ bool ChildProcess::poll() {
       info.si_pid == 0) {
     return false;
   }
-  signal(SIGKILL);  // whatever it left behind in its group
+  signal(SIGKILL);  // the processes that it left in its group
   int status = 0;
   ::waitpid(id_, &status, 0);
   status_ = status;

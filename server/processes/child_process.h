@@ -1,5 +1,5 @@
 #pragma once
-// Programs that this one starts: each leads a process group of its own and dies with us.
+// Child processes: each leads its own process group and is killed when this program ends.
 
 #include <sys/types.h>
 
@@ -12,27 +12,27 @@
 namespace ziggurat::processes {
 
 struct Program {
-  std::vector<std::string> arguments;  ///< [0] is looked up in PATH unless it holds a slash
-  std::vector<std::pair<std::string, std::string>> environment;  ///< added to ours
+  std::vector<std::string> arguments;  ///< [0] is searched in PATH unless it contains a slash
+  std::vector<std::pair<std::string, std::string>> environment;  ///< added to that of this program
 };
 
 class ChildProcess {
  public:
-  /// Starts it with an empty stdin, our stdout and stderr, and no signal blocked or ignored.
-  /// @throws std::system_error if it can't be started
+  /// Starts it with an empty stdin, the same stdout and stderr, and no signal blocked or ignored.
+  /// @throws std::system_error if it cannot be started
   explicit ChildProcess(const Program& program);
-  /// Kills what still runs of its process group.
+  /// Kills the processes of its group that still run.
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
 
   pid_t id() const { return id_; }
 
-  /// Looks, without waiting, whether it ended; from then on ended() is true.
+  /// Whether it has ended; never waits.
   bool poll();
   bool ended() const { return status_.has_value(); }
 
-  /// "ended with exit code 3" or "was killed by signal 9 (Killed)"; only once it ended.
+  /// "ended with exit code 3" or "was killed by signal 9 (Killed)"; only after it has ended.
   std::string how_it_ended() const;
 
   /// Sends a signal to its whole process group.
@@ -43,9 +43,9 @@ class ChildProcess {
   std::optional<int> status_;  ///< as of waitpid
 };
 
-/// Waits for all of them to end; those that take their time get SIGTERM, at last SIGKILL.
+/// Waits until all have ended. Slow ones get SIGTERM, at last SIGKILL.
 /// @param patience_ms  wall time before SIGTERM, and again before SIGKILL
-/// @param hurry        asked again and again: true skips to SIGKILL
+/// @param hurry        called again and again: true sends SIGKILL at once
 void end_all(std::vector<ChildProcess*> children, int patience_ms,
              const std::function<bool()>& hurry);
 

@@ -1,11 +1,13 @@
 #include "processes/controllers.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "processes/scripts.h"
 #include "recording/output_file.h"
@@ -13,26 +15,26 @@
 namespace ziggurat::processes {
 namespace {
 
-// The private endpoint is not protected, whatever keys our own surroundings name.
+// The private endpoint has no keys, so keys in the environment of this program must not reach
+// the controllers.
 const std::vector<std::pair<std::string, std::string>> no_keys{{"ZIGGURAT_SERVER_KEY", ""},
                                                                {"ZIGGURAT_CURVE_SECRET", ""}};
 
 Launch lua_launch(std::string name, std::vector<std::size_t> robots, const std::string& list,
-                  const Surroundings& surroundings) {
+                  const LaunchSettings& settings) {
   Launch launch;
   launch.name = std::move(name);
   launch.robots = std::move(robots);
-  launch.robots_file = fmt::format("{}/{}", surroundings.folder, list);
-  launch.program.arguments = {surroundings.lua_runner, "--connect",        surroundings.endpoint,
-                              "--robots-file",         launch.robots_file, "--quiet"};
+  launch.robots_file = fmt::format("{}/{}", settings.folder, list);
+  launch.program.arguments = {settings.lua_runner, "--connect",        settings.endpoint,
+                              "--robots-file",     launch.robots_file, "--quiet"};
   launch.program.environment = no_keys;
   return launch;
 }
 
 std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
-                             const Surroundings& surroundings) {
-  const std::size_t wanted =
-      surroundings.lua_processes == 0 ? robots.size() : surroundings.lua_processes;
+                             const LaunchSettings& settings) {
+  const std::size_t wanted = settings.lua_processes == 0 ? robots.size() : settings.lua_processes;
   const std::size_t count = std::min(wanted, robots.size());
   std::vector<Launch> launches;
   for (std::size_t i = 0; i < count; ++i) {
@@ -41,7 +43,7 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
     };
     launches.push_back(
         lua_launch(count == 1 ? "ziggurat-lua" : fmt::format("ziggurat-lua {} of {}", i + 1, count),
-                   {block(i), block(i + 1)}, fmt::format("robots-{}", i), surroundings));
+                   {block(i), block(i + 1)}, fmt::format("robots-{}", i), settings));
   }
   return launches;
 }
@@ -66,7 +68,7 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout) {
 
 std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Layout& layout,
                                      const std::vector<std::string>& scripts,
-                                     const Surroundings& surroundings) {
+                                     const LaunchSettings& settings) {
   std::vector<std::size_t> lua;
   std::vector<std::vector<std::size_t>> others(scene.controllers.size());
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
@@ -77,7 +79,7 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
       lua.push_back(r);
     }
   }
-  auto launches = plan_lua(lua, surroundings);
+  auto launches = plan_lua(lua, settings);
   for (std::size_t c = 0; c < others.size(); ++c) {
     const auto& controller = scene.controllers[c];
     if (others[c].empty() || controller.command.empty()) continue;
@@ -85,7 +87,7 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
     launch.name = fmt::format("the command of controller '{}'", controller.id);
     launch.robots = others[c];
     launch.program.arguments = {"/bin/sh", "-c", controller.command};
-    launch.program.environment = {{"ZIGGURAT_ENDPOINT", surroundings.endpoint},
+    launch.program.environment = {{"ZIGGURAT_ENDPOINT", settings.endpoint},
                                   {"ZIGGURAT_CONTROLLER", controller.id}};
     launch.program.environment.insert(launch.program.environment.end(), no_keys.begin(),
                                       no_keys.end());
@@ -95,9 +97,9 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
 }
 
 Launch plan_spawned(std::size_t robot, std::size_t number, const world::Layout& layout,
-                    const Surroundings& surroundings) {
+                    const LaunchSettings& settings) {
   return lua_launch(fmt::format("ziggurat-lua of '{}'", layout.robots[robot].id), {robot},
-                    fmt::format("spawned-{}", number), surroundings);
+                    fmt::format("spawned-{}", number), settings);
 }
 
 std::vector<ControllerProcess> start_all(const std::vector<Launch>& launches,
@@ -105,6 +107,53 @@ std::vector<ControllerProcess> start_all(const std::vector<Launch>& launches,
   std::vector<ControllerProcess> processes;
   for (const auto& launch : launches) processes.push_back(start(launch, layout));
   return processes;
+}
+
+Controllers::Controllers(const scene::Scene& scene, const world::Layout& layout,
+                         const std::vector<std::string>& scripts, LaunchSettings settings)
+    : settings_(std::move(settings)),
+      processes_(start_all(plan_controllers(scene, layout, scripts, *settings_), layout)) {}
+
+void Controllers::start_spawned(std::size_t robot, const world::Layout& layout) {
+  if (!settings_) return;
+  auto started = start_all({plan_spawned(robot, spawned_++, layout, *settings_)}, layout);
+  processes_.push_back(std::move(started.front()));
+}
+
+void Controllers::forget_robots(std::size_t first) {
+  std::vector<ControllerProcess> kept;
+  for (ControllerProcess& each : processes_) {
+    std::erase_if(each.robots, [&](std::size_t robot) { return robot >= first; });
+    if (each.robots.empty() && each.process.poll()) continue;
+    kept.push_back(std::move(each));
+  }
+  processes_ = std::move(kept);
+}
+
+bool Controllers::have(std::size_t robot) const {
+  return std::ranges::any_of(processes_, [&](const ControllerProcess& each) {
+    return std::ranges::find(each.robots, robot) != each.robots.end();
+  });
+}
+
+const ControllerProcess* Controllers::first_ended(
+    const std::function<bool(const ControllerProcess&)>& is_needed) {
+  const ControllerProcess* first = nullptr;
+  for (ControllerProcess& each : processes_) {
+    const bool has_ended = each.process.poll();  // of all: it collects what each leaves behind
+    if (has_ended && first == nullptr && is_needed(each)) first = &each;
+  }
+  return first;
+}
+
+void Controllers::kill() {
+  for (const ControllerProcess& each : processes_) each.process.signal(SIGKILL);
+}
+
+void Controllers::end(int patience_ms, const std::function<bool()>& hurry) {
+  std::vector<ChildProcess*> children;
+  for (ControllerProcess& each : processes_) children.push_back(&each.process);
+  end_all(children, patience_ms, hurry);
 }
 
 std::string find_lua_runner() {

@@ -1,7 +1,10 @@
 #pragma once
-// The controller processes of a run: which program drives which robots, and starting them.
+// The controller processes of a run: which program controls which robots, and starting them.
 
 #include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,41 +19,77 @@ struct Launch {
   std::string name;                 ///< for messages: "ziggurat-lua 1 of 2"
   std::vector<std::size_t> robots;  ///< into Layout::robots, ascending
   Program program;
-  std::string robots_file;  ///< to be written first, an id per line; empty = none
+  std::string robots_file;  ///< written before the start, one id per line; empty = none
 };
 
 struct ControllerProcess {
   std::string name;
-  std::vector<std::size_t> robots;
+  std::vector<std::size_t> robots;  ///< into Layout::robots, ascending
   ChildProcess process;
 };
 
-/// What a plan needs to know of a run.
-struct Surroundings {
-  std::string endpoint;    ///< where controllers connect
-  std::string folder;      ///< for lists of robots
+/// How the controllers of a run are started.
+struct LaunchSettings {
+  std::string endpoint;    ///< where they connect
+  std::string folder;      ///< for files with the ids of robots
   std::string lua_runner;  ///< path or name of ziggurat-lua
   unsigned lua_processes;  ///< 0 = one per robot
 };
 
-/// Lua robots that have a script are shared among Lua processes in contiguous blocks whose sizes
-/// differ by one at most; then follow the commands of other controllers that drive robots.
+/// The processes that control the scene's robots. Lua robots that have a script are shared among
+/// Lua processes in contiguous blocks whose sizes differ by at most one. Other controllers that
+/// have robots and a command follow, one process each.
 /// @param scripts  per robot, empty = none
 std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Layout& layout,
                                      const std::vector<std::string>& scripts,
-                                     const Surroundings& surroundings);
+                                     const LaunchSettings& settings);
 
-/// A Lua process of its own, for a robot that was spawned.
-/// @param number  that no earlier one had
+/// A Lua process for one spawned robot.
+/// @param number  different for every call
 Launch plan_spawned(std::size_t robot, std::size_t number, const world::Layout& layout,
-                    const Surroundings& surroundings);
+                    const LaunchSettings& settings);
 
-/// Starts all; if one can't be started those before it are killed.
-/// @throws std::runtime_error with a sentence
+/// Starts all. If one cannot be started, those that were started are killed.
+/// @throws std::runtime_error that names the process and the reason
 std::vector<ControllerProcess> start_all(const std::vector<Launch>& launches,
                                          const world::Layout& layout);
 
-/// ziggurat-lua beside this program, else by PATH.
+/// The controller processes that a run has started.
+class Controllers {
+ public:
+  /// Starts no process, also not for spawned robots: controllers connect from outside.
+  Controllers() = default;
+
+  /// Starts the processes of the scene. @throws std::runtime_error, see start_all
+  Controllers(const scene::Scene& scene, const world::Layout& layout,
+              const std::vector<std::string>& scripts, LaunchSettings settings);
+
+  /// Starts a Lua process for a spawned robot. Without launch settings it does nothing.
+  /// @throws std::runtime_error, see start_all
+  void start_spawned(std::size_t robot, const world::Layout& layout);
+
+  /// Forgets the robots from `first` on, which a reset has removed from the layout, and the ended
+  /// processes that have no other robots.
+  void forget_robots(std::size_t first);
+
+  /// Whether a process was started for this robot.
+  bool have(std::size_t robot) const;
+
+  /// The first process, in the order of their start, that has ended and for which `is_needed`.
+  const ControllerProcess* first_ended(
+      const std::function<bool(const ControllerProcess&)>& is_needed);
+
+  void kill();  ///< SIGKILL to all that still run
+  /// Waits until all have ended, as processes::end_all does.
+  void end(int patience_ms, const std::function<bool()>& hurry);
+
+ private:
+  std::optional<LaunchSettings> settings_;
+  std::vector<ControllerProcess> processes_;
+  std::size_t spawned_ = 0;  ///< processes started for spawned robots, ever
+};
+
+/// ziggurat-lua in the folder of this program, otherwise in PATH.
 std::string find_lua_runner();
 
 /// "robot r0" or "robots r0, r1, r2 and 5 more".

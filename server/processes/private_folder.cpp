@@ -9,7 +9,7 @@
 namespace ziggurat::processes {
 namespace {
 
-// A socket's path has at most 107 bytes; what stands behind the folder's name needs less than 40.
+// A socket's path has at most 107 bytes; the part after the parent folder has less than 40.
 constexpr std::size_t longest_parent = 64;
 
 }  // namespace
@@ -28,7 +28,7 @@ PrivateFolder::PrivateFolder() {
       return;
     }
   }
-  throw std::system_error(errno, std::generic_category(), "no folder can be made in /tmp");
+  throw std::system_error(errno, std::generic_category(), "cannot make a folder in /tmp");
 }
 
 PrivateFolder::~PrivateFolder() {

@@ -1,5 +1,5 @@
 #pragma once
-// A folder that only we can enter, for the socket and the lists of robots of one run.
+// A folder that only this user can enter, for the socket and the files of one run.
 
 #include <string>
 
@@ -7,7 +7,7 @@ namespace ziggurat::processes {
 
 class PrivateFolder {
  public:
-  /// Made in XDG_RUNTIME_DIR or, failing that, /tmp, with a path short enough for a socket in it.
+  /// Makes it in XDG_RUNTIME_DIR, otherwise in /tmp, with a path short enough for a socket in it.
   /// @throws std::system_error
   PrivateFolder();
   /// Removes it with everything in it.

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One use of a script: what the message about it says.
+// One use of a script, for messages about it.
 struct Use {
   const std::vector<std::pair<std::string, std::string>>* params;
   scene::Location where;
@@ -39,8 +39,8 @@ std::optional<std::string> fault(const std::string& script, const fs::path& nami
   const auto path = find_script(script, naming_file, scene_file);
   if (!path) {
     return fmt::format(
-        "script '{}' is not there; it may stand in the working directory, beside this file or the "
-        "scene file, or in a folder above that",
+        "script '{}' is not found; put it in the working directory, in the folder of this file or "
+        "of the scene file, or in a folder above that",
         script);
   }
   if (auto error = compile_error(*path)) return "script does not compile: " + *error;
@@ -54,7 +54,7 @@ void check(const scene::Scene& scene, const Use& use, const fs::path& scene_file
   const auto script = script_of(*use.params);
   if (script.empty()) {
     problems.push_back({Severity::notice, file, use.where,
-                        "no script is named in <params>: its robots do nothing"});
+                        "<params> names no script: the robots of this controller do nothing"});
   } else if (auto text = fault(script, file, scene_file)) {
     problems.push_back({Severity::fault, file, use.where, *text});
   }

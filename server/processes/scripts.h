@@ -1,5 +1,5 @@
 #pragma once
-// Lua scripts named by a scene: where they are, and whether they can run at all.
+// The Lua scripts of a scene: finds them and checks that they compile.
 
 #include <filesystem>
 #include <optional>
@@ -19,19 +19,20 @@ std::optional<std::filesystem::path> find_script(const std::string& script,
                                                  const std::filesystem::path& naming_file,
                                                  const std::filesystem::path& scene_file);
 
-/// Lua's own `file:line: message` if the text doesn't compile or can't be read; else nothing.
+/// Lua's message `file:line: …` if the script does not compile or cannot be read; otherwise
+/// nothing.
 std::optional<std::string> compile_error(const std::filesystem::path& script);
 
 /// The value of `script` among these; empty if there is none.
 std::string script_of(const std::vector<std::pair<std::string, std::string>>& params);
 
-/// Whether ziggurat-lua drives its robots: it is a Lua controller that no command replaces.
+/// Whether ziggurat-lua controls its robots: it is a Lua controller without a command.
 bool runs_script(const scene::Controller& controller);
 
-/// The file that says the params of an entity with a controller.
+/// The file with the params of an entity that has a controller.
 std::string file_of_params(const scene::Scene& scene, const scene::Entity& entity);
 
-/// A fault if the script that an entity names in <params> of its own is missing or doesn't compile.
+/// A fault if the script in the <params> of an entity is missing or does not compile.
 std::vector<scene::Problem> check_script(const scene::Scene& scene, const scene::Entity& entity,
                                          const std::filesystem::path& scene_file);
 
@@ -39,7 +40,7 @@ std::vector<scene::Problem> check_script(const scene::Scene& scene, const scene:
 std::string script_path(const scene::Scene& scene, const scene::Entity& entity,
                         const std::filesystem::path& scene_file);
 
-/// A fault for each script that would run and is missing or doesn't compile, with the line
+/// A fault for each script that would run and is missing or does not compile, with the line
 /// of its <params>; a notice for each that names none.
 std::vector<scene::Problem> check_scripts(const scene::Scene& scene,
                                           const std::filesystem::path& scene_file);

@@ -19,7 +19,7 @@ Signals::Signals() {
 }
 
 Signals::~Signals() {
-  take();  // what is still pending must not strike once the mask is open again
+  take();  // pending signals must not end the program when they are unblocked
   ::close(descriptor_);
   ::sigprocmask(SIG_SETMASK, &former_, nullptr);
 }

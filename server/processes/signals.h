@@ -1,5 +1,5 @@
 #pragma once
-// Signals as something to poll: SIGINT, SIGTERM, SIGHUP and SIGCHLD arrive on a descriptor.
+// SIGINT, SIGTERM, SIGHUP and SIGCHLD as input of a descriptor that can be polled.
 
 #include <signal.h>
 
@@ -7,10 +7,11 @@ namespace ziggurat::processes {
 
 class Signals {
  public:
-  /// Blocks them for this thread and every thread and library started later; ignores SIGPIPE,
-  /// so that a closed pipe is an error of write(). @throws std::system_error
+  /// Changes the whole process: blocks these signals for this thread and all threads started later,
+  /// and ignores SIGPIPE, so that a closed pipe is an error of write(). main() makes the only one.
+  /// @throws std::system_error
   Signals();
-  /// Puts the former mask back.
+  /// Restores the previous mask.
   ~Signals();
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;
@@ -21,7 +22,7 @@ class Signals {
     int interruptions = 0;  ///< SIGINT, SIGTERM, SIGHUP
     bool child = false;     ///< SIGCHLD
   };
-  /// What arrived since the last call; never waits.
+  /// The signals since the last call; never waits.
   Arrived take();
 
  private:

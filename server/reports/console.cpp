@@ -20,7 +20,7 @@ void write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t count = ::write(descriptor, text.data(), text.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && descriptor == STDERR_FILENO) return;  // nobody is left to be told
+    if (count < 0 && descriptor == STDERR_FILENO) return;  // there is no other place for a message
     if (count < 0) {
       throw ConsoleError(fmt::format("stdout cannot be written: {}", std::strerror(errno)));
     }
@@ -34,7 +34,7 @@ std::size_t terminal_width() {
   return known ? size.ws_col : 80;
 }
 
-// A JSON text even if what a peer said is not UTF-8.
+// JSON text, also if a text of a peer is not UTF-8.
 std::string dump(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// What the program says: controllers' lines and results on stdout, messages and progress on
-// stderr. Nobody else prints.
+// All output of the program on a terminal: lines of controllers and results on stdout, messages and
+// progress on stderr.
 
 #include <cstdint>
 #include <stdexcept>
@@ -11,7 +11,7 @@
 
 namespace ziggurat::reports {
 
-/// stdout or stderr can't be written any more, for example because the reader of a pipe left.
+/// stdout cannot be written any more, for example because the reader of a pipe has ended.
 class ConsoleError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -35,9 +35,9 @@ class Console {
   /// A line of the result, on stdout.
   void result(std::string_view line);
 
-  /// Something that ends the program or a controller, on stderr.
+  /// A message on stderr: the program or a controller ends.
   void fault(std::string_view text);
-  /// Something worth knowing, on stderr.
+  /// A message on stderr that the user should know.
   void notice(std::string_view text);
   void problem(const scene::Problem& problem);
   /// Text of several lines on stderr, unless quiet.
@@ -47,7 +47,7 @@ class Console {
   void progress(std::string_view text);
   bool shows_progress() const { return shows_progress_; }
 
-  /// Lines reach their readers here at the latest. @throws ConsoleError
+  /// Writes all lines that are still in memory. @throws ConsoleError
   void flush();
 
  private:

@@ -31,7 +31,7 @@ constexpr std::array<std::pair<std::string_view, double>, 3> units{
 
 [[noreturn]] void wrong(const std::string& part) {
   throw text::UsageError(fmt::format(
-      "--gate: '{}' is no condition; write for example p99<2ms, max<20ms, misses<0.1% or late<5 "
+      "--gate: '{}' is not a condition; write for example p99<2ms, max<20ms, misses<0.1% or late<5 "
       "(p50, p90, p99, p99.9, max: a time in us, ms or s; misses, late: a number or a share in %)",
       part));
 }

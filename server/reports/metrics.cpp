@@ -94,9 +94,10 @@ std::string to_prometheus(const wire::Status& status) {
         static_cast<double>(status.time_ns) * 1e-9);
   gauge("ziggurat_paused", "1 if the world is paused.",
         status.phase == wire::Status::Phase::paused ? 1 : 0);
-  gauge("ziggurat_free_robots", "Robots that nobody holds and the world waits for.",
+  gauge("ziggurat_free_robots", "Robots without a session that the world waits for.",
         status.free_robots.size());
-  gauge("ziggurat_gone_robots", "Robots that left for good.", status.gone_robots.size());
+  gauge("ziggurat_gone_robots", "Robots that have no controller any more.",
+        status.gone_robots.size());
   gauge("ziggurat_uptime_seconds", "Wall time since the start.", status.wall_uptime_s);
   add_sessions(out, status);
   head(out, "ziggurat_tick_phase_seconds", "gauge",
@@ -130,14 +131,16 @@ MetricsPort::MetricsPort(const std::string& address, bool insecure)
   const auto colon = address.rfind(':');
   if (colon == std::string::npos) {
     throw text::UsageError(
-        fmt::format("--metrics is '{}'; host:port is due, as 127.0.0.1:9464", address));
+        fmt::format("--metrics is '{}'; write host:port, as 127.0.0.1:9464", address));
   }
   const std::string host = address.substr(0, colon);
   const auto port = text::to_integer("--metrics", address.substr(colon + 1));
-  if (port > 65535) throw text::UsageError(fmt::format("--metrics: there is no port {}", port));
-  if (!insecure && host != "127.0.0.1" && host != "localhost" && host != "[::1]") {
+  if (port > 65535)
     throw text::UsageError(
-        fmt::format("--metrics: others can reach {}; --insecure says that they may", host));
+        fmt::format("--metrics: port {} is too large; ports are 0 to 65535", port));
+  if (!insecure && host != "127.0.0.1" && host != "localhost" && host != "[::1]") {
+    throw text::UsageError(fmt::format(
+        "--metrics: other machines can reach {}; use 127.0.0.1, or add --insecure", host));
   }
   State& s = *state_;
   s.server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
@@ -156,10 +159,12 @@ MetricsPort::MetricsPort(const std::string& address, bool insecure)
                     : s.server.bind_to_port(host.c_str(), static_cast<int>(port))
                         ? static_cast<int>(port)
                         : -1;
-  if (bound < 0) throw std::runtime_error(fmt::format("--metrics: {} is taken", address));
+  if (bound < 0)
+    throw std::runtime_error(fmt::format(
+        "--metrics: {} is in use; choose another port, or 0 for any free one", address));
   s.url = fmt::format("http://{}:{}", host, bound);
   s.thread = std::thread([&s] { s.server.listen_after_bind(); });
-  // Before it runs, it can't be stopped.
+  // stop() has no effect on a server that does not run yet.
   while (!s.server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A run's status over HTTP, for monitoring systems and browsers.
+// Serves a run's status over HTTP, for monitoring systems and browsers.
 
 #include <memory>
 #include <string>
@@ -8,21 +8,21 @@
 
 namespace ziggurat::reports {
 
-/// As Prometheus reads it (text format 0.0.4).
+/// In the text format 0.0.4 of Prometheus.
 std::string to_prometheus(const wire::Status& status);
 
-/// Serves GET /metrics (Prometheus), /status (JSON) and / (what there is) on threads of its own.
-/// The run only leaves a copy of its status here now and then.
+/// Serves GET /metrics (Prometheus), /status (JSON) and / (a list of these) on separate threads.
+/// The run publishes a copy of its status from time to time.
 class MetricsPort {
  public:
   /// @param address  host:port; port 0 is any free one
   /// @param insecure  whether the host may be other than loopback
-  /// @throws UsageError if it is no such address, std::runtime_error if it is taken
+  /// @throws text::UsageError if the address is wrong, std::runtime_error if it is in use
   MetricsPort(const std::string& address, bool insecure);
   ~MetricsPort();
 
   const std::string& url() const;
-  /// Whether the copy is old enough for a new one to be worth its price.
+  /// Whether the copy is old enough for a new one.
   bool is_due() const;
   void publish(const wire::Status& status);
 

@@ -9,7 +9,7 @@ constexpr std::chrono::milliseconds interval{200};
 
 }  // namespace
 
-bool Progress::due() const {
+bool Progress::is_due() const {
   return console_.shows_progress() && clock::now() - shown_at_ >= interval;
 }
 

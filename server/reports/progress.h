@@ -1,5 +1,5 @@
 #pragma once
-// The progress line: simulated time, real-time factor, ticks per second, who is waited for.
+// The progress line: simulated time, real-time factor, ticks per second, awaited robots.
 
 #include <chrono>
 #include <cstdint>
@@ -15,10 +15,10 @@ class Progress {
   /// @param tick_length  simulated [s]
   Progress(Console& console, double tick_length) : console_(console), tick_length_(tick_length) {}
 
-  /// Whether there is somebody to look and the line is old enough for a new one.
-  bool due() const;
+  /// Whether stderr is a terminal and the last line is old enough.
+  bool is_due() const;
 
-  /// Rates are those since the line before.
+  /// Rates are measured since the previous line.
   void show(std::uint64_t tick, std::string_view waiting_for);
 
  private:

@@ -29,7 +29,7 @@ Performance performance_of(const ReportCard& card, const ControllerCard& control
   return performance;
 }
 
-/// Five bins as one: half a decade is a line for people.
+/// The histogram as text. Five bins, a quarter of a decade, make one line.
 std::string bars(const Latencies& times) {
   constexpr std::size_t together = 5;
   std::array<std::uint64_t, Latencies::bins / together> sums{};
@@ -66,7 +66,7 @@ std::string conditions(const ReportCard& card, const ControllerCard& controller)
 
 std::string injected(const ControllerCard& controller) {
   if (!controller.injected.any()) return {};
-  return fmt::format("\n    injected: {}; {} observations and {} commands were lost by it",
+  return fmt::format("\n    injected: {}; {} observations and {} commands were lost",
                      to_text(controller.injected), controller.lost.observations,
                      controller.lost.commands);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// How controllers kept up with a run that waited for nobody: a histogram, misses, the worst ticks,
-// and whether the gate was met.
+// How fast each controller answered: a histogram, misses, the worst ticks, and whether the gate was
+// met.
 
 #include <string>
 #include <vector>
@@ -15,8 +15,8 @@ struct ControllerCard {
   std::string controller;         ///< id in the scene
   network::Latencies latencies;   ///< from observation to command
   std::uint64_t misses = 0;       ///< ticks at which a robot of it missed its deadline
-  network::Injection injected{};  ///< done to its messages on purpose
-  network::Lost lost{};           ///< by that
+  network::Injection injected{};  ///< delays and losses of its messages
+  network::Lost lost{};           ///< messages lost by the injection
 };
 
 struct ReportCard {
@@ -26,12 +26,12 @@ struct ReportCard {
   std::vector<Condition> gate;
 };
 
-/// Whether a controller meets a condition; one that never answered meets none on times.
+/// Whether a controller meets a condition. One that never answered meets no condition on times.
 bool meets(const ReportCard& card, const ControllerCard& controller, const Condition& condition);
 /// Whether all meet all. True without a gate.
 bool passes(const ReportCard& card);
 
-/// For people: "observations 5 ms ± 2 ms, 1 % lost; commands 4 ms".
+/// As text: "observations 5 ms ± 2 ms, 1 % lost; commands 4 ms".
 std::string to_text(const network::Injection& injection);
 
 /// Several lines without line feed at the end.

@@ -1,5 +1,5 @@
 #pragma once
-// How a run went, for people and as JSON.
+// The summary of a run, as text and as JSON.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,14 +17,14 @@ constexpr int gate_missed = 4;    ///< a controller did not keep up as --gate as
 constexpr int interrupted = 130;  ///< Ctrl-C
 }  // namespace exit_code
 
-/// Why a run is over.
+/// Why a run ended.
 enum class Ending {
   finished,
   interrupted,
   forced,
   controller_vanished,
   deadline_missed,  ///< of a controller whose policy is to stop
-  reset,            ///< of this world; another one follows
+  reset,            ///< of the world; the run continues
 };
 
 struct Summary {
@@ -50,16 +50,16 @@ struct Summary {
     std::string message;
   };
   std::vector<Failure> failures;  ///< robots whose controller failed, in order of time
-  std::string vanished;           ///< the sentence on the controller that ended the run
+  std::string vanished;  ///< the sentence on the controller that ended the run; empty: none did
 
   struct Missed {
     std::string controller;
-    std::uint64_t ticks = 0;  ///< at which one of its robots or more missed a deadline
+    std::uint64_t ticks = 0;  ///< at which at least one of its robots missed a deadline
   };
   std::vector<Missed> missed;  ///< controllers that missed any, in scene order
 };
 
-/// Several lines without line feed at the end; on failures others have the word.
+/// Several lines without line feed at the end, without the failures.
 std::string to_text(const Summary& summary);
 std::string to_json(const Summary& summary);  ///< one line
 

@@ -15,12 +15,12 @@ struct DeadlineOption {
   scene::DeadlinePolicy policy;
 };
 
-/// @throws UsageError
+/// @throws text::UsageError
 DeadlineOption to_deadline(const std::string& value);
 
 /// For each controller of the scene. Later options win over earlier ones, those that name a
-/// controller over those for all, and all of them over what the scene says.
-/// @throws UsageError if the scene has no such controller
+/// controller over those for all, and all of them over the scene.
+/// @throws text::UsageError if the scene has no such controller
 std::vector<network::Config::Deadline> deadlines_of(const std::vector<DeadlineOption>& options,
                                                     const scene::Scene& scene);
 

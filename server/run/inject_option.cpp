@@ -16,12 +16,12 @@ namespace {
 using network::Direction;
 using network::Disturbance;
 
-constexpr double longest_s = 10;  // that a message is held back
+constexpr double longest_s = 10;  // longest delay of a message
 
 [[noreturn]] void refuse(const std::string& value, const std::string& why) {
   throw text::UsageError(
-      fmt::format("--inject is '{}': {}; latency=5ms,jitter=2ms,loss=1% or "
-                  "CONTROLLER=commands:loss=5% would do",
+      fmt::format("--inject is '{}': {}; write for example latency=5ms,jitter=2ms,loss=1% or "
+                  "CONTROLLER=commands:loss=5%",
                   value, why));
 }
 
@@ -35,7 +35,7 @@ Quantity to_quantity(const std::string& value, const std::string& text) {
   const auto [end, error] =
       std::from_chars(text.data(), text.data() + text.size(), quantity.number);
   if (error != std::errc() || !(quantity.number >= 0) || !std::isfinite(quantity.number)) {
-    refuse(value, fmt::format("'{}' is no number, or a negative one", text));
+    refuse(value, fmt::format("'{}' must begin with a number from 0 on", text));
   }
   quantity.unit.assign(end, text.data() + text.size());
   return quantity;
@@ -47,16 +47,16 @@ std::chrono::nanoseconds to_time(const std::string& value, const std::string& te
   const Quantity quantity = to_quantity(value, text);
   const auto unit = std::ranges::find(units, std::string_view(quantity.unit),
                                       [](const auto& each) { return each.first; });
-  if (unit == units.end()) refuse(value, fmt::format("'{}' is no time in us, ms or s", text));
+  if (unit == units.end()) refuse(value, fmt::format("'{}' must be a time in us, ms or s", text));
   const double seconds = quantity.number * unit->second;
-  if (seconds > longest_s) refuse(value, fmt::format("{} are more than 10 s", text));
+  if (seconds > longest_s) refuse(value, fmt::format("{} is more than 10 s", text));
   return std::chrono::nanoseconds(std::llround(seconds * 1e9));
 }
 
 double to_share(const std::string& value, const std::string& text) {
   const Quantity quantity = to_quantity(value, text);
   if (quantity.unit != "%" || quantity.number > 100) {
-    refuse(value, fmt::format("'{}' is no share from 0% to 100%", text));
+    refuse(value, fmt::format("'{}' must be a share from 0% to 100%", text));
   }
   return quantity.number / 100;
 }
@@ -65,10 +65,11 @@ constexpr std::array<std::string_view, 3> names{"latency", "jitter", "loss"};
 constexpr std::array<std::pair<std::string_view, Direction>, 2> directions{
     {{"observations:", Direction::observations}, {"commands:", Direction::commands}}};
 
-/// Takes `NAME=VALUE` off the end of the text. Read from there, an id may hold any character.
+/// Removes `NAME=VALUE` from the end of the text. Read from the end, an id may contain any
+/// character.
 std::pair<std::string_view, std::string> take_last(const std::string& value, std::string& text) {
   const auto equals = text.rfind('=');
-  if (equals == std::string::npos) refuse(value, fmt::format("'{}' gives nothing", text));
+  if (equals == std::string::npos) refuse(value, fmt::format("'{}' has no value", text));
   const std::string amount = text.substr(equals + 1);
   text.resize(equals);
   for (const std::string_view name : names) {
@@ -80,11 +81,11 @@ std::pair<std::string_view, std::string> take_last(const std::string& value, std
     return {name, amount};
   }
   const auto begin = text.find_last_of(",:=");
-  refuse(value, fmt::format("there is no '{}'; latency, jitter and loss are known",
+  refuse(value, fmt::format("'{}' is unknown; known are latency, jitter and loss",
                             begin == std::string::npos ? text : text.substr(begin + 1)));
 }
 
-/// What stands before the numbers: `[CONTROLLER=][DIRECTION:]`.
+/// Reads the part before the values: `[CONTROLLER=][DIRECTION:]`.
 void read_subject(const std::string& value, std::string text, InjectOption& option) {
   for (const auto& [name, direction] : directions) {
     if (!text.ends_with(name)) continue;
@@ -94,10 +95,10 @@ void read_subject(const std::string& value, std::string text, InjectOption& opti
   }
   if (text.empty()) return;
   if (text.back() != '=') {
-    refuse(value, fmt::format("'{}' is neither observations: nor commands: nor CONTROLLER=", text));
+    refuse(value, fmt::format("'{}' must be observations:, commands: or CONTROLLER=", text));
   }
   text.pop_back();
-  if (text.empty()) refuse(value, "no controller before the =");
+  if (text.empty()) refuse(value, "there is no controller before the =");
   option.controller = std::move(text);
 }
 
@@ -115,7 +116,7 @@ InjectOption to_injection(const std::string& value) {
   for (;;) {
     const auto [name, amount] = take_last(value, rest);
     const auto index = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
-    if (std::exchange(is_given[index], true)) refuse(value, fmt::format("{} stands twice", name));
+    if (std::exchange(is_given[index], true)) refuse(value, fmt::format("{} is given twice", name));
     if (name == "latency") option.disturbance.latency = to_time(value, amount);
     if (name == "jitter") option.disturbance.jitter = to_time(value, amount);
     if (name == "loss") option.disturbance.loss = to_share(value, amount);
@@ -124,7 +125,7 @@ InjectOption to_injection(const std::string& value) {
   }
   read_subject(value, std::move(rest), option);
   if (option.disturbance.jitter > option.disturbance.latency) {
-    refuse(value, "the jitter is above the latency, and no message arrives before it is sent");
+    refuse(value, "the jitter must not be more than the latency");
   }
   return option;
 }
@@ -156,8 +157,8 @@ void check_losses(const std::vector<network::Injection>& injections, const scene
     const bool loses = injections[c].observations.loss > 0 || injections[c].commands.loss > 0;
     if (!loses || deadlines[c].policy.action != scene::DeadlineAction::wait) continue;
     throw text::UsageError(
-        fmt::format("--inject loses messages of controller '{0}', for which the world waits: it "
-                    "would wait for ever; add --hil, or --deadline '{0}=hold:50'",
+        fmt::format("--inject loses messages of controller '{0}', for which the world would "
+                    "wait forever; add --hil, or --deadline '{0}=hold:50'",
                     scene.controllers[c].id));
   }
 }

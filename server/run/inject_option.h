@@ -17,17 +17,17 @@ struct InjectOption {
   network::Disturbance disturbance;
 };
 
-/// @throws UsageError that says what is wrong, with an example
+/// @throws text::UsageError with the reason and an example
 InjectOption to_injection(const std::string& value);
 
 /// For each controller of the scene. Later options win over earlier ones, and those that name a
-/// controller over those for all; each replaces all three numbers of its direction.
-/// @throws UsageError if the scene has no such controller
+/// controller over those for all; each sets all three values of its direction.
+/// @throws text::UsageError if the scene has no such controller
 std::vector<network::Injection> injections_of(const std::vector<InjectOption>& options,
                                               const scene::Scene& scene);
 
 /// @param deadlines  of the same controllers
-/// @throws UsageError if one loses messages that the world would wait for for ever
+/// @throws text::UsageError if messages are lost that the world would wait for forever
 void check_losses(const std::vector<network::Injection>& injections, const scene::Scene& scene,
                   const std::vector<network::Config::Deadline>& deadlines);
 

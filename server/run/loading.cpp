@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <random>
 
-#include "math/hash.h"
 #include "processes/scripts.h"
 #include "text/names.h"
 #include "text/numbers.h"
@@ -16,8 +14,8 @@
 namespace ziggurat::run {
 namespace {
 
-// `--controller ID=CMD`. A Lua controller stays one for whoever connects: its command may well be
-// ziggurat-lua under a debugger.
+// Applies `--controller ID=CMD`. A Lua controller remains one for clients that connect: CMD may be
+// ziggurat-lua in a debugger.
 void override_controllers(const Options& options, scene::Scene& scene) {
   for (const auto& [id, command] : options.controllers) {
     const auto found = std::ranges::find(scene.controllers, id, &scene::Controller::id);
@@ -26,14 +24,15 @@ void override_controllers(const Options& options, scene::Scene& scene) {
       for (const auto& controller : scene.controllers) ids.push_back(controller.id);
       const auto suggestion = text::closest(id, ids);
       throw text::UsageError(
-          fmt::format("--controller names '{}', which the scene doesn't have{}", id,
+          fmt::format("--controller: the scene has no controller '{}'{}", id,
                       suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?"));
     }
     found->command = command;
   }
 }
 
-// What the scene says of an entity of the layout: both have scene order, a pattern for its copies.
+// An entity of the layout as the scene describes it; for a distributed one its pattern. Both are in
+// scene order.
 const scene::Entity& as_written(const scene::Scene& scene, std::size_t entity) {
   if (entity < scene.entities.size()) return scene.entities[entity];
   entity -= scene.entities.size();
@@ -46,7 +45,7 @@ const scene::Entity& as_written(const scene::Scene& scene, std::size_t entity) {
 
 scene::OpenScene load_scene(const std::string& path, const Options& options,
                             reports::Console& console) {
-  auto result = scene::read_file(path, options.reading);
+  auto result = scene::read_file(path, options.scene_file);
   auto problems = std::move(result.problems);
   override_controllers(options, result.scene);
   auto scripts = processes::check_scripts(result.scene, path);
@@ -76,19 +75,11 @@ std::optional<std::uint64_t> tick_count(const Options& options, const scene::Sce
   // 0.29 s at 100 ticks/s are 29 ticks, though the product is 28.999999999999996.
   const double ticks = std::floor(length * scene.experiment.ticks_per_second * (1 + 1e-12));
   if (ticks < 1) {
-    throw text::UsageError(fmt::format("{} s are shorter than one tick of 1/{} s", length,
-                                       scene.experiment.ticks_per_second));
+    throw text::UsageError(fmt::format(
+        "the length of {} s is shorter than one tick of 1/{} s; write at least one tick", length,
+        scene.experiment.ticks_per_second));
   }
   return ticks < 0x1p63 ? static_cast<std::uint64_t>(ticks) : std::uint64_t{1} << 63;
-}
-
-std::string scene_hash(const scene::Scene& scene) {
-  math::Hash hash;
-  for (const auto& name : scene.files) {
-    std::ifstream file(name, std::ios::binary);
-    hash.add(std::string(std::istreambuf_iterator<char>(file), {}));
-  }
-  return math::to_hex(hash.digest());
 }
 
 std::vector<std::string> script_paths(const scene::Scene& scene, const world::Layout& layout,

@@ -1,5 +1,5 @@
 #pragma once
-// From a path to a scene that can run: read, overridden by the command line, scripts verified.
+// Loads a scene for a run: reads it, applies the options, checks the scripts.
 
 #include <cstdint>
 #include <optional>
@@ -17,17 +17,14 @@ namespace ziggurat::run {
 scene::OpenScene load_scene(const std::string& path, const Options& options,
                             reports::Console& console);
 
-/// The seed of the command line, else of the scene; a fresh one from the system if that is 0.
+/// The seed of the options, otherwise of the scene; drawn from the system if that is 0.
 std::uint64_t choose_seed(const Options& options, const scene::Scene& scene);
 
-/// How many ticks the run has; nothing = until somebody stops it.
-/// @throws UsageError if it is shorter than one tick
+/// How many ticks the run has; nothing = until it is stopped.
+/// @throws text::UsageError if it is shorter than one tick
 std::optional<std::uint64_t> tick_count(const Options& options, const scene::Scene& scene);
 
-/// Of the scene's files: 16 hexadecimal digits.
-std::string scene_hash(const scene::Scene& scene);
-
-/// Per robot of the layout: where its Lua script is; empty for others.
+/// Per robot of the layout: the path of its Lua script; empty if it has none.
 std::vector<std::string> script_paths(const scene::Scene& scene, const world::Layout& layout,
                                       const std::string& scene_path);
 

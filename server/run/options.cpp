@@ -8,10 +8,10 @@ namespace ziggurat::run {
 
 const std::string& only_scene(const Options& options) {
   if (options.scenes.empty())
-    throw text::UsageError("which scene? the path of a scene file is due");
+    throw text::UsageError("no scene is given; write the path of a scene file");
   if (options.scenes.size() > 1) {
     throw text::UsageError(
-        fmt::format("one scene at a time; '{}' is one too many", options.scenes[1]));
+        fmt::format("only one scene is allowed; remove '{}'", options.scenes[1]));
   }
   return options.scenes.front();
 }

@@ -19,27 +19,27 @@ namespace ziggurat::run {
 
 struct Options {
   std::vector<std::string> scenes;  ///< exactly one for run and serve
-  scene::ReadOptions reading;
+  scene::ReadOptions scene_file;
 
   std::optional<std::uint64_t> ticks;  ///< replaces the scene's length
-  std::optional<double> duration;      ///< [s] simulated, likewise; 0 = until Ctrl-C
+  std::optional<double> duration;      ///< simulated [s], replaces the length too; 0 = until Ctrl-C
   std::optional<std::uint64_t> seed;   ///< 0 = drawn from the system
   std::optional<scene::Clock> clock;
-  std::optional<double> real_time;  ///< simulated seconds per second of the wall; > 0
+  std::optional<double> real_time;  ///< simulated seconds per second of wall time; > 0
 
   unsigned lua_processes = 1;                                    ///< 0 = one per robot
   std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command
   std::vector<std::string> endpoints;
   std::vector<DeadlineOption> deadlines;
   std::vector<InjectOption> injections;
-  double lease = 0;  ///< [s] of the wall that robots of a lost session are kept for it
-  bool without_controllers = false;         ///< nobody drives the robots
+  double lease = 0;  ///< wall time that the robots of a lost session are kept for it [s]
+  bool without_controllers = false;         ///< the robots do nothing
   std::string curve_secret, curve_clients;  ///< paths; both or none
-  bool hil = false;                      ///< hardware in the loop: paced, and nobody is waited for
-  std::vector<reports::Condition> gate;  ///< for controllers to meet
-  std::string report_card;               ///< path; empty = none
-  std::string metrics;                   ///< host:port; empty = none
-  bool insecure = false;                 ///< endpoints may be reached from other machines
+  bool hil = false;                         ///< hardware in the loop: paced, never waits
+  std::vector<reports::Condition> gate;     ///< conditions that every controller must meet
+  std::string report_card;                  ///< path; empty = none
+  std::string metrics;                      ///< host:port; empty = none
+  bool insecure = false;                    ///< endpoints may be reached from other machines
 
   bool quiet = false;
   bool json = false;

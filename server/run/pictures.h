@@ -21,20 +21,20 @@ struct PictureOptions {
   std::string out;               ///< path; of several pictures, their pattern
 };
 
-/// The tick that a simulated time [s] falls into.
+/// The tick that contains a simulated time [s].
 std::uint64_t tick_at(double time, const scene::Experiment& experiment);
 
-/// The last tick of which there is a picture.
+/// The tick of the last picture.
 std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& experiment);
 
-/// The path of a picture: one is `out`; of several, `%d` or `%03d` in it is the number, or the
-/// number is put before the ending.
+/// The path of a picture. A single one is `out`. For several, `%d` or `%03d` in it is replaced by
+/// the number; without that the number goes before the suffix.
 std::string picture_path(const std::string& out, std::size_t number, std::size_t of);
 
 class Pictures {
  public:
   /// @param entities  all of them, placed, in scene order
-  /// @param scene, layout  have to outlive this
+  /// @param scene, layout  must outlive this
   /// @throws render::RenderError
   Pictures(const PictureOptions& options, const scene::Scene& scene,
            std::vector<scene::Entity> entities, const world::Layout& layout);
@@ -42,7 +42,7 @@ class Pictures {
   /// Takes the pictures of the state's tick. @throws recording::WriteError, render::RenderError
   void tick(const world::State& state);
 
-  /// Paths of those that were taken.
+  /// The paths of the pictures so far.
   const std::vector<std::string>& taken() const { return taken_; }
 
  private:

@@ -2,19 +2,17 @@
 
 #include <exception>
 
-#include "simulation/place.h"
-
 namespace ziggurat::run {
 
-Recorders::Recorders(const Options& options, const scene::Scene& scene, std::uint64_t seed,
-                     const world::Layout& layout) {
+Recorders::Recorders(const Options& options, const supervision::World& world) {
+  const world::Layout& layout = world.simulation.layout();
   if (!options.trace.empty()) trace_.emplace(options.trace, layout);
   if (!options.hash_file.empty()) hashes_.emplace(options.hash_file);
   if (!options.readings.empty()) readings_.emplace(options.readings, layout);
   if (!options.summary.empty()) summary_.emplace(options.summary);
   if (!options.rays.empty()) rays_.emplace(options.rays, layout);
   if (options.pictures) {
-    pictures_.emplace(*options.pictures, scene, simulation::place(scene, seed), layout);
+    pictures_.emplace(*options.pictures, world.scene, world.simulation.entities(), layout);
   }
   if (!options.images.empty()) images_.emplace(options.images, layout);
 }

@@ -1,7 +1,6 @@
 #pragma once
-// The files that a run leaves behind, as the command line asks for them.
+// The output files of a run.
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,27 +14,26 @@
 #include "run/options.h"
 #include "run/pictures.h"
 #include "simulation/simulation.h"
+#include "supervision/world.h"
 
 namespace ziggurat::run {
 
 class Recorders {
  public:
-  /// Creates all files, so that a path that can't be written is known before the run.
+  /// Creates all files, so that a path that cannot be written is reported before the run.
   /// @throws recording::WriteError
-  /// @param scene, layout  have to outlive this
-  /// @param seed  the one that the simulation was made with
-  /// @throws render::RenderError if pictures are wanted and can't be had
-  Recorders(const Options& options, const scene::Scene& scene, std::uint64_t seed,
-            const world::Layout& layout);
+  /// @param world  must outlive this
+  /// @throws render::RenderError if pictures are asked for and cannot be rendered
+  Recorders(const Options& options, const supervision::World& world);
 
-  /// After a tick, and once for tick 0. @throws recording::WriteError
+  /// Call it after each tick, and once for tick 0. @throws recording::WriteError
   void tick(const simulation::Simulation& simulation);
 
-  /// What robots sensed and answered at a tick. @throws recording::WriteError
+  /// Writes the readings and commands of a tick. @throws recording::WriteError
   void exchange(const world::State& state, const world::Observations& observations,
                 const world::Commands& commands);
 
-  /// Completes every file but the summary, also when one of them fails.
+  /// Completes every file except the summary, also if one of them fails.
   /// @throws recording::WriteError
   void close();
 

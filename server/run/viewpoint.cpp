@@ -25,7 +25,7 @@ double reach_above(const scene::Geometry& geometry, const math::Quaternion& orie
   return 0.5 * size.head<2>().dot(up.head<2>().cwiseAbs()) + std::max(size.z() * up.z(), 0.0);
 }
 
-/// A box's corners as a camera at the origin would have them, and how to see them all.
+/// A box's corners in the axes of a camera at the origin.
 struct Corners {
   Corners(const Extent& box, const math::Quaternion& camera) {
     for (unsigned i = 0; i < 8; ++i) {
@@ -36,7 +36,7 @@ struct Corners {
     }
   }
 
-  /// The place nearest to them, in the camera's axes, from where all are within `half_width` and
+  /// The position nearest to them, in the camera's axes, from which all are within `half_width` and
   /// `half_height` (as x / z and y / z) of the picture's middle.
   Vector3 place(double half_width, double half_height) const {
     // The four planes through the camera and the picture's edges each touch a corner: two of them

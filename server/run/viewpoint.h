@@ -1,5 +1,5 @@
 #pragma once
-// From where a picture is taken.
+// The viewpoint of a picture.
 
 #include <optional>
 #include <vector>
@@ -12,7 +12,7 @@
 namespace ziggurat::run {
 
 struct ViewOptions {
-  std::optional<math::Vector3> eye;      ///< in W [m]; none: from where the whole arena is seen
+  std::optional<math::Vector3> eye;      ///< in W [m]; none: the whole arena is in view
   std::optional<math::Vector3> look_at;  ///< in W [m]; none: the middle of the arena
   unsigned width = 1280, height = 720;   ///< [px]
   double opening = 0.803;                ///< full angle from left to right [rad]
@@ -23,7 +23,7 @@ struct Extent {
   math::Vector3 low, high;  ///< [m]
 };
 
-/// The arena; where there is a floor, from there to as high as anything reaches.
+/// The arena. If the scene has a floor: from the floor up to the highest point of any link.
 /// @param entities  all of them, in scene order
 Extent extent_of(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
                  const world::State& state);

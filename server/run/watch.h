@@ -1,12 +1,11 @@
 #pragma once
-// Waiting for controllers with open eyes: signals, processes that end, whoever keeps us waiting.
+// Waits for controllers and watches meanwhile: signals, supervisors, processes that end.
 
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "network/server.h"
@@ -16,48 +15,44 @@
 #include "reports/metrics.h"
 #include "reports/progress.h"
 #include "reports/summary.h"
-#include "scene/scene.h"
+#include "run/peer_reports.h"
 #include "supervision/supervision.h"
-#include "world/layout.h"
+#include "supervision/world.h"
 
 namespace ziggurat::run {
-
-/// What a watch looks at; all of it outlives the watch.
-struct Watched {
-  const scene::Scene& scene;
-  const world::Layout& layout;
-  network::Server& server;
-  processes::Signals& signals;
-  std::vector<processes::ControllerProcess>& processes;
-  reports::Console& console;
-  supervision::Supervision& supervision;
-  reports::MetricsPort* metrics;  ///< may be null
-  bool waits_for_ever;            ///< serve: whoever vanishes may come back
-};
 
 class Watch {
  public:
   using clock = std::chrono::steady_clock;
 
-  /// @param tick_length  simulated [s]
-  Watch(const Watched& watched, double tick_length);
+  struct Settings {
+    std::string metrics;             ///< host:port where the status is served; empty = not at all
+    bool insecure = false;           ///< metrics: the host may be other than loopback
+    bool waits_for_clients = false;  ///< serve: a client that disconnected may connect again
+  };
 
-  // Each waits for something, prints what controllers and peers have to say meanwhile, and
-  // returns how the run ends if that happens first.
+  /// Everything but the settings must outlive this.
+  /// @throws text::UsageError or std::runtime_error if metrics cannot be served
+  Watch(const Settings& settings, const supervision::World& world, network::Server& server,
+        processes::Controllers& controllers, supervision::Supervision& supervision,
+        processes::Signals& signals, reports::Console& console);
+
+  // Each of the three waits for something and prints what controllers and peers report meanwhile.
+  // Each returns nothing if it was completed, otherwise how the run ends.
 
   /// Until every robot has its controller.
   std::optional<reports::Ending> gather();
   /// Until every controller has answered `tick`.
   std::optional<reports::Ending> collect(world::Commands& commands, std::uint64_t tick);
-  /// Until that moment. Who comes meanwhile may answer the tick.
+  /// Until that moment. A client that connects meanwhile may answer the tick.
   std::optional<reports::Ending> sleep_until(clock::time_point moment, world::Commands& commands);
 
-  /// Ends the run: tells controllers, hears their last words, and sees every process end.
-  /// An interruption meanwhile kills what still runs.
-  void wind_down(const wire::End& end);
+  /// Ends the run: tells the controllers, prints their last lines, and waits until every process
+  /// has ended. An interruption meanwhile kills the processes that still run.
+  void end_run(const wire::End& end);
 
   /// Sorted by tick, then by scene order.
-  std::vector<reports::Summary::Failure> failures() const;
+  std::vector<reports::Summary::Failure> failures() const { return peers_.failures(); }
   /// The sentence on the controller that ended the run; empty if none did.
   const std::string& vanished() const { return vanished_; }
 
@@ -66,32 +61,33 @@ class Watch {
 
   std::optional<reports::Ending> until(const Step& step);
   std::optional<reports::Ending> interruption();
-  std::optional<reports::Ending> wish();
-  std::optional<reports::Ending> disappearance();
+  std::optional<reports::Ending> supervisor_request();
+  std::optional<reports::Ending> lost_controller();
   void serve();
   void take_report();
-  void print_log();
-  std::vector<std::size_t> missing_robots() const;
+  bool is_required(const network::RobotStatus& robot) const;
+  std::vector<std::size_t> unheld_robots() const;
   std::vector<std::size_t> awaited_robots() const;
-  bool is_awaited(const processes::ControllerProcess& process) const;
-  bool is_waited_for(const network::RobotStatus& robot) const;
   std::string by_controller(const std::vector<std::size_t>& robots) const;
-  void say_who_is_awaited();
-  void end_processes();
+  void report_awaited();
 
-  Watched watched_;
+  const supervision::World& world_;
+  network::Server& server_;
+  processes::Controllers& controllers_;
+  supervision::Supervision& supervision_;
+  processes::Signals& signals_;
+  reports::Console& console_;
+  const bool waits_for_clients_;
+  std::optional<reports::MetricsPort> metrics_;
+  PeerReports peers_;
   reports::Progress progress_;
   bool gathered_ = false;
   std::uint64_t tick_ = 0;
-  std::vector<wire::LogLine> log_;  ///< of a tick that is not over
-  std::vector<std::pair<std::size_t, reports::Summary::Failure>>
-      failures_;  ///< with the robot's place
   std::string vanished_;
-  bool is_stopped_ = false;                           ///< by a deadline
-  std::optional<clock::time_point> suspected_since_;  ///< that a controller vanished
+  bool is_stopped_ = false;                        ///< by a deadline
+  std::optional<clock::time_point> missed_since_;  ///< since when a controller seems to be lost
   clock::time_point waiting_since_{};
-  std::string said_;      ///< who is awaited, as last printed
-  int peer_notices_ = 0;  ///< printed so far
+  std::string printed_;  ///< the robots that were last printed as awaited
 };
 
 }  // namespace ziggurat::run

@@ -46,7 +46,7 @@ struct Simulation::Parts {
   world::Commands commands;
   std::optional<media::DevicesIndex> index;
   std::optional<devices::Devices> devices;
-  std::vector<scene::Entity> spawned;
+  std::vector<scene::Entity> entities;  // placed, then spawned: as in the layout
 };
 
 Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& made)
@@ -57,7 +57,7 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
       physics(scene.physics, substep),
       rays(scene.physics),
       layout(made) {
-  const std::vector<scene::Entity> entities = place(scene, options.seed);
+  entities = place(scene, options.seed);
   made = make_layout(scene, entities);
   for (const scene::Entity& entity : entities) {
     physics.add(entity);
@@ -82,17 +82,13 @@ void Simulation::Parts::spawn(const scene::Scene& scene, const scene::Entity& en
                               world::Layout& grown) {
   const std::size_t first_entity = grown.entities.size(), first_robot = grown.robots.size();
   append(scene, entity, grown);
-  spawned.push_back(entity);
+  entities.push_back(entity);
   physics.add(entity);
   rays.add(entity);
   index.emplace(layout);
   devices->add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, first_entity,
                 first_robot,
-                [&] {
-                  std::vector<scene::Entity> all = place(scene, seed);
-                  all.insert(all.end(), spawned.begin(), spawned.end());
-                  return all;
-                }},
+                [&] { return entities; }},
                physics);
   physics.read(state);
   look_around();
@@ -141,6 +137,7 @@ void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity) {
 void Simulation::remove(std::size_t entity) { parts_->remove(entity); }
 
 const world::Layout& Simulation::layout() const { return *layout_; }
+const std::vector<scene::Entity>& Simulation::entities() const { return parts_->entities; }
 const world::State& Simulation::state() const { return parts_->state; }
 const world::Observations& Simulation::observations() const { return parts_->observations; }
 world::Commands& Simulation::commands() { return parts_->commands; }

@@ -28,6 +28,8 @@ class Simulation {
   ~Simulation();
 
   const world::Layout& layout() const;
+  /// As they were placed or spawned, for each of Layout::entities.
+  const std::vector<scene::Entity>& entities() const;
   const world::State& state() const;                ///< of the last tick; tick 0 = as placed
   const world::Observations& observations() const;  ///< of the last tick
   world::Commands& commands();  ///< applied at the start of the next tick; values persist

@@ -17,47 +17,88 @@ using wire::ErrorCode;
 
 namespace {
 
-constexpr const char* phase_names[] = {"exchange", "physics", "recording", "pacing"};
-
-bool is_finite(const std::vector<double>& values) {
+bool all_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+/// The entities that a read request asks for, in scene order, or the pattern that names none.
+struct Selection {
+  std::vector<std::size_t> entities;
+  std::optional<std::string> unknown;
+};
+
+Selection select(const std::vector<std::string>& patterns, const simulation::Simulation& world) {
+  const auto& all = world.layout().entities;
+  std::vector<bool> is_selected(all.size(), patterns.empty());
+  Selection selection;
+  for (const std::string& pattern : patterns) {
+    bool is_known = false;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (world.state().is_absent(i)) continue;
+      if (all[i].id != pattern && !network::matches(pattern, all[i].id)) continue;
+      is_selected[i] = is_known = true;
+    }
+    if (!is_known && !selection.unknown) selection.unknown = pattern;
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (is_selected[i] && !world.state().is_absent(i)) selection.entities.push_back(i);
+  }
+  return selection;
 }
 
 }  // namespace
 
-Supervision::Supervision(const Subject& subject) : subject_(subject), room_(subject.room) {}
+void PauseTimer::update(bool is_paused) {
+  if (is_paused == paused_since_.has_value()) return;
+  if (is_paused) {
+    paused_since_ = clock::now();
+  } else {
+    earlier_ += clock::now() - *paused_since_;
+    paused_since_.reset();
+  }
+}
 
-/// Those of one connection are answered in their order; a later one of another does not wait.
+PauseTimer::clock::duration PauseTimer::total() const {
+  return earlier_ + (paused_since_ ? clock::now() - *paused_since_ : clock::duration{});
+}
+
+Supervision::Supervision(const Settings& settings, World& world, network::Server& server,
+                         processes::Controllers& controllers, reports::Console& console)
+    : settings_(settings),
+      world_(world),
+      server_(server),
+      controllers_(controllers),
+      console_(console),
+      spawnable_size_(settings.max_spawned_size) {}
+
+/// Requests of one connection are answered in their order; different connections do not wait for
+/// each other.
 void Supervision::serve() {
-  note_standing();
-  if (stepping_ && !subject_.server.can_hear(*stepping_)) stepping_.reset();  // its steps go on
-  for (network::Call& call : subject_.server.take_calls()) waiting_.push_back(std::move(call));
-  std::vector<std::string> busy;  // connections whose turn it is not yet
+  paused_.update(server_.paused());
+  if (stepping_ && !server_.can_hear(*stepping_)) stepping_.reset();  // its steps continue
+  for (network::Call& call : server_.take_calls()) waiting_.push_back(std::move(call));
+  std::vector<std::string> busy;  // connections with an earlier request that still waits
   std::erase_if(waiting_, [&](const network::Call& call) {
-    if (!subject_.server.can_hear(call)) return true;
+    if (!server_.can_hear(call)) return true;
     if (std::ranges::find(busy, call.peer) != busy.end()) return false;
-    if (try_to(call) == Reply::given) return true;
+    if (handle(call) == Reply::given) return true;
     busy.push_back(call.peer);
     return false;
   });
 }
 
-Supervision::Reply Supervision::try_to(const network::Call& call) {
+Supervision::Reply Supervision::handle(const network::Call& call) {
   switch (call.request.kind) {
     case Kind::status:
-      subject_.server.answer(
-          call, [&](wire::Outbox& outbox) { outbox.response(call.request.id, status()); });
+      server_.answer(call,
+                     [&](wire::Outbox& outbox) { outbox.response(call.request.id, status()); });
       return Reply::given;
     case Kind::read:
       return read(call);
     case Kind::pause:
       return pause(call);
     case Kind::resume:
-      stepping_.reset();  // whoever waits for its end is told that the world is not paused
-      steps_left_ = 0;
-      subject_.server.resume();
-      note_standing();
-      return done(call);
+      return resume(call);
     case Kind::step:
       return step(call);
     case Kind::reset:
@@ -72,21 +113,30 @@ Supervision::Reply Supervision::try_to(const network::Call& call) {
       shutdown_ = true;
       return done(call);
     default:
-      return fail(call, ErrorCode::unimplemented, {}, "This server does not do that yet.");
+      return fail(call, ErrorCode::unimplemented, {}, "This server does not know that request.");
   }
 }
 
 Supervision::Reply Supervision::pause(const network::Call& call) {
   steps_left_ = 0;
-  subject_.server.pause();
-  note_standing();
-  return subject_.server.paused() ? done(call) : Reply::later;
+  server_.pause();
+  paused_.update(server_.paused());
+  return server_.paused() ? done(call) : Reply::later;
+}
+
+/// A step that still runs ends here: its supervisor is told that the world is not paused.
+Supervision::Reply Supervision::resume(const network::Call& call) {
+  stepping_.reset();
+  steps_left_ = 0;
+  server_.resume();
+  paused_.update(server_.paused());
+  return done(call);
 }
 
 Supervision::Reply Supervision::step(const network::Call& call) {
   if (stepping_ && stepping_->peer == call.peer && stepping_->request.id == call.request.id) {
-    const bool over = steps_left_ == 0 && subject_.server.paused();
-    if (!over) return Reply::later;
+    const bool is_over = steps_left_ == 0 && server_.paused();
+    if (!is_over) return Reply::later;
     stepping_.reset();
     return done(call);
   }
@@ -94,61 +144,55 @@ Supervision::Reply Supervision::step(const network::Call& call) {
   if (call.request.ticks == 0) {
     return fail(call, ErrorCode::bad_value, "step.ticks", "A step has at least one tick.");
   }
-  if (!subject_.server.paused()) {
-    return fail(call, ErrorCode::out_of_state, {}, "The world is not paused.");
+  if (!server_.paused()) {
+    return fail(call, ErrorCode::out_of_state, {},
+                "The world is not paused; send a Pause request before a Step.");
   }
   stepping_ = call;
   steps_left_ = call.request.ticks;
-  subject_.server.resume();
-  note_standing();
+  server_.resume();
+  paused_.update(server_.paused());
   return Reply::later;
 }
 
-/// Answered by reset_done(). Another seed may distribute entities so that they don't fit: then the
-/// world goes on as it is.
+/// Answered by reset_done() or refuse_reset().
 Supervision::Reply Supervision::reset(const network::Call& call) {
   if (resetting_) return Reply::later;
-  const std::uint64_t seed = call.request.seed.value_or(subject_.seed);
-  if (seed == 0) {
-    return fail(call, ErrorCode::bad_value, "reset.seed", "A seed of 0 is none.");
-  }
-  try {
-    if (seed != subject_.seed) simulation::Simulation(subject_.scene, {seed, subject_.clock});
-  } catch (const scene::SceneError& error) {
-    return fail(call, ErrorCode::bad_value, "reset.seed", error.what());
+  if (call.request.seed == std::uint64_t{0}) {
+    return fail(call, ErrorCode::bad_value, "reset.seed",
+                "The seed is 0; write a seed from 1 on, or none to keep the present one.");
   }
   resetting_ = call;
   return Reply::given;
 }
 
+std::optional<std::uint64_t> Supervision::requested_reset() const {
+  if (!resetting_) return std::nullopt;
+  return resetting_->request.seed.value_or(world_.seed);
+}
+
+/// A reset removes all that was spawned. Processes of such robots end by themselves.
+void Supervision::reset_done() {
+  spawned_ = 0;
+  spawnable_size_ = settings_.max_spawned_size;
+  controllers_.forget_robots(world_.simulation.layout().robots.size());
+  done(*resetting_);
+  resetting_.reset();
+}
+
+void Supervision::refuse_reset(const std::string& why) {
+  fail(*resetting_, ErrorCode::bad_value, "reset.seed", why);
+  resetting_.reset();
+}
+
 Supervision::Reply Supervision::read(const network::Call& call) {
-  const world::Layout& layout = subject_.simulation.layout();
-  const auto is_absent = [&](std::size_t entity) {
-    return subject_.simulation.state().is_absent(entity);
-  };
-  std::vector<std::size_t> entities;
-  if (call.request.entities.empty()) {
-    entities.resize(layout.entities.size());
-    std::iota(entities.begin(), entities.end(), std::size_t{0});
-    std::erase_if(entities, is_absent);
-  }
-  for (const std::string& pattern : call.request.entities) {
-    const std::size_t before = entities.size();
-    for (std::size_t i = 0; i < layout.entities.size(); ++i) {
-      if (is_absent(i)) continue;
-      const std::string& id = layout.entities[i].id;
-      if (id == pattern || network::matches(pattern, id)) entities.push_back(i);
-    }
-    if (entities.size() == before) {
-      return fail(call, ErrorCode::unknown_entity, "read.entities",
-                  fmt::format("There is no entity '{}'.", pattern));
-    }
-  }
-  std::ranges::sort(entities);
-  entities.erase(std::unique(entities.begin(), entities.end()), entities.end());
-  const std::string hash = math::to_hex(subject_.simulation.hash());
-  subject_.server.answer(call, [&](wire::Outbox& outbox) {
-    outbox.response(call.request.id, layout, subject_.simulation.state(), entities, hash);
+  const simulation::Simulation& simulation = world_.simulation;
+  const Selection selection = select(call.request.entities, simulation);
+  if (selection.unknown) return unknown_entity(call, "read.entities", *selection.unknown);
+  const std::string hash = math::to_hex(simulation.hash());
+  server_.answer(call, [&](wire::Outbox& outbox) {
+    outbox.response(call.request.id, simulation.layout(), simulation.state(), selection.entities,
+                    hash);
   });
   return Reply::given;
 }
@@ -156,104 +200,78 @@ Supervision::Reply Supervision::read(const network::Call& call) {
 Supervision::Reply Supervision::move(const network::Call& call) {
   const wire::Request& request = call.request;
   const auto entity = entity_named(request.text);
-  if (!entity) {
-    return fail(call, ErrorCode::unknown_entity, "move.entity",
-                fmt::format("There is no entity '{}'.", request.text));
+  if (!entity) return unknown_entity(call, "move.entity", request.text);
+  if (request.position.size() != 3 || !all_finite(request.position)) {
+    return fail(call, ErrorCode::bad_value, "move.position",
+                "A position must be three finite numbers x, y, z in metres.");
   }
-  if (request.position.size() != 3 || !is_finite(request.position)) {
-    return fail(call, ErrorCode::bad_value, "move.position", "x, y, z are due, finite.");
-  }
-  math::Pose pose = subject_.simulation.state().origins[*entity];
+  math::Pose pose = world_.simulation.state().origins[*entity];
   pose.position = {request.position[0], request.position[1], request.position[2]};
   if (!request.orientation.empty()) {
     const auto& q = request.orientation;
     const double norm = std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), 0.0));
     if (q.size() != 4 || !std::isfinite(norm) || norm < 1e-6) {
       return fail(call, ErrorCode::bad_value, "move.orientation",
-                  "A quaternion w, x, y, z is due, finite and not zero.");
+                  "An orientation must be a quaternion w, x, y, z, finite and not zero.");
     }
     pose.orientation = math::Quaternion(q[0], q[1], q[2], q[3]).normalized();
   }
-  subject_.simulation.move(*entity, pose);
+  world_.simulation.move(*entity, pose);
   return done(call);
 }
 
 Supervision::Reply Supervision::fail(const network::Call& call, ErrorCode code, std::string field,
                                      std::string message) {
   wire::Fault fault = wire::make_fault(code, std::move(field), std::move(message));
-  fault.tick = subject_.simulation.state().tick;
-  subject_.server.answer(call,
-                         [&](wire::Outbox& outbox) { outbox.response(call.request.id, fault); });
+  fault.tick = world_.simulation.state().tick;
+  server_.answer(call, [&](wire::Outbox& outbox) { outbox.response(call.request.id, fault); });
   return Reply::given;
 }
 
+Supervision::Reply Supervision::unknown_entity(const network::Call& call, std::string field,
+                                               const std::string& id) {
+  return fail(call, ErrorCode::unknown_entity, std::move(field),
+              fmt::format("There is no entity '{}'.", id));
+}
+
 Supervision::Reply Supervision::done(const network::Call& call) {
-  const std::uint64_t tick = subject_.simulation.state().tick;
-  subject_.server.answer(call,
-                         [&](wire::Outbox& outbox) { outbox.response(call.request.id, tick); });
+  const std::uint64_t tick = world_.simulation.state().tick;
+  server_.answer(call, [&](wire::Outbox& outbox) { outbox.response(call.request.id, tick); });
   return Reply::given;
 }
 
 std::optional<std::size_t> Supervision::entity_named(const std::string& id) const {
-  const auto& entities = subject_.simulation.layout().entities;
+  const auto& entities = world_.simulation.layout().entities;
   for (std::size_t i = 0; i < entities.size(); ++i) {
-    if (entities[i].id == id && !subject_.simulation.state().is_absent(i)) return i;
+    if (entities[i].id == id && !world_.simulation.state().is_absent(i)) return i;
   }
   return std::nullopt;
 }
 
 void Supervision::published() {
-  note_standing();
-  if (steps_left_ > 0 && --steps_left_ == 0) subject_.server.pause();
+  paused_.update(server_.paused());
+  if (steps_left_ > 0 && --steps_left_ == 0) server_.pause();
 }
 
 void Supervision::charge(Phase phase, double seconds) {
-  budget_[static_cast<std::size_t>(phase)].add(seconds, subject_.simulation.state().tick);
-}
-
-std::optional<std::uint64_t> Supervision::reset_wanted() const {
-  if (!resetting_) return std::nullopt;
-  return resetting_->request.seed.value_or(subject_.seed);
-}
-
-void Supervision::reset_done() {
-  subject_.seed = *reset_wanted();
-  forget_spawned();
-  done(*resetting_);
-  resetting_.reset();
-}
-
-void Supervision::note_standing() {
-  const bool stands = subject_.server.paused();
-  if (stands == standing_since_.has_value()) return;
-  if (stands) {
-    standing_since_ = clock::now();
-  } else {
-    stood_ += clock::now() - *standing_since_;
-    standing_since_.reset();
-  }
-}
-
-Supervision::clock::duration Supervision::paused_for() const {
-  return stood_ + (standing_since_ ? clock::now() - *standing_since_ : clock::duration{});
+  budget_.add(phase, seconds, world_.simulation.state().tick);
 }
 
 wire::Status Supervision::status() const {
+  const world::State& state = world_.simulation.state();
   wire::Status status;
-  status.tick = subject_.simulation.state().tick;
-  status.time_ns = subject_.simulation.state().time_ns;
-  status.phase = !is_gathered_              ? wire::Status::Phase::gathering
-                 : subject_.server.paused() ? wire::Status::Phase::paused
-                                            : wire::Status::Phase::running;
-  status.is_hardware_in_the_loop = subject_.is_hardware_in_the_loop;
-  status.seed = subject_.seed;
-  status.scene = subject_.path;
-  status.scene_hash = subject_.scene_hash;
-  status.last_tick = subject_.last_tick;
-  subject_.server.fill(status);
-  for (std::size_t i = 0; i < budget_.size(); ++i) {
-    if (budget_[i].count() > 0) status.budget.push_back({phase_names[i], budget_[i].recent()});
-  }
+  status.tick = state.tick;
+  status.time_ns = state.time_ns;
+  status.phase = !is_gathered_      ? wire::Status::Phase::gathering
+                 : server_.paused() ? wire::Status::Phase::paused
+                                    : wire::Status::Phase::running;
+  status.is_hardware_in_the_loop = settings_.is_hardware_in_the_loop;
+  status.seed = world_.seed;
+  status.scene = world_.path;
+  status.scene_hash = world_.scene_hash;
+  status.last_tick = settings_.last_tick;
+  server_.fill(status);
+  budget_.fill(status);
   status.wall_uptime_s = std::chrono::duration<double>(clock::now() - start_).count();
   return status;
 }

@@ -12,7 +12,7 @@ std::uint64_t to_integer(std::string_view option, const std::string& text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
-    throw UsageError(fmt::format("{} is '{}'; a whole number, not negative, is due", option, text));
+    throw UsageError(fmt::format("{} is '{}'; it must be a whole number from 0 on", option, text));
   }
   return value;
 }
@@ -21,7 +21,7 @@ double to_number(std::string_view option, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    throw UsageError(fmt::format("{} is '{}'; a finite number is due", option, text));
+    throw UsageError(fmt::format("{} is '{}'; it must be a finite number", option, text));
   }
   return value;
 }

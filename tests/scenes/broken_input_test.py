@@ -133,7 +133,7 @@ class BrokenArguments(SceneTest):
         self.refuses(r"no command 'rnu'; did you mean 'run'", "rnu", self.scene)
         self.refuses(r"'--tikcs'; did you mean '--ticks'", "run", self.scene, "--tikcs", "3")
         self.refuses(r"--ticks.*'many'", "run", self.scene, "--ticks", "many")
-        self.refuses(r"which scene", "run")
+        self.refuses(r"no scene is given", "run")
         self.refuses(r"'swong'.*did you mean 'swing'", "run", self.scene, "--controller", "swong=x")
 
     def test_files_that_cannot_be_written(self):

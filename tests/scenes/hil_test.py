@@ -63,9 +63,9 @@ class Injected(SceneTest):
         expected = self.hash_of("--ticks", 10)
         self.assertEqual(self.hash_of("--ticks", 10, "--inject", "latency=3ms,jitter=3ms"), expected)
 
-    def test_what_would_wait_for_ever_is_refused(self):
+    def test_losses_that_would_make_the_world_wait_forever_are_refused(self):
         outcome = self.run_scene("--inject", "loss=1%", code=FAULT)
-        self.assert_is_sentence(outcome, "controller 'swing', for which the world waits.*--hil")
+        self.assert_is_sentence(outcome, "controller 'swing', for which the world would wait forever.*--hil")
         outcome = self.run_scene("--inject", "swong=latency=1ms", code=FAULT)
         self.assert_is_sentence(outcome, "no controller 'swong'")
 

@@ -13,7 +13,7 @@ TEST(Options, DefaultsAreThoseOfTheHelp) {
   const auto options = run({"scene.argos"});
   EXPECT_EQ(run::only_scene(options), "scene.argos");
   EXPECT_EQ(options.lua_processes, 1u);
-  EXPECT_EQ(options.reading.max_size, std::size_t{64} << 20);
+  EXPECT_EQ(options.scene_file.max_size, std::size_t{64} << 20);
   EXPECT_FALSE(options.ticks || options.duration || options.seed || options.clock ||
                options.real_time || options.hash || options.quiet || options.insecure);
 }
@@ -47,11 +47,11 @@ TEST(Options, AreTakenFromTheCommandLine) {
   ASSERT_EQ(options.controllers.size(), 1u);
   EXPECT_EQ(options.controllers[0], (std::pair<std::string, std::string>("a", "x --y=z")));
   EXPECT_EQ(options.endpoints, (std::vector<std::string>{"tcp://127.0.0.1:1", "ipc:///tmp/x"}));
-  EXPECT_TRUE(options.hash && options.reading.lenient);
+  EXPECT_TRUE(options.hash && options.scene_file.lenient);
   EXPECT_EQ(options.trace, "t.csv");
 }
 
-TEST(Options, NonsenseIsRefused) {
+TEST(Options, WrongValuesAreRefused) {
   for (const Arguments& arguments :
        {Arguments{"--ticks", "-1"}, Arguments{"--duration", "-1"}, Arguments{"--duration", "nan"},
         Arguments{"--real-time=0"}, Arguments{"--clock", "fast"}, Arguments{"--controller", "x"},
@@ -64,12 +64,12 @@ TEST(Options, ServeStartsNoProcesses) {
   EXPECT_THROW(parse_options({"s", "--lua-processes", "2"}, serve_options()), text::UsageError);
 }
 
-TEST(Options, OneSceneIsDue) {
+TEST(Options, ExactlyOneSceneIsAllowed) {
   EXPECT_THROW(run::only_scene(run({})), text::UsageError);
   EXPECT_THROW(run::only_scene(run({"a", "b"})), text::UsageError);
 }
 
-TEST(Options, KeysBelongTogether) {
+TEST(Options, KeysNeedEachOther) {
   EXPECT_THROW(parse_options({"s", "--curve-secret", "x"}, serve_options()), text::UsageError);
   EXPECT_THROW(parse_options({"s", "--curve-clients", "x"}, run_options()), text::UsageError);
   EXPECT_EQ(parse_options({"s", "--lease", "2.5"}, serve_options()).lease, 2.5);

@@ -11,7 +11,7 @@ struct World {
   std::vector<std::string> scripts;
 };
 
-// Controller 0 is Lua, 1 has a command, 2 is waited for; robots are given by their controllers.
+// Controller 0 is Lua, 1 has a command, 2 has neither. There is one robot for each number.
 World world_of(const std::vector<std::size_t>& controllers) {
   World world;
   world.scene.controllers.resize(3);
@@ -48,9 +48,9 @@ TEST(Controllers, LuaRobotsAreSharedInContiguousBlocks) {
   EXPECT_EQ(blocks(plan(world, 99)), (Blocks{{0}, {1}, {2}, {3}, {4}}));
 }
 
-TEST(Controllers, NobodyIsStartedForNobody) {
+TEST(Controllers, RobotsWithoutAProgramStartNoProcess) {
   EXPECT_TRUE(plan(world_of({}), 0).empty());
-  EXPECT_TRUE(plan(world_of({2}), 1).empty()) << "somebody connects";
+  EXPECT_TRUE(plan(world_of({2}), 1).empty()) << "a client connects";
   auto without_script = world_of({0});
   without_script.scripts[0].clear();
   EXPECT_TRUE(plan(without_script, 1).empty());
@@ -81,14 +81,14 @@ TEST(Controllers, LongListsOfNamesAreCut) {
 
 TEST(Controllers, OneThatCannotStartIsNamed) {
   Launch launch;
-  launch.name = "somebody";
+  launch.name = "the test";
   launch.program.arguments = {"/no/such/program"};
   try {
     start_all({launch}, {});
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(),
-                 "somebody cannot be started (/no/such/program): No such file or directory");
+                 "the test cannot be started (/no/such/program): No such file or directory");
   }
 }
 

@@ -19,7 +19,7 @@ TEST(DeadlineOption, ActionDeadlineAndBudget) {
   EXPECT_EQ(named.policy.action, DeadlineAction::stop);
 }
 
-TEST(DeadlineOption, NonsenseIsRefusedWithAnExample) {
+TEST(DeadlineOption, WrongTextsAreRefused) {
   for (const char* text :
        {"", "hold", "hold:", "hold:0", "hold:-1", "hold:50:", "hold:5:1:2", "wait:5", "kill:5",
         "=hold:5", "drive=", "hold:99999999999", "hold:5:x", "hold:5.5"}) {
@@ -42,10 +42,10 @@ TEST(DeadlineOption, ThoseThatNameAControllerWin) {
   EXPECT_EQ(deadlines[2].policy.wall_deadline_ms, 2U);
   EXPECT_TRUE(deadlines[0].is_fixed);
   EXPECT_FALSE(deadlines_of({}, scene)[0].is_fixed);
-  EXPECT_THROW(deadlines_of({to_deadline("nobody=wait")}, scene), text::UsageError);
+  EXPECT_THROW(deadlines_of({to_deadline("unknown=wait")}, scene), text::UsageError);
 }
 
-TEST(DeadlineOption, TheSceneHasASayWhereTheCommandLineHasNone) {
+TEST(DeadlineOption, TheSceneAppliesWithoutAnOption) {
   scene::Scene scene;
   scene.controllers.resize(2);
   scene.controllers[0].id = "drive";
@@ -53,7 +53,7 @@ TEST(DeadlineOption, TheSceneHasASayWhereTheCommandLineHasNone) {
   for (auto& each : scene.controllers) each.deadline = {DeadlineAction::zero, 30, 2};
   const auto deadlines = deadlines_of({to_deadline("lift=hold:5")}, scene);
   EXPECT_EQ(deadlines[0].policy, (DeadlinePolicy{DeadlineAction::zero, 30, 2}));
-  EXPECT_FALSE(deadlines[0].is_fixed);  // a Hello may wish for another
+  EXPECT_FALSE(deadlines[0].is_fixed);  // a Hello may ask for another policy
   EXPECT_EQ(deadlines[1].policy, (DeadlinePolicy{DeadlineAction::hold, 5, 0}));
   EXPECT_TRUE(deadlines[1].is_fixed);
 }

@@ -25,12 +25,12 @@ TEST(InjectOption, ControllerDirectionAndNumbers) {
   EXPECT_EQ(to_injection("observations:latency=1ms").direction, Direction::observations);
 }
 
-TEST(InjectOption, IdsMayHoldAnything) {
+TEST(InjectOption, IdsMayContainAnyCharacter) {
   EXPECT_EQ(to_injection("a=b,c:d=loss=1%,latency=1ms").controller, "a=b,c:d");
   EXPECT_EQ(to_injection("latency=loss=1%").controller, "latency");
 }
 
-TEST(InjectOption, NonsenseIsRefusedWithAnExample) {
+TEST(InjectOption, WrongTextsAreRefusedWithAnExample) {
   for (const char* text : {"",
                            "5ms",
                            "latency",
@@ -57,7 +57,8 @@ TEST(InjectOption, NonsenseIsRefusedWithAnExample) {
       to_injection(text);
       ADD_FAILURE() << text;
     } catch (const text::UsageError& error) {
-      EXPECT_NE(std::string(error.what()).find("would do"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("write for example"), std::string::npos)
+          << error.what();
     }
   }
 }
@@ -77,10 +78,10 @@ TEST(InjectOption, ThoseThatNameAControllerWin) {
   EXPECT_EQ(injections[0], (Injection{{5ms, {}, 0}, {5ms, {}, 0}}));
   EXPECT_EQ(injections[1], (Injection{{5ms, {}, 0}, {{}, {}, 0.05}}));
   EXPECT_FALSE(injections_of({}, scene_of_two())[0].any());
-  EXPECT_THROW(injections_of({to_injection("nobody=loss=1%")}, scene_of_two()), text::UsageError);
+  EXPECT_THROW(injections_of({to_injection("unknown=loss=1%")}, scene_of_two()), text::UsageError);
 }
 
-TEST(InjectOption, WhoIsWaitedForLosesNothing) {
+TEST(InjectOption, MessagesThatTheWorldWaitsForAreNotLost) {
   std::vector<network::Config::Deadline> deadlines(2);
   const auto injections = injections_of({to_injection("lift=loss=1%")}, scene_of_two());
   EXPECT_THROW(check_losses(injections, scene_of_two(), deadlines), text::UsageError);

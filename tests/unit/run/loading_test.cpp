@@ -7,6 +7,7 @@
 
 #include "processes/private_folder.h"
 #include "simulation/simulation.h"
+#include "supervision/world.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -21,9 +22,9 @@ scene::Scene scene_of(double length, unsigned ticks_per_second) {
 
 TEST(TickCount, IsTheLengthInTicks) {
   EXPECT_EQ(tick_count({}, scene_of(60, 5)), 300u);
-  EXPECT_EQ(tick_count({}, scene_of(0.25, 10)), 2u) << "a tick that isn't whole is left out";
+  EXPECT_EQ(tick_count({}, scene_of(0.25, 10)), 2u) << "an incomplete tick is left out";
   EXPECT_EQ(tick_count({}, scene_of(0.29, 100)), 29u) << "though the product is 28.999999999999996";
-  EXPECT_EQ(tick_count({}, scene_of(0, 10)), std::nullopt) << "until somebody stops it";
+  EXPECT_EQ(tick_count({}, scene_of(0, 10)), std::nullopt) << "until it is stopped";
 }
 
 TEST(TickCount, CommandLineWins) {
@@ -100,10 +101,10 @@ TEST_F(Included, ScriptsAreFoundBesideTheFileThatNamesThem) {
 TEST_F(Included, FilesAreInTheHashOfTheScene) {
   const std::string path = folder_.path() + "/scenes/a.argos";
   reports::Console console({true, false});
-  const auto before = scene_hash(load_scene(path, {}, console).scene);
-  EXPECT_EQ(scene_hash(load_scene(path, {}, console).scene), before);
+  const auto before = supervision::scene_hash(load_scene(path, {}, console).scene);
+  EXPECT_EQ(supervision::scene_hash(load_scene(path, {}, console).scene), before);
   write("parts/block.argos", block("./block.lua"));
-  EXPECT_NE(scene_hash(load_scene(path, {}, console).scene), before);
+  EXPECT_NE(supervision::scene_hash(load_scene(path, {}, console).scene), before);
 }
 
 }  // namespace

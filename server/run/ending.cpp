@@ -1,0 +1,77 @@
+// The end of a run: what controllers are told, what is printed, and in which order.
+
+#include <fmt/format.h>
+
+#include "recording/hash_file.h"
+#include "recording/output_file.h"
+#include "reports/report_card.h"
+#include "run/run.h"
+#include "run/setup.h"
+
+namespace ziggurat::run {
+
+/// The error is reported by the caller. Before that controllers are told, and the other files are
+/// completed; errors on the way are of no interest any more.
+void Run::end_in_failure(const std::exception& error) {
+  try {
+    recorders_.close();
+  } catch (const recording::WriteError&) {
+  }
+  try {
+    watch_.end_run({wire::EndReason::failed, error.what(), world_.simulation.state().tick});
+  } catch (const reports::ConsoleError&) {
+  }
+}
+
+void Run::complete_summary() {
+  const simulation::Simulation& simulation = world_.simulation;
+  summary_.ticks = simulation.state().tick;
+  summary_.simulated_s = static_cast<double>(summary_.ticks) * simulation.tick_length();
+  summary_.wall_s =
+      summary_.physics_s + summary_.exchange_s + summary_.recording_s + summary_.pacing_s;
+  summary_.seed = world_.seed;  // a reset may have changed it
+  summary_.hash = simulation.hash();
+  summary_.vanished = watch_.vanished();
+  const auto missed = server_.missed_ticks();
+  for (std::size_t c = 0; c < missed.size(); ++c) {
+    if (missed[c] > 0) summary_.missed.push_back({world_.scene.controllers[c].id, missed[c]});
+  }
+}
+
+/// Prints and writes the report card, if an option asks for it. False if the gate was missed.
+bool Run::report_hil() {
+  const bool is_wanted = options_.hil || !options_.injections.empty() || !options_.gate.empty() ||
+                         !options_.report_card.empty();
+  if (!is_wanted) return true;
+  reports::ReportCard card{{}, summary_.ticks, summary_.late_ticks, options_.gate};
+  const auto missed = server_.missed_ticks();
+  for (std::size_t c = 0; c < world_.scene.controllers.size(); ++c) {
+    const auto& latencies = server_.latencies()[c];
+    if (latencies.count() == 0 && missed[c] == 0) continue;  // controls no robot
+    card.controllers.push_back({world_.scene.controllers[c].id, latencies, missed[c],
+                                config_.injections[c], server_.lost_messages()[c]});
+  }
+  if (!options_.report_card.empty()) {
+    const bool is_picture = options_.report_card.ends_with(".svg");
+    recording::OutputFile file(options_.report_card);
+    file.buffer().append(is_picture ? to_svg(card) : to_json(card) + "\n");
+    file.close();
+  }
+  console_.report(to_text(card));
+  return passes(card);
+}
+
+/// After every process has ended. The hash is the very last line.
+void Run::print_summary() {
+  if (!summary_.vanished.empty()) console_.fault(summary_.vanished);
+  for (const auto& failure : summary_.failures) {
+    console_.fault(fmt::format("robot {} (controller '{}') had failed at tick {}: {}",
+                               failure.robot, failure.controller, failure.tick,
+                               failure.message.substr(0, failure.message.find('\n'))));
+  }
+  console_.report(options_.json ? to_json(summary_) : to_text(summary_));
+  if (options_.hash) console_.result(recording::hash_line(summary_.ticks, summary_.hash));
+  console_.flush();
+}
+
+}  // namespace ziggurat::run

@@ -1,0 +1,53 @@
+#include "run/peer_reports.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+namespace ziggurat::run {
+namespace {
+
+constexpr int most_notices = 1000;  // so that a hostile peer cannot fill a log
+
+}  // namespace
+
+void PeerReports::take(network::Report report, std::uint64_t tick) {
+  for (const auto& notice : report.dropped) console_.notice(notice);
+  for (const auto& notice : report.notices) {
+    if (++notices_ <= most_notices) console_.notice(notice);
+    if (notices_ == most_notices) console_.notice("further notices on peers are not printed");
+  }
+  std::ranges::move(report.log, std::back_inserter(log_));
+  for (auto& failure : report.failures) {
+    const auto& robot = world_.simulation.layout().robots[failure.robot];
+    const auto& controller = world_.scene.controllers[robot.controller].id;
+    print_log(tick);
+    console_.fault(fmt::format("robot {} (controller '{}') failed at tick {}: {}", robot.id,
+                               controller, failure.tick, failure.message));
+    failures_.push_back(
+        {failure.robot, {robot.id, controller, failure.tick, std::move(failure.message)}});
+  }
+}
+
+void PeerReports::print_log(std::uint64_t tick) {
+  const auto& robots = world_.simulation.layout().robots;
+  std::ranges::stable_sort(log_, {}, &wire::LogLine::robot);
+  for (const auto& line : log_) {
+    console_.log_line(tick, robots[line.robot].id, line.text, line.error);
+  }
+  log_.clear();
+  console_.flush();
+}
+
+std::vector<reports::Summary::Failure> PeerReports::failures() const {
+  auto sorted = failures_;
+  std::ranges::sort(sorted, {},
+                    [](const auto& each) { return std::tuple(each.second.tick, each.first); });
+  std::vector<reports::Summary::Failure> result;
+  for (auto& [robot, failure] : sorted) result.push_back(std::move(failure));
+  return result;
+}
+
+}  // namespace ziggurat::run

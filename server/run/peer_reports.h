@@ -1,0 +1,40 @@
+#pragma once
+// Prints what the server reports of controllers and other peers.
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "network/server.h"
+#include "reports/console.h"
+#include "reports/summary.h"
+#include "supervision/world.h"
+
+namespace ziggurat::run {
+
+class PeerReports {
+ public:
+  /// Both must outlive this.
+  PeerReports(const supervision::World& world, reports::Console& console)
+      : world_(world), console_(console) {}
+
+  /// Prints failures and notices at once. Log lines wait for print_log(), so that their order does
+  /// not depend on which controller is faster.
+  void take(network::Report report, std::uint64_t tick);
+
+  /// Prints the log lines of a tick, in the order of the robots.
+  void print_log(std::uint64_t tick);
+
+  /// Of all robots whose controller failed: sorted by tick, then by scene order.
+  std::vector<reports::Summary::Failure> failures() const;
+
+ private:
+  const supervision::World& world_;
+  reports::Console& console_;
+  std::vector<wire::LogLine> log_;  ///< of the present tick
+  std::vector<std::pair<std::size_t, reports::Summary::Failure>> failures_;  ///< with the robot
+  int notices_ = 0;                                                          ///< printed so far
+};
+
+}  // namespace ziggurat::run

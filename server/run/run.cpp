@@ -1,0 +1,229 @@
+#include "run/run.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "processes/scripts.h"
+#include "run/loading.h"
+#include "run/setup.h"
+#include "run/version.h"
+
+namespace ziggurat::run {
+
+using reports::Ending;
+using supervision::Phase;
+
+Run::Run(const Options& options, Service service, processes::Signals& signals)
+    : options_(options),
+      service_(service),
+      signals_(signals),
+      console_({options.quiet, options.json}),
+      path_(existing_scene(options, console_)),
+      config_(network_config(options, service == Service::serve)),
+      reception_(config_, {signals.descriptor(), end_while_loading}),
+      world_(load_world()),
+      plan_(make_plan()),
+      with_controllers_(!options.without_controllers && !(options.pictures && plan_.ticks == 0)),
+      scripts_(script_paths(world_.scene, world_.simulation.layout(), path_)),
+      server_(complete_config(), description(), reception_),
+      recorders_(options, world_),
+      controllers_(start_controllers()),
+      supervision_(supervision_settings(), world_, server_, controllers_, console_),
+      watch_({options.metrics, options.insecure, service == Service::serve}, world_, server_,
+             controllers_, supervision_, signals, console_) {
+  print_notices();
+  summary_.scene = path_;
+  summary_.robots = world_.simulation.layout().robots.size();
+}
+
+supervision::World Run::load_world() {
+  if (service_ == Service::serve) announce(options_, reception_.endpoints(), console_);
+  reception_.say(0, "The scene is being read.");
+  scene::OpenScene opened = load_scene(path_, options_, console_);
+  reception_.say(0.5, "The world is being built.");
+  const std::uint64_t seed = choose_seed(options_, opened.scene);
+  return {path_, std::move(opened), seed, options_.clock};
+}
+
+Plan Run::make_plan() const {
+  const scene::Experiment& experiment = world_.scene.experiment;
+  Plan plan;
+  plan.ticks = options_.pictures ? last_tick(*options_.pictures, experiment)
+                                 : tick_count(options_, world_.scene);
+  plan.real_time = options_.real_time;
+  const bool is_paced = options_.hil || (!options_.pictures && experiment.real_time);
+  if (!plan.real_time && is_paced) plan.real_time = 1;
+  return plan;
+}
+
+network::Config Run::complete_config() {
+  add_controllers(options_, world_.scene, config_);
+  if (service_ == Service::run) config_.private_endpoint = "ipc://" + folder_.path() + "/run";
+  return config_;
+}
+
+wire::Run Run::description() const {
+  const unsigned ticks_per_second = world_.scene.experiment.ticks_per_second;
+  wire::Run run{
+      world_.simulation.layout(), world_.scene.controllers, scripts_, world_.seed, 0, 1, {}, {}};
+  run.ticks_per_second = ticks_per_second;
+  run.tick_ns = (1'000'000'000 + ticks_per_second / 2) / ticks_per_second;
+  run.scene_hash = world_.scene_hash;
+  run.server_version = version;
+  run.is_hardware_in_the_loop = options_.hil;
+  return run;
+}
+
+/// Those whose Lua controller names no script, or all robots if controllers are not wanted. The
+/// run does not wait for them.
+std::vector<std::size_t> Run::robots_without_controller() const {
+  const auto& all = world_.simulation.layout().robots;
+  std::vector<std::size_t> robots;
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    const bool is_lua = processes::runs_script(world_.scene.controllers[all[r].controller]);
+    if (!with_controllers_ || (is_lua && scripts_[r].empty())) robots.push_back(r);
+  }
+  return robots;
+}
+
+processes::Controllers Run::start_controllers() {
+  server_.remove_robots(robots_without_controller());
+  if (service_ == Service::serve || !with_controllers_) return {};
+  return {world_.scene,
+          world_.simulation.layout(),
+          scripts_,
+          {server_.endpoints().front(), folder_.path(), processes::find_lua_runner(),
+           options_.lua_processes}};
+}
+
+supervision::Supervision::Settings Run::supervision_settings() const {
+  return {options_.scene_file.max_size, plan_.ticks.value_or(0), options_.hil, with_controllers_};
+}
+
+void Run::print_notices() {
+  for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
+  if (options_.seed.value_or(world_.scene.experiment.random_seed) == 0) {
+    console_.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", world_.seed));
+  }
+  const bool has_controllers =
+      robots_without_controller().size() < world_.simulation.layout().robots.size();
+  if (service_ == Service::run || plan_.real_time || has_controllers) return;
+  server_.pause();  // otherwise the run would be over before a supervisor can connect
+  console_.notice(
+      "paused: the scene has no controllers; start the server with --real-time, or write "
+      "'ziggurat ctl URL resume'");
+}
+
+int Run::execute() {
+  try {
+    summary_.ending = run_to_end();
+    recorders_.close();
+  } catch (const std::exception& error) {
+    end_in_failure(error);
+    throw;
+  }
+  complete_summary();
+  watch_.end_run(end_message(summary_));
+  summary_.failures = watch_.failures();
+  recorders_.write_summary(summary_);
+  for (const auto& picture : recorders_.pictures()) console_.result(picture);
+  const bool has_passed = report_hil();
+  print_summary();
+  const int code = exit_code_of(summary_);
+  return code == reports::exit_code::finished && !has_passed ? reports::exit_code::gate_missed
+                                                             : code;
+}
+
+/// From the start to the end, again after each reset.
+Ending Run::run_to_end() {
+  for (;;) {
+    std::optional<Ending> ending = wait([&] { return watch_.gather(); });
+    timer_.end_startup(summary_);
+    if (!ending) {
+      supervision_.gathered();
+      ending = run_world();
+    }
+    if (ending != Ending::reset) return *ending;
+    timer_.end_startup(summary_);
+  }
+}
+
+/// One world, from tick 0 on.
+Ending Run::run_world() {
+  simulation::Simulation& simulation = world_.simulation;
+  const auto start = Watch::clock::now() - supervision_.paused_for();
+  for (;;) {
+    // Controllers compute while the files are written.
+    server_.publish(simulation.observations(), simulation.state().tag_payloads);
+    supervision_.published();
+    timer_.end_phase(Phase::exchange, summary_);
+    recorders_.tick(simulation);
+    timer_.end_phase(Phase::recording, summary_);
+
+    auto stopped = collect();
+    timer_.end_phase(Phase::exchange, summary_);
+    const bool is_last = simulation.state().tick == plan_.ticks;
+    if (plan_.real_time && !stopped && !is_last) {
+      stopped = pace(start);
+      if (!stopped) stopped = collect();
+      timer_.end_phase(Phase::pacing, summary_);
+    }
+    if (stopped) return *stopped;
+    recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands());
+    timer_.end_phase(Phase::recording, summary_);
+    if (is_last) return Ending::finished;
+    simulation.step();
+    timer_.end_phase(Phase::physics, summary_);
+    timer_.end_tick(supervision_, plan_.real_time.has_value());
+  }
+}
+
+/// Until the tick is complete. Again if the world is paused then, or if a client has connected to a
+/// complete tick: it must answer, too.
+std::optional<Ending> Run::collect() {
+  simulation::Simulation& simulation = world_.simulation;
+  do {
+    auto stopped =
+        wait([&] { return watch_.collect(simulation.commands(), simulation.state().tick); });
+    if (stopped) return stopped;
+  } while (server_.paused());
+  return std::nullopt;
+}
+
+/// Until the tick's time on the wall clock. The schedule is absolute: a late tick does not delay
+/// those after it, a pause does.
+std::optional<Ending> Run::pace(Watch::clock::time_point start) {
+  simulation::Simulation& simulation = world_.simulation;
+  const double simulated_s =
+      static_cast<double>(simulation.state().tick + 1) * simulation.tick_length();
+  const auto moment = start + supervision_.paused_for() +
+                      std::chrono::duration_cast<Watch::clock::duration>(
+                          std::chrono::duration<double>(simulated_s / *plan_.real_time));
+  if (Watch::clock::now() > moment) ++summary_.late_ticks;
+  return wait([&] { return watch_.sleep_until(moment, simulation.commands()); });
+}
+
+/// Does a wait of the watch, again if it was interrupted by a reset that is refused.
+std::optional<Ending> Run::wait(const Wait& step) {
+  for (;;) {
+    const auto ending = step();
+    if (ending != Ending::reset || reset_world()) return ending;
+  }
+}
+
+/// False if the world cannot be built with the requested seed; then the supervisor gets an error
+/// and the world stays as it is.
+bool Run::reset_world() {
+  try {
+    world_.reset(*supervision_.requested_reset());
+  } catch (const scene::SceneError& error) {
+    supervision_.refuse_reset(error.what());
+    return false;
+  }
+  server_.reset(world_.seed);
+  supervision_.reset_done();
+  return true;
+}
+
+}  // namespace ziggurat::run

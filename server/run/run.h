@@ -1,0 +1,100 @@
+#pragma once
+// A run from scene file to summary: what `ziggurat run`, `serve` and `render` share.
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/reception.h"
+#include "network/server.h"
+#include "processes/controllers.h"
+#include "processes/private_folder.h"
+#include "processes/signals.h"
+#include "reports/console.h"
+#include "reports/summary.h"
+#include "run/options.h"
+#include "run/phase_timer.h"
+#include "run/recorders.h"
+#include "run/watch.h"
+#include "supervision/supervision.h"
+#include "supervision/world.h"
+
+namespace ziggurat::run {
+
+enum class Service {
+  run,    ///< starts the scene's controllers
+  serve,  ///< controllers connect from outside
+};
+
+/// How long a run is, and how fast.
+struct Plan {
+  std::optional<std::uint64_t> ticks;  ///< nothing = until stopped
+  std::optional<double> real_time;     ///< simulated seconds per second of wall time, if paced
+};
+
+/// The members stand in the order in which a run is set up.
+class Run {
+ public:
+  /// Listens, loads the scene, creates the output files and starts the controllers.
+  /// @param signals  must outlive the run
+  /// @throws what main() turns into a message: faults of scene, options and environment
+  Run(const Options& options, Service service, processes::Signals& signals);
+
+  /// Runs the world to its end, tells the controllers and prints the summary.
+  /// @returns an exit code
+  /// @throws recording::WriteError, reports::ConsoleError
+  int execute();
+
+ private:
+  using Ending = reports::Ending;
+  using Wait = std::function<std::optional<Ending>()>;
+
+  // Setting up.
+  supervision::World load_world();
+  Plan make_plan() const;
+  network::Config complete_config();
+  wire::Run description() const;
+  std::vector<std::size_t> robots_without_controller() const;
+  processes::Controllers start_controllers();
+  supervision::Supervision::Settings supervision_settings() const;
+  void print_notices();
+
+  // Running.
+  Ending run_to_end();
+  Ending run_world();
+  std::optional<Ending> collect();
+  std::optional<Ending> pace(Watch::clock::time_point start);
+  std::optional<Ending> wait(const Wait& step);
+  bool reset_world();
+
+  // Ending.
+  void end_in_failure(const std::exception& error);
+  void complete_summary();
+  bool report_hil();
+  void print_summary();
+
+  const Options& options_;
+  const Service service_;
+  processes::Signals& signals_;
+  reports::Console console_;
+  const std::string path_;  ///< of the scene file
+  network::Config config_;
+  network::Reception reception_;  ///< answers clients while the world is loaded
+  supervision::World world_;
+  const Plan plan_;
+  const bool with_controllers_;
+  const std::vector<std::string> scripts_;  ///< per robot of the scene; empty = none
+  const processes::PrivateFolder folder_;
+  network::Server server_;
+  Recorders recorders_;
+  processes::Controllers controllers_;
+  supervision::Supervision supervision_;
+  Watch watch_;
+  reports::Summary summary_;
+  PhaseTimer timer_;
+};
+
+}  // namespace ziggurat::run

@@ -1,0 +1,100 @@
+#include "run/setup.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "run/loading.h"
+
+namespace ziggurat::run {
+namespace {
+
+constexpr const char* default_endpoint = "tcp://127.0.0.1:5770";
+
+/// Hardware in the loop does not wait: a controller without a policy of its own holds its last
+/// command after nine tenths of a tick.
+void hold_late_controllers(const Options& options, const scene::Scene& scene,
+                           std::vector<network::Config::Deadline>& deadlines) {
+  const double factor = options.real_time.value_or(1);
+  const double tick_ms = 1000.0 / scene.experiment.ticks_per_second / factor;
+  const auto ms = static_cast<std::uint32_t>(std::max(1.0, std::floor(0.9 * tick_ms)));
+  for (std::size_t c = 0; c < deadlines.size(); ++c) {
+    if (deadlines[c].is_fixed || scene.controllers[c].deadline) continue;
+    deadlines[c].policy = {scene::DeadlineAction::hold, ms, 0};
+  }
+}
+
+}  // namespace
+
+std::string existing_scene(const Options& options, reports::Console& console) {
+  const std::string& path = only_scene(options);
+  if (!std::filesystem::exists(path)) load_scene(path, options, console);  // throws
+  return path;
+}
+
+network::Config network_config(const Options& options, bool is_serve) {
+  network::Config config;
+  config.insecure = options.insecure;
+  config.lease = std::chrono::milliseconds(static_cast<std::int64_t>(options.lease * 1000));
+  if (!options.curve_secret.empty()) {
+    config.curve = {network::read_secret_key(options.curve_secret),
+                    network::read_client_keys(options.curve_clients)};
+  }
+  config.endpoints = options.endpoints;
+  if (is_serve && config.endpoints.empty()) config.endpoints.emplace_back(default_endpoint);
+  return config;
+}
+
+void add_controllers(const Options& options, const scene::Scene& scene, network::Config& config) {
+  config.deadlines = deadlines_of(options.deadlines, scene);
+  if (options.hil) hold_late_controllers(options, scene, config.deadlines);
+  config.injections = injections_of(options.injections, scene);
+  check_losses(config.injections, scene, config.deadlines);
+}
+
+void announce(const Options& options, const std::vector<std::string>& endpoints,
+              reports::Console& console) {
+  if (options.json) {
+    console.result(
+        nlohmann::ordered_json{{"endpoint", endpoints.front()}, {"endpoints", endpoints}}.dump());
+  } else {
+    for (const auto& endpoint : endpoints) console.result("endpoint " + endpoint);
+  }
+  console.flush();
+}
+
+wire::End end_message(const reports::Summary& summary) {
+  using reports::Ending;
+  wire::End end;
+  end.tick = summary.ticks;
+  end.message = summary.vanished;
+  switch (summary.ending) {
+    case Ending::finished:
+      end.reason = wire::EndReason::finished;
+      break;
+    case Ending::interrupted:
+    case Ending::forced:
+    case Ending::reset:  // no run ends like that
+      end.reason = wire::EndReason::interrupted;
+      break;
+    case Ending::controller_vanished:
+    case Ending::deadline_missed:
+      end.reason = wire::EndReason::failed;
+      break;
+  }
+  return end;
+}
+
+void end_while_loading() {
+  constexpr std::string_view text = "ziggurat: interrupted while loading\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+  std::_Exit(reports::exit_code::interrupted);
+}
+
+}  // namespace ziggurat::run

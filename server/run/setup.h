@@ -1,0 +1,38 @@
+#pragma once
+// What a run needs before it has a world, and what it tells clients at the start and at the end.
+
+#include <string>
+#include <vector>
+
+#include "network/server.h"
+#include "reports/console.h"
+#include "reports/summary.h"
+#include "run/options.h"
+#include "scene/scene.h"
+
+namespace ziggurat::run {
+
+/// The path of the one scene, which exists: otherwise a client would connect to a run that cannot
+/// start. @throws text::UsageError, scene::SceneError
+std::string existing_scene(const Options& options, reports::Console& console);
+
+/// What the options say of the network, before the scene is read.
+/// @param is_serve  listens at the default endpoint if the options name none
+/// @throws network::KeyError
+network::Config network_config(const Options& options, bool is_serve);
+
+/// Adds what the scene and the options say of each controller: deadlines and injected delays.
+/// @throws text::UsageError
+void add_controllers(const Options& options, const scene::Scene& scene, network::Config& config);
+
+/// Prints the endpoints on stdout, for programs that start the server.
+void announce(const Options& options, const std::vector<std::string>& endpoints,
+              reports::Console& console);
+
+/// What clients are told at the end of the run.
+wire::End end_message(const reports::Summary& summary);
+
+/// Ends the program on Ctrl-C before there is a world: loading has nothing to clean up.
+[[noreturn]] void end_while_loading();
+
+}  // namespace ziggurat::run

@@ -1,0 +1,35 @@
+#include "supervision/world.h"
+
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "math/hash.h"
+
+namespace ziggurat::supervision {
+
+World::World(std::string path_given, scene::OpenScene opened, std::uint64_t seed_given,
+             std::optional<scene::Clock> clock_given)
+    : path(std::move(path_given)),
+      scene(std::move(opened.scene)),
+      additions(std::move(opened.additions)),
+      scene_hash(supervision::scene_hash(scene)),
+      clock(clock_given),
+      seed(seed_given),
+      simulation(scene, {seed, clock}) {}
+
+void World::reset(std::uint64_t new_seed) {
+  simulation.reset(scene, {new_seed, clock});
+  seed = new_seed;
+}
+
+std::string scene_hash(const scene::Scene& scene) {
+  math::Hash hash;
+  for (const std::string& name : scene.files) {
+    std::ifstream file(name, std::ios::binary);
+    hash.add(std::string(std::istreambuf_iterator<char>(file), {}));
+  }
+  return math::to_hex(hash.digest());
+}
+
+}  // namespace ziggurat::supervision

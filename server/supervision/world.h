@@ -1,0 +1,35 @@
+#pragma once
+// The world of a run: what it was made from and what it has become.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "scene/additions.h"
+#include "scene/scene.h"
+#include "simulation/simulation.h"
+
+namespace ziggurat::supervision {
+
+struct World {
+  /// @param clock  overrides the scene's
+  /// @throws scene::SceneError if an entity cannot be placed or built
+  World(std::string path, scene::OpenScene opened, std::uint64_t seed,
+        std::optional<scene::Clock> clock);
+
+  /// Builds the world again, with this seed. @throws scene::SceneError; then nothing changes
+  void reset(std::uint64_t new_seed);
+
+  const std::string path;  ///< of the scene file
+  const scene::Scene scene;
+  const scene::Additions additions;  ///< reads elements that are added to the scene
+  const std::string scene_hash;      ///< of the scene's files: 16 hexadecimal digits
+  const std::optional<scene::Clock> clock;
+  std::uint64_t seed;
+  simulation::Simulation simulation;
+};
+
+/// The hash of the scene's files: 16 hexadecimal digits.
+std::string scene_hash(const scene::Scene& scene);
+
+}  // namespace ziggurat::supervision
