@@ -3,9 +3,9 @@
 
 usage: check_layers.py [ROOT]     ROOT is the top of the checkout (default: this file's)
 
-The table is docs/architecture.md's. Each violation is printed as file:line: text; the exit code
-is 1 if there is any. A module that is not in the table is a violation, so a new one is added here
-and in docs/architecture.md first.
+Each violation is printed as file:line: text; the exit code is 1 if there is any. Violations are also
+a module that is not in the table, an entry of the table that no include uses, and a difference between
+this table and the one in docs/architecture.md. A new module is added to both first.
 """
 
 import pathlib
@@ -21,23 +21,21 @@ MODULES = {
     "world": ["math"],
     "magnetism": ["math"],
     "physics": ["scene", "world", "magnetism", "math"],
-    "media": ["scene", "world", "math"],
-    "camera": ["scene", "world", "media", "math"],
+    "media": ["world", "math"],
+    "camera": ["world", "media", "math"],
     "render": ["scene", "world", "math"],
     "devices": ["scene", "world", "physics", "media", "camera", "render", "math"],
-    "simulation": ["scene", "world", "magnetism", "physics", "media", "camera", "render", "devices",
-                   "math"],
-    "wire": ["scene", "world", "protocol", "math"],
-    "recording": ["scene", "world", "simulation", "wire", "protocol", "math"],
-    "network": ["scene", "world", "wire", "protocol", "math"],
+    "simulation": ["scene", "world", "physics", "media", "devices", "math"],
+    "wire": ["scene", "world", "protocol"],
+    "recording": ["world", "protocol", "math"],
+    "network": ["scene", "world", "wire", "math"],
     "reports": ["text", "scene", "wire", "network", "math"],
     "processes": ["scene", "world", "recording"],
-    "supervision": ["reports", "processes", "network", "simulation", "wire", "scene", "world",
-                    "math"],
+    "supervision": ["reports", "processes", "network", "simulation", "wire", "scene", "math"],
     "run": ["supervision", "reports", "processes", "network", "recording", "simulation", "render",
-            "wire", "scene", "world", "math", "text"],
+            "scene", "world", "math", "text"],
     "cli": ["run", "reports", "processes", "network", "simulation", "physics", "magnetism", "scene",
-            "math", "text", "clients/cpp"],
+            "text", "clients/cpp"],
     "clients/cpp": ["protocol"],
     "clients/lua": ["clients/cpp"],
 }
@@ -47,7 +45,7 @@ MODULES = {
 LIBRARIES = {
     "pugixml": (r"pugixml\.hpp$|pugiconfig\.hpp$", ["scene"]),
     "Bullet": (r"bullet/|bt[A-Z]\w*\.h$|Bullet\w*/|LinearMath/", ["physics"]),
-    "protobuf": (r"google/protobuf/", ["protocol", "wire", "recording", "network", "clients/cpp"]),
+    "protobuf": (r"google/protobuf/", ["protocol", "wire", "recording"]),
     "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "clients/cpp"]),
     "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
     "libpng": (r"png\.h$", ["recording"]),
@@ -107,7 +105,7 @@ def violations_of_file(path, root):
             continue
         header = match.group(1)
         if header[0] not in '<"':
-            yield number, f"include of the macro {header}: nobody can tell what it includes"
+            yield number, f"include of the macro {header}: write the name of the header"
             continue
         for sentence in violations_of_include(header[1:-1], header[0] == '"', module, root, path):
             yield number, sentence
@@ -122,10 +120,62 @@ def sources(root):
 
 
 def check(root):
-    """All violations under root, as file:line: text."""
+    """All includes under root that are not allowed, as file:line: text."""
     root = root.resolve()
     return [f"{path.relative_to(root)}:{number}: {sentence}"
             for path in sources(root) for number, sentence in violations_of_file(path, root)]
+
+
+def unused(root, modules, libraries):
+    """The entries of both tables that no include uses, as sentences."""
+    root = root.resolve()
+    used = set()
+    for path in sources(root):
+        module = module_of(path.relative_to(root))
+        for match in filter(None, map(INCLUDE.match, path.read_text(errors="replace").splitlines())):
+            header = match.group(1)[1:-1]
+            target = target_of(header, root, path)
+            used.add((module, target))
+            used |= {(module, library) for library, (pattern, _) in libraries.items()
+                     if target is None and re.match(pattern, header)}
+    entries = [(module, target) for module, targets in modules.items() for target in targets]
+    entries += [(module, library) for library, (_, users) in libraries.items() for module in users]
+    return [f"tools/check_layers.py: {module} includes nothing of {target}; remove the entry"
+            for module, target in entries if (module, target) not in used]
+
+
+def rows(text, heading):
+    """The cells of the Markdown table that begins with this heading."""
+    table = text.partition(heading)[2].partition("\n\n")[0]
+    for line in table.splitlines()[2:]:
+        yield [cell.strip() for cell in line.strip("|").split("|")]
+
+
+def named_folders(cell):
+    """The modules that a cell names, as `server/run/`, `run/` or `clients/cpp/`."""
+    return [name.removeprefix("server/") for name in re.findall(r"`([\w/]+?)/?`", cell)]
+
+
+def differences(document, modules, libraries):
+    """Where the tables of docs/architecture.md say something else, as sentences."""
+    told = {}
+    for folder, _, knows in rows(document, "| Folder |"):
+        names = [] if knows == "nothing" else knows.split(", ")
+        told |= {module: names for module in named_folders(folder)}
+    for module in sorted(modules.keys() | told.keys()):
+        here, there = modules.get(module), told.get(module)
+        if here is None and there is not None and not module.startswith("clients/"):
+            yield f"docs/architecture.md: module '{module}' is not in tools/check_layers.py"
+        elif here is not None and there is None:
+            yield f"docs/architecture.md: module '{module}' is missing"
+        elif here is not None and set(here) != set(there):
+            yield (f"docs/architecture.md: {module} knows {', '.join(sorted(there)) or 'nothing'}; "
+                   f"tools/check_layers.py has {', '.join(sorted(here)) or 'nothing'}")
+    told = {library: named_folders(only) for library, only in rows(document, "| Library |")}
+    for library, (_, here) in libraries.items():
+        if set(told.get(library, [])) != set(here):
+            yield (f"docs/architecture.md: {library} is in {', '.join(told.get(library, []))}; "
+                   f"tools/check_layers.py has {', '.join(here)}")
 
 
 def main():
@@ -135,9 +185,10 @@ def main():
         return 0 if len(arguments) == 1 else 1
     root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parents[1]
     if not (root / "server").is_dir():
-        print(f"{root}: there is no server/ here", file=sys.stderr)
+        print(f"{root}: there is no server/ here; write the top of the checkout", file=sys.stderr)
         return 1
-    found = check(root)
+    document = (root / "docs/architecture.md").read_text()
+    found = [*check(root), *unused(root, MODULES, LIBRARIES), *differences(document, MODULES, LIBRARIES)]
     print("\n".join(found) or f"{sum(1 for _ in sources(root))} files: every include is allowed")
     return 1 if found else 0
 

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""tools/check_layers.py finds what it is there to find, and nothing else."""
+"""tools/check_layers.py finds every violation, and nothing else."""
 
 import pathlib
-import subprocess
 import sys
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "tools/check_layers.py"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+import check_layers
 
 TREE = {
     "protocol/ziggurat/v1/envelope.h": '#include "ziggurat/v1/protocol.pb.h"\n',
@@ -18,8 +19,7 @@ TREE = {
     "server/physics/bodies.cpp":
         '#include <BulletDynamics/Dynamics/btRigidBody.h>\n#include "world/state.h"\n',
     "server/simulation/simulation.h": '#include "scene/scene.h"\n',
-    "server/network/server.cpp":
-        '#include <zmq.hpp>\n#include "ziggurat/v1/protocol.pb.h"\n#include "world/state.h"\n',
+    "server/network/server.cpp": '#include <zmq.hpp>\n#include "world/state.h"\n',
     "server/cli/main.cpp": '#include "simulation/simulation.h"\n',
     "clients/cpp/include/ziggurat/session.h": "#include <string>\n",
     "clients/cpp/session.cpp":
@@ -29,30 +29,26 @@ TREE = {
 
 
 class CheckLayers(unittest.TestCase):
-    def run_on(self, added):
-        """Exit code and output of the check on TREE and the files of `added`, path to text."""
+    def run_on(self, added, check=check_layers.check):
+        """What the check finds in TREE and the files of `added`, path to text."""
         with tempfile.TemporaryDirectory() as folder:
             for path, text in {**TREE, **added}.items():
                 file = pathlib.Path(folder, path)
                 file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_text(text)
-            done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True)
-            return done.returncode, done.stdout
+            return check(pathlib.Path(folder))
 
     def assert_caught(self, path, text, *words):
-        code, out = self.run_on({path: text})
-        self.assertEqual(code, 1, out)
-        self.assertEqual(len(out.splitlines()), 1, out)
+        found = self.run_on({path: text})
+        self.assertEqual(len(found), 1, found)
         for word in (path, *words):
-            self.assertIn(word, out)
+            self.assertIn(word, found[0])
 
     def assert_allowed(self, path, text):
-        code, out = self.run_on({path: text})
-        self.assertEqual(code, 0, out)
+        self.assertEqual(self.run_on({path: text}), [])
 
     def test_accepts_a_tree_in_order(self):
-        code, out = self.run_on({})
-        self.assertEqual((code, out), (0, f"{len(TREE)} files: every include is allowed\n"))
+        self.assertEqual(self.run_on({}), [])
 
     def test_catches_a_dependency_against_the_arrows(self):
         self.assert_caught("server/math/bad.h", '\n#include "scene/scene.h"\n', ":2:", "nothing")
@@ -92,9 +88,54 @@ class CheckLayers(unittest.TestCase):
         self.assert_caught("server/loose.h", "", "'loose.h'")
         self.assert_caught("clients/rust/new.cpp", "", "'clients/rust'")
 
-    def test_catches_includes_in_another_form(self):
+    def test_catches_includes_that_cannot_be_resolved(self):
         self.assert_caught("server/scene/bad.cpp", '#include "scene.h"\n', "module/file.h")
         self.assert_caught("server/scene/bad.cpp", "#include HEADER\n", "HEADER")
+
+    def test_catches_entries_that_no_include_uses(self):
+        modules = {"scene": ["math"], "world": ["math", "scene"]}
+        libraries = {"pugixml": (r"pugixml\.hpp$", ["scene", "world"])}
+        found = self.run_on({}, lambda root: check_layers.unused(root, modules, libraries))
+        self.assertEqual(found, [
+            "tools/check_layers.py: world includes nothing of scene; remove the entry",
+            "tools/check_layers.py: world includes nothing of pugixml; remove the entry"])
+
+
+DOCUMENT = """
+| Folder | What it is | Knows |
+|---|---|---|
+| `server/math/` | numbers | nothing |
+| `server/scene/` | scenes | math |
+| `clients/cpp/` | a client | scene, math |
+| `clients/python/`, `clients/json/` | others | the protocol's document |
+
+| Library | Only in |
+|---|---|
+| Lua | `clients/cpp/`, `scene/` (which compiles scripts) |
+
+| To add | Go to |
+"""
+MODULES = {"math": [], "scene": ["math"], "clients/cpp": ["math", "scene"]}
+LIBRARIES = {"Lua": ("lua", ["scene", "clients/cpp"])}
+
+
+class Document(unittest.TestCase):
+    def differences(self, document=DOCUMENT, modules=MODULES, libraries=LIBRARIES):
+        return list(check_layers.differences(document, modules, libraries))
+
+    def test_accepts_the_same_tables(self):
+        self.assertEqual(self.differences(), [])
+
+    def test_catches_a_module_that_only_one_table_has(self):
+        self.assertEqual(len(self.differences(modules={**MODULES, "world": []})), 1)
+        missing = self.differences(DOCUMENT.replace("server/math/", "server/maths/"))
+        self.assertEqual(len(missing), 2, missing)
+
+    def test_catches_another_list(self):
+        for text in (DOCUMENT.replace("scene, math", "math"),
+                     DOCUMENT.replace("nothing", "scene"),
+                     DOCUMENT.replace("`clients/cpp/`, `scene/`", "`scene/`")):
+            self.assertEqual(len(self.differences(text)), 1, text)
 
 
 if __name__ == "__main__":
