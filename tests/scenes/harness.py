@@ -21,7 +21,7 @@ ZIGGURAT = BIN / "ziggurat"
 LUA = BIN / "ziggurat-lua"
 
 FINISHED, FAULT, CONTROLLER_FAILED, INTERRUPTED = 0, 1, 3, 130
-LIMIT = 20  # [s] that any run may take: more is a hang
+LIMIT = 60  # [s] that any run may take, on a busy machine, too: more is a hang
 
 
 class Outcome:
@@ -113,9 +113,9 @@ class SceneTest(unittest.TestCase):
 
     # --- processes ------------------------------------------------------------------------------
 
-    def left_processes(self, patience=2.0):
+    def left_processes(self):
         """Command lines that name the test's folder, once they had their time to end."""
-        end = time.monotonic() + patience
+        end = time.monotonic() + LIMIT
         while True:
             found = self.processes(str(self.folder))
             if not found or time.monotonic() > end:
@@ -164,6 +164,22 @@ class SceneTest(unittest.TestCase):
 
     def interrupt(self, process):
         process.send_signal(signal.SIGINT)
+
+    def wait_until_it_computes(self, pid, seconds):
+        """Until the process has had that much processor time, however busy the machine is."""
+        def used():
+            fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+            return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+        self.wait_for(used, lambda so_far: so_far >= seconds, f"{seconds} s of processor time")
+
+    def wait_until_taken(self, process, number):
+        """Until the process has taken the signal: a second one is lost while the first is pending."""
+        def pending():
+            status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+            return int(re.search(r"^ShdPnd:\s*(\w+)", status, re.MULTILINE)[1], 16) >> (number - 1) & 1
+
+        self.wait_for(pending, lambda is_pending: not is_pending, "end of the signal's wait")
 
 
 def main():

@@ -34,14 +34,15 @@ class Injected(SceneTest):
         self.assertIn("injected: each way 5 ms; 0 observations and 0 commands", outcome.err)
 
     def test_only_a_session_without_commands_misses_every_tick(self):
-        _, cards = self.cards("--hil", "--real-time", 2, "--ticks", 20, "--inject",
-                              "swing=commands:loss=100%", "--deadline", "swing=hold:20",
-                              "--deadline", "other=hold:5000")
-        self.assertEqual(cards["swing"]["misses"], 21)  # of the ticks 0 to 20
+        _, cards = self.cards("--hil", "--real-time", 2, "--ticks", 5, "--inject",
+                              "swing=commands:loss=100%", "--deadline", "swing=hold:500",
+                              "--deadline", "other=hold:20000")
+        self.assertEqual(cards["swing"]["misses"], 6)  # of the ticks 0 to 5
         self.assertEqual(cards["swing"]["answers"], 0)
-        # Two sessions; the last of each may come when the run is over, and is not lost then.
-        self.assertIn(cards["swing"]["injected"]["commands"]["lost"], range(40, 43))
-        self.assertEqual((cards["other"]["misses"], cards["other"]["answers"]), (0, 21))
+        # Two sessions, each with half a second for a command. The last one of each may come when
+        # the run is over, and is not lost then.
+        self.assertIn(cards["swing"]["injected"]["commands"]["lost"], range(10, 13))
+        self.assertEqual((cards["other"]["misses"], cards["other"]["answers"]), (0, 6))
 
     def test_a_seed_loses_the_same_messages_again(self):
         def lines(seed):

@@ -95,30 +95,29 @@ class Interruption(SceneTest):
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
     def test_before_anybody_is_there(self):
-        process = self.start("run", self.scene, "--controller", "swing=sleep 100")
-        time.sleep(0.3)
+        process = self.start("run", self.scene, "--controller", "swing=echo begun; exec sleep 100")
+        self.read_until(process.stdout, "^begun$")
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
     def test_endless_loop_of_a_script_is_no_obstacle(self):
         self.write("swing.lua", "function init() end function step() while true do end end")
         process = self.start("run", self.scene)
-        self.lua_processes()
-        time.sleep(0.3)
+        self.wait_until_it_computes(self.lua_processes()[0], 0.3)  # starting takes a tenth of it
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
     def test_second_control_c_does_not_wait(self):
         self.write("swing.lua", "function init() end function step() while true do end end")
         process = self.start("run", self.scene)
-        self.lua_processes()
-        time.sleep(0.3)
+        self.wait_until_it_computes(self.lua_processes()[0], 0.3)  # starting takes a tenth of it
         self.interrupt(process)
-        time.sleep(0.2)
+        self.wait_until_taken(process, signal.SIGINT)
         start = time.monotonic()
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
-        self.assertLess(time.monotonic() - start, 1)
+        # After one Ctrl-C it waits for 2 s for answers, and for 1 s more before it kills.
+        self.assertLess(time.monotonic() - start, 2)
 
     def test_killed_server_takes_its_controllers_along(self):
         process = self.start("run", self.scene, *ENDLESS)

@@ -36,7 +36,7 @@ class Serve(SceneTest):
         self.assertEqual(outcome.code, FINISHED, outcome.err)
         self.assertEqual(outcome.lines[-1], expected)
         self.assertIn("[20 r2] step 20", outcome.lines)
-        client.wait(timeout=10)
+        client.wait(timeout=60)
 
     def test_says_for_whom_it_waits(self):
         process, endpoint = self.serve()

@@ -33,7 +33,7 @@ class Spawn(SceneTest):
 
     def ctl(self, *words, text=None, code=0):
         outcome = subprocess.run([ZIGGURAT, "ctl", self.url, *map(str, words)], input=text,
-                                 capture_output=True, text=True, timeout=30, cwd=self.folder)
+                                 capture_output=True, text=True, timeout=60, cwd=self.folder)
         self.assertEqual(outcome.returncode, code, outcome.stderr)
         return outcome.stderr if code else outcome.stdout
 
@@ -78,12 +78,12 @@ class Spawn(SceneTest):
         self.ctl("remove", "r1")
         self.read_until(process.stdout, r"^\[\d+ late\] step 30")
         self.ctl("reset")
-        self.assertEqual(scripted[1].wait(20), 0, "it was spawned, so its session is over")
+        self.assertEqual(scripted[1].wait(60), 0, "it was spawned, so its session is over")
         self.read_until(process.stdout, r"^\[20 r0\]")
         self.assertEqual([e["id"] for e in self.read("r*")["entities"]],
                          ["r0", "r1", "r2"])
         self.end(process)
-        self.assertEqual(scripted[0].wait(20), 0)
+        self.assertEqual(scripted[0].wait(60), 0)
 
     def test_the_same_spawn_gives_the_same_states_and_a_reset_the_scene(self):
         process = self.begin_undriven("--seed", 5)

@@ -31,7 +31,7 @@ def main(ziggurat, kit, *options):
     finally:
         server.send_signal(signal.SIGINT)
         try:
-            server.communicate(timeout=10)
+            server.communicate(timeout=60)
         except subprocess.TimeoutExpired:
             server.kill()
             server.communicate()

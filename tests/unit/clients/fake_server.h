@@ -117,8 +117,8 @@ class FakeServer {
 inline Options options_for(const FakeServer& server) {
   Options options;
   options.endpoint = server.endpoint;
-  options.connect_timeout = std::chrono::milliseconds{3000};
-  options.wait_timeout = std::chrono::milliseconds{3000};
+  options.connect_timeout = std::chrono::milliseconds{20'000};
+  options.wait_timeout = std::chrono::milliseconds{20'000};
   return options;
 }
 

@@ -14,8 +14,8 @@ namespace {
 SupervisorOptions supervise(const FakeServer& server) {
   SupervisorOptions options;
   options.endpoint = server.endpoint;
-  options.connect_timeout = std::chrono::milliseconds{3000};
-  options.answer_timeout = std::chrono::milliseconds{3000};
+  options.connect_timeout = std::chrono::milliseconds{20'000};
+  options.answer_timeout = std::chrono::milliseconds{20'000};
   return options;
 }
 

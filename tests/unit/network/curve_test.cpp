@@ -18,7 +18,7 @@ namespace ziggurat::network {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr Wait patience{milliseconds{5000}, {}};
+constexpr Wait patience{milliseconds{20'000}, {}};
 
 struct Keys : ::testing::Test {
   Keys() {
@@ -124,7 +124,7 @@ struct Protected : Keys {
     });
     const std::array<int, 1> descriptors{ends[0]};
     for (;;) {
-      const auto outcome = server.gather({milliseconds{5000}, descriptors});
+      const auto outcome = server.gather({milliseconds{20'000}, descriptors});
       if (outcome != Outcome::complete) break;
       std::this_thread::sleep_for(milliseconds{5});
       if (is_done) break;
@@ -145,7 +145,7 @@ TEST_F(Protected, KeysOnTheListGetIn) {
   std::vector<std::thread> clients;
   const auto drive = [&](const std::string& key, std::size_t endpoint, const std::string& robot) {
     Options from = options(server, key, endpoint);
-    from.connect_timeout = milliseconds{5000};
+    from.connect_timeout = milliseconds{20'000};
     from.robots = {robot};
     Session session(from);
     while (session.next()) session.robots()[0].joint("hinge").set_target(1);
@@ -182,7 +182,9 @@ TEST_F(Protected, K3_ARoleThatTheKeyDoesNotHaveIsForbidden) {
   Server server(config, small.run());
   meanwhile(server, [&] {
     try {
-      Session session(options(server, "viewer"));
+      Options viewer = options(server, "viewer");
+      viewer.connect_timeout = milliseconds{20'000};
+      Session session(viewer);
       FAIL() << "a viewer drives";
     } catch (const ProtocolError& error) {
       EXPECT_EQ(error.details().code, "FORBIDDEN");

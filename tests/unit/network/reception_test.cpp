@@ -18,7 +18,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Wait patience{milliseconds{5000}, {}};
+constexpr Wait patience{milliseconds{20'000}, {}};
 
 Config local_config(milliseconds heartbeat = milliseconds{100'000}) {
   Config config;

@@ -32,7 +32,7 @@ def run_module(scene, script):
     with serve(scene, "--hash") as server:
         subprocess.run(["lua5.3", script, server.endpoint], check=True, timeout=60,
                        stdout=subprocess.DEVNULL)
-        output, _ = server.process.communicate(timeout=10)
+        output, _ = server.process.communicate(timeout=60)
         return [line for line in output.splitlines() if not line.startswith("{")]
 
 
@@ -54,7 +54,7 @@ class Module(unittest.TestCase):
             environment = {k: v for k, v in os.environ.items() if k != "ZIGGURAT_ENDPOINT"}
             subprocess.run(["lua5.3", HERE / "module_faults.lua", server.endpoint], check=True,
                            timeout=60, env=environment)
-            _, errors = server.process.communicate(timeout=10)
+            _, errors = server.process.communicate(timeout=60)
             self.assertEqual(server.process.returncode, 3)
             self.assertIn("that was enough", errors)
 
@@ -65,7 +65,7 @@ class Module(unittest.TestCase):
         self.assertEqual(lua.stdout.readline(), "begun\n")
         time.sleep(0.3)
         lua.send_signal(signal.SIGINT)
-        _, errors = lua.communicate(timeout=10)
+        _, errors = lua.communicate(timeout=60)
         self.assertEqual(lua.returncode, 1)
         self.assertIn("interrupted!", errors)
 

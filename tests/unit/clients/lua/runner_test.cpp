@@ -18,7 +18,7 @@ using network::Outcome;
 using network::SmallRun;
 using std::chrono::milliseconds;
 
-constexpr network::Wait patience{milliseconds{5000}, {}};
+constexpr network::Wait patience{milliseconds{20'000}, {}};
 
 network::Config local_config() {
   network::Config config;
@@ -55,6 +55,7 @@ class RunnerTest : public ScriptTest {
   std::vector<network::Report> reports_;
   bool has_failures_ = false;
   std::atomic<pthread_t> client_{};
+  std::atomic<std::uint64_t> published_ = 0;  ///< ticks
 
  private:
   bool run_client() {
@@ -65,7 +66,7 @@ class RunnerTest : public ScriptTest {
     ziggurat::Options options;
     options.endpoint = server_.endpoints().front();
     options.robots = {"*"};
-    options.wait_timeout = milliseconds{5000};
+    options.wait_timeout = milliseconds{20'000};
     options.is_interrupted = are_scripts_interrupted;
     ziggurat::Session session(options);
     Runner runner(session, program);
@@ -78,6 +79,7 @@ class RunnerTest : public ScriptTest {
     ASSERT_EQ(server_.gather(patience), Outcome::complete);
     for (std::uint64_t tick = 0; tick <= 4; ++tick) {
       server_.publish(small_.observations(tick), {});
+      ++published_;
       ASSERT_EQ(server_.collect(commands_, patience), Outcome::complete);
       reports_.push_back(server_.take_report());
     }
@@ -145,8 +147,11 @@ TEST_F(RunnerTest, InvalidAndTooManyLinesAreHandled) {
 TEST_F(RunnerTest, AnInterruptLeavesWithoutFailure) {
   std::signal(SIGUSR1, [](int) { interrupt_scripts(); });
   std::thread interrupter([this] {
-    std::this_thread::sleep_for(milliseconds(100));
-    while (!client_) std::this_thread::yield();
+    // At tick 1 the script of robot1 loops.
+    for (int i = 0; published_ < 2 && i < 3000; ++i) {
+      std::this_thread::sleep_for(milliseconds(20));
+    }
+    std::this_thread::sleep_for(milliseconds(20));
     ::pthread_kill(client_, SIGUSR1);  // as a signal: where the script runs
   });
   run("function init() end function step() while robot.id == 'robot1' do end end");

@@ -29,7 +29,7 @@ def aside(function):
     thread.start()
 
     def result():
-        thread.join(20)
+        thread.join(60)
         return results[0]
 
     return result
@@ -45,7 +45,7 @@ def angle_between(first, second):
 
 
 def until(is_true):
-    end = time.monotonic() + 20
+    end = time.monotonic() + 60
     while not is_true():
         if time.monotonic() > end:
             raise AssertionError("it did not come true")
@@ -98,9 +98,9 @@ class Supervising(unittest.TestCase):
             self.assertEqual([event for number, event in ticks if number == 0],
                              [ziggurat.Event.INIT, ziggurat.Event.RESET])
             world.shutdown()
-            driver.join(20)
+            driver.join(60)
             self.assertEqual(ended, ["interrupted"])
-            self.assertEqual(server.wait(20), 130)
+            self.assertEqual(server.wait(60), 130)
 
     def test_a_paused_world_does_not_move(self):
         """Whenever the pause comes: with the last answer of a tick, and between the ticks of a pace."""
@@ -118,7 +118,7 @@ class Supervising(unittest.TestCase):
                         world.resume()
                         until(lambda: world.status().tick > at)
                     world.shutdown()
-                    driver.join(20)
+                    driver.join(60)
 
     def test_refused_requests_have_a_reason(self):
         with serve() as server, ziggurat.supervise(server.endpoint) as world:

@@ -37,7 +37,7 @@ class SessionCase(unittest.TestCase):
                 raise faults[0]
 
     def connect(self, *robots, **options):
-        return ziggurat.connect(self.server.endpoint, *robots, wait_timeout=5, **options)
+        return ziggurat.connect(self.server.endpoint, *robots, wait_timeout=60, **options)
 
 
 def open_with(server, *robots, **fields):
@@ -364,7 +364,7 @@ class Losing(SessionCase):
             session = self.connect()
             next(session)
             session.abandon()
-            again = ziggurat.resume(self.server.endpoint, session.token, wait_timeout=5)
+            again = ziggurat.resume(self.server.endpoint, session.token, wait_timeout=60)
             tick = next(again)
             self.assertEqual((tick.number, tick.event), (3, ziggurat.Event.RESUME))
             self.assertEqual(next(again).event, ziggurat.Event.STEP)

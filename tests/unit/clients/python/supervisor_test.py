@@ -24,7 +24,7 @@ class Supervision(SessionCase):
             server.receive()
 
         def client():
-            with ziggurat.supervise(self.server.endpoint, wait_timeout=5, **options) as world:
+            with ziggurat.supervise(self.server.endpoint, wait_timeout=60, **options) as world:
                 return call(world)
 
         return self.play(part, client)
