@@ -142,6 +142,11 @@ class Crowd:
         self.test.assertEqual(code, FINISHED, self.words())
         return self
 
+    def memory(self):
+        """The most memory that the server had so far [KiB]."""
+        status = pathlib.Path(f"/proc/{self.server.pid}/status").read_text()
+        return int(re.search(r"VmHWM:\s*(\d+)", status)[1])
+
     def hashes(self):
         return (self.folder / "hashes").read_text().splitlines()
 
@@ -194,15 +199,14 @@ class Disturbances(SceneTest):
             i = number % ROBOTS
             kind = kinds[(number + number // ROBOTS) % len(kinds)]
             crowd.wait_for_tick(apart * (number + 1), of=i)
+            peak = crowd.memory()
             if callable(kind):
                 kind(crowd, i)
             else:
                 crowd.board.orders[i] = kind
             resumed[i] += kind in (self.kill, RUDE, FLOOD, SLOW)
-        peak = re.search(r"VmHWM:\s*(\d+)",
-                         pathlib.Path(f"/proc/{crowd.server.pid}/status").read_text())[1]
         crowd.finish()
-        self.say(f"the server had {int(peak) / 1024:.0f} MB at its most")
+        self.say(f"the server had {peak / 1024:.0f} MB at its most")
         self.say(f"disturbed:   {crowd.hashes()[-1]}, {rounds * ROBOTS} disturbances")
         self.assertEqual([0] * ROBOTS, list(crowd.board.noticed), crowd.words())
         self.assertEqual(resumed, list(crowd.board.resumed))
