@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes a scene of robots that stand and look at tagged boxes, and the script that reads them.
+"""Writes a scene of resting robots whose cameras see tagged boxes, and the script that reads the tags.
 
 usage: camera_scenes.py ROBOTS FOLDER
 

@@ -1,11 +1,10 @@
-// Cameras in a 10 m arena, and what devices in other places cost them.
+// Time per tick of cameras in a 10 m arena, without and with many devices far away.
 //
 // usage: bench_cameras
 //
 // 64 robots on a lattice of 1.25 m, each with a camera that looks at five boxes with a tag and six
-// LEDs each: 320 tags and 1 920 LEDs in view. 180 tags and 80 LEDs more lie about in the arena. In
-// the second run 5 000 boxes with a tag each are added 20 to 60 m away, ten times as many as
-// before.
+// LEDs each: 320 tags and 1 920 LEDs in view. The arena contains 180 more tags and 80 more LEDs. The
+// second run adds 5 000 boxes with a tag each at 20 to 60 m, ten times as many tags as before.
 
 #include <fmt/format.h>
 #include <time.h>
@@ -89,7 +88,7 @@ scene::Scene read(int far_tags) {
   return std::move(result.scene);
 }
 
-/// Processor time of this thread, which other programs do not add to [µs].
+/// Processor time of this thread [µs]; independent of other programs.
 double now() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -135,7 +134,7 @@ double measure(int far_tags) {
   devices::Tick tick{layout, state, observations, commands, physics, rays, index};
   std::vector<double> updates, kept, builds, looks;
   for (int i = 0; i < 300; ++i) {
-    // Everything moves a little to and fro in every second tick: then the index is built anew.
+    // In every second tick all bodies move a little, so that the index is rebuilt.
     if (i % 2 == 0) {
       for (auto& link : state.links) link.pose.position.y() += i % 4 ? 1e-9 : -1e-9;
     }
@@ -154,10 +153,10 @@ double measure(int far_tags) {
   const double look = median(looks);
   fmt::print("{} tags, {} LEDs, {} of the tags far away\n", layout.tags.size(), layout.leds.size(),
              far_tags);
-  fmt::print("  64 cameras look {:.0f} µs per tick, {:.2f} µs per camera\n", look, look / 64);
-  fmt::print("  apart from that: index {:.0f} µs where all moved, {:.0f} µs where nothing did; ",
+  fmt::print("  64 cameras take {:.0f} µs per tick, {:.2f} µs per camera\n", look, look / 64);
+  fmt::print("  in addition: index {:.0f} µs when all moved, {:.0f} µs when nothing moved; ",
              median(builds), median(kept));
-  fmt::print("boxes of the rays {:.0f} µs (median of both)\n", median(updates));
+  fmt::print("boxes of the rays {:.0f} µs (median over both)\n", median(updates));
   world::Layout shown = layout;
   for (auto& camera : shown.cameras) camera.tags->shows_rays = true;
   count_rays(shown, tick, cameras);
@@ -168,5 +167,5 @@ double measure(int far_tags) {
 
 int main() {
   const double near = measure(0), all = measure(5000);
-  fmt::print("with the far tags {:.2f} times as long\n", all / near);
+  fmt::print("with the far tags the cameras take {:.2f} times as long\n", all / near);
 }

@@ -124,7 +124,7 @@ Times ours(const std::vector<Placed>& placed) {
   });
 }
 
-/// Bodies of a bare Bullet world; `furnish` gives a body what our contacts need.
+/// Shapes and bodies of a bare Bullet world.
 struct BareBodies {
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   std::vector<std::unique_ptr<btRigidBody>> bodies;

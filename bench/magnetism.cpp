@@ -1,7 +1,7 @@
-// Magnetism: the neighbour list and its kernels against straightforward loops, both with the
-// project's release flags. Blocks of eight dipoles on a 60 mm lattice, every block circling at
-// 5 cm/s with a phase of its own, 10 ms substeps, so that lists are really rebuilt. Poses in,
-// wrenches out, in every variant. Thread CPU time, median over steps; quote ratios only.
+// Magnetism: the neighbour list and its kernels compared with simple loops, all with the project's
+// release flags. Blocks of eight dipoles on a 60 mm lattice; each block moves on a circle at 5 cm/s with
+// its own phase, in 10 ms substeps, so that lists are rebuilt as in a real run. Every variant computes
+// wrenches from poses. Thread CPU time, median over steps; only ratios are comparable between machines.
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +47,7 @@ struct Lattice {
   std::vector<double> currents;
   std::vector<Wrench> wrenches;
 
-  bool drifting = false;  ///< all blocks together, so that the lattice stays one; else each circles
+  bool drifting = false;  ///< all blocks move together in a straight line; otherwise each on its circle
 
   void move(int step) {
     for (std::size_t b = 0; b < poses.size(); ++b) {
@@ -73,7 +73,7 @@ Lattice lattice(std::size_t dipoles, const magnetism::Shape& shape) {
                                 pitch * static_cast<double>(b / side / side));
     result.phases.push_back(random.uniform(0, 6.28));
     const Vector3 axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    // Blocks lie as they fell: turned a little.
+    // Each block is turned a little, as after a fall.
     result.poses.push_back(
         {Vector3::Zero(), math::Quaternion(Eigen::AngleAxisd(0.02, axis.normalized()))});
     for (int k = 0; k < 8 && result.magnets.size() < dipoles; ++k) {
@@ -113,7 +113,7 @@ void add_pair(const Magnet& a, const Magnet& b, const Vector3& p1, const Vector3
   w2.torque += torque2 - (p2 - scene.poses[b.body].position).cross(force);
 }
 
-/// The straightforward loop: everything that a pair needs is worked out for the pair.
+/// The simplest loop: computes positions and moments again for every pair.
 void straightforward(Lattice& scene, double max_distance) {
   std::fill(scene.wrenches.begin(), scene.wrenches.end(), Wrench{});
   for (std::size_t i = 0; i < scene.magnets.size(); ++i) {
@@ -130,7 +130,7 @@ void straightforward(Lattice& scene, double max_distance) {
   }
 }
 
-/// The same after a first improvement: positions and moments once per step.
+/// A first improvement: computes positions and moments once per step.
 void placed_once(Lattice& scene, double max_distance) {
   struct Placed {
     Vector3 position, moment;
@@ -154,7 +154,7 @@ void placed_once(Lattice& scene, double max_distance) {
   }
 }
 
-/// Median and mean CPU time of a step [s]; the mean holds the rebuilds.
+/// Median over rounds of a step's mean CPU time, rebuilds of the list included [s].
 double mean_time(Lattice& scene, int steps, const std::function<void()>& evaluate) {
   std::vector<double> rounds;
   for (int round = 0; round < 5; ++round) {

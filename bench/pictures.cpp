@@ -1,5 +1,5 @@
-// What a picture costs: a hundred boxes with a tag and an LED each, on a floor, with shadows.
-// Processor time of all threads, so that other programs on the machine count little.
+// Time of a picture: a hundred boxes with a tag and an LED each, on a floor, with shadows. Measures the
+// processor time of all threads, which other programs affect little.
 
 #include <fmt/format.h>
 
@@ -65,7 +65,7 @@ void measure(const World& world, unsigned width, unsigned height, unsigned overs
   constexpr int pictures = 30;
   for (int i = 0; i < pictures; ++i) renderer.draw(world.state, view, picture);
   const double each = (processor_ms() - begin - first) / pictures;
-  fmt::print("{} x {}, oversampling {}: the first {:.0f} ms, each more {:.1f} ms\n", width, height,
+  fmt::print("{} x {}, oversampling {}: first picture {:.0f} ms, each further one {:.1f} ms\n", width, height,
              oversampling, first, each);
 }
 

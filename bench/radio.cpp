@@ -1,4 +1,4 @@
-// Radios at constant density: µs per radio and tick, building the index included and stated apart.
+// Radios at constant density: µs per radio and tick, for building the index and for delivery.
 //
 // usage: bench_radio [flat|full]
 //
@@ -52,7 +52,7 @@ Crowd make_crowd(std::size_t count, bool flat) {
   return crowd;
 }
 
-/// Processor time of this thread, which other programs do not add to [µs].
+/// Processor time of this thread [µs]; independent of other programs.
 double now() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -80,7 +80,7 @@ void measure(std::size_t count, bool flat) {
     const double built = now();
     medium.deliver(crowd.layout, index, sent, received);
     const double end = now();
-    if (tick < 2) continue;  // memory grows
+    if (tick < 2) continue;  // buffers still grow
     builds.push_back((built - start) / static_cast<double>(count));
     deliveries.push_back((end - built) / static_cast<double>(count));
     messages += received.entries.size();

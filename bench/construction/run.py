@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""How long construction takes: the stacking scene as it stands, and sixteen of it side by side.
+"""Time per substep of construction: the stacking scene, and sixteen copies of it side by side.
 
     bench/construction/run.py [--repeat 3]
 
-Controllers are Lua scripts in a process of their own, as always. Prints, for each scene, medians:
-wall time and processor time (of server and scripts) for each substep, and how much faster than real time the
-whole run was. --scene N writes the scene with N robots to stdout instead.
+Controllers are Lua scripts in a process of their own. Prints medians for each scene: wall time and
+processor time (of server and scripts) per substep, and the real-time factor of the whole run. --scene N writes the scene with N robots to stdout instead.
 """
 
 import argparse
@@ -24,7 +23,7 @@ import xml.etree.ElementTree as ElementTree
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENE = ROOT / "scenes/prototype_srocs_system.argos"
 BIN = pathlib.Path(os.environ.get("ZIGGURAT_BIN", ROOT / "build/release/bin"))
-APART = 0.5  # from robot to robot [m]: too far to see each other's blocks from the front
+DISTANCE = 0.5  # between robots [m]: too far for a robot to see the blocks of another
 
 
 def side_by_side(count):
@@ -41,14 +40,14 @@ def side_by_side(count):
             entity = copy.deepcopy(original)
             entity.set("id", f"{original.get('id')}_{row}")
             x, _, z = original.find("body").get("position").split(",")
-            y = (row - (count - 1) / 2) * APART
+            y = (row - (count - 1) / 2) * DISTANCE
             entity.find("body").set("position", f"{x}, {y}, {z}")
             arena.append(entity)
     return tree
 
 
 def processor_time():
-    """Of all programs that were run so far [s]."""
+    """Processor time of all child processes that have ended [s]."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 

@@ -1,6 +1,6 @@
 #pragma once
-// Two ways to run the same lock-step ticks over the same bytes: with our server, and with bare
-// ZeroMQ. Each owns its controller processes.
+// Two ways to run the same lock-step ticks with messages of the same sizes: with our server, and with
+// bare ZeroMQ. Each owns its controller processes.
 
 #include <sys/types.h>
 
@@ -12,7 +12,7 @@
 
 namespace ziggurat::bench {
 
-/// For connections that CURVE protects.
+/// Keys of connections that CURVE protects.
 struct Keys {
   std::string server_secret, server_public, client_public;  ///< Z85
   std::string client_secret;                                ///< path of a file
@@ -23,16 +23,16 @@ struct Setup {
   std::size_t robots = 1;  ///< per process
   std::string transport = "ipc";
   std::string client;        ///< path of bench_lockstep_client
-  std::optional<Keys> keys;  ///< of ours; nothing: plain
+  std::optional<Keys> keys;  ///< for our server; none: not encrypted
 };
 
-/// Bytes of a tick's messages on the wire, for one session.
+/// Sizes of one session's messages in a tick, on the wire [bytes].
 struct Bytes {
   std::size_t observation = 0;
   std::size_t command = 0;
 };
 
-/// Processes that end with it.
+/// Child processes; the destructor kills them.
 class Processes {
  public:
   void start(const std::string& program, const std::vector<std::string>& arguments);

@@ -1,4 +1,4 @@
-// ROUTER/DEALER with the same habits: send to all, then poll and drain the answers as they come.
+// ROUTER/DEALER with the same order of work as our server: send to all peers, then receive all answers.
 
 #include <unistd.h>
 #include <zmq.h>
@@ -24,14 +24,14 @@ struct Bare::State {
     zmq_ctx_term(context);
   }
 
-  /// Takes `count` messages; the peers that they came from, if wanted.
+  /// Receives `count` messages. Appends the peer of each to `from`, if that is not null.
   void receive(std::size_t count, std::vector<std::string>* from) {
     zmq_msg_t frame;
     zmq_msg_init(&frame);
     while (count > 0) {
       if (zmq_msg_recv(&frame, router, ZMQ_DONTWAIT) < 0) {
         zmq_pollitem_t item{router, 0, ZMQ_POLLIN, 0};
-        if (zmq_poll(&item, 1, 20'000) <= 0) throw std::runtime_error("bare: nothing for 20 s");
+        if (zmq_poll(&item, 1, 20'000) <= 0) throw std::runtime_error("bare: no message for 20 s");
         continue;
       }
       if (from != nullptr) {

@@ -1,11 +1,11 @@
-// What a lock-step tick costs beside bare ZeroMQ with the same bytes and processes.
+// Time of a lock-step tick compared with bare ZeroMQ with the same message sizes and processes.
 //
 // usage: bench_lockstep [PAIRS [TRANSPORT]]     9 pairs over ipc by default
-//        bench_lockstep [PAIRS] curve           ours protected by CURVE beside ours plain, over tcp
+//        bench_lockstep [PAIRS] curve           our server with CURVE compared with it without, over tcp
 //
-// Each pair lets both take turns, burst by burst, and does so with fresh processes several times:
-// single figures depend on where the scheduler puts whom. The table has the median ratio of all
-// pairs, which is what to rely on.
+// In each pair both run alternately, burst by burst; this is repeated with new processes several times,
+// because single figures depend on where the scheduler places the processes. Rely on the median ratio of
+// all pairs, which the table contains.
 
 #include <algorithm>
 #include <chrono>
@@ -33,7 +33,7 @@ struct Row {
 constexpr Row rows[] = {{1, 1, 1.25},  {4, 1, 1.25},  {16, 1, 1.25},
                         {1, 16, 1.25}, {1, 256, 1.9}, {1, 1024, 2.2}};
 
-constexpr int restarts = 5;  // of all processes, per pair: averages out where they are put
+constexpr int restarts = 5;  // of all processes per pair, to average over their placement
 constexpr int warm_up = 50;  // ticks
 constexpr int bursts = 3;
 constexpr int burst = 150;  // ticks
@@ -56,14 +56,14 @@ void run_burst(Arena& arena, std::vector<double>& times) {
 }
 
 struct Pair {
-  double bare = 0;       // median tick of what ours is compared with, mean of all restarts [µs]
-  double ours = 0;       // the same of ours [µs]
-  double ours_late = 0;  // 99th percentile, mean of all restarts [µs]
+  double bare = 0;       // median tick of the reference, mean over all restarts [µs]
+  double ours = 0;       // the same of our server [µs]
+  double ours_late = 0;  // 99th percentile of our server, mean over all restarts [µs]
 };
 
-/// Both in turn, burst by burst.
+/// Runs both alternately, burst by burst.
 template <class Arena>
-void take_turns(Arena& bare, Ours& ours, Pair& pair) {
+void alternate(Arena& bare, Ours& ours, Pair& pair) {
   for (int i = 0; i < warm_up; ++i) ours.tick();
   for (int i = 0; i < warm_up; ++i) bare.tick();
   std::vector<double> ours_times;
@@ -85,10 +85,10 @@ Pair run_pair(const Setup& setup) {
       Setup plain = setup;
       plain.keys.reset();
       Ours bare(plain);
-      take_turns(bare, ours, pair);
+      alternate(bare, ours, pair);
     } else {
       Bare bare(setup, ours.bytes());
-      take_turns(bare, ours, pair);
+      alternate(bare, ours, pair);
     }
   }
   return pair;
@@ -115,7 +115,7 @@ void run_row(const Row& row, Setup setup, int pairs) {
   std::fflush(stdout);
 }
 
-/// A folder with keys, which ends with it.
+/// A temporary folder with key files; the destructor removes it.
 class Keyring {
  public:
   Keyring() {

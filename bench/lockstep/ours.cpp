@@ -1,4 +1,4 @@
-// The world without physics, behind the server as it is.
+// Our server with a world without physics.
 
 #include <unistd.h>
 
@@ -76,7 +76,7 @@ Ours::Ours(const Setup& setup) : state_(std::make_unique<State>(setup)) {
     state.processes.start(setup.client, arguments);
   }
   if (state.server.gather({std::chrono::seconds(20), {}}) != network::Outcome::complete) {
-    throw std::runtime_error("not all controllers came");
+    throw std::runtime_error("not all controllers connected within 20 s");
   }
 }
 

@@ -16,7 +16,7 @@ void Processes::start(const std::string& program, const std::vector<std::string>
   const pid_t pid = ::fork();
   if (pid < 0) throw std::runtime_error("can't fork");
   if (pid == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // no leftovers when the benchmark is stopped
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // the child ends with the benchmark
     ::execv(program.c_str(), argv.data());
     ::_exit(127);
   }

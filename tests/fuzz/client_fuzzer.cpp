@@ -1,7 +1,7 @@
-// Any bytes as a server's messages to the C++ client: its session ends with one of its two
-// exceptions or goes on, and what it hands to controllers holds together. Only
-// the socket is replaced: messages are the input, cut at `separator`. The first byte says whether
-// they meet a controller's session or a supervisor.
+// Any bytes as a server's messages to the C++ client. Its session must continue or throw one of its
+// two exceptions, and the values for controllers must be consistent. Only the socket is replaced: the
+// messages are the input, split at `separator`. The first byte selects a controller's session or a
+// supervisor.
 
 #include <google/protobuf/stubs/logging.h>
 
@@ -24,10 +24,10 @@ using fuzz::require;
 
 constexpr std::string_view separator = "\n--\n";
 
-std::vector<std::string_view> frames;  // not received yet, the first one last
-double seen = 0;                       // so that everything is read
+std::vector<std::string_view> frames;  // not received yet, in reverse order
+double seen = 0;                       // sum of all values, so that all are read
 
-void cut(std::string_view bytes) {
+void split(std::string_view bytes) {
   frames.clear();
   for (;;) {
     const auto end = bytes.find(separator);
@@ -121,7 +121,7 @@ void set_robot(Robot& robot) {
   }
 }
 
-void drive(const Options& options) {
+void run_session(const Options& options) {
   Session session(options);
   while (!frames.empty()) {
     try {
@@ -155,7 +155,7 @@ void supervise() {
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
-  google::protobuf::SetLogHandler(nullptr);  // it has a line for every text that is no UTF-8
+  google::protobuf::SetLogHandler(nullptr);  // it would log every text that is not UTF-8
   return 0;
 }
 
@@ -166,9 +166,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     all.endpoint = "ipc:///input";
     return all;
   }();
-  cut({reinterpret_cast<const char*>(data + 1), size - 1});
+  split({reinterpret_cast<const char*>(data + 1), size - 1});
   try {
-    data[0] % 2 == 0 ? drive(options) : supervise();
+    data[0] % 2 == 0 ? run_session(options) : supervise();
   } catch (const ConnectionError&) {
   } catch (const ProtocolError&) {
   }

@@ -1,5 +1,5 @@
-// Any text, from a `{` on, is read as a client's message in JSON, and as a server's. What is
-// understood can be written again, and then is read as the same bytes.
+// Any text, with a `{` in front, is read as a client's message in JSON and as a server's. A message
+// that can be read must be writable as JSON, and readable again as the same kind of message.
 
 #include "receiver.h"
 #include "ziggurat/v1/json.h"

@@ -1,5 +1,5 @@
 #pragma once
-// What a server does with any bytes of a client's, for fuzzers.
+// A server's handling of a client's bytes, for fuzzers.
 
 #include <cmath>
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace ziggurat::fuzz {
 
 // Three robots with 2, 0 and 3 of each device; the session holds the first and the last. Each of
-// these drives wheels and a turret; wheels and turret 1 are only measured, by nobody.
+// these drives wheels and a turret; wheels and turret 1 are only measured.
 inline world::Layout make_layout() {
   world::Layout layout;
   std::size_t devices = 0;
@@ -86,13 +86,13 @@ inline void receive_command(const wire::Inbox& inbox, const wire::Roster& roster
   for (const wire::LogLine& line : lines) require(line.robot < layout.robots.size());
 }
 
-/// Never a crash; a command that passes the check can be applied without leaving the robots' values
-/// or making them other than finite.
+/// Must not crash. A command that passes the check must write to values of the session's robots only,
+/// and only finite values.
 inline void receive(std::string_view bytes) {
   static const world::Layout layout = make_layout();
   static const std::vector<std::size_t> held{0, 2};
   static const wire::Roster roster = wire::make_roster(layout, held);
-  static wire::Inbox inbox;  // kept, as sessions keep theirs: nothing may leak between messages
+  static wire::Inbox inbox;  // one for all inputs, as in a session: messages must not affect later ones
   switch (inbox.parse(bytes)) {
     case wire::Inbox::Kind::malformed:
       break;

@@ -1,16 +1,16 @@
 #pragma once
-// What a fuzzer expects of every input.
+// The check that fuzzers use for what must hold.
 
 #include <cstdio>
 #include <cstdlib>
 
 namespace ziggurat::fuzz {
 
-/// Ends the program, and says which line of which file asked, unless the condition holds.
+/// Unless the condition holds, prints file and line of the call and aborts.
 inline void require(bool condition, const char* file = __builtin_FILE(),
                     int line = __builtin_LINE()) {
   if (condition) return;
-  std::fprintf(stderr, "%s:%d: this does not hold\n", file, line);
+  std::fprintf(stderr, "%s:%d: a condition does not hold\n", file, line);
   std::abort();
 }
 

@@ -1,6 +1,6 @@
-// Any text is read as a scene: never a crash or a hang, and what is called free of faults holds
-// together, so that nobody behind the reader has to check it again. What is no whole scene is what
-// stands in an arena.
+// Any text is read as a scene. The reader must not crash or hang, and a scene without faults must be
+// consistent, so that later code need not check it again. A text that does not begin like a whole scene
+// becomes the content of an arena.
 
 #include <cstdint>
 #include <string>

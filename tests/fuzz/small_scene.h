@@ -1,5 +1,5 @@
 #pragma once
-// A scene with something of each kind in it, and what holds for every entity that was read.
+// A small scene with most kinds of elements, and the check of every entity that was read.
 
 #include <filesystem>
 #include <string>
@@ -34,7 +34,7 @@ inline constexpr const char* models =
     "mass=\"1\"/></links><devices><leds medium=\"leds\"><led anchor=\"a\" offset=\"0,0,0\" "
     "color=\"red\"/></leds></devices><controller config=\"c\"/></prototype></models></m>";
 
-/// What stands in the arena comes between these two.
+/// The scene's text before and after the content of the arena.
 inline constexpr const char* before =
     "<argos-configuration><framework><experiment ticks_per_second=\"10\"/></framework><controllers>"
     "<lua_controller id=\"c\"><actuators><joints implementation=\"default\"><joint id=\"j\" "
@@ -48,8 +48,8 @@ inline constexpr const char* before =
     "<range_and_bearing id=\"rab\"/></media><arena size=\"9,9,9\">";
 inline constexpr const char* after = "</arena></argos-configuration>";
 
-/// What a scene includes comes from memory, never from this machine: a file of models, or for
-/// names with an s the scene itself under another identity.
+/// Opens included files from memory, never from disk: names that start with `models` are the file of
+/// models, names that start with `s` the scene itself under another path.
 inline std::variant<File, std::string> open_from_memory(const std::filesystem::path& path,
                                                         const std::string& scene) {
   const std::string name = path.filename().string();

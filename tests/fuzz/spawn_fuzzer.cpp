@@ -1,5 +1,5 @@
-// Any text is read as an entity that a supervisor adds to a running scene: never a crash or a hang,
-// what is called free of faults holds together, and the scene stays as it is.
+// Any text is read as an entity that a supervisor adds to a running scene. The reader must not crash or
+// hang, an entity without faults must be consistent, and the scene must not change.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,7 +13,7 @@ using namespace ziggurat::scene;
 
 namespace {
 
-constexpr std::size_t room = 8192;  // bytes of what is added
+constexpr std::size_t max_size = 8192;  // of the added text [bytes]
 
 ReadResult read_small_scene(bool is_lenient) {
   static const std::string text = [] {
@@ -27,7 +27,7 @@ ReadResult read_small_scene(bool is_lenient) {
   options.lenient = is_lenient;
   options.open = [](const std::filesystem::path& path, std::size_t) {
     std::string included = models;
-    const std::string itself = "<include file=\"models\"/>";  // which is a fault
+    const std::string itself = "<include file=\"models\"/>";  // a cycle would be a fault
     included.erase(included.find(itself), itself.size());
     return std::variant<File, std::string>{File{path.string(), included}};
   };
@@ -39,12 +39,12 @@ ReadResult read_small_scene(bool is_lenient) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const ReadResult strictly = read_small_scene(false), leniently = read_small_scene(true);
-  const ReadResult& small = size % 2 == 1 ? leniently : strictly;
+  static const ReadResult strict = read_small_scene(false), lenient = read_small_scene(true);
+  const ReadResult& small = size % 2 == 1 ? lenient : strict;
   const std::size_t files = small.scene.files.size();
   const std::string text(reinterpret_cast<const char*>(data), size);
   const auto is_taken = [](const std::string& id) { return id == "b"; };
-  const Addition addition = small.additions.read(text, small.scene, room, is_taken);
+  const Addition addition = small.additions.read(text, small.scene, max_size, is_taken);
   bool fault = false;
   for (const Problem& problem : addition.problems) {
     require(!problem.text.empty() && !to_string(problem).empty());
@@ -53,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(addition.ok() == !fault);
   require(small.scene.files.size() == files && small.scene.entities.size() == 1);
   if (fault) return 0;
-  require(addition.size <= room);
+  require(addition.size <= max_size);
   require(!addition.entity.id.empty() && !is_taken(addition.entity.id));
   check_entity(addition.entity, small.scene);
   return 0;

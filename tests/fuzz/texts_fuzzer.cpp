@@ -1,6 +1,6 @@
-// Small texts from people and files: key files, patterns for ids, endpoints, values of options.
-// What is wrong is told in the exception that the reader names, and what is accepted keeps the
-// reader's promise. The first byte says which reader.
+// Small texts from users and files: key files, patterns for ids, endpoints, values of options.
+// A wrong text must raise the exception that the reader documents, and an accepted text must give a
+// value within the documented limits. The first byte selects the reader.
 
 #include <cmath>
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace {
 using namespace ziggurat;
 using fuzz::require;
 
-/// Calls the reader. An exception other than the one it names ends the fuzzer.
+/// Calls the reader. Any exception but `Error` ends the fuzzer.
 template <typename Error, typename Read>
 void accept_or_refuse(Read read) {
   try {
@@ -47,9 +47,9 @@ void read_secret(const std::string& text) {
       [&] { require(network::parse_secret_key(text, "key").size() == 40); });
 }
 
-/// Whether what `*` and `?` say fits, character by character.
-bool fits(std::string_view pattern, std::string_view text) {
-  std::vector<bool> ends(text.size() + 1);  // where the pattern so far may end
+/// A slow and obvious match of `*` and `?`, to compare with.
+bool matches_simply(std::string_view pattern, std::string_view text) {
+  std::vector<bool> ends(text.size() + 1);  // ends[i]: the pattern so far matches the first i characters
   ends[0] = true;
   for (const char element : pattern) {
     std::vector<bool> next(text.size() + 1);
@@ -71,7 +71,7 @@ void match(std::string_view input) {
   const auto pattern = input.substr(0, line);
   const auto text = line == std::string_view::npos ? std::string_view() : input.substr(line + 1);
   const bool matched = network::matches(pattern, text);
-  if (pattern.find('[') == std::string_view::npos) require(matched == fits(pattern, text));
+  if (pattern.find('[') == std::string_view::npos) require(matched == matches_simply(pattern, text));
   if (!network::has_wildcards(pattern)) require(matched == (pattern == text));
 }
 

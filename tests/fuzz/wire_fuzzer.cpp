@@ -1,5 +1,5 @@
-// Any bytes are read as a client's message. What is understood can be written as JSON and is read
-// again; that is tried with one input in eight, as it takes ten times as long as all the rest.
+// Any bytes are read as a client's message. A message that can be read must be writable as JSON and
+// readable again. One input in eight tests this, as it takes ten times as long as the rest.
 
 #include "receiver.h"
 #include "ziggurat/v1/json.h"
