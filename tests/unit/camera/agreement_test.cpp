@@ -1,4 +1,4 @@
-// The simulated tag detector beside a real one, libapriltag, which looks at the rendered picture.
+// The simulated tag detector compared with a real one, libapriltag, on the rendered picture.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -39,14 +39,14 @@ std::string block(int number, const std::string& position, const std::string& or
          R"("/><links ref="b"><link id="b" geometry="box" size=".12,.12,.12" mass="1"/></links>)" +
          R"(<devices><tags medium="tags">)" +
          tag(0, R"(position="0,0,0.12" orientation="30,0,0")") +
-         tag(1, R"(position="0.0605,0,0.06" orientation="0,90,0")") +  // half a millimetre above
+         tag(1, R"(position="0.0605,0,0.06" orientation="0,90,0")") +  // 0.5 mm above the face
          tag(2, R"(position="0,-0.06,0.06" orientation="0,0,90")") +
          "</tags></devices></prototype>";
 }
 
-/// A scene of blocks and a post, in which the camera is put anywhere.
-struct Stage {
-  Stage() {
+/// A scene of blocks and a post; the camera can be placed anywhere.
+struct BlockScene {
+  BlockScene() {
     simulation::testing::SmallScene text;
     text.sensors =
         R"(<cameras implementation="default"><camera id="eye" anchor="origin" position="0,0,0")"
@@ -72,10 +72,10 @@ struct Stage {
   world::State state;
 };
 
-/// Everything that looks, with the robot's body out of the way below the floor.
-class Looking {
+/// The simulated and the real detector. The robot's body is below the floor, outside of all views.
+class BothDetectors {
  public:
-  explicit Looking(Stage& stage)
+  explicit BothDetectors(BlockScene& stage)
       : stage_(stage),
         rays_(stage.scene.physics),
         index_(stage.layout),
@@ -84,7 +84,7 @@ class Looking {
     rays_.update(stage.state);
   }
 
-  void put_camera(const Pose& pose) { stage_.state.origins.back() = pose; }
+  void place_camera(const Pose& pose) { stage_.state.origins.back() = pose; }
 
   bool clear(const Vector3& eye, const Vector3& target) const {
     return devices::Sight{rays_, 0, nullptr, {}, false}.clear(eye, target);
@@ -92,11 +92,11 @@ class Looking {
 
   std::map<int, std::array<Vector2, 4>> simulated() {
     index_.build(stage_.state);
-    std::vector<std::size_t> room;
+    std::vector<std::size_t> candidates;
     std::vector<world::TagReading> readings;
     detect_tags(
         View(stage_.layout, stage_.state, index_, 0),
-        [this](const Vector3& eye, const Vector3& target) { return clear(eye, target); }, room,
+        [this](const Vector3& eye, const Vector3& target) { return clear(eye, target); }, candidates,
         readings);
     std::map<int, std::array<Vector2, 4>> found;
     for (const auto& reading : readings) {
@@ -116,8 +116,8 @@ class Looking {
     return found;
   }
 
-  /// Whether all of a tag is in view and in sight, with its white margin.
-  bool sees_all_of(int id) {
+  /// Whether the whole tag with its white margin is in the image and not hidden.
+  bool is_fully_visible(int id) {
     const Pose tag = pose_of(id);
     const View view(stage_.layout, stage_.state, index_, 0);
     constexpr int steps = 10;
@@ -131,11 +131,11 @@ class Looking {
     return true;
   }
 
-  /// Between a tag's normal and the way to the camera [rad].
+  /// Angle between a tag's normal and the direction to the camera [rad].
   double obliqueness(int id) {
     const Pose tag = pose_of(id);
-    const Vector3 way = stage_.state.origins.back().position - tag.position;
-    return std::acos(way.normalized().dot(tag.orientation * Vector3::UnitZ()));
+    const Vector3 to_camera = stage_.state.origins.back().position - tag.position;
+    return std::acos(to_camera.normalized().dot(tag.orientation * Vector3::UnitZ()));
   }
 
  private:
@@ -145,7 +145,7 @@ class Looking {
     return world::pose_of(stage_.state, stage_.layout.tags[static_cast<std::size_t>(tag)].mount);
   }
 
-  Stage& stage_;
+  BlockScene& stage_;
   physics::Rays rays_;
   media::DevicesIndex index_;
   render::Renderer renderer_;
@@ -153,15 +153,15 @@ class Looking {
   render::testing::Detector detector_;
 };
 
-/// A place around the blocks that looks at them, rolled at random.
-Pose anywhere(std::mt19937_64& random) {
-  // Not std's distributions: these are the same everywhere.
+/// A random pose around the blocks that looks at them, with a random roll.
+Pose random_camera(std::mt19937_64& random) {
+  // Distributions of std differ between implementations; this gives the same values with all.
   const auto between = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };
   const double distance = between(0.35, 0.9), azimuth = between(-1.6, 0.1),
                elevation = between(0.3, 1.2);
-  // One by one: compilers differ in the order of arguments.
+  // One statement each: compilers evaluate arguments in different orders.
   const double z = between(0.0, 0.12), y = between(-0.05, 0.45), x = between(-0.3, 0.35);
   const Vector3 target(x, y, z);
   const Vector3 eye =
@@ -175,15 +175,15 @@ Pose anywhere(std::mt19937_64& random) {
 
 struct Agreement {
   int both = 0, grazing_views = 0, partly_hidden = 0;
-  double worst = 0, sum = 0;  // of the corner that is farthest off, of tags that agree [px]
+  double worst = 0, sum = 0;  // greatest distance of a corner, over tags that agree [px]
 };
 
-void compare(int view, Looking& looking, Agreement& result) {
-  const auto simulated = looking.simulated();
-  const auto real = looking.real();
+void compare(int view, BothDetectors& detectors, Agreement& result) {
+  const auto simulated = detectors.simulated();
+  const auto real = detectors.real();
   const auto disagree = [&](int id, const std::string& what) {
-    const double oblique = looking.obliqueness(id);
-    const bool hidden = !looking.sees_all_of(id);
+    const double oblique = detectors.obliqueness(id);
+    const bool hidden = !detectors.is_fully_visible(id);
     result.grazing_views += oblique > grazing && !hidden;
     result.partly_hidden += hidden;
     const auto line = fmt::format("view {:3}, tag {:3}: {} ({:.0f} degrees off its normal{})", view,
@@ -215,16 +215,16 @@ void compare(int view, Looking& looking, Agreement& result) {
 }
 
 TEST(SimulatedTagDetector, AgreesWithARealOne) {
-  Stage stage;
-  Looking looking(stage);
+  BlockScene stage;
+  BothDetectors detectors(stage);
   std::mt19937_64 random(20);
   Agreement result;
   for (int view = 0; view < 200; ++view) {
-    looking.put_camera(anywhere(random));
-    compare(view, looking, result);
+    detectors.place_camera(random_camera(random));
+    compare(view, detectors, result);
   }
   std::printf(
-      "200 views: %d tags agree, the worst corner of each %.3f px off in the mean, %.3f at "
+      "200 views: %d tags agree, distance of the worst corner %.3f px on average, %.3f px at "
       "most; others: %d in grazing views, %d partly hidden\n",
       result.both, result.sum / result.both, result.worst, result.grazing_views,
       result.partly_hidden);

@@ -13,7 +13,7 @@ using math::Vector3;
 
 constexpr double pi = std::numbers::pi;
 
-/// Everything about one camera at the origin that looks along +x of W, with v down.
+/// One camera at the origin that looks along +x of W, with v downwards, and the devices around it.
 struct Stage {
   world::Layout layout;
   world::State state;
@@ -37,7 +37,7 @@ struct Stage {
     axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     return math::Quaternion(axes);
   }
-  /// Of a device that points towards -x of W: at the camera.
+  /// Orientation of a device that points along -x of W, at the camera.
   static math::Quaternion towards_camera() {
     return math::Quaternion::FromTwoVectors(Vector3::UnitZ(), -Vector3::UnitX());
   }
@@ -75,7 +75,7 @@ struct Stage {
   auto tags() { return look<world::TagReading>(detect_tags, counting()); }
 };
 
-TEST(Faces, IsExactAtItsEdges) {
+TEST(Faces, IsExactAtTheLimitOfTheAngle) {
   const math::Pose up;
   for (const double degrees : {0.0, 1e-3, 1.0, 30.0, 45.0, 89.999, 90.0, 135.0, 179.999, 180.0}) {
     const double angle = degrees * pi / 180;
@@ -87,7 +87,7 @@ TEST(Faces, IsExactAtItsEdges) {
   }
 }
 
-TEST(Faces, AlwaysDoesAtAHalfTurnAndOnlyOnItsAxisAtZero) {
+TEST(Faces, IsTrueForAll180DegreesAndOnlyOnTheAxisForZero) {
   const math::Pose device{{0.3, 0.2, 0.1}, Stage::towards_camera()};
   for (const Vector3& away : {Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0.3, -5, 1e-9)}) {
     EXPECT_TRUE(faces(device, device.position + away, pi));
@@ -98,7 +98,7 @@ TEST(Faces, AlwaysDoesAtAHalfTurnAndOnlyOnItsAxisAtZero) {
   EXPECT_FALSE(faces(device, device.position + Vector3(-0.7, 1e-6, 0), 0));
 }
 
-TEST(DetectLeds, SkipsWhatIsOffOrOnAnotherMedium) {
+TEST(DetectLeds, SkipsLedsThatAreOffOrOnAnotherMedium) {
   Stage stage;
   stage.add_led({0.5, 0, 0}, 0);
   stage.add_led({0.5, 0.01, 0}, 0xFF0000, 1);
@@ -113,7 +113,7 @@ TEST(DetectLeds, SkipsWhatIsOffOrOnAnotherMedium) {
   EXPECT_NEAR(readings[0].center.y(), 218.947, 5e-4);
 }
 
-TEST(DetectLeds, ListsThemInSceneOrderWhereverTheyAre) {
+TEST(DetectLeds, ListsLedsInSceneOrder) {
   Stage stage;
   for (unsigned i = 0; i < 100; ++i) {
     stage.add_led({0.1 + 0.0089 * ((i * 37) % 100), 0.0001 * i, 0}, i + 1);
@@ -123,7 +123,7 @@ TEST(DetectLeds, ListsThemInSceneOrderWhereverTheyAre) {
   for (unsigned i = 0; i < 100; ++i) EXPECT_EQ(readings[i].color, i + 1);
 }
 
-TEST(DetectLeds, HoldsTheEdgesOfItsRange) {
+TEST(DetectLeds, RangeIncludesBothLimits) {
   Stage stage;
   const double x[] = {0.05 - 1e-6, 0.05, 0.5, 1, 1 + 1e-6};
   for (unsigned i = 0; i < 5; ++i) stage.add_led({x[i], 0, 0}, i + 1);
@@ -147,7 +147,7 @@ TEST(DetectDirectionalLeds, SeesThoseThatPointAtTheCamera) {
   EXPECT_EQ(stage.rays, 2);
 }
 
-TEST(DetectTags, SaysTheCornersInTheOrderOfTheTagsFrame) {
+TEST(DetectTags, ListsCornersInTheOrderOfTheTagsFrame) {
   Stage stage;
   // +z at the camera, +x up in the image, +y to its left.
   math::Quaternion::RotationMatrixType axes;  // columns: the tag's axes in W
@@ -182,7 +182,7 @@ TEST(DetectTags, NeedsAllCornersInView) {
       0u);
 }
 
-TEST(DetectTags, IsRejectedByOneCornerThatIsHidden) {
+TEST(DetectTags, RejectsATagWithOneHiddenCorner) {
   for (int hidden = -1; hidden < 4; ++hidden) {
     Stage stage;
     stage.add_tag({{0.5, 0, 0}, Stage::towards_camera()}, 0.02);
@@ -195,7 +195,7 @@ TEST(DetectTags, IsRejectedByOneCornerThatIsHidden) {
   }
 }
 
-TEST(DetectTags, FindsAThousandAsASearchWould) {
+TEST(DetectTags, FindsAThousandLikeALinearSearch) {
   Stage stage;
   unsigned seed = 1;
   const auto random = [&](double low, double high) {

@@ -1,4 +1,4 @@
-// Our projection beside OpenCV's, and poses of tags that OpenCV finds from our corners.
+// Our projection compared with OpenCV's, and poses of tags that OpenCV computes from our corners.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ math::Quaternion random_turn(math::RandomStream& random) {
       .normalized();
 }
 
-/// A camera and where it stands.
+/// A camera and its pose.
 struct Shot {
   world::CameraLayout camera;
   math::Pose pose;  // X_WC
@@ -111,7 +111,7 @@ TEST(OpenCv, FindsTheTruePoseOfATagFromItsCorners) {
       const Vector2 pixel = project(shot.camera, from_world * corner);
       pixels.emplace_back(pixel.x(), pixel.y());
     }
-    // IPPE_SQUARE wants (-,+), (+,+), (+,-), (-,-): our corners 2, 3, 4, 1.
+    // IPPE_SQUARE expects (-,+), (+,+), (+,-), (-,-): our corners 2, 3, 4, 1.
     std::rotate(pixels.begin(), pixels.begin() + 1, pixels.end());
     const std::vector<cv::Point3d> square{
         {-half, half, 0}, {half, half, 0}, {half, -half, 0}, {-half, -half, 0}};

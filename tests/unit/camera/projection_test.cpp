@@ -27,7 +27,7 @@ TEST(Projection, HasUToTheRightAndVDown) {
   EXPECT_EQ(project(lens(), {0, 0, 1}), Vector2(320, 240));
 }
 
-TEST(InView, HoldsTheEdgesOfRangeAndImage) {
+TEST(InView, IncludesTheLimitsOfRangeAndImage) {
   const world::CameraLayout camera = lens();
   for (const double z : {0.05, 0.3, 2.0}) {
     EXPECT_TRUE(in_view(camera, {0, 0, z})) << z;
@@ -43,7 +43,7 @@ TEST(InView, HoldsTheEdgesOfRangeAndImage) {
   EXPECT_FALSE(in_view(camera, {0, 0, -0.3}));
 }
 
-TEST(InView, SurvivesWhatIsNoPlaceAtAll) {
+TEST(InView, RejectsPositionsThatAreNotFiniteOrTooClose) {
   world::CameraLayout camera = lens();
   for (const double odd : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     EXPECT_FALSE(in_view(camera, {0, 0, odd}));
@@ -55,7 +55,7 @@ TEST(InView, SurvivesWhatIsNoPlaceAtAll) {
   EXPECT_FALSE(in_view(camera, {1, 1, 1e-200}));
 }
 
-TEST(InView, GoesByTheImageWhereThePrincipalPointIsOffCentre) {
+TEST(InView, UsesTheImageAlsoWithAnOffCentrePrincipalPoint) {
   world::CameraLayout camera = lens();
   camera.principal_point = {100, 400};
   EXPECT_TRUE(in_view(camera, {539.0 / 800, 0, 1}));   // u = 639
@@ -66,7 +66,7 @@ TEST(InView, GoesByTheImageWhereThePrincipalPointIsOffCentre) {
   EXPECT_FALSE(in_view(camera, {0, 81.0 / 600, 1}));
   EXPECT_TRUE(in_view(camera, {0, -399.0 / 600, 1}));
   EXPECT_FALSE(in_view(camera, {0, -401.0 / 600, 1}));
-  // Nothing on the axis is in the image at all.
+  // No point on the axis is in the image.
   camera.principal_point = {-10, 240};
   EXPECT_FALSE(in_view(camera, {0, 0, 1}));
   EXPECT_TRUE(in_view(camera, {0.1, 0, 1}));
@@ -93,7 +93,7 @@ TEST(Frustum, HasItsCornersAtTheCornersOfTheImage) {
   }
 }
 
-TEST(Frustum, HasABoxThatHoldsAllThatIsInView) {
+TEST(Frustum, HasABoundingBoxOfAllPointsInView) {
   math::RandomStream random(2, "frustum");
   int seen = 0;
   for (int view = 0; view < 200; ++view) {

@@ -1,4 +1,4 @@
-// Cameras in a scene: real bodies are in the way.
+// Cameras in a scene whose bodies hide devices.
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ std::string box(const std::string& position, const std::string& size) {
          R"(" movable="false"><body position=")" + position + R"("/></box>)";
 }
 
-/// Things without a controller on a box of 4 cm whose near face is at x = 0.48, z from 0.03 on.
+/// Devices without a controller on a box of 4 cm; its near face is at x = 0.48 m, its bottom at z = 0.03 m.
 std::string carrier(const std::string& devices, const std::string& position = "0.5,0,0.03") {
   return R"(<prototype id="carrier" movable="false"><body position=")" + position +
          R"("/><links ref="b"><link id="b" geometry="box" size=".04,.04,.04" mass="1"/></links>)" +
@@ -59,7 +59,7 @@ std::string led(double x) {
   return text.str();
 }
 
-std::unique_ptr<Simulation> looked(const std::string& arena,
+std::unique_ptr<Simulation> after_one_tick(const std::string& arena,
                                    const std::string& sensors = cameras(camera())) {
   const SmallScene scene{"", sensors, robot("r", "0,0,0", "") + arena, ""};
   auto simulation = std::make_unique<Simulation>(scene.read(), simulation::Options{});
@@ -69,15 +69,15 @@ std::unique_ptr<Simulation> looked(const std::string& arena,
 }
 
 std::size_t tags_seen(const std::string& arena) {
-  return looked(arena)->observations().tags.size();
+  return after_one_tick(arena)->observations().tags.size();
 }
 std::size_t leds_seen(const std::string& arena) {
-  return looked(arena)->observations().leds.size();
+  return after_one_tick(arena)->observations().leds.size();
 }
 
 TEST(Cameras, SeeTheReferencesTagAtTheReferencesPixels) {
-  // Of beta50: a tag of 2 cm at x = 0.4495, seen from x = 0.06.
-  const auto simulation = looked(carrier(tag(-0.0205), "0.47,0,0.03"));
+  // Values of beta50: a tag of 2 cm at x = 0.4495 m, seen from x = 0.06 m.
+  const auto simulation = after_one_tick(carrier(tag(-0.0205), "0.47,0,0.03"));
   ASSERT_EQ(simulation->observations().tags.size(), 1u);
   const world::TagReading& reading = simulation->observations().tags[0];
   EXPECT_EQ(simulation->state().tag_payloads[reading.tag], "7");
@@ -95,8 +95,8 @@ TEST(Cameras, SeeDevicesThatAreMountedFlush) {
   EXPECT_EQ(leds_seen(carrier(led(-0.0198))), 0u);
 }
 
-TEST(Cameras, SeeNothingOnTheFarSideOfItsCarrier) {
-  EXPECT_EQ(tags_seen(carrier(tag(0.021, "0,90,0"))), 0u);  // it looks away as well
+TEST(Cameras, SeeNoDeviceOnTheFarSideOfItsCarrier) {
+  EXPECT_EQ(tags_seen(carrier(tag(0.021, "0,90,0"))), 0u);  // it also points away
   EXPECT_EQ(tags_seen(carrier(tag(0.021, "0,-90,0"))), 0u);
   EXPECT_EQ(leds_seen(carrier(led(0.021))), 0u);
   EXPECT_EQ(leds_seen(carrier(led(-0.021))), 1u);
@@ -114,13 +114,13 @@ TEST(Cameras, SeeNoLedBehindAThinWall) {
   const std::string target = carrier(led(-0.021));
   EXPECT_EQ(leds_seen(target), 1u);
   EXPECT_EQ(leds_seen(target + box("0.3,0,0", "0.0001,1,0.2")), 0u);
-  EXPECT_EQ(leds_seen(target + box("0.3,0,0", "0.0001,1,0.04")), 1u);  // it looks over it
-  EXPECT_EQ(leds_seen(target + box("0.7,0,0", "0.0001,1,0.2")), 1u);   // it is behind
+  EXPECT_EQ(leds_seen(target + box("0.3,0,0", "0.0001,1,0.04")), 1u);  // it sees over the wall
+  EXPECT_EQ(leds_seen(target + box("0.7,0,0", "0.0001,1,0.2")), 1u);   // the wall is behind the LED
 }
 
-TEST(Cameras, AreBlockedByTheirOwnRobotUnlessInsideOfIt) {
+TEST(Cameras, AreBlockedByTheirOwnRobotUnlessInsideIt) {
   const auto seen_from = [](const std::string& position) {
-    return looked(carrier(led(-0.021)), cameras(camera("", all_detectors, "c", position)))
+    return after_one_tick(carrier(led(-0.021)), cameras(camera("", all_detectors, "c", position)))
         ->observations()
         .leds.size();
   };
@@ -144,7 +144,7 @@ TEST(Cameras, ListSixteenOnARobotInOrder) {
     const std::string y = std::to_string(0.001 * i);
     list += camera("", all_detectors, "c" + std::to_string(i), "0.06," + y + ",0.05");
   }
-  const auto simulation = looked(carrier(led(-0.021) + tag(-0.021)), cameras(list));
+  const auto simulation = after_one_tick(carrier(led(-0.021) + tag(-0.021)), cameras(list));
   const auto& leds = simulation->observations().leds;
   const auto& tags = simulation->observations().tags;
   ASSERT_EQ(leds.size(), 16u);
@@ -163,27 +163,27 @@ TEST(Cameras, HaveADetectorOnEachMedium) {
                         R"(position="-0.021,0.005,0.02" orientation="0,-90,0" )"
                         R"(observable_angle="90" color="blue"/></directional_leds>)";
   {
-    const auto simulation = looked(carrier(devices));
+    const auto simulation = after_one_tick(carrier(devices));
     EXPECT_EQ(simulation->observations().leds.at(0).color, 0xFF0000u);
     EXPECT_EQ(simulation->observations().directional_leds.at(0).color, 0xFFu);
     EXPECT_EQ(simulation->observations().tags.size(), 1u);
   }
   const std::string only_beams =
       cameras(camera("", R"(<directional_led_detector medium="beams"/>)"));
-  const auto simulation = looked(carrier(devices), only_beams);
+  const auto simulation = after_one_tick(carrier(devices), only_beams);
   EXPECT_TRUE(simulation->observations().leds.empty());
   EXPECT_EQ(simulation->observations().directional_leds.size(), 1u);
   EXPECT_TRUE(simulation->observations().tags.empty());
 }
 
-TEST(Cameras, PublishFrustaAndRaysIfAsked) {
+TEST(Cameras, PublishFrustaAndRaysIfRequested) {
   const std::string arena = carrier(led(-0.021) + tag(-0.021)) + box("0.3,0,0", "0.01,1,0.05");
-  const auto silent = looked(arena);
+  const auto silent = after_one_tick(arena);
   EXPECT_TRUE(silent->state().rays.empty());
   EXPECT_TRUE(silent->state().frusta.empty());
   const std::string detectors =
       R"(<led_detector medium="leds" show_rays="true"/><tag_detector medium="tags"/>)";
-  const auto shown = looked(arena, cameras(camera("", detectors), "show_frustum=\"true\""));
+  const auto shown = after_one_tick(arena, cameras(camera("", detectors), "show_frustum=\"true\""));
   for (int i = 0; i < 2; ++i) {
     ASSERT_EQ(shown->state().frusta.size(), 1u);
     EXPECT_NEAR(shown->state().frusta[0].corners[0].x(), 0.08, 1e-9);
@@ -194,18 +194,18 @@ TEST(Cameras, PublishFrustaAndRaysIfAsked) {
     const world::Ray& ray = shown->state().rays[0];
     EXPECT_EQ(ray.kind, world::Ray::Kind::camera);
     EXPECT_EQ(ray.robot, 0u);
-    EXPECT_TRUE(ray.hit);  // where it meets the edge of the wall's top
+    EXPECT_TRUE(ray.hit);  // at the edge of the wall's top
     EXPECT_NEAR(ray.end.x(), 0.295, 1e-9);
     shown->step();
   }
 }
 
-TEST(Cameras, ReadingsAreHashedAndFollowWhatShines) {
+TEST(Cameras, ReadingsAreHashedAndFollowTheLeds) {
   const std::string arena = carrier(led(-0.021) + tag(-0.021));
-  const auto with = looked(arena);
-  const auto without = looked(arena, cameras(camera("", "")));
+  const auto with = after_one_tick(arena);
+  const auto without = after_one_tick(arena, cameras(camera("", "")));
   EXPECT_NE(with->hash(), without->hash());
-  EXPECT_EQ(with->hash(), looked(arena)->hash());
+  EXPECT_EQ(with->hash(), after_one_tick(arena)->hash());
   ASSERT_EQ(with->observations().leds.size(), 1u);
   with->commands().led_colors.at(0) = 0;
   with->step();

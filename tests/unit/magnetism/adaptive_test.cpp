@@ -14,7 +14,7 @@ namespace {
 
 constexpr double remanence = 1.3;  // [T]
 // From 5 % of the magnet's size to twenty sizes.
-// (bench/magnetism_accuracy goes through more gaps, shapes and poses.)
+// (bench/magnetism_accuracy tests more gaps, shapes and poses.)
 const std::vector<double> gaps = {0.05, 0.14, 0.45, 0.9, 1.1, 1.6, 2.5, 4, 20};
 
 struct Pose2 {
@@ -37,7 +37,7 @@ const std::vector<Pose2> poses = {
     {"perpendicular", {0, 0, 1}, {0, 0, 0}, turned_by(90, 0)},
 };
 
-/// Half the extent of a rotated shape along a direction (both unit axes' sense): its support.
+/// Half the extent of a shape along a unit direction [m].
 double support(const Shape& shape, const Vector3& direction) {
   if (const auto* box = std::get_if<Box>(&shape)) return box->size.dot(direction.cwiseAbs()) / 2;
   const auto& cylinder = std::get<Cylinder>(shape);
@@ -62,7 +62,7 @@ Arrangement arrange(const Shape& a, const Shape& b, const Pose2& pose, double ga
            moment_of_remanence(magnetised, volume(b))}};
 }
 
-/// Through the field, as physics uses it: one magnet per body.
+/// The result of class Field, as physics uses it: one magnet per body.
 Interaction by_field(const Arrangement& two, double tolerance) {
   std::vector<Magnet> magnets(2);
   magnets[0] = {.body = 0,
@@ -295,7 +295,7 @@ TEST(Adaptive, HasTheSameBitsOnEveryInstructionSetAndWithoutAList) {
   options.max_distance = 0.04;
   std::vector<std::vector<Wrench>> results;
   for (const Kernel* kernel : {&baseline_kernel(), &best_kernel()}) {
-    for (const std::size_t idle : {0, 2000}) {  // so many idle ones that a list does not pay
+    for (const std::size_t idle : {0, 2000}) {  // with 2000 idle magnets, all pairs are faster than a list
       options.kernel = kernel;
       auto all = magnets;
       auto where = bodies;

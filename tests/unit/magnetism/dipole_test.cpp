@@ -114,7 +114,7 @@ TEST(Dialect, FieldsBecomeMomentsWithTheSameForce) {
 }
 
 // Dialect A.6: one fixed, the other 1 g, 20 ticks of 1 ms from rest: 0.605 mm.
-TEST(Dialect, DipolesAtFiveCentimetresCloseInAsTheReferenceDoes) {
+TEST(Dialect, DipolesAtFiveCentimetresMoveAsInTheReference) {
   const Vector3 moment = moment_of_dialect_field({0, 0, 65}, 7.0500949e-13);
   double z = 0.05;
   double velocity = 0;

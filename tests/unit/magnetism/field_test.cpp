@@ -27,7 +27,7 @@ Quaternion random_rotation(math::RandomStream& random) {
   return Quaternion(random.uniform(-1, 1), v.x(), v.y(), v.z()).normalized();
 }
 
-/// Bodies of eight magnets, one of them off every symmetry, in a cube of the given size.
+/// Bodies with eight magnets each, one of which has a current, in a cube of the given size [m].
 Scene random_scene(std::size_t bodies, double size, std::uint64_t seed) {
   math::RandomStream random(seed, "magnetism");
   Scene scene;
@@ -72,7 +72,7 @@ void expect_same_bits(std::span<const Wrench> a, std::span<const Wrench> b) {
   }
 }
 
-/// The straightforward loop over all pairs of magnets of different bodies.
+/// The simple loop over all pairs of magnets of different bodies.
 std::vector<Wrench> reference(const Scene& scene, double max_distance) {
   std::vector<Wrench> wrenches(scene.bodies.size());
   const auto position = [&](std::size_t i) {
@@ -113,7 +113,7 @@ void expect_near(std::span<const Wrench> actual, std::span<const Wrench> expecte
 
 class FieldSizes : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(FieldSizes, MatchesTheStraightforwardLoop) {
+TEST_P(FieldSizes, MatchesTheSimpleLoop) {
   const std::size_t bodies = GetParam();
   const Scene scene = random_scene(bodies, 0.1 * std::cbrt(static_cast<double>(bodies)), 3);
   expect_near(run(scene, {}).wrenches, reference(scene, std::numeric_limits<double>::infinity()),
@@ -143,7 +143,7 @@ TEST_P(FieldSizes, HasTheSameBitsOnEveryInstructionSet) {
 
 INSTANTIATE_TEST_SUITE_P(Bodies, FieldSizes, testing::Values(2, 3, 9, 40));
 
-TEST(Field, HasTheSameBitsWhateverTheHistoryOfTheList) {
+TEST(Field, HasTheSameBitsWithAnyHistoryOfTheList) {
   Scene scene = random_scene(40, 0.4, 5);
   for (std::size_t i = 0; i < scene.magnets.size(); i += 3) scene.magnets[i].freely_turning = true;
   Options options;
@@ -172,12 +172,12 @@ TEST(Field, HasTheSameBitsWhateverTheHistoryOfTheList) {
 TEST(Field, AllPairsAndListGiveTheSameBits) {
   Scene scene = random_scene(10, 0.3, 7);
   for (std::size_t i = 0; i < scene.magnets.size(); i += 3) scene.magnets[i].freely_turning = true;
-  // A stray magnet stretches the grid but not the results.
+  // A distant magnet enlarges the grid but does not change the results.
   scene.bodies[9].position = {1e9, -1e7, 0};
   Options listed;
   listed.max_distance = 0.07;
   const auto by_list = run(scene, listed);
-  // The same range, but so many more magnets in it that a list does not pay: they have no moment.
+  // The same range with so many more magnets that all pairs are faster than a list. They have no moment.
   Scene crowded = scene;
   for (int k = 0; k < 800; ++k) {
     Magnet magnet;
@@ -223,7 +223,7 @@ TEST(Field, CutOffIsInclusiveAndSharp) {
   EXPECT_EQ(run(scene, options).wrenches[0].force.z(), 0);
 }
 
-TEST(Field, TaperIsTheGradientOfAFadedEnergy) {
+TEST(Field, TaperedForceIsTheGradientOfTheTaperedEnergy) {
   Scene scene = random_scene(2, 0.05, 9);
   scene.bodies[1].position = scene.bodies[0].position + Vector3(0.06, 0.02, 0.01);
   scene.magnets.erase(scene.magnets.begin() + 9, scene.magnets.end());
@@ -265,7 +265,7 @@ TEST(Field, CurrentsAddTheActiveMoment) {
   EXPECT_NEAR(run(scene, {}).wrenches[0].force.z(), 6e-7 * 0.5 / 1e-4, 1e-15);
 }
 
-TEST(Field, HostilePosesCostNeitherTimeNorMemory) {
+TEST(Field, ExtremePosesCostNeitherTimeNorMemory) {
   Scene scene = random_scene(200, 0.5, 11);
   scene.bodies[3].position.x() = 1e300;
   scene.bodies[4].position.y() = -1e300;
@@ -276,7 +276,7 @@ TEST(Field, HostilePosesCostNeitherTimeNorMemory) {
   EXPECT_TRUE(wrenches[0].force.allFinite());
 }
 
-TEST(Field, EmptyIsFine) {
+TEST(Field, WorksWithoutMagnets) {
   Field field({}, 1, {});
   std::vector<Wrench> wrenches(1);
   const std::vector<Pose> bodies(1);

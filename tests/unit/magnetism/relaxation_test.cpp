@@ -17,7 +17,7 @@ TEST(Turned, IsTheExactSolutionOfTheOverdampedEquation) {
   const Vector3 direction(std::sin(2.5), 0, std::cos(2.5));
   const Vector3 field(0, 0, 0.01);
   const double rate = 1000;
-  // Integrated finely: dtheta/dt = -rate B sin(theta).
+  // Integrated in small steps: dtheta/dt = -rate B sin(theta).
   double theta = 2.5;
   for (int k = 0; k < 100000; ++k) {
     const double middle = theta - 0.5 * 2e-6 * rate * 0.01 * std::sin(theta);
@@ -26,12 +26,12 @@ TEST(Turned, IsTheExactSolutionOfTheOverdampedEquation) {
   const Vector3 next = turned(direction, field, rate, 0.2);
   EXPECT_NEAR(std::atan2(next.x(), next.z()), theta, 1e-6);
   EXPECT_NEAR(next.norm(), 1, 1e-15);
-  // Two halves are the whole.
+  // Two half steps equal one whole step.
   const Vector3 halves = turned(turned(direction, field, rate, 0.1), field, rate, 0.1);
   EXPECT_LE((halves - next).norm(), 1e-14);
 }
 
-TEST(Turned, EndsAlongTheFieldForAnyTimeAndLeavesTheBalance) {
+TEST(Turned, EndsAlongTheFieldAndLeavesTheUnstableEquilibrium) {
   const Vector3 field(0.01, 0.02, -0.02);
   EXPECT_LE((turned({0, 0, 1}, field, 1e6, 1e6) - field.normalized()).norm(), 1e-15);
   const Vector3 against = -field.normalized();
@@ -90,8 +90,8 @@ double energy(const Field& field, const Blocks& scene) {
   return sum;
 }
 
-// All magnets up at a 10 mm distance: an exact symmetry in which a 40 mm cut-off shows every
-// magnet a field exactly against it. The tilt lets it go, and the blocks attract.
+// All magnets up at a 10 mm distance: an exact symmetry in which, with a 40 mm cut-off, every
+// magnet has a field exactly opposite to it. The tilt breaks the symmetry, and the blocks attract.
 TEST(FreeMagnets, LeaveExactSymmetriesAndAttract) {
   Blocks scene = blocks({{0, 0, 0}, {0.055, 0, 0}});
   Options options;
@@ -119,8 +119,8 @@ TEST(FreeMagnets, TurningNeverRaisesTheEnergy) {
   EXPECT_LT(last, -0.03);
 }
 
-// A magnet free in its socket passes no torque on, but r x F of two magnets of one block does.
-TEST(FreeMagnets, PairsWithinABlockKeepTheirLever) {
+// A freely turning magnet transmits no torque, but r x F of two magnets of one block does.
+TEST(FreeMagnets, PairsWithinABlockKeepTheirLeverArm) {
   std::vector<Magnet> magnets(2);
   magnets[0] = {.position = {0.02, 0, 0}, .passive_moment = {0, 0, 1}, .freely_turning = true};
   magnets[1] = {.position = {-0.02, 0, 0}, .passive_moment = {1, 0, 0}};
@@ -136,7 +136,7 @@ TEST(FreeMagnets, PairsWithinABlockKeepTheirLever) {
   EXPECT_LE(wrench[0].force.norm(), 1e-15);
 }
 
-TEST(FreeMagnets, AreReadableResettableAndRestorable) {
+TEST(FreeMagnets, CanBeReadResetAndRestored) {
   Blocks scene = blocks({{0, 0, 0}, {0.055, 0, 0}});
   Field field(scene.magnets, 2, {});
   const std::vector<Quaternion> start(field.turns().begin(), field.turns().end());
@@ -189,7 +189,7 @@ TEST(Energy, OfTwoFreeBodiesIsConserved) {
   Field field(magnets, 2, {});
   std::vector<Pose> poses = {{{0, 0, 0}, Quaternion(Eigen::AngleAxisd(0.2, Vector3::UnitX()))},
                              {{0, 0, 0.06}, Quaternion(Eigen::AngleAxisd(0.1, Vector3::UnitY()))}};
-  // The pair may not fall together: they circle each other.
+  // The two bodies orbit each other, so that they do not collide.
   const double pull = 6e-7 / std::pow(0.06, 4);
   std::vector<Vector3> velocities = {{-std::sqrt(pull * 0.03 / mass) * 1.1, 0, 0},
                                      {std::sqrt(pull * 0.03 / mass) * 1.1, 0, 0}};
@@ -234,7 +234,7 @@ TEST(Energy, OfTwoFreeBodiesIsConserved) {
 
 // The study's block: 0.110 kg, 5.95e-5 kg m^2, four pairs of 1.787 N at 10 mm: 715 N/m, 0.72 N
 // m/rad, w dt = 1.14 sideways and 1.56 in twist at 10 ms.
-TEST(Stiffness, OfTheBlockAgreesWithTheStudy) {
+TEST(Stiffness, OfTheBlockMatchesTheStudy) {
   const Blocks scene = blocks({{0, 0, 0}});
   const BondedBody block{Vector3::Constant(0.0275), Vector3::Zero(), 0.110,
                          Vector3::Constant(5.95e-5)};

@@ -5,11 +5,11 @@
 namespace ziggurat::math {
 namespace {
 
-TEST(Hash, OfNothingIsXxh64sPublishedValue) {
+TEST(Hash, OfNoDataIsThePublishedValueOfXxh64) {
   EXPECT_EQ(to_hex(Hash().digest()), "ef46db3751d8e999");
 }
 
-TEST(Hash, SeesEveryBit) {
+TEST(Hash, DependsOnEveryBit) {
   Hash zero, minus_zero, twice;
   zero.add(0.0);
   minus_zero.add(-0.0);
@@ -19,7 +19,7 @@ TEST(Hash, SeesEveryBit) {
   EXPECT_NE(zero.digest(), twice.digest());
 }
 
-TEST(Hash, TextsDoNotRunTogether) {
+TEST(Hash, DependsOnTheBoundaryBetweenTexts) {
   Hash one, two;
   one.add("ab");
   one.add("c");

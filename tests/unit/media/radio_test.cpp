@@ -37,7 +37,7 @@ Received deliver(const Scattered& world, const Sent& sent) {
   return deliver(world, sent, medium);
 }
 
-TEST(Radio, ReachesStrictlyCloserThanTheSendersRange) {
+TEST(Radio, ReachesReceiversStrictlyWithinTheSendersRange) {
   for (const double x : {0.0, 0.8, -3.1, 1000.3}) {
     Scattered world;
     const auto sender = world.add_radio({x, 0, 0}, 0.3);
@@ -49,7 +49,7 @@ TEST(Radio, ReachesStrictlyCloserThanTheSendersRange) {
   }
 }
 
-TEST(Radio, OrdersByReceiverSenderAndCallWhateverTheOrderOfArrival) {
+TEST(Radio, OrdersByReceiverSenderAndCall) {
   Scattered world;
   for (int i = 0; i < 5; ++i) world.add_radio({0.1 * i, 0, 0}, 10);
   const Received expected{{0, "1a"}, {0, "1b"}, {0, ""},   {0, "3a"}, {2, "1a"}, {2, "1b"},
@@ -66,7 +66,7 @@ TEST(Radio, ReceivesNothingInATickInWhichItSends) {
   EXPECT_EQ(deliver(world, {{1, ""}, {2, ""}, {0, "x"}}), Received{});
 }
 
-TEST(Radio, HearsOnlyItsMediumAndOnlyWithASensor) {
+TEST(Radio, ReceivesOnlyOnItsMediumAndOnlyWithASensor) {
   Scattered world;
   world.add_radio({0, 0, 0}, 10);
   world.add_radio({0, 0, 0}, 10, 1);
@@ -76,7 +76,7 @@ TEST(Radio, HearsOnlyItsMediumAndOnlyWithASensor) {
   EXPECT_EQ(deliver(world, {{0, "x"}}), (Received{{3, "x"}}));
 }
 
-TEST(Radio, TakesLargeManyAndNoMessagesAndAccumulatesNothing) {
+TEST(Radio, DeliversLargeManyAndNoMessagesAndKeepsNone) {
   Scattered world;
   world.add_radio({0, 0, 0}, 1);
   world.add_radio({0.5, 0, 0}, 1);
@@ -108,7 +108,7 @@ TEST(Radio, FollowsTheLinkItIsFixedTo) {
   EXPECT_EQ(deliver(world, {{0, "x"}}), Received{});
 }
 
-TEST(Radio, MeasuresTheSendersRangeNotTheReceivers) {
+TEST(Radio, UsesTheSendersRangeNotTheReceivers) {
   Scattered world;
   world.add_radio({0, 0, 0}, 2);
   world.add_radio({1, 0, 0}, 0.5);

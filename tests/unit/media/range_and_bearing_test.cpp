@@ -37,7 +37,7 @@ TEST(RangeAndBearing, NeedsEqualSizesOneMediumAndASensor) {
   EXPECT_EQ(sight(world), (Pairs{{0, 3}}));
 }
 
-TEST(RangeAndBearing, BearsInTheReceiversFrame) {
+TEST(RangeAndBearing, GivesBearingsInTheReceiversFrame) {
   constexpr double pi = std::numbers::pi;
   const Bearing left = bearing_of({0, 2, 0});
   EXPECT_DOUBLE_EQ(left.range, 2);

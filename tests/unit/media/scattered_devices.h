@@ -13,7 +13,7 @@ struct Scattered {
   world::Layout layout;
   world::State state;
 
-  /// A new entity at `position`; returns where a device at its origin is fixed.
+  /// Adds an entity at `position`; returns the mount of a device at its origin.
   world::Mount place(const math::Vector3& position) {
     state.origins.push_back({position, math::Quaternion::Identity()});
     return {state.origins.size() - 1, std::nullopt, {}};

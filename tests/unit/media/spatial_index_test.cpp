@@ -44,20 +44,20 @@ std::vector<Vector3> scatter(std::size_t count, const Vector3& extents, unsigned
   return points;
 }
 
-TEST(SpatialIndex, FindsWhatASearchFinds) {
+TEST(SpatialIndex, FindsTheSameAsALinearSearch) {
   expect_same_as_search(scatter(700, {4, 4, 4}, 1), {0.5});
   expect_same_as_search(scatter(700, {40, 40, 0}, 2), {1, 3});
   expect_same_as_search(scatter(700, {0, 0, 9}, 3), {0.1});
 }
 
-TEST(SpatialIndex, StaysRightWhereRangesOrPlacesDiffer) {
+TEST(SpatialIndex, IsCorrectForUnevenRangesAndPositions) {
   auto points = scatter(500, {2, 2, 0.1}, 4);
   points[10] = {1e6, -1e6, 1e6};
   points[20] = points[21] = points[22] = {0.3, 0.3, 0};
   expect_same_as_search(points, {0.01, 0.5, 3e6});
 }
 
-TEST(SpatialIndex, FindsWhatIsInABoxWithItsSurface) {
+TEST(SpatialIndex, FindsPointsInABoxIncludingItsSurface) {
   const auto points = scatter(700, {4, 4, 1}, 5);
   std::vector<std::size_t> found;
   for (const double cell : {0.01, 0.5, 100.0}) {
@@ -77,7 +77,7 @@ TEST(SpatialIndex, FindsWhatIsInABoxWithItsSurface) {
   }
 }
 
-TEST(SpatialIndex, NeverFindsPointsThatAreNowhere) {
+TEST(SpatialIndex, NeverFindsPointsThatAreNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Vector3> points{{nan, 0, 0}, {0, 0, 0}, {0, INFINITY, 0}};
   SpatialIndex index;
@@ -92,7 +92,7 @@ TEST(SpatialIndex, NeverFindsPointsThatAreNowhere) {
   EXPECT_TRUE(found.empty());
 }
 
-TEST(SpatialIndex, FindsOnlyTheWantedStretch) {
+TEST(SpatialIndex, FindsOnlyTheRequestedRange) {
   const std::vector<Vector3> points(6, Vector3(1, 1, 1));
   SpatialIndex index;
   index.build(points, {});
@@ -101,8 +101,8 @@ TEST(SpatialIndex, FindsOnlyTheWantedStretch) {
   EXPECT_EQ(found, (std::vector<std::size_t>{2, 3}));
 }
 
-TEST(SpatialIndex, KeepsCellsOfTheOrderOfTheSpacing) {
-  // Two that are far away don't make one cell of everything, nor does one long range.
+TEST(SpatialIndex, HasCellsOfAboutTheSpacing) {
+  // Two distant points, or one long range, do not enlarge the cells.
   auto points = scatter(10'000, {100, 100, 0}, 5);
   points[0] = {0, 0, -1e5};
   std::vector<double> radii(points.size(), 1.0);

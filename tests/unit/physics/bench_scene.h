@@ -25,7 +25,7 @@ inline scene::Physics with_floor(double g) {
   return physics;
 }
 
-/// A link of a prototype; undamped unless a test says otherwise.
+/// A link of a prototype, without damping.
 inline scene::Link link(const std::string& id, const scene::Geometry& geometry, double mass,
                         const math::Pose& offset = {}) {
   scene::Link link;

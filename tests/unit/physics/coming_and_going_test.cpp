@@ -1,4 +1,4 @@
-// Entities that come while a world runs, and entities that go.
+// Entities added to and removed from a running world.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ Vector3 position(const World& world, std::size_t entity) {
   return state_of(world).origins[entity].position;
 }
 
-/// A pendulum that swings about y, held by a base in the air.
+/// A pendulum that swings about y on a fixed base in the air.
 scene::Entity pendulum(const Vector3& at) {
   scene::Entity entity = prototype(
       "pendulum", {at, math::Quaternion::Identity()}, false,
@@ -35,7 +35,7 @@ scene::Entity pendulum(const Vector3& at) {
   return entity;
 }
 
-TEST(Coming, StandsWhereItIsPlacedUntilTheNextStep) {
+TEST(AddEntity, KeepsItsPoseUntilTheNextStep) {
   World world(with_gravity(9.8), 0.01);
   world.add(box_at({0, 0, 5}));
   for (int i = 0; i < 7; ++i) world.step();
@@ -47,7 +47,7 @@ TEST(Coming, StandsWhereItIsPlacedUntilTheNextStep) {
   EXPECT_EQ(state.links[1].velocity, Vector3::Zero());
 }
 
-TEST(Coming, FallsFromThereAndLeavesTheOthersAlone) {
+TEST(AddEntity, FallsWithoutAffectingDistantEntities) {
   const double h = 0.01, g = 9.8;
   World world(with_gravity(g), h), alone(with_gravity(g), h);
   for (World* each : {&world, &alone}) {
@@ -65,9 +65,9 @@ TEST(Coming, FallsFromThereAndLeavesTheOthersAlone) {
   }
 }
 
-TEST(Coming, FarAwayItHardlyTouchesWhatBumpsIntoTheFloor) {
-  // Not to the bit: Bullet solves small islands in batches that end their sweeps together, and
-  // finds pairs in the order of a tree that all bodies share.
+TEST(AddEntity, HardlyAffectsDistantContacts) {
+  // The results are not bit-identical: Bullet solves small islands in batches that end their sweeps
+  // together, and finds pairs in the order of a tree that all bodies share.
   World world(with_floor(9.8), 0.01), alone(with_floor(9.8), 0.01);
   for (World* each : {&world, &alone}) {
     for (int i = 0; i < 5; ++i) each->add(box_at({0.3 * i, 0, 0.02 + 0.01 * i}));
@@ -83,7 +83,7 @@ TEST(Coming, FarAwayItHardlyTouchesWhatBumpsIntoTheFloor) {
   }
 }
 
-TEST(Coming, IsHitByWhatFallsOnIt) {
+TEST(AddEntity, CollidesWithFallingBodies) {
   World world(with_floor(9.8), 0.01);
   world.add(box_at({0, 0, 1}));
   for (int i = 0; i < 5; ++i) world.step();
@@ -92,7 +92,7 @@ TEST(Coming, IsHitByWhatFallsOnIt) {
   EXPECT_NEAR(position(world, 0).z(), 0.1, 1e-4);
 }
 
-TEST(Coming, OverlapsWhatIsThereNowAndNotWhatWas) {
+TEST(AddEntity, OverlapIsTestedAtPresentPoses) {
   World world(with_gravity(9.8), 0.01);
   world.add(box_at({0, 0, 0}, false));
   world.add(box_at({1, 0, 5}));
@@ -106,7 +106,7 @@ TEST(Coming, OverlapsWhatIsThereNowAndNotWhatWas) {
   EXPECT_EQ(world.overlapped_by(box_at({0, 0, 0})), std::nullopt);
 }
 
-TEST(Going, LetsFallWhatSleptOnIt) {
+TEST(RemoveEntity, WakesBodiesThatSleptOnIt) {
   World world(with_floor(9.8), 0.01);
   world.add(box_at({0, 0, 0}, false));
   world.add(box_at({0, 0, 0.1}));
@@ -117,7 +117,7 @@ TEST(Going, LetsFallWhatSleptOnIt) {
   EXPECT_NEAR(position(world, 1).z(), 0, 1e-4);
 }
 
-TEST(Going, ByAMoveLetsFallToo) {
+TEST(MoveEntity, WakesBodiesThatSleptOnIt) {
   World world(with_floor(9.8), 0.01);
   world.add(box_at({0, 0, 0}));
   world.add(box_at({0, 0, 0.1}));
@@ -127,7 +127,7 @@ TEST(Going, ByAMoveLetsFallToo) {
   EXPECT_NEAR(position(world, 1).z(), 0, 1e-4);
 }
 
-TEST(Going, TakesJointsAndMotorsAlongAndLeavesTheOthers) {
+TEST(RemoveEntity, RemovesItsJointsAndMotorsOnly) {
   World world(with_gravity(9.8), 0.001), alone(with_gravity(9.8), 0.001);
   world.add(pendulum({0, 0, 3}));
   world.add(pendulum({1, 0, 3}));
@@ -146,7 +146,7 @@ TEST(Going, TakesJointsAndMotorsAlongAndLeavesTheOthers) {
   EXPECT_EQ(world.position(second), alone.position(alone.joint(0, 0)));
 }
 
-TEST(Going, OfARobotOnWheelsStopsItsDrive) {
+TEST(RemoveEntity, StopsItsWheels) {
   World world(with_floor(9.8), 0.01);
   scene::Entity robot = box_at({0, 0, 0});
   robot.traction = scene::Traction{10, 1};
@@ -161,8 +161,8 @@ TEST(Going, OfARobotOnWheelsStopsItsDrive) {
   EXPECT_NEAR(position(world, 1).x(), 1, 1e-6);
 }
 
-TEST(Going, EndsItsMagnetismAndKeepsTheCurrentsOfTheRest) {
-  // Three dipoles in a row: the middle one is held, and pulls or not as its current says.
+TEST(RemoveEntity, RemovesItsMagnetsAndKeepsCurrentsOfOthers) {
+  // Three dipoles in a row: the middle one is fixed and attracts according to its current.
   scene::Physics physics = with_gravity(0);
   physics.magnetism = scene::Magnetism{};
   World world(physics, 0.001);
@@ -179,7 +179,7 @@ TEST(Going, EndsItsMagnetismAndKeepsTheCurrentsOfTheRest) {
   }
   world.remove(0);
   for (int i = 0; i < 20; ++i) world.step();
-  EXPECT_EQ(position(world, 2).x(), 0.05) << "nothing pulls";
+  EXPECT_EQ(position(world, 2).x(), 0.05) << "no dipole attracts it";
   const double currents[] = {0, 1, 0};
   world.set_currents(currents);
   for (int i = 0; i < 20; ++i) world.step();
@@ -188,10 +188,10 @@ TEST(Going, EndsItsMagnetismAndKeepsTheCurrentsOfTheRest) {
   const double before = position(world, 2).x();
   const double speed = state_of(world).links[2].velocity.x();
   for (int i = 0; i < 20; ++i) world.step();
-  EXPECT_NEAR(position(world, 2).x(), before + 0.02 * speed, 1e-9) << "nothing pulls again";
+  EXPECT_NEAR(position(world, 2).x(), before + 0.02 * speed, 1e-9) << "no dipole attracts it any more";
 }
 
-TEST(Going, IsNotMetByRays) {
+TEST(RemoveEntity, IsIgnoredByRays) {
   World world(with_gravity(0), 0.01);
   Rays rays{with_gravity(0)};
   for (const double x : {1.0, 2.0}) {
@@ -209,7 +209,7 @@ TEST(Going, IsNotMetByRays) {
   EXPECT_EQ(near.size(), 1u);
 }
 
-TEST(ComingAndGoing, AThousandTimesLeavesTheWorldAsItWas) {
+TEST(AddAndRemoveEntity, AThousandTimesLeavesTheWorldUnchanged) {
   World world(with_floor(9.8), 0.01);
   world.add(box_at({0, 0, 0}));
   for (std::size_t n = 1; n <= 1000; ++n) {
@@ -219,7 +219,7 @@ TEST(ComingAndGoing, AThousandTimesLeavesTheWorldAsItWas) {
   }
   for (int i = 0; i < 100; ++i) world.step();
   EXPECT_NEAR(position(world, 0).z(), 0, 1e-4);
-  EXPECT_NEAR(world.energy(), 9.8 * 0.05, 1e-3) << "one box is left";
+  EXPECT_NEAR(world.energy(), 9.8 * 0.05, 1e-3) << "one box remains";
 }
 
 }  // namespace

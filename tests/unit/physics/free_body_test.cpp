@@ -27,7 +27,7 @@ TEST(FreeFall, IsSemiImplicitEulerAtTheSubstep) {
   }
 }
 
-TEST(FreeFall, OfAPrototypeIsDampedAsTheDialectSays) {
+TEST(FreeFall, OfAPrototypeIsDampedByTheDialectsLaw) {
   // Dialect A.1, corrected clock: z after ticks 1, 2 and 3 of 0.1 s in ten substeps.
   World world(with_gravity(9.8), 0.01);
   scene::Entity box = prototype("box", {{0, 0, 1}, math::Quaternion::Identity()}, true,
@@ -115,7 +115,7 @@ double slide(double degrees, scene::EntityKind kind, double heading = 0) {
   return (state_of(world).origins[1].position - top).dot(downhill);
 }
 
-TEST(Slopes, StickAndSlideAsFrictionSays) {
+TEST(Slopes, BodiesStickOrSlideAccordingToFriction) {
   for (const auto kind : {scene::EntityKind::box, scene::EntityKind::prototype}) {
     EXPECT_LT(slide(13, kind), 1e-4);
     EXPECT_LT(slide(13.9, kind), 2e-4);  // atan(0.25) is 14.04 degrees
@@ -128,7 +128,7 @@ TEST(Slopes, StickAndSlideAsFrictionSays) {
   }
 }
 
-TEST(Slopes, ABoxSlidesAlikeInEveryDirection) {
+TEST(Slopes, ABoxSlidesEquallyInEveryDirection) {
   // Friction is a cone, not a pyramid along the world's axes.
   for (const auto kind : {scene::EntityKind::box, scene::EntityKind::prototype}) {
     const double way = slide(20, kind, 0);

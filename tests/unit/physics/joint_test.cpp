@@ -87,7 +87,7 @@ TEST(Prismatic, StopsAtItsLimits) {
   }
 }
 
-TEST(Prismatic, AMotorGivesNoMoreThanItsImpulse) {
+TEST(Prismatic, AMotorDoesNotExceedItsImpulse) {
   // Dialect A.4: 0.5 kg against 4.9 N; after one substep of 10 ms.
   const std::pair<double, double> cases[] = {
       {0.0001, -0.0978}, {0.01, -0.0780}, {0.04, -0.0180}, {0.06, 0}};
@@ -102,7 +102,7 @@ TEST(Prismatic, AMotorGivesNoMoreThanItsImpulse) {
   }
 }
 
-TEST(Prismatic, ALiftRisesWhenStrongEnoughAndStallsWhenNot) {
+TEST(Prismatic, ALiftRisesOrStallsAccordingToItsImpulse) {
   for (const double factor : {0.95, 1.05}) {
     World world(with_gravity(9.8), 0.01);
     world.add(
@@ -115,8 +115,8 @@ TEST(Prismatic, ALiftRisesWhenStrongEnoughAndStallsWhenNot) {
   }
 }
 
-TEST(Prismatic, MaxSubstepSpreadsTheImpulse) {
-  // The same mean force whether or not the engine refines inside.
+TEST(Prismatic, MaxSubstepKeepsTheMeanForce) {
+  // The mean force is the same with and without a smaller internal substep.
   for (const double refine : {0.01, 0.003, 0.001}) {
     scene::Physics physics = with_gravity(0);
     physics.max_substep = refine;
@@ -131,7 +131,7 @@ TEST(Prismatic, MaxSubstepSpreadsTheImpulse) {
   }
 }
 
-TEST(PositionMode, ReachesItsTargetInOneSubstepWhenForceAllows) {
+TEST(PositionMode, ReachesItsTargetInOneSubstepIfTheForceSuffices) {
   World world(with_gravity(9.8), 0.01);
   world.add(
       pair(joint(scene::JointType::prismatic, Vector3::UnitZ(), identity, identity), cube, 0.5));

@@ -53,7 +53,7 @@ TEST(Magnets, TwoDipolesAttractAsTheDialectMeasured) {
 }
 
 TEST(Magnets, OffsetsTurnWithTheLink) {
-  // A magnet at the end of an arm that points along y: the pull acts there.
+  // The magnet is at the end of an arm along y, so the force acts there.
   World world(magnetic(0), 0.001);
   scene::Entity fixed = prototype("fixed", {{0, 0.2, 0.03}, math::Quaternion::Identity()}, false,
                                   {link("base", scene::Sphere{0.003}, 0.001)});
@@ -69,7 +69,7 @@ TEST(Magnets, OffsetsTurnWithTheLink) {
   EXPECT_GT(state.angular_velocity.z(), 0);  // the end at +y goes to -x
 }
 
-TEST(Magnets, OnTheOriginCount) {
+TEST(Magnets, AnchoredAtTheOriginAct) {
   World world(magnetic(0), 0.001);
   for (const double x : {0.0, 0.05}) {
     scene::Entity body = prototype("dipole", {{x, 0, 0}, math::Quaternion::Identity()}, x != 0,
@@ -96,7 +96,7 @@ TEST(Blocks, AllLinksStandWhereTheyAreAssembled) {
   }
 }
 
-TEST(Blocks, PullTogetherFromOneCentimetreAndComeToRest) {
+TEST(Blocks, AttractFromOneCentimetreAndComeToRest) {
   // The report's section 3.1, on a floor of low friction at 10 ms.
   scene::Physics physics = magnetic(9.8);
   physics.floor = scene::Floor{};
@@ -135,7 +135,7 @@ TEST(Blocks, ThirtyTwoTouchingBlocksStayAtRest) {
   }
 }
 
-TEST(Electromagnet, LiftsHoldsAndLetsGo) {
+TEST(Electromagnet, LiftsHoldsAndReleases) {
   // A lift with four electromagnets over a block, as the robot's end effector has.
   scene::Physics physics = magnetic(9.8);
   physics.floor = scene::Floor{};
@@ -173,7 +173,7 @@ TEST(Electromagnet, LiftsHoldsAndLetsGo) {
   }
   EXPECT_GT(state_of(world).origins[0].position.z(), 0.04) << "lifted";
   EXPECT_LT(fastest, 1e-3) << "held without jitter";
-  set_current(-1);  // no moment left
+  set_current(-1);  // no moment remains
   for (int i = 0; i < 100; ++i) world.step();
   EXPECT_LT(state_of(world).origins[0].position.z(), 0.001) << "let go";
 }

@@ -36,7 +36,7 @@ std::optional<double> distance(const Rays& rays, const Vector3& start, const Vec
   return hit ? std::optional(hit->distance) : std::nullopt;
 }
 
-TEST(Ray, MeetsASphereWhereTheFormulaSays) {
+TEST(Ray, HitsASphereAtTheClosedFormDistance) {
   const Rays rays = rays_among({solid(scene::Sphere{0.25}, {{1.5, 0, 0}, {1, 0, 0, 0}})});
   EXPECT_DOUBLE_EQ(*distance(rays, {0.02, 0, 0.25}, {3, 0, 0.25}), 1.23);
   const double height = 0.2;  // above the centre
@@ -45,7 +45,7 @@ TEST(Ray, MeetsASphereWhereTheFormulaSays) {
   EXPECT_FALSE(distance(rays, {0, 0, 0.51}, {3, 0, 0.51}));
 }
 
-TEST(Ray, MeetsATurnedBoxWhereTheFormulaSays) {
+TEST(Ray, HitsATurnedBoxAtTheClosedFormDistance) {
   const Rays rays = rays_among(
       {solid(scene::Box{{0.2, 0.2, 1}}, {{1, 0, 0}, testing::about({0, 0, 1}, M_PI / 4)})});
   EXPECT_NEAR(*distance(rays, {0, 0, 0.5}, {2, 0, 0.5}), 1 - 0.1 * std::sqrt(2.0), 1e-12);
@@ -56,14 +56,14 @@ TEST(Ray, MeetsATurnedBoxWhereTheFormulaSays) {
   EXPECT_FALSE(distance(rays, {0, 0, 1.001}, {2, 0, 1.001}));
 }
 
-TEST(Ray, MeetsACylinderAtMantleAndCap) {
+TEST(Ray, HitsACylinderAtSideAndCap) {
   const Rays rays = rays_among({solid(scene::Cylinder{0.1, 0.5}, {{0, 0, 2}, {1, 0, 0, 0}})});
   EXPECT_NEAR(*distance(rays, {1, 0.06, 2.2}, {-1, 0.06, 2.2}), 1 - 0.08, 1e-12);
   EXPECT_NEAR(*distance(rays, {0.05, 0, 4}, {0.05, 0, 0}), 1.5, 1e-12);
-  EXPECT_FALSE(distance(rays, {0.08, 0.08, 4}, {0.08, 0.08, 0}));  // a box would be there
+  EXPECT_FALSE(distance(rays, {0.08, 0.08, 4}, {0.08, 0.08, 0}));  // a bounding box would be hit
 }
 
-TEST(Ray, EndsShortOfItsEnd) {
+TEST(Ray, DoesNotHitASurfaceAtItsEnd) {
   const Rays rays = rays_among({solid(scene::Box{{2, 2, 2}}, {{2, 0, -1}, {1, 0, 0, 0}})});
   EXPECT_FALSE(distance(rays, {0, 0, 0}, {1 - 1e-6, 0, 0}));
   EXPECT_FALSE(distance(rays, {0, 0, 0}, {1, 0, 0}));
@@ -83,7 +83,7 @@ TEST(Ray, IsNotStoppedByTheBodyItStartsIn) {
   EXPECT_FALSE(distance(rays, {-1 + 2e-4, 0, 0}, {0, 0, 0}));
 }
 
-TEST(Ray, PassesThroughWhatItIgnores) {
+TEST(Ray, PassesThroughIgnoredEntities) {
   std::vector<scene::Entity> entities;
   for (int i = 0; i < 3; ++i) {
     entities.push_back(solid(scene::Box{{0.1, 1, 1}}, {{1.0 + i, 0, 0}, {1, 0, 0, 0}}));
@@ -96,7 +96,7 @@ TEST(Ray, PassesThroughWhatItIgnores) {
   EXPECT_DOUBLE_EQ(hit->distance, 2.95);
 }
 
-TEST(Ray, SeesTheFloorOnlyIfAskedAndThere) {
+TEST(Ray, HitsTheFloorOnlyIfRequestedAndPresent) {
   const Rays rays = rays_among({}, true);
   EXPECT_DOUBLE_EQ(*distance(rays, {0, 0, 3}, {0, 4, -1}, true), 3 * std::sqrt(2.0));
   EXPECT_FALSE(rays.cast({{0, 0, 3}, {0, 4, -1}, {}, true})->entity);
@@ -105,7 +105,7 @@ TEST(Ray, SeesTheFloorOnlyIfAskedAndThere) {
   EXPECT_FALSE(distance(rays_among({}), {0, 0, 3}, {0, 4, -1}, true));
 }
 
-TEST(Ray, FollowsWhatMoves) {
+TEST(Ray, HitsMovingBodiesAtTheirPresentPose) {
   const scene::Entity entity = solid(scene::Sphere{0.1}, {});
   Rays rays(scene::Physics{});
   rays.add(entity);
@@ -118,7 +118,7 @@ TEST(Ray, FollowsWhatMoves) {
   }
 }
 
-TEST(Ray, FindsTheClosestOfManyAsASearchDoes) {
+TEST(Ray, FindsTheClosestOfManyLikeALinearSearch) {
   std::vector<scene::Entity> entities;
   for (int i = 0; i < 300; ++i) {
     const Vector3 at(std::sin(i * 1.7) * 5, std::cos(i * 2.3) * 5, std::sin(i * 0.9) * 5);
@@ -144,7 +144,7 @@ TEST(Ray, FindsTheClosestOfManyAsASearchDoes) {
   EXPECT_GT(hits, 20);
 }
 
-TEST(Ray, MeetsTheSameAmongTheCollidersOfABoxAboutIt) {
+TEST(Ray, GivesTheSameHitAmongTheCollidersOfItsBoundingBox) {
   std::vector<scene::Entity> entities;
   for (int i = 0; i < 300; ++i) {
     const Vector3 at(std::sin(i * 1.7) * 5, std::cos(i * 2.3) * 5, std::sin(i * 0.9) * 5);
@@ -171,7 +171,7 @@ TEST(Ray, MeetsTheSameAmongTheCollidersOfABoxAboutIt) {
   EXPECT_LT(found, 500u * 60);
 }
 
-TEST(Ray, FollowsWhatMovesLessThanItsMargin) {
+TEST(Ray, HitsBodiesThatMoveByLessThanTheMargin) {
   Rays rays(scene::Physics{});
   rays.add(solid(scene::Box{{0.2, 0.2, 0.2}}, {}));
   world::State state;

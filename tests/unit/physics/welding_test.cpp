@@ -1,5 +1,4 @@
-// Links on fixed joints: mass, balance and inertia of what they make together, against closed
-// forms.
+// Links on fixed joints: mass, balance and inertia of the combined body, against closed forms.
 
 #include <gtest/gtest.h>
 
@@ -51,31 +50,31 @@ struct Piece {
   }
 };
 
-/// A crooked thing: no axis of any piece is a principal axis of the whole.
+/// An irregular body: no axis of any piece is a principal axis of the whole.
 const std::vector<Piece> crooked = {
     {{{0.1, 0.02, -0.03}, about({1, 2, 3}, 0.7)}, {0.1, 0.2, 0.05}, 0.8},
     {{{-0.15, 0.1, 0.05}, about({0, 1, 1}, -0.4)}, {0.05, 0.06, 0.3}, 0.5},
     {{{0.05, -0.2, 0.1}, about({1, 0, 0}, 1.3)}, {0.1, 0.1, 0.1}, 0.3},
 };
 
-/// The pieces welded in a row, the first on a joint of a fixed base, whose frame is theirs.
+/// The pieces welded in a row. The first is on a joint of a fixed base, in whose frame all poses are.
 scene::Entity hung(const std::vector<Piece>& pieces, scene::JointType type, const Vector3& axis) {
   scene::Entity entity =
       prototype("hung", at(0, 0, 10), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1)});
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     entity.links.push_back(pieces[i].link("piece" + std::to_string(i)));
-    const Pose into = math::inverse(pieces[i].bottom());
+    const Pose joint_frame = math::inverse(pieces[i].bottom());
     if (i == 0) {
       // The scene gives axes in the child's frame.
-      entity.joints.push_back(join(type, 0, {}, 1, into, into.orientation * axis));
+      entity.joints.push_back(join(type, 0, {}, 1, joint_frame, joint_frame.orientation * axis));
     } else {
-      entity.joints.push_back(weld(i, math::inverse(pieces[i - 1].bottom()), i + 1, into));
+      entity.joints.push_back(weld(i, math::inverse(pieces[i - 1].bottom()), i + 1, joint_frame));
     }
   }
   return entity;
 }
 
-TEST(Welded, TurnAsTheirInertiaSays) {
+TEST(Welded, TurnAccordingToTheirInertia) {
   // From rest, a motor's impulse L gives L / I.
   for (const Vector3& axis : {Vector3::UnitX().eval(), Vector3::UnitY().eval(),
                               Vector3::UnitZ().eval(), Vector3(1, -2, 0.5).normalized()}) {
@@ -93,7 +92,7 @@ TEST(Welded, TurnAsTheirInertiaSays) {
   }
 }
 
-TEST(Welded, MoveAsTheirMassSays) {
+TEST(Welded, MoveAccordingToTheirMass) {
   World world(scene::Physics{}, 0.001);
   world.add(hung(crooked, scene::JointType::prismatic, Vector3::UnitY()));
   const JointIndex rail = world.joint(0, 0);
@@ -173,7 +172,7 @@ TEST(Welded, LinksMoveAsOneRigidBody) {
   }
 }
 
-TEST(Welded, CarryJointsOnWhatIsWelded) {
+TEST(Welded, LinksCarryJoints) {
   // A bracket welded to the world carries a rod on a ball joint.
   World world(with_gravity(9.8), 0.01);
   scene::Entity entity = prototype("arm", at(0, 0, 10), false,
@@ -231,8 +230,8 @@ TEST(Welded, StandWhereTheyWereMoved) {
   EXPECT_LT(top.orientation.angularDistance(target.orientation), 1e-3);
 }
 
-TEST(Welded, TipOverWhereTheyDoNotBalance) {
-  // A 0.1 m foot of 1 kg with an arm of 0.5 kg, whose centre is so far out in front of the foot's.
+TEST(Welded, TipOverIfTheirCentreOfMassIsBeyondTheFoot) {
+  // A 0.1 m foot of 1 kg with an arm of 0.5 kg, whose centre is `out` [m] in front of the foot's centre.
   for (const double out : {0.14, 0.16}) {
     World world(with_floor(9.8), 0.005);
     scene::Entity entity = prototype("crane", at(0, 0, 0), true,
@@ -246,7 +245,7 @@ TEST(Welded, TipOverWhereTheyDoNotBalance) {
   }
 }
 
-TEST(Welded, AForkLiftsWhatLiesOnIt) {
+TEST(Welded, AForkLiftsABox) {
   // The box lies on a fork that is welded to the carriage; it may sleep before the lift starts.
   World world(with_floor(9.8), 0.005);
   scene::Entity lift = prototype("lift", at(0, 0, 0), false,
@@ -270,7 +269,7 @@ TEST(Welded, AForkLiftsWhatLiesOnIt) {
   EXPECT_NEAR(state.links[3].pose.position.z(), 0.31, 1e-3);
 }
 
-TEST(Welded, AShelfOfTheWorldCarries) {
+TEST(Welded, AFixedShelfCarriesABox) {
   World world(with_gravity(9.8), 0.005);
   scene::Entity shelf = prototype(
       "shelf", at(0, 0, 1), false,
@@ -305,7 +304,7 @@ Pose after_pull(const scene::Entity& bar, int link) {
   return state.pose;
 }
 
-TEST(Welded, AMagnetPullsTheWholeAsIfItWereOnePiece) {
+TEST(Welded, AMagnetMovesTheWholeLikeOnePiece) {
   const Pose pose{{0.1, 0.2, 0.3}, about({1, 1, 0}, 0.3)};
   const Vector3 field(1500, -700, 900);
   scene::Entity whole =
@@ -327,7 +326,7 @@ TEST(Welded, AMagnetPullsTheWholeAsIfItWereOnePiece) {
 }
 
 TEST(Welded, AreDampedByTheDialectsLaw) {
-  // Both links at 0.04, or one at 0.06 and its likeness at 0.02 on the other side.
+  // Both links have 0.04, or one has 0.06 and its mirror image 0.02.
   for (const double difference : {0.0, 0.02}) {
     const double g = 9.8, h = 0.01;
     World world(with_gravity(g), h);
@@ -352,7 +351,7 @@ TEST(Welded, AreDampedByTheDialectsLaw) {
   }
 }
 
-TEST(Welded, AreMetByRaysWhereTheyAre) {
+TEST(Welded, AreHitByRaysAtTheirPoses) {
   scene::Physics physics = with_gravity(9.8);
   World world(physics, 0.01);
   Rays rays(physics);
@@ -364,7 +363,7 @@ TEST(Welded, AreMetByRaysWhereTheyAre) {
   rays.update(state);
   const double bottom = state.links[0].pose.position.z() - 0.2;
   EXPECT_NEAR(bottom, 4.8 - 9.8 * 0.01 * 0.01 * 55, 1e-9);
-  // Past the top, level, through the two legs in front: the first is met.
+  // A horizontal ray below the top through two legs: it hits the first one.
   const auto hit = rays.cast({.start = {1, 0.13, bottom + 0.001},
                               .end = {-1, 0.13, bottom + 0.001},
                               .ignored = {},

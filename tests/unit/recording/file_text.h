@@ -8,7 +8,7 @@
 
 namespace ziggurat::recording {
 
-/// A fresh name in the test's own folder.
+/// An unused path in the test's own folder.
 inline std::string scratch(const std::string& name) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   return testing::TempDir() + test->test_suite_name() + "." + test->name() + "." + name;

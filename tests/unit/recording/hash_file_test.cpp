@@ -7,7 +7,7 @@
 namespace ziggurat::recording {
 namespace {
 
-TEST(HashFile, HoldsALinePerTick) {
+TEST(HashFile, HasALinePerTick) {
   const auto path = scratch("hashes");
   HashFile file(path);
   file.write(0, 0xABCDEF);

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(ImageName, IsSafeAndOneOfAKind) {
+TEST(ImageName, IsSafeAndUnique) {
   EXPECT_EQ(image_name("fb_0", "Front-1", 123), "fb_0.Front-1.000123.png");
   EXPECT_EQ(image_name("../x", "a/b", 0), "%2E%2E%2Fx.a%2Fb.000000.png");
   EXPECT_EQ(image_name("a.b", "c", 1), "a%2Eb.c.000001.png");
@@ -50,7 +50,7 @@ TEST_F(ImagesTest, WritesAFilePerPictureAndNoneForEmptyOnes) {
   EXPECT_GT(fs::file_size(folder_ / "deep/r.eye.000007.png"), 50u);
 }
 
-TEST_F(ImagesTest, SaysWhereItCannotWrite) {
+TEST_F(ImagesTest, NamesThePathThatItCannotWrite) {
   EXPECT_THROW(Images("/dev/null/x", layout_), WriteError);
 }
 

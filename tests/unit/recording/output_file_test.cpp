@@ -7,7 +7,7 @@
 namespace ziggurat::recording {
 namespace {
 
-TEST(OutputFile, HoldsEverythingAfterClose) {
+TEST(OutputFile, ContainsEverythingAfterClose) {
   const auto path = scratch("file");
   std::string expected;
   OutputFile file(path);
@@ -21,7 +21,7 @@ TEST(OutputFile, HoldsEverythingAfterClose) {
   EXPECT_EQ(text_of(path), expected);
 }
 
-TEST(OutputFile, EmptiesWhatWasThere) {
+TEST(OutputFile, ReplacesAnExistingFile) {
   const auto path = scratch("file");
   for (const std::string text : {"a longer text", "short"}) {
     OutputFile file(path);
@@ -31,7 +31,7 @@ TEST(OutputFile, EmptiesWhatWasThere) {
   }
 }
 
-TEST(OutputFile, SaysWhyItCannotBeCreated) {
+TEST(OutputFile, ReportsWhyItCannotBeCreated) {
   try {
     OutputFile file("/no/such/folder/file.csv");
     FAIL() << "created";

@@ -11,7 +11,7 @@
 namespace ziggurat::recording {
 namespace {
 
-TEST(Rays, IsALinePerRayAndNothingWithoutAny) {
+TEST(Rays, HasALinePerRay) {
   const auto path = scratch("jsonl");
   world::Layout layout;
   layout.robots.resize(1);

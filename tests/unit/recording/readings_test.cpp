@@ -82,7 +82,7 @@ std::vector<v1::Reading> read_back(const std::string& text) {
   return read;
 }
 
-TEST(Readings, IsALinePerRobotInSceneOrderWithNamesOfTheProto) {
+TEST(Readings, HasALinePerRobotInSceneOrderWithNamesOfTheProto) {
   const auto path = scratch("jsonl");
   const auto robots = layout();
   Readings readings(path, robots);
@@ -149,7 +149,7 @@ TEST(Readings, NamesEveryDevice) {
   EXPECT_EQ(read[1].observation().led_colors_size(), 0);
 }
 
-TEST(Readings, NamesWhatCamerasSee) {
+TEST(Readings, NamesDetectionsOfCameras) {
   const auto path = scratch("jsonl");
   auto robots = layout();
   robots.robots[0].cameras = {0, 1};

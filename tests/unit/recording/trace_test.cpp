@@ -66,7 +66,7 @@ TEST(Trace, DigitsReadBackToTheSameDouble) {
   EXPECT_EQ(read, values);
 }
 
-TEST(Trace, FollowsWhoComesAndGoesAndBeginsAnewWithAWorld) {
+TEST(Trace, FollowsAddedAndRemovedEntitiesAndAReset) {
   world::Layout layout = make_layout();
   world::State now = state();
   const auto path = scratch("csv");
@@ -97,7 +97,7 @@ TEST(Trace, FollowsWhoComesAndGoesAndBeginsAnewWithAWorld) {
                                             "0,0,robot,arm,"}));
 }
 
-TEST(Trace, QuotesIdsThatHoldCommasOrQuotes) {
+TEST(Trace, QuotesIdsThatContainCommasOrQuotes) {
   world::Layout odd;
   odd.entities = {{"a,\"b\"", {0, 1}, false}};
   odd.links = {{"", 0}};

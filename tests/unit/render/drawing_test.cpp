@@ -23,7 +23,7 @@ std::size_t visible(const Drawing& drawing) {
   return count;
 }
 
-TEST(Drawing, LeavesOutWhatIsOutsideOfThePicture) {
+TEST(Drawing, SkipsBodiesOutsideThePicture) {
   SmallWorld world;
   const scene::Sphere ball{0.1};
   world.add(ball, {{2, 0, -0.1}, {}});
@@ -44,7 +44,7 @@ TEST(Drawing, LeavesOutWhatIsOutsideOfThePicture) {
   EXPECT_EQ(drawing_of(world, forward_view()).bodies.size(), 1u) << "it may still throw a shadow";
 }
 
-TEST(Drawing, TakesFinerMeshesForWhatIsLarge) {
+TEST(Drawing, UsesFinerMeshesForLargeBodies) {
   SmallWorld world;
   world.add(scene::Sphere{0.1}, {{50, 0, 0}, math::Quaternion::Identity()});
   const auto far = drawing_of(world, forward_view());

@@ -34,10 +34,10 @@ Quaternion turn(double angle, const Vector3& axis) {
 /// A frame whose z axis points to the camera of forward_view().
 Quaternion facing() { return turn(-M_PI / 2, Vector3::UnitY()); }
 
-TEST(TagInAPicture, IsFoundByARealDetectorWhereItIs) {
+TEST(TagInAPicture, IsFoundByARealDetectorAtItsPose) {
   Detector detector;
   const View view = forward_view(640, 480, 600);
-  // Flush on the upper face of a thin box.
+  // Exactly on the upper face of a thin box.
   SmallWorld world;
   const auto link = world.add(scene::Box{{0.2, 0.2, 0.02}}, {});
   const Pose on_top{{0, 0, 0.02}, Quaternion::Identity()};
@@ -66,7 +66,7 @@ TEST(TagInAPicture, IsFoundByARealDetectorWhereItIs) {
   }
 }
 
-TEST(TagInAPicture, IsPlainWhiteIfItsPayloadIsNoNumberOfAPattern) {
+TEST(TagInAPicture, IsWhiteIfItsPayloadIsNotTheNumberOfAPattern) {
   for (const char* payload : {"587", "hello", ""}) {
     SmallWorld world;
     const auto link =
@@ -74,7 +74,7 @@ TEST(TagInAPicture, IsPlainWhiteIfItsPayloadIsNoNumberOfAPattern) {
     world.add_tag(link, {{-0.01, 0, 0.1}, facing()}, 0.12, payload);
     const View view = forward_view(320, 240, 1000);
     const Picture picture = world.picture(view);
-    // The margin is a module wide: the square goes to 0.075 m.
+    // The margin is one module wide: the square ends at 0.075 m.
     for (const double at : {-0.072, -0.05, 0.0, 0.072}) {
       EXPECT_GT(pixel(picture, project(view, {0.99, at, 0.072})).green, 235) << payload;
     }
@@ -82,7 +82,7 @@ TEST(TagInAPicture, IsPlainWhiteIfItsPayloadIsNoNumberOfAPattern) {
   }
 }
 
-TEST(TagInAPicture, DoesNotFightWithTheSurfaceItLiesOn) {
+TEST(TagInAPicture, HidesTheSurfaceThatItLiesOn) {
   for (const double distance : {0.3, 3.0, 30.0}) {
     for (const double lift : {0.0, 0.0005}) {
       for (const double tilt : {0.0, 1.2, 1.4}) {
@@ -104,7 +104,7 @@ TEST(TagInAPicture, DoesNotFightWithTheSurfaceItLiesOn) {
   }
 }
 
-TEST(TagInAPicture, IsNotSeenFromBehind) {
+TEST(TagInAPicture, IsInvisibleFromBehind) {
   SmallWorld world;
   const auto link = world.add(scene::Sphere{0.001}, {{1, 2, 0}, Quaternion::Identity()});
   const View view = forward_view();
@@ -131,7 +131,7 @@ TEST(LedInAPicture, HasItsColorAtItsPixel) {
   }
 }
 
-TEST(DirectionalLedInAPicture, IsSeenFromItsFrontOnly) {
+TEST(DirectionalLedInAPicture, IsVisibleFromItsFrontOnly) {
   for (const bool towards : {true, false}) {
     SmallWorld world;
     const auto link = world.add(scene::Sphere{0.001}, {{1, 2, 0}, Quaternion::Identity()});

@@ -39,7 +39,7 @@ Measure measure(const Meshes& meshes, const Mesh& mesh) {
   return result;
 }
 
-TEST(Meshes, AreClosedAndOutwards) {
+TEST(Meshes, AreClosedWithOutwardNormals) {
   const Meshes meshes = make_meshes();
   const Measure box = measure(meshes, meshes.box);
   EXPECT_NEAR(box.volume, 1, 1e-6);
@@ -56,7 +56,7 @@ TEST(Meshes, AreClosedAndOutwards) {
   }
 }
 
-TEST(RoundnessFor, MissesACircleByATwentiethOfAPixel) {
+TEST(RoundnessFor, DeviatesFromACircleByATwentiethOfAPixelAtMost) {
   EXPECT_EQ(roundness_for(0), 0u);
   for (const double radius : {1.0, 10.0, 100.0, 600.0}) {
     const double pieces = roundness[roundness_for(radius)];

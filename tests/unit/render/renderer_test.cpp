@@ -18,7 +18,7 @@ using testing::pixel;
 using testing::project;
 using testing::SmallWorld;
 
-/// Which pixels a thing changes in the picture: all that it touches.
+/// For each pixel, whether the world's bodies change it compared with an empty world.
 std::vector<bool> touched(const SmallWorld& with, const View& view) {
   const Picture background = SmallWorld{}.picture(view);
   const Picture picture = with.picture(view);
@@ -31,7 +31,7 @@ std::vector<bool> touched(const SmallWorld& with, const View& view) {
   return result;
 }
 
-TEST(Renderer, PutsASphereWhereItsProjectionIs) {
+TEST(Renderer, DrawsASphereAtItsProjection) {
   constexpr double radius = 0.3;
   for (const double y : {-0.8, 0.0, 1.1}) {
     SmallWorld world;
@@ -56,18 +56,18 @@ TEST(Renderer, PutsASphereWhereItsProjectionIs) {
     const math::Vector2 at = view.principal_point + center * math::Vector2(-y, -0.4) / off_axis;
     EXPECT_NEAR(u / area, at.x(), 0.1) << "y " << y;
     EXPECT_NEAR(v / area, at.y(), 0.1) << "y " << y;
-    // Its area: by its short axis, from the cone's section.
+    // Its area follows from the short axis of the cone's section.
     const double slope = std::tan(beta);
     const double short_axis =
         300 * slope / std::cos(alpha) / std::sqrt(1 - std::pow(slope * std::tan(alpha), 2));
-    // A pixel that is touched counts whole.
+    // A partly covered pixel counts as a whole one.
     EXPECT_GT(area, M_PI * long_axis * short_axis) << "y " << y;
     EXPECT_LT(area, M_PI * (long_axis + 1) * (short_axis + 1)) << "y " << y;
   }
 }
 
-TEST(Renderer, MovesAnEdgeByPartsOfAPixel) {
-  // A white wall whose left edge is at u = 100 + shift: a pixel's grey says how much is covered.
+TEST(Renderer, DrawsEdgesWithSubpixelPrecision) {
+  // A white wall whose left edge is at u = 100 + shift: the grey of a pixel is the covered share.
   for (double shift = 0; shift < 1; shift += 0.125) {
     SmallWorld world;
     const View view = forward_view();
@@ -85,7 +85,7 @@ TEST(Renderer, MovesAnEdgeByPartsOfAPixel) {
   }
 }
 
-TEST(Renderer, HidesWhatIsBehind) {
+TEST(Renderer, HidesBodiesBehindOthers) {
   SmallWorld world;
   world.add(scene::Box{{0.1, 1, 1}}, {{3, 0, -0.5}, Quaternion::Identity()});
   const View view = forward_view();
@@ -95,7 +95,7 @@ TEST(Renderer, HidesWhatIsBehind) {
   EXPECT_EQ(world.picture(view).rgb, wall.rgb);
 }
 
-TEST(Renderer, SeesThroughABodyFromInside) {
+TEST(Renderer, DoesNotDrawABodyAroundTheCamera) {
   SmallWorld world;
   const View view = forward_view();
   const Picture empty = world.picture(view);
@@ -104,7 +104,7 @@ TEST(Renderer, SeesThroughABodyFromInside) {
 }
 
 TEST(Renderer, DrawsNearAndFar) {
-  // Ten kilometres, and a hand's breadth: both as large in the picture.
+  // Boxes at 10 km and at 5 cm that have the same size in the picture.
   for (const double distance : {0.05, 10e3}) {
     SmallWorld world;
     const View view = forward_view();
@@ -119,14 +119,14 @@ TEST(Renderer, DrawsNearAndFar) {
   }
 }
 
-TEST(Renderer, CutsLargePicturesIntoTilesThatFit) {
+TEST(Renderer, DrawsLargePicturesInTilesWithoutSeams) {
   SmallWorld world;
   world.scene.physics.floor.emplace();
   world.add(scene::Cylinder{0.2, 0.5}, {{3, -1.72, -0.3}, Quaternion::Identity()});
   View large = forward_view(1100, 60, 300);
   large.camera.position.z() = 0.2;
   View part = large;
-  part.width = 200;  // columns 900 to 1100 of the large one: over the seam at 1024
+  part.width = 200;  // columns 900 to 1100 of the large picture, across the seam at 1024
   part.principal_point.x() -= 900;
   const Picture whole = world.picture(large), piece = world.picture(part);
   for (unsigned v = 0; v < 60; ++v) {
@@ -162,8 +162,8 @@ TEST(Renderer, ThrowsAShadow) {
   const Picture empty = world.picture(view);
   world.add(scene::Box{{0.4, 0.4, 0.4}}, {{0, 0, 0.6}, Quaternion::Identity()});
   const Picture picture = world.picture(view);
-  // The sun is in the direction (-0.42, -0.62, 1.15): from z = 0.8 the shadow is 0.7 times that
-  // away.
+  // The sun is in the direction (-0.42, -0.62, 1.15): the shadow of z = 0.8 is displaced by
+  // 0.7 times its horizontal part.
   const auto shadow = project(view, Vector3(0.42, 0.62, 0) * 0.8 / 1.15);
   const auto light = project(view, Vector3(-0.42, -0.62, 0) * 0.8 / 1.15);
   EXPECT_LT(pixel(picture, shadow).green, pixel(empty, shadow).green - 30);

@@ -20,7 +20,7 @@ struct SmallWorld {
   world::Layout layout;
   world::State state;
 
-  /// A link of its own entity; its frame is on its bottom centre. @returns its index
+  /// Adds an entity of one link; the link's frame is at its bottom centre. @returns the link's index
   std::size_t add(const scene::Geometry& geometry, const Pose& pose) {
     scene::Entity entity;
     scene::Link link;
@@ -73,7 +73,7 @@ inline View forward_view(unsigned width = 320, unsigned height = 240, double foc
           height};
 }
 
-/// Where a point of the world [m] is in the picture [px].
+/// Position in the picture [px] of a point of the world [m].
 inline math::Vector2 project(const View& view, const Vector3& point) {
   const Vector3 seen = math::inverse(view.camera) * point;
   return view.focal_length.cwiseProduct(seen.head<2>() / seen.z()) + view.principal_point;
@@ -83,7 +83,7 @@ struct Pixel {
   int red, green, blue;
 };
 
-/// The pixel that a point of the picture lies in.
+/// The pixel that contains a point of the picture.
 inline Pixel pixel(const Picture& picture, double u, double v) {
   const auto column = static_cast<std::size_t>(std::floor(u));
   const auto row = static_cast<std::size_t>(std::floor(v));

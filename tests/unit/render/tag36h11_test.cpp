@@ -9,7 +9,7 @@
 namespace ziggurat::render {
 namespace {
 
-/// A code of the library as rows of modules: each of its bits says where it stands.
+/// A code of the library as rows of modules; the library gives the place of each bit.
 std::uint64_t rows(const apriltag_family_t& family, std::uint64_t code) {
   std::uint64_t result = 0;
   for (std::uint32_t i = 0; i < family.nbits; ++i) {
@@ -20,7 +20,7 @@ std::uint64_t rows(const apriltag_family_t& family, std::uint64_t code) {
   return result;
 }
 
-TEST(Tag36h11, IsTheTableOfTheLibrary) {
+TEST(Tag36h11, EqualsTheTableOfTheLibrary) {
   apriltag_family_t* family = tag36h11_create();
   ASSERT_EQ(family->ncodes, tag36h11_count);
   ASSERT_EQ(family->width_at_border, 8);
@@ -31,7 +31,7 @@ TEST(Tag36h11, IsTheTableOfTheLibrary) {
   tag36h11_destroy(family);
 }
 
-TEST(TagPattern, IsWhatAWholeNumberNames) {
+TEST(TagPattern, ExistsForWholeNumbersFrom0To586) {
   EXPECT_EQ(scene::tag_pattern("0"), 0u);
   EXPECT_EQ(scene::tag_pattern("586"), 586u);
   for (const char* other :

@@ -22,12 +22,12 @@ TEST(LookAt, HasYUpSeenFromAbove) {
   EXPECT_TRUE((camera.orientation * Vector3::UnitY()).isApprox(Vector3(0, -1, 0)));
 }
 
-TEST(LookAt, LooksAlongXIfThereIsNoDirection) {
+TEST(LookAt, LooksAlongXIfEyeAndTargetAreEqual) {
   const math::Pose camera = look_at({1, 2, 3}, {1, 2, 3});
   EXPECT_TRUE((camera.orientation * Vector3::UnitZ()).isApprox(Vector3(1, 0, 0)));
 }
 
-TEST(SymmetricView, OpensFromEdgeToEdge) {
+TEST(SymmetricView, HasItsFieldOfViewFromEdgeToEdge) {
   const View view = symmetric_view({}, M_PI / 2, 640, 480);
   EXPECT_NEAR(view.focal_length.x(), 320, 1e-9);  // tan 45 degrees = 320 / f
   EXPECT_EQ(view.focal_length.x(), view.focal_length.y());

@@ -1,4 +1,4 @@
-// Elements that are added to a scene after it was read.
+// Entities added to a scene after it was read.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace ziggurat::scene {
 namespace {
 
-constexpr std::size_t plenty = 1 << 20;
+constexpr std::size_t ample = 1 << 20;
 
 const std::string box =
     R"(<box id="crate" size=".1,.2,.3" movable="true" mass="2"><body position="1,2,0"/></box>)";
@@ -39,12 +39,12 @@ class Additions : public ::testing::Test {
     EXPECT_TRUE(scene_.ok()) << all_problems(scene_);
   }
 
-  Addition add(const std::string& text, std::size_t room = plenty) const {
-    return scene_.additions.read(text, scene_.scene, room,
+  Addition add(const std::string& text, std::size_t max_size = ample) const {
+    return scene_.additions.read(text, scene_.scene, max_size,
                                  [](const std::string& id) { return id == "wall"; });
   }
-  std::string fault(const std::string& text, std::size_t room = plenty) const {
-    const Addition addition = add(text, room);
+  std::string fault(const std::string& text, std::size_t max_size = ample) const {
+    const Addition addition = add(text, max_size);
     EXPECT_FALSE(addition.ok()) << text;
     return addition.problems.empty() ? "" : to_string(addition.problems[0]);
   }
@@ -62,10 +62,10 @@ TEST_F(Additions, ABoxIsReadAsInTheArena) {
   EXPECT_EQ(addition.entity.where, (Location{1, 2, 3}));
   EXPECT_EQ(file_of(scene_.scene, addition.entity.where), "spawn");
   EXPECT_EQ(addition.size, box.size() + 3);
-  EXPECT_EQ(scene_.scene.files.size(), 1u) << "the scene stays as it is";
+  EXPECT_EQ(scene_.scene.files.size(), 1u) << "the scene does not change";
 }
 
-TEST_F(Additions, AModelBringsItsDevicesAndItsController) {
+TEST_F(Additions, AModelGivesDevicesAndController) {
   const Addition addition = add(
       R"(<prototype id="p" model="block" movable="false"><body position="0,0,3"/></prototype>)");
   ASSERT_TRUE(addition.ok());
@@ -77,7 +77,7 @@ TEST_F(Additions, AModelBringsItsDevicesAndItsController) {
   EXPECT_GT(addition.size, 250u) << "the model counts as if it were written out";
 }
 
-TEST_F(Additions, ARobotTakesAControllerOfTheScene) {
+TEST_F(Additions, ARobotUsesAControllerOfTheScene) {
   const Addition addition =
       add(R"(<foot-bot id="fb"><body position="0,0,0"/><controller config="wheels">)"
           R"(<params speed="3"/></controller></foot-bot>)");
@@ -87,7 +87,7 @@ TEST_F(Additions, ARobotTakesAControllerOfTheScene) {
   EXPECT_EQ(addition.entity.devices.range_and_bearing_medium, 2u);
 }
 
-TEST_F(Additions, AreFaultyAsInTheArena) {
+TEST_F(Additions, HaveTheSameFaultsAsInTheArena) {
   EXPECT_EQ(fault("<box id="),
             "spawn:1:9: malformed XML: the file ends too early; close every "
             "element that was opened");
@@ -104,7 +104,7 @@ TEST_F(Additions, AreFaultyAsInTheArena) {
   EXPECT_EQ(fault(box + box), "spawn:1:87: a second root element, <box>; a file has one");
 }
 
-TEST_F(Additions, AreWhatHasABody) {
+TEST_F(Additions, MustBeEntitiesWithABody) {
   for (const std::string name : {"light", "distribute", "floor", "argos-configuration", "bax"}) {
     EXPECT_EQ(fault("<" + name + "/>").substr(0, 28 + name.size()),
               "spawn:1:1: unknown element <" + name)
@@ -112,12 +112,12 @@ TEST_F(Additions, AreWhatHasABody) {
   }
 }
 
-TEST_F(Additions, HaveAnIdOfTheirOwn) {
+TEST_F(Additions, NeedANewId) {
   EXPECT_EQ(fault(R"(<box id="wall" size="1,1,1" movable="false"><body position="5,0,0"/></box>)"),
             "spawn:1:10: id=\"wall\" of <box> is the id of another entity; give each its own");
 }
 
-TEST_F(Additions, SayTheSameWhenTheyAreWrongAgain) {
+TEST_F(Additions, ReportTheSameFaultsTheSecondTime) {
   const std::string wrong = R"(<box id="b" size="1,1,1" movable="false"><body position="5,0,0"/>)"
                             R"(<controller config="wheels"/></box>)";
   const std::string unlike =
@@ -127,7 +127,7 @@ TEST_F(Additions, SayTheSameWhenTheyAreWrongAgain) {
   EXPECT_EQ(fault(unlike), fault(unlike));
 }
 
-TEST_F(Additions, HaveOnlySoMuchRoom) {
+TEST_F(Additions, HaveALimitedSize) {
   EXPECT_TRUE(add(box, box.size()).ok());
   EXPECT_EQ(fault(box, 50).substr(0, 42), "spawn: the file is larger than 50 bytes; s");
   const std::string small =
@@ -141,7 +141,7 @@ TEST(AdditionsOf, ASceneWithoutEngineAreRefused) {
   const ReadResult scene = text.read();
   ASSERT_TRUE(scene.ok()) << all_problems(scene);
   const Addition addition =
-      scene.additions.read(box, scene.scene, plenty, [](const std::string&) { return false; });
+      scene.additions.read(box, scene.scene, ample, [](const std::string&) { return false; });
   ASSERT_FALSE(addition.ok());
   EXPECT_EQ(to_string(addition.problems[0]),
             "spawn:1:1: <box> needs an engine, and the scene has none");

@@ -1,4 +1,4 @@
-// What is wrong with a file before anything in it has a meaning.
+// Faults of a file below the level of elements: missing, too large, not XML.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -39,14 +39,14 @@ class Folder : public testing::Test {
   std::filesystem::path path;
 };
 
-TEST_F(Folder, ASoundFileIsRead) {
-  const ReadResult result = read_file(write("sound.argos", SceneText{}.str()));
+TEST_F(Folder, AValidFileIsRead) {
+  const ReadResult result = read_file(write("valid.argos", SceneText{}.str()));
   EXPECT_TRUE(result.problems.empty()) << all_problems(result);
-  EXPECT_EQ(result.scene.files.at(0), (path / "sound.argos").string());
+  EXPECT_EQ(result.scene.files.at(0), (path / "valid.argos").string());
   EXPECT_EQ(result.scene.experiment.ticks_per_second, 10u);
 }
 
-TEST_F(Folder, MissingFolderFifoAndUnreadable) {
+TEST_F(Folder, MissingFilesAndOtherKindsOfFilesAreFaults) {
   EXPECT_TRUE(contains(only_fault(read_file(path / "none.argos")), "does not exist"));
   EXPECT_TRUE(contains(only_fault(read_file(path)), "not a regular file"));
   ASSERT_EQ(::mkfifo((path / "fifo").c_str(), 0600), 0);
@@ -54,7 +54,7 @@ TEST_F(Folder, MissingFolderFifoAndUnreadable) {
   EXPECT_TRUE(contains(only_fault(read_file("/dev/zero")), "not a regular file"));
 }
 
-TEST_F(Folder, EmptyAndBinary) {
+TEST_F(Folder, EmptyAndBinaryFilesAreFaults) {
   EXPECT_TRUE(contains(only_fault(read_file(write("empty", ""))), "is empty"));
   EXPECT_TRUE(contains(only_fault(read_file(write("white", " \n\t\n"))), "is empty"));
   EXPECT_TRUE(contains(only_fault(read_file(write("binary", std::string("\x7f"
@@ -97,14 +97,14 @@ TEST(Text, TruncatedAnywhereIsAFaultWithLineAndColumn) {
             "t:2:6: malformed XML: the file ends too early; close every element that was opened");
 }
 
-TEST(Text, MalformedXml) {
+TEST(Text, MalformedXmlIsAFaultAtItsPlace) {
   EXPECT_TRUE(contains(only_fault(read_text("<a>\n  <b></c>\n</a>", "t")),
                        "t:2:8: malformed XML: this closing tag closes nothing"));
   EXPECT_TRUE(contains(only_fault(read_text("hello", "t")), "there is no element"));
   EXPECT_TRUE(contains(only_fault(read_text("<a b=c/>", "t")), "t:1:6: malformed XML"));
 }
 
-TEST(Text, AnEntityBombIsHarmlessAndSaid) {
+TEST(Text, AnEntityBombIsHarmlessAndReported) {
   std::string text = "<?xml version=\"1.0\"?>\n<!DOCTYPE bomb [\n<!ENTITY lol0 \"lol\">\n";
   for (int i = 1; i < 10; ++i) {
     text += "<!ENTITY lol" + std::to_string(i) + " \"";
@@ -134,7 +134,7 @@ TEST(Text, CharacterReferencesAreReplaced) {
   }
 }
 
-TEST(Text, RepeatedAttributesAndSecondRoots) {
+TEST(Text, RepeatedAttributesAndSecondRootsAreFaults) {
   SceneText text;
   text.arena = R"(<arena size="1,1,1" size="2,2,2"/>)";
   EXPECT_TRUE(contains(only_fault(text.read()),
@@ -144,7 +144,7 @@ TEST(Text, RepeatedAttributesAndSecondRoots) {
                        "a second root element, <more>"));
 }
 
-TEST(Text, ByteOrderMarkAndUtf8) {
+TEST(Text, ByteOrderMarkAndUtf8AreRead) {
   EXPECT_TRUE(read_text("\xef\xbb\xbf" + SceneText{}.str(), "t").problems.empty());
   SceneText text;
   text.arena = arena_with(R"(<box id="café" size="1,1,1" movable="false"><body/></box>)");
@@ -161,7 +161,7 @@ TEST(Text, StrayTextIsNoticed) {
   EXPECT_EQ(count_containing(notices(result), "the text \"oops\" in <arena> has no effect"), 1u);
 }
 
-TEST(Text, EndlessFaultsEnd) {
+TEST(Text, TheNumberOfFaultsIsLimited) {
   std::string boxes;
   for (int i = 0; i < 100000; ++i) boxes += "<box/>";
   SceneText text;
@@ -171,7 +171,7 @@ TEST(Text, EndlessFaultsEnd) {
   EXPECT_EQ(count_containing(texts, "the rest of the file was not read"), 1u);
 }
 
-TEST(Text, DepthAndBreadthAreBounded) {
+TEST(Text, DepthAndNumberOfElementsAreLimited) {
   std::string deep;
   for (int i = 0; i < 200000; ++i) deep += "<a>";
   EXPECT_FALSE(read_text(deep, "t").ok());
@@ -192,7 +192,7 @@ TEST(Lenient, UnknownAttributesAreNoticesAndElementsStayFaults) {
   EXPECT_EQ(count_containing(notices(result), "4:21: unknown attribute \"colour\" of <arena>"), 1u);
 }
 
-TEST(Problems, StandInDocumentOrder) {
+TEST(Problems, AreInDocumentOrder) {
   SceneText text;
   text.framework = "<framework><experiment ticks_per_second=\"0\"/></framework>";
   text.arena = arena_with("<box/>");
@@ -205,7 +205,7 @@ TEST(Problems, StandInDocumentOrder) {
   EXPECT_EQ(result.problems.back().where.line, 5u);
 }
 
-TEST(SceneErrorText, CarriesAllFaultsAndNoNotices) {
+TEST(SceneErrorText, ContainsAllFaultsAndNoNotices) {
   const SceneError error({{Problem::Severity::notice, "f", {0, 1, 1}, "n"},
                           {Problem::Severity::fault, "f", {0, 2, 3}, "one"},
                           {Problem::Severity::fault, "g", {}, "two"}});

@@ -1,5 +1,5 @@
-// What stands in the arena: bodies, trees of joints, devices, distributions, and whether each
-// robot has what its controller needs.
+// The arena: bodies, trees of joints, devices, distributions, and the check that each robot has the
+// devices that its controller uses.
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST(Bodies, SurfaceAndDampingDefaults) {
   EXPECT_EQ(link.surface.rolling_friction, 0.0);
   EXPECT_EQ(link.damping.linear, 0.04);
   EXPECT_EQ(link.damping.angular, 0.0);
-  // The engine stands behind the arena in the document, and its defaults still count.
+  // The engine comes after the arena in the document; its defaults still apply.
   const std::string engine =
       R"(friction="0.1" rolling_friction="0.2" linear_damping="0.3" angular_damping="0.4")";
   const Link over = read_one(robot, engine).links[0];
@@ -122,26 +122,26 @@ std::vector<std::string> tree_faults(const std::string& links, const std::string
   return faults(text.read());
 }
 
-TEST(Joints, CyclesAndLooseEndsAreSaidOnceEach) {
+TEST(Joints, CyclesAndUnconnectedLinksAreReportedOnceEach) {
   const std::string abc = link("base") + link("a") + link("b") + link("c");
-  auto said = tree_faults(abc, joint("1", "a", "b") + joint("2", "b", "c") + joint("3", "c", "a"));
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(count_containing(said, "is part of a cycle that never meets the reference link"), 1u);
-  said = tree_faults(abc, joint("1", "a", "b") + joint("2", "b", "c"));
-  ASSERT_EQ(said.size(), 1u);  // only the loose end, not what hangs on it
-  EXPECT_EQ(count_containing(said, "link \"a\" is not connected"), 1u);
-  said = tree_faults(abc, joint("1", "base", "a") + joint("2", "a", "b") + joint("3", "b", "c") +
+  auto found = tree_faults(abc, joint("1", "a", "b") + joint("2", "b", "c") + joint("3", "c", "a"));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(count_containing(found, "is part of a cycle that never meets the reference link"), 1u);
+  found = tree_faults(abc, joint("1", "a", "b") + joint("2", "b", "c"));
+  ASSERT_EQ(found.size(), 1u);  // only the first unconnected link, not its children
+  EXPECT_EQ(count_containing(found, "link \"a\" is not connected"), 1u);
+  found = tree_faults(abc, joint("1", "base", "a") + joint("2", "a", "b") + joint("3", "b", "c") +
                               joint("4", "c", "base"));
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(count_containing(said, "has the reference link \"base\" as its child"), 1u);
-  said = tree_faults(link("base") + link("a"), joint("1", "a", "a"));
-  EXPECT_EQ(count_containing(said, "cycle"), 1u);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(count_containing(found, "has the reference link \"base\" as its child"), 1u);
+  found = tree_faults(link("base") + link("a"), joint("1", "a", "a"));
+  EXPECT_EQ(count_containing(found, "cycle"), 1u);
 }
 
 TEST(Links, UnnamedOnesAreNumbered) {
   const Entity entity = read_one(
       R"(<prototype id="p" movable="false"><body/><links ref="link_0"><link geometry="box" size="1,1,1" mass="0"/></links></prototype>)");
-  EXPECT_EQ(entity.links[0].id, "link_0");  // welded to the world: its mass does not matter
+  EXPECT_EQ(entity.links[0].id, "link_0");  // fixed to the world: its mass has no effect
 }
 
 TEST(DevicesOfAPrototype, IdsAnchorsAndRings) {
@@ -169,7 +169,7 @@ TEST(DevicesOfAPrototype, IdsAnchorsAndRings) {
 
 // --- controllers against entities ---------------------------------------------------------------
 
-SceneText driven(const std::string& actuators, const std::string& sensors,
+SceneText with_controller(const std::string& actuators, const std::string& sensors,
                  const std::string& params = "<params/>") {
   SceneText text;
   text.controllers = "<controllers><lua_controller id=\"c\"><actuators>\n" + actuators +
@@ -188,18 +188,18 @@ SceneText driven(const std::string& actuators, const std::string& sensors,
 
 TEST(Uses, JointsMustExistAndMove) {
   const SceneText text =
-      driven(R"(<joints implementation="default">)"
+      with_controller(R"(<joints implementation="default">)"
              R"(<joint id="j" mode="velocity" max_impulse="1"/>)"
              R"(<joint id="k" mode="velocity" max_impulse="1"/>)"
              R"(<joint id="s" mode="velocity" max_impulse="1"/></joints>)",
              R"(<joints implementation="default"><joint id="jj" mode="position"/>)"
              R"(<joint id="s" mode="position"/></joints>)");
   const ReadResult result = text.read();
-  const auto said = faults(result);
-  ASSERT_EQ(said.size(), 3u) << all_problems(result);  // once each, though two robots use it
-  EXPECT_EQ(count_containing(said, "4:81: joint \"k\" does not exist in prototype \"p1\""), 1u);
-  EXPECT_EQ(count_containing(said, "joint \"s\" of prototype \"p1\" is spherical"), 1u);
-  EXPECT_EQ(count_containing(said,
+  const auto found = faults(result);
+  ASSERT_EQ(found.size(), 3u) << all_problems(result);  // once each, though two robots use it
+  EXPECT_EQ(count_containing(found, "4:81: joint \"k\" does not exist in prototype \"p1\""), 1u);
+  EXPECT_EQ(count_containing(found, "joint \"s\" of prototype \"p1\" is spherical"), 1u);
+  EXPECT_EQ(count_containing(found,
                              "joint \"jj\" does not exist in prototype \"p1\"; did you mean "
                              "\"j\"?"),
             1u);
@@ -207,62 +207,62 @@ TEST(Uses, JointsMustExistAndMove) {
 }
 
 TEST(Uses, ComponentsMustExist) {
-  const ReadResult result = driven(R"(<radios implementation="default"/>)",
+  const ReadResult result = with_controller(R"(<radios implementation="default"/>)",
                                    R"(<footbot_turret_encoder implementation="default"/>)"
                                    R"(<positioning implementation="default"/>)")
                                 .read();
-  const auto said = faults(result);
-  ASSERT_EQ(said.size(), 2u) << all_problems(result);
-  EXPECT_EQ(count_containing(said,
+  const auto found = faults(result);
+  ASSERT_EQ(found.size(), 2u) << all_problems(result);
+  EXPECT_EQ(count_containing(found,
                              "4:1: radios are enabled for entity \"p1\", which has none; "
                              "write <radios> into its <devices>"),
             1u);
-  EXPECT_EQ(count_containing(said, "footbot_turret_encoder are enabled"), 1u);
+  EXPECT_EQ(count_containing(found, "footbot_turret_encoder are enabled"), 1u);
 }
 
 TEST(Uses, CameraAnchorsMustExist) {
   const ReadResult result =
-      driven("", R"(<cameras implementation="default"><camera id="k" range="0.1:1" anchor="turret")"
+      with_controller("", R"(<cameras implementation="default"><camera id="k" range="0.1:1" anchor="turret")"
                  R"( position="0,0,0" orientation="0,0,0" focal_length="1,1" principle_point="1,1")"
                  R"( resolution="10,10"/></cameras>)")
           .read();
-  const auto said = faults(result);
-  ASSERT_EQ(said.size(), 1u) << all_problems(result);
-  EXPECT_EQ(count_containing(said, "anchor \"turret\" of camera \"k\" does not exist"), 1u);
+  const auto found = faults(result);
+  ASSERT_EQ(found.size(), 1u) << all_problems(result);
+  EXPECT_EQ(count_containing(found, "anchor \"turret\" of camera \"k\" does not exist"), 1u);
 }
 
-TEST(Uses, CameraAnchorsMustExistOnRobotsThatComeAsTheyAre) {
-  SceneText text = driven("", R"(<cameras implementation="default"><camera id="k" range="0.1:1")"
+TEST(Uses, CameraAnchorsMustExistOnFootBotAndEPuck) {
+  SceneText text = with_controller("", R"(<cameras implementation="default"><camera id="k" range="0.1:1")"
                               R"( anchor="gripper" position="0,0,0" orientation="0,0,0")"
                               R"( focal_length="1,1" principle_point="1,1" resolution="10,10"/>)"
                               R"(</cameras>)");
   const std::string controller = R"(<body/><controller config="c"/>)";
   text.arena = arena_with(R"(<foot-bot id="f">)" + controller + "</foot-bot>");
-  auto said = faults(text.read());
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(count_containing(said, "anchor \"gripper\" of camera \"k\" does not exist in foot-bot"),
+  auto found = faults(text.read());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(count_containing(found, "anchor \"gripper\" of camera \"k\" does not exist in foot-bot"),
             1u);
   for (const char* anchor : {"origin", "base", "turret", "perspective_camera"}) {
-    EXPECT_EQ(count_containing(said, anchor), 1u) << said[0];
+    EXPECT_EQ(count_containing(found, anchor), 1u) << found[0];
   }
   text.arena = arena_with(R"(<e-puck id="e">)" + controller + "</e-puck>");
-  said = faults(text.read());
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(count_containing(said, "does not exist in e-puck \"e\""), 1u);
+  found = faults(text.read());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(count_containing(found, "does not exist in e-puck \"e\""), 1u);
 }
 
 TEST(Uses, SectionsMustExist) {
-  SceneText text = driven("", "");
+  SceneText text = with_controller("", "");
   text.controllers = "<controllers><lua_controller id=\"c\"/></controllers>";
-  const auto said = faults(text.read());
-  EXPECT_EQ(said.size(), 3u);
-  EXPECT_EQ(count_containing(said, "3:14: controller \"c\" lacks the element <actuators>"), 1u);
-  EXPECT_EQ(count_containing(said, "lacks the element <sensors>"), 1u);
-  EXPECT_EQ(count_containing(said, "lacks the element <params>"), 1u);
+  const auto found = faults(text.read());
+  EXPECT_EQ(found.size(), 3u);
+  EXPECT_EQ(count_containing(found, "3:14: controller \"c\" lacks the element <actuators>"), 1u);
+  EXPECT_EQ(count_containing(found, "lacks the element <sensors>"), 1u);
+  EXPECT_EQ(count_containing(found, "lacks the element <params>"), 1u);
 }
 
 TEST(Uses, AnEntitysOwnParamsReplaceTheControllers) {
-  SceneText text = driven("", "", "");
+  SceneText text = with_controller("", "", "");
   text.arena = arena_with(
       tree(link("base"), "",
            R"(<controller config="c"><params script="own.lua" anything="goes"/></controller>)"));
@@ -272,7 +272,7 @@ TEST(Uses, AnEntitysOwnParamsReplaceTheControllers) {
   EXPECT_TRUE(entity.overrides_params);
   ASSERT_EQ(entity.params.size(), 2u);
   EXPECT_EQ(entity.params[1], std::pair(std::string("anything"), std::string("goes")));
-  EXPECT_FALSE(driven("", "", "").read().ok());
+  EXPECT_FALSE(with_controller("", "", "").read().ok());
 }
 
 // --- distribution -------------------------------------------------------------------------------
@@ -301,7 +301,7 @@ TEST(Distribute, MethodsAndPattern) {
   EXPECT_EQ(count_containing(notices(result), "position and orientation of a distributed"), 1u);
 }
 
-TEST(Distribute, TwoGroupsMayNotMakeTheSameIds) {
+TEST(Distribute, TwoGroupsMustNotCreateTheSameIds) {
   const std::string group = R"(<distribute><position method="constant" values="0,0,0"/>)"
                             R"(<orientation method="constant" values="0,0,0"/>)";
   const std::string body = R"(" size="1,1,1" movable="false"/></entity></distribute>)";
@@ -312,7 +312,7 @@ TEST(Distribute, TwoGroupsMayNotMakeTheSameIds) {
 }
 
 TEST(Robots, FootBotHasTheDialectsGeometryAndDevices) {
-  SceneText text = driven("", "");
+  SceneText text = with_controller("", "");
   text.arena =
       arena_with(R"(<foot-bot id="f" rab_range="2" rab_data_size="4"><body position="1,2,0"/>)"
                  R"(<battery start_charge="0.5"/><controller config="c"/><dynamics2d>)"
@@ -341,8 +341,8 @@ TEST(Robots, FootBotHasTheDialectsGeometryAndDevices) {
   EXPECT_EQ(robot.devices.battery->start_charge, 0.5);
 }
 
-TEST(Robots, EPuckHasWhatItsDataSheetSays) {
-  SceneText text = driven("", "");
+TEST(Robots, EPuckMatchesItsDataSheet) {
+  SceneText text = with_controller("", "");
   text.arena = arena_with(R"(<e-puck id="e"><body/><controller config="c"/></e-puck>)");
   const ReadResult result = text.read();
   ASSERT_TRUE(result.problems.empty()) << all_problems(result);
@@ -356,21 +356,21 @@ TEST(Robots, EPuckHasWhatItsDataSheetSays) {
   EXPECT_GT(robot.devices.proximity_sensors[7].direction.y(), 0);
 }
 
-TEST(Robots, AreCheckedWhole) {
-  SceneText text = driven("", "");
+TEST(Robots, ReportAllTheirFaults) {
+  SceneText text = with_controller("", "");
   text.arena =
       arena_with(R"(<foot-bot id="f" rab_range="-1" omnidirectional_camera_aperture="80"><body/>)"
                  R"(<dynamics2d><differential_steering max_force="0"/></dynamics2d></foot-bot>)");
-  const auto said = faults(text.read());
-  EXPECT_EQ(said.size(), 3u);
-  EXPECT_EQ(count_containing(said, "rab_range=\"-1\""), 1u);
-  EXPECT_EQ(count_containing(said, "max_force=\"0\""), 1u);
-  EXPECT_EQ(count_containing(said, "<foot-bot> lacks"), 1u);
+  const auto found = faults(text.read());
+  EXPECT_EQ(found.size(), 3u);
+  EXPECT_EQ(count_containing(found, "rab_range=\"-1\""), 1u);
+  EXPECT_EQ(count_containing(found, "max_force=\"0\""), 1u);
+  EXPECT_EQ(count_containing(found, "<foot-bot> lacks"), 1u);
 }
 
 TEST(Robots, HaveOnlyTheirOwnDevices) {
   const auto lacks = [](const std::string& device, const std::string& robot) {
-    SceneText text = driven("<" + device + R"( implementation="default"/>)", "");
+    SceneText text = with_controller("<" + device + R"( implementation="default"/>)", "");
     text.arena =
         arena_with("<" + robot + R"( id="r"><body/><controller config="c"/></)" + robot + ">");
     return count_containing(faults(text.read()), "are enabled for entity \"r\"");
@@ -384,7 +384,7 @@ TEST(Robots, HaveOnlyTheirOwnDevices) {
   EXPECT_EQ(lacks("gripper", "foot-bot"), 0u);
 }
 
-TEST(Arena, LightsAndGroundsComeLater) {
+TEST(Arena, LightsAndGroundsAreCheckedWithoutEffect) {
   SceneText text;
   text.media = R"(<media><led id="leds"/></media>)";
   text.arena =
@@ -397,7 +397,7 @@ TEST(Arena, LightsAndGroundsComeLater) {
   EXPECT_TRUE(result.scene.entities.empty());
 }
 
-TEST(Prototype, ALinkThatStandsTwiceLeavesTheOthersTheirNames) {
+TEST(Prototype, ARepeatedLinkIdDoesNotHideOtherLinks) {
   SceneText text;
   text.arena = arena_with(
       R"(<prototype id="p"><body/><links ref="a"><link id="a" geometry="sphere" radius="1" mass="1"/>)"

@@ -1,4 +1,4 @@
-// Faults of what stands in the arena, for the test in faults_test.cpp.
+// Faults of entities in the arena, for the test in faults_test.cpp.
 
 #include "faults.h"
 

@@ -1,6 +1,6 @@
 #pragma once
-// Faults of an author, one row each: the part of a scene that is wrong, and what is said of it.
-// A part stands on its own line: framework 2, controllers 3, arena 4, engines 5, media 6, rest 7.
+// Faults of authors, one row each: the wrong part of a scene, and the expected message.
+// A part is on its own line: framework 2, controllers 3, arena 4, engines 5, media 6, rest 7.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Faults of a scene's sections; those of what stands in its arena are in entity_faults_test.cpp.
+// Faults of a scene's sections; faults of entities are in entity_faults_test.cpp.
 
 #include "faults.h"
 
@@ -7,7 +7,7 @@
 namespace ziggurat::scene {
 namespace {
 
-/// A prototype with two links and one joint; `%` marks stand for the part under test.
+/// A prototype with a base; `links`, `joints` and `devices` are added to it.
 std::string prototype(const std::string& links, const std::string& joints,
                       const std::string& devices) {
   return R"(<prototype id="p"><body/><links ref="base">)"
@@ -64,7 +64,7 @@ SceneText with(Part part, const std::string& text) {
   return scene;
 }
 
-TEST_P(Fault, IsFoundAtItsPlace) {
+TEST_P(Fault, IsReportedAtItsPlace) {
   const Row& row = GetParam();
   const ReadResult result = with(row.part, row.text).read();
   const auto texts = faults(result);

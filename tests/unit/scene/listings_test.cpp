@@ -284,7 +284,7 @@ TEST(Listings, FootBotControllerAndTarget) {
   EXPECT_EQ(devices.tags.at(0).side_length, 0.025);
 }
 
-TEST(Listings, CarriageReturnsInsideValuesCountAsWhiteSpace) {
+TEST(Listings, CarriageReturnsInsideValuesAreWhiteSpace) {
   SceneText text;
   text.arena = arena_with(target);
   text.controllers = foot_bot_controller;

@@ -1,4 +1,4 @@
-// Models that many entities share, and the files that bring them.
+// Models that many entities share, and the files that contain them.
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ ReadResult read_block(const std::string& elements) {
   return using_block(elements).read(options_with({{"parts/block.argos", block}}));
 }
 
-TEST(Models, StandForTheirEntities) {
+TEST(Models, DefineTheEntitiesThatUseThem) {
   const ReadResult result =
       read_block(R"(<prototype id="a" model="block"><body position="1,2,3"/></prototype>)"
                  R"(<prototype id="b" model="block"><body orientation="90,0,0"/></prototype>)");
@@ -101,7 +101,7 @@ TEST(Models, StandForTheirEntities) {
   EXPECT_EQ(scene.files, (std::vector<std::string>{"test.argos", "parts/block.argos"}));
 }
 
-TEST(Models, AreWhatTheSameTextWrittenOutIs) {
+TEST(Models, GiveTheSameEntityAsTheWrittenOutText) {
   const std::string parts =
       R"(<links ref="l"><link id="l" geometry="box" size="1,2,3" mass="4" friction="0.1"/></links>)"
       R"(<devices><tags medium="tags"><tag anchor="l" position="1,1,1" orientation="1,2,3" )"
@@ -126,7 +126,7 @@ TEST(Models, AreWhatTheSameTextWrittenOutIs) {
   EXPECT_FALSE(b.model);
 }
 
-TEST(Models, ControllerIsTheModelsUnlessTheEntityHasItsOwn) {
+TEST(Models, AnEntitysControllerReplacesTheModels) {
   const ReadResult result = read_block(
       R"(<prototype id="a" model="block"><body/></prototype>)"
       R"(<prototype id="b" model="block"><body/><controller config="other"/></prototype>)"
@@ -175,7 +175,7 @@ TEST(Models, MovableCanBeOverridden) {
       << wrong[0];
 }
 
-TEST(Models, RobotsThatComeAsTheyAreCanBeModels) {
+TEST(Models, FootBotAndEPuckCanBeModels) {
   const std::string rest =
       R"(<models><foot-bot id="rover" rab_range="2"><controller config="driver"/></foot-bot></models>)";
   SceneText text = using_block(
@@ -380,7 +380,7 @@ TEST(Models, AMissingMediumIsAFaultOnceTheModelIsUsed) {
   const Files files{{"parts/block.argos", block}};
   SceneText text = using_block("");
   text.media = "<media/>";
-  EXPECT_TRUE(text.read(options_with(files)).ok()) << "nobody uses it";
+  EXPECT_TRUE(text.read(options_with(files)).ok()) << "no entity uses the model";
   text = using_block(
       "<prototype id=\"a\" model=\"block\"><body/></prototype>\n"
       "<prototype id=\"b\" model=\"block\"><body/></prototype>\n");
@@ -397,7 +397,7 @@ TEST(Models, AMissingMediumIsAFaultOnceTheModelIsUsed) {
             2u);
 }
 
-TEST(Models, FaultsOfAControllerAreSaidOnceForAllEntities) {
+TEST(Models, FaultsOfAControllerAreReportedOnceForAllEntities) {
   std::string elements;
   for (int i = 0; i < 40; ++i) {
     elements += "<prototype id=\"b" + std::to_string(i) + "\" model=\"block\"><body/></prototype>";
@@ -405,16 +405,16 @@ TEST(Models, FaultsOfAControllerAreSaidOnceForAllEntities) {
   std::string wrong = block;
   wrong.replace(wrong.find("<leds imp"), 5, "<tags");
   wrong.replace(wrong.find(" medium=\"leds\"/>"), 14, "");
-  const auto said =
+  const auto found =
       faults(using_block(elements).read(options_with({{"parts/block.argos", wrong}})));
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_EQ(said[0].find("parts/block.argos:3:39: tags are enabled for entity \"b0\", which has "
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].find("parts/block.argos:3:39: tags are enabled for entity \"b0\", which has "
                          "none; write <tags> into its <devices>"),
             0u)
-      << said[0];
+      << found[0];
 }
 
-TEST(Models, WrittenOutTheyMustFitTheScenesSize) {
+TEST(Models, CountAsWrittenOutInTheScenesSize) {
   std::string elements;
   for (int i = 0; i < 40; ++i) {
     elements +=
@@ -425,16 +425,16 @@ TEST(Models, WrittenOutTheyMustFitTheScenesSize) {
   EXPECT_TRUE(using_block(elements).read(options).ok());
   options.max_size = 10'000;
   const ReadResult result = using_block(elements).read(options);
-  const auto said = faults(result);
-  ASSERT_EQ(said.size(), 1u) << all_problems(result);
-  EXPECT_NE(said[0].find("the scene is larger than 10000 bytes"), std::string::npos) << said[0];
+  const auto found = faults(result);
+  ASSERT_EQ(found.size(), 1u) << all_problems(result);
+  EXPECT_NE(found[0].find("the scene is larger than 10000 bytes"), std::string::npos) << found[0];
   options.max_size = using_block(elements).str().size() + std::string(block).size();
-  EXPECT_EQ(faults(using_block(elements).read(options)).size(), 1u) << "no byte is left for models";
+  EXPECT_EQ(faults(using_block(elements).read(options)).size(), 1u) << "no byte remains for models";
 }
 
 // --- files ---------------------------------------------------------------------------------------
 
-TEST(Includes, OneFileOnTwoPathsIsReadOnce) {
+TEST(Includes, AFileWithTwoPathsIsReadOnce) {
   const ReadResult result =
       using_block(R"(<prototype id="a" model="block"><body/></prototype>)",
                   "<include file=\"parts/same.argos\"/><include file=\"./parts/block.argos\"/>"
@@ -449,21 +449,21 @@ TEST(Includes, OneFileOnTwoPathsIsReadOnce) {
 TEST(Includes, TooManyAreAFault) {
   std::string includes;
   for (int i = 0; i < 1010; ++i) includes += "<include file=\"parts/block.argos\"/>";
-  const auto said =
+  const auto found =
       faults(using_block("", includes).read(options_with({{"parts/block.argos", block}})));
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_NE(said[0].find("is one too many; a scene has at most 1000"), std::string::npos);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find("is one too many; a scene has at most 1000"), std::string::npos);
 }
 
-TEST(Includes, AnOpenerThatIgnoresTheLimitIsNotBelieved) {
+TEST(Includes, AreCheckedForSizeAfterOpening) {
   ReadOptions options;
   options.open = [](const auto&, std::size_t) -> std::variant<File, std::string> {
     return File{"big", std::string(1u << 20, ' ')};
   };
   options.max_size = 10'000;
-  const auto said = faults(using_block("").read(options));
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_NE(said[0].find("is larger than "), std::string::npos);
+  const auto found = faults(using_block("").read(options));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find("is larger than "), std::string::npos);
 }
 
 TEST(Includes, FromDiskPathsStartAtTheIncludingFile) {
@@ -495,7 +495,7 @@ TEST(Includes, FromDiskPathsStartAtTheIncludingFile) {
   std::filesystem::remove_all(folder);
 }
 
-/// The blocks of XML in the section on models of the document.
+/// The blocks of XML in the section `Models` of docs/scene-format.md.
 std::vector<std::string> documented_files() {
   std::ifstream file(ZIGGURAT_SCENE_FORMAT);
   const std::string text(std::istreambuf_iterator<char>(file), {});
@@ -508,7 +508,7 @@ std::vector<std::string> documented_files() {
   return blocks;
 }
 
-TEST(Models, TheDocumentsExampleIsAScene) {
+TEST(Models, TheDocumentedExampleIsValid) {
   const auto blocks = documented_files();
   ASSERT_EQ(blocks.size(), 2u);
   const ReadResult result =

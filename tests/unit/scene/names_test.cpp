@@ -15,14 +15,14 @@ TEST(EditDistance, CountsEdits) {
   EXPECT_EQ(edit_distance("orientation", "oriention"), 2u);
 }
 
-TEST(Nearest, OnlyWhatMayHaveBeenMeant) {
+TEST(Nearest, IsFoundOnlyWithinAFewEdits) {
   constexpr std::array<std::string_view, 3> names{"position", "orientation", "size"};
   EXPECT_EQ(nearest("positon", names), "position");
   EXPECT_EQ(nearest("colour", names), std::nullopt);
   EXPECT_EQ(nearest(std::string(100000, 'p'), names), std::nullopt);
 }
 
-TEST(Ids, NumbersTheUnnamedFromZeroWhateverTheNamed) {
+TEST(Ids, NumbersUnnamedElementsFromZero) {
   Ids ids;
   EXPECT_TRUE(ids.add("front"));
   EXPECT_EQ(ids.next("magnet"), "magnet_0");

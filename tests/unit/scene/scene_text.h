@@ -1,5 +1,5 @@
 #pragma once
-// A sound scene in parts, each of which a test replaces, and ways to look at what was said of it.
+// A valid scene in parts that a test can replace, and functions to inspect the reported problems.
 
 #include <algorithm>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace ziggurat::scene {
 
-/// The parts of a scene file. Each stands on a line of its own, from line 2 on, at column 1.
+/// The parts of a scene file. Each begins at column 1 of its own line, from line 2 on.
 struct SceneText {
   std::string framework = R"(<framework><experiment ticks_per_second="10"/></framework>)";
   std::string controllers = R"(<controllers/>)";
@@ -36,7 +36,7 @@ inline std::string all_problems(const ReadResult& result) {
   return text;
 }
 
-inline std::vector<std::string> said(const ReadResult& result, Problem::Severity severity) {
+inline std::vector<std::string> texts_of(const ReadResult& result, Problem::Severity severity) {
   std::vector<std::string> texts;
   for (const Problem& problem : result.problems) {
     if (problem.severity == severity) texts.push_back(to_string(problem));
@@ -45,11 +45,11 @@ inline std::vector<std::string> said(const ReadResult& result, Problem::Severity
 }
 
 inline std::vector<std::string> faults(const ReadResult& result) {
-  return said(result, Problem::Severity::fault);
+  return texts_of(result, Problem::Severity::fault);
 }
 
 inline std::vector<std::string> notices(const ReadResult& result) {
-  return said(result, Problem::Severity::notice);
+  return texts_of(result, Problem::Severity::notice);
 }
 
 inline std::size_t count_containing(const std::vector<std::string>& texts,

@@ -1,4 +1,4 @@
-// What framework, engines, media and controllers give, and what they say has no effect.
+// Framework, engines, media and controllers: their values, and notices about parts without effect.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ TEST(Framework, DefaultsAndValues) {
   EXPECT_TRUE(experiment.real_time);
 }
 
-TEST(Framework, WhatHasNoEffectIsNoticed) {
+TEST(Framework, PartsWithoutEffectGiveNotices) {
   SceneText text;
   text.framework =
       R"(<framework><system threads="4" method="balance_length"/><experiment ticks_per_second="1"/>)"
@@ -34,7 +34,7 @@ TEST(Framework, WhatHasNoEffectIsNoticed) {
   EXPECT_EQ(count_containing(notices(result), "7:1: <visualization> has no effect"), 1u);
 }
 
-TEST(Framework, TheFirstOfTwoCounts) {
+TEST(Framework, TheFirstOfTwoIsUsed) {
   SceneText text;
   text.rest = R"(<framework><experiment ticks_per_second="77"/></framework>)";
   const ReadResult result = text.read();
@@ -43,7 +43,7 @@ TEST(Framework, TheFirstOfTwoCounts) {
   EXPECT_EQ(count_containing(notices(result), "a second <framework>"), 1u);
 }
 
-TEST(Controllers, DeadlinesOfTheirOwnOrOfAll) {
+TEST(Controllers, OwnDeadlinesReplaceTheDeadlineOfAll) {
   const auto read = [](const std::string& controllers) {
     SceneText text;
     text.controllers = controllers;
@@ -58,7 +58,7 @@ TEST(Controllers, DeadlinesOfTheirOwnOrOfAll) {
            R"(<lua_controller id="c" deadline="wait"/></controllers>)");
   EXPECT_EQ(controllers[0].deadline, (DeadlinePolicy{DeadlineAction::hold, 50, 3}));
   EXPECT_EQ(controllers[1].deadline, (DeadlinePolicy{DeadlineAction::zero, 20, 0}));
-  EXPECT_EQ(controllers[2].deadline, DeadlinePolicy{});  // said, so that nothing else fills in
+  EXPECT_EQ(controllers[2].deadline, DeadlinePolicy{});  // written, so the deadline of all does not replace it
   EXPECT_EQ(read(R"(<controllers><x id="a" deadline="drop" deadline_ms="1"/></controllers>)")[0]
                 .deadline->action,
             DeadlineAction::drop);
@@ -107,7 +107,7 @@ TEST(Engines, TwoDimensionalEnginesShareTheWorld) {
   EXPECT_EQ(count_containing(notices(result), "<dynamics2d> runs in the same 3D world"), 1u);
 }
 
-TEST(Engines, EntitiesNeedOne) {
+TEST(Engines, EntitiesNeedAnEngine) {
   SceneText text;
   text.engines = "<physics_engines/>";
   EXPECT_TRUE(text.read().ok());
@@ -130,7 +130,7 @@ TEST(Media, KeepDocumentOrder) {
   EXPECT_EQ(count_containing(notices(result), "grid_size of <led> has no effect"), 1u);
 }
 
-TEST(Media, BoundThePacketsOfRangeAndBearing) {
+TEST(Media, PacketsOfRangeAndBearingHaveALimitedSize) {
   SceneText text;
   text.media = R"(<media><range_and_bearing id="r"/></media>)";
   text.arena =
@@ -224,7 +224,7 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   }
 }
 
-TEST(Controllers, WithoutEffectOnDevices) {
+TEST(Controllers, AttributesWithoutEffectGiveNotices) {
   SceneText text;
   text.controllers =
       R"(<controllers><lua_controller id="c"><actuators><radios implementation="default" medium="r"/>)"
@@ -235,7 +235,7 @@ TEST(Controllers, WithoutEffectOnDevices) {
   EXPECT_EQ(count_containing(notices(result), "medium of <radios> has no effect here"), 1u);
 }
 
-TEST(Controllers, TheLastOfTwoDevicesCounts) {
+TEST(Controllers, TheLastOfTwoDevicesIsUsed) {
   SceneText text;
   text.controllers = R"(<controllers><lua_controller id="c"><actuators/><sensors>)"
                      R"(<joints implementation="default"><joint id="a" mode="position"/></joints>)"

@@ -47,7 +47,7 @@ TEST(Number, RefusesEverythingElse) {
   EXPECT_NE(bad(number("5cm")).find("has \"cm\" behind the number"), std::string::npos);
 }
 
-TEST(Number, Bounds) {
+TEST(Number, IsCheckedAgainstItsLimits) {
   EXPECT_TRUE(accepted(non_negative("0")));
   EXPECT_FALSE(accepted(non_negative("-0.1")));
   EXPECT_FALSE(accepted(positive("0")));
@@ -78,7 +78,7 @@ TEST(Integer, RefusesFractionsSignsAndOverflow) {
   EXPECT_FALSE(accepted(Whole{1, 5}("6")));
 }
 
-TEST(Vector, HasExactlyItsComponents) {
+TEST(Vector, HasExactlyTheExpectedNumberOfComponents) {
   EXPECT_EQ(good(vector3(" -.025,0, 0.02")), math::Vector3(-0.025, 0, 0.02));
   EXPECT_EQ(good(vector3("1 ,\n2,\t3f")), math::Vector3(1, 2, 3));
   EXPECT_NE(bad(vector3("1,2")).find("has 2 components instead of 3"), std::string::npos);
@@ -151,7 +151,7 @@ TEST(ColorValue, IsANameOrFourChannels) {
   }
 }
 
-TEST(Identifier, IsNotEmptyAndNotEndless) {
+TEST(Identifier, IsNotEmptyAndHasALimitedLength) {
   EXPECT_EQ(good(identifier("wheel.1")), "wheel.1");
   EXPECT_FALSE(accepted(identifier("")));
   EXPECT_FALSE(accepted(identifier("a\nb")));
@@ -159,7 +159,7 @@ TEST(Identifier, IsNotEmptyAndNotEndless) {
   EXPECT_FALSE(accepted(identifier(std::string(256, 'x'))));
 }
 
-TEST(InQuotes, ShortensAndKeepsCharactersWhole) {
+TEST(InQuotes, ShortensWithoutSplittingCharacters) {
   EXPECT_EQ(in_quotes("a\nb"), "\"a b\"");
   std::string long_text(59, 'x');
   long_text += "éééé";

@@ -1,5 +1,5 @@
 #pragma once
-// Contact geometry by search instead of cleverness, to compare the clever one with.
+// Contact geometry by search: slow and simple, to compare the fast one with.
 
 #include <LinearMath/btTransform.h>
 
@@ -11,12 +11,12 @@
 
 namespace ziggurat::physics::contact::testing {
 
-/// A shape in its place.
+/// A shape at a pose.
 struct Solid {
   Shape shape;
   btTransform pose;
 
-  /// How far it reaches from its centre in a unit direction [m]. Not for half-spaces.
+  /// Its extent from its centre in a unit direction [m]. Not for half-spaces.
   btScalar extent(const btVector3& direction) const {
     const btVector3 local = pose.getBasis().transpose() * direction;
     if (const auto* box = std::get_if<Box>(&shape)) return local.absolute().dot(box->half);
@@ -57,7 +57,7 @@ struct Solid {
   }
 };
 
-/// Distance of the slabs that hold the two along a unit direction [m].
+/// Gap between the slabs that enclose the two shapes along a unit direction [m].
 inline btScalar slab_gap(const Solid& a, const Solid& b, const btVector3& b_to_a) {
   if (std::holds_alternative<HalfSpace>(b.shape)) {
     return b_to_a.dot(a.pose.getOrigin() - b.pose.getOrigin()) - a.extent(-b_to_a);
@@ -67,7 +67,7 @@ inline btScalar slab_gap(const Solid& a, const Solid& b, const btVector3& b_to_a
 
 struct Gap {
   btScalar distance =
-      -BT_LARGE_FLOAT;        ///< of two bodies, or minus the least way out of overlap [m]
+      -BT_LARGE_FLOAT;        ///< of two bodies, or minus the smallest penetration depth [m]
   btVector3 b_to_a{0, 0, 1};  ///< unit
 };
 
@@ -82,8 +82,8 @@ inline std::vector<btVector3> spread(int count) {
   return directions;
 }
 
-/// The widest slab between convex bodies, by looking in all directions and then ever closer
-/// about the best of them: for bodies apart that is their distance.
+/// The widest gap over all directions between convex bodies: a search in all directions, then refined
+/// about the best ones. For separate bodies this is their distance.
 inline Gap true_gap(const Solid& a, const Solid& b) {
   if (std::holds_alternative<HalfSpace>(b.shape)) {
     const btVector3 up = b.pose.getBasis().getColumn(2);

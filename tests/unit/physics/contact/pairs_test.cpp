@@ -18,7 +18,7 @@ struct Pair {
   Shape a, b;
   btScalar tolerance;  ///< of distances, in least half widths
   btScalar surface;    ///< of points' distances from the surfaces, in least half widths
-  bool boxes = false;  ///< both are
+  bool boxes = false;  ///< both shapes are boxes
 };
 
 void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.name; }
@@ -48,7 +48,7 @@ const Pair pairs[] = {
     {"RodRod", rod, rod, 0.04, 0.1},
 };
 
-// Numbers are drawn in statements of their own: compilers differ in the order of arguments.
+// Each number is drawn in a separate statement: compilers evaluate arguments in different orders.
 
 btVector3 random_direction(math::RandomStream& random) {
   const double z = random.gaussian(0, 1), y = random.gaussian(0, 1), x = random.gaussian(0, 1);
@@ -59,7 +59,7 @@ btQuaternion random_rotation(math::RandomStream& random, int kind) {
   const double w = random.gaussian(0, 1), z = random.gaussian(0, 1), y = random.gaussian(0, 1),
                x = random.gaussian(0, 1);
   if (kind % 2) return btQuaternion(x, y, z, w).normalized();
-  // Nearly aligned with the axes, or exactly: where degenerate poses are.
+  // Exactly or nearly aligned with the axes: there poses are degenerate.
   constexpr double tilts[] = {0, 0, 1e-9, 1e-6, 1e-4, 1e-2};
   const double tilt = tilts[kind / 2 % 6];
   btQuaternion quarter = btQuaternion::getIdentity();
@@ -72,7 +72,7 @@ btQuaternion random_rotation(math::RandomStream& random, int kind) {
   return btQuaternion(random_direction(random), tilt) * quarter;
 }
 
-/// A pose of A against B from well inside to well apart.
+/// Places A relative to B, from deep overlap to a large gap.
 void place(math::RandomStream& random, int i, Solid& a, Solid& b) {
   const double z = random.uniform(-0.3, 0.3), y = random.uniform(-0.3, 0.3),
                x = random.uniform(-0.3, 0.3);
@@ -127,8 +127,8 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
     ASSERT_GT(contacts.count, 0);
     ASSERT_GT(swapped.count, 0);
     EXPECT_NEAR(contacts.normal.length(), 1, 1e-9);
-    // Boxes that are apart corner to corner or to edge are separated by the best axis only: the
-    // distance is on the safe side, and one end of it hangs in the air.
+    // Boxes separated corner to corner or corner to edge are compared along the best axis only: the
+    // distance is too small, which is safe, and one of its ends is not on a surface.
     const btScalar between = slab_gap(a, b, contacts.normal);
     const bool corners = pair.boxes && gap.distance > 0 && between < gap.distance - tolerance;
     const btScalar below = corners ? gap.distance / 2 : tolerance;

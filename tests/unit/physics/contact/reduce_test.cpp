@@ -1,4 +1,4 @@
-// What is kept of a contact's points, and resting poses that are nearly degenerate.
+// Reduction of a contact's points to four, and contacts at nearly degenerate resting poses.
 
 #include <gtest/gtest.h>
 
@@ -49,9 +49,9 @@ TEST(Reduce, KeepsTheDeepestAndAtMostFour) {
   }
 }
 
-TEST(Reduce, IsNotMovedByRounding) {
+TEST(Reduce, IsStableUnderRounding) {
   math::RandomStream random(1, "perturb");
-  // Twelve points of a regular outline all at one depth: every choice is a tie.
+  // Twelve points on a regular outline at the same depth: every choice is a tie.
   const auto ring = [&](btScalar noise) {
     Contacts contacts;
     contacts.normal = {0, 0, 1};
@@ -77,7 +77,7 @@ TEST(Reduce, IsNotMovedByRounding) {
 struct Face {
   const char* name;
   Shape a, b;
-  btScalar least_area;  ///< of what they share [m^2]
+  btScalar least_area;  ///< of the shared face [m^2]
 };
 
 TEST(Faces, ShareAtLeastThreePointsThatSpanTheOverlap) {
@@ -115,7 +115,7 @@ TEST(Lines, ALyingCylinderTouchesAlongItsSide) {
   EXPECT_EQ(parallel.count, 2);
 }
 
-TEST(Edges, OfCrossedBoxesTouchInOnePoint) {
+TEST(Edges, OfCrossedBoxesTouchAtOnePoint) {
   const btScalar eighth = std::numbers::pi / 4;
   const btScalar edge = 0.005 * std::numbers::sqrt2;
   const Contacts contacts = find(cube, at(0, 0, 2 * edge + 1e-4, {1, 0, 0}, eighth), cube,
@@ -125,7 +125,7 @@ TEST(Edges, OfCrossedBoxesTouchInOnePoint) {
   EXPECT_NEAR((contacts.points[0].on_b - btVector3(0, 0, edge)).length(), 0, 1e-9);
 }
 
-TEST(Concentric, BodiesStillHaveAFiniteWayOut) {
+TEST(Concentric, BodiesHaveAFinitePenetrationDepth) {
   const Shape shapes[] = {cube, can, Sphere{0.005}, Box{{0.05, 0.02, 0.01}}};
   for (const Shape& a : shapes) {
     for (const Shape& b : shapes) {
