@@ -1,5 +1,5 @@
 // Runs scenes one after the other in one process, without network, and prints the hash of every
-// tick. All actuators follow a fixed rule, so that the program and the scene decide everything.
+// tick. All actuators follow a fixed rule: results depend on the program and the scene only.
 //
 // usage: determinism_probe TICKS SCENE...
 

@@ -1,5 +1,5 @@
-"""Whole runs: same scene, seed and controllers -> same hash at every tick, however the robots are
-shared among processes and whatever carries their messages."""
+"""Whole runs: the same scene, seed and controllers give the same hash at every tick, with any distribution
+of robots over processes and over any transport."""
 
 import json
 import pathlib
@@ -46,7 +46,7 @@ class Runs(SceneTest):
         self.assertEqual(self.hashes("--real-time", "10", "--trace", self.folder / "t",
                                      "--readings", self.folder / "r"), self.expected)
 
-    def test_another_seed_is_another_world(self):
+    def test_another_seed_gives_other_hashes(self):
         self.assertNotEqual(self.hashes("--seed", 4), self.expected)
 
 

@@ -1,5 +1,5 @@
-"""The simulation alone: same scene, seed and commands -> same hash at every tick, whether the
-compiler optimised or not, run twice, and after another scene in the same process."""
+"""The simulation alone: the same scene, seed and commands give the same hash at every tick: in a second
+run, after another scene in the same process, and at another optimisation level."""
 
 import os
 import pathlib
@@ -8,7 +8,7 @@ import unittest
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 PROBE = os.environ["ZIGGURAT_PROBE"]
-OTHER = os.environ["ZIGGURAT_PROBE_OTHER"]  # built with the other optimisation
+OTHER = os.environ["ZIGGURAT_PROBE_OTHER"]  # built at the other optimisation level
 SCENES = [TOP / "tests/scenes/arms.argos", *sorted((TOP / "scenes").glob("*.argos"))]
 TICKS = 40
 
@@ -25,11 +25,11 @@ def hashes(probe, *scenes):
 class Simulation(unittest.TestCase):
     def assert_same(self, first, second):
         self.assertEqual(len(first), TICKS + 1)
-        for a, b in zip(first, second):  # the first tick that differs says more than a diff
+        for a, b in zip(first, second):  # reports the first tick that differs
             self.assertEqual(a, b)
         self.assertEqual(len(first), len(second))
 
-    def test_moves(self):
+    def test_the_state_changes_at_every_tick(self):
         for scene, lines in zip(SCENES, hashes(PROBE, *SCENES)):
             self.assertEqual(len({line.split()[2] for line in lines}), TICKS + 1, scene)
 
@@ -44,7 +44,7 @@ class Simulation(unittest.TestCase):
             self.assert_same(runs[0], runs[-1])
             self.assert_same(runs[0], hashes(PROBE, scene)[0])
 
-    def test_optimised_or_not(self):
+    def test_at_another_optimisation_level(self):
         for first, second in zip(hashes(PROBE, *SCENES), hashes(OTHER, *SCENES)):
             self.assert_same(first, second)
 

@@ -1,4 +1,4 @@
-"""Whatever an author gets wrong: one clear message, exit code 1, never a hang or a crash."""
+"""Faults of an author: each gives one clear message and exit code 1, never a hang or a crash."""
 
 import socket
 
@@ -12,9 +12,9 @@ class BrokenScene(SceneTest):
         self.assert_is_sentence(checked, pattern)
         ran = self.run_scene(*arguments, code=FAULT)
         self.assert_is_sentence(ran, pattern)
-        self.assertEqual(ran.out, "", "nothing ran")
+        self.assertEqual(ran.out, "", "no tick ran")
 
-    def test_good_to_begin_with(self):
+    def test_the_unchanged_scene_is_valid(self):
         outcome = self.ziggurat("check", self.scene)
         self.assertEqual((outcome.code, outcome.err), (FINISHED, ""))
 
@@ -85,8 +85,8 @@ class BrokenScene(SceneTest):
         self.fails(r"arms\.argos:\d+")
 
     def test_no_file_at_that_path(self):
-        outcome = self.run_scene(code=FAULT, scene="nowhere.argos")
-        self.assert_is_sentence(outcome, r"nowhere\.argos")
+        outcome = self.run_scene(code=FAULT, scene="missing.argos")
+        self.assert_is_sentence(outcome, r"missing\.argos")
 
     def test_folder_instead_of_a_file(self):
         outcome = self.run_scene(code=FAULT, scene=self.folder)
@@ -129,7 +129,7 @@ class BrokenArguments(SceneTest):
         self.assertEqual(outcome.code, FAULT, outcome.out)
         self.assert_is_sentence(outcome, pattern)
 
-    def test_unknown_words(self):
+    def test_unknown_commands_options_and_values(self):
         self.refuses(r"no command 'rnu'; did you mean 'run'", "rnu", self.scene)
         self.refuses(r"'--tikcs'; did you mean '--ticks'", "run", self.scene, "--tikcs", "3")
         self.refuses(r"--ticks.*'many'", "run", self.scene, "--ticks", "many")
@@ -148,10 +148,10 @@ class BrokenArguments(SceneTest):
     def test_foreign_address_needs_insecure(self):
         self.refuses(r"0\.0\.0\.0.*--insecure", "run", self.scene, "--endpoint", "tcp://0.0.0.0:0")
 
-    def test_endpoint_that_is_none(self):
+    def test_invalid_endpoint(self):
         self.refuses(r"nonsense", "run", self.scene, "--endpoint", "nonsense")
 
-    def test_port_taken(self):
+    def test_port_in_use(self):
         with socket.socket() as other:
             other.bind(("127.0.0.1", 0))
             other.listen()

@@ -1,4 +1,4 @@
-"""Controllers that stop, die and come back, under each deadline policy."""
+"""Controllers that are stopped, killed and continued, under each deadline policy."""
 
 import os
 import re
@@ -10,7 +10,7 @@ from harness import CONTROLLER_FAILED, FAULT, FINISHED, INTERRUPTED, LUA, SceneT
 
 
 class Deadlines(SceneTest):
-    """r1 has a controller of its own, "frail". Others are waited for: a busy machine makes none late."""
+    """r1 has a controller of its own, "frail". The others have no deadline, so a busy machine makes none late."""
 
     def setUp(self):
         super().setUp()
@@ -20,7 +20,7 @@ class Deadlines(SceneTest):
         self.change(r1, r1.replace('config="swing"', 'config="frail"'))
 
     def disturb(self, number, *arguments):
-        """An endless run with a process per robot; that of r1 gets the signal after tick 20."""
+        """An endless run with one process per robot. The process of r1 gets the signal after tick 20."""
         process = self.start("run", self.scene, "--duration", 0, "--lua-processes", 0, *arguments)
         self.read_until(process.stdout, r"^\[20 r2\]")
         [(self.victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
@@ -32,8 +32,8 @@ class Deadlines(SceneTest):
         found = self.read_until(process.stdout, rf"^\[(\d+) {robot}\] step (\d+)")
         return int(found[1]), int(found[2])
 
-    def goes_on(self, process, ticks=40):
-        """The others are waited for and answer; returns the last tick."""
+    def continues(self, process, ticks=40):
+        """Waits until the run has made so many more ticks; returns the last one."""
         first, _ = self.step_of(process, "r2")
         self.read_until(process.stdout, rf"^\[{first + ticks} r2\]")
         return first + ticks
@@ -44,9 +44,9 @@ class Deadlines(SceneTest):
         self.assertEqual(outcome.code, INTERRUPTED, outcome.err)
         return outcome
 
-    def test_hold_goes_on_and_takes_the_late_one_back(self):
+    def test_hold_continues_and_accepts_the_late_controller_again(self):
         process = self.disturb(signal.SIGSTOP, "--deadline", "frail=hold:30")
-        tick = self.goes_on(process)
+        tick = self.continues(process)
         os.kill(self.victim, signal.SIGCONT)
         found = self.read_until(process.stdout, r"^\[(\d+) r1\] step (\d+)")
         self.assertGreaterEqual(int(found[1]), tick - 40)
@@ -54,21 +54,21 @@ class Deadlines(SceneTest):
         self.assertRegex(outcome.err, r"\(r1\) missed its deadline of 30 ms at tick \d+")
         self.assertRegex(outcome.err, r"controller 'frail' missed its deadline at \d+ ticks")
 
-    def test_zero_goes_on(self):
+    def test_zero_continues(self):
         process = self.disturb(signal.SIGSTOP, "--deadline", "frail=zero:30")
-        self.goes_on(process)
+        self.continues(process)
         self.interrupted(process)
 
-    def test_hold_forgives_a_dead_one(self):
+    def test_hold_continues_without_a_killed_controller(self):
         process = self.disturb(signal.SIGKILL, "--deadline", "frail=hold:30")
-        self.goes_on(process, ticks=300)
+        self.continues(process, ticks=300)
         self.interrupted(process)
 
-    def test_drop_takes_it_out_for_good(self):
+    def test_drop_removes_the_controller_for_the_rest_of_the_run(self):
         for number in signal.SIGSTOP, signal.SIGKILL:
             with self.subTest(number=number):
                 process = self.disturb(number, "--deadline", "frail=drop:200:4")
-                self.goes_on(process, ticks=100)
+                self.continues(process, ticks=100)
                 outcome = self.interrupted(process)
                 self.assertRegex(outcome.err,
                                  r"robot r1 \(controller 'frail'\) is dropped at tick \d+")
@@ -76,21 +76,21 @@ class Deadlines(SceneTest):
 
     def test_hold_drops_beyond_its_budget(self):
         process = self.disturb(signal.SIGSTOP, "--deadline", "frail=hold:200:4")
-        self.goes_on(process, ticks=100)
+        self.continues(process, ticks=100)
         self.assertIn("robot r1 (controller 'frail') is dropped", self.interrupted(process).err)
 
-    def test_stop_ends_the_run_with_a_sentence(self):
+    def test_stop_ends_the_run_with_a_clear_message(self):
         process = self.disturb(signal.SIGSTOP, "--deadline", "frail=stop:2000")
         outcome = self.finish(process)
         self.assertEqual(outcome.code, CONTROLLER_FAILED)
         self.assert_is_sentence(
             outcome, r"controller 'frail' of robot r1 did not answer at tick \d+: .* stop:2000 ")
 
-    def test_results_do_not_depend_on_it_while_answers_come_in_time(self):
+    def test_deadlines_change_no_result_while_answers_are_in_time(self):
         expected = self.hash_of("--ticks", 40)
         self.assertEqual(self.hash_of("--ticks", 40, "--deadline", "zero:20000"), expected)
         process = self.start("run", self.scene, "--ticks", 40, "--real-time", 4, "--hash",
-                             "--lua-processes", 0)  # and who waits for ever loses nothing
+                             "--lua-processes", 0)  # without deadlines nothing is lost either
         self.read_until(process.stdout, r"^\[5 r2\]")
         [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
         os.kill(victim, signal.SIGSTOP)
@@ -99,7 +99,7 @@ class Deadlines(SceneTest):
         outcome = self.finish(process)
         self.assertEqual((outcome.code, outcome.lines[-1]), (FINISHED, expected))
 
-    def test_the_scene_says_what_holds_and_the_command_line_says_otherwise(self):
+    def test_the_command_line_overrides_deadlines_of_the_scene(self):
         self.change('<lua_controller id="frail">',
                     '<lua_controller id="frail" deadline="drop" deadline_ms="100" miss_budget="2">')
         checked = self.ziggurat("check", self.scene)
@@ -108,10 +108,10 @@ class Deadlines(SceneTest):
                                 (("--hil", "--real-time", 10), "drop:100:2"),
                                 (("--deadline", "frail=drop:120:1"), "drop:120:1")):
             with self.subTest(options=options):
-                self.assertEqual(self.who_is_dropped(*options), ("r1", policy))
+                self.assertEqual(self.dropped_robot(*options), ("r1", policy))
 
-    def who_is_dropped(self, *options):
-        """Who is, by which policy, after the controller of r1 was stopped."""
+    def dropped_robot(self, *options):
+        """(robot, policy) of the robot that is dropped after the controller of r1 was stopped."""
         log = self.folder / "log"
         with log.open("w") as stdout:
             process = self.start("run", self.scene, "--duration", 0, "--lua-processes", 0, *options,
@@ -136,30 +136,30 @@ class Keys(SceneTest):
         self.assertEqual(outcome.code, FINISHED, outcome.err)
         return outcome.out.strip()
 
-    def test_who_is_on_the_list_drives(self):
+    def test_only_listed_keys_may_connect(self):
         expected = self.hash_of("--ticks", 20)
-        server, friend = self.keygen("server"), self.keygen("friend")
-        self.assertEqual((self.folder / "friend.secret").stat().st_mode & 0o777, 0o600)
-        self.keygen("stranger")
-        self.write("clients", f"# those we know\n{friend} controller A friend\n")
+        server, listed = self.keygen("server"), self.keygen("listed")
+        self.assertEqual((self.folder / "listed.secret").stat().st_mode & 0o777, 0o600)
+        self.keygen("unlisted")
+        self.write("clients", f"# known keys\n{listed} controller A listed client\n")
         process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--hash",
                              "--curve-secret", "server.secret", "--curve-clients", "clients")
         endpoint = re.match(r"endpoint (\S+)", process.stdout.readline())[1]
         lua = [str(LUA), "--connect", endpoint, "--quiet",
                "--server-key", server, "--curve-secret"]
-        stranger = subprocess.Popen([*lua, "stranger.secret"], cwd=self.folder)
-        self.started.append(stranger)
-        self.started.append(subprocess.Popen([*lua, "friend.secret"], cwd=self.folder))
+        unlisted = subprocess.Popen([*lua, "unlisted.secret"], cwd=self.folder)
+        self.started.append(unlisted)
+        self.started.append(subprocess.Popen([*lua, "listed.secret"], cwd=self.folder))
         outcome = self.finish(process)
         self.assertEqual((outcome.code, outcome.lines[-1]), (FINISHED, expected), outcome.err)
-        stranger.kill()
-        stranger.wait()
+        unlisted.kill()
+        unlisted.wait()
 
     def test_run_starts_its_own_controllers_beside_protected_endpoints(self):
         expected = self.hash_of("--ticks", 5)
         server = self.keygen("server")
         self.write("clients", f"{server} controller\n")
-        self.environment["ZIGGURAT_SERVER_KEY"] = server  # not meant for them
+        self.environment["ZIGGURAT_SERVER_KEY"] = server  # must not reach the controllers
         self.environment["ZIGGURAT_CURVE_SECRET"] = "server.secret"
         self.assertEqual(
             self.hash_of("--ticks", 5, "--endpoint", "tcp://0.0.0.0:*", "--curve-secret",

@@ -33,7 +33,7 @@ function destroy()
 end
 """
 
-# And what it hears.
+# The same, and logs the received messages.
 LOGGED = REPEATER + """
 local repeater_step = step
 function step()
@@ -114,21 +114,21 @@ class DeviceTest(SceneTest):
                                                 sensors=RADIOS, script="repeater.lua")], robots,
                              iterations)
 
-    def two(self, talker, listener, actuators=RADIOS, sensors=RADIOS, devices=None):
-        """A talker and a listener whose radios, "a" and "b" on each, hear each other."""
-        self.write("talker.lua", textwrap.dedent(talker))
-        self.write("listener.lua", textwrap.dedent(listener))
+    def two(self, sender, receiver, actuators=RADIOS, sensors=RADIOS, devices=None):
+        """Two robots within radio range of each other, each with the radios "a" and "b"."""
+        self.write("sender.lua", textwrap.dedent(sender))
+        self.write("receiver.lua", textwrap.dedent(receiver))
         devices = devices or """
         <radios medium="radio">
           <radio id="a" anchor="base" range="2" position="0,0,.0125" />
           <radio id="b" anchor="base" range="2" position=".05,0,.0125" />
         </radios>"""
         return self.scene_of(
-            [CONTROLLER.format(id="talker", actuators=actuators, sensors="", script="talker.lua"),
-             CONTROLLER.format(id="listener", actuators="", sensors=sensors,
-                               script="listener.lua")],
-            [ROBOT.format(id="t", controller="talker", devices=devices, x=0, y=0, yaw=0),
-             ROBOT.format(id="l", controller="listener", devices=devices, x=1, y=0, yaw=0)])
+            [CONTROLLER.format(id="sender", actuators=actuators, sensors="", script="sender.lua"),
+             CONTROLLER.format(id="receiver", actuators="", sensors=sensors,
+                               script="receiver.lua")],
+            [ROBOT.format(id="t", controller="sender", devices=devices, x=0, y=0, yaw=0),
+             ROBOT.format(id="l", controller="receiver", devices=devices, x=1, y=0, yaw=0)])
 
     def one(self, script, devices, actuators="", sensors=""):
         self.write("one.lua", textwrap.dedent(script))
@@ -138,7 +138,7 @@ class DeviceTest(SceneTest):
 
 
 class Ring(DeviceTest):
-    def test_the_token_passes_the_same_with_any_distribution_of_robots(self):
+    def test_the_token_passes_alike_with_any_number_of_processes(self):
         scene = self.ring(4)
         expected = [f"[{tick} repeater{tick % 4}] {tick - 1}" for tick in range(1, 33)]
         hashes = set()
@@ -149,7 +149,7 @@ class Ring(DeviceTest):
             hashes.add(outcome.lines[-1])
         self.assertEqual(len(hashes), 1, hashes)
 
-    def test_repeaters_in_cpp_do_the_same(self):
+    def test_repeaters_in_cpp_give_the_same_hash(self):
         scene = self.ring(4, REPEATER)
         expected = self.hash_of("--ticks", 20, scene=scene)
         text = scene.read_text().replace("lua_controller", "external_controller")
@@ -175,7 +175,7 @@ class Ring(DeviceTest):
 
 
 class Radio(DeviceTest):
-    def test_empty_long_and_many_messages(self):
+    def test_empty_long_and_many_messages_arrive_in_order(self):
         scene = self.two(
             """
             function init()
@@ -191,12 +191,12 @@ class Radio(DeviceTest):
             function init() assert(#robot.radios.a.rx_data == 0) end
             function step()
               for _, id in ipairs({"a", "b"}) do
-                local heard = robot.radios[id].rx_data
-                assert(#heard == 1002, #heard)
-                assert(#heard[1] == 0 and #heard[2] == 65536)
-                for i = 1, 65536 do assert(heard[2][i] == i % 256) end
+                local received = robot.radios[id].rx_data
+                assert(#received == 1002, #received)
+                assert(#received[1] == 0 and #received[2] == 65536)
+                for i = 1, 65536 do assert(received[2][i] == i % 256) end
                 for i = 1, 1000 do
-                  local message = heard[i + 2]
+                  local message = received[i + 2]
                   assert(#message == 2 and message[1] == i % 256 and message[2] == i // 256)
                 end
               end
@@ -216,14 +216,14 @@ class Radio(DeviceTest):
             function step() for i = 1, 16 do robot.radios.a.tx_data(text) end end
             """,
             "function init() end function step() end", sensors="")
-        # The largest of all processes so far, in kilobytes; every tick sends 1024 of them.
+        # Peak memory of all processes so far [KiB]; every tick sends 1024 KiB.
         def run(ticks):
             self.run_scene("--ticks", ticks, "--quiet", scene=scene)
             return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
         few = run(4)
         self.assertLess(run(44), few + 20 * 1024)
 
-    def test_too_much_is_an_error_that_the_script_may_catch(self):
+    def test_exceeding_the_limit_is_an_error_that_the_script_can_catch(self):
         scene = self.two(
             """
             function init()
@@ -254,7 +254,7 @@ class Errors(DeviceTest):
         self.assert_is_sentence(outcome, r"one\.lua:1:.*set_single_color.*no such position: 2; "
                                          r"this robot has 1 LEDs")
 
-    def test_devices_that_are_not_enabled_are_not_there(self):
+    def test_devices_without_actuator_or_sensor_are_absent(self):
         devices = """
         <leds medium="leds"><led anchor="base" color="red" offset="0,0,.025" /></leds>
         <magnets><magnet anchor="base" offset="0,0,0" passive_field="0,0,1" /></magnets>"""
@@ -266,7 +266,7 @@ class Errors(DeviceTest):
 
 
 class Sensors(DeviceTest):
-    def test_proximity_sees_what_is_in_front(self):
+    def test_proximity_measures_a_wall_in_front(self):
         sensors = """
         <proximity_sensors>
           <sensor anchor="base" offset=".06,0,.0125" direction="1,0,0" range="2" />
@@ -325,7 +325,7 @@ class Sensors(DeviceTest):
 
 
 class Cameras(DeviceTest):
-    # 0.889 m from the camera to both: a centimetre to the side is 9.0 pixels.
+    # Both are 0.889 m from the camera: there, 1 cm is 9.0 pixels.
     DEVICES = """
         <leds medium="leds"><led anchor="base" color="red" offset=".051,.01,.0225" /></leds>
         <tags medium="tags">
@@ -342,7 +342,7 @@ class Cameras(DeviceTest):
           </camera>
         </cameras>"""
 
-    def test_what_one_robot_shows_the_other_sees(self):
+    def test_a_robot_sees_leds_and_tags_of_another(self):
         scene = self.two("""
             function init() end
             function step()

@@ -53,7 +53,7 @@ end
 
 
 def runs(ticks):
-    """Sorted whole numbers as (first, last) of each gapless run."""
+    """Sorted whole numbers as (first, last) of each run without a gap."""
     found = []
     for tick in ticks:
         if found and tick == found[-1][1] + 1:
@@ -66,8 +66,9 @@ def runs(ticks):
 class CameraExample(SceneTest):
     """The reference's run of this scene, in ticks: LEDs seen at 1 to 6, 175 to 187 and from 356 on;
     the tag by the fixed camera from 414 on, at (546.9, 180.0), 9 px further to the left each tick.
-    At tick 1 it sees the LEDs at (366.8, 219.6) and (368.3, 149.4): there, speeds of wheels and turret
-    count from the second substep on, here from the first, so u differs by a substep's turn."""
+    At tick 1 it sees the LEDs at (366.8, 219.6) and (368.3, 149.4). In the reference, speeds of wheels
+    and turret take effect from the second substep on, here from the first: u differs by the turn of one
+    substep."""
 
     def setUp(self):
         super().setUp()
@@ -86,10 +87,10 @@ class CameraExample(SceneTest):
         self.assertAlmostEqual(seen[0]["center"]["u"], u, delta=tolerance)
         self.assertAlmostEqual(seen[0]["center"]["v"], v, delta=tolerance)
 
-    def test_cameras_see_what_the_listing_says(self):
+    def test_cameras_see_leds_and_tag_as_in_the_reference(self):
         self.assertEqual(sorted(self.seen), list(range(1, 431)))
-        # At tick 368 the directional LED is 4 px from the edge of the image, and the LED, which is
-        # 10 px ahead of it, is beyond: it moves by 53 px a tick, from 593.5 px at tick 367.
+        # The LED is 10 px ahead of the directional LED; both move by 53 px per tick, from 593.5 px at
+        # tick 367. At tick 368 the directional LED is 4 px inside the image and the LED is outside.
         self.assertEqual(runs(self.ticks("turret_camera", "leds")),
                          [(1, 6), (175, 187), (356, 367)])
         self.assertEqual(runs(self.ticks("turret_camera", "directional_leds")),
@@ -111,14 +112,14 @@ class CameraExample(SceneTest):
                            for t in (tick - 1, tick))
             self.assertAlmostEqual(now - before, -9, delta=1)
 
-        said = [f"[{tick} fb] turret_camera detects: directional_leds, leds, "
-                for begin, end in ((1, 6), (175, 187), (356, 367)) for tick in range(begin, end + 1)]
-        said.append("[368 fb] turret_camera detects: directional_leds, ")
-        self.assertEqual(self.outcome.lines, said)
+        expected = [f"[{tick} fb] turret_camera detects: directional_leds, leds, "
+                    for begin, end in ((1, 6), (175, 187), (356, 367)) for tick in range(begin, end + 1)]
+        expected.append("[368 fb] turret_camera detects: directional_leds, ")
+        self.assertEqual(self.outcome.lines, expected)
 
 
 class Proximity(SceneTest):
-    def test_tells_value_and_angle(self):
+    def test_has_value_and_angle_of_each_sensor(self):
         face = 0.12  # of the wall [m]
         self.write("proximity.lua", PROXIMITY_SCRIPT)
         scene = self.write("proximity.argos", PROXIMITY_SCENE.format(wall=face + 0.05))

@@ -1,7 +1,7 @@
 """Runs the real programs on small scenes, each test in a folder of its own.
 
-ZIGGURAT_BIN names the folder of the programs. After each test no process that it started may be
-left, nor a file in the runtime folder.
+ZIGGURAT_BIN names the folder of the programs. Each test fails if it leaves a process, or a file in the
+runtime folder.
 """
 
 import os
@@ -21,7 +21,7 @@ ZIGGURAT = BIN / "ziggurat"
 LUA = BIN / "ziggurat-lua"
 
 FINISHED, FAULT, CONTROLLER_FAILED, INTERRUPTED = 0, 1, 3, 130
-LIMIT = 60  # [s] that any run may take, on a busy machine, too: more is a hang
+LIMIT = 60  # [s] of wall time for a run, on a busy machine too: more is a hang
 
 
 class Outcome:
@@ -65,7 +65,7 @@ class SceneTest(unittest.TestCase):
         return path
 
     def change(self, old, new, count=-1):
-        """Changes the test's scene; what is to be changed must be there."""
+        """Replaces text in the test's scene; the text must occur."""
         self.assertIn(old, self.text)
         self.text = self.text.replace(old, new, count)
         self.scene.write_text(self.text)
@@ -114,7 +114,7 @@ class SceneTest(unittest.TestCase):
     # --- processes ------------------------------------------------------------------------------
 
     def left_processes(self):
-        """Command lines that name the test's folder, once they had their time to end."""
+        """Command lines of processes that name the test's folder and do not end within LIMIT."""
         end = time.monotonic() + LIMIT
         while True:
             found = self.processes(str(self.folder))
@@ -124,7 +124,7 @@ class SceneTest(unittest.TestCase):
 
     @staticmethod
     def processes(*patterns):
-        """(id, command line) of each process that names all of these."""
+        """(id, command line) of each process whose command line contains all of these."""
         found = []
         for entry in pathlib.Path("/proc").iterdir():
             if not entry.name.isdigit() or int(entry.name) == os.getpid():
@@ -138,7 +138,7 @@ class SceneTest(unittest.TestCase):
         return sorted(found)
 
     def lua_processes(self, count=1):
-        """Ids of the test's Lua processes, once that many run."""
+        """Ids of the test's Lua processes; waits until `count` of them run."""
         return self.wait_for(
             lambda: [i for i, _ in self.processes("ziggurat-lua", str(self.runtime))],
             lambda ids: len(ids) >= count, "Lua processes")

@@ -1,11 +1,11 @@
-"""Hardware in the loop: messages that are delayed and lost on purpose, and what the card says."""
+"""Hardware in the loop: injected delays and losses of messages, and the report cards."""
 
 import json
 import re
 
 from harness import FAULT, SceneTest, main
 
-EACH_ALONE = ("--lua-processes", 0)  # a session per robot, so that controllers have their own
+EACH_ALONE = ("--lua-processes", 0)  # one session per robot, so that controllers do not share one
 
 
 class Injected(SceneTest):
@@ -14,7 +14,7 @@ class Injected(SceneTest):
         controller = re.search(r"<lua_controller id=\"swing\">.*?</lua_controller>", self.text, re.S)
         self.change("</controllers>",
                     controller[0].replace('"swing"', '"other"') + "</controllers>")
-        self.change('<controller config="swing">', '<controller config="other">')  # that of r2
+        self.change('<controller config="swing">', '<controller config="other">')  # of r2
 
     def cards(self, *arguments):
         """The run's outcome and the report card of each controller."""
@@ -39,8 +39,8 @@ class Injected(SceneTest):
                               "--deadline", "other=hold:20000")
         self.assertEqual(cards["swing"]["misses"], 6)  # of the ticks 0 to 5
         self.assertEqual(cards["swing"]["answers"], 0)
-        # Two sessions, each with half a second for a command. The last one of each may come when
-        # the run is over, and is not lost then.
+        # Two sessions, each with 0.5 s for a command. The last command of each may arrive after the run;
+        # then it does not count as lost.
         self.assertIn(cards["swing"]["injected"]["commands"]["lost"], range(10, 13))
         self.assertEqual((cards["other"]["misses"], cards["other"]["answers"]), (0, 6))
 
@@ -49,7 +49,7 @@ class Injected(SceneTest):
             outcome, cards = self.cards("--ticks", 20, "--seed", seed, "--hash", "--deadline",
                                         "hold:1000", "--inject", "swing=observations:loss=10%")
             self.assertLess(cards["swing"]["misses"], 21)
-            # init and steps; destroy() comes in any case
+            # init() and step(); destroy() is always called
             steps = re.findall(r"^\[(\d+ r[01])\] [is]", outcome.out, re.M)
             self.assertEqual(42 - len(steps), cards["swing"]["injected"]["observations"]["lost"])
             self.assertEqual(len(re.findall(r"^\[\d+ r2\] [is]", outcome.out, re.M)), 21)

@@ -1,4 +1,4 @@
-"""What a run prints and writes."""
+"""Output of a run: log lines, files, progress."""
 
 import csv
 import json
@@ -10,7 +10,7 @@ from harness import FAULT, FINISHED, SceneTest, main
 
 
 class Log(SceneTest):
-    def test_lines_are_in_the_order_of_ticks_and_robots_in_any_process(self):
+    def test_lines_are_ordered_by_tick_and_robot_with_any_number_of_processes(self):
         expected = [f"[0 {robot}] init" for robot in ("r0", "r1", "r2")]
         for tick in range(1, 6):
             expected += [f"[{tick} {robot}] step {tick}" for robot in ("r0", "r1", "r2")]
@@ -19,7 +19,7 @@ class Log(SceneTest):
             outcome = self.run_scene("--ticks", 5, "--lua-processes", processes)
             self.assertEqual(outcome.lines, expected, f"{processes} processes")
 
-    def test_quiet_leaves_log_lines_and_hash(self):
+    def test_quiet_prints_only_log_lines_and_hash(self):
         outcome = self.run_scene("--ticks", 1, "--quiet", "--hash", "--seed", 0)
         self.assertEqual(outcome.err, "")
         self.assertEqual(len(outcome.lines), 3 + 3 + 3 + 1)
@@ -32,7 +32,7 @@ class Log(SceneTest):
         self.assertEqual(outcome.err.splitlines(),
                          [f"[{tick} r{i}] oh" for tick in (1, 2) for i in range(3)])
 
-    def test_reader_that_leaves_ends_the_run(self):
+    def test_a_closed_pipe_ends_the_run(self):
         read, write = os.pipe()
         process = self.start("run", self.scene, "--duration", "0", stdout=write)
         os.close(write)
@@ -47,7 +47,7 @@ class Length(SceneTest):
     def ticks_of(self, *arguments):
         return int(self.hash_of(*arguments).split()[1])
 
-    def test_is_the_scene_s_unless_the_command_line_says_otherwise(self):
+    def test_the_command_line_overrides_the_scene(self):
         self.assertEqual(self.ticks_of(), 20)
         self.assertEqual(self.ticks_of("--ticks", 7), 7)
         self.assertEqual(self.ticks_of("--ticks", 30), 30)
@@ -104,7 +104,7 @@ class Files(SceneTest):
         self.assertEqual(lines[-1], last)
         self.assertEqual(len(set(line.split()[2] for line in lines)), 6)
 
-    def test_rays_and_images_are_there_though_empty(self):
+    def test_rays_and_images_without_content_are_still_created(self):
         self.run_scene("--ticks", 1, "--rays", self.folder / "rays.jsonl",
                        "--images", self.folder / "images")
         self.assertEqual((self.folder / "rays.jsonl").read_text(), "")
@@ -129,7 +129,7 @@ class Files(SceneTest):
 
 
 class Seed(SceneTest):
-    def test_drawn_seed_is_told_and_repeats_the_run(self):
+    def test_a_drawn_seed_is_printed_and_repeats_the_run(self):
         self.change(' random_seed="3"', "")
         first = self.run_scene("--ticks", 2, "--hash")
         seed = re.search(r"seed (\d+) drawn", first.err).group(1)
@@ -151,7 +151,7 @@ class Pace(SceneTest):
         self.assertGreaterEqual(self.wall_s("--ticks", 20, "--real-time", 4), 0.49)
         self.assertLess(self.wall_s("--ticks", 10), 0.9)
 
-    def test_scene_may_ask_for_it(self):
+    def test_the_scene_can_request_real_time(self):
         self.change('random_seed="3"', 'random_seed="3" real_time="true"')
         self.assertGreaterEqual(self.wall_s("--ticks", 10), 0.99)
 
@@ -165,7 +165,7 @@ class Clock(SceneTest):
                             self.hash_of("--ticks", 5, "--clock", "beta50"))
 
 
-class Machines(SceneTest):
+class Commands(SceneTest):
     def test_check(self):
         outcome = self.ziggurat("check", "--json", self.scene, "nowhere.argos")
         good, missing = json.loads(outcome.out)
@@ -230,7 +230,7 @@ class Progress(SceneTest):
         self.assertEqual(self.finish(process).code, FINISHED)
         return text.decode()
 
-    def test_line_is_on_a_terminal_only(self):
+    def test_progress_is_shown_on_a_terminal_only(self):
         arguments = ("--ticks", "10", "--real-time")
         self.assertRegex(self.stderr_on_a_terminal(*arguments),
                          r"t = 0\.\d+ s, real-time factor [\d.]+, \d+ ticks/s")

@@ -1,4 +1,4 @@
-"""Controllers that end, fail or never come, and people who press Ctrl-C."""
+"""Controllers that end, fail or never connect, and interruption by Ctrl-C."""
 
 import os
 import re
@@ -10,19 +10,19 @@ from harness import (BIN, CONTROLLER_FAILED, FINISHED, INTERRUPTED, LUA, SceneTe
 ENDLESS = ("--duration", "0")
 
 
-class Vanishing(SceneTest):
-    def vanishes(self, outcome, robots):
+class Killed(SceneTest):
+    def assert_reports_the_kill(self, outcome, robots):
         self.assertEqual(outcome.code, CONTROLLER_FAILED, outcome.err)
         self.assert_is_sentence(outcome, rf"killed by signal 9 .*tick \d+.*{robots}")
         self.assertEqual(len(re.findall("killed by signal 9", outcome.err)), 1, "one message")
 
-    def test_killed_in_the_middle(self):
+    def test_during_the_run(self):
         trace = self.folder / "trace.csv"
         process = self.start("run", self.scene, *ENDLESS, "--trace", trace)
         self.read_until(process.stdout, r"^\[20 r2\]")
         os.kill(self.lua_processes()[0], signal.SIGKILL)
         outcome = self.finish(process)
-        self.vanishes(outcome, "robots r0, r1, r2")
+        self.assert_reports_the_kill(outcome, "robots r0, r1, r2")
         lines = trace.read_text().splitlines()
         self.assertEqual((len(lines) - 1) % 16, 0, "whole ticks")
         self.assertTrue(trace.read_text().endswith("\n"))
@@ -36,9 +36,9 @@ class Vanishing(SceneTest):
         self.lua_processes(3)
         [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
         os.kill(victim, signal.SIGKILL)
-        self.vanishes(self.finish(process), "robot r1")
+        self.assert_reports_the_kill(self.finish(process), "robot r1")
 
-    def test_before_it_connects(self):
+    def test_controller_that_ends_before_it_connects(self):
         outcome = self.run_scene("--controller", "swing=exit 4", code=CONTROLLER_FAILED)
         self.assert_is_sentence(outcome, r"'swing'.*exit code 4 before the first tick.*r0, r1, r2")
 
@@ -68,14 +68,14 @@ class Failing(SceneTest):
         outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
         self.assertRegex(outcome.err, r"no start")
 
-    def test_all_may_fail(self):
+    def test_the_run_continues_when_all_have_failed(self):
         self.write("swing.lua", "function init() end function step() error('none left') end")
         outcome = self.run_scene("--ticks", 5, "--hash", code=CONTROLLER_FAILED)
         self.assertRegex(outcome.lines[-1], r"^hash 5 ")
 
 
 class Interruption(SceneTest):
-    def test_control_c_completes_the_files_and_tells_controllers(self):
+    def test_control_c_completes_files_and_calls_destroy(self):
         trace, hashes = self.folder / "trace.csv", self.folder / "hashes"
         process = self.start("run", self.scene, *ENDLESS, "--trace", trace, "--hash",
                              "--hash-file", hashes)
@@ -94,13 +94,13 @@ class Interruption(SceneTest):
         process.terminate()
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
-    def test_before_anybody_is_there(self):
+    def test_before_any_controller_connects(self):
         process = self.start("run", self.scene, "--controller", "swing=echo begun; exec sleep 100")
         self.read_until(process.stdout, "^begun$")
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
-    def test_endless_loop_of_a_script_is_no_obstacle(self):
+    def test_with_a_script_in_an_endless_loop(self):
         self.write("swing.lua", "function init() end function step() while true do end end")
         process = self.start("run", self.scene)
         self.wait_until_it_computes(self.lua_processes()[0], 0.3)  # starting takes a tenth of it
@@ -119,14 +119,14 @@ class Interruption(SceneTest):
         # After one Ctrl-C it waits for 2 s for answers, and for 1 s more before it kills.
         self.assertLess(time.monotonic() - start, 2)
 
-    def test_killed_server_takes_its_controllers_along(self):
+    def test_controllers_end_with_a_killed_server(self):
         process = self.start("run", self.scene, *ENDLESS)
         self.read_until(process.stdout, r"^\[2 r2\]")
         self.lua_processes()
         process.kill()
         process.communicate()
         self.assertEqual(self.left_processes(), [])
-        for left in self.runtime.glob("ziggurat-*"):  # no process was left to remove it
+        for left in self.runtime.glob("ziggurat-*"):  # the killed server cannot remove its folder
             for file in left.iterdir():
                 file.unlink()
             left.rmdir()
@@ -144,11 +144,11 @@ class OtherControllers(SceneTest):
         self.assertRegex(outcome.out, r"^swing at ipc:///\S+\n$")
         self.assertIn("exit code 5", outcome.err)
 
-    def test_command_drives(self):
+    def test_command_of_the_command_line_controls_the_robots(self):
         by_command = self.hash_of("--controller", f"swing=exec {LUA} --quiet")
         self.assertEqual(by_command, self.hash_of())
 
-    def test_without_command_it_says_whom_it_waits_for(self):
+    def test_without_command_it_reports_the_robots_it_waits_for(self):
         self.make_external("")
         process = self.start("run", self.scene, "--endpoint", "tcp://127.0.0.1:*")
         match = self.read_until(process.stderr, r"waiting for .*r0, r1, r2.*'swing'.*tcp://127")
@@ -167,7 +167,7 @@ class OtherControllers(SceneTest):
         scene = BIN.parents[2] / "scenes/dynamics3d_multi_body_test.argos"
         example = BIN / "example_vehicle"
         if not scene.exists() or not example.exists():
-            self.skipTest("no example here")
+            self.skipTest("the example is not built")
         by_lua = self.hash_of("--ticks", 20, scene=scene)
         by_cpp = self.hash_of("--ticks", 20, "--controller", f"my_controller=exec {example}",
                               scene=scene)

@@ -1,4 +1,4 @@
-"""`ziggurat render`: pictures of a scene, as placed and as a run moves it."""
+"""`ziggurat render`: pictures of a scene, at the start and at times of a run."""
 
 import struct
 import unittest
@@ -47,17 +47,17 @@ class RenderTest(SceneTest):
         self.assertEqual(outcome.code, FINISHED, outcome.err)
         return outcome
 
-    def test_draws_a_scene_as_placed(self):
+    def test_draws_the_start_of_a_scene(self):
         outcome = self.picture("a.png")
         self.assertEqual(outcome.out.strip(), str(self.folder / "a.png"))
         width, height, rows = read_png(self.folder / "a.png")
         self.assertEqual((width, height), (96, 64))
         self.assertGreater(len({row[i:i + 3] for row in rows for i in range(0, 288, 3)}), 10)
 
-    def test_draws_several_times_of_one_run_and_the_same_again(self):
+    def test_draws_several_times_of_one_run_reproducibly(self):
         self.picture("f%02d.png", "--at", "0,0.5,1")
         frames = [(self.folder / f"f{i:02}.png").read_bytes() for i in range(3)]
-        self.assertEqual(len(set(frames)), 3, "arms swing")
+        self.assertEqual(len(set(frames)), 3, "the arms move")
         self.picture("g.png", "--at", "0.5")
         self.assertEqual((self.folder / "g.png").read_bytes(), frames[1])
 
@@ -67,7 +67,7 @@ class RenderTest(SceneTest):
         self.assertNotEqual((self.folder / "with.png").read_bytes(),
                             (self.folder / "without.png").read_bytes())
 
-    def test_cameras_that_ask_take_a_picture_at_every_tick(self):
+    def test_cameras_with_image_true_take_a_picture_at_every_tick(self):
         self.change("</sensors>", """
           <cameras implementation="default">
             <camera id="eye/1" anchor="origin" position="0,0,1" orientation="0,0,180"
@@ -91,7 +91,7 @@ class RenderTest(SceneTest):
         self.assertEqual((width, height), (48, 32))
         self.assertGreater(len({row[i:i + 3] for row in rows for i in range(0, 144, 3)}), 10)
 
-    def test_a_picture_has_a_largest_size(self):
+    def test_the_size_of_a_picture_is_limited(self):
         self.change("</sensors>", """
           <cameras implementation="default">
             <camera id="eye" anchor="origin" position="0,0,1" orientation="0,0,180"
@@ -102,8 +102,8 @@ class RenderTest(SceneTest):
         self.assertEqual(outcome.code, FAULT)
         self.assertRegex(outcome.out + outcome.err, r"resolution=.99999,32. .*4096,4096")
 
-    def test_says_what_is_wrong_with_its_options(self):
-        for options, words in [
+    def test_wrong_options_have_clear_messages(self):
+        for options, message in [
                 (["--size", "0x4", "--out", "x.png"], "--size"),
                 (["--size", "4", "--out", "x.png"], "WIDTHxHEIGHT"),
                 (["--size", "99999x4", "--out", "x.png"], "16384"),
@@ -116,7 +116,7 @@ class RenderTest(SceneTest):
                 ([], "--out")]:
             outcome = self.ziggurat("render", self.scene, *options)
             self.assertEqual(outcome.code, FAULT, options)
-            self.assertIn(words, outcome.err)
+            self.assertIn(message, outcome.err)
 
 
 if __name__ == "__main__":

@@ -12,13 +12,13 @@ from harness import FINISHED, INTERRUPTED, LUA, SceneTest, main
 
 class Serve(SceneTest):
     def serve(self, *arguments):
-        """The process and where it listens."""
+        """The process and its endpoint."""
         process = self.start("serve", self.scene, "--json", "--endpoint", "tcp://127.0.0.1:*",
                              *arguments)
         return process, json.loads(process.stdout.readline())["endpoint"]
 
     def connect(self, endpoint, *robots):
-        """A Lua process for these robots, or all."""
+        """A Lua process for these robots; for all if none is given."""
         arguments = [str(LUA), "--connect", endpoint, "--quiet"]
         if robots:
             arguments += ["--robots-file", str(self.write("-".join(robots), "\n".join(robots)))]
@@ -27,7 +27,7 @@ class Serve(SceneTest):
         self.started.append(client)
         return client
 
-    def test_waits_runs_and_ends(self):
+    def test_waits_for_controllers_then_runs_to_the_end(self):
         expected = self.hash_of("--ticks", 20)
         process, endpoint = self.serve("--hash")
         self.assertRegex(endpoint, r"^tcp://127\.0\.0\.1:[1-9]\d*$")
@@ -38,7 +38,7 @@ class Serve(SceneTest):
         self.assertIn("[20 r2] step 20", outcome.lines)
         client.wait(timeout=60)
 
-    def test_says_for_whom_it_waits(self):
+    def test_reports_the_robots_it_waits_for(self):
         process, endpoint = self.serve()
         self.read_until(process.stderr, r"waiting for robots r0, r1, r2")
         self.connect(endpoint, "r0", "r2")
@@ -46,7 +46,7 @@ class Serve(SceneTest):
         self.connect(endpoint, "r1")
         self.assertEqual(self.finish(process).code, FINISHED)
 
-    def test_killed_controller_may_come_back(self):
+    def test_a_killed_controller_can_be_replaced(self):
         process, endpoint = self.serve("--duration", 0, "--real-time", 4)
         self.read_until(process.stderr, r"waiting for robots r0, r1, r2")
         first = self.connect(endpoint)
@@ -54,7 +54,7 @@ class Serve(SceneTest):
         first.kill()
         self.read_until(process.stderr, r"waiting for robots r0, r1, r2")
         self.connect(endpoint)
-        self.read_until(process.stdout, r"^\[\d+ r2\] step 3")  # a new process counts anew
+        self.read_until(process.stdout, r"^\[\d+ r2\] step 3")  # a new process counts from 1
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
@@ -65,7 +65,7 @@ class Serve(SceneTest):
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
     def hello(self, endpoint, meanwhile=lambda: None):
-        """The first answer to a Hello, and the first that is no Loading; `meanwhile` before it."""
+        """The first answer to a Hello, and the first other than Loading. Calls `meanwhile` between them."""
         with zmq.Context() as context, context.socket(zmq.DEALER) as dealer:
             dealer.linger, dealer.rcvtimeo = 0, 20_000
             dealer.connect(endpoint)
@@ -77,20 +77,20 @@ class Serve(SceneTest):
                 answer = dealer.recv_json()
             return first, answer
 
-    def crowd(self):
-        """A scene that takes some seconds to place its entities, with one robot."""
+    def slow_scene(self):
+        """The test's scene with 40 000 boxes more: placing them takes some seconds."""
         text = self.scene.read_text()
-        crowd = '''<distribute>
+        boxes = '''<distribute>
           <position method="uniform" min="-99,-99,9" max="99,99,9"/>
           <orientation method="constant" values="0,0,0"/>
           <entity quantity="40000" max_trials="1000">
-            <box id="crowd" size="0.5,0.5,0.1" movable="false"/>
+            <box id="crate" size="0.5,0.5,0.1" movable="false"/>
           </entity>
         </distribute>'''
-        return self.write("crowd.argos", text.replace("</arena>", crowd + "</arena>"))
+        return self.write("slow.argos", text.replace("</arena>", boxes + "</arena>"))
 
-    def test_listens_before_the_world_is_there(self):
-        self.scene = self.crowd()
+    def test_listens_before_the_scene_is_loaded(self):
+        self.scene = self.slow_scene()
         process, endpoint = self.serve("--ticks", 0)
         loading, answer = self.hello(endpoint)
         self.assertIn("loading", loading)
@@ -99,7 +99,7 @@ class Serve(SceneTest):
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
     def test_interrupted_while_loading(self):
-        self.scene = self.crowd()
+        self.scene = self.slow_scene()
         process, endpoint = self.serve("--ticks", 0)
         loading, answer = self.hello(endpoint, lambda: self.interrupt(process))
         self.assertIn("loading", loading)
@@ -115,12 +115,12 @@ class Serve(SceneTest):
         noise = random.Random(1)
         for text in (b"", b"GET / HTTP/1.1\r\n\r\n", b"\xff" + bytes(9) + b"\x7f",
                      noise.randbytes(100_000)):
-            with socket.create_connection(address) as stranger:
+            with socket.create_connection(address) as connection:
                 try:
-                    stranger.sendall(text)
+                    connection.sendall(text)
                 except ConnectionError:
                     pass
-        # Held open, and silent, through the whole run.
+        # One silent connection stays open during the whole run.
         with socket.create_connection(address):
             self.connect(endpoint)
             outcome = self.finish(process)

@@ -1,4 +1,4 @@
-"""Entities that come and go while a world runs: ctl spawn and remove."""
+"""Entities added and removed while a world runs: ctl spawn and remove."""
 
 import csv
 import json
@@ -8,24 +8,24 @@ import subprocess
 from harness import INTERRUPTED, LUA, ZIGGURAT, SceneTest, main
 
 BOX = '<box id="{}" size="0.1,0.1,0.1" movable="true" mass="1"><body position="{}"/></box>'
-PACED = "--real-time", 3  # so that it prints fewer lines
+PACED = "--real-time", 3  # fewer lines to read
 
 
 class Spawn(SceneTest):
     def arm(self, id, position):
-        """A robot like r1, elsewhere."""
+        """A copy of robot r1 at another position."""
         arm = re.search(r'<prototype id="r1">.*?</prototype>', self.text, re.DOTALL)[0]
         return arm.replace('"r1"', f'"{id}"').replace("0,1,0", position)
 
     def begin(self, command, *arguments):
         """A run that never ends, and its endpoint."""
-        self.url = f"ipc://{self.folder}/door"
+        self.url = f"ipc://{self.folder}/endpoint"
         process = self.start(command, self.scene, "--duration", 0, "--endpoint", self.url, *arguments)
-        self.wait_for(lambda: (self.folder / "door").exists(), bool, "endpoint")
+        self.wait_for(lambda: (self.folder / "endpoint").exists(), bool, "endpoint")
         return process
 
-    def begin_undriven(self, *arguments):
-        """A paused world, of whose robots none has a script."""
+    def begin_without_controllers(self, *arguments):
+        """A paused world whose robots have no scripts."""
         self.change('script="swing.lua" ', "")
         process = self.begin("serve", *arguments)
         self.wait_for(lambda: self.ctl("status"), lambda text: "paused" in text, "pause")
@@ -49,7 +49,7 @@ class Spawn(SceneTest):
         self.assertEqual(outcome.code, INTERRUPTED, outcome.err)
         return outcome
 
-    def test_a_lua_robot_gets_a_process_and_both_go_when_it_is_removed(self):
+    def test_a_spawned_lua_robot_has_a_process_until_it_is_removed(self):
         process = self.begin("run", *PACED)
         self.read_until(process.stdout, r"^\[5 r0\]")
         self.spawn(self.arm("late", "0,2,0"))
@@ -78,15 +78,15 @@ class Spawn(SceneTest):
         self.ctl("remove", "r1")
         self.read_until(process.stdout, r"^\[\d+ late\] step 30")
         self.ctl("reset")
-        self.assertEqual(scripted[1].wait(60), 0, "it was spawned, so its session is over")
+        self.assertEqual(scripted[1].wait(60), 0, "a reset removes spawned robots and ends their sessions")
         self.read_until(process.stdout, r"^\[20 r0\]")
         self.assertEqual([e["id"] for e in self.read("r*")["entities"]],
                          ["r0", "r1", "r2"])
         self.end(process)
         self.assertEqual(scripted[0].wait(60), 0)
 
-    def test_the_same_spawn_gives_the_same_states_and_a_reset_the_scene(self):
-        process = self.begin_undriven("--seed", 5)
+    def test_the_same_spawn_gives_the_same_states_and_a_reset_restores_the_scene(self):
+        process = self.begin_without_controllers("--seed", 5)
         fresh = self.read()["hash"]
         hashes = []
         for _ in range(2):
@@ -107,8 +107,8 @@ class Spawn(SceneTest):
         self.assertEqual(*hashes)
         self.end(process)
 
-    def test_what_is_wrong_is_said_and_has_no_effect(self):
-        process = self.begin_undriven()
+    def test_a_refused_spawn_has_a_reason_and_no_effect(self):
+        process = self.begin_without_controllers()
         before = self.read()["hash"]
         for text, reason in (
                 ("<box/>", "spawn:1:1: <box> lacks the attribute id"),
@@ -127,13 +127,13 @@ class Spawn(SceneTest):
         self.assertEqual(self.read()["hash"], before)
         self.end(process)
 
-    def test_what_is_doubtful_is_a_notice_of_the_server(self):
-        process = self.begin_undriven("--lenient")
+    def test_notices_about_a_spawned_entity_are_printed_by_the_server(self):
+        process = self.begin_without_controllers("--lenient")
         self.spawn(BOX.format("crate", "0.05,0.08,0.2").replace("<box ", '<box flavour="oak" '))
         self.assertRegex(self.end(process).err, r'spawn:1:\d+: unknown attribute "flavour" of <box>')
 
-    def test_traces_and_readings_have_what_is_there(self):
-        process = self.begin_undriven("--trace", "trace.csv", "--readings", "readings.jsonl")
+    def test_traces_and_readings_list_present_entities_only(self):
+        process = self.begin_without_controllers("--trace", "trace.csv", "--readings", "readings.jsonl")
         self.ctl("step", 3)
         self.spawn(self.arm("late", "0,2,0"))
         self.ctl("step", 4)

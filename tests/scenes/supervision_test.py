@@ -1,4 +1,4 @@
-"""A run that is watched and steered from outside: ctl, top, metrics, hardware in the loop."""
+"""Runs observed and controlled from outside: ctl, top, metrics, hardware in the loop."""
 
 import json
 import os
@@ -71,7 +71,7 @@ class Ctl(unittest.TestCase):
             server.ask("ctl", "step", "5")
             self.assertEqual(fallen["hash"], server.read()["hash"])
 
-    def test_moves_and_says_what_it_cannot_do(self):
+    def test_moves_and_refuses_wrong_requests_with_a_reason(self):
         with Server(DROP) as server:
             entity = server.read()["entities"][0]["id"]
             server.ask("ctl", "move", entity, "0.1,0.2,0.3", "90,0,0")
@@ -99,15 +99,15 @@ class Ctl(unittest.TestCase):
             self.assertEqual(before + 2, int(status["tick"]))
             self.assertRegex(status["sceneHash"], "^[0-9a-f]{16}$")
 
-    def test_a_paused_world_stays_where_it_was_said_to_stand(self):
+    def test_a_paused_world_stays_at_the_reported_tick(self):
         for paced in ([], ["--real-time", "50"]):
             with Server(VEHICLE, "--duration", "0", *paced) as server:
                 lua = subprocess.Popen([BIN / "ziggurat-lua", "--connect", server.url, "--quiet"],
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
                 for _ in range(8):
-                    said = json.loads(server.ask("ctl", "pause", "--json").stdout)["tick"]
+                    reported = json.loads(server.ask("ctl", "pause", "--json").stdout)["tick"]
                     status = json.loads(server.ask("ctl", "status", "--json").stdout)
-                    self.assertEqual(said, int(status["tick"]))
+                    self.assertEqual(reported, int(status["tick"]))
                     server.ask("ctl", "resume")
                 server.ask("ctl", "shutdown")
                 lua.wait(timeout=60)
@@ -118,9 +118,9 @@ class Ctl(unittest.TestCase):
                                         stderr=subprocess.PIPE, text=True)
             server.wait_for_tick(1)
             server.ask("ctl", "resume")
-            _, said = stepping.communicate(timeout=60)
+            _, stderr = stepping.communicate(timeout=60)
             self.assertEqual(1, stepping.returncode)
-            self.assertIn("OUT_OF_STATE", said)
+            self.assertIn("OUT_OF_STATE", stderr)
 
     def test_a_reset_that_cannot_be_placed_is_refused(self):
         box = 'size="1,1,1" movable="true" mass="1"'
@@ -161,7 +161,7 @@ class Ctl(unittest.TestCase):
 
 
 class Metrics(unittest.TestCase):
-    def test_say_whom_the_world_waits_for(self):
+    def test_report_the_missing_robots(self):
         with Server(VEHICLE, "--metrics", "127.0.0.1:0") as server:
             url = None
             for line in server.process.stderr:
@@ -169,7 +169,7 @@ class Metrics(unittest.TestCase):
                     url = "http://" + line.split("metrics at http://")[1].split('"')[0].strip()
                     break
             end, metrics = time.monotonic() + 60, ""
-            while not metrics and time.monotonic() < end:  # until the first copy is there
+            while not metrics and time.monotonic() < end:  # until the first copy is published
                 metrics = urllib.request.urlopen(url + "/metrics", timeout=60).read().decode()
                 time.sleep(0.01)
             status = json.load(urllib.request.urlopen(url + "/status", timeout=60))

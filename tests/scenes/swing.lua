@@ -1,4 +1,4 @@
--- Swings the arm at the speed of <params>, and says what step it is.
+-- Swings the arm at the speed of <params>, and logs the number of each step.
 
 local steps = 0
 

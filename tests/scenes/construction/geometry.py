@@ -1,4 +1,4 @@
-"""Shapes and poses of a construction scene: how deep they overlap, how far joints drift."""
+"""Shapes and poses of a construction scene: depth of overlaps, drift of joints."""
 
 import dataclasses
 import itertools
@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ElementTree
 
 
 class Pose:
-    """Of a link: its bottom centre and its rotation as three rows."""
+    """Pose of a link: the position of its bottom centre [m] and its rotation (w, x, y, z)."""
 
     __slots__ = ("position", "quaternion", "_rows")
 
@@ -31,8 +31,8 @@ class Pose:
     def apply(self, point):
         return tuple(p + dot(row, point) for p, row in zip(self.position, self.rows))
 
-    def into(self, point):
-        """A world point in this frame."""
+    def to_local(self, point):
+        """Coordinates of a world point in this frame [m]."""
         away = tuple(a - b for a, b in zip(point, self.position))
         return tuple(dot(self.column(i), away) for i in range(3))
 
@@ -40,7 +40,7 @@ class Pose:
 @dataclasses.dataclass
 class Link:
     kind: str          # box, cylinder, sphere
-    half: tuple        # extents [m]; of a cylinder radius, radius, height / 2
+    half: tuple        # half extents [m]; of a cylinder radius, radius, height / 2
     mass: float        # [kg]
 
 
@@ -65,7 +65,7 @@ def vector(text):
 
 
 def centre(pose, half_height=0.0275):
-    """The middle of a block, or of another link of that half height."""
+    """The centre of a block, or of another link with that half height [m]."""
     return pose.apply((0, 0, half_height))
 
 
@@ -83,7 +83,7 @@ def shape(link):
 
 
 def prototypes(path, root):
-    """Every prototype of the file with its definition: its own, or that of the model it names."""
+    """(prototype, definition) of each prototype in the file; the definition is itself or its model."""
     models = {}
     for include in root.iter("include"):
         included = ElementTree.parse(pathlib.Path(path).parent / include.get("file")).getroot()
@@ -117,7 +117,7 @@ def read_scene(path):
 
 
 def below_floor(link, pose):
-    """How deep the lowest point of a link is under z = 0 [m]; negative above."""
+    """Depth of a link's lowest point below z = 0 [m]; negative above."""
     middle = pose.apply((0, 0, link.half[2]))
     row = pose.rows[2]
     if link.kind == "box":
@@ -152,12 +152,12 @@ def box_overlap(a, pose_a, b, pose_b):
 def deepest_overlap(scene, poses):
     """(depth, names) of the deepest overlap with the floor or of two entities' links. Cylinders
     count against other links as the boxes around them; spheres are inside their blocks."""
-    deepest, who = 0.0, ""
+    deepest, names = 0.0, ""
     solid = [(key, link) for key, link in scene.links.items() if link.kind != "sphere"]
     for key, link in solid:
         depth = below_floor(link, poses[key])
         if depth > deepest:
-            deepest, who = depth, f"{'.'.join(key)} in the floor"
+            deepest, names = depth, f"{'.'.join(key)} in the floor"
     for block in scene.blocks:
         link, pose = scene.links[block], poses[block]
         for key, other in solid:
@@ -168,37 +168,37 @@ def deepest_overlap(scene, poses):
                 continue
             depth = box_overlap(link, pose, other, poses[key])
             if depth > deepest:
-                deepest, who = depth, f"{'.'.join(block)} and {'.'.join(key)}"
-    return deepest, who
+                deepest, names = depth, f"{'.'.join(block)} and {'.'.join(key)}"
+    return deepest, names
 
 
 # --- joints and motion ----------------------------------------------------------------------------
 
 
 class Joints:
-    """How far the two ends of each joint come apart. A prismatic joint's may along one line: that
-    of the parent's z axis, as the lift's."""
+    """Drift of joints: how far the two ends of each come apart. Ends of a prismatic joint may move along
+    the parent's z axis."""
 
     def __init__(self, scene, start):
         self.joints = scene.joints
-        self.start = {(entity, joint): start[entity, parent].into(start[entity, child].apply(at))
+        self.start = {(entity, joint): start[entity, parent].to_local(start[entity, child].apply(at))
                       for entity, joint, _, parent, child, _, at in scene.joints}
 
     def drift(self, poses):
-        most, who = 0.0, ""
+        most, name = 0.0, ""
         for entity, joint, kind, parent, child, _, at in self.joints:
-            now = poses[entity, parent].into(poses[entity, child].apply(at))
+            now = poses[entity, parent].to_local(poses[entity, child].apply(at))
             apart = [a - b for a, b in zip(now, self.start[entity, joint])]
             if kind == "prismatic":
                 apart[2] = 0
             if math.dist((0, 0, 0), apart) > most:
-                most, who = math.dist((0, 0, 0), apart), f"{entity}.{joint}"
-        return most, who
+                most, name = math.dist((0, 0, 0), apart), f"{entity}.{joint}"
+        return most, name
 
 
 def fastest(scene, before, now, seconds):
-    """(energy, name) of the link that moved with most kinetic energy between two ticks [J]."""
-    most, who = 0.0, ""
+    """(kinetic energy [J], name) of the link with the greatest one between two ticks."""
+    most, name = 0.0, ""
     for key, link in scene.links.items():
         if link.kind == "sphere" or key not in now:
             continue
@@ -206,5 +206,5 @@ def fastest(scene, before, now, seconds):
                           centre(now[key], link.half[2])) / seconds
         energy = link.mass * speed * speed / 2
         if energy > most:
-            most, who = energy, ".".join(key)
-    return most, who
+            most, name = energy, ".".join(key)
+    return most, name

@@ -1,8 +1,7 @@
-"""Judges a construction run by its trace and readings alone: where blocks came to rest, how deep anything went
-into anything, whether joints held, whether something was thrown.
+"""Judges a construction run by its trace and readings: final places of blocks, depths of overlaps, drift of
+joints, kinetic energies.
 
-Everything is worked out anew from the poses of the trace and the shapes of the scene; nothing of
-the server is asked.
+All is computed from the poses in the trace and the shapes in the scene, independently of the server.
 """
 
 import csv
@@ -18,12 +17,12 @@ BLOCK = 0.055  # [m]
 @dataclasses.dataclass
 class Limits:
     aside: float = 0.006      # upper block's centre from the lower one's, in x and in y [m]
-    height: float = 0.002     # of the step from block to block, beside 55 mm [m]
-    still: float = 0.0005     # farthest that a block moves while it should rest [m]
-    rest: float = 10.0        # how long it has to [s]
+    height: float = 0.002     # error of the step from block to block, nominally 55 mm [m]
+    still: float = 0.0005     # greatest movement of a block while it should rest [m]
+    rest: float = 10.0        # how long it must rest [s]
     depth: float = 0.001      # deepest interpenetration at any tick [m]
     drift: float = 0.0005     # of joints [m]
-    energy: float = 0.02      # of any single body's motion from tick to tick [J]
+    energy: float = 0.02      # kinetic energy of any link from tick to tick [J]
 
 
 @dataclasses.dataclass
@@ -62,9 +61,9 @@ def judge_motion(ticks, scene, limits, verdict):
     joints = geometry.Joints(scene, ticks[0][1])
     deepest = (0.0, "")
     for number, (time, poses) in enumerate(ticks):
-        depth, who = geometry.deepest_overlap(scene, poses)
+        depth, names = geometry.deepest_overlap(scene, poses)
         if depth > deepest[0]:
-            deepest = depth, f"{who} at {time:g} s"
+            deepest = depth, f"{names} at {time:g} s"
         drift, joint = joints.drift(poses)
         if drift > verdict.drift:
             verdict.drift = drift
@@ -89,7 +88,7 @@ def away(scene, poses):
 
 
 def judge_rest(ticks, scene, limits, verdict):
-    """Once the robots have left for good all blocks stand still, for ten seconds and more."""
+    """After the robots have left, all blocks rest for at least ten seconds."""
     end, last = ticks[-1]
     verdict.moved = 0.0
     for time, poses in reversed(ticks):
@@ -109,7 +108,7 @@ def judge_rest(ticks, scene, limits, verdict):
 
 
 def stands_on(lower, upper, limits, verdict):
-    """Of two blocks' poses: the second stands on the first."""
+    """Checks by their poses that the upper block stands on the lower one."""
     (lx, ly, lz), (ux, uy, uz) = geometry.centre(lower), geometry.centre(upper)
     aside, height = max(abs(ux - lx), abs(uy - ly)), uz - lz - BLOCK
     verdict.aside = max(verdict.aside, aside) if verdict.aside >= 0 else aside
@@ -121,14 +120,14 @@ def stands_on(lower, upper, limits, verdict):
 
 
 def judge_stack(ticks, scene, limits, verdict):
-    """Of two blocks one stands on the other."""
+    """One of the two blocks stands on the other."""
     last = ticks[-1][1]
     lower, upper = sorted((last[key] for key in scene.blocks), key=lambda pose: pose.position[2])
     stands_on(lower, upper, limits, verdict)
 
 
 def judge_staircase(ticks, scene, limits, verdict):
-    """Six blocks make columns of one, two and three in a row, rising, side by side."""
+    """Six blocks form columns of one, two and three blocks, in this order, side by side in a row."""
     last = ticks[-1][1]
     columns = []
     for pose in sorted((last[key] for key in scene.blocks), key=lambda pose: pose.position[2]):
@@ -158,7 +157,7 @@ def judge_staircase(ticks, scene, limits, verdict):
 
 
 def judge_devices(readings_file, scene, verdict):
-    """What was commanded at last: electromagnets off, and a carried block is red."""
+    """The last commands: electromagnets off, and a carried block is red."""
     last = {}
     with open(readings_file) as file:
         for line in file.readlines()[-len(scene.robots) - len(scene.blocks):]:

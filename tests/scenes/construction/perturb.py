@@ -4,11 +4,10 @@
     tests/scenes/construction/perturb.py --runs 100
     tests/scenes/construction/perturb.py --staircase --runs 20 --least 0.8
 
-Perturbation number K always is the same one. Of the stacking scene: the robot up to 3 cm farther
-back and turned by up to 3 degrees, both blocks up to 1 cm off in x and in y and turned by up to 3
-degrees, another seed, and half, once or twice the iterations. Of the staircase: the robot up to 2 cm
-off and turned by up to 5 degrees, every block up to 1.5 cm off and turned by up to 8 degrees, another
-seed.
+Perturbation number K is always the same. Stacking scene: the robot up to 3 cm farther back and turned
+by up to 3 degrees, both blocks shifted by up to 1 cm in x and in y and turned by up to 3 degrees, another
+seed, and half, the same or twice the number of iterations. Staircase: the robot shifted by up to 2 cm and
+turned by up to 5 degrees, every block shifted by up to 1.5 cm and turned by up to 8 degrees, another seed.
 """
 
 import argparse
@@ -39,31 +38,31 @@ def move(body, x=0.0, y=0.0, turn=0.0):
 
 
 def perturb(tree, number):
-    """Sets the scene up for a perturbation; 0 is the scene as it stands. Says what it did."""
+    """Applies a perturbation to the scene; 0 changes nothing. Returns a description."""
     if number == 0:
-        return "as it stands"
+        return "unchanged"
     draw = random.Random(number)
-    said = []
+    changes = []
     for entity in tree.getroot().find("arena").iter("prototype"):
         if entity.get("id").startswith("robot"):
             back, turn = draw.uniform(0, 0.03), draw.uniform(-3, 3)
             move(entity.find("body"), x=-back, turn=turn)
-            said.append(f"robot {1000 * back:.0f} mm back, {turn:+.1f} deg")
+            changes.append(f"robot {1000 * back:.0f} mm back, {turn:+.1f} deg")
         else:
             x, y, turn = draw.uniform(-0.01, 0.01), draw.uniform(-0.01, 0.01), draw.uniform(-3, 3)
             move(entity.find("body"), x, y, turn)
-            said.append(f"block {1000 * x:+.0f}, {1000 * y:+.0f} mm, {turn:+.1f} deg")
+            changes.append(f"block {1000 * x:+.0f}, {1000 * y:+.0f} mm, {turn:+.1f} deg")
     tree.find("framework/experiment").set("random_seed", str(1000 + number))
     engine = tree.find("physics_engines/dynamics3d")
     factor = draw.choice([0.5, 1, 2])
     engine.set("iterations", str(round(factor * int(engine.get("iterations")))))
-    said.append(f"iterations x {factor:g}")
-    return "; ".join(said)
+    changes.append(f"iterations x {factor:g}")
+    return "; ".join(changes)
 
 
 def perturb_staircase(tree, number):
     if number == 0:
-        return "as it stands"
+        return "unchanged"
     draw = random.Random(number)
     for entity in tree.getroot().find("arena").iter("prototype"):
         off, turn = (0.02, 5) if entity.get("id").startswith("robot") else (0.015, 8)
@@ -74,13 +73,13 @@ def perturb_staircase(tree, number):
 
 
 def run(number, options=(), staircase=False, keep=None):
-    """Runs and judges one perturbation: (verdict, what was done, lines that controllers logged)."""
+    """Runs and judges one perturbation: (verdict, description of the changes, log lines)."""
     scene = STAIRCASE if staircase else STACKING
     with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
         shutil.copytree(ROOT / "scenes", pathlib.Path(folder) / "scenes")
         copy = pathlib.Path(folder) / scene.relative_to(ROOT)
         tree = ElementTree.parse(copy)
-        said = (perturb_staircase if staircase else perturb)(tree, number)
+        changes = (perturb_staircase if staircase else perturb)(tree, number)
         tree.write(copy)
         trace, readings = (pathlib.Path(folder) / name for name in ("trace.csv", "readings.jsonl"))
         outcome = subprocess.run(
@@ -94,18 +93,18 @@ def run(number, options=(), staircase=False, keep=None):
             verdict = (judge.judge_stairs if staircase else judge.judge)(copy, trace, readings)
         log = outcome.stdout.splitlines()
         if log and not log[-1].split("] ")[-1].startswith("done"):
-            verdict.faults.append(f"the last it said was: {log[-1]}")
+            verdict.faults.append(f"the last log line is not 'done': {log[-1]}")
         if keep and not verdict.good:
             shutil.copytree(folder, pathlib.Path(keep) / str(number), dirs_exist_ok=True)
             (pathlib.Path(keep) / str(number) / "log").write_text(outcome.stdout)
-        return verdict, said, log
+        return verdict, changes, log
 
 
-def table_line(number, verdict, said):
+def table_line(number, verdict, changes):
     return (f"{number:3d} {'good' if verdict.good else 'BAD '} "
             f"aside {1000 * verdict.aside:5.2f} mm, step {1000 * verdict.height:+.3f} mm, "
             f"moved {1000 * verdict.moved:.3f} mm, depth {1000 * verdict.depth:.3f} mm, "
-            f"drift {1000 * verdict.drift:.4f} mm, energy {1000 * verdict.energy:.2f} mJ | {said}"
+            f"drift {1000 * verdict.drift:.4f} mm, energy {1000 * verdict.energy:.2f} mJ | {changes}"
             + "".join(f"\n      {fault}" for fault in verdict.faults))
 
 
@@ -115,11 +114,11 @@ def main():
     parser.add_argument("--runs", type=int, default=100)
     parser.add_argument("--first", type=int, default=1, help="number of the first perturbation")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--least", type=float, default=0.95, help="share that has to be good")
+    parser.add_argument("--least", type=float, default=0.95, help="least share of good runs")
     parser.add_argument("--staircase", action="store_true", help="the staircase, not the stack")
     parser.add_argument("--controller", action="append", default=[], metavar="ID=CMD",
-                        help="handed on to ziggurat run")
-    parser.add_argument("--keep", metavar="DIR", help="keep scene and trace of runs that are bad")
+                        help="passed on to ziggurat run")
+    parser.add_argument("--keep", metavar="DIR", help="keep scene and trace of bad runs")
     arguments = parser.parse_args()
     options = [f"--controller={controller}" for controller in arguments.controller]
     numbers = range(arguments.first, arguments.first + arguments.runs)
@@ -128,8 +127,8 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         runs = pool.map(
             lambda number: run(number, options, arguments.staircase, arguments.keep), numbers)
-        for number, (verdict, said, _) in zip(numbers, runs):
-            print(table_line(number, verdict, said), flush=True)
+        for number, (verdict, changes, _) in zip(numbers, runs):
+            print(table_line(number, verdict, changes), flush=True)
             good += verdict.good
             if verdict.good:
                 for name in ("aside", "height", "moved", "depth", "drift", "energy"):

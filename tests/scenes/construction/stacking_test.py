@@ -1,4 +1,4 @@
-"""A dozen of perturb.py's perturbations of the stacking scene, and what the judge must refuse."""
+"""Twelve of perturb.py's perturbations of the stacking scene, and bad runs that the judge must find."""
 
 import concurrent.futures
 import json
@@ -19,10 +19,10 @@ CPP = f"--controller=robot={perturb.BIN / 'example_stacking'}"
 
 class Stacking(unittest.TestCase):
     def assert_good(self, outcome):
-        verdict, said, log = outcome
-        self.assertEqual(verdict.faults, [], f"{said}\n" + "\n".join(log))
+        verdict, changes, log = outcome
+        self.assertEqual(verdict.faults, [], f"{changes}\n" + "\n".join(log))
 
-    def test_a_dozen_perturbations(self):
+    def test_twelve_perturbations(self):
         numbers = list(range(0, 12))
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             for number, outcome in zip(numbers, pool.map(perturb.run, numbers)):
@@ -36,7 +36,7 @@ class Stacking(unittest.TestCase):
 
 
 class Blocks(unittest.TestCase):
-    def test_two_that_are_one_centimetre_apart_pull_together_and_rest(self):
+    def test_two_blocks_at_a_gap_of_one_centimetre_attract_and_come_to_rest(self):
         """The report's section 3.1: on a floor of low friction."""
         with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
             shutil.copytree(perturb.ROOT / "scenes", pathlib.Path(folder) / "scenes")
@@ -62,8 +62,8 @@ class Blocks(unittest.TestCase):
         self.assertLess(max(abs(a - b) for a, b in zip(second, before)), 1e-5, "at rest")
 
 
-class Refused(unittest.TestCase):
-    """Runs that end too early, or are not what they should be, are not good."""
+class BadRuns(unittest.TestCase):
+    """The judge finds the faults of runs that ended too early or went wrong."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="zc", dir="/tmp"))
@@ -77,7 +77,7 @@ class Refused(unittest.TestCase):
                        env=dict(os.environ, XDG_RUNTIME_DIR=str(self.folder)))
         return trace, readings
 
-    def test_a_block_that_is_still_carried(self):
+    def test_a_block_still_carried(self):
         verdict = judge.judge(perturb.STACKING, *self.run_for(18))
         text = "\n".join(verdict.faults)
         self.assertRegex(text, "aside")
@@ -85,15 +85,15 @@ class Refused(unittest.TestCase):
         self.assertRegex(text, "still stands over a block")
         self.assertRegex(text, "electromagnets are on")
 
-    def test_a_rest_that_is_too_short(self):
+    def test_too_short_a_rest(self):
         verdict = judge.judge(perturb.STACKING, *self.run_for(36))
         self.assertRegex("\n".join(verdict.faults), "away for .* s only")
 
-    def test_a_trace_in_which_something_jumps(self):
+    def test_a_jump_in_the_trace(self):
         trace, readings = self.run_for(60)
         lines = trace.read_text().splitlines(keepends=True)
-        # At one tick the lower block stands 20 mm aside and 3 mm deep in the floor, and one of its
-        # magnets stays behind.
+        # At one tick the lower block is shifted by 20 mm and lies 3 mm deep in the floor; one of its
+        # magnets stays in place.
         for i, line in enumerate(lines):
             tick, time, entity, link, x, y, z, *rest = line.split(",")
             if tick == "100" and entity == "block2" and link != "sphere1":
@@ -104,13 +104,13 @@ class Refused(unittest.TestCase):
         self.assertRegex(text, r"3\.00 mm deep: block2\.base in the floor")
         self.assertRegex(text, r"joint block2\.socket1 drifted 20\.\d* mm")
 
-    def test_a_staircase_of_columns_that_are_not_there(self):
+    def test_a_staircase_without_columns(self):
         verdict = judge.judge_stairs(perturb.STAIRCASE, *self.run_for(2, perturb.STAIRCASE))
         self.assertRegex("\n".join(verdict.faults), r"columns of \[1, 1, 1, 1, 1, 1\] blocks")
 
 
 class Transports(unittest.TestCase):
-    """The robot's controller comes over TCP, the blocks' over a Unix socket, at the same time."""
+    """The robot's controller connects over TCP and the blocks' over a Unix socket, at the same time."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="zc", dir="/tmp"))

@@ -1,8 +1,8 @@
 """A controller that can be disturbed, as a process that is forked from the test.
 
-What it commands follows from the tick and what its robot senses, so that one that comes back goes on
-where the last one was. Its target also counts what it hears: a radio message that is lost, or sent
-twice, shows in the robots' poses.
+Its commands depend only on the tick and on what its robot senses, so a restarted controller continues
+where the last one stopped. Its joint target also depends on the received radio messages: one that is
+lost, or sent twice, changes the robots' poses.
 """
 
 import math
@@ -18,31 +18,31 @@ from zmtp import RawPeer
 
 ROBOTS = 16
 
-# What a controller does to its own connection when it is told to.
+# What a controller does to its own connection when the test orders it.
 GARBAGE, RUDE, FLOOD, SLOW = range(1, 5)
 
 
 class Board:
-    """What the test and its controllers share."""
+    """Memory that the test and its controllers share; one element per controller."""
 
     def __init__(self):
         processes = multiprocessing.get_context("fork")
-        self.ticks = processes.Array("q", [-1] * ROBOTS, lock=False)  # each one's last
+        self.ticks = processes.Array("q", [-1] * ROBOTS, lock=False)  # the last tick
         self.orders = processes.Array("q", [0] * ROBOTS, lock=False)  # what to do, once
-        self.noticed = processes.Array("q", [0] * ROBOTS, lock=False)  # other than ticks and ends
-        self.missed = processes.Array("q", [0] * ROBOTS, lock=False)  # deadlines
-        self.first_missed = processes.Array("q", [-1] * ROBOTS, lock=False)  # tick
+        self.noticed = processes.Array("q", [0] * ROBOTS, lock=False)  # unexpected pauses and late answers
+        self.missed = processes.Array("q", [0] * ROBOTS, lock=False)  # missed deadlines
+        self.first_missed = processes.Array("q", [-1] * ROBOTS, lock=False)  # tick of the first miss, or -1
         self.resumed = processes.Array("q", [0] * ROBOTS, lock=False)
         self.ended = processes.Array("q", [0] * ROBOTS, lock=False)
 
 
-def drive(index, endpoint, folder, board, talks):
-    """Drives robot `index` to the end of the run, coming back whenever its connection is gone."""
+def control(index, endpoint, folder, board, talks):
+    """Controls robot `index` to the end of the run. Reconnects whenever its connection is lost."""
     token = folder / f"token{index}"
     while True:
         try:
             session = _begin(index, endpoint, token)
-            if _live(index, session, board, talks):
+            if _answer_ticks(index, session, board, talks):
                 board.ended[index] = 1
                 session.close()
                 return
@@ -62,14 +62,14 @@ def _begin(index, endpoint, token):
 
 
 def _write_whole(path, data):
-    """A process that is killed leaves the file whole, or not at all."""
+    """Atomic: a killed process leaves the whole file or no file."""
     fresh = path.with_suffix(".new")
     fresh.write_bytes(data)
     os.replace(fresh, path)
 
 
-def _live(index, session, board, talks):
-    """Answers ticks; false if the session is to be taken up anew."""
+def _answer_ticks(index, session, board, talks):
+    """Answers ticks. Returns False if the session must be resumed over a new connection."""
     [robot] = session.robots
     for tick in session:
         board.ticks[index] = tick.number
@@ -87,9 +87,9 @@ def _live(index, session, board, talks):
 
 
 def _command(robot, tick, index, talks):
-    hinge, radio = robot.joints["hinge"], robot.radios["mouth"]
-    heard = sum(struct.unpack("<qq", payload)[0] for payload in radio.received)
-    hinge.target = 0.8 * math.sin(0.05 * tick + index) - 0.3 * hinge.encoder + 1e-3 * (heard % 7)
+    hinge, radio = robot.joints["hinge"], robot.radios["transceiver"]
+    received = sum(struct.unpack("<qq", payload)[0] for payload in radio.received)
+    hinge.target = 0.8 * math.sin(0.05 * tick + index) - 0.3 * hinge.encoder + 1e-3 * (received % 7)
     if talks and (tick + index) % 8 == 0:
         radio.send(struct.pack("<qq", tick + index, index))
 
@@ -98,7 +98,7 @@ def _command(robot, tick, index, talks):
 
 
 def _misbehave(order, session, tick):
-    """False if the session is over, and has to be taken up."""
+    """Returns False if the session must be resumed over a new connection."""
     socket = session._connection.socket
     draw = random.Random(tick)
     if order == GARBAGE:
@@ -124,7 +124,7 @@ def _misbehave(order, session, tick):
 
 
 def _garbage(draw, count):
-    """Messages that are none: noise, several frames, half a command, nothing, the other form."""
+    """Invalid messages: noise, two frames, half a command, large noise, JSON in a binary session."""
     whole = v1.ClientMessage(command=v1.Command(tick=1, joint_targets=[1.0] * 20)).SerializeToString()
     for i in range(count):
         yield ([b"\xff" + draw.randbytes(200)], [whole, whole], [whole[:len(whole) // 2]],
@@ -132,7 +132,7 @@ def _garbage(draw, count):
 
 
 def _error(socket):
-    """The code of the next Error; other messages don't matter."""
+    """The code of the next Error. Skips other messages."""
     while True:
         message = v1.ServerMessage.FromString(socket.recv())
         if message.WhichOneof("message") == "error":
@@ -140,16 +140,16 @@ def _error(socket):
 
 
 def _command_slowly(session):
-    """Takes up the session over a connection of its own, byte by byte, and hangs up in the middle of
-    its command."""
+    """Resumes the session over a new connection, byte by byte, and closes it in the middle of its
+    command."""
     hello = v1.Hello(version=v1.Version(major=1), role=v1.ROLE_CONTROLLER, robots=["*"],
                      client_name="slow", session_token=session.token, takeover=True)
     command = v1.ClientMessage(command=v1.Command(tick=session.tick.number)).SerializeToString()
     with RawPeer(session.endpoint, drip=0.001) as peer:
-        peer.say(v1.ClientMessage(hello=hello).SerializeToString())
-        for due in ("welcome", "observation"):
-            kind = v1.ServerMessage.FromString(peer.hear()).WhichOneof("message")
-            if kind != due:
-                raise AssertionError(f"expected {due}, got {kind}")
-        peer.say_half(command)
+        peer.send_message(v1.ClientMessage(hello=hello).SerializeToString())
+        for expected in ("welcome", "observation"):
+            kind = v1.ServerMessage.FromString(peer.receive_message()).WhichOneof("message")
+            if kind != expected:
+                raise AssertionError(f"expected {expected}, got {kind}")
+        peer.send_half(command)
         time.sleep(0.05)

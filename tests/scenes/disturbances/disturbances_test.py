@@ -1,4 +1,4 @@
-"""Sixteen controllers, each of which is disturbed, in runs that must not show it.
+"""Sixteen controllers, each of them disturbed. The results of the runs must not change.
 
 disturbances_test.py         1000 ticks, a disturbance for each controller
 disturbances_test.py --full  10 000 ticks, every disturbance for each controller
@@ -17,14 +17,14 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import controller  # noqa: E402
-import strangers  # noqa: E402
+import hostile_peers  # noqa: E402
 from controller import FLOOD, GARBAGE, ROBOTS, RUDE, SLOW, Board  # noqa: E402
 from harness import FINISHED, SceneTest  # noqa: E402
 
 IS_FULL = "--full" in sys.argv
 TICKS = 10_000 if IS_FULL else 1000
 LIMIT = 1200 if IS_FULL else 120  # [s] of wall time for a run: more is a hang
-STOPPED_TICKS = 4  # that a controller with a deadline misses
+STOPPED_TICKS = 4  # so many ticks a stopped controller with a deadline misses
 FORK = multiprocessing.get_context("fork")
 
 ACTUATORS = """<actuators>
@@ -38,7 +38,7 @@ ACTUATORS = """<actuators>
 
 
 def scene():
-    """Robots of one arm each on the floor, a metre apart: they hear each other, and never touch."""
+    """Robots with one arm each on the floor, 1 m apart: within radio range, never in contact."""
     controllers, robots = [], []
     for i in range(ROBOTS):
         controllers.append(f"""
@@ -61,7 +61,9 @@ def scene():
         </joint>
       </joints>
       <devices>
-        <radios medium="air"><radio id="mouth" anchor="base" position="0, 0, 0.1" range="1.5" /></radios>
+        <radios medium="air">
+          <radio id="transceiver" anchor="base" position="0, 0, 0.1" range="1.5" />
+        </radios>
       </devices>
     </prototype>""")
     return f"""<argos-configuration>
@@ -78,56 +80,56 @@ def scene():
 """
 
 
-class Crowd:
-    """A server and its controllers, for the length of a run."""
+class Run:
+    """A server and its sixteen controllers during one run."""
 
     def __init__(self, test, name, *options, talks=True):
         self.test, self.name, self.talks = test, name, talks
         self.folder = test.folder / name
         self.folder.mkdir()
         self.board = Board()
-        with open(self.folder / "stderr", "w", encoding="utf-8") as words:
+        with open(self.folder / "stderr", "w", encoding="utf-8") as stderr:
             self.server = test.start(
                 "serve", test.scene, "--endpoint", "tcp://127.0.0.1:*", "--ticks", TICKS,
                 "--hash-file", self.folder / "hashes", "--trace", self.folder / "trace", *options,
-                limit=LIMIT, stderr=words)
+                limit=LIMIT, stderr=stderr)
         self.endpoint = self.server.stdout.readline().split()[1]
         self.others = []
-        self.controllers = [self.fork(controller.drive, *self.for_controller(i))
+        self.controllers = [self.fork(controller.control, *self.arguments_of(i))
                             for i in range(ROBOTS)]
 
-    def for_controller(self, i):
+    def arguments_of(self, i):
         return i, self.endpoint, self.folder, self.board, self.talks
 
     def fork(self, function, *arguments):
         process = FORK.Process(target=function, args=arguments, daemon=True)
         process.start()
         self.others.append(process)
-        self.test.addCleanup(process.kill)  # one that is stopped would outlive a test that fails
+        self.test.addCleanup(process.kill)  # a stopped process would outlive a failed test
         return process
 
     def signal(self, i, number):
         os.kill(self.controllers[i].pid, number)
 
-    def start_again(self, i):
-        self.controllers[i] = self.fork(controller.drive, *self.for_controller(i))
+    def restart(self, i):
+        self.controllers[i] = self.fork(controller.control, *self.arguments_of(i))
 
     def wait(self, is_true, what):
         end = time.monotonic() + LIMIT
         while not is_true():
             if self.server.poll() is not None or time.monotonic() > end:
-                self.test.fail(f"no {what}\n{self.words()}")
+                self.test.fail(f"no {what}\n{self.log()}")
             time.sleep(0.002)
 
     def wait_for_tick(self, tick, of):
         self.wait(lambda: self.board.ticks[of] >= tick, f"tick {tick}")
 
-    def words(self):
-        """All that the server said."""
+    def log(self):
+        """All that the server has written to stderr."""
         return (self.folder / "stderr").read_text()
 
     def finish(self):
-        """Waits for the run's end, which must be a good one."""
+        """Waits for the run's end and expects the exit code of a finished run."""
         try:
             code = self.server.wait(LIMIT)
         finally:
@@ -139,7 +141,7 @@ class Crowd:
                     process.kill()
                 process.join()
             self.server.stdout.close()
-        self.test.assertEqual(code, FINISHED, self.words())
+        self.test.assertEqual(code, FINISHED, self.log())
         return self
 
     def memory(self):
@@ -151,7 +153,7 @@ class Crowd:
         return (self.folder / "hashes").read_text().splitlines()
 
     def differences(self, other):
-        """By robot, the first tick at which a pose of it is another."""
+        """Robot -> the first tick at which one of its poses differs."""
         found = {}
         with open(self.folder / "trace") as ours, open(other.folder / "trace") as theirs:
             for one, two in zip(ours, theirs, strict=True):
@@ -170,27 +172,28 @@ class Crowd:
 class Disturbances(SceneTest):
     def setUp(self):
         super().setUp()
-        self.scene = self.write("crowd.argos", scene())
+        self.scene = self.write("sixteen_arms.argos", scene())
         self.begun = time.monotonic()
 
-    def say(self, text):
+    def report(self, text):
         print(f"  {time.monotonic() - self.begun:6.1f} s  {text}", flush=True)
 
     def undisturbed(self, **options):
-        crowd = Crowd(self, "undisturbed", **options).finish()
-        self.assertEqual([0] * ROBOTS, list(crowd.board.noticed))
-        self.assertEqual([1] * ROBOTS, list(crowd.board.ended))
-        self.say(f"undisturbed: {crowd.hashes()[-1]}")
-        return crowd
+        run = Run(self, "undisturbed", **options).finish()
+        self.assertEqual([0] * ROBOTS, list(run.board.noticed))
+        self.assertEqual([1] * ROBOTS, list(run.board.ended))
+        self.report(f"undisturbed: {run.hashes()[-1]}")
+        return run
 
-    # ---- who waits for ever loses nothing ----
+    # ---- a run without deadlines loses nothing ----
 
-    def test_a_world_that_waits_does_not_notice(self):
-        """Policy WAIT and a lease: every tick's hash is that of the undisturbed run."""
+    def test_without_deadlines_every_hash_stays_the_same(self):
+        """Policy WAIT and a lease: the hash of every tick equals that of the undisturbed run."""
         expected = self.undisturbed()
-        crowd = Crowd(self, "disturbed", "--lease", "60")
-        for function in strangers.slowloris, strangers.noise, strangers.never_reads:
-            crowd.fork(strangers.annoy, function, crowd.endpoint)
+        run = Run(self, "disturbed", "--lease", "60")
+        for function in (hostile_peers.slowloris, hostile_peers.noise,
+                         hostile_peers.never_reads):
+            run.fork(hostile_peers.run_until_server_ends, function, run.endpoint)
         kinds = (self.stop, self.kill, GARBAGE, RUDE, FLOOD, SLOW)
         rounds = len(kinds) if IS_FULL else 1
         apart = TICKS * 9 // 10 // (rounds * ROBOTS)
@@ -198,38 +201,38 @@ class Disturbances(SceneTest):
         for number in range(rounds * ROBOTS):
             i = number % ROBOTS
             kind = kinds[(number + number // ROBOTS) % len(kinds)]
-            crowd.wait_for_tick(apart * (number + 1), of=i)
-            peak = crowd.memory()
+            run.wait_for_tick(apart * (number + 1), of=i)
+            peak = run.memory()
             if callable(kind):
-                kind(crowd, i)
+                kind(run, i)
             else:
-                crowd.board.orders[i] = kind
+                run.board.orders[i] = kind
             resumed[i] += kind in (self.kill, RUDE, FLOOD, SLOW)
-        crowd.finish()
-        self.say(f"the server had {peak / 1024:.0f} MB at its most")
-        self.say(f"disturbed:   {crowd.hashes()[-1]}, {rounds * ROBOTS} disturbances")
-        self.assertEqual([0] * ROBOTS, list(crowd.board.noticed), crowd.words())
-        self.assertEqual(resumed, list(crowd.board.resumed))
-        self.assertEqual([1] * ROBOTS, list(crowd.board.ended))
-        self.assertEqual(expected.hashes(), crowd.hashes())
+        run.finish()
+        self.report(f"the server had {peak / 1024:.0f} MB at most")
+        self.report(f"disturbed:   {run.hashes()[-1]}, {rounds * ROBOTS} disturbances")
+        self.assertEqual([0] * ROBOTS, list(run.board.noticed), run.log())
+        self.assertEqual(resumed, list(run.board.resumed))
+        self.assertEqual([1] * ROBOTS, list(run.board.ended))
+        self.assertEqual(expected.hashes(), run.hashes())
 
-    def stop(self, crowd, i):
-        """The world stands while a controller does."""
-        crowd.signal(i, signal.SIGSTOP)
+    def stop(self, run, i):
+        """The world waits while a controller is stopped."""
+        run.signal(i, signal.SIGSTOP)
         time.sleep(0.2)
-        # Its own tick may be answered, but not the one after.
-        self.assertLessEqual(max(crowd.board.ticks), crowd.board.ticks[i] + 1)
-        crowd.signal(i, signal.SIGCONT)
+        # Its current tick may be answered already, but not the next one.
+        self.assertLessEqual(max(run.board.ticks), run.board.ticks[i] + 1)
+        run.signal(i, signal.SIGCONT)
 
-    def kill(self, crowd, i):
-        crowd.signal(i, signal.SIGKILL)
-        crowd.controllers[i].join()
-        crowd.start_again(i)
+    def kill(self, run, i):
+        run.signal(i, signal.SIGKILL)
+        run.controllers[i].join()
+        run.restart(i)
 
-    # ---- who has a deadline loses what its policy says ----
+    # ---- with deadlines, only the disturbed robots are affected ----
 
-    def test_others_are_as_ever(self):
-        """HOLD, ZERO and DROP: only the disturbed robots move otherwise, and not before."""
+    def test_with_deadlines_only_disturbed_robots_move_differently(self):
+        """HOLD, ZERO and DROP: only disturbed robots move differently, and only after the disturbance."""
         expected = self.undisturbed(talks=False)
         for turn in range(4 if IS_FULL else 1):
             self.disturb_under_policies(expected, [(i + turn) % 4 for i in range(ROBOTS)], turn)
@@ -238,45 +241,45 @@ class Disturbances(SceneTest):
         """Roles: 0 waits; 1 holds and 2 zeroes while it is stopped; 3 is killed and dropped."""
         texts = (None, "hold:200", "zero:200", "drop:200:20")
         options = [f"--deadline=c{i}={texts[role]}" for i, role in enumerate(roles) if role]
-        crowd = Crowd(self, f"policies{turn}", *options, talks=False)
+        run = Run(self, f"policies{turn}", *options, talks=False)
         begun = {}
         apart = TICKS * 8 // 10 // ROBOTS
         for i, role in enumerate(roles):
-            crowd.wait_for_tick(apart * (i + 1), of=roles.index(0))
+            run.wait_for_tick(apart * (i + 1), of=roles.index(0))
             if role == 0:
                 continue
-            begun[f"robot{i}"] = max(crowd.board.ticks)
-            crowd.signal(i, signal.SIGKILL if role == 3 else signal.SIGSTOP)
+            begun[f"robot{i}"] = max(run.board.ticks)
+            run.signal(i, signal.SIGKILL if role == 3 else signal.SIGSTOP)
             if role != 3:
-                crowd.wait_for_tick(max(crowd.board.ticks) + STOPPED_TICKS, of=roles.index(0))
-                crowd.signal(i, signal.SIGCONT)
-        crowd.finish()
-        differences = crowd.differences(expected)
-        self.say(f"policies: robots that moved otherwise, and from which tick on: {differences}")
-        self.assertEqual(set(begun), set(differences), crowd.words())
+                run.wait_for_tick(max(run.board.ticks) + STOPPED_TICKS, of=roles.index(0))
+                run.signal(i, signal.SIGCONT)
+        run.finish()
+        differences = run.differences(expected)
+        self.report(f"policies: robots that moved differently, and their first such tick: {differences}")
+        self.assertEqual(set(begun), set(differences), run.log())
         for i, role in enumerate(roles):
-            if crowd.board.first_missed[i] >= 0:  # on a busy machine, one before it was disturbed
-                begun[f"robot{i}"] = crowd.board.first_missed[i]
+            if run.board.first_missed[i] >= 0:  # on a busy machine it may miss one earlier
+                begun[f"robot{i}"] = run.board.first_missed[i]
             if role:
                 self.assertGreater(differences[f"robot{i}"], begun[f"robot{i}"], i)
-            self.judge(crowd, i, role)
+            self.judge(run, i, role)
 
-    def judge(self, crowd, i, role):
-        """What a controller of this role was told, and where its robot stands."""
-        self.assertEqual(role != 3, bool(crowd.board.ended[i]), i)
+    def judge(self, run, i, role):
+        """Checks what a controller of this role noticed, and whether its robot's arm moved at the end."""
+        self.assertEqual(role != 3, bool(run.board.ended[i]), i)
         if role == 0:
-            self.assertEqual(0, crowd.board.missed[i], i)
+            self.assertEqual(0, run.board.missed[i], i)
         if role in (1, 2):
-            self.assertGreaterEqual(crowd.board.missed[i], STOPPED_TICKS - 1, i)
-        self.assertEqual(0, crowd.board.noticed[i], i)
-        dropped = re.search(rf"robot{i} \(controller 'c{i}'\) is dropped at tick (\d+)", crowd.words())
-        self.assertEqual(role == 3, bool(dropped), crowd.words())
-        last = crowd.arm_at_the_end(i, 10)
+            self.assertGreaterEqual(run.board.missed[i], STOPPED_TICKS - 1, i)
+        self.assertEqual(0, run.board.noticed[i], i)
+        dropped = re.search(rf"robot{i} \(controller 'c{i}'\) is dropped at tick (\d+)", run.log())
+        self.assertEqual(role == 3, bool(dropped), run.log())
+        last = run.arm_at_the_end(i, 10)
         travel = max(abs(a - b) for a, b in zip(last[0], last[-1]))
-        if role == 3:  # but for what its contacts with the floor creep
-            self.assertLess(travel, 1e-4, "a dropped robot's arm stands")
+        if role == 3:  # it still creeps a little on its contacts with the floor
+            self.assertLess(travel, 1e-4, "the arm of a dropped robot stands still")
         else:
-            self.assertGreater(travel, 1e-3, "an arm whose controller is there moves")
+            self.assertGreater(travel, 1e-3, "an arm with a controller moves")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Thousands of peers come and go, politely and not; the server is as before."""
+"""Thousands of peers connect and disconnect, correctly and not; the server leaks no file and no memory."""
 
 import os
 import pathlib
@@ -18,73 +18,74 @@ from ziggurat import protocol_pb2 as v1  # noqa: E402
 
 WARM_UP = 1000
 CONNECTIONS = 5000
-# [KiB] of memory over all of them, 420 bytes each: for a while it is remembered how much each said.
+# [KiB] of memory over all connections, 420 bytes each: the server keeps each peer's message rate for a
+# while.
 MOST_GROWTH = 2048
 
 
 def hello(role=v1.ROLE_CONTROLLER, **fields):
     return v1.ClientMessage(hello=v1.Hello(
-        version=v1.Version(major=1), role=role, client_name="passer-by" * 20, **fields)
+        version=v1.Version(major=1), role=role, client_name="short-lived" * 20, **fields)
         ).SerializeToString()
 
 
 def polite(endpoint, number):
-    """A supervisor that asks and leaves. (Robots of a controller that leaves would be gone.)"""
+    """A supervisor that sends a request and leaves. (A controller that leaves takes its robots along.)"""
     with RawPeer(endpoint) as peer:
-        peer.say(hello(role=v1.ROLE_SUPERVISOR))
-        hear(peer, "welcome")
-        peer.say(ask(number))
-        hear(peer, "response")
-        peer.say(v1.ClientMessage(leave=v1.Leave(reason=v1.Leave.DONE)).SerializeToString())
+        peer.send_message(hello(role=v1.ROLE_SUPERVISOR))
+        expect(peer, "welcome")
+        peer.send_message(status_request(number))
+        expect(peer, "response")
+        peer.send_message(v1.ClientMessage(leave=v1.Leave(reason=v1.Leave.DONE)).SerializeToString())
 
 
 def lost(endpoint, number):
-    """A controller that takes the robots of the one before; its connection breaks, and nobody takes
-    up its session."""
+    """A controller that takes over the robots of the one before. Its connection breaks, and no client
+    resumes its session."""
     with RawPeer(endpoint) as peer:
-        peer.say(hello(robots=[f"r{number % 3}"], takeover=True))
-        hear(peer, "welcome")
-        break_off(peer.socket)
+        peer.send_message(hello(robots=[f"r{number % 3}"], takeover=True))
+        expect(peer, "welcome")
+        reset(peer.socket)
 
 
 def lost_in_the_tick(endpoint, number):
-    """The same with all robots: the tick begins, and stands again."""
+    """The same with all robots: the tick begins, and then waits again."""
     with RawPeer(endpoint) as peer:
-        peer.say(hello(robots=["*"], takeover=True))
-        hear(peer, "welcome", "observation")
-        peer.say(v1.ClientMessage(command=v1.Command(tick=2**40)).SerializeToString())
-        hear(peer, "error")
+        peer.send_message(hello(robots=["*"], takeover=True))
+        expect(peer, "welcome", "observation")
+        peer.send_message(v1.ClientMessage(command=v1.Command(tick=2**40)).SerializeToString())
+        expect(peer, "error")
 
 
 def refused(endpoint, number):
     with RawPeer(endpoint) as peer:
-        peer.say(hello(robots=[f"unknown{number}"]))
-        hear(peer, "refusal")
+        peer.send_message(hello(robots=[f"unknown{number}"]))
+        expect(peer, "refusal")
 
 
 def observer(endpoint, number):
-    """Hangs up while the answer is under way."""
+    """Disconnects before the answer arrives."""
     with RawPeer(endpoint) as peer:
-        peer.say(hello(role=v1.ROLE_OBSERVER))
-        hear(peer, "welcome")
-        peer.say(ask(number))
+        peer.send_message(hello(role=v1.ROLE_OBSERVER))
+        expect(peer, "welcome")
+        peer.send_message(status_request(number))
 
 
-def vandal(endpoint, number):
+def malformed(endpoint, number):
     with RawPeer(endpoint) as peer:
-        peer.say(b"\xff" + number.to_bytes(8, "big"))
-        hear(peer, "error")
-        peer.say_half(hello(robots=["*"]))
+        peer.send_message(b"\xff" + number.to_bytes(8, "big"))
+        expect(peer, "error")
+        peer.send_half(hello(robots=["*"]))
 
 
-def nothing(endpoint, number):
+def no_bytes(endpoint, number):
     connect(endpoint).close()
 
 
 def half_a_greeting(endpoint, number):
-    stranger = connect(endpoint)
-    stranger.sendall(GREETING[:number % len(GREETING)])
-    break_off(stranger)
+    connection = connect(endpoint)
+    connection.sendall(GREETING[:number % len(GREETING)])
+    reset(connection)
 
 
 def connect(endpoint):
@@ -92,28 +93,28 @@ def connect(endpoint):
     return socket.create_connection((host, int(port)), timeout=20)
 
 
-def ask(number):
+def status_request(number):
     return v1.ClientMessage(
         request=v1.Request(id=number, status=v1.StatusRequest())).SerializeToString()
 
 
-def hear(peer, *kinds):
-    """Messages of these kinds, one after the other, and nothing else once the world is there."""
-    for due in kinds:
+def expect(peer, *kinds):
+    """Receives messages of exactly these kinds, in this order; skips Loading."""
+    for expected in kinds:
         kind = "loading"
         while kind == "loading":
-            kind = v1.ServerMessage.FromString(peer.hear()).WhichOneof("message")
-        if kind != due:
-            raise AssertionError(f"expected {due}, got {kind}")
+            kind = v1.ServerMessage.FromString(peer.receive_message()).WhichOneof("message")
+        if kind != expected:
+            raise AssertionError(f"expected {expected}, got {kind}")
 
 
-def break_off(connection):
-    """Resets the connection, as a machine that fails."""
+def reset(connection):
+    """Resets the TCP connection, as after a crash of the peer's machine."""
     connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
     connection.close()
 
 
-PEERS = (polite, lost, lost_in_the_tick, refused, observer, vandal, nothing, half_a_greeting)
+PEERS = (polite, lost, lost_in_the_tick, refused, observer, malformed, no_bytes, half_a_greeting)
 
 
 class Leaks(SceneTest):
@@ -123,22 +124,22 @@ class Leaks(SceneTest):
         memory = next(line for line in status.splitlines() if line.startswith("VmRSS"))
         return len(os.listdir(f"/proc/{process.pid}/fd")), int(memory.split()[1])
 
-    def come_and_go(self, endpoint, numbers):
+    def connect_and_leave(self, endpoint, numbers):
         for number in numbers:
             PEERS[number % len(PEERS)](endpoint, number)
 
-    def test_thousands_come_and_go(self):
+    def test_thousands_of_connections_leak_nothing(self):
         process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--quiet",
                              limit=120)
         endpoint = process.stdout.readline().split()[1]
-        polite(endpoint, 1)  # the world is there
+        polite(endpoint, 1)  # the scene is loaded
         time.sleep(0.2)
         idle, _ = self.measure(process)
-        self.come_and_go(endpoint, range(WARM_UP))
+        self.connect_and_leave(endpoint, range(WARM_UP))
         _, memory = self.measure(process)
-        self.come_and_go(endpoint, range(WARM_UP, WARM_UP + CONNECTIONS))
+        self.connect_and_leave(endpoint, range(WARM_UP, WARM_UP + CONNECTIONS))
         files = self.wait_for(lambda: self.measure(process)[0], lambda files: files <= idle,
-                              "end of its open files")
+                              "return to the idle number of open files")
         growth = self.measure(process)[1] - memory
         print(f"{CONNECTIONS} connections: {files} open files, {growth} KiB more", flush=True)
         self.assertLess(growth, MOST_GROWTH)
@@ -146,18 +147,18 @@ class Leaks(SceneTest):
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
     def test_half_open_connections_do_not_block_others(self):
-        """More of them than a shell usually grants open files; they are hung up on in the end."""
+        """More connections than the limit on open files. The server closes them after its time limit."""
         soft, hard = 256, resource.getrlimit(resource.RLIMIT_NOFILE)[1]
         process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--quiet", limit=120,
                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard)))
         endpoint = process.stdout.readline().split()[1]
-        strangers = [connect(endpoint) for _ in range(2 * soft)]
+        half_open = [connect(endpoint) for _ in range(2 * soft)]
         polite(endpoint, 1)
-        for stranger in strangers:  # each has sent nothing
-            stranger.settimeout(20)
-            while stranger.recv(100):  # its greeting
+        for connection in half_open:  # each has sent nothing
+            connection.settimeout(20)
+            while connection.recv(100):  # the server's greeting, then the end
                 pass
-            stranger.close()
+            connection.close()
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 

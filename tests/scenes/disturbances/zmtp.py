@@ -1,4 +1,4 @@
-"""ZeroMQ's wire protocol (ZMTP 3.0, no security) by hand, to speak it badly."""
+"""ZeroMQ's wire protocol (ZMTP 3.0, no security) by hand, to send invalid bytes."""
 
 import socket
 import struct
@@ -6,17 +6,17 @@ import time
 
 
 class RawPeer:
-    """A DEALER's connection. `drip`: wall time between two bytes that it sends [s]; 0 sends at once."""
+    """A DEALER's connection. `drip`: wall time between two sent bytes [s]; 0 sends all at once."""
 
     def __init__(self, endpoint, drip=0.0):
         host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
         self.socket = socket.create_connection((host, int(port)), timeout=20)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._drip = drip
-        self.send(GREETING)
-        self._receive(64)
-        self.send(_frame(4, b"\x05READY\x0bSocket-Type" + struct.pack(">I", 6) + b"DEALER"))
-        self._hear_frame()  # its READY
+        self._send_bytes(GREETING)
+        self._receive_bytes(64)
+        self._send_bytes(_frame(4, b"\x05READY\x0bSocket-Type" + struct.pack(">I", 6) + b"DEALER"))
+        self._receive_frame()  # the server's READY
 
     def __enter__(self):
         return self
@@ -24,7 +24,7 @@ class RawPeer:
     def __exit__(self, *_):
         self.socket.close()
 
-    def send(self, data):
+    def _send_bytes(self, data):
         if not self._drip:
             self.socket.sendall(data)
             return
@@ -32,32 +32,32 @@ class RawPeer:
             self.socket.sendall(bytes([byte]))
             time.sleep(self._drip)
 
-    def say(self, message):
-        self.send(_frame(0, message))
+    def send_message(self, message):
+        self._send_bytes(_frame(0, message))
 
-    def say_half(self, message):
-        """A frame that announces more than comes."""
+    def send_half(self, message):
+        """A frame whose header announces more bytes than follow."""
         data = _frame(0, message)
-        self.send(data[:2 + len(message) // 2])
+        self._send_bytes(data[:2 + len(message) // 2])
 
-    def hear(self):
-        """The next message that is no heartbeat."""
+    def receive_message(self):
+        """The next message other than a heartbeat."""
         while True:
-            data = self._hear_frame()
+            data = self._receive_frame()
             if data[:1] != b"\x22":  # ServerMessage.heartbeat
                 return data
 
-    def _hear_frame(self):
-        [flags] = self._receive(1)
-        [size] = struct.unpack(">Q", self._receive(8)) if flags & 2 else self._receive(1)
-        return self._receive(size)
+    def _receive_frame(self):
+        [flags] = self._receive_bytes(1)
+        [size] = struct.unpack(">Q", self._receive_bytes(8)) if flags & 2 else self._receive_bytes(1)
+        return self._receive_bytes(size)
 
-    def _receive(self, count):
+    def _receive_bytes(self, count):
         data = b""
         while len(data) < count:
             part = self.socket.recv(count - len(data))
             if not part:
-                raise ConnectionError("the server hung up")
+                raise ConnectionError("the server closed the connection")
             data += part
         return data
 

@@ -12,12 +12,12 @@ namespace {
 
 using namespace testing;
 
-/// How a drop went.
+/// Figures of one run of the drop scene.
 struct Outcome {
   int moving = 0;          ///< bodies faster than 2 mm/s over the last tick
   int outside = 0;         ///< bodies beyond the walls' outer faces
   double lowest = 0;       ///< of all bodies at all ticks [m]
-  double most_gain = 0;    ///< of energy over any earlier tick, in energies at release
+  double most_gain = 0;    ///< of total energy since an earlier tick, relative to that at release
   double mean_height = 0;  ///< of the bodies' origins at the end [m]
 };
 
@@ -85,7 +85,7 @@ TEST(Drop, FreeFallIsSemiImplicitEuler) {
         const math::Vector3 to = run.state().links[link].pose * centre;
         const double n = tick * substeps;
         const double z = from.z() - gravity * h * h * n * (n + 1) / 2;
-        // Bodies that may have hit the floor or another body: in flight none rotates.
+        // A body that rotates has touched another one, and a low one may have hit the floor.
         const bool turned = run.state().links[link].angular_velocity.norm() > 0 || z < 2 * half;
         if (turned) continue;
         EXPECT_NEAR(to.z(), z, 1e-9) << entities[i].id << " at tick " << tick;
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Drop, Seeds,
                                            std::tuple{20u, 3u}, std::tuple{10u, 1u},
                                            std::tuple{40u, 1u}));
 
-TEST(Drop, OrderOfDeclarationChangesNothingThatMatters) {
+TEST(Drop, ComesToRestInAnyOrderOfDeclaration) {
   scene::Scene scene = drop_scene();
   std::swap(scene.distributions[0], scene.distributions[1]);
   std::reverse(scene.entities.begin(), scene.entities.end());

@@ -19,8 +19,8 @@ const math::Pose& box(const world::State& state, std::size_t row, std::size_t nu
   return state.origins[walls + row * boxes + number];
 }
 
-/// No body left the floor, tilted, or moved sideways.
-void expect_orderly(const world::State& state) {
+/// Each box stands upright on the floor, in its row.
+void expect_in_rows(const world::State& state) {
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 0; i < boxes; ++i) {
       const math::Pose& pose = box(state, row, i);
@@ -35,7 +35,7 @@ void expect_orderly(const world::State& state) {
 TEST(MagneticRows, CloseAtTheNominalClock) {
   Simulation run(rows_scene(), {.seed = 1, .clock = scene::Clock::nominal});
   for (int tick = 0; tick < 60; ++tick) run.step();  // 12 s
-  expect_orderly(run.state());
+  expect_in_rows(run.state());
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 1; i < boxes; ++i) {
       const double gap =
@@ -63,7 +63,7 @@ TEST(MagneticRows, FollowTheReferenceUnderItsClock) {
       EXPECT_NEAR(box(run.state(), 0, i).position.x(), x[i], 2e-3) << "tick " << expected.tick;
     }
   }
-  expect_orderly(run.state());
+  expect_in_rows(run.state());
 }
 
 TEST(MagneticRows, WarnWhereTheBondIsTooStiffForTheSubstep) {

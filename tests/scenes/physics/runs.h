@@ -1,5 +1,5 @@
 #pragma once
-// Whole runs of scene files, judged by what physics allows.
+// Whole runs of scene files, for checks against physical laws.
 
 #include <cmath>
 #include <filesystem>
@@ -12,9 +12,9 @@ namespace ziggurat::simulation::testing {
 
 inline scene::Scene read_scene(const std::filesystem::path& path) {
   scene::ReadResult result = scene::read_file(path);
-  std::string said;
-  for (const scene::Problem& problem : result.problems) said += to_string(problem) + "\n";
-  if (!result.ok()) throw std::runtime_error(said);
+  std::string problems;
+  for (const scene::Problem& problem : result.problems) problems += to_string(problem) + "\n";
+  if (!result.ok()) throw std::runtime_error(problems);
   return std::move(result.scene);
 }
 

@@ -1,4 +1,4 @@
-// The four-wheeled vehicle: how it turns, and how it drives.
+// The four-wheeled vehicle turns in place and drives straight.
 
 #include <gtest/gtest.h>
 
@@ -9,16 +9,16 @@ namespace {
 
 using namespace testing;
 
-/// How a run of the vehicle went.
-struct Drive {
+/// Figures of one run of the vehicle.
+struct Trip {
   double turned = 0;          ///< about z, summed over the ticks [rad]
-  double away = 0;            ///< farthest from the start at any tick, in the plane [m]
+  double away = 0;            ///< greatest horizontal distance from the start at any tick [m]
   double most_deviation = 0;  ///< of an encoder from its target, from tick 1 on [rad/s]
-  math::Vector3 end;          ///< where the origin is at last [m]
+  math::Vector3 end;          ///< position of the origin after the last tick [m]
 };
 
 /// @param left,right  targets of the wheels on either side, each about its own outward axis [rad/s]
-Drive drive(const scene::Scene& scene, scene::Clock clock, double left, double right, int ticks) {
+Trip run_vehicle(const scene::Scene& scene, scene::Clock clock, double left, double right, int ticks) {
   Simulation run(scene, {.seed = 1, .clock = clock});
   const auto& layout = run.layout();
   std::size_t vehicle = 0;
@@ -27,7 +27,7 @@ Drive drive(const scene::Scene& scene, scene::Clock clock, double left, double r
   for (std::size_t i = 0; i < layout.joint_actuators.size(); ++i) {
     run.commands().joint_targets[i] = target(layout.joint_actuators[i].id);
   }
-  Drive result;
+  Trip result;
   const math::Vector3 start = run.state().origins[vehicle].position;
   for (int tick = 1; tick <= ticks; ++tick) {
     const double before = yaw(run.state().origins[vehicle]);
@@ -46,7 +46,7 @@ Drive drive(const scene::Scene& scene, scene::Clock clock, double left, double r
 }
 
 TEST(Vehicle, SpinsClockwiseInPlace) {
-  const Drive result = drive(vehicle_scene(), scene::Clock::nominal, 1, 1, 300);
+  const Trip result = run_vehicle(vehicle_scene(), scene::Clock::nominal, 1, 1, 300);
   EXPECT_LT(result.most_deviation, 0.02);
   EXPECT_LT(result.turned, -5);
   EXPECT_LT(result.away, 0.01);
@@ -57,17 +57,17 @@ TEST(Vehicle, DrivesStraightInAnOpenArena) {
   std::erase_if(scene.entities, [](const scene::Entity& entity) { return entity.id != "vehicle"; });
   scene.arena.size = {4, 4, 0.5};
   // 1 rad/s on wheels of 2 cm for a minute.
-  const Drive forward = drive(scene, scene::Clock::nominal, -1, 1, 300);
+  const Trip forward = run_vehicle(scene, scene::Clock::nominal, -1, 1, 300);
   EXPECT_NEAR(std::fabs(forward.end.x()), 1.2, 0.024);
   EXPECT_NEAR(forward.end.y(), 0, 0.01);
   EXPECT_NEAR(forward.turned, 0, 0.02);
   EXPECT_LT(forward.most_deviation, 0.02);
-  const Drive backward = drive(scene, scene::Clock::nominal, 1, -1, 300);
+  const Trip backward = run_vehicle(scene, scene::Clock::nominal, 1, -1, 300);
   EXPECT_NEAR(backward.end.x(), -forward.end.x(), 0.01);
 }
 
 TEST(Vehicle, TurnsUnderTheSlowClockAsTheReferenceDid) {
-  const Drive result = drive(vehicle_scene(), scene::Clock::beta50, 1, 1, 300);
+  const Trip result = run_vehicle(vehicle_scene(), scene::Clock::beta50, 1, 1, 300);
   EXPECT_NEAR(result.turned, -1.03, 0.15 * 1.03);
   EXPECT_LT(result.most_deviation, 0.06);
   EXPECT_LT(result.away, 0.005);

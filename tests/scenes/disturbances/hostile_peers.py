@@ -1,5 +1,5 @@
-"""Connections that belong to nobody and mean no good, each function a process until the server is
-gone."""
+"""Hostile peers without a session. Each function runs in a process of its own until the server has
+ended."""
 
 import random
 import select
@@ -13,25 +13,25 @@ from zmtp import GREETING, RawPeer
 
 def _open(endpoint):
     host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
-    stranger = socket.create_connection((host, int(port)), timeout=20)
-    stranger.setblocking(False)
-    return stranger
+    connection = socket.create_connection((host, int(port)), timeout=20)
+    connection.setblocking(False)
+    return connection
 
 
 def slowloris(endpoint, count=300):
-    """So many half-open connections, each of which sends a byte of its greeting a second."""
+    """Opens `count` connections. Each sends one byte of its greeting per second."""
     connections = [_open(endpoint) for _ in range(count)]
     for byte in GREETING:
         for connection in connections:
             try:
                 connection.send(bytes([byte]))
             except OSError:
-                pass  # hung up: as it should be in the end
+                pass  # the server closed the connection, as it should
         time.sleep(1)
 
 
 def noise(endpoint):
-    """Other protocols, and none; a frame that claims to be of 2^62 bytes; half a handshake."""
+    """Sends other protocols, random bytes, a frame that claims 2^62 bytes, half a handshake."""
     draw = random.Random(2)
     huge = GREETING + b"\x06" + struct.pack(">Q", 2**62)
     while True:
@@ -47,22 +47,22 @@ def noise(endpoint):
 
 
 def never_reads(endpoint):
-    """An observer that asks for the whole state as fast as it may, and reads none of it."""
-    hello = v1.Hello(version=v1.Version(major=1), role=v1.ROLE_OBSERVER, client_name="deaf")
+    """An observer that requests the whole state as fast as it is allowed to and reads no answer."""
+    hello = v1.Hello(version=v1.Version(major=1), role=v1.ROLE_OBSERVER, client_name="never reads")
     while True:
         with RawPeer(endpoint) as peer:
-            peer.say(v1.ClientMessage(hello=hello).SerializeToString())
+            peer.send_message(v1.ClientMessage(hello=hello).SerializeToString())
             try:
                 for i in range(1, 20_000):
-                    ask = v1.Request(id=i, read=v1.ReadRequest())
-                    peer.say(v1.ClientMessage(request=ask).SerializeToString())
+                    request = v1.Request(id=i, read=v1.ReadRequest())
+                    peer.send_message(v1.ClientMessage(request=request).SerializeToString())
                     time.sleep(0.0012)
             except OSError:
-                pass  # it was hung up on
+                pass  # the server closed the connection
 
 
-def annoy(function, endpoint):
+def run_until_server_ends(function, endpoint):
     try:
         function(endpoint)
     except OSError:
-        pass  # there is no server any more
+        pass  # the server has ended
