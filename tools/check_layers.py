@@ -17,7 +17,7 @@ MODULES = {
     "protocol": [],
     "text": [],
     "math": [],
-    "scene": ["math"],
+    "scene": ["text", "math"],
     "world": ["math"],
     "magnetism": ["math"],
     "physics": ["scene", "world", "magnetism", "math"],

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "text/numbers.h"
+#include "text/trim.h"
 
 namespace ziggurat::reports {
 namespace {
@@ -26,9 +27,6 @@ constexpr std::array<std::pair<std::string_view, Subject>, 7> subjects{{
     {"late", Subject::late},
 }};
 
-constexpr std::array<std::pair<std::string_view, double>, 3> units{
-    {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1}}};
-
 [[noreturn]] void wrong(const std::string& part) {
   throw text::UsageError(fmt::format(
       "--gate: '{}' is not a condition; write for example p99<2ms, max<20ms, misses<0.1% or late<5 "
@@ -36,19 +34,12 @@ constexpr std::array<std::pair<std::string_view, double>, 3> units{
       part));
 }
 
-std::string trimmed(const std::string& text) {
-  const auto begin = text.find_first_not_of(' ');
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
-}
-
 Condition parse_condition(const std::string& part) {
   const auto sign = part.find('<');
   if (sign == std::string::npos) wrong(part);
-  const std::string name = trimmed(part.substr(0, sign));
-  const std::string limit = trimmed(part.substr(sign + 1));
-  const auto subject =
-      std::ranges::find(subjects, std::string_view(name), [](const auto& s) { return s.first; });
+  const std::string_view name = text::trimmed(std::string_view(part).substr(0, sign));
+  const std::string limit(text::trimmed(std::string_view(part).substr(sign + 1)));
+  const auto subject = std::ranges::find(subjects, name, [](const auto& s) { return s.first; });
   if (subject == subjects.end()) wrong(part);
   Condition condition{subject->second, false, 0, part};
   std::size_t used = 0;
@@ -57,14 +48,13 @@ Condition parse_condition(const std::string& part) {
   } catch (const std::logic_error&) {
     wrong(part);
   }
-  const std::string unit = trimmed(limit.substr(used));
+  const std::string_view unit = text::trimmed(std::string_view(limit).substr(used));
   const bool is_time = condition.subject < Subject::misses;
   if (!std::isfinite(condition.limit) || condition.limit < 0) wrong(part);
   if (is_time) {
-    const auto found =
-        std::ranges::find(units, std::string_view(unit), [](const auto& u) { return u.first; });
-    if (found == units.end()) wrong(part);
-    condition.limit *= found->second;
+    const auto seconds = text::seconds_in(unit);
+    if (!seconds) wrong(part);
+    condition.limit *= *seconds;
   } else if (unit == "%") {
     condition.is_share = true;
     condition.limit /= 100;
@@ -80,7 +70,7 @@ std::vector<Condition> parse_gate(const std::string& text) {
   std::vector<Condition> conditions;
   std::istringstream parts(text);
   for (std::string part; std::getline(parts, part, ',');) {
-    conditions.push_back(parse_condition(trimmed(part)));
+    conditions.push_back(parse_condition(std::string(text::trimmed(part))));
   }
   if (conditions.empty()) wrong(text);
   return conditions;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "run/by_controller.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -64,21 +65,10 @@ std::vector<network::Config::Deadline> deadlines_of(const std::vector<DeadlineOp
   for (const auto& controller : scene.controllers) {
     deadlines.push_back({controller.deadline.value_or(scene::DeadlinePolicy{}), false});
   }
-  for (const bool by_name : {false, true}) {
-    for (const DeadlineOption& option : options) {
-      if (option.controller.empty() == by_name) continue;
-      bool is_found = !by_name;
-      for (std::size_t i = 0; i < deadlines.size(); ++i) {
-        if (by_name && scene.controllers[i].id != option.controller) continue;
-        deadlines[i] = {option.policy, true};
-        is_found = true;
-      }
-      if (!is_found) {
-        throw text::UsageError(
-            fmt::format("--deadline: the scene has no controller '{}'", option.controller));
-      }
-    }
-  }
+  apply_by_controller("--deadline", options, scene,
+                      [&](const DeadlineOption& option, std::size_t controller) {
+                        deadlines[controller] = {option.policy, true};
+                      });
   return deadlines;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "run/by_controller.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -42,13 +43,10 @@ Quantity to_quantity(const std::string& value, const std::string& text) {
 }
 
 std::chrono::nanoseconds to_time(const std::string& value, const std::string& text) {
-  constexpr std::array<std::pair<std::string_view, double>, 3> units{
-      {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1}}};
   const Quantity quantity = to_quantity(value, text);
-  const auto unit = std::ranges::find(units, std::string_view(quantity.unit),
-                                      [](const auto& each) { return each.first; });
-  if (unit == units.end()) refuse(value, fmt::format("'{}' must be a time in us, ms or s", text));
-  const double seconds = quantity.number * unit->second;
+  const auto unit = text::seconds_in(quantity.unit);
+  if (!unit) refuse(value, fmt::format("'{}' must be a time in us, ms or s", text));
+  const double seconds = quantity.number * *unit;
   if (seconds > longest_s) refuse(value, fmt::format("{} is more than 10 s", text));
   return std::chrono::nanoseconds(std::llround(seconds * 1e9));
 }
@@ -133,21 +131,10 @@ InjectOption to_injection(const std::string& value) {
 std::vector<network::Injection> injections_of(const std::vector<InjectOption>& options,
                                               const scene::Scene& scene) {
   std::vector<network::Injection> injections(scene.controllers.size());
-  for (const bool by_name : {false, true}) {
-    for (const InjectOption& option : options) {
-      if (option.controller.empty() == by_name) continue;
-      bool is_found = !by_name;
-      for (std::size_t c = 0; c < injections.size(); ++c) {
-        if (by_name && scene.controllers[c].id != option.controller) continue;
-        inject(option, injections[c]);
-        is_found = true;
-      }
-      if (!is_found) {
-        throw text::UsageError(
-            fmt::format("--inject: the scene has no controller '{}'", option.controller));
-      }
-    }
-  }
+  apply_by_controller("--inject", options, scene,
+                      [&](const InjectOption& option, std::size_t controller) {
+                        inject(option, injections[controller]);
+                      });
   return injections;
 }
 

@@ -67,6 +67,79 @@ std::string complaint(const pugi::xml_parse_result& result, bool at_end) {
   }
 }
 
+/// Faults the first character reference of an attribute that stands for no character.
+void check_references(const Document& document, std::string_view element,
+                      const pugi::xml_attribute& attribute) {
+  const std::string_view raw = document.raw(attribute);
+  for (std::size_t begin = raw.find('&'); begin != std::string_view::npos;
+       begin = raw.find('&', begin + 1)) {
+    const std::size_t end = raw.find(';', begin);
+    const std::string_view name =
+        end == std::string_view::npos ? "" : raw.substr(begin + 1, end - begin - 1);
+    constexpr std::string_view known[] = {"amp", "lt", "gt", "quot", "apos"};
+    if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
+    unsigned code = 0;
+    if (name.starts_with('#')) {
+      const bool hexadecimal = name.size() > 1 && name[1] == 'x';
+      const std::string_view digits = name.substr(hexadecimal ? 2 : 1);
+      const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code,
+                                                 hexadecimal ? 16 : 10);
+      if (error != std::errc() || stop != digits.data() + digits.size()) code = 0;
+    }
+    const bool white = code == 0x9 || code == 0xA || code == 0xD;
+    const bool character = (code >= 0x20 && code <= 0x10FFFF && !(code >= 0xD800 && code < 0xE000));
+    if (white || character) continue;
+    document.report().fault(document.locate(attribute.value()),
+                            fmt::format("{}={} of <{}> has the reference {}, which stands for no "
+                                        "character; write &amp; for a literal &",
+                                        attribute.name(), in_quotes(raw), element,
+                                        in_quotes(raw.substr(begin, name.size() + 2))));
+    return;
+  }
+}
+
+void check_repeated_attributes(const Document& document, const pugi::xml_node& node) {
+  std::vector<std::pair<std::string_view, const char*>> names;
+  for (const pugi::xml_attribute attribute : node.attributes()) {
+    names.emplace_back(attribute.name(), attribute.name());
+  }
+  std::sort(names.begin(), names.end());
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    if (names[i].first != names[i - 1].first) continue;
+    document.report().fault(
+        document.locate(names[i].second),
+        fmt::format("malformed XML: <{}> has the attribute {} twice; write it once", node.name(),
+                    in_quotes(names[i].first)));
+  }
+}
+
+/// @param known  the attributes that the element may have
+void report_unknown_attribute(const Document& document, std::string_view element,
+                              const pugi::xml_attribute& attribute,
+                              std::span<const std::string_view> known, std::string_view elsewhere) {
+  const Location where = document.locate(attribute.name());
+  const std::string_view name = attribute.name();
+  if (!elsewhere.empty()) {
+    document.report().fault(where,
+                            fmt::format("the attribute {}={} can't stand in this <{}>: {}", name,
+                                        in_quotes(attribute.value()), element, elsewhere));
+    return;
+  }
+  if (document.lenient()) {
+    document.report().notice(where, fmt::format("unknown attribute {} of <{}> has no effect; {}",
+                                                in_quotes(name), element, advice(name, known)));
+    return;
+  }
+  if (const auto why = unsupported_attribute(name)) {
+    document.report().fault(where, fmt::format("the attribute {}={} of <{}> is not supported; {}",
+                                               name, in_quotes(attribute.value()), element, *why));
+    return;
+  }
+  document.report().fault(where,
+                          fmt::format("<{}> has an unknown attribute {}={}; {}", element, name,
+                                      in_quotes(attribute.value()), advice(name, known)));
+}
+
 }  // namespace
 
 Room room_for(std::size_t max_size) {
@@ -178,44 +251,15 @@ std::optional<std::string> Element::take(const char* attribute) {
   asked_attributes_.push_back(attribute);
   const pugi::xml_attribute found = node_.attribute(attribute);
   if (found.empty()) return std::nullopt;
-  check_references(found);
+  check_references(*document_, name(), found);
   return std::string(trimmed(found.value()));
-}
-
-void Element::check_references(const pugi::xml_attribute& attribute) const {
-  const std::string_view raw = document_->raw(attribute);
-  for (std::size_t begin = raw.find('&'); begin != std::string_view::npos;
-       begin = raw.find('&', begin + 1)) {
-    const std::size_t end = raw.find(';', begin);
-    const std::string_view name =
-        end == std::string_view::npos ? "" : raw.substr(begin + 1, end - begin - 1);
-    constexpr std::string_view known[] = {"amp", "lt", "gt", "quot", "apos"};
-    if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
-    unsigned code = 0;
-    if (name.starts_with('#')) {
-      const bool hexadecimal = name.size() > 1 && name[1] == 'x';
-      const std::string_view digits = name.substr(hexadecimal ? 2 : 1);
-      const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code,
-                                                 hexadecimal ? 16 : 10);
-      if (error != std::errc() || stop != digits.data() + digits.size()) code = 0;
-    }
-    const bool white = code == 0x9 || code == 0xA || code == 0xD;
-    const bool character = (code >= 0x20 && code <= 0x10FFFF && !(code >= 0xD800 && code < 0xE000));
-    if (white || character) continue;
-    report().fault(document_->locate(attribute.value()),
-                   fmt::format("{}={} of <{}> has the reference {}, which stands for no "
-                               "character; write &amp; for a literal &",
-                               attribute.name(), in_quotes(raw), this->name(),
-                               in_quotes(raw.substr(begin, name.size() + 2))));
-    return;
-  }
 }
 
 std::vector<std::pair<std::string, std::string>> Element::all_attributes() {
   any_attribute_ = true;
   std::vector<std::pair<std::string, std::string>> result;
   for (const pugi::xml_attribute attribute : node_.attributes()) {
-    check_references(attribute);
+    check_references(*document_, name(), attribute);
     result.emplace_back(attribute.name(), trimmed(attribute.value()));
   }
   return result;
@@ -264,14 +308,14 @@ void Element::child_without_effect(const char* name, std::string_view why) {
 }
 
 void Element::done(std::string_view elsewhere) {
-  check_repeated_attributes();
+  check_repeated_attributes(*document_, node_);
   for (const pugi::xml_attribute attribute : node_.attributes()) {
     if (any_attribute_) break;
     const std::string_view name = attribute.name();
     if (name.starts_with("xml:") || name.starts_with("xmlns")) continue;  // XML's own
     if (std::find(asked_attributes_.begin(), asked_attributes_.end(), name) ==
         asked_attributes_.end()) {
-      report_unknown_attribute(attribute, elsewhere);
+      report_unknown_attribute(*document_, this->name(), attribute, asked_attributes_, elsewhere);
     }
   }
   for (const pugi::xml_node node : node_.children()) {
@@ -291,44 +335,6 @@ void Element::done(std::string_view elsewhere) {
       }
     }
   }
-}
-
-void Element::check_repeated_attributes() const {
-  std::vector<std::pair<std::string_view, const char*>> names;
-  for (const pugi::xml_attribute attribute : node_.attributes()) {
-    names.emplace_back(attribute.name(), attribute.name());
-  }
-  std::sort(names.begin(), names.end());
-  for (std::size_t i = 1; i < names.size(); ++i) {
-    if (names[i].first != names[i - 1].first) continue;
-    report().fault(document_->locate(names[i].second),
-                   fmt::format("malformed XML: <{}> has the attribute {} twice; write it once",
-                               name(), in_quotes(names[i].first)));
-  }
-}
-
-void Element::report_unknown_attribute(const pugi::xml_attribute& attribute,
-                                       std::string_view elsewhere) const {
-  const Location where = document_->locate(attribute.name());
-  const std::string_view name = attribute.name();
-  const std::span<const std::string_view> known(asked_attributes_);
-  if (!elsewhere.empty()) {
-    report().fault(where, fmt::format("the attribute {}={} can't stand in this <{}>: {}", name,
-                                      in_quotes(attribute.value()), this->name(), elsewhere));
-    return;
-  }
-  if (document_->lenient()) {
-    report().notice(where, fmt::format("unknown attribute {} of <{}> has no effect; {}",
-                                       in_quotes(name), this->name(), advice(name, known)));
-    return;
-  }
-  if (const auto why = unsupported_attribute(name)) {
-    report().fault(where, fmt::format("the attribute {}={} of <{}> is not supported; {}", name,
-                                      in_quotes(attribute.value()), this->name(), *why));
-    return;
-  }
-  report().fault(where, fmt::format("<{}> has an unknown attribute {}={}; {}", this->name(), name,
-                                    in_quotes(attribute.value()), advice(name, known)));
 }
 
 void Element::unknown_in(std::string_view parent, std::span<const std::string_view> known) const {

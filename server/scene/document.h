@@ -70,6 +70,18 @@ class Document {
   pugi::xml_node root_;
 };
 
+/// Zero, the identity, or nothing.
+template <class T>
+T blank() {
+  if constexpr (requires { T::Zero(); }) {
+    return T::Zero();
+  } else if constexpr (requires { T::Identity(); }) {
+    return T::Identity();
+  } else {
+    return T{};
+  }
+}
+
 /// One element being read. Ask for what it may hold, then call done().
 class Element {
  public:
@@ -162,22 +174,7 @@ class Element {
   std::size_t size() const;
 
  private:
-  template <class T>
-  static T blank() {
-    if constexpr (requires { T::Zero(); }) {
-      return T::Zero();
-    } else if constexpr (requires { T::Identity(); }) {
-      return T::Identity();
-    } else {
-      return T{};
-    }
-  }
-
   std::optional<std::string> take(const char* attribute);
-  void check_references(const pugi::xml_attribute& attribute) const;
-  void check_repeated_attributes() const;
-  void report_unknown_attribute(const pugi::xml_attribute& attribute,
-                                std::string_view elsewhere) const;
 
   Document* document_;
   pugi::xml_node node_;

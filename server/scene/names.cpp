@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scene/values.h"
+#include "text/names.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -49,26 +50,6 @@ std::optional<std::string_view> reason(std::string_view name, Reasons reasons) {
 
 }  // namespace
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  const std::size_t width = b.size() + 1;
-  std::vector<std::size_t> table((a.size() + 1) * width);
-  const auto at = [&](std::size_t i, std::size_t j) -> std::size_t& {
-    return table[i * width + j];
-  };
-  for (std::size_t i = 0; i <= a.size(); ++i) at(i, 0) = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) at(0, j) = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = at(i - 1, j - 1) + (a[i - 1] == b[j - 1] ? 0 : 1);
-      at(i, j) = std::min({at(i - 1, j) + 1, at(i, j - 1) + 1, replaced});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        at(i, j) = std::min(at(i, j), at(i - 2, j - 2) + 1);
-      }
-    }
-  }
-  return at(a.size(), b.size());
-}
-
 std::optional<std::string_view> nearest(std::string_view name,
                                         std::span<const std::string_view> candidates) {
   if (name.size() > longest_compared) return std::nullopt;
@@ -77,7 +58,7 @@ std::optional<std::string_view> nearest(std::string_view name,
   for (const std::string_view candidate :
        candidates.first(std::min(most_compared, candidates.size()))) {
     if (candidate.size() > longest_compared) continue;
-    const std::size_t distance = edit_distance(name, candidate);
+    const std::size_t distance = text::edit_distance(name, candidate);
     if (distance < least) {
       least = distance;
       best = candidate;

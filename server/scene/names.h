@@ -10,9 +10,6 @@
 
 namespace ziggurat::scene {
 
-/// Number of insertions, deletions, replacements and swaps of neighbours between two names.
-std::size_t edit_distance(std::string_view a, std::string_view b);
-
 /// The candidate that was probably meant, if one is near enough; the first of equals.
 std::optional<std::string_view> nearest(std::string_view name,
                                         std::span<const std::string_view> candidates);

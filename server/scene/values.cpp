@@ -17,7 +17,6 @@ constexpr double shortest_length = 1e-6, longest_length = 1e6;
 constexpr double shortest_duration = 1e-6;
 constexpr double lightest_mass = 1e-9, heaviest_mass = 1e9;
 
-constexpr std::string_view white_space = " \t\r\n\v\f";
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -116,12 +115,6 @@ constexpr std::array<std::pair<std::string_view, Color>, 20> named_colors{{
 }};
 
 }  // namespace
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(white_space);
-  if (begin == std::string_view::npos) return text.substr(0, 0);
-  return text.substr(begin, text.find_last_not_of(white_space) - begin + 1);
-}
 
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;

@@ -14,6 +14,7 @@
 #include "math/pose.h"
 #include "scene/devices.h"
 #include "scene/scene.h"
+#include "text/trim.h"
 
 namespace ziggurat::scene {
 
@@ -26,8 +27,7 @@ struct Wrong {
 template <class T>
 using Value = std::variant<T, Wrong>;
 
-/// The text without white space at either end.
-std::string_view trimmed(std::string_view text);
+using text::trimmed;
 
 /// The text as it may stand in a message: in quotes, shortened, control characters replaced.
 std::string in_quotes(std::string_view text);

@@ -26,6 +26,13 @@ double to_number(std::string_view option, const std::string& text) {
   return value;
 }
 
+std::optional<double> seconds_in(std::string_view unit) {
+  if (unit == "us") return 1e-6;
+  if (unit == "ms") return 1e-3;
+  if (unit == "s") return 1;
+  return std::nullopt;
+}
+
 std::size_t to_size(std::string_view option, const std::string& text) {
   const auto place = text.empty() ? std::string::npos : std::string("KMG").find(text.back());
   const unsigned shift = place == std::string::npos ? 0 : 10 * (static_cast<unsigned>(place) + 1);

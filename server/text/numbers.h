@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ class UsageError : public std::runtime_error {
 /// The whole text as a number; `option` names the place in the UsageError otherwise thrown.
 std::uint64_t to_integer(std::string_view option, const std::string& text);
 double to_number(std::string_view option, const std::string& text);  ///< finite
+
+/// How many seconds a unit of time has: us, ms or s; nothing for another word.
+std::optional<double> seconds_in(std::string_view unit);
 
 /// Bytes, with an optional K, M or G (powers of 1024) behind the number.
 std::size_t to_size(std::string_view option, const std::string& text);

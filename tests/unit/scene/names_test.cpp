@@ -7,14 +7,6 @@
 namespace ziggurat::scene {
 namespace {
 
-TEST(EditDistance, CountsEdits) {
-  EXPECT_EQ(edit_distance("", ""), 0u);
-  EXPECT_EQ(edit_distance("", "abc"), 3u);
-  EXPECT_EQ(edit_distance("radius", "raduis"), 1u);  // neighbours swapped
-  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
-  EXPECT_EQ(edit_distance("orientation", "oriention"), 2u);
-}
-
 TEST(Nearest, IsFoundOnlyWithinAFewEdits) {
   constexpr std::array<std::string_view, 3> names{"position", "orientation", "size"};
   EXPECT_EQ(nearest("positon", names), "position");

@@ -7,6 +7,14 @@
 namespace ziggurat::text {
 namespace {
 
+TEST(EditDistance, CountsEdits) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("radius", "raduis"), 1u);  // neighbours swapped
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(edit_distance("orientation", "oriention"), 2u);
+}
+
 TEST(Closest, IsTheCandidateThatWasProbablyMeant) {
   const std::vector<std::string> names{"--ticks", "--trace", "--max-scene-size"};
   EXPECT_EQ(closest("--tikcs", names), "--ticks");

@@ -27,5 +27,13 @@ TEST(Numbers, SizesKnowTheirUnits) {
   EXPECT_THROW(to_size("--s", "18446744073709551615G"), UsageError);
 }
 
+TEST(Numbers, UnitsOfTimeHaveSeconds) {
+  EXPECT_EQ(seconds_in("us"), 1e-6);
+  EXPECT_EQ(seconds_in("ms"), 1e-3);
+  EXPECT_EQ(seconds_in("s"), 1);
+  EXPECT_EQ(seconds_in(""), std::nullopt);
+  EXPECT_EQ(seconds_in("min"), std::nullopt);
+}
+
 }  // namespace
 }  // namespace ziggurat::text
