@@ -73,7 +73,7 @@ po::options_description hil_options() {
        "(all, if none is named) and from it, or only in the DIRECTION observations or commands; "
        "may be repeated")  //
       ("gate", text("CONDITIONS"),
-       "exit with 4 unless every controller reports::meets them: p99<2ms,misses<0.1% (p50, p90, "
+       "exit with 4 unless every controller meets them: p99<2ms,misses<0.1% (p50, p90, "
        "p99, p99.9, "
        "max, misses, late)")  //
       ("report-card", text("FILE"),
