@@ -20,6 +20,7 @@ MODULES = {
     "scene": ["text", "math"],
     "world": ["math"],
     "magnetism": ["math"],
+    "dynamics": ["math"],
     "physics": ["scene", "world", "magnetism", "math"],
     "media": ["world", "math"],
     "camera": ["world", "media", "math"],

@@ -1,0 +1,163 @@
+#include "dynamics/equations.h"
+
+#include <algorithm>
+
+namespace ziggurat::dynamics {
+namespace {
+
+/// Inertia of one link about the tree's origin.
+Inertia link_inertia(const Tree& tree, int i) {
+  const Link& link = tree.links[i];
+  const Matrix3& r = tree.rotation[i];
+  const Vector3 arm = tree.position[i] - tree.origin;
+  Inertia out;
+  out.mass = link.mass;
+  out.first_moment = link.mass * arm;
+  const double square = link.mass * arm.squaredNorm();
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a; b < 3; ++b) {
+      double sum = 0;
+      for (int k = 0; k < 3; ++k) sum += r(a, k) * link.inertia[k] * r(b, k);
+      sum -= link.mass * arm[a] * arm[b];
+      if (a == b) sum += square;
+      out.second_moment(a, b) = out.second_moment(b, a) = sum;
+    }
+  }
+  return out;
+}
+
+/// What the wrenches on all links do along each dof; leaves in each link's place those of all that
+/// it carries.
+void project_wrenches(Tree& tree, std::span<double> out) {
+  for (int i = static_cast<int>(tree.links.size()) - 1; i >= 0; --i) {
+    const int first = tree.first_dof[i];
+    for (int k = first; k < first + tree.dof_count[i]; ++k) {
+      out[k] = dot(tree.axes[k], tree.wrench[i]);
+    }
+    if (i > 0) {
+      Wrench& parent = tree.wrench[tree.links[i].parent];
+      parent = parent + tree.wrench[i];
+    }
+  }
+}
+
+}  // namespace
+
+void compute_mass(Tree& tree) {
+  const int size = static_cast<int>(tree.links.size()), n = tree.dofs;
+  for (int i = 0; i < size; ++i) {
+    if (tree.links[i].joint == JointType::fixed) {
+      tree.inertia[i] = Inertia{};
+    } else {
+      tree.inertia[i] = link_inertia(tree, i);
+    }
+  }
+  if (size > 1) tree.mass.assign(tree.mass.size(), 0);  // dofs on different branches do not couple
+  for (int i = size - 1; i >= 0; --i) {
+    const int first = tree.first_dof[i];
+    for (int k = first; k < first + tree.dof_count[i]; ++k) {
+      const Wrench momentum = tree.inertia[i] * tree.axes[k];
+      for (int j = k; j >= 0; j = tree.parent_dof[j]) {
+        tree.mass[k * n + j] = tree.mass[j * n + k] = dot(tree.axes[j], momentum);
+      }
+    }
+    if (i > 0) tree.inertia[tree.links[i].parent] += tree.inertia[i];
+  }
+}
+
+void bias_forces(Tree& tree, std::span<double> out) {
+  const int size = static_cast<int>(tree.links.size());
+  for (int i = 0; i < size; ++i) {
+    const Link& link = tree.links[i];
+    const Motion& motion = tree.motion[i];
+    Motion& acceleration = tree.acceleration[i];
+    if (i == 0) {
+      // The root's coordinates are of its centre of mass, which moves away from O.
+      acceleration = {Vector3::Zero(), -motion.angular.cross(motion.linear)};
+    } else {
+      acceleration = tree.acceleration[link.parent];
+      Motion relative;
+      const int first = tree.first_dof[i];
+      for (int k = first; k < first + tree.dof_count[i]; ++k) {
+        relative = relative + tree.axes[k] * tree.v[k];
+      }
+      acceleration = acceleration + cross(tree.motion[link.parent], relative);
+    }
+    if (link.joint == JointType::fixed) {
+      tree.wrench[i] = Wrench{};
+      continue;
+    }
+    const Inertia inertia = link_inertia(tree, i);
+    tree.wrench[i] = inertia * acceleration + cross(motion, inertia * motion);
+  }
+  project_wrenches(tree, out);
+}
+
+void external_forces(Tree& tree, std::span<double> out, bool fields, bool gravity) {
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const Vector3 arm = tree.position[i] - tree.origin;
+    Vector3 force = Vector3::Zero();
+    if (fields) force += tree.external[i].force;
+    if (gravity) force += tree.gravity * tree.links[i].mass;
+    tree.wrench[i] = {arm.cross(force), force};
+    if (fields) tree.wrench[i].moment += tree.external[i].moment;
+  }
+  project_wrenches(tree, out);
+}
+
+void factor_mass(Tree& tree, double length) {
+  const int n = tree.dofs;
+  const int* parent = tree.parent_dof.data();
+  double* m = tree.factor.data();
+  std::copy(tree.mass.begin(), tree.mass.end(), m);
+  for (int k = 0; k < n; ++k) m[k * n + k] += length * tree.damping[k];
+  for (int k = n - 1; k >= 0; --k) {
+    const double inverse = 1 / m[k * n + k];
+    for (int i = parent[k]; i >= 0; i = parent[i]) {
+      const double ratio = m[k * n + i] * inverse;
+      for (int j = i; j >= 0; j = parent[j]) m[i * n + j] -= ratio * m[k * n + j];
+    }
+    for (int i = parent[k]; i >= 0; i = parent[i]) m[k * n + i] *= inverse;
+    m[k * n + k] = inverse;
+  }
+}
+
+void solve_mass(const Tree& tree, double* x) {
+  const int n = tree.dofs;
+  const int* parent = tree.parent_dof.data();
+  const double* m = tree.factor.data();
+  for (int i = n - 1; i >= 0; --i) {
+    for (int j = parent[i]; j >= 0; j = parent[j]) x[j] -= m[i * n + j] * x[i];
+  }
+  for (int i = 0; i < n; ++i) {
+    x[i] *= m[i * n + i];
+    for (int j = parent[i]; j >= 0; j = parent[j]) x[i] -= m[i * n + j] * x[j];
+  }
+}
+
+double mobility(Tree& tree, int dof) {
+  // x = L^-T e has entries on the way from the dof to the root only.
+  const int n = tree.dofs;
+  const double* m = tree.factor.data();
+  double* x = tree.scratch.data();
+  for (int j = dof; j >= 0; j = tree.parent_dof[j]) x[j] = j == dof ? 1 : 0;
+  double sum = 0;
+  for (int i = dof; i >= 0; i = tree.parent_dof[i]) {
+    for (int j = tree.parent_dof[i]; j >= 0; j = tree.parent_dof[j]) x[j] -= m[i * n + j] * x[i];
+    sum += x[i] * x[i] * m[i * n + i];
+  }
+  return sum;
+}
+
+void accelerations(Tree& tree, std::span<double> out) {
+  place(tree);
+  move(tree);
+  compute_mass(tree);
+  factor_mass(tree, 0);
+  external_forces(tree, out, false, true);
+  bias_forces(tree, tree.scratch);
+  for (int k = 0; k < tree.dofs; ++k) out[k] -= tree.scratch[k] + tree.damping[k] * tree.v[k];
+  solve_mass(tree, out.data());
+}
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,27 @@
+#pragma once
+// Motion without contacts, limits and motors.
+
+#include "dynamics/tree.h"
+
+namespace ziggurat::dynamics {
+
+/// Advances q and v of a tree that nothing but its external wrenches acts on, which stay the same
+/// meanwhile. Leaves it placed and moved.
+///
+/// A single body: its centre of mass exactly; its angular momentum exactly; its orientation by
+/// the classical Runge-Kutta method of fourth order in steps of at most 0.1 rad, exactly where it
+/// keeps its axis. Other trees: the method of Dormand and Prince of order 5 (J. Comput. Appl.
+/// Math. 6, 1980, table 2) with steps chosen by its estimate of the error.
+/// @param length  [s]
+/// @return        how many steps it took
+int fly(Tree& tree, double length);
+
+/// The generalised momentum that a tree would have at the end of a substep without contacts, at the
+/// mass matrix of its beginning: M(q) v plus what its forces and its own motion add. The damping of
+/// joints is not in it: it is implicit (see problem.h).
+/// Needs place(), move() and compute_mass(), and leaves the tree so.
+/// @param length  [s]
+/// @param out     of each dof [kg m/s] or [kg m^2/s]
+void momentum_after(Tree& tree, double length, std::span<double> out);
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,138 @@
+#include "dynamics/law.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ziggurat::dynamics {
+namespace {
+
+constexpr double give = 1e-8;  // of held speeds, over the mobility
+
+/// Friction's discs: first row, dimension, bound over the normal impulse.
+struct Disc {
+  int first, size;
+  double ratio;
+};
+
+/// @return  how many
+int discs(const Block& block, Disc* out) {
+  if (block.law != Block::Law::contact || block.rows == 1) return 0;
+  out[0] = {1, 2, block.friction};
+  if (block.rows == 3) return 1;
+  out[1] = {3, 1, block.spinning};
+  out[2] = {4, 2, block.rolling};
+  return 3;
+}
+
+void hold(const Block& block, int row, Linear& out) {
+  const double stiffness = 1 / (give * block.mobility[row]);
+  out.slope[row * block.rows + row] = stiffness;
+  out.constant[row] = block.impulse[row] + stiffness * block.seek[row];
+}
+
+/// Friction within a disc: sticks, or slides with its whole bound against the slip.
+/// @param normal  part of y, > 0
+void linearise(const Block& block, const Disc& disc, const double* y, bool coupled, Linear& out) {
+  const double bound = disc.ratio * y[0];
+  double square = 0;
+  for (int r = 0; r < disc.size; ++r) square += y[disc.first + r] * y[disc.first + r];
+  if (square <= bound * bound) {
+    for (int r = 0; r < disc.size; ++r) hold(block, disc.first + r, out);
+    return;
+  }
+  const double length = std::sqrt(square);
+  double direction[2] = {};
+  for (int r = 0; r < disc.size; ++r) direction[r] = y[disc.first + r] / length;
+  const int rows = block.rows;
+  for (int r = 0; r < disc.size; ++r) {
+    const int row = disc.first + r;
+    if (coupled) {
+      out.constant[row] = disc.ratio * direction[r] * out.constant[0];
+      out.slope[row * rows] = disc.ratio * direction[r] * out.slope[0];
+    } else {
+      out.constant[row] = bound * direction[r];
+    }
+  }
+  if (disc.size < 2 || bound <= 0) return;
+  // Across the slip the direction turns with the speed.
+  const double mobility = block.mobility[disc.first];
+  const double across = std::min(bound / (length - bound), 1 / give) / mobility;
+  for (int r = 0; r < 2; ++r) {
+    for (int c = 0; c < 2; ++c) {
+      const double projection = (r == c ? 1 : 0) - direction[r] * direction[c];
+      const int row = disc.first + r, column = disc.first + c;
+      out.slope[row * rows + column] += across * projection;
+      out.constant[row] += across * projection * block.seek[column];
+    }
+  }
+}
+
+void project(const Block& block, double* y) {
+  if (block.law == Block::Law::bounded) {
+    y[0] = std::clamp(y[0], block.lower, block.upper);
+    return;
+  }
+  y[0] = block.law == Block::Law::contact ? std::max(0.0, y[0]) : 0;
+  Disc all[3];
+  const int count = discs(block, all);
+  for (int d = 0; d < count; ++d) {
+    const Disc& disc = all[d];
+    const double bound = disc.ratio * y[0];
+    double square = 0;
+    for (int r = 0; r < disc.size; ++r) square += y[disc.first + r] * y[disc.first + r];
+    if (square <= bound * bound) continue;
+    const double factor = bound / std::sqrt(square);
+    for (int r = 0; r < disc.size; ++r) y[disc.first + r] *= factor;
+  }
+}
+
+int active_rows(const Block& block) {
+  return block.law == Block::Law::contact ? block.rows : block.law == Block::Law::bounded ? 1 : 0;
+}
+
+}  // namespace
+
+void linearise(const Block& block, const double* u, bool coupled, Linear& out) {
+  const int rows = block.rows;
+  out.zero = true;
+  if (block.law == Block::Law::off) return;
+  double y[Block::most_rows];
+  for (int r = 0; r < active_rows(block); ++r) {
+    y[r] = block.impulse[r] - (u[r] - block.seek[r]) / block.mobility[r];
+  }
+  if (block.law == Block::Law::contact && y[0] <= 0) return;
+  out.zero = false;
+  std::fill_n(out.constant.begin(), rows, 0.0);
+  std::fill_n(out.slope.begin(), rows * rows, 0.0);
+  if (block.law == Block::Law::bounded) {
+    if (y[0] <= block.lower || y[0] >= block.upper) {
+      out.constant[0] = y[0] <= block.lower ? block.lower : block.upper;
+      out.zero = out.constant[0] == 0;
+    } else {
+      hold(block, 0, out);
+    }
+    return;
+  }
+  hold(block, 0, out);
+  Disc all[3];
+  const int count = discs(block, all);
+  for (int d = 0; d < count; ++d) linearise(block, all[d], y, coupled, out);
+}
+
+double miss(const Block& block, const double* u) {
+  const int rows = active_rows(block);
+  double y[Block::most_rows];
+  for (int r = 0; r < rows; ++r) {
+    y[r] = block.impulse[r] - (u[r] - block.seek[r]) / block.mobility[r];
+  }
+  project(block, y);
+  double worst = 0;
+  for (int r = 0; r < rows; ++r) {
+    worst = std::max(worst, std::abs(block.impulse[r] - y[r]) * block.mobility[r]);
+  }
+  return worst;
+}
+
+void clip(const Block& block, double* impulse) { project(block, impulse); }
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,30 @@
+#pragma once
+// The contact law, exact and linearised. With y = g - (u - s) / m (s: the speed sought, m: the
+// mobility) it is the projection equation g = P(y): P clips the normal part at 0 and friction to
+// discs whose radii are the coefficients times the normal part (Alart and Curnier, Comput. Methods
+// Appl. Mech. Eng. 92, 1991). That is Coulomb's law without the lift of associated cones.
+
+#include "dynamics/problem.h"
+
+namespace ziggurat::dynamics {
+
+/// A block's impulses as a function of its speeds near a state: g = constant - slope u.
+struct Linear {
+  bool zero = true;  ///< no impulse at all
+  std::array<double, Block::most_rows> constant{};
+  std::array<double, Block::most_rows * Block::most_rows> slope{};  ///< row by row, rows x rows
+};
+
+/// @param u        the block's speeds
+/// @param coupled  whether friction's bound follows the normal impulse (else it is held)
+/// Where the law holds a speed it is let go by 1e-8 of its mobility times the impulse's change, so
+/// that contacts that say the same twice have a solution.
+void linearise(const Block& block, const double* u, bool coupled, Linear& out);
+
+/// By how much the block's impulses and speeds miss the law [m/s] or [rad/s].
+double miss(const Block& block, const double* u);
+
+/// Clips impulses to the law's bounds at their own normal part.
+void clip(const Block& block, double* impulse);
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,152 @@
+#include "dynamics/newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ziggurat::dynamics {
+namespace {
+
+/// out += x^T y for blocks of rows: x n x R and y m x R, R values per dof.
+template <int R>
+void add_product(const double* x, int n, const double* y, int m, double* out) {
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < m; ++j) {
+      double sum = 0;
+      for (int r = 0; r < R; ++r) sum += x[i * R + r] * y[j * R + r];
+      out[i * m + j] += sum;
+    }
+  }
+}
+
+void add_product(const double* x, int n, const double* y, int m, int rows, double* out) {
+  if (rows == 3) return add_product<3>(x, n, y, m, out);
+  if (rows == 1) return add_product<1>(x, n, y, m, out);
+  add_product<6>(x, n, y, m, out);
+}
+
+/// out := slope times each dof's column.
+void apply_slope(const Linear& linear, const double* columns, int dofs, int rows, double* out) {
+  for (int k = 0; k < dofs; ++k) {
+    for (int r = 0; r < rows; ++r) {
+      double sum = 0;
+      for (int c = 0; c < rows; ++c) sum += linear.slope[r * rows + c] * columns[k * rows + c];
+      out[k * rows + r] = sum;
+    }
+  }
+}
+
+constexpr int most_dofs = 64;  // for which no room is allocated
+
+}  // namespace
+
+/// Adds J^T slope J to the matrix and J^T constant to the right-hand side, which is in v.
+void Solver::add_block(Problem& problem, const Block& block, const Linear& linear) {
+  if (linear.zero) return;
+  const int sides[] = {block.a, block.b}, first[] = {block.ja, block.jb};
+  for (int s = 0; s < 2; ++s) {
+    if (sides[s] < 0) continue;
+    const int m = problem.trees[sides[s]]->dofs, rows = block.rows;
+    const double* columns = problem.jacobian.data() + first[s];
+    double room[most_dofs * Block::most_rows];
+    std::vector<double> larger;
+    if (m > most_dofs) larger.resize(static_cast<std::size_t>(m) * rows);
+    double* sloped = m > most_dofs ? larger.data() : room;
+    apply_slope(linear, columns, m, rows, sloped);
+    for (int t = 0; t < 2; ++t) {
+      if (sides[t] < 0) continue;
+      const double* others = problem.jacobian.data() + first[t];
+      add_product(others, problem.trees[sides[t]]->dofs, sloped, m, rows,
+                  matrix_.block(sides[t], sides[s]));
+    }
+    double* right = problem.velocity.data() + problem.offset[sides[s]];
+    for (int k = 0; k < m; ++k) {
+      for (int r = 0; r < rows; ++r) right[k] += columns[k * rows + r] * linear.constant[r];
+    }
+  }
+}
+
+/// One step of Newton's method.
+/// @return  false if the matrix has no factors; then nothing has changed
+bool Solver::step(Problem& problem, bool coupled) {
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    double u[Block::most_rows];
+    problem.speeds(problem.blocks[i], u);
+    linearise(problem.blocks[i], u, coupled, linear_[i]);
+  }
+  kept_velocity_ = problem.velocity;
+  matrix_.clear();
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const Tree& tree = *problem.trees[i];
+    double* block = matrix_.block(static_cast<int>(i), static_cast<int>(i));
+    std::copy(tree.mass.begin(), tree.mass.end(), block);
+    for (int k = 0; k < tree.dofs; ++k) {
+      block[k * tree.dofs + k] += problem.length * tree.damping[k];
+    }
+  }
+  problem.velocity = problem.momentum;
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    add_block(problem, problem.blocks[i], linear_[i]);
+  }
+  if (!matrix_.factor()) {
+    problem.velocity = kept_velocity_;
+    return false;
+  }
+  matrix_.solve(problem.velocity.data());
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    Block& block = problem.blocks[i];
+    const Linear& linear = linear_[i];
+    if (linear.zero) {
+      block.impulse.fill(0);
+      continue;
+    }
+    double u[Block::most_rows];
+    problem.speeds(block, u);
+    for (int r = 0; r < block.rows; ++r) {
+      double sum = linear.constant[r];
+      for (int c = 0; c < block.rows; ++c) sum -= linear.slope[r * block.rows + c] * u[c];
+      block.impulse[r] = sum;
+    }
+  }
+  return true;
+}
+
+/// @param scale  out: the largest speed, or change of speed by an impulse
+double Solver::worst_miss(const Problem& problem, double& scale) const {
+  double worst = 0;
+  scale = 0;
+  for (const Block& block : problem.blocks) {
+    double u[Block::most_rows];
+    problem.speeds(block, u);
+    worst = std::max(worst, miss(block, u));
+    for (int r = 0; r < block.rows; ++r) {
+      scale = std::max({scale, std::abs(u[r]), std::abs(block.impulse[r]) * block.mobility[r]});
+    }
+  }
+  return worst;
+}
+
+Outcome Solver::solve(Problem& problem) {
+  Outcome outcome;
+  sizes_.clear();
+  for (const Tree* tree : problem.trees) sizes_.push_back(tree->dofs);
+  matrix_.shape(sizes_, problem.couplings);
+  linear_.resize(problem.blocks.size());
+  double scale = 0;
+  if (matrix_.work() > options.most_work) {
+    sweep_until_converged(problem, outcome, options.most_sweeps);
+    return outcome;
+  }
+  for (; outcome.iterations < options.most_iterations; ++outcome.iterations) {
+    if (!step(problem, true) && !step(problem, false)) break;
+    outcome.miss = worst_miss(problem, scale);
+    if (outcome.miss <= tolerance(scale)) {
+      ++outcome.iterations;
+      return outcome;
+    }
+  }
+  outcome.converged = false;
+  return outcome;
+}
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,233 @@
+#include "dynamics/problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/flight.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+/// A right-handed frame whose first column is the normal.
+Matrix3 frame_about(const Vector3& normal) {
+  int least = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(normal[k]) < std::abs(normal[least])) least = k;
+  }
+  Matrix3 frame;
+  frame.col(0) = normal;
+  frame.col(1) = normal.cross(Vector3::Unit(least)).normalized();
+  frame.col(2) = normal.cross(frame.col(1));
+  return frame;
+}
+
+}  // namespace
+
+void Problem::clear() {
+  trees.clear();
+  offset.clear();
+  blocks.clear();
+  jacobian.clear();
+  momentum.clear();
+  velocity.clear();
+  couplings.clear();
+}
+
+void Problem::add(Tree& tree) {
+  const int first = static_cast<int>(momentum.size());
+  trees.push_back(&tree);
+  offset.push_back(first);
+  momentum.resize(first + tree.dofs);
+  momentum_after(tree, length, {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
+  velocity.insert(velocity.end(), tree.v.begin(), tree.v.end());
+}
+
+/// Adds the columns of a contact on one side.
+/// @return  where they begin in the Jacobian
+int Problem::add_rows(const Tree& tree, int link, const Vector3& point, const Block& block,
+                      double sign) {
+  const int first = static_cast<int>(jacobian.size()), rows = block.rows;
+  jacobian.resize(first + tree.dofs * rows, 0.0);
+  const Matrix3 frame = sign * block.frame;
+  const Vector3 arm = point - tree.origin;
+  while (link > 0 && tree.dof_count[link] == 0) link = tree.links[link].parent;
+  if (tree.dof_count[link] == 0) return first;
+  for (int k = tree.first_dof[link] + tree.dof_count[link] - 1; k >= 0; k = tree.parent_dof[k]) {
+    const Motion& axis = tree.axes[k];
+    double* column = jacobian.data() + first + k * rows;
+    const Vector3 speed = axis.linear + axis.angular.cross(arm);
+    column[0] = frame.col(0).dot(speed);
+    for (int r = 1; r < std::min(rows, 3); ++r) column[r] = frame.col(r).dot(speed);
+    for (int r = 3; r < rows; ++r) column[r] = frame.col(r - 3).dot(axis.angular);
+  }
+  return first;
+}
+
+/// About what a unit impulse changes of the speeds, as if the dofs did not couple; equal for the
+/// rows that friction treats alike.
+void Problem::weigh(Block& block) const {
+  block.mobility.fill(0);
+  const auto add_side = [&](int place, int first) {
+    if (place < 0) return;
+    const Tree& tree = *trees[place];
+    for (int k = 0; k < tree.dofs; ++k) {
+      const double inverse = 1 / tree.mass[k * tree.dofs + k];
+      const double* column = jacobian.data() + first + k * block.rows;
+      for (int r = 0; r < block.rows; ++r) block.mobility[r] += column[r] * column[r] * inverse;
+    }
+  };
+  add_side(block.a, block.ja);
+  add_side(block.b, block.jb);
+  for (int r = 1; r < block.rows; r += r == 3 ? 1 : 2) {
+    if (r == 3) continue;  // turning about the normal is alone
+    block.mobility[r] = block.mobility[r + 1] = (block.mobility[r] + block.mobility[r + 1]) / 2;
+  }
+  for (int r = 0; r < block.rows; ++r) block.mobility[r] = std::max(block.mobility[r], 1e-12);
+}
+
+void Problem::add(const Contact& contact, int a, int b, int source) {
+  Block block;
+  block.law = Block::Law::contact;
+  const bool turns = contact.rolling > 0 || contact.spinning > 0;
+  block.rows = turns ? 6 : contact.friction > 0 ? 3 : 1;
+  block.a = a;
+  block.b = b;
+  block.friction = contact.friction;
+  block.spinning = contact.spinning;
+  block.rolling = contact.rolling;
+  block.frame = frame_about(contact.normal);
+  if (a >= 0) block.ja = add_rows(*trees[a], contact.a.link, contact.point, block, 1);
+  if (b >= 0) block.jb = add_rows(*trees[b], contact.b.link, contact.point, block, -1);
+  weigh(block);
+  block.gap = contact.gap;
+  block.seek[0] = contact.gap > 0 ? -contact.gap / length : 0;
+  if (contact.restitution > 0) {
+    double before[Block::most_rows];
+    speeds(block, before);
+    if (before[0] < -slowest_bounce && contact.gap + length * before[0] < 0) {
+      block.restitution = contact.restitution;
+      block.bounced = -contact.restitution * before[0];
+      block.seek[0] = block.bounced;
+    }
+  }
+  const Vector3 impulse = block.frame.transpose() * contact.impulse;
+  const Vector3 angular = block.frame.transpose() * contact.angular_impulse;
+  block.impulse[0] = std::max(0.0, impulse[0]);
+  for (int r = 1; r < std::min(block.rows, 3); ++r) block.impulse[r] = impulse[r];
+  for (int r = 3; r < block.rows; ++r) block.impulse[r] = angular[r - 3];
+  block.source = source;
+  block.kind = Block::Source::contact;
+  if (a >= 0 && b >= 0 && a != b) {
+    const std::pair<int, int> pair(std::min(a, b), std::max(a, b));
+    if (couplings.empty() || couplings.back() != pair) couplings.push_back(pair);
+  }
+  blocks.push_back(block);
+}
+
+void Problem::add(const Servo& servo, int place, int source) {
+  const Tree& tree = *trees[place];
+  Block block;
+  block.law = Block::Law::bounded;
+  block.rows = 1;
+  block.a = place;
+  if (servo.dof >= 0) {
+    block.ja = static_cast<int>(jacobian.size());
+    jacobian.resize(jacobian.size() + tree.dofs, 0.0);
+    jacobian[block.ja + servo.dof] = 1;
+  } else {
+    block.ja = static_cast<int>(jacobian.size());
+    jacobian.resize(jacobian.size() + tree.dofs, 0.0);
+    const Vector3 arm = tree.position[servo.link] - tree.origin;
+    int link = servo.link;
+    while (link > 0 && tree.dof_count[link] == 0) link = tree.links[link].parent;
+    for (int k = tree.first_dof[link] + tree.dof_count[link] - 1; k >= 0; k = tree.parent_dof[k]) {
+      const Motion& axis = tree.axes[k];
+      jacobian[block.ja + k] = servo.direction.angular.dot(axis.angular) +
+                               servo.direction.linear.dot(axis.linear + axis.angular.cross(arm));
+    }
+  }
+  weigh(block);
+  block.seek[0] = servo.speed;
+  block.lower = servo.lower;
+  block.upper = servo.upper;
+  block.impulse[0] = std::clamp(servo.impulse, servo.lower, servo.upper);
+  block.source = source;
+  block.kind = Block::Source::servo;
+  blocks.push_back(block);
+}
+
+void Problem::add(const Limit& limit, int place, int source) {
+  const Tree& tree = *trees[place];
+  const int dof = joint_dof(tree, limit.link);
+  const double q = tree.q[tree.first_place[limit.link]];
+  const bool at_lower = q - limit.lower < limit.upper - q;
+  Block block;
+  block.law = Block::Law::bounded;
+  block.rows = 1;
+  block.a = place;
+  block.ja = static_cast<int>(jacobian.size());
+  jacobian.resize(jacobian.size() + tree.dofs, 0.0);
+  jacobian[block.ja + dof] = at_lower ? 1 : -1;
+  weigh(block);
+  block.gap = at_lower ? q - limit.lower : limit.upper - q;
+  block.seek[0] = block.gap > 0 ? -block.gap / length : 0;
+  block.upper = std::numeric_limits<double>::infinity();
+  block.impulse[0] = std::max(0.0, at_lower ? limit.impulse : -limit.impulse);
+  block.source = source;
+  block.kind = Block::Source::limit;
+  blocks.push_back(block);
+}
+
+void Problem::speeds(const Block& block, double* u) const {
+  const int rows = block.rows;
+  for (int r = 0; r < rows; ++r) u[r] = 0;
+  const auto add_side = [&](int place, int first) {
+    if (place < 0) return;
+    const double* v = velocity.data() + offset[place];
+    const double* column = jacobian.data() + first;
+    const int dofs = trees[place]->dofs;
+    if (rows == 3) {
+      double sum0 = 0, sum1 = 0, sum2 = 0;
+      for (int k = 0; k < dofs; ++k, column += 3) {
+        sum0 += column[0] * v[k], sum1 += column[1] * v[k], sum2 += column[2] * v[k];
+      }
+      u[0] += sum0, u[1] += sum1, u[2] += sum2;
+      return;
+    }
+    for (int k = 0; k < dofs; ++k, column += rows) {
+      for (int r = 0; r < rows; ++r) u[r] += column[r] * v[k];
+    }
+  };
+  add_side(block.a, block.ja);
+  add_side(block.b, block.jb);
+}
+
+bool Problem::turn_into_displacement() {
+  bool needed = false;
+  for (Block& block : blocks) {
+    if (block.kind == Block::Source::servo) {
+      block.law = Block::Law::off;
+      continue;
+    }
+    double u[Block::most_rows];
+    speeds(block, u);
+    const double after = block.gap + length * u[0];
+    const bool bounced = block.bounced > 0 && block.impulse[0] > 0 && block.gap > 0;
+    if (bounced || block.gap < -allowed_overlap) needed = true;
+    block.law = Block::Law::bounded;
+    block.lower = bounced ? -std::numeric_limits<double>::infinity() : 0;
+    block.upper = std::numeric_limits<double>::infinity();
+    if (bounced) {  // it turned round at the surface, not a gap before it
+      block.seek[0] = -block.gap * (1 + block.restitution);
+    } else {  // overlaps go four fifths a substep; the last micrometre stays
+      block.seek[0] = block.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
+    }
+    block.impulse.fill(0);
+  }
+  if (!needed) return false;
+  std::fill(momentum.begin(), momentum.end(), 0.0);
+  std::fill(velocity.begin(), velocity.end(), 0.0);
+  return true;
+}
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,79 @@
+#pragma once
+// The velocity problem of one island in one substep: velocities v and impulses g with
+//   M v = p + J^T g,   u = J v,   g in the contact law of (u, g).
+// M: mass matrices of its trees at the beginning, with the implicit damping of joints; p: the
+// momentum without the impulses; J: rows that give the speeds u at contacts and servos.
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dynamics/constraint.h"
+#include "dynamics/tree.h"
+
+namespace ziggurat::dynamics {
+
+/// The rows of one contact (normal; two tangents; turning about normal and tangents) or servo.
+struct Block {
+  static constexpr int most_rows = 6;
+  enum class Law : unsigned char {
+    contact,  ///< normal impulse >= 0, friction within its discs
+    bounded,  ///< impulse within [lower, upper]
+    off       ///< no impulse
+  };
+  Law law = Law::off;
+  int rows = 0;          ///< 1, 3 or 6
+  int a = -1, b = -1;    ///< places of the trees in the island, or -1
+  int ja = 0, jb = 0;    ///< into Problem::jacobian: per dof of the tree, a column of `rows`
+  double friction = 0, spinning = 0, rolling = 0;  ///< bounds over the normal impulse: 1, [m], [m]
+  double lower = 0, upper = 0;
+  std::array<double, most_rows> seek{};     ///< the speeds that the impulses seek [m/s], [rad/s]
+  std::array<double, most_rows> impulse{};  ///< [N s], [N m s]
+  std::array<double, most_rows> mobility{}; ///< about what a unit impulse changes of u
+
+  double gap = 0;         ///< of contacts and limits [m] or [rad]
+  double restitution = 0; ///< of contacts that bounce
+  double bounced = 0;     ///< > 0: speed apart after an impact, see constraint.h
+  Matrix3 frame;          ///< columns: normal and tangents of a contact
+  int source = 0;         ///< into the contacts, servos or limits of the system
+  enum class Source : unsigned char { contact, servo, limit } kind = Source::contact;
+};
+
+struct Problem {
+  double length = 0;               ///< of the substep [s]
+  std::vector<Tree*> trees;        ///< by their index in the system
+  std::vector<int> offset;         ///< of each tree in p and v
+  std::vector<Block> blocks;
+  std::vector<double> jacobian;
+  std::vector<double> momentum;    ///< p
+  std::vector<double> velocity;    ///< v: start and solution
+  std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block
+
+  void clear();
+  /// Adds a tree at the end, with its momentum; it is placed, moved and has its mass.
+  void add(Tree& tree);
+  /// Places of the trees in the island.
+  void add(const Contact& contact, int a, int b, int source);
+  void add(const Servo& servo, int place, int source);
+  /// A limit that may be reached within the substep.
+  void add(const Limit& limit, int place, int source);
+
+  /// Speeds at a block for the present velocities.
+  void speeds(const Block& block, double* u) const;
+  /// Turns the problem into that of the smallest displacement that undoes overlaps: v in [m] and
+  /// [rad], without momentum and friction.
+  /// @return  false if there is nothing to undo
+  bool turn_into_displacement();
+
+ private:
+  int add_rows(const Tree& tree, int link, const Vector3& point, const Block& block, double sign);
+  void weigh(Block& block) const;
+};
+
+/// What an overlap may remain [m]: rounding must not move bodies.
+constexpr double allowed_overlap = 1e-6;
+/// Slower impacts do not bounce [m/s].
+constexpr double slowest_bounce = 0.05;
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,250 @@
+#include "dynamics/system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/equations.h"
+#include "dynamics/flight.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+enum Kind { contact_item, servo_item, limit_item };
+
+bool free_to_drift(const Tree& tree) {
+  return tree.links[0].joint == JointType::floating && tree.freedoms == all_freedoms;
+}
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// Angular momentum about the tree's origin and linear momentum, of a floating tree.
+Vector6 momentum(const Tree& tree) {
+  Vector6 out = Vector6::Zero();
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < tree.dofs; ++k) out[i] += tree.mass[i * tree.dofs + k] * tree.v[k];
+  }
+  return out;
+}
+
+/// Moves a tree that touches nothing fixed. Its momentum stays, so its root's velocity changes with
+/// its shape.
+void displace_keeping_momentum(Tree& tree, std::span<const double> by) {
+  Vector6 before = momentum(tree);
+  const Vector3 origin = tree.origin;
+  displace(tree, by);
+  place(tree);
+  compute_mass(tree);
+  before.head<3>() += (origin - tree.origin).cross(Vector3(before.tail<3>()));
+  const Vector6 missing = before - momentum(tree);
+  Matrix6 root;
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 6; ++k) root(i, k) = tree.mass[i * tree.dofs + k];
+  }
+  const Vector6 change = root.llt().solve(missing);
+  for (int i = 0; i < 6; ++i) tree.v[i] += change[i];
+  move(tree);
+}
+
+}  // namespace
+
+int System::find(int tree) {
+  while (parent_[tree] != tree) tree = parent_[tree] = parent_[parent_[tree]];
+  return tree;
+}
+
+/// Sorts trees and what acts on them by island; islands by their first tree.
+void System::gather(std::span<const Contact> contacts, std::span<const Servo> servos,
+                    std::span<const Limit> limits) {
+  const int count = static_cast<int>(trees.size());
+  parent_.resize(count);
+  for (int i = 0; i < count; ++i) parent_[i] = i;
+  const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
+  items_.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    int a = contacts[i].a.tree, b = contacts[i].b.tree;
+    if (!moves(a)) std::swap(a, b);
+    if (!moves(a)) continue;
+    if (moves(b)) {  // the lower index leads
+      a = find(a), b = find(b);
+      parent_[std::max(a, b)] = std::min(a, b);
+    }
+    items_.push_back({a, contact_item, static_cast<int>(i)});
+  }
+  for (std::size_t i = 0; i < servos.size(); ++i) {
+    if (moves(servos[i].tree)) items_.push_back({servos[i].tree, servo_item, static_cast<int>(i)});
+  }
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    if (moves(limits[i].tree)) items_.push_back({limits[i].tree, limit_item, static_cast<int>(i)});
+  }
+  island_.resize(count);
+  int islands = 0;
+  for (int i = 0; i < count; ++i) {
+    const int leader = find(i);
+    island_[i] = leader == i ? islands++ : island_[leader];
+  }
+  first_tree_.assign(islands + 1, 0);
+  for (int i = 0; i < count; ++i) ++first_tree_[island_[i] + 1];
+  for (int i = 0; i < islands; ++i) first_tree_[i + 1] += first_tree_[i];
+  tree_order_.resize(count);
+  place_.resize(count);
+  for (int i = 0; i < count; ++i) {
+    const int at = first_tree_[island_[i]]++;
+    tree_order_[at] = i;
+  }
+  for (int i = islands; i > 0; --i) first_tree_[i] = first_tree_[i - 1];
+  first_tree_[0] = 0;
+  for (int i = 0; i < count; ++i) place_[tree_order_[i]] = i - first_tree_[island_[tree_order_[i]]];
+  first_item_.assign(islands + 1, 0);
+  for (Item& item : items_) {
+    item.island = island_[item.island];
+    ++first_item_[item.island + 1];
+  }
+  for (int i = 0; i < islands; ++i) first_item_[i + 1] += first_item_[i];
+  item_order_.resize(items_.size());
+  for (const Item& item : items_) item_order_[first_item_[item.island]++] = item;
+  for (int i = islands; i > 0; --i) first_item_[i] = first_item_[i - 1];
+  first_item_[0] = 0;
+}
+
+Report System::step(double length, std::span<Contact> contacts, std::span<Servo> servos,
+                    std::span<Limit> limits) {
+  length_ = length;
+  contacts_ = contacts;
+  servos_ = servos;
+  limits_ = limits;
+  report_ = {};
+  gather(contacts, servos, limits);
+  for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
+    const int first = first_tree_[i], last = first_tree_[i + 1];
+    if (!fly_island(first, last, first_item_[i], first_item_[i + 1])) {
+      solve_island(first, last, first_item_[i], first_item_[i + 1]);
+    }
+  }
+  return report_;
+}
+
+/// Advances an island where nothing holds it, as far as can be seen.
+/// @return  whether it flew, and hit nothing
+bool System::fly_island(int first_tree, int last_tree, int first_item, int last_item) {
+  const auto violated = [&](const Item& item) {
+    const Limit& limit = limits_[item.index];
+    const Tree& tree = trees[limit.tree];
+    const double q = tree.q[tree.first_place[limit.link]];
+    return q < limit.lower || q > limit.upper;
+  };
+  for (int i = first_item; i < last_item; ++i) {
+    if (item_order_[i].kind != limit_item || violated(item_order_[i])) return false;
+  }
+  kept_.clear();
+  for (int i = first_tree; i < last_tree; ++i) {
+    Tree& tree = trees[tree_order_[i]];
+    if (first_item < last_item) {
+      kept_.insert(kept_.end(), tree.q.begin(), tree.q.end());
+      kept_.insert(kept_.end(), tree.v.begin(), tree.v.end());
+    }
+    fly(tree, length_);
+  }
+  const auto hit = [&](const Item& item) { return violated(item); };
+  if (std::none_of(item_order_.begin() + first_item, item_order_.begin() + last_item, hit)) {
+    for (int i = first_item; i < last_item; ++i) limits_[item_order_[i].index].impulse = 0;
+    return true;
+  }
+  const double* kept = kept_.data();
+  for (int i = first_tree; i < last_tree; ++i) {
+    Tree& tree = trees[tree_order_[i]];
+    std::copy_n(kept, tree.q.size(), tree.q.begin());
+    std::copy_n(kept + tree.q.size(), tree.v.size(), tree.v.begin());
+    kept += tree.q.size() + tree.v.size();
+    place(tree);
+    move(tree);
+  }
+  return false;
+}
+
+void System::solve_island(int first_tree, int last_tree, int first_item, int last_item) {
+  problem_.clear();
+  problem_.length = length_;
+  for (int i = first_tree; i < last_tree; ++i) {
+    Tree& tree = trees[tree_order_[i]];
+    compute_mass(tree);
+    problem_.add(tree);
+  }
+  const auto place = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0 ? place_[tree] : -1; };
+  for (int i = first_item; i < last_item; ++i) {
+    const auto [island, kind, index] = item_order_[i];
+    if (kind == contact_item) {
+      problem_.add(contacts_[index], place(contacts_[index].a.tree),
+                   place(contacts_[index].b.tree), index);
+    } else if (kind == servo_item) {
+      problem_.add(servos_[index], place(servos_[index].tree), index);
+    } else {
+      problem_.add(limits_[index], place(limits_[index].tree), index);
+    }
+  }
+  const Outcome outcome = solver_.solve(problem_);
+  ++report_.islands;
+  report_.not_converged += !outcome.converged;
+  report_.most_iterations = std::max(report_.most_iterations, outcome.iterations);
+  report_.most_sweeps = std::max(report_.most_sweeps, outcome.sweeps);
+  report_.miss = std::max(report_.miss, outcome.miss);
+  write_impulses();
+  const bool touched = std::any_of(problem_.blocks.begin(), problem_.blocks.end(),
+                                   [](const Block& b) { return b.impulse[0] != 0; });
+  if (!touched) {  // what it flew past did not hold it
+    for (Tree* tree : problem_.trees) fly(*tree, length_);
+    return;
+  }
+  step_.resize(problem_.velocity.size());
+  for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = length_ * problem_.velocity[i];
+  for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
+    Tree& tree = *problem_.trees[i];
+    std::copy_n(problem_.velocity.begin() + problem_.offset[i], tree.dofs, tree.v.begin());
+  }
+  const bool grounded = std::any_of(
+      problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
+        return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0);
+      });
+  if (problem_.turn_into_displacement()) {
+    solver_.solve(problem_);
+    for (std::size_t i = 0; i < step_.size(); ++i) step_[i] += problem_.velocity[i];
+  }
+  for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
+    Tree& tree = *problem_.trees[i];
+    const std::span<const double> by(step_.data() + problem_.offset[i], tree.dofs);
+    if (grounded || !free_to_drift(tree)) {
+      displace(tree, by);
+      dynamics::place(tree);
+      move(tree);
+    } else {
+      displace_keeping_momentum(tree, by);
+    }
+  }
+}
+
+/// Gives back to contacts, servos and limits what they gave, in world axes.
+void System::write_impulses() {
+  for (const Block& block : problem_.blocks) {
+    const auto& g = block.impulse;
+    switch (block.kind) {
+      case Block::Source::contact: {
+        Contact& contact = contacts_[block.source];
+        contact.impulse = block.frame * Vector3(g[0], g[1], g[2]);
+        contact.angular_impulse = block.frame * Vector3(g[3], g[4], g[5]);
+        break;
+      }
+      case Block::Source::servo:
+        servos_[block.source].impulse = g[0];
+        break;
+      case Block::Source::limit: {
+        Limit& limit = limits_[block.source];
+        const Tree& tree = trees[limit.tree];
+        const double q = tree.q[tree.first_place[limit.link]];
+        limit.impulse = q - limit.lower < limit.upper - q ? g[0] : -g[0];
+        break;
+      }
+    }
+  }
+}
+
+}  // namespace ziggurat::dynamics

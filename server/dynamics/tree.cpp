@@ -1,0 +1,200 @@
+#include "dynamics/tree.h"
+
+#include <utility>
+
+#include "dynamics/rotation.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+int places_of(JointType joint) {
+  switch (joint) {
+    case JointType::floating:
+      return 7;
+    case JointType::fixed:
+      return 0;
+    case JointType::spherical:
+      return 4;
+    default:
+      return 1;
+  }
+}
+
+/// q := q turned by `turn`, on its right side (about the turned axes) or left (about the fixed).
+void turn_quaternion(double* q, const Vector3& turn, bool right) {
+  const Quaternion before(q[0], q[1], q[2], q[3]);
+  const Quaternion by = exponential(turn);
+  Quaternion after = right ? before * by : by * before;
+  after.normalize();
+  q[0] = after.w(), q[1] = after.x(), q[2] = after.y(), q[3] = after.z();
+}
+
+void place_root(Tree& tree, const math::Pose& fixed) {
+  if (tree.links[0].joint == JointType::fixed) {
+    tree.rotation[0] = fixed.orientation.toRotationMatrix();
+    tree.position[0] = tree.origin = fixed.position;
+    return;
+  }
+  const double* q = tree.q.data();
+  tree.rotation[0] = rotation_matrix(q + 3);
+  tree.position[0] = tree.origin = Vector3(q[0], q[1], q[2]);
+}
+
+}  // namespace
+
+Tree::Tree(std::vector<Link> with, const math::Pose& root, unsigned with_freedoms)
+    : links(std::move(with)), freedoms(with_freedoms) {
+  count();
+  set_root(root);
+  place(*this);
+  move(*this);
+}
+
+void Tree::count() {
+  const std::size_t size = links.size();
+  first_dof.resize(size);
+  dof_count.resize(size);
+  first_place.resize(size);
+  int places = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const Link& link = links[i];
+    first_dof[i] = dofs;
+    first_place[i] = places;
+    dof_count[i] = link.joint == JointType::floating    ? __builtin_popcount(freedoms)
+                   : link.joint == JointType::fixed     ? 0
+                   : link.joint == JointType::spherical ? 3
+                                                        : 1;
+    int carrier = link.parent;
+    while (carrier >= 0 && dof_count[carrier] == 0) carrier = links[carrier].parent;
+    int last = carrier < 0 ? -1 : first_dof[carrier] + dof_count[carrier] - 1;
+    for (int k = 0; k < dof_count[i]; ++k) {
+      parent_dof.push_back(last);
+      damping.push_back(link.joint == JointType::floating ? 0 : link.damping);
+      last = dofs + k;
+    }
+    dofs += dof_count[i];
+    places += places_of(link.joint);
+    parent_side_.push_back(link.joint_in_parent.orientation.toRotationMatrix());
+    link_side_.push_back(link.joint_in_link.orientation.conjugate().toRotationMatrix());
+  }
+  single = size == 1 && dofs == 6;
+  q.assign(places, 0);
+  v.assign(dofs, 0);
+  for (std::size_t i = 0; i < size; ++i) {
+    if (links[i].joint == JointType::spherical) q[first_place[i]] = 1;
+  }
+  external.resize(size);
+  rotation.resize(size);
+  position.resize(size);
+  axes.resize(dofs);
+  motion.resize(size);
+  inertia.resize(size);
+  wrench.resize(size);
+  acceleration.resize(size);
+  mass.assign(dofs * dofs, 0);
+  factor.assign(dofs * dofs, 0);
+  scratch.assign(dofs, 0);
+  int next = 0;  // the axes of a floating root never change
+  for (int k = 0; k < 6 && links[0].joint == JointType::floating; ++k) {
+    if (!(freedoms >> k & 1)) continue;
+    Motion& axis = axes[next++];
+    (k < 3 ? axis.angular : axis.linear)[k % 3] = 1;
+  }
+}
+
+math::Pose Tree::pose(int link) const { return {position[link], Quaternion(rotation[link])}; }
+
+void Tree::set_root(const math::Pose& pose) {
+  fixed_root_ = pose;
+  if (links[0].joint != JointType::floating) return;
+  const Quaternion o = pose.orientation.normalized();
+  q[0] = pose.position.x(), q[1] = pose.position.y(), q[2] = pose.position.z();
+  q[3] = o.w(), q[4] = o.x(), q[5] = o.y(), q[6] = o.z();
+}
+
+Vector3 Tree::velocity(int link) const {
+  return motion[link].linear + motion[link].angular.cross(position[link] - origin);
+}
+
+Vector3 Tree::angular_velocity(int link) const { return motion[link].angular; }
+
+void place(Tree& tree) {
+  place_root(tree, tree.fixed_root_);
+  const int size = static_cast<int>(tree.links.size());
+  for (int i = 1; i < size; ++i) {
+    const Link& link = tree.links[i];
+    const Matrix3& parent = tree.rotation[link.parent];
+    const double* q = tree.q.data() + tree.first_place[i];
+    Matrix3 joint = parent * tree.parent_side_[i];
+    Vector3 pivot = tree.position[link.parent] + parent * link.joint_in_parent.position;
+    Motion* axes = tree.axes.data() + tree.first_dof[i];
+    if (link.joint == JointType::revolute) {
+      const Vector3 axis = joint * link.axis;
+      joint = joint * rotation_about(link.axis, q[0]);
+      axes[0] = {axis, (pivot - tree.origin).cross(axis)};
+    } else if (link.joint == JointType::prismatic) {
+      const Vector3 axis = joint * link.axis;
+      pivot += axis * q[0];
+      axes[0] = {Vector3::Zero(), axis};
+    } else {
+      joint = joint * rotation_matrix(q);
+      for (int k = 0; k < 3; ++k) {
+        axes[k] = {joint.col(k), (pivot - tree.origin).cross(joint.col(k))};
+      }
+    }
+    tree.rotation[i] = joint * tree.link_side_[i];
+    tree.position[i] = pivot - tree.rotation[i] * link.joint_in_link.position;
+  }
+}
+
+void move(Tree& tree) {
+  const int size = static_cast<int>(tree.links.size());
+  for (int i = 0; i < size; ++i) {
+    Motion motion = i == 0 ? Motion{} : tree.motion[tree.links[i].parent];
+    const int first = tree.first_dof[i];
+    for (int k = first; k < first + tree.dof_count[i]; ++k) {
+      motion = motion + tree.axes[k] * tree.v[k];
+    }
+    tree.motion[i] = motion;
+  }
+}
+
+void displace(Tree& tree, std::span<const double> step) {
+  const int size = static_cast<int>(tree.links.size());
+  for (int i = 0; i < size; ++i) {
+    double* q = tree.q.data() + tree.first_place[i];
+    const double* by = step.data() + tree.first_dof[i];
+    switch (tree.links[i].joint) {
+      case JointType::floating: {
+        double all[6] = {};
+        for (int k = 0, next = 0; k < 6; ++k) {
+          if (tree.freedoms >> k & 1) all[k] = by[next++];
+        }
+        turn_quaternion(q + 3, Vector3(all[0], all[1], all[2]), false);
+        for (int k = 0; k < 3; ++k) q[k] += all[3 + k];
+        break;
+      }
+      case JointType::fixed:
+        break;
+      case JointType::spherical:
+        turn_quaternion(q, Vector3(by[0], by[1], by[2]), true);
+        break;
+      default:
+        q[0] += by[0];
+    }
+  }
+}
+
+double kinetic_energy(const Tree& tree) {
+  double total = 0;
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const Link& link = tree.links[i];
+    if (link.joint == JointType::fixed) continue;
+    const Vector3 omega = tree.rotation[i].transpose() * tree.motion[i].angular;
+    total += link.mass * tree.velocity(static_cast<int>(i)).squaredNorm() / 2;
+    total += omega.cwiseProduct(link.inertia).dot(omega) / 2;
+  }
+  return total;
+}
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,118 @@
+#pragma once
+// An articulated tree of rigid bodies in generalised coordinates. A single body is a tree of one
+// link. Links come parents first; link 0 is the root.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dynamics/spatial.h"
+
+namespace ziggurat::dynamics {
+
+/// How a link moves in its parent.
+enum class JointType : std::uint8_t {
+  floating,   ///< the root of a tree that moves: up to six degrees of freedom in the world
+  fixed,      ///< the root of a tree that stands on the world
+  revolute,   ///< turns about an axis
+  prismatic,  ///< slides along an axis
+  spherical,  ///< turns about a point; its speeds are along the child's joint frame
+};
+
+/// One rigid body. Its frame is at its centre of mass, along its principal axes.
+struct Link {
+  int parent = -1;
+  JointType joint = JointType::floating;
+  math::Pose joint_in_parent;  ///< X_PJ
+  math::Pose joint_in_link;    ///< X_LJ
+  Vector3 axis{0, 0, 1};       ///< of revolute and prismatic joints, unit, in the joint's frame
+  double mass = 0;             ///< [kg], > 0 unless fixed
+  Vector3 inertia{0, 0, 0};    ///< principal [kg m^2], > 0 unless fixed
+  double damping = 0;          ///< of the joint's speeds [N m s] or [N s/m]
+};
+
+/// Freedoms of a floating root: bits of turning about x, y, z and moving along x, y, z of the world.
+constexpr unsigned all_freedoms = 0b111111;
+constexpr unsigned upright_freedoms = 0b111100;  ///< turns about z only
+constexpr unsigned planar_freedoms = 0b011100;   ///< as well, and keeps its height
+
+class Tree {
+ public:
+  /// @param root      pose of link 0 in the world
+  /// @param freedoms  of a floating root
+  Tree(std::vector<Link> links, const math::Pose& root, unsigned freedoms = all_freedoms);
+
+  // What does not change.
+  std::vector<Link> links;
+  unsigned freedoms;
+  int dofs = 0;                   ///< size of v
+  std::vector<int> first_dof;     ///< of each link, into v
+  std::vector<int> dof_count;     ///< of each link
+  std::vector<int> first_place;   ///< of each link, into q
+  std::vector<int> parent_dof;    ///< of each dof: the one before it on the way to the root, or -1
+  std::vector<double> damping;    ///< of each dof [N m s] or [N s/m]
+  bool single = false;            ///< one floating link with all six freedoms
+
+  // The state.
+  /// A floating root: position [m] and orientation w x y z; a revolute joint: angle [rad]; a
+  /// prismatic one: length [m]; a spherical one: orientation w x y z.
+  std::vector<double> q;
+  /// A floating root: angular velocity and velocity of its centre of mass, both along the world's
+  /// axes, as far as it has the freedoms; joints: their speeds. [rad/s], [m/s]
+  std::vector<double> v;
+
+  // What acts in the coming substep.
+  Vector3 gravity{0, 0, 0};  ///< acceleration of all links, world axes [m/s^2]
+  /// Of each link, torque and force at its centre of mass, world axes [N m], [N]: of fields, which
+  /// change with the place. They act as one impulse at the beginning, so that the substep is
+  /// symplectic: stiff fields stay stable where a Taylor step would pump energy into them.
+  std::vector<Wrench> external;
+
+  // What follows from q, by place().
+  std::vector<Matrix3> rotation;  ///< of each link in the world
+  std::vector<Vector3> position;  ///< of each link's centre of mass in the world [m]
+  std::vector<Motion> axes;       ///< of each dof: the motion that its unit speed gives, about O
+  Vector3 origin{0, 0, 0};        ///< O: the root's centre of mass [m]
+
+  // What follows from v as well, by move().
+  std::vector<Motion> motion;  ///< of each link, about O
+
+  // Room to work in.
+  std::vector<Inertia> inertia;  ///< of each link with all that it carries, about O
+  std::vector<Wrench> wrench;
+  std::vector<Motion> acceleration;
+  std::vector<double> mass;    ///< mass matrix, dofs x dofs, row by row
+  std::vector<double> factor;  ///< its factors, see equations.h
+  std::vector<double> scratch;  ///< of each dof
+  std::vector<double> stages;   ///< of the integrator, see flight.h
+  std::vector<double> before;   ///< q and v, kept while a flight is tried
+  double flight_step = 0;      ///< the step that the integrator would take next [s]
+
+  math::Pose pose(int link) const;           ///< X_WL, after place()
+  void set_root(const math::Pose& pose);     ///< of a floating or fixed root
+  Vector3 velocity(int link) const;          ///< of the centre of mass, after move() [m/s]
+  Vector3 angular_velocity(int link) const;  ///< after move() [rad/s]
+
+ private:
+  void count();
+  math::Pose fixed_root_;
+  std::vector<Matrix3> parent_side_, link_side_;  // rotations X_PJ and X_JL of each link
+  friend void place(Tree& tree);
+};
+
+/// Poses, axes and origin from q.
+void place(Tree& tree);
+/// Motions of links from v; needs place().
+void move(Tree& tree);
+
+/// q moved by the displacement `step` in the coordinates of v: turns by the exponential map.
+/// @param step  [rad], [m]
+void displace(Tree& tree, std::span<const double> step);
+
+/// The dof of a revolute or prismatic joint.
+inline int joint_dof(const Tree& tree, int link) { return tree.first_dof[link]; }
+
+/// Kinetic energy [J]; needs move().
+double kinetic_energy(const Tree& tree);
+
+}  // namespace ziggurat::dynamics
