@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ziggurat::dynamics {
 namespace {
@@ -117,6 +118,55 @@ void linearise(const Block& block, const double* u, bool coupled, Linear& out) {
   Disc all[3];
   const int count = discs(block, all);
   for (int d = 0; d < count; ++d) linearise(block, all[d], y, coupled, out);
+}
+
+void soften(const Block& block, const double* u, double softness, double* impulse, Linear* out) {
+  const int rows = block.rows, active = active_rows(block);
+  std::fill_n(impulse, rows, 0.0);
+  if (out) {
+    out->zero = true;
+    std::fill_n(out->slope.begin(), rows * rows, 0.0);
+  }
+  if (active == 0) return;
+  double y[Block::most_rows];
+  for (int r = 0; r < active; ++r) {
+    y[r] = block.anchor[r] - (u[r] - block.seek[r]) / (softness * block.mobility[r]);
+  }
+  const auto give_way = [&](int row, int column, double share) {
+    if (!out) return;
+    out->zero = false;
+    out->slope[row * rows + column] = share / (softness * block.mobility[row]);
+  };
+  const double lower = block.law == Block::Law::bounded ? block.lower : 0;
+  const double upper = block.law == Block::Law::bounded ? block.upper
+                                                        : std::numeric_limits<double>::infinity();
+  impulse[0] = std::clamp(y[0], lower, upper);
+  if (y[0] > lower && y[0] < upper) give_way(0, 0, 1);
+  Disc all[3];
+  const int count = discs(block, all);
+  for (int d = 0; d < count; ++d) {
+    const auto [first, size, ratio] = all[d];
+    const double bound = block.bound[d];
+    double square = 0;
+    for (int r = first; r < first + size; ++r) square += y[r] * y[r];
+    const double length = std::sqrt(square);
+    const double share = length <= bound ? 1 : bound / length;
+    for (int r = first; r < first + size; ++r) {
+      impulse[r] = share * y[r];
+      for (int c = first; c < first + size && share > 0; ++c) {
+        double entry = r == c ? share : 0;
+        if (length > bound) entry -= share * y[r] * y[c] / square;
+        give_way(r, c, entry);
+      }
+    }
+  }
+}
+
+void anchor(Block& block) {
+  block.anchor = block.impulse;
+  Disc all[3];
+  const int count = discs(block, all);
+  for (int d = 0; d < count; ++d) block.bound[d] = all[d].ratio * std::max(0.0, block.impulse[0]);
 }
 
 double miss(const Block& block, const double* u) {

@@ -21,6 +21,16 @@ struct Linear {
 /// that contacts that say the same twice have a solution.
 void linearise(const Block& block, const double* u, bool coupled, Linear& out);
 
+/// The softened law, whose impulses are the gradient of a convex function of the speeds: y is taken
+/// about the block's anchor with `softness` times the mobility, and friction's discs keep the radii
+/// of block.bound. Where anchor and impulse agree it is the contact law itself.
+/// @param impulse  out: of each row
+/// @param out      out: its linearisation, with a symmetric slope; may be null
+void soften(const Block& block, const double* u, double softness, double* impulse, Linear* out);
+
+/// Makes the present impulses the anchor of the softened law.
+void anchor(Block& block);
+
 /// By how much the block's impulses and speeds miss the law [m/s] or [rad/s].
 double miss(const Block& block, const double* u);
 

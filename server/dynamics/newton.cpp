@@ -36,32 +36,50 @@ void apply_slope(const Linear& linear, const double* columns, int dofs, int rows
   }
 }
 
-constexpr int most_dofs = 64;  // for which no room is allocated
-
 }  // namespace
 
-/// Adds J^T slope J to the matrix and J^T constant to the right-hand side, which is in v.
-void Solver::add_block(Problem& problem, const Block& block, const Linear& linear) {
+/// Adds J^T slope J to the matrix.
+void Solver::add_slope(const Problem& problem, const Block& block, const Linear& linear) {
   if (linear.zero) return;
   const int sides[] = {block.a, block.b}, first[] = {block.ja, block.jb};
   for (int s = 0; s < 2; ++s) {
     if (sides[s] < 0) continue;
     const int m = problem.trees[sides[s]]->dofs, rows = block.rows;
-    const double* columns = problem.jacobian.data() + first[s];
-    double room[most_dofs * Block::most_rows];
-    std::vector<double> larger;
-    if (m > most_dofs) larger.resize(static_cast<std::size_t>(m) * rows);
-    double* sloped = m > most_dofs ? larger.data() : room;
-    apply_slope(linear, columns, m, rows, sloped);
+    sloped_.resize(static_cast<std::size_t>(m) * rows);
+    apply_slope(linear, problem.jacobian.data() + first[s], m, rows, sloped_.data());
     for (int t = 0; t < 2; ++t) {
       if (sides[t] < 0) continue;
       const double* others = problem.jacobian.data() + first[t];
-      add_product(others, problem.trees[sides[t]]->dofs, sloped, m, rows,
+      add_product(others, problem.trees[sides[t]]->dofs, sloped_.data(), m, rows,
                   matrix_.block(sides[t], sides[s]));
     }
+  }
+}
+
+/// Adds J^T constant to the right-hand side, which is in v.
+void Solver::add_constant(Problem& problem, const Block& block, const Linear& linear) {
+  if (linear.zero) return;
+  const int sides[] = {block.a, block.b}, first[] = {block.ja, block.jb};
+  for (int s = 0; s < 2; ++s) {
+    if (sides[s] < 0) continue;
+    const int rows = block.rows;
+    const double* columns = problem.jacobian.data() + first[s];
     double* right = problem.velocity.data() + problem.offset[sides[s]];
-    for (int k = 0; k < m; ++k) {
+    for (int k = 0; k < problem.trees[sides[s]]->dofs; ++k) {
       for (int r = 0; r < rows; ++r) right[k] += columns[k * rows + r] * linear.constant[r];
+    }
+  }
+}
+
+/// The mass matrices.
+void Solver::start_matrix(Problem& problem) {
+  matrix_.clear();
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const Tree& tree = *problem.trees[i];
+    double* block = matrix_.block(static_cast<int>(i), static_cast<int>(i));
+    std::copy(tree.mass.begin(), tree.mass.end(), block);
+    for (int k = 0; k < tree.dofs; ++k) {
+      block[k * tree.dofs + k] += problem.length * tree.damping[k];
     }
   }
 }
@@ -75,18 +93,11 @@ bool Solver::step(Problem& problem, bool coupled) {
     linearise(problem.blocks[i], u, coupled, linear_[i]);
   }
   kept_velocity_ = problem.velocity;
-  matrix_.clear();
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
-    double* block = matrix_.block(static_cast<int>(i), static_cast<int>(i));
-    std::copy(tree.mass.begin(), tree.mass.end(), block);
-    for (int k = 0; k < tree.dofs; ++k) {
-      block[k * tree.dofs + k] += problem.length * tree.damping[k];
-    }
-  }
+  start_matrix(problem);
   problem.velocity = problem.momentum;
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    add_block(problem, problem.blocks[i], linear_[i]);
+    add_slope(problem, problem.blocks[i], linear_[i]);
+    add_constant(problem, problem.blocks[i], linear_[i]);
   }
   if (!matrix_.factor()) {
     problem.velocity = kept_velocity_;
@@ -126,26 +137,44 @@ double Solver::worst_miss(const Problem& problem, double& scale) const {
   return worst;
 }
 
+void Solver::Snapshot::take(const Problem& problem) {
+  velocity = problem.velocity;
+  impulses.clear();
+  for (const Block& block : problem.blocks) impulses.push_back(block.impulse);
+}
+
+void Solver::Snapshot::give_back(Problem& problem) const {
+  problem.velocity = velocity;
+  for (std::size_t i = 0; i < impulses.size(); ++i) problem.blocks[i].impulse = impulses[i];
+}
+
+/// Newton's method from the present state.
+/// @return  whether it converged; then the problem holds the solution
+bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
+  double scale = 0;
+  for (int i = 0; i < most; ++i) {
+    if (!step(problem, true) && !step(problem, false)) return false;
+    ++outcome.iterations;
+    outcome.miss = worst_miss(problem, scale);
+    if (outcome.miss <= tolerance(scale)) return true;
+  }
+  return false;
+}
+
 Outcome Solver::solve(Problem& problem) {
   Outcome outcome;
   sizes_.clear();
   for (const Tree* tree : problem.trees) sizes_.push_back(tree->dofs);
   matrix_.shape(sizes_, problem.couplings);
   linear_.resize(problem.blocks.size());
-  double scale = 0;
-  if (matrix_.work() > options.most_work) {
-    sweep_until_converged(problem, outcome, options.most_sweeps);
+  if (matrix_.work() <= options.most_work) {
+    snapshot_.take(problem);
+    if (iterate(problem, outcome, options.most_iterations)) return outcome;
+    snapshot_.give_back(problem);
+    descend(problem, outcome);
     return outcome;
   }
-  for (; outcome.iterations < options.most_iterations; ++outcome.iterations) {
-    if (!step(problem, true) && !step(problem, false)) break;
-    outcome.miss = worst_miss(problem, scale);
-    if (outcome.miss <= tolerance(scale)) {
-      ++outcome.iterations;
-      return outcome;
-    }
-  }
-  outcome.converged = false;
+  sweep_until_converged(problem, outcome, options.most_sweeps);
   return outcome;
 }
 

@@ -12,14 +12,17 @@ namespace ziggurat::dynamics {
 /// How an island was solved.
 struct Outcome {
   int iterations = 0;   ///< of Newton's method
-  int sweeps = 0;
+  int descents = 0;     ///< steps of the softened problem, where Newton's method failed
+  int sweeps = 0;       ///< over all contacts
   double miss = 0;      ///< worst violation of the contact law that is left [m/s] or [rad/s]
   bool converged = true;
 };
 
 struct SolverOptions {
-  int most_iterations = 40;
-  int most_sweeps = 60;
+  int most_iterations = 12;  ///< of Newton's method before other ways are tried
+  int most_descents = 60;    ///< steps of the softened problem
+  double softness = 1e-3;    ///< of it: impulses give way by this times the mobility
+  int most_sweeps = 60;      ///< where nothing else converges
   double relative_tolerance = 1e-8;  ///< of the largest speed or speed change in the island
   double absolute_tolerance = 1e-10; ///< [m/s] or [rad/s]
   double most_work = 4e6;            ///< multiplications of a factorisation; more: sweeps
@@ -33,9 +36,19 @@ class Solver {
   Outcome solve(Problem& problem);
 
  private:
-  bool at_rest(const Problem& problem);
+  struct Snapshot {
+    std::vector<double> velocity;
+    std::vector<std::array<double, Block::most_rows>> impulses;
+    void take(const Problem& problem);
+    void give_back(Problem& problem) const;
+  };
+  void start_matrix(Problem& problem);
+  void descend(Problem& problem, Outcome& outcome);
+  double line_search(Problem& problem, const std::vector<double>& direction);
+  bool iterate(Problem& problem, Outcome& outcome, int most);
   bool step(Problem& problem, bool coupled);
-  void add_block(Problem& problem, const Block& block, const Linear& linear);
+  void add_slope(const Problem& problem, const Block& block, const Linear& linear);
+  void add_constant(Problem& problem, const Block& block, const Linear& linear);
   double worst_miss(const Problem& problem, double& scale) const;
   void sweep_until_converged(Problem& problem, Outcome& outcome, int most);
   void prepare_sweeps(Problem& problem);
@@ -47,7 +60,11 @@ class Solver {
   BlockMatrix matrix_;
   std::vector<Linear> linear_;
   std::vector<int> sizes_;
-  std::vector<double> kept_velocity_, kept_impulses_;
+  std::vector<double> sloped_;
+  std::vector<double> kept_velocity_;
+  Snapshot snapshot_;
+  // Of descents.
+  std::vector<double> direction_, gradient_, speeds_, changes_;
   // Of the sweeps.
   std::vector<double> response_;  // M^-1 J^T, as the Jacobian
   std::vector<double> diagonal_;  // per block and row: J M^-1 J^T

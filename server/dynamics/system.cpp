@@ -186,6 +186,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   ++report_.islands;
   report_.not_converged += !outcome.converged;
   report_.most_iterations = std::max(report_.most_iterations, outcome.iterations);
+  report_.most_descents = std::max(report_.most_descents, outcome.descents);
   report_.most_sweeps = std::max(report_.most_sweeps, outcome.sweeps);
   report_.miss = std::max(report_.miss, outcome.miss);
   write_impulses();
