@@ -170,8 +170,11 @@ Outcome Solver::solve(Problem& problem) {
   if (matrix_.work() <= options.most_work) {
     snapshot_.take(problem);
     if (iterate(problem, outcome, options.most_iterations)) return outcome;
+    // Sweeps go the right way, if slowly: what they leave is a better start.
     snapshot_.give_back(problem);
-    descend(problem, outcome);
+    outcome.converged = false;
+    sweep_until_converged(problem, outcome, options.few_sweeps);
+    if (!outcome.converged) descend(problem, outcome);
     return outcome;
   }
   sweep_until_converged(problem, outcome, options.most_sweeps);

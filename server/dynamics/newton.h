@@ -20,10 +20,11 @@ struct Outcome {
 
 struct SolverOptions {
   int most_iterations = 12;  ///< of Newton's method before other ways are tried
+  int few_sweeps = 15;       ///< for a better start
   int most_descents = 60;    ///< steps of the softened problem
   double softness = 1e-3;    ///< of it: impulses give way by this times the mobility
   int most_sweeps = 60;      ///< where nothing else converges
-  double relative_tolerance = 1e-8;  ///< of the largest speed or speed change in the island
+  double relative_tolerance = 1e-7;  ///< of the largest speed or speed change in the island
   double absolute_tolerance = 1e-10; ///< [m/s] or [rad/s]
   double most_work = 4e6;            ///< multiplications of a factorisation; more: sweeps
 };
