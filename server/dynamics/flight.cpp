@@ -251,27 +251,36 @@ int fly(Tree& tree, double length) {
   return tree.dofs > 0 ? fly_tree(tree, length) : 0;
 }
 
-void momentum_after(Tree& tree, double length, std::span<double> out) {
-  const int n = tree.dofs;
-  if (tree.single) {
-    const Link& link = tree.links[0];
-    Vector3 omega(tree.v[0], tree.v[1], tree.v[2]);
-    const Matrix3& r = tree.rotation[0];
-    const Vector3 torque = r.transpose() * tree.external[0].moment;
-    omega += r * (torque.cwiseQuotient(link.inertia) * length);
-    if (!symmetric(link.inertia) && omega.norm() * length > slow) {
-      double place[4];
-      std::copy_n(tree.q.data() + 3, 4, place);
-      turn(place, link.inertia, length, omega);
-    }
-    const Vector3 momentum = r * (r.transpose() * omega).cwiseProduct(link.inertia);
-    for (int k = 0; k < 3; ++k) {
-      out[k] = momentum[k];
-      out[3 + k] = link.mass * (tree.v[3 + k] + length * tree.gravity[k]) +
-                   length * tree.external[0].force[k];
-    }
-    return;
+namespace {
+
+void momentum_of_body(Tree& tree, double length, std::span<double> out) {
+  const Link& link = tree.links[0];
+  const Matrix3& r = tree.rotation[0];
+  Vector3 omega(tree.v[0], tree.v[1], tree.v[2]);
+  const Vector3 torque = r.transpose() * tree.external[0].moment;
+  omega += r * (torque.cwiseQuotient(link.inertia) * length);
+  Vector3 momentum = r * (r.transpose() * omega).cwiseProduct(link.inertia);
+  tree.drift.fill(0);
+  if (!symmetric(link.inertia) && omega.norm() * length > slow) {
+    double place[4];
+    std::copy_n(tree.q.data() + 3, 4, place);
+    turn(place, link.inertia, length, omega);
+    const Vector3 flown = r * (r.transpose() * omega).cwiseProduct(link.inertia);
+    for (int k = 0; k < 3; ++k) tree.drift[k] = momentum[k] - flown[k];
+    momentum = flown;
   }
+  for (int k = 0; k < 3; ++k) {
+    out[k] = momentum[k];
+    out[3 + k] = link.mass * (tree.v[3 + k] + length * tree.gravity[k]) +
+                 length * tree.external[0].force[k];
+  }
+}
+
+}  // namespace
+
+void momentum_after(Tree& tree, double length, std::span<double> out) {
+  if (tree.single) return momentum_of_body(tree, length, out);
+  const int n = tree.dofs;
   // Bias forces turn the velocity and do no work, but an explicit step of them adds the square of
   // its relative change to the energy: where that matters the substep is flown.
   bias_forces(tree, tree.scratch);
@@ -280,11 +289,18 @@ void momentum_after(Tree& tree, double length, std::span<double> out) {
   for (int i = 0; i < n; ++i) {
     double momentum = 0;
     for (int j = 0; j < n; ++j) momentum += tree.mass[i * n + j] * tree.v[j];
-    out[i] = momentum + length * (out[i] - tree.scratch[i]);
+    out[i] = momentum + length * out[i];
     energy += momentum * tree.v[i];
     change += length * length * tree.scratch[i] * tree.scratch[i] / tree.mass[i * n + i];
   }
-  if (change > slow * slow * energy) momentum_flown(tree, length, out);
+  const int root = std::min(6, n);
+  std::copy_n(out.begin(), root, tree.drift.begin());
+  if (change > slow * slow * energy) {
+    momentum_flown(tree, length, out);
+  } else {
+    for (int i = 0; i < n; ++i) out[i] -= length * tree.scratch[i];
+  }
+  for (int i = 0; i < root; ++i) tree.drift[i] -= out[i];
 }
 
 }  // namespace ziggurat::dynamics

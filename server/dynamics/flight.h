@@ -19,6 +19,8 @@ int fly(Tree& tree, double length);
 /// The generalised momentum that a tree would have at the end of a substep without contacts, at the
 /// mass matrix of its beginning: M(q) v plus what its forces and its own motion add. The damping of
 /// joints is not in it: it is implicit (see problem.h).
+/// Tree::drift becomes what the momentum of a floating tree as a whole would be more than that: with
+/// its shape the mass matrix changes too.
 /// Needs place(), move() and compute_mass(), and leaves the tree so.
 /// @param length  [s]
 /// @param out     of each dof [kg m/s] or [kg m^2/s]

@@ -31,6 +31,7 @@ Vector6 momentum(const Tree& tree) {
 /// its shape.
 void displace_keeping_momentum(Tree& tree, std::span<const double> by) {
   Vector6 before = momentum(tree);
+  for (int i = 0; i < 6; ++i) before[i] += tree.drift[i];
   const Vector3 origin = tree.origin;
   displace(tree, by);
   place(tree);

@@ -2,6 +2,7 @@
 // An articulated tree of rigid bodies in generalised coordinates. A single body is a tree of one
 // link. Links come parents first; link 0 is the root.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -83,6 +84,7 @@ class Tree {
   std::vector<Motion> acceleration;
   std::vector<double> mass;    ///< mass matrix, dofs x dofs, row by row
   std::vector<double> factor;  ///< its factors, see equations.h
+  std::array<double, 6> drift{};  ///< see momentum_after()
   std::vector<double> scratch;  ///< of each dof
   std::vector<double> stages;   ///< of the integrator, see flight.h
   std::vector<double> before;   ///< q and v, kept while a flight is tried
