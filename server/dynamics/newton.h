@@ -19,7 +19,7 @@ struct Outcome {
 };
 
 struct SolverOptions {
-  int most_iterations = 12;  ///< of Newton's method before other ways are tried
+  int most_iterations = 24;  ///< of Newton's method before other ways are tried
   int few_sweeps = 15;       ///< for a better start
   int most_descents = 60;    ///< steps of the softened problem
   double softness = 1e-3;    ///< of it: impulses give way by this times the mobility
