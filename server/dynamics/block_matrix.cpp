@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <numeric>
 
 namespace ziggurat::dynamics {
 namespace {
+
+constexpr double least_pivot = 1e-30;
 
 /// C -= A B, with A n x k, B k x m, row by row.
 template <int N>
@@ -32,10 +35,12 @@ void subtract_product(const double* a, const double* b, double* c, int n, int in
 }
 
 /// A := L U in place, L with ones on its diagonal. The inverses of U's diagonal take its place.
+/// Sliding friction makes the matrix unsymmetric, so a pivot may be negative; it must only not be
+/// lost in rounding.
 bool factor_block(double* a, int n) {
   for (int k = 0; k < n; ++k) {
     const double pivot = a[k * n + k];
-    if (!(pivot > 0)) return false;
+    if (!(std::abs(pivot) > least_pivot)) return false;
     const double inverse = 1 / pivot;
     a[k * n + k] = inverse;
     for (int i = k + 1; i < n; ++i) {

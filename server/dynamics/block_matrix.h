@@ -30,7 +30,7 @@ class BlockMatrix {
   double* block(int i, int j) { return values_.data() + index_[i * count() + j]; }
 
   /// Replaces the values by their factors L U.
-  /// @return  false if a pivot is not positive
+  /// @return  false if a pivot vanishes
   bool factor();
   /// x := matrix^-1 x with the factors.
   void solve(double* x) const;

@@ -1,7 +1,6 @@
-// The robust way: the softened law about the impulses of before is a convex problem, which Newton's
-// method with an exact line search always solves; then its impulses become the anchor, and the
-// bounds of friction follow the normal impulses (the method of multipliers, R. T. Rockafellar,
-// Math. Oper. Res. 1, 1976, for each bound of friction).
+// Steps of the softened problem. With given bounds of friction it is convex, and Newton's method
+// with an exact line search always solves it; with bounds that follow the normal impulses it is what
+// is wanted, and Newton's method solves it from nearby.
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +61,7 @@ double Solver::line_search(Problem& problem, const std::vector<double>& directio
       const double* change = changes_.data() + i * Block::most_rows;
       double u[Block::most_rows], impulse[Block::most_rows];
       for (int r = 0; r < problem.blocks[i].rows; ++r) u[r] = now[r] + step * change[r];
-      soften(problem.blocks[i], u, options.softness, impulse, nullptr);
+      soften(problem.blocks[i], u, options.softness, false, impulse, nullptr);
       for (int r = 0; r < problem.blocks[i].rows; ++r) sum -= change[r] * impulse[r];
     }
     return sum;
@@ -83,62 +82,62 @@ double Solver::line_search(Problem& problem, const std::vector<double>& directio
   return low > 0 ? low : high;
 }
 
-/// Steps of the softened problem, anchored anew each time it is solved well enough.
-void Solver::descend(Problem& problem, Outcome& outcome) {
+/// One Newton step of the softened problem.
+/// @return  false where it can't get better
+bool Solver::descend(Problem& problem, bool coupled, double& largest) {
+  const std::size_t count = problem.blocks.size();
+  start_matrix(problem);
+  gradient_.assign(problem.momentum.size(), 0);
+  add_mass_times(problem, problem.velocity, gradient_);
+  direction_ = problem.momentum;
+  for (std::size_t k = 0; k < gradient_.size(); ++k) direction_[k] -= gradient_[k];
+  for (std::size_t k = 0; k < count; ++k) {
+    Block& block = problem.blocks[k];
+    double* u = speeds_.data() + k * Block::most_rows;
+    problem.speeds(block, u);
+    soften(block, u, options.softness, coupled, block.impulse.data(), &linear_[k]);
+    add_side(problem, block.a, block.ja, block.rows, block.impulse.data(), direction_);
+    add_side(problem, block.b, block.jb, block.rows, block.impulse.data(), direction_);
+    add_slope(problem, block, linear_[k]);
+  }
+  if (!matrix_.factor()) return false;
+  matrix_.solve(direction_.data());
+  std::swap(problem.velocity, direction_);
+  largest = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    double* change = changes_.data() + k * Block::most_rows;
+    problem.speeds(problem.blocks[k], change);
+    for (int r = 0; r < problem.blocks[k].rows; ++r) {
+      largest = std::max(largest, std::abs(change[r]));
+    }
+  }
+  std::swap(problem.velocity, direction_);
+  const double step = coupled ? 1 : line_search(problem, direction_);
+  for (std::size_t k = 0; k < direction_.size(); ++k) problem.velocity[k] += step * direction_[k];
+  for (Block& block : problem.blocks) {
+    double u[Block::most_rows];
+    problem.speeds(block, u);
+    soften(block, u, options.softness, coupled, block.impulse.data(), nullptr);
+  }
+  return step > 0;
+}
+
+/// Solves the softened problem about the present anchors.
+/// @param coupled  whether friction's bounds follow the normal impulses
+/// @param enough   change of a speed at which it is solved [m/s] or [rad/s]
+/// @return         whether it was solved
+bool Solver::relax(Problem& problem, Outcome& outcome, bool coupled, double enough) {
   const std::size_t count = problem.blocks.size();
   speeds_.resize(count * Block::most_rows);
   changes_.resize(count * Block::most_rows);
-  for (Block& block : problem.blocks) anchor(block);
-  double scale = 0;
-  for (int i = 0; i < options.most_descents; ++i) {
-    direction_ = problem.momentum;
-    start_matrix(problem);
-    gradient_.assign(problem.momentum.size(), 0);
-    add_mass_times(problem, problem.velocity, gradient_);
-    for (std::size_t k = 0; k < gradient_.size(); ++k) direction_[k] -= gradient_[k];
-    for (std::size_t k = 0; k < count; ++k) {
-      Block& block = problem.blocks[k];
-      double* u = speeds_.data() + k * Block::most_rows;
-      problem.speeds(block, u);
-      soften(block, u, options.softness, block.impulse.data(), &linear_[k]);
-      add_side(problem, block.a, block.ja, block.rows, block.impulse.data(), direction_);
-      add_side(problem, block.b, block.jb, block.rows, block.impulse.data(), direction_);
-      add_slope(problem, block, linear_[k]);
-    }
-    if (!matrix_.factor()) break;
-    matrix_.solve(direction_.data());
-    std::swap(problem.velocity, direction_);
+  const int most = coupled ? options.most_coupled : options.most_descents;
+  for (int i = 0; i < most; ++i) {
     double largest = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      double* change = changes_.data() + k * Block::most_rows;
-      problem.speeds(problem.blocks[k], change);
-      for (int r = 0; r < problem.blocks[k].rows; ++r) {
-        largest = std::max(largest, std::abs(change[r]));
-      }
-    }
-    std::swap(problem.velocity, direction_);
-    const double step = line_search(problem, direction_);
-    for (std::size_t k = 0; k < direction_.size(); ++k) {
-      problem.velocity[k] += step * direction_[k];
-    }
-    for (Block& block : problem.blocks) {
-      double u[Block::most_rows];
-      problem.speeds(block, u);
-      soften(block, u, options.softness, block.impulse.data(), nullptr);
-    }
     ++outcome.descents;
-    outcome.miss = worst_miss(problem, scale);
-    // Solved as well as its anchor is right: take a better one.
-    const bool solved = step == 1 && largest <= std::max(tolerance(scale), 0.3 * outcome.miss);
-    if (solved && outcome.miss <= tolerance(scale)) {
-      outcome.converged = true;
-      return;
-    }
-    if (solved || step == 0) {
-      for (Block& block : problem.blocks) anchor(block);
-    }
+    if (!descend(problem, coupled, largest)) return false;
+    if (largest <= enough) return true;
   }
-  outcome.converged = false;
+  return false;
 }
 
 }  // namespace ziggurat::dynamics

@@ -33,7 +33,7 @@ void hold(const Block& block, int row, Linear& out) {
 
 /// Friction within a disc: sticks, or slides with its whole bound against the slip.
 /// @param normal  part of y, > 0
-void linearise(const Block& block, const Disc& disc, const double* y, bool coupled, Linear& out) {
+void linearise(const Block& block, const Disc& disc, const double* y, Linear& out) {
   const double bound = disc.ratio * y[0];
   double square = 0;
   for (int r = 0; r < disc.size; ++r) square += y[disc.first + r] * y[disc.first + r];
@@ -47,12 +47,8 @@ void linearise(const Block& block, const Disc& disc, const double* y, bool coupl
   const int rows = block.rows;
   for (int r = 0; r < disc.size; ++r) {
     const int row = disc.first + r;
-    if (coupled) {
-      out.constant[row] = disc.ratio * direction[r] * out.constant[0];
-      out.slope[row * rows] = disc.ratio * direction[r] * out.slope[0];
-    } else {
-      out.constant[row] = bound * direction[r];
-    }
+    out.constant[row] = disc.ratio * direction[r] * out.constant[0];
+    out.slope[row * rows] = disc.ratio * direction[r] * out.slope[0];
   }
   if (disc.size < 2 || bound <= 0) return;
   // Across the slip the direction turns with the speed.
@@ -93,11 +89,11 @@ int active_rows(const Block& block) {
 
 }  // namespace
 
-void linearise(const Block& block, const double* u, bool coupled, Linear& out) {
+void linearise(const Block& block, const double* u, Linear& out) {
   const int rows = block.rows;
   out.zero = true;
   if (block.law == Block::Law::off) return;
-  double y[Block::most_rows];
+  double y[Block::most_rows] = {};
   for (int r = 0; r < active_rows(block); ++r) {
     y[r] = block.impulse[r] - (u[r] - block.seek[r]) / block.mobility[r];
   }
@@ -117,10 +113,11 @@ void linearise(const Block& block, const double* u, bool coupled, Linear& out) {
   hold(block, 0, out);
   Disc all[3];
   const int count = discs(block, all);
-  for (int d = 0; d < count; ++d) linearise(block, all[d], y, coupled, out);
+  for (int d = 0; d < count; ++d) linearise(block, all[d], y, out);
 }
 
-void soften(const Block& block, const double* u, double softness, double* impulse, Linear* out) {
+void soften(const Block& block, const double* u, double softness, bool coupled, double* impulse,
+            Linear* out) {
   const int rows = block.rows, active = active_rows(block);
   std::fill_n(impulse, rows, 0.0);
   if (out) {
@@ -146,27 +143,33 @@ void soften(const Block& block, const double* u, double softness, double* impuls
   const int count = discs(block, all);
   for (int d = 0; d < count; ++d) {
     const auto [first, size, ratio] = all[d];
-    const double bound = block.bound[d];
+    const double bound = coupled ? ratio * impulse[0] : block.bound[d];
     double square = 0;
     for (int r = first; r < first + size; ++r) square += y[r] * y[r];
     const double length = std::sqrt(square);
-    const double share = length <= bound ? 1 : bound / length;
+    const bool slides = length > bound;
+    const double share = slides ? bound / length : 1;
     for (int r = first; r < first + size; ++r) {
       impulse[r] = share * y[r];
+      if (slides && coupled && out) {
+        out->slope[r * rows] = ratio * y[r] / length * out->slope[0];
+      }
       for (int c = first; c < first + size && share > 0; ++c) {
         double entry = r == c ? share : 0;
-        if (length > bound) entry -= share * y[r] * y[c] / square;
+        if (slides) entry -= share * y[r] * y[c] / square;
         give_way(r, c, entry);
       }
     }
   }
 }
 
-void anchor(Block& block) {
+void anchor(Block& block, double share) {
   block.anchor = block.impulse;
   Disc all[3];
   const int count = discs(block, all);
-  for (int d = 0; d < count; ++d) block.bound[d] = all[d].ratio * std::max(0.0, block.impulse[0]);
+  for (int d = 0; d < count; ++d) {
+    block.bound[d] += share * (all[d].ratio * std::max(0.0, block.impulse[0]) - block.bound[d]);
+  }
 }
 
 double miss(const Block& block, const double* u) {

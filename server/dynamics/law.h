@@ -15,21 +15,24 @@ struct Linear {
   std::array<double, Block::most_rows * Block::most_rows> slope{};  ///< row by row, rows x rows
 };
 
-/// @param u        the block's speeds
-/// @param coupled  whether friction's bound follows the normal impulse (else it is held)
+/// @param u  the block's speeds
 /// Where the law holds a speed it is let go by 1e-8 of its mobility times the impulse's change, so
 /// that contacts that say the same twice have a solution.
-void linearise(const Block& block, const double* u, bool coupled, Linear& out);
+void linearise(const Block& block, const double* u, Linear& out);
 
-/// The softened law, whose impulses are the gradient of a convex function of the speeds: y is taken
-/// about the block's anchor with `softness` times the mobility, and friction's discs keep the radii
-/// of block.bound. Where anchor and impulse agree it is the contact law itself.
+/// The softened law: y is taken about the block's anchor with `softness` times the mobility. Where
+/// anchor and impulse agree it is the contact law itself.
+/// @param coupled  false: friction's discs keep the radii of block.bound; then the impulses are the
+///                 gradient of a convex function of the speeds. true: the radii follow the normal
+///                 impulse
 /// @param impulse  out: of each row
-/// @param out      out: its linearisation, with a symmetric slope; may be null
-void soften(const Block& block, const double* u, double softness, double* impulse, Linear* out);
+/// @param out      out: its linearisation, with a symmetric slope if not coupled; may be null
+void soften(const Block& block, const double* u, double softness, bool coupled, double* impulse,
+            Linear* out);
 
 /// Makes the present impulses the anchor of the softened law.
-void anchor(Block& block);
+/// @param share  of the way that friction's bounds go to what the normal impulse allows
+void anchor(Block& block, double share);
 
 /// By how much the block's impulses and speeds miss the law [m/s] or [rad/s].
 double miss(const Block& block, const double* u);

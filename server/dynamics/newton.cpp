@@ -86,11 +86,11 @@ void Solver::start_matrix(Problem& problem) {
 
 /// One step of Newton's method.
 /// @return  false if the matrix has no factors; then nothing has changed
-bool Solver::step(Problem& problem, bool coupled) {
+bool Solver::step(Problem& problem) {
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
     double u[Block::most_rows];
     problem.speeds(problem.blocks[i], u);
-    linearise(problem.blocks[i], u, coupled, linear_[i]);
+    linearise(problem.blocks[i], u, linear_[i]);
   }
   kept_velocity_ = problem.velocity;
   start_matrix(problem);
@@ -153,12 +153,34 @@ void Solver::Snapshot::give_back(Problem& problem) const {
 bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
   double scale = 0;
   for (int i = 0; i < most; ++i) {
-    if (!step(problem, true) && !step(problem, false)) return false;
+    if (!step(problem)) return false;
     ++outcome.iterations;
     outcome.miss = worst_miss(problem, scale);
     if (outcome.miss <= tolerance(scale)) return true;
   }
   return false;
+}
+
+/// Softened problems one after the other, each anchored at what the one before gave, until their
+/// impulses stop changing and so obey the law itself.
+void Solver::soften_until_converged(Problem& problem, Outcome& outcome) {
+  double scale = 0;
+  for (Block& block : problem.blocks) anchor(block, 1);
+  for (int i = 0; i < options.most_anchors; ++i) {
+    worst_miss(problem, scale);
+    relax(problem, outcome, false, 1e-3 * scale);
+    if (i > 0) {  // at first friction's bounds are those of the last substep
+      snapshot_.take(problem);
+      if (!relax(problem, outcome, true, 1e-7 * scale)) snapshot_.give_back(problem);
+    }
+    outcome.miss = worst_miss(problem, scale);
+    const double enough =
+        i < options.few_anchors ? options.relative_tolerance : options.soft_tolerance;
+    outcome.converged = outcome.miss <= options.absolute_tolerance + enough * scale;
+    if (outcome.converged) return;
+    // Bounds that follow only half way do not swing to and fro.
+    for (Block& block : problem.blocks) anchor(block, i < 3 ? 1 : 0.5);
+  }
 }
 
 Outcome Solver::solve(Problem& problem) {
@@ -167,17 +189,14 @@ Outcome Solver::solve(Problem& problem) {
   for (const Tree* tree : problem.trees) sizes_.push_back(tree->dofs);
   matrix_.shape(sizes_, problem.couplings);
   linear_.resize(problem.blocks.size());
-  if (matrix_.work() <= options.most_work) {
-    snapshot_.take(problem);
-    if (iterate(problem, outcome, options.most_iterations)) return outcome;
-    // Sweeps go the right way, if slowly: what they leave is a better start.
-    snapshot_.give_back(problem);
-    outcome.converged = false;
-    sweep_until_converged(problem, outcome, options.few_sweeps);
-    if (!outcome.converged) descend(problem, outcome);
+  if (matrix_.work() > options.most_work) {
+    sweep_until_converged(problem, outcome, options.most_sweeps);
     return outcome;
   }
-  sweep_until_converged(problem, outcome, options.most_sweeps);
+  snapshot_.take(problem);
+  if (iterate(problem, outcome, options.most_iterations)) return outcome;
+  snapshot_.give_back(problem);
+  soften_until_converged(problem, outcome);
   return outcome;
 }
 

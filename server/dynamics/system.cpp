@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "dynamics/equations.h"
 #include "dynamics/flight.h"
@@ -52,6 +53,18 @@ void displace_keeping_momentum(Tree& tree, std::span<const double> by) {
 int System::find(int tree) {
   while (parent_[tree] != tree) tree = parent_[tree] = parent_[parent_[tree]];
   return tree;
+}
+
+/// The order of what acts in an island: it depends on the island alone.
+bool System::before(const Item& a, const Item& b) const {
+  if (a.kind != b.kind) return a.kind < b.kind;
+  if (a.kind != contact_item) return a.index < b.index;
+  const auto key = [&](const Item& item) {
+    const Contact& c = contacts_[item.index];
+    return std::tuple(c.a.tree, c.b.tree, c.a.link, c.b.link, c.point.x(), c.point.y(),
+                      c.point.z(), c.gap);
+  };
+  return key(a) < key(b);
 }
 
 /// Sorts trees and what acts on them by island; islands by their first tree.
@@ -106,6 +119,12 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
   for (const Item& item : items_) item_order_[first_item_[item.island]++] = item;
   for (int i = islands; i > 0; --i) first_item_[i] = first_item_[i - 1];
   first_item_[0] = 0;
+  const auto earlier = [&](const Item& a, const Item& b) { return before(a, b); };
+  for (int i = 0; i < islands; ++i) {
+    const auto first = item_order_.begin() + first_item_[i];
+    const auto last = item_order_.begin() + first_item_[i + 1];
+    if (!std::is_sorted(first, last, earlier)) std::sort(first, last, earlier);
+  }
 }
 
 Report System::step(double length, std::span<Contact> contacts, std::span<Servo> servos,

@@ -26,6 +26,8 @@ class System {
 
   /// Advances all trees that are awake by one substep. Their external wrenches must be set.
   /// @param length    [s]
+  /// The order of contacts in the list does not matter: in an island they are sorted by trees, links
+  /// and places.
   /// @param contacts  those between two trees that stand on the world do nothing; impulses are
   ///                  read and written
   /// @param limits    of joints whose trees are awake
@@ -41,6 +43,7 @@ class System {
     int index;
   };
   int find(int tree);
+  bool before(const Item& a, const Item& b) const;
   void gather(std::span<const Contact> contacts, std::span<const Servo> servos,
               std::span<const Limit> limits);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);

@@ -1,0 +1,226 @@
+// One contact point at a time: impacts, rolling and spinning friction; roots with fewer freedoms;
+// servos along a direction.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "trees.h"
+#include "dynamics/system.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+using testing::g;
+
+constexpr double radius = 0.05, mass = 0.3;  // of the ball [m], [kg]
+
+/// A ball on a floor that may slope along x.
+struct Ball {
+  System system;
+  std::vector<Contact> contacts;
+  Contact law;  // coefficients
+  double slope = 0;
+
+  explicit Ball(double height) {
+    Link link;
+    link.mass = mass;
+    link.inertia = Vector3::Constant(0.4 * mass * radius * radius);
+    system.trees.emplace_back(std::vector<Link>{link},
+                              math::Pose{Vector3(0, 0, height), Quaternion::Identity()});
+  }
+  Tree& tree() { return system.trees[0]; }
+  void step(double length) {
+    tree().gravity = g * Vector3(std::sin(slope), 0, -std::cos(slope));
+    Contact contact = law;
+    contact.a.tree = 0;
+    const Vector3& centre = tree().position[0];
+    contact.point = Vector3(centre.x(), centre.y(), 0);
+    contact.gap = centre.z() - radius;
+    if (!contacts.empty()) {
+      contact.impulse = contacts[0].impulse;
+      contact.angular_impulse = contacts[0].angular_impulse;
+    }
+    contacts.clear();
+    const double reach = 1e-3 + 2 * length * tree().velocity(0).norm();
+    if (contact.gap < reach) contacts.push_back(contact);
+    const Report report = system.step(length, contacts);
+    EXPECT_EQ(report.not_converged, 0);
+  }
+  void roll(double speed) {
+    tree().v[3] = speed, tree().v[1] = speed / radius;
+    move(tree());
+  }
+};
+
+// The height of a rebound is the square of the restitution times the height of the fall; the substep
+// adds its order: the speed at the impact is known to 2 g h.
+TEST(Friction, ABallBouncesAsHighAsItsRestitutionSays) {
+  const double fall = 1, restitution = 0.5, speed = std::sqrt(2 * g * fall);
+  for (const double hz : {100., 1000.}) {
+    Ball ball(radius + fall);
+    ball.law.restitution = restitution;
+    double rise = 0;
+    bool rebounds = false;
+    for (int i = 0; i < hz; ++i) {
+      ball.step(1 / hz);
+      rebounds = rebounds || ball.tree().v[5] > 0.1;
+      if (rebounds && ball.tree().v[5] > 0) rise = std::max(rise, ball.tree().position[0].z());
+      if (rebounds && ball.tree().v[5] < 0) break;
+    }
+    const double exact = restitution * restitution * fall;
+    EXPECT_NEAR((rise - radius) / exact, 1, 4 * g / hz / speed) << hz;
+  }
+}
+
+// (m + I / r^2) a = -lever m g / r, with I = 2/5 m r^2.
+TEST(Friction, RollingFrictionStopsABall) {
+  const double lever = 1e-3, speed = 0.5;
+  const double deceleration = 5. / 7 * lever * g / radius;
+  for (const double hz : {100., 1000.}) {
+    Ball ball(radius);
+    ball.law.friction = 0.5;
+    ball.law.rolling = lever;
+    ball.roll(speed);
+    for (int i = 0; i < hz; ++i) ball.step(1 / hz);
+    EXPECT_NEAR(ball.tree().v[3], speed - deceleration, 1e-5 * speed) << hz;
+    EXPECT_NEAR(ball.tree().v[1] * radius, ball.tree().v[3], 1e-8) << hz;
+    for (int i = 0; i < 4 * hz; ++i) ball.step(1 / hz);
+    const double distance = speed * speed / (2 * deceleration);
+    EXPECT_NEAR(ball.tree().position[0].x(), distance, 1.1 * speed / hz) << hz;
+    EXPECT_LT(ball.tree().velocity(0).norm(), 1e-8) << hz;
+  }
+}
+
+// A ball stays where the slope's tangent is less than lever / radius.
+TEST(Friction, RollingFrictionHoldsABallOnASlope) {
+  for (const double share : {0.95, 1.05}) {
+    Ball ball(radius);
+    ball.law.friction = 0.5;
+    ball.law.rolling = 1e-3;
+    ball.slope = std::atan(share * ball.law.rolling / radius);
+    for (int i = 0; i < 1000; ++i) ball.step(0.01);
+    const double x = ball.tree().position[0].x();
+    if (share < 1) {
+      EXPECT_LT(std::abs(x), 1e-6);
+    } else {
+      const double a = 5. / 7 * g * std::cos(ball.slope) *
+                       (std::tan(ball.slope) - ball.law.rolling / radius);
+      EXPECT_NEAR(x / (a * 100 / 2), 1, 2e-3);
+    }
+  }
+}
+
+// I dw/dt = -lever m g.
+TEST(Friction, SpinningFrictionStopsATurningBall) {
+  const double lever = 1e-4, spin = 3;
+  Ball ball(radius);
+  ball.law.friction = 0.5;
+  ball.law.spinning = lever;
+  ball.tree().v[2] = spin;
+  move(ball.tree());
+  const double deceleration = lever * mass * g / (0.4 * mass * radius * radius);
+  for (int i = 0; i < 100; ++i) ball.step(0.01);
+  EXPECT_NEAR(ball.tree().v[2], spin - deceleration, 1e-6);
+  for (int i = 0; i < 400; ++i) ball.step(0.01);
+  EXPECT_NEAR(ball.tree().v[2], 0, 1e-8);
+}
+
+TEST(Freedom, AnUprightBodyTurnsAboutTheVerticalOnly) {
+  System system;
+  system.trees.emplace_back(std::vector<Link>{testing::box_link({0.2, 0.1, 0.3}, 2)},
+                            math::Pose{}, upright_freedoms);
+  Tree& tree = system.trees[0];
+  ASSERT_EQ(tree.dofs, 4);
+  tree.external[0] = {Vector3(5, -3, 0.01), Vector3(1, 0, 2)};
+  for (int i = 0; i < 100; ++i) system.step(0.01, {});
+  const double inertia = tree.links[0].inertia.z();
+  EXPECT_NEAR(tree.v[0], 0.01 / inertia, 1e-9);
+  EXPECT_NEAR(tree.v[1], 0.5, 1e-9);
+  EXPECT_NEAR(tree.v[3], 1, 1e-9);
+  EXPECT_NEAR(tree.rotation[0](2, 2), 1, 1e-12);
+}
+
+TEST(Freedom, APlanarBodyKeepsItsHeight) {
+  System system;
+  system.trees.emplace_back(std::vector<Link>{testing::box_link({0.2, 0.1, 0.3}, 2)},
+                            math::Pose{Vector3(0, 0, 0.7), Quaternion::Identity()},
+                            planar_freedoms);
+  Tree& tree = system.trees[0];
+  ASSERT_EQ(tree.dofs, 3);
+  testing::weigh(tree);
+  tree.external[0] = {Vector3(5, -3, 0), Vector3(1, -2, 2)};
+  for (int i = 0; i < 100; ++i) system.step(0.01, {});
+  EXPECT_NEAR(tree.v[1], 0.5, 1e-9);
+  EXPECT_NEAR(tree.v[2], -1, 1e-9);
+  EXPECT_EQ(tree.position[0].z(), 0.7);
+}
+
+TEST(Servo, PushesALinkAlongADirectionUpToItsImpulse) {
+  System system;
+  system.trees.push_back(testing::box({0.2, 0.1, 0.3}, 2, {}));
+  std::vector<Servo> servos(2);
+  for (Servo& servo : servos) servo.tree = 0, servo.lower = -0.01, servo.upper = 0.01;
+  servos[0].direction.linear = Vector3(0.6, 0.8, 0);
+  servos[0].speed = 0.2;
+  servos[1].direction.angular = Vector3::UnitZ();
+  servos[1].speed = 0.1;
+  servos[1].lower = -1, servos[1].upper = 1;
+  for (int i = 0; i < 20; ++i) system.step(0.01, {}, servos);
+  EXPECT_NEAR(system.trees[0].velocity(0).norm(), 20 * 0.01 / 2, 1e-9);
+  EXPECT_NEAR(system.trees[0].angular_velocity(0).z(), 0.1, 1e-9);
+  for (int i = 0; i < 50; ++i) system.step(0.01, {}, servos);
+  EXPECT_NEAR(system.trees[0].velocity(0).x(), 0.2 * 0.6, 1e-8);
+  EXPECT_NEAR(system.trees[0].velocity(0).y(), 0.2 * 0.8, 1e-8);
+}
+
+// A servo for a position is one for a speed whose caller seeks the place within the substep.
+TEST(Servo, HoldsAPositionUnderLoad) {
+  Link load = testing::hung(testing::box_link({0.2, 0.2, 0.2}, 2), 0, JointType::prismatic,
+                            Vector3::UnitZ(), Vector3::Zero(), Vector3::Zero());
+  System system;
+  system.trees.emplace_back(std::vector<Link>{testing::ground(), load}, math::Pose{});
+  testing::weigh(system.trees[0]);
+  std::vector<Servo> servos(1);
+  servos[0].tree = 0, servos[0].dof = 0, servos[0].lower = -10, servos[0].upper = 10;
+  for (int i = 0; i < 200; ++i) {
+    servos[0].speed = std::clamp((0.3 - system.trees[0].q[0]) / 0.01, -0.5, 0.5);
+    system.step(0.01, {}, servos);
+  }
+  EXPECT_NEAR(system.trees[0].q[0], 0.3, 1e-9);
+  EXPECT_NEAR(servos[0].impulse, 2 * g * 0.01, 1e-7);
+}
+
+// What an island gives does not depend on the order in which its contacts are listed.
+TEST(Island, TheOrderOfContactsChangesNoBit) {
+  const auto run = [](bool reversed) {
+    System system;
+    for (int i = 0; i < 2; ++i) {
+      system.trees.push_back(testing::box({0.1, 0.1, 0.1}, 1,
+                                          {Vector3(0, 0, 0.05 + 0.1 * i), Quaternion::Identity()}));
+      testing::weigh(system.trees[i]);
+      system.trees[i].v = {0, 0.3, 0.2, 0.4 + i, 0.1, 0};
+      move(system.trees[i]);
+    }
+    std::vector<Contact> contacts;
+    for (int i = 0; i < 2; ++i) {
+      for (const double x : {-0.05, 0.05}) {
+        for (const double y : {-0.05, 0.05}) {
+          Contact contact;
+          contact.a.tree = i, contact.b.tree = i - 1;
+          contact.point = Vector3(x, y, 0.1 * i);
+          contact.friction = 0.4;
+          contacts.push_back(contact);
+        }
+      }
+    }
+    if (reversed) std::reverse(contacts.begin(), contacts.end());
+    system.step(0.01, contacts);
+    return std::pair(system.trees[0].q, system.trees[1].v);
+  };
+  EXPECT_EQ(run(false), run(true));
+}
+
+}  // namespace
+}  // namespace ziggurat::dynamics
