@@ -182,6 +182,15 @@ bool System::fly_island(int first_tree, int last_tree, int first_item, int last_
   return false;
 }
 
+void System::add(const Outcome& outcome) {
+  ++report_.islands;
+  report_.not_converged += !outcome.converged;
+  report_.most_iterations = std::max(report_.most_iterations, outcome.iterations);
+  report_.most_descents = std::max(report_.most_descents, outcome.descents);
+  report_.most_sweeps = std::max(report_.most_sweeps, outcome.sweeps);
+  report_.miss = std::max(report_.miss, outcome.miss);
+}
+
 void System::solve_island(int first_tree, int last_tree, int first_item, int last_item) {
   problem_.clear();
   problem_.length = length_;
@@ -203,12 +212,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     }
   }
   const Outcome outcome = solver_.solve(problem_);
-  ++report_.islands;
-  report_.not_converged += !outcome.converged;
-  report_.most_iterations = std::max(report_.most_iterations, outcome.iterations);
-  report_.most_descents = std::max(report_.most_descents, outcome.descents);
-  report_.most_sweeps = std::max(report_.most_sweeps, outcome.sweeps);
-  report_.miss = std::max(report_.miss, outcome.miss);
+  add(outcome);
   write_impulses();
   const bool touched = std::any_of(problem_.blocks.begin(), problem_.blocks.end(),
                                    [](const Block& b) { return b.impulse[0] != 0; });

@@ -48,6 +48,7 @@ class System {
               std::span<const Limit> limits);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
   bool fly_island(int first_tree, int last_tree, int first_item, int last_item);
+  void add(const Outcome& outcome);  // to the report
   void write_impulses();
 
   double length_ = 0;
