@@ -40,7 +40,7 @@ struct World {
     tag.mount = {
         index,
         index,
-        {{-0.0275, 0, 0.0275}, Quaternion::FromTwoVectors(Vector3::UnitZ(), -Vector3::UnitX())}};
+        {{-0.0275, 0, 0.0275}, Quaternion(Eigen::AngleAxisd(-M_PI / 2, Vector3::UnitY()))}};
     tag.side_length = 0.04;
     layout.tags.push_back(tag);
     state.tag_payloads.push_back(std::to_string(number));

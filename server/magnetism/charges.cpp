@@ -9,7 +9,7 @@
 namespace ziggurat::magnetism {
 namespace {
 
-constexpr int most_nodes = 6;
+constexpr int most_panel_nodes = 6;
 constexpr int deepest = 12;  // halvings of a patch, both directions together
 /// Gaps below this share of the source's longest side are resolved like this one: it bounds the
 /// cost of magnets that touch or overlap.
@@ -20,8 +20,8 @@ constexpr double closest_share = 0.03;
 constexpr double patch_share = 0.1;
 
 struct GaussRule {
-  double node[most_nodes];
-  double weight[most_nodes];
+  double node[most_panel_nodes];
+  double weight[most_panel_nodes];
 };
 
 constexpr GaussRule gauss[] = {
@@ -89,13 +89,13 @@ struct Patch {
   double metre_u, metre_v;  // length on the surface per unit of each parameter, at most [m]
 };
 
-/// Nodes for a half width at a distance from the source; more than most_nodes: divide.
+/// Nodes for a half width at a distance from the source; more than most_panel_nodes: divide.
 int nodes_for(double half, double distance, double goal) {
   const double ratio = distance / half;
   const double rho = ratio + std::sqrt(1 + ratio * ratio);
   const double needed = goal / (2 * logarithm(rho) + 1e-9);
   const int least = goal > 4 ? 3 : 2;
-  return needed > most_nodes ? most_nodes + 1
+  return needed > most_panel_nodes ? most_panel_nodes + 1
                              : std::max(least, static_cast<int>(std::ceil(needed)));
 }
 
@@ -113,7 +113,7 @@ void integrate(Integration& integration, const Surface& surface, const Patch& pa
   const double goal = -logarithm(patch_share * integration.tolerance);
   int nodes_u = nodes_for(patch.half_u * patch.metre_u, nearest, goal);
   int nodes_v = nodes_for(patch.half_v * patch.metre_v, nearest, goal);
-  if (std::max(nodes_u, nodes_v) > most_nodes && depth < deepest) {
+  if (std::max(nodes_u, nodes_v) > most_panel_nodes && depth < deepest) {
     Patch half = patch;
     const bool along_u = patch.half_u * patch.metre_u >= patch.half_v * patch.metre_v;
     (along_u ? half.half_u : half.half_v) /= 2;
@@ -124,8 +124,8 @@ void integrate(Integration& integration, const Surface& surface, const Patch& pa
     }
     return;
   }
-  nodes_u = std::min(nodes_u, most_nodes);
-  nodes_v = std::min(nodes_v, most_nodes);
+  nodes_u = std::min(nodes_u, most_panel_nodes);
+  nodes_v = std::min(nodes_v, most_panel_nodes);
   const GaussRule& rule_u = gauss[nodes_u - 1];
   const GaussRule& rule_v = gauss[nodes_v - 1];
   for (int i = 0; i < nodes_u; ++i) {

@@ -10,7 +10,7 @@ using math::Pose;
 using math::Vector3;
 
 /// Off-diagonal inertia below this share of the diagonal is rounding.
-constexpr double rounding = 1e-12;
+constexpr double negligible_share = 1e-12;
 
 /// X_ES of a shape's centre.
 Pose centre(const LinkBody& link, const Pose& assembled) {
@@ -39,7 +39,7 @@ Matrix3d inertia_about(const Vector3& point, const std::vector<LinkBody*>& links
 /// Principal axes as a rotation; none where the inertia is diagonal already.
 math::Quaternion principal_axes(const Matrix3d& inertia) {
   const Matrix3d rest = inertia - Matrix3d(inertia.diagonal().asDiagonal());
-  if (rest.norm() <= rounding * inertia.norm()) return math::Quaternion::Identity();
+  if (rest.norm() <= negligible_share * inertia.norm()) return math::Quaternion::Identity();
   Matrix3d axes = Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia).eigenvectors();
   if (axes.determinant() < 0) axes.col(2) *= -1;
   return math::Quaternion(axes).normalized();

@@ -32,7 +32,7 @@ void note_type(Reading& reading, const Element& element) {
   const auto meant = nearest(element.name(), own);
   reading.report.notice(
       element.where(),
-      fmt::format("<{}> is taken as an external controller: somebody connects and drives it{}",
+      fmt::format("<{}> is read as an external controller: a client connects and controls its robots{}",
                   element.name(), meant ? fmt::format("; or did you mean <{}>?", *meant) : ""));
 }
 
@@ -212,7 +212,7 @@ struct Check {
   }
 };
 
-/// Faults of a controller that only matter once somebody uses it.
+/// Faults of a controller that only matter once an entity uses it.
 void check_sections(const Reading& reading, const Controller& controller, const Entity& entity,
                     ControllerUse& use) {
   const auto lacks = [&](const char* name) {

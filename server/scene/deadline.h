@@ -11,7 +11,7 @@ namespace ziggurat::scene {
 
 /// Numbers as in the protocol.
 enum class DeadlineAction {
-  wait = 1,  ///< the world waits for ever
+  wait = 1,  ///< the world waits without end
   hold,      ///< what was commanded before stays
   zero,      ///< commands become zero
   drop,      ///< the robots leave the barrier for good

@@ -134,7 +134,7 @@ void read_magnets(Reading& reading, Element& container, Entity& entity) {
       });
 }
 
-/// What a sensor perceives of what is there; whoever is silent leaves it to the next farther out.
+/// What a sensor perceives of what is there; a value that is not set comes from the next container outwards.
 struct Perception {
   std::optional<bool> sees_floor;
   std::optional<Response> response;

@@ -1,6 +1,6 @@
 #pragma once
 // A scene file as XML: elements and attributes with their line and column, and a record of which
-// of them somebody asked for, so that whatever nobody knows is found by itself.
+// of them were read, so that unknown ones are found without a list.
 
 #include <fmt/format.h>
 
@@ -154,7 +154,7 @@ class Element {
   /// Children that do nothing here, with everything in them.
   void child_without_effect(const char* name, std::string_view why);
 
-  /// Reports attributes and children that nobody asked for, repeated attributes, and text.
+  /// Reports attributes and children that were not read, repeated attributes, and text.
   /// @param elsewhere  where they belong, if all of them belong there
   void done(std::string_view elsewhere = {});
 

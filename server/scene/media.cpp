@@ -71,7 +71,7 @@ std::optional<std::size_t> read_medium(Reading& reading, Element& element, Mediu
   }
   const MediumKind is = reading.scene.media[found->second].kind;
   if (is != kind) {
-    lack(fmt::format("names a medium of type {}; a {} medium is due", to_string(is),
+    lack(fmt::format("names a medium of type {}; name a {} medium", to_string(is),
                      to_string(kind)));
     return std::nullopt;
   }

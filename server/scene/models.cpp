@@ -99,7 +99,7 @@ void override_movable(Element& element, Entity& entity) {
   if (entity.movable && !(root.mass > 0)) {
     element.fault_at("movable",
                      "needs a mass, and the model has none; write movable=\"true\" and "
-                     "the mass into the model, and movable=\"false\" where it is due");
+                     "the mass into the model, and movable=\"false\" on entities that must not move");
   }
 }
 

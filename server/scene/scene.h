@@ -203,7 +203,7 @@ struct Arena {
 struct Controller {
   std::string id;
   std::string type;     ///< the element's name: lua_controller, external_controller, …
-  bool lua = false;     ///< driven by ziggurat-lua; otherwise somebody connects
+  bool lua = false;     ///< driven by ziggurat-lua; otherwise a client connects
   std::string command;  ///< external_controller only: what `run` starts; may be empty
   std::optional<DeadlinePolicy> deadline;  ///< for when it is late; nothing: the scene has no say
   ControllerDevices devices;               ///< what <actuators> and <sensors> enable

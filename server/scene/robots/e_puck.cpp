@@ -2,7 +2,7 @@
 // 53 mm, and 41 mm wheels that turn once a second at most. Height, mass, and reach and bearings of
 // the infrared sensors: Webots User Guide, "Using the e-puck robot", tables 8.1 and 8.4: 45 mm,
 // 150 g, 4 cm. Range and bearing: the board of Gutierrez et al. (ICRA 2009), two bytes to 0.8 m.
-// Nobody states heights of sensors and LEDs, nor forces: those are ours.
+// No source states heights of sensors and LEDs, nor forces: those are ours.
 
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include "scene/robots/robots.h"
 
-namespace ziggurat::scene {
+namespace ziggurat::scene::e_puck {
 namespace {
 
 constexpr double body_radius = 0.035;  // [m]
@@ -37,7 +37,7 @@ constexpr unsigned range_and_bearing_bytes = 2;
 
 }  // namespace
 
-void equip_e_puck(Entity& entity) {
+void equip(Entity& entity) {
   entity.links.push_back(wheeled_body(body_radius, body_height, body_mass));
   entity.traction = traction;
   entity.axle_length = axle_length;
@@ -57,4 +57,4 @@ void equip_e_puck(Entity& entity) {
       RangeAndBearing{{}, antenna, range_and_bearing_range, range_and_bearing_bytes, {}};
 }
 
-}  // namespace ziggurat::scene
+}  // namespace ziggurat::scene::e_puck

@@ -6,7 +6,7 @@
 
 #include "scene/robots/robots.h"
 
-namespace ziggurat::scene {
+namespace ziggurat::scene::foot_bot {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
@@ -49,7 +49,7 @@ void add_leds(Entity& entity, int turret) {
 
 }  // namespace
 
-void equip_foot_bot(Entity& entity) {
+void equip(Entity& entity) {
   entity.links.push_back(wheeled_body(body_radius, body_height, body_mass));
   entity.turret = entity.links.size();
   entity.links.push_back(frame("turret", {}));
@@ -70,4 +70,4 @@ void equip_foot_bot(Entity& entity) {
       RangeAndBearing{{}, antenna, range_and_bearing_range, range_and_bearing_bytes, {}};
 }
 
-}  // namespace ziggurat::scene
+}  // namespace ziggurat::scene::foot_bot

@@ -40,7 +40,7 @@ void check_blob_cameras(Element& element, EntityKind kind) {
 }  // namespace
 
 void read_robot(Reading& reading, Element& element, Entity& entity) {
-  entity.kind == EntityKind::foot_bot ? equip_foot_bot(entity) : equip_e_puck(entity);
+  entity.kind == EntityKind::foot_bot ? foot_bot::equip(entity) : e_puck::equip(entity);
   entity.movable = element.optional("movable", boolean, true);
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     entity.links[i].where = element.where();

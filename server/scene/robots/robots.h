@@ -8,10 +8,14 @@ namespace ziggurat::scene {
 
 /// A foot-bot: anchors `base`, `turret` and `perspective_camera`, two wheels, a turret, 13 LEDs,
 /// 24 proximity sensors, range and bearing.
-void equip_foot_bot(Entity& entity);
+namespace foot_bot {
+void equip(Entity& entity);
+}
 
 /// An e-puck: anchor `base`, two wheels, 8 LEDs, 8 proximity sensors, range and bearing.
-void equip_e_puck(Entity& entity);
+namespace e_puck {
+void equip(Entity& entity);
+}
 
 /// A body that is an upright cylinder on the floor: the link `base`.
 Link wheeled_body(double radius, double height, double mass);

@@ -39,7 +39,7 @@ struct Stage {
   }
   /// Orientation of a device that points along -x of W, at the camera.
   static math::Quaternion towards_camera() {
-    return math::Quaternion::FromTwoVectors(Vector3::UnitZ(), -Vector3::UnitX());
+    return math::Quaternion(Eigen::AngleAxisd(-M_PI / 2, Vector3::UnitY()));
   }
 
   world::Mount place(const math::Pose& pose) {

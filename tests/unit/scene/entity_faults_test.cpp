@@ -60,7 +60,7 @@ constexpr Row entity_rows[] = {
      R"(anchor="base" of <led> names no anchor; known here: origin)"},
     {"Light_medium", Part::entity,
      R"(<light id="l" position="0,0,1" color="red" intensity="1" medium="tags"/>)",
-     "names a medium of type tag; a led medium is due"},
+     "names a medium of type tag; name a led medium"},
     {"Arena_floor", Part::entity, R"(<floor id="f" source="loop_functions"/>)",
      R"(source="loop_functions" of <floor> is not supported)"},
 };
@@ -132,7 +132,7 @@ constexpr Row device_rows[] = {
     {"E27_unknown", Part::device, R"(<tags medium="tgs"/>)",
      R"(5:15: medium="tgs" of <tags> names no medium; did you mean "tags"?)"},
     {"E27_type", Part::device, R"(<directional_leds medium="leds"/>)",
-     R"(names a medium of type led; a directional_led medium is due)"},
+     R"(names a medium of type led; name a directional_led medium)"},
     {"E28_led_color", Part::device,
      R"(<leds medium="leds"><led anchor="base" offset="0,0,0"/></leds>)",
      "<led> lacks the attribute color"},

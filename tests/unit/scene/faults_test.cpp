@@ -144,7 +144,7 @@ constexpr Row controller_rows[] = {
      "3:48: <leds> lacks the attribute medium"},
     {"E27_leds_wrong_medium", Part::controllers,
      R"(<controllers><lua_controller id="c"><actuators><leds implementation="default" medium="radio"/></actuators></lua_controller></controllers>)",
-     R"(medium="radio" of <leds> names a medium of type radio; a led medium is due)"},
+     R"(medium="radio" of <leds> names a medium of type radio; name a led medium)"},
     {"E36_no_impulse", Part::controllers,
      R"(<controllers><lua_controller id="c"><actuators><joints implementation="default"><joint id="j" mode="velocity"/></joints></actuators></lua_controller></controllers>)",
      "<joint> lacks the attribute max_impulse"},

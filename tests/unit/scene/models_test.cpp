@@ -393,7 +393,7 @@ TEST(Models, AMissingMediumIsAFaultOnceTheModelIsUsed) {
                 "write <led id=\"leds\"/> in <media> (in prototype \"a\" of model \"block\")"}));
   text.media = "<media><tag id=\"leds\"/></media>";
   EXPECT_EQ(count_containing(faults(text.read(options_with(files))),
-                             "names a medium of type tag; a led medium is due"),
+                             "names a medium of type tag; name a led medium"),
             2u);
 }
 

@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+"""tools/check_words.py finds the words of its list, and nothing else."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "tools/check_words.py"
+
+
+class CheckWords(unittest.TestCase):
+    def run_on(self, path, text):
+        """Exit code and output of the check on one file."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, path)
+            file.parent.mkdir(parents=True)
+            file.write_text(text)
+            done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True)
+            return done.returncode, done.stdout
+
+    def test_finds_a_word_in_code_and_documents(self):
+        for path, text in [("docs/a.md", "The world waits for nobody.\n"),
+                           ("server/a/b.cpp", "void say_hello();\n"),
+                           ("server/a/b.h", "struct Lack {};\n"),
+                           ("clients/a.py", "# a number is due\n")]:
+            with self.subTest(text):
+                code, out = self.run_on(path, "\n" + text)
+                self.assertEqual(code, 1, out)
+                self.assertTrue(out.startswith(f"{path}:2: "), out)
+                self.assertIn("write instead", out)
+
+    def test_leaves_other_words_alone(self):
+        text = "Residue lacks room; the duel says hello_again, essay_length, the fate of a packet.\n"
+        self.assertEqual(self.run_on("docs/a.md", text)[0], 0)
+
+    def test_leaves_recorded_messages_alone(self):
+        self.assertEqual(self.run_on("protocol/recorded/a.txt", "nobody\n")[0], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

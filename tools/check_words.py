@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Finds words that make our texts hard to read for people in a hurry.
+
+usage: check_words.py [ROOT]     ROOT is the top of the checkout (default: this file's)
+
+Texts and identifiers here are plain technical English: short active sentences with the field's
+standard words. WORDS lists what came up again and again in their place, with what to write instead.
+Each use is printed as file:line: text; the exit code is 1 if there is any. Recorded messages, the
+licence and results of benchmarks are left out.
+"""
+
+import pathlib
+import re
+import sys
+
+# pattern -> what to write instead. Patterns match whole words; case counts where they have capitals.
+WORDS = {
+    r"[Nn]obody": "no client, no session, no one; better: make the thing itself the subject",
+    r"[Ss]omebody( else)?('s)?": "a client, a peer, a user, another program",
+    r"[Ww]ho(m?)ever": "the client that …, each peer that …",
+    r"for ever": "forever, without end",
+    r"of somebody else": "of another client",
+    r"([Ii]s|[Aa]re|[Ww]as|[Ww]ere) due": "must be, is expected",
+    r"(comes?|came|coming) about": "happens, is created",
+    r"[Ss]trangers?": "a peer without a session, an unknown peer",
+    r"[Ff]urnish\w*": "fill, provide",
+    r"[Ee]mploy\w*": "use",
+    r"say_[a-z_]+": "send_… or handle_…",
+    r"[Ss]urroundings": "settings, environment",
+    r"Lack|Fate|Room|Laps": "a name that says what it holds: missing part, decision, budget, timings",
+}
+PATTERN = re.compile("|".join(rf"(?P<w{i}>(?<![\w-]){word}(?![\w-]))"
+                              for i, word in enumerate(WORDS)))
+
+TOPS = ["README.md", "quickstart", "CMakeLists.txt", "bench", "clients", "cmake", "conformance",
+        "docker", "docs", "protocol", "scenes", "server", "tests", "tools"]
+SUFFIXES = {".h", ".cpp", ".py", ".lua", ".md", ".proto", ".argos", ".cmake", ".txt", ".sh", ""}
+LEFT_OUT = {"protocol/recorded", "bench/results", "tools/check_words.py",
+            "tests/tools/check_words_test.py"}
+
+
+def files(root):
+    """All texts of ours below root, in a fixed order."""
+    for top in TOPS:
+        start = root / top
+        for path in [start] if start.is_file() else sorted(start.rglob("*")):
+            name = path.relative_to(root).as_posix()
+            if (path.is_file() and path.suffix in SUFFIXES and "node_modules" not in path.parts
+                    and not any(name == out or name.startswith(out + "/") for out in LEFT_OUT)):
+                yield path
+
+
+def check(root):
+    """All uses under root, as file:line: text."""
+    found = []
+    for path in files(root):
+        try:
+            lines = path.read_text(encoding="utf-8").splitlines()
+        except UnicodeDecodeError:
+            continue
+        for number, line in enumerate(lines, 1):
+            for match in PATTERN.finditer(line):
+                instead = list(WORDS.values())[int(match.lastgroup[1:])]
+                found.append(f"{path.relative_to(root)}:{number}: '{match.group()}'; "
+                             f"write instead: {instead}")
+    return found
+
+
+def main():
+    arguments = sys.argv[1:]
+    if len(arguments) > 1 or arguments[:1] in (["-h"], ["--help"]):
+        print(__doc__)
+        return 0 if len(arguments) == 1 else 1
+    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parents[1]
+    found = check(root.resolve())
+    print("\n".join(found) or f"{sum(1 for _ in files(root.resolve()))} texts: no word of the list")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
