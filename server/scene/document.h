@@ -118,15 +118,10 @@ class Element {
     return optional(attribute, read).value_or(std::move(fallback));
   }
 
-  /// The attribute's value; a missing or wrong one is a fault and gives zero or nothing.
+  /// The attribute's value; a missing or wrong one is a fault and gives `fallback`.
   template <class Read>
-  ValueOf<Read> required(const char* attribute, Read read) {
-    return required(attribute, read, blank<ValueOf<Read>>());
-  }
-
-  /// The same, giving `fallback` after a fault.
-  template <class Read>
-  ValueOf<Read> required(const char* attribute, Read read, ValueOf<Read> fallback) {
+  ValueOf<Read> required(const char* attribute, Read read,
+                         ValueOf<Read> fallback = blank<ValueOf<Read>>()) {
     if (!has(attribute)) missing(attribute);
     return optional(attribute, read).value_or(std::move(fallback));
   }
