@@ -24,9 +24,9 @@
 
 #include "physics/contact/algorithm.h"
 #include "physics/convert.h"
-#include "physics/dynamics.h"
+#include "physics/bullet/dynamics.h"
 #include "physics/geometry.h"
-#include "physics/solver.h"
+#include "physics/bullet/solver.h"
 #include "physics/world.h"
 
 namespace {

@@ -70,7 +70,6 @@ std::vector<Part> weld(std::vector<LinkBody>& links, const scene::Entity& entity
   std::vector<std::size_t> first;  // link of each part
   const auto begin = [&](std::size_t link) {
     Part part;
-    part.index = static_cast<int>(parts.size()) - 1;
     part.moves = links[link].moves;
     part.mass = links[link].mass;
     part.inertia = links[link].inertia;

@@ -1,6 +1,6 @@
 #pragma once
-// The physical world: bodies, joints and contacts on Bullet, stepped one substep at a time.
-// No Bullet type leaves this module.
+// The physical world, one substep at a time: bodies, the core that moves them, and the plug-ins that
+// push them. No Bullet type leaves this module.
 
 #include <cstddef>
 #include <memory>
@@ -8,15 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "physics/values.h"
 #include "scene/scene.h"
 #include "world/state.h"
 
 namespace ziggurat::physics {
 
-/// A joint with a coordinate, as the world counts them.
-struct JointIndex {
-  std::size_t value = 0;
-};
 
 class World {
  public:
@@ -64,6 +61,13 @@ class World {
   /// passive one. 0 at the start; without effect where the scene has no magnetism.
   /// @param currents  of the magnets of all entities, in order of adding
   void set_currents(std::span<const double> currents);
+
+  /// Begins to watch what touches a link of an entity added before.
+  /// @param link  index into Entity::links
+  void watch_contacts(std::size_t entity, std::size_t link);
+  /// How a watched link was touched since the last call, or since it is watched; nothing if its
+  /// entity was removed.
+  LinkTouch take_touch(std::size_t entity, std::size_t link);
 
   /// Puts an entity to rest at a pose of its origin, joints as assembled.
   void move(std::size_t entity, const math::Pose& pose);

@@ -84,8 +84,7 @@ bool read_side(const Reading& reading, Element& joint, const char* name, std::si
 }
 
 void read_axis_and_limit(Element& element, Joint& joint) {
-  const bool moves = joint.type == JointType::prismatic || joint.type == JointType::revolute;
-  if (!moves) {
+  if (!has_coordinate(joint.type)) {
     constexpr std::string_view why = "only prismatic and revolute joints have one";
     element.without_effect("axis", vector3, why);
     element.without_effect("limit", range, why);

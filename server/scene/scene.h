@@ -78,6 +78,11 @@ struct Link {
 
 enum class JointType { fixed, spherical, prismatic, revolute };
 
+/// Whether a joint moves along or about an axis, so that it has one coordinate, limits and motors.
+constexpr bool has_coordinate(JointType type) {
+  return type == JointType::prismatic || type == JointType::revolute;
+}
+
 struct JointLimit {
   double lower;  ///< [m] or [rad], relative to the assembled pose; <= upper
   double upper;  ///< [m] or [rad]

@@ -5,6 +5,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 
+#include <cstddef>
 #include <memory>
 
 #include "physics/contact/shapes.h"
@@ -13,7 +14,10 @@ namespace ziggurat::physics::contact {
 
 /// What the algorithm needs of a collision object, which carries a pointer to it.
 struct Collider {
+  static constexpr std::size_t floor = static_cast<std::size_t>(-1);
   Shape shape;
+  std::size_t entity = floor;     ///< in order of adding
+  std::size_t link = 0;           ///< of the entity
   btScalar friction = 0.5;        ///< Coulomb coefficient; two surfaces combine by product
   btScalar rolling_friction = 0;  ///< [m]; two surfaces combine by sum
   bool rolls = false;             ///< has wheels: does not rub on what is below or above it

@@ -1,4 +1,4 @@
-#include "physics/solver.h"
+#include "physics/bullet/solver.h"
 
 #include <algorithm>
 

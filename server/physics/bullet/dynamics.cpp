@@ -1,4 +1,4 @@
-#include "physics/dynamics.h"
+#include "physics/bullet/dynamics.h"
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "physics/link_collider.h"
+#include "physics/bullet/link_collider.h"
 
 namespace ziggurat::physics {
 
