@@ -24,7 +24,8 @@ void Joints::add(const Setting& setting, physics::World& physics) {
     }
     for (const scene::JointSensor& sensor : enabled.joint_sensors) {
       const std::size_t joint = find_joint(entity, sensor.joint);
-      if (sensor.mode == scene::JointMode::disabled || !scene::has_coordinate(entity.joints[joint].type)) {
+      if (sensor.mode == scene::JointMode::disabled ||
+          !scene::has_coordinate(entity.joints[joint].type)) {
         sensors_.push_back({{}, false, true});
       } else {
         sensors_.push_back(

@@ -12,9 +12,7 @@ Body::~Body() = default;
 Body::Body(Body&&) noexcept = default;
 Body& Body::operator=(Body&&) noexcept = default;
 
-Pose LinkBody::frame_in_part() const {
-  return in_part * Pose{-center_of_mass, math::Quaternion::Identity()};
-}
+Pose LinkBody::frame_in_part() const { return in_part * math::inverse(center); }
 
 Pose base_pose(const Body& body) {
   const LinkBody& root = body.links[body.reference_link];

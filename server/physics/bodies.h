@@ -27,14 +27,14 @@ struct Part {
 struct LinkBody {
   bool moves = false;
   double mass = 0;
-  math::Vector3 inertia{0, 0, 0};  ///< principal, link axes [kg m^2]
-  math::Vector3 center_of_mass;    ///< of the link alone, in the bottom-centre frame [m]
-  math::Vector3 half_extents;      ///< of the box about the shape, link axes [m]
+  math::Vector3 inertia{0, 0, 0};  ///< principal [kg m^2]
+  math::Pose center;               ///< X_LS: the link's own centre of mass and principal axes
+  math::Vector3 half_extents;      ///< of the box about the shape and S's origin, S's axes [m]
   scene::Damping damping;
   math::Pose placed;  ///< X_WL as placed
 
   std::size_t part = 0;                                  ///< into Body::parts
-  math::Pose in_part;                                    ///< the link's centre of mass and axes
+  math::Pose in_part;                                    ///< X_PS of the link's `center`
   math::Quaternion turn = math::Quaternion::Identity();  ///< since the start, in the part
   double spin = 0;                 ///< of a turret, about the part's z [rad/s]
   std::optional<LinkTouch> touch;  ///< of a link whose contacts are watched
@@ -44,7 +44,7 @@ struct LinkBody {
   static constexpr int carries_itself = -1;
   int carrier = carries_itself;  ///< index into Body::links
 
-  math::Pose frame_in_part() const;  ///< X_PL of the bottom-centre frame at the start
+  math::Pose frame_in_part() const;  ///< X_PL at the start
 };
 
 struct Motion {
@@ -94,7 +94,7 @@ struct Body {
   std::size_t reference_link = 0;
   math::Pose origin_from_reference;  ///< X_LE: the entity's origin in the reference link
   math::Pose placed;                 ///< X_WE as placed
-  std::size_t first_magnet = 0;  ///< its magnets' place among those of all entities
+  std::size_t first_magnet = 0;      ///< its magnets' place among those of all entities
   std::vector<Magnet> magnets;
   std::optional<GroundMotion> ground;  ///< robots on wheels, and bodies on a plane
   std::optional<Turret> turret;
@@ -104,7 +104,7 @@ struct Body {
 
   /// X_WP of a part.
   btTransform transform(std::size_t part) const;
-  /// Of a link's centre of mass, link axes.
+  /// X_WS of a link's centre of mass and principal axes.
   btTransform transform(const LinkBody& link) const;
   void apply_force(std::size_t part, const btVector3& force);    ///< at the centre of mass [N]
   void apply_torque(std::size_t part, const btVector3& torque);  ///< [N m]

@@ -38,8 +38,8 @@ void ViscousDamping::before_substep(std::span<Body> bodies, double) {
       const btVector3 momentum = basis * (to_bullet(link.inertia) * (basis.transpose() * w));
       const btVector3 arm = pose.getOrigin() - body.transform(link.part).getOrigin();
       body.apply_force(link.part, force);
-      body.apply_torque(link.part, arm.cross(force) - momentum * (link.damping.angular *
-                                                                  (1 + w.length())));
+      body.apply_torque(link.part,
+                        arm.cross(force) - momentum * (link.damping.angular * (1 + w.length())));
     }
   }
 }

@@ -2,7 +2,7 @@
 
 #include "physics/assembly.h"
 #include "physics/convert.h"
-#include "physics/geometry.h"
+#include "physics/shape.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -18,8 +18,8 @@ std::vector<PlacedCollider> placed_colliders(const scene::Entity& entity) {
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     const scene::Link& link = entity.links[i];
     if (!link.collides) continue;
-    const math::Pose centre{center_of_mass(link.geometry), math::Quaternion::Identity()};
-    placed.push_back({contact_shape(link.geometry), to_bullet(entity.pose * assembled[i] * centre)});
+    const math::Pose pose = entity.pose * assembled[i] * shape_frame(link.geometry);
+    placed.push_back({contact_shape(link.geometry), to_bullet(pose)});
   }
   return placed;
 }

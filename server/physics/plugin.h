@@ -21,11 +21,11 @@ struct ContactSide {
 /// Two links, or a link and the floor, in a substep in which they touch: they press each other, or
 /// their surfaces meet.
 struct Contact {
-  ContactSide a, b;                                ///< a < b, so the floor is always b
-  math::Vector3 normal = math::Vector3::Zero();    ///< unit, from b to a, in W
-  math::Vector3 point = math::Vector3::Zero();     ///< the middle of the contact points, in W [m]
-  math::Vector3 impulse = math::Vector3::Zero();   ///< on a, normal and friction, in W [N s]; where
-                                                   ///< both sleep: of the last substep before
+  ContactSide a, b;                               ///< a < b, so the floor is always b
+  math::Vector3 normal = math::Vector3::Zero();   ///< unit, from b to a, in W
+  math::Vector3 point = math::Vector3::Zero();    ///< the middle of the contact points, in W [m]
+  math::Vector3 impulse = math::Vector3::Zero();  ///< on a, normal and friction, in W [N s]; where
+                                                  ///< both sleep: of the last substep before
 };
 
 /// Every function may do nothing. They are called in the order of a substep.

@@ -41,6 +41,8 @@ Plugins::Plugins(const scene::Physics& physics, Core& core) {
   }
 }
 
+void Plugins::add(std::unique_ptr<Plugin> plugin) { plugins_.push_back(std::move(plugin)); }
+
 void Plugins::add(Body& body) {
   for (auto& plugin : plugins_) plugin->body_added(body);
 }

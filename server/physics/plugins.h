@@ -15,6 +15,9 @@ class Plugins {
   /// Those that the scene chooses, and those that every world has.
   Plugins(const scene::Physics& physics, Core& core);
 
+  /// One more, which acts behind the others.
+  void add(std::unique_ptr<Plugin> plugin);
+
   void add(Body& body);
   void remove(const Body& body);
   void move(Body& body);

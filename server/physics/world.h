@@ -1,6 +1,6 @@
 #pragma once
-// The physical world, one substep at a time: bodies, the core that moves them, and the plug-ins that
-// push them. No Bullet type leaves this module.
+// The physical world, one substep at a time: bodies, the core that moves them, and the plug-ins
+// that push them. No Bullet type leaves this module.
 
 #include <cstddef>
 #include <memory>
@@ -13,7 +13,6 @@
 #include "world/state.h"
 
 namespace ziggurat::physics {
-
 
 class World {
  public:
@@ -77,6 +76,8 @@ class World {
 
   /// Writes origins and links; tick and time are the caller's.
   void read(world::State& state) const;
+  /// The same of one entity that is present.
+  void read(std::size_t entity, world::State& state) const;
 
   /// How stiff the scene's magnetic bonds are for its substeps: the largest product of substep and
   /// rate, and the entity it belongs to; 0 where there is no magnetism.

@@ -51,7 +51,8 @@ void shrink(const std::uint8_t* from, std::size_t stride, std::size_t width, uns
 Canvas::Canvas(const Meshes& meshes) {
   const OpenGl& gl = context_.gl();
   make_programs();
-  make_body_arrays(meshes);
+  make_body_arrays();
+  take(meshes);
   make_mark_arrays();
   make_shadow_map();
   gl.create_vertex_arrays(1, &no_arrays_);

@@ -6,7 +6,7 @@
 #include "physics/assembly.h"
 #include "physics/bullet/mechanism.h"
 #include "physics/convert.h"
-#include "physics/geometry.h"
+#include "physics/shape.h"
 #include "physics/turning_magnets.h"
 #include "physics/welding.h"
 
@@ -20,7 +20,7 @@ LinkBody link_body(const scene::Link& link, bool moves, const Pose& placed) {
   body.moves = moves;
   body.mass = link.mass;
   body.inertia = inertia(link.geometry, link.mass);
-  body.center_of_mass = center_of_mass(link.geometry);
+  body.center = shape_frame(link.geometry);
   body.half_extents = half_extents(link.geometry);
   body.damping = link.damping;
   body.placed = placed;
@@ -70,8 +70,7 @@ std::optional<scene::Traction> traction_of(const scene::Entity& entity,
 
 /// Frames without body move with the first link.
 void add_frames(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
-  const Pose into =
-      math::inverse(placed[0] * Pose{body.links[0].center_of_mass, math::Quaternion::Identity()});
+  const Pose into = math::inverse(placed[0] * body.links[0].center);
   for (std::size_t i = 1; i < entity.links.size(); ++i) {
     LinkBody frame = link_body(entity.links[i], true, placed[i]);
     frame.in_part = into * placed[i];
@@ -100,8 +99,7 @@ void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose
                  const scene::Physics& physics) {
   const scene::Link& link = entity.links[0];
   const LinkBody shape = link_body(link, entity.movable, placed[0]);
-  const btTransform transform =
-      to_bullet(placed[0] * Pose{shape.center_of_mass, math::Quaternion::Identity()});
+  const btTransform transform = to_bullet(placed[0] * shape.center);
   btRigidBody::btRigidBodyConstructionInfo info(
       entity.movable ? link.mass : 0, nullptr, nullptr,
       entity.movable ? to_bullet(shape.inertia) : btVector3(0, 0, 0));
@@ -136,8 +134,8 @@ void set_up_joint(Body& body, const scene::Joint& joint) {
     case scene::JointType::fixed:
       break;  // welded
     case scene::JointType::spherical:
-      multi.setupSpherical(index, part.mass, inertia, parent_index, rotation, to_pivot,
-                           from_pivot, true);
+      multi.setupSpherical(index, part.mass, inertia, parent_index, rotation, to_pivot, from_pivot,
+                           true);
       break;
     case scene::JointType::prismatic:
       multi.setupPrismatic(index, part.mass, inertia, parent_index, rotation, axis, to_pivot,
@@ -236,15 +234,9 @@ void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose
 /// A prototype of one link costs less than half as a rigid body, and nothing while it sleeps.
 /// With magnets it stays a multi-body: stacks of magnets come to rest only in those.
 bool is_single_body(const scene::Entity& entity) {
-  switch (entity.kind) {
-    case scene::EntityKind::box:
-    case scene::EntityKind::cylinder:
-      return true;
-    case scene::EntityKind::prototype:
-      return entity.links.size() == 1 && entity.links[0].collides && entity.devices.magnets.empty();
-    default:
-      return false;
-  }
+  if (scene::is_single(entity.kind)) return true;
+  return entity.kind == scene::EntityKind::prototype && entity.links.size() == 1 &&
+         entity.links[0].collides && entity.devices.magnets.empty();
 }
 
 }  // namespace

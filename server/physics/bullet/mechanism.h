@@ -1,6 +1,7 @@
 #pragma once
 // What an entity is made of in Bullet: one rigid body, or one multi-body.
 
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 

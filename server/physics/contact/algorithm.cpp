@@ -4,6 +4,8 @@
 #include <BulletCollision/CollisionDispatch/btActivatingCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
+#include <iterator>
+
 namespace ziggurat::physics::contact {
 namespace {
 
@@ -193,8 +195,10 @@ btDefaultCollisionConstructionInfo construction_info() {
 std::unique_ptr<btCollisionAlgorithmCreateFunc> register_algorithms(
     btCollisionDispatcher& dispatcher) {
   auto create = std::make_unique<Algorithm::Create>();
-  constexpr int types[] = {BOX_SHAPE_PROXYTYPE, CYLINDER_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
-                           STATIC_PLANE_PROXYTYPE};
+  constexpr int types[] = {BOX_SHAPE_PROXYTYPE,         CYLINDER_SHAPE_PROXYTYPE,
+                           SPHERE_SHAPE_PROXYTYPE,      CAPSULE_SHAPE_PROXYTYPE,
+                           CONVEX_HULL_SHAPE_PROXYTYPE, STATIC_PLANE_PROXYTYPE};
+  static_assert(std::size(types) == std::variant_size_v<Shape>);
   for (const int a : types) {
     for (const int b : types) dispatcher.registerCollisionCreateFunc(a, b, create.get());
   }

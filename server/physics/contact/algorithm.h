@@ -31,7 +31,7 @@ const Collider& collider_of(const btCollisionObject& object);
 /// Bullet's pools with elements large enough for our algorithm; without it the heap is overrun.
 btDefaultCollisionConstructionInfo construction_info();
 
-/// Makes our algorithm answer for all pairs of box, cylinder, sphere and plane. The returned
+/// Makes our algorithm answer for all pairs of shapes. The returned
 /// object must outlive the dispatcher's use of it.
 std::unique_ptr<btCollisionAlgorithmCreateFunc> register_algorithms(
     btCollisionDispatcher& dispatcher);
