@@ -38,7 +38,7 @@ class Rays {
   /// @param entity  in order of adding
   void remove(std::size_t entity);
 
-  /// Takes the poses of a tick; due before casts.
+  /// Takes the poses of a tick. Must be called before casts.
   void update(const world::State& state);
 
   /// The closest entity that the segment meets before its end. A body in which the segment starts

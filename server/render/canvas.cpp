@@ -87,7 +87,7 @@ void Canvas::make_target(unsigned width, unsigned height) {
   target_height_ = std::max(height, target_height_);
   const auto w = static_cast<GLsizei>(target_width_), h = static_cast<GLsizei>(target_height_);
   const GLuint targets[] = {sampled_, resolved_};
-  gl.delete_framebuffers(2, targets);  // 0 is nobody
+  gl.delete_framebuffers(2, targets);  // 0 is ignored
   gl.delete_renderbuffers(3, buffers_);
   gl.create_framebuffers(1, &sampled_);
   gl.create_framebuffers(1, &resolved_);

@@ -19,7 +19,7 @@ GLuint make_shader(const OpenGl& gl, GLenum stage, const char* text) {
   return shader;
 }
 
-/// What is wrong with a shader is said when it is linked.
+/// Errors of a shader are reported when it is linked.
 GLuint make_program(const OpenGl& gl, const char* vertex, const char* fragment) {
   const GLuint program = gl.create_program();
   gl.attach_shader(program, make_shader(gl, GL_VERTEX_SHADER, vertex));

@@ -58,14 +58,14 @@ struct Drawing {
 /// The side of the shadow map [texels].
 constexpr unsigned shadow_size = 2048;
 
-/// Fills a drawing anew; keeps its memory.
+/// Fills drawings; their memory is used again.
 class Draftsman {
  public:
   Draftsman(Model model, const world::Layout& layout);
 
   const Meshes& meshes() const { return meshes_; }
   const Model& model() const { return model_; }
-  /// An entity that has come since; its links are the next of the layout.
+  /// A new entity; its links are the next of the layout.
   void add(const scene::Entity& entity);
   void draw(const world::State& state, const View& view, Drawing& drawing);
 

@@ -41,7 +41,7 @@ Meshes make_meshes();
 /// Adds a hull in its own frame and size.
 Mesh add_hull(const scene::Polyhedron& hull, Meshes& meshes);
 
-/// Place in `roundness` for a radius of so many pixels, so that straight pieces can't be told.
+/// Place in `roundness` for a radius in pixels, so that straight pieces are not visible.
 std::size_t roundness_for(double radius);
 
 }  // namespace ziggurat::render

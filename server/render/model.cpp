@@ -6,7 +6,7 @@
 namespace ziggurat::render {
 namespace {
 
-/// A colour as people write it (sRGB, 0xRRGGBB).
+/// A colour in sRGB, 0xRRGGBB.
 Rgb rgb(unsigned hex) {
   const auto channel = [hex](unsigned shift) {
     return std::pow(static_cast<float>((hex >> shift) & 0xffu) / 255.0f, 2.2f);
@@ -14,8 +14,8 @@ Rgb rgb(unsigned hex) {
   return {channel(16), channel(8), channel(0)};
 }
 
-// The dialect has no colours of its own. These tell apart what matters in a picture: what stands
-// fast, things that lie around, robots, and a robot's wheels and arms from its body.
+// The dialect has no colours. These tell apart what matters in a picture: fixed things, movable
+// things, robots, and a robot's wheels and arms from its body.
 Rgb color_of(const scene::Entity& entity, std::size_t link) {
   const scene::Geometry& geometry = entity.links[link].geometry;
   if (!entity.movable && !entity.controller) return rgb(0xb4b7ba);

@@ -151,7 +151,7 @@ btVector3 Algorithm::slip(const btManifoldPoint& point, const Old* old, Anchor& 
 }
 
 /// Tells Bullet the slips to take back. Anchors set at different times contradict each other by
-/// a hair, and four contradicting points would push each other for ever: what is asked for is
+/// a hair, and four contradicting points would push each other forever: the target is
 /// the rigid motion in the tangent plane that fits them best.
 void Algorithm::take_back(const std::array<btVector3, 4>& slips) {
   const int count = manifold_->getNumContacts();

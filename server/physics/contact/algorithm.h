@@ -12,7 +12,7 @@
 
 namespace ziggurat::physics::contact {
 
-/// What the algorithm needs of a collision object, which carries a pointer to it.
+/// What the algorithm needs to know of a collision object, which has a pointer to it.
 struct Collider {
   static constexpr std::size_t floor = static_cast<std::size_t>(-1);
   Shape shape;
@@ -21,7 +21,7 @@ struct Collider {
   btScalar friction = 0.5;        ///< Coulomb coefficient; two surfaces combine by product
   btScalar rolling_friction = 0;  ///< [m]; two surfaces combine by sum
   bool rolls = false;             ///< has wheels: does not rub on what is below or above it
-  btScalar reach = 0;             ///< how far ahead this body is looked for, this substep [m]
+  btScalar reach = 0;             ///< distance at which contacts are kept, this substep [m]
   btTransform previous = btTransform::getIdentity();  ///< pose one substep ago
 };
 
