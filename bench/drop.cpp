@@ -22,11 +22,11 @@
 #include <random>
 #include <vector>
 
+#include "physics/bullet/dynamics.h"
+#include "physics/bullet/solver.h"
 #include "physics/contact/algorithm.h"
 #include "physics/convert.h"
-#include "physics/dynamics.h"
-#include "physics/geometry.h"
-#include "physics/solver.h"
+#include "physics/shape.h"
 #include "physics/world.h"
 
 namespace {

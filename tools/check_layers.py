@@ -45,6 +45,8 @@ MODULES = {
 # such as Eigen and fmt, are free.
 LIBRARIES = {
     "pugixml": (r"pugixml\.hpp$|pugiconfig\.hpp$", ["scene"]),
+    "Qhull": (r"libqhull_r/", ["scene"]),
+    "tinyobjloader": (r"tiny_obj_loader\.h$", ["scene"]),
     "Bullet": (r"bullet/|bt[A-Z]\w*\.h$|Bullet\w*/|LinearMath/", ["physics"]),
     "protobuf": (r"google/protobuf/", ["protocol", "wire", "recording"]),
     "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "clients/cpp"]),

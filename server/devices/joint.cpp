@@ -12,10 +12,6 @@ std::size_t find_joint(const scene::Entity& entity, const std::string& id) {
   return joint;
 }
 
-bool has_coordinate(const scene::Joint& joint) {
-  return joint.type == scene::JointType::revolute || joint.type == scene::JointType::prismatic;
-}
-
 }  // namespace
 
 void Joints::add(const Setting& setting, physics::World& physics) {
@@ -28,7 +24,8 @@ void Joints::add(const Setting& setting, physics::World& physics) {
     }
     for (const scene::JointSensor& sensor : enabled.joint_sensors) {
       const std::size_t joint = find_joint(entity, sensor.joint);
-      if (sensor.mode == scene::JointMode::disabled || !has_coordinate(entity.joints[joint])) {
+      if (sensor.mode == scene::JointMode::disabled ||
+          !scene::has_coordinate(entity.joints[joint].type)) {
         sensors_.push_back({{}, false, true});
       } else {
         sensors_.push_back(

@@ -1,8 +1,8 @@
-// The loops of Kernel; see lanes.inl about who includes this.
+// The loops of Kernel; lanes.inl tells which files include this.
 
 #include "magnetism/lanes.inl"
 
-ZIGGURAT_INLINE Mask nobody_masked() { return Mask{-1, -1, -1, -1}; }
+ZIGGURAT_INLINE Mask none_masked() { return Mask{-1, -1, -1, -1}; }
 
 template <bool tapered>
 static void add_pairs(const Dipoles& dipoles, const Pairs& pairs, const Range& range,
@@ -16,7 +16,7 @@ static void add_pairs(const Dipoles& dipoles, const Pairs& pairs, const Range& r
                                          columns(m[i[0]], m[i[1]], m[i[2]], m[i[3]]),
                                          columns(p[j[0]], p[j[1]], p[j[2]], p[j[3]]),
                                          columns(m[j[0]], m[j[1]], m[j[2]], m[j[3]]), range,
-                                         nobody_masked());
+                                         none_masked());
     Columns& f = four.force;
     Columns& b1 = four.first_field;
     Columns& b2 = four.second_field;
@@ -67,7 +67,7 @@ ZIGGURAT_INLINE void add_block(const Dipoles& dipoles, std::size_t begin, const 
     accumulate(force, four.force);
     accumulate(field, four.first_field);
   }
-  // Roots and divisions first, for a few rows together: one row's wait for them would else hold up
+  // Roots and divisions first, for a few rows together: waiting for them would otherwise hold up
   // the next row's arithmetic.
   constexpr std::size_t ahead = 16;
   Lanes inverses[ahead];

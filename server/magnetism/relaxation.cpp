@@ -93,7 +93,7 @@ void Partners::list(const Pairs& pairs, const std::vector<std::uint32_t>& free,
     sum += padded;
   }
   indices_.assign(sum, static_cast<std::uint32_t>(dipoles));
-  // From here on fill_ says where the next partner of a free dipole goes; pairs are sorted, so
+  // From here on fill_ is where the next partner of a free dipole goes; pairs are sorted, so
   // partners come in ascending order.
   for (const std::uint32_t i : free) fill_[i] += starts_[i];
   const auto add = [this](std::uint32_t to, std::uint32_t partner) {

@@ -1,336 +1,55 @@
 #include "physics/bodies.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "physics/assembly.h"
+#include "physics/bullet/mechanism.h"
 #include "physics/convert.h"
-#include "physics/geometry.h"
-#include "physics/turning_magnets.h"
-#include "physics/welding.h"
 
 namespace ziggurat::physics {
-namespace {
 
 using math::Pose;
 
-LinkBody link_body(const scene::Link& link, bool moves, const Pose& placed) {
-  LinkBody body;
-  body.moves = moves;
-  body.mass = link.mass;
-  body.inertia = inertia(link.geometry, link.mass);
-  body.center_of_mass = center_of_mass(link.geometry);
-  body.half_extents = half_extents(link.geometry);
-  body.damping = link.damping;
-  body.placed = placed;
-  return body;
-}
+Body::Body() = default;
+Body::~Body() = default;
+Body::Body(Body&&) noexcept = default;
+Body& Body::operator=(Body&&) noexcept = default;
 
-/// Gives a collision object its shape and surface.
-void furnish(Body& body, btCollisionObject& object, const scene::Link& link,
-             const btTransform& transform) {
-  body.shapes.push_back(bullet_shape(link.geometry));
-  body.colliders.push_back(std::make_unique<contact::Collider>());
-  contact::Collider& collider = *body.colliders.back();
-  collider.shape = contact_shape(link.geometry);
-  collider.friction = link.surface.friction;
-  collider.rolling_friction = link.surface.rolling_friction;
-  collider.previous = transform;
-  object.setCollisionShape(body.shapes.back().get());
-  object.setUserPointer(&collider);
-  object.setWorldTransform(transform);
-}
-
-/// A single body slower than this for half a second sleeps until something touches it.
-constexpr double sleeping_velocity = 4e-3;         // [m/s]
-constexpr double sleeping_angular_velocity = 0.4;  // [rad/s]
-
-/// The plane that an entity stands on, if there is one.
-const scene::Plane* plane_of(const scene::Entity& entity, const scene::Physics& physics) {
-  constexpr double tolerance = 1e-6;  // [m]
-  for (const scene::Plane& plane : physics.planes) {
-    if (std::abs(entity.pose.position.z() - plane.elevation) < tolerance) return &plane;
-  }
-  return nullptr;
-}
-
-/// What holds a body to the ground, unless it is loose.
-std::optional<scene::Traction> traction_of(const scene::Entity& entity,
-                                           const scene::Physics& physics) {
-  if (!entity.movable || entity.traction) return entity.traction;
-  if (entity.kind == scene::EntityKind::prototype) return std::nullopt;
-  const scene::Plane* plane = physics.flat ? plane_of(entity, physics) : nullptr;
-  if (!plane) return std::nullopt;
-  return entity.kind == scene::EntityKind::box ? plane->box : plane->cylinder;
-}
-
-/// Frames without body move with the first link.
-void add_frames(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
-  const Pose into =
-      math::inverse(placed[0] * Pose{body.links[0].center_of_mass, math::Quaternion::Identity()});
-  for (std::size_t i = 1; i < entity.links.size(); ++i) {
-    LinkBody frame = link_body(entity.links[i], true, placed[i]);
-    frame.in_part = into * placed[i];
-    body.links.push_back(frame);
-  }
-  body.turret = entity.turret;
-}
-
-/// A body with traction stays upright, and keeps its height on a plane.
-void add_drive(Body& body, const scene::Entity& entity, const scene::Physics& physics) {
-  const auto traction = traction_of(entity, physics);
-  if (!traction) return;
-  body.colliders[0]->rolls = true;
-  body.drive = std::make_unique<Drive>(*body.rigid, *traction);
-  if (!entity.movable) return;
-  body.rigid->setFlags(0);  // no gyroscopic torque: it does not tilt
-  body.rigid->setAngularFactor(btVector3(0, 0, 1));
-  if (plane_of(entity, physics)) body.rigid->setLinearFactor(btVector3(1, 1, 0));
-  if (entity.axle_length) body.rigid->setActivationState(DISABLE_DEACTIVATION);
-}
-
-void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed,
-                 const scene::Physics& physics) {
-  const scene::Link& link = entity.links[0];
-  const LinkBody shape = link_body(link, entity.movable, placed[0]);
-  const btTransform transform =
-      to_bullet(placed[0] * Pose{shape.center_of_mass, math::Quaternion::Identity()});
-  btRigidBody::btRigidBodyConstructionInfo info(
-      entity.movable ? link.mass : 0, nullptr, nullptr,
-      entity.movable ? to_bullet(shape.inertia) : btVector3(0, 0, 0));
-  info.m_startWorldTransform = transform;
-  body.rigid = std::make_unique<btRigidBody>(info);
-  furnish(body, *body.rigid, link, transform);
-  body.rigid->setSleepingThresholds(sleeping_velocity, sleeping_angular_velocity);
-  Part part;
-  part.rigid = body.rigid.get();
-  part.moves = shape.moves;
-  part.mass = shape.mass;
-  part.inertia = shape.inertia;
-  body.parts.push_back(part);
-  body.links.push_back(shape);
-  add_frames(body, entity, placed);
-  add_drive(body, entity, physics);
-}
-
-void set_up_joint(Body& body, const scene::Joint& joint) {
-  const LinkBody& parent = body.links[joint.parent];
-  const LinkBody& child = body.links[joint.child];
-  const Part& part = body.parts[child.part];
-  const Pose pivot_in_parent = parent.frame_in_part() * joint.parent_frame;
-  const Pose child_frame = child.frame_in_part();
-  const Pose pivot = child_frame * joint.child_frame;
-  const btVector3 inertia = to_bullet(part.inertia);
-  // Bullet's rotation takes the parent's coordinates to the child's.
-  const btQuaternion rotation =
-      to_bullet(math::Quaternion(pivot.orientation * pivot_in_parent.orientation.conjugate()));
-  const btVector3 to_pivot = to_bullet(pivot_in_parent.position);
-  const btVector3 from_pivot = to_bullet(math::Vector3(-pivot.position));
-  const btVector3 axis = to_bullet(math::Vector3(child_frame.orientation * joint.axis));
-  const int parent_index = body.parts[parent.part].index;
-  btMultiBody& multi = *body.multi;
-  switch (joint.type) {
-    case scene::JointType::fixed:
-      break;  // welded
-    case scene::JointType::spherical:
-      multi.setupSpherical(part.index, part.mass, inertia, parent_index, rotation, to_pivot,
-                           from_pivot, true);
-      break;
-    case scene::JointType::prismatic:
-      multi.setupPrismatic(part.index, part.mass, inertia, parent_index, rotation, axis, to_pivot,
-                           from_pivot, true);
-      break;
-    case scene::JointType::revolute:
-      multi.setupRevolute(part.index, part.mass, inertia, parent_index, rotation, axis, to_pivot,
-                          from_pivot, true);
-      break;
-  }
-}
-
-/// Bullet moves the first collider of each part, we the others.
-void lead(Body& body, const Part& part, LinkCollider& collider) {
-  btMultiBodyLinkCollider* leader =
-      part.index < 0 ? body.multi->getBaseCollider() : body.multi->getLink(part.index).m_collider;
-  if (leader) {
-    collider.follow(*link_collider(leader));
-  } else if (part.index < 0) {
-    body.multi->setBaseCollider(&collider);
-  } else {
-    body.multi->getLink(part.index).m_collider = &collider;
-  }
-}
-
-void add_link_colliders(Body& body, const scene::Entity& entity) {
-  for (std::size_t i = 0; i < entity.links.size(); ++i) {
-    const LinkBody& link = body.links[i];
-    if (!entity.links[i].collides || link.carrier != LinkBody::carries_itself) continue;
-    const Part& part = body.parts[link.part];
-    auto collider =
-        std::make_unique<LinkCollider>(body.multi.get(), part.index, to_bullet(link.in_part));
-    const btTransform part_pose = part.transform();
-    collider->setWorldTransform(part_pose);
-    collider->note();
-    lead(body, part, *collider);
-    furnish(body, *collider, entity.links[i], part_pose * to_bullet(link.in_part));
-    if (part.moves) {
-      collider->setActivationState(DISABLE_DEACTIVATION);
-    } else {
-      collider->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
-    }
-    body.link_colliders.push_back(std::move(collider));
-  }
-}
-
-bool same_damping(const scene::Entity& entity) {
-  for (const scene::Link& link : entity.links) {
-    if (link.damping.linear != entity.links[0].damping.linear ||
-        link.damping.angular != entity.links[0].damping.angular) {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// Bullet's own damping is the dialect's law; where links differ our plug-in applies it.
-void set_damping(Body& body, const scene::Entity& entity) {
-  if (!same_damping(entity)) return;
-  body.multi->setLinearDamping(entity.links[0].damping.linear);
-  body.multi->setAngularDamping(entity.links[0].damping.angular);
-  for (LinkBody& link : body.links) link.damping = {};
-}
-
-void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose>& assembled,
-                 const std::vector<Pose>& placed, bool magnetism) {
-  for (std::size_t i = 0; i < entity.links.size(); ++i) {
-    const bool moves = entity.movable || i != entity.reference_link;
-    body.links.push_back(link_body(entity.links[i], moves, placed[i]));
-  }
-  if (magnetism) carry_turning_magnets(body.links, entity, assembled);
-  body.parts = weld(body.links, entity, assembled);
-  const Part& base = body.parts[0];
-  body.multi = std::make_unique<btMultiBody>(static_cast<int>(body.parts.size()) - 1, base.mass,
-                                             to_bullet(base.inertia), !entity.movable, false);
-  btMultiBody& multi = *body.multi;
-  for (Part& part : body.parts) part.multi = &multi;
-  for (const scene::Joint& joint : entity.joints) {
-    if (body.links[joint.child].part != body.links[joint.parent].part) set_up_joint(body, joint);
-  }
-  multi.finalizeMultiDof();
-  multi.setHasSelfCollision(false);
-  multi.setCanSleep(false);
-  multi.setUseGyroTerm(true);
-  multi.setLinearDamping(0);
-  multi.setAngularDamping(0);
-  set_damping(body, entity);
-  multi.setMaxAppliedImpulse(1e6);
-  multi.setMaxCoordinateVelocity(1e6);
-  multi.setBaseWorldTransform(to_bullet(base_pose(body)));
-  btAlignedObjectArray<btQuaternion> rotations;
-  btAlignedObjectArray<btVector3> positions;
-  multi.forwardKinematics(rotations, positions);
-  add_link_colliders(body, entity);
-}
-
-/// A prototype of one link costs less than half as a rigid body, and nothing while it sleeps.
-/// With magnets it stays a multi-body: stacks of magnets come to rest only in those.
-bool is_single_body(const scene::Entity& entity) {
-  switch (entity.kind) {
-    case scene::EntityKind::box:
-    case scene::EntityKind::cylinder:
-      return true;
-    case scene::EntityKind::prototype:
-      return entity.links.size() == 1 && entity.links[0].collides && entity.devices.magnets.empty();
-    default:
-      return false;
-  }
-}
-
-}  // namespace
-
-Pose LinkBody::frame_in_part() const {
-  return in_part * Pose{-center_of_mass, math::Quaternion::Identity()};
-}
+Pose LinkBody::frame_in_part() const { return in_part * math::inverse(center); }
 
 Pose base_pose(const Body& body) {
   const LinkBody& root = body.links[body.reference_link];
   return root.placed * math::inverse(root.frame_in_part());
 }
 
-btTransform Part::transform() const {
-  if (rigid) return rigid->getWorldTransform();
-  if (index < 0) return multi->getBaseWorldTransform();
-  // Bullet moves colliders with each substep, the cached pose only when the next one begins.
-  const btMultibodyLink& link = multi->getLink(index);
-  return link.m_collider ? link_collider(link.m_collider)->part() : link.m_cachedWorldTransform;
-}
-
-void Part::apply_force(const btVector3& force) const {
-  if (rigid) {
-    rigid->applyCentralForce(force);
-  } else if (index < 0) {
-    multi->addBaseForce(force);
-  } else {
-    multi->addLinkForce(index, force);
-  }
-}
-
-void Part::apply_torque(const btVector3& torque) const {
-  if (rigid) {
-    rigid->applyTorque(torque);
-  } else if (index < 0) {
-    multi->addBaseTorque(torque);
-  } else {
-    multi->addLinkTorque(index, torque);
-  }
-}
+btTransform Body::transform(std::size_t part) const { return mechanism->transform(part); }
 
 btTransform Body::transform(const LinkBody& link) const {
-  return parts[link.part].transform() *
+  return mechanism->transform(link.part) *
          btTransform(to_bullet(math::Quaternion(link.turn * link.in_part.orientation)),
                      to_bullet(link.in_part.position));
 }
 
+void Body::apply_force(std::size_t part, const btVector3& force) {
+  mechanism->apply_force(part, force);
+}
+
+void Body::apply_torque(std::size_t part, const btVector3& torque) {
+  mechanism->apply_torque(part, torque);
+}
+
+bool Body::sleeps() const { return mechanism->sleeps(); }
+
+void Body::update_poses() { mechanism->update_poses(); }
+
 void Body::motions(std::vector<Motion>& out) const {
   out.resize(parts.size());
-  if (rigid) {
-    out[0] = {rigid->getLinearVelocity(), rigid->getAngularVelocity()};
-    return;
-  }
-  // Bullet's tree velocities come in each link's own frame, the base first.
-  const int count = multi->getNumLinks() + 1;
-  btAlignedObjectArray<btVector3> omega, velocity;
-  omega.resize(count);
-  velocity.resize(count);
-  multi->compTreeLinkVelocities(&omega[0], &velocity[0]);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const btMatrix3x3 basis = parts[i].transform().getBasis();
-    out[i] = {basis * velocity[parts[i].index + 1], basis * omega[parts[i].index + 1]};
-  }
+  mechanism->motions(out);
 }
 
 Motion Body::motion(const LinkBody& link, std::span<const Motion> parts_motion) const {
-  const btMatrix3x3 basis = parts[link.part].transform().getBasis();
+  const btMatrix3x3 basis = mechanism->transform(link.part).getBasis();
   Motion motion = parts_motion[link.part];
   motion.velocity += motion.angular_velocity.cross(basis * to_bullet(link.in_part.position));
   motion.angular_velocity += basis.getColumn(2) * link.spin;
   return motion;
-}
-
-Body build(const scene::Entity& entity, const scene::Physics& physics) {
-  Body body;
-  body.reference_link = entity.reference_link;
-  body.placed = entity.pose;
-  body.magnets = entity.devices.magnets;
-  body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
-  const std::vector<Pose> assembled = assemble(entity);
-  std::vector<Pose> placed;
-  for (const Pose& pose : assembled) placed.push_back(entity.pose * pose);
-  if (is_single_body(entity) || entity.traction) {
-    build_rigid(body, entity, placed, physics);
-  } else {
-    build_multi(body, entity, assembled, placed, physics.magnetism.has_value());
-  }
-  return body;
 }
 
 }  // namespace ziggurat::physics

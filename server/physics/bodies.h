@@ -1,8 +1,8 @@
 #pragma once
-// Our links as Bullet knows them.
+// An entity as plug-ins see it: its links, and the parts that move as one. What moves the parts is
+// the core's (bullet/); here it is only asked where they are and pushed.
 
-#include <BulletDynamics/Dynamics/btRigidBody.h>
-#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <LinearMath/btTransform.h>
 
 #include <cstddef>
 #include <memory>
@@ -11,49 +11,40 @@
 #include <vector>
 
 #include "math/pose.h"
-#include "physics/contact/algorithm.h"
-#include "physics/drive.h"
-#include "physics/link_collider.h"
+#include "physics/values.h"
 #include "scene/scene.h"
 
 namespace ziggurat::physics {
 
-/// What moves as one: a rigid body, or the base or a link of a multi-body. Its frame is at the
-/// centre of mass, along principal axes.
+/// What moves as one. Its frame is at the centre of mass, along principal axes.
 struct Part {
-  btRigidBody* rigid = nullptr;
-  btMultiBody* multi = nullptr;
-  int index = -1;  ///< in the multi-body; -1 = its base
   bool moves = false;
   double mass = 0;
   math::Vector3 inertia{0, 0, 0};  ///< principal [kg m^2]
-
-  btTransform transform() const;
-  void apply_force(const btVector3& force) const;    ///< at the centre of mass [N]
-  void apply_torque(const btVector3& torque) const;  ///< [N m]
 };
 
 /// A link of the scene, and where it sits in its part: alone, welded to others, or carried.
 struct LinkBody {
   bool moves = false;
   double mass = 0;
-  math::Vector3 inertia{0, 0, 0};  ///< principal, link axes [kg m^2]
-  math::Vector3 center_of_mass;    ///< of the link alone, in the bottom-centre frame [m]
-  math::Vector3 half_extents;      ///< of the box about the shape, link axes [m]
+  math::Vector3 inertia{0, 0, 0};  ///< principal [kg m^2]
+  math::Pose center;               ///< X_LS: the link's own centre of mass and principal axes
+  math::Vector3 half_extents;      ///< of the box about the shape and S's origin, S's axes [m]
   scene::Damping damping;
   math::Pose placed;  ///< X_WL as placed
 
   std::size_t part = 0;                                  ///< into Body::parts
-  math::Pose in_part;                                    ///< the link's centre of mass and axes
+  math::Pose in_part;                                    ///< X_PS of the link's `center`
   math::Quaternion turn = math::Quaternion::Identity();  ///< since the start, in the part
-  double spin = 0;  ///< of a turret, about the part's z [rad/s]
+  double spin = 0;                 ///< of a turret, about the part's z [rad/s]
+  std::optional<LinkTouch> touch;  ///< of a link whose contacts are watched
 
   /// A sphere that turns freely about its centre is no body of its own: its mass moves with the
   /// link that carries it, its orientation is magnetism's affair (docs/magnetism.md).
   static constexpr int carries_itself = -1;
   int carrier = carries_itself;  ///< index into Body::links
 
-  math::Pose frame_in_part() const;  ///< X_PL of the bottom-centre frame at the start
+  math::Pose frame_in_part() const;  ///< X_PL at the start
 };
 
 struct Motion {
@@ -61,8 +52,41 @@ struct Motion {
   btVector3 angular_velocity{0, 0, 0};  ///< in the world [rad/s]
 };
 
-/// What an entity is made of in Bullet. Owns all of it.
+/// A body on the ground whose velocity in the plane and turn rate the core holds to what is
+/// wanted, within a force and a torque.
+struct GroundMotion {
+  scene::Traction limits;
+  double velocity = 0;          ///< wanted, along the body's x axis [m/s]
+  double angular_velocity = 0;  ///< wanted, about the world's z [rad/s]
+
+  // Of the coming substep:
+  btVector3 along{1, 0, 0}, across{0, 1, 0};  ///< unit, level
+  double speed = 0;                           ///< wanted along `along` [m/s]; 0 across
+  double length = 0;                          ///< of the substep [s]
+};
+
+/// A frame on top of a robot that turns about the robot's z axis.
+struct Turret {
+  std::size_t link = 0;  ///< into Body::links
+  bool follows = true;   ///< it turns with the robot
+  double speed = 0;      ///< otherwise: faster than the robot is to turn, by so much [rad/s]
+  double angle = 0;      ///< in the robot, [-pi, pi] [rad]
+};
+
+struct Magnet {
+  scene::Magnet scene;
+  double current = 0;  ///< times the active field
+};
+
+struct Mechanism;  // bullet/mechanism.h
+
+/// An entity in the world. A removed one has no links and no parts.
 struct Body {
+  Body();
+  ~Body();
+  Body(Body&&) noexcept;
+  Body& operator=(Body&&) noexcept;
+
   std::size_t entity = 0;
   std::size_t first_link = 0;   ///< its links' place in State::links
   std::vector<Part> parts;      ///< that of the reference link first
@@ -70,18 +94,25 @@ struct Body {
   std::size_t reference_link = 0;
   math::Pose origin_from_reference;  ///< X_LE: the entity's origin in the reference link
   math::Pose placed;                 ///< X_WE as placed
-  std::vector<scene::Magnet> magnets;
+  std::size_t first_magnet = 0;      ///< its magnets' place among those of all entities
+  std::vector<Magnet> magnets;
+  std::optional<GroundMotion> ground;  ///< robots on wheels, and bodies on a plane
+  std::optional<Turret> turret;
+  bool watched = false;  ///< contacts of one of its links are
 
-  std::unique_ptr<btRigidBody> rigid;
-  std::unique_ptr<btMultiBody> multi;
-  std::unique_ptr<Drive> drive;       ///< of a rigid body with traction
-  std::optional<std::size_t> turret;  ///< into links
-  std::vector<std::unique_ptr<btCollisionShape>> shapes;
-  std::vector<std::unique_ptr<contact::Collider>> colliders;
-  std::vector<std::unique_ptr<LinkCollider>> link_colliders;
+  std::unique_ptr<Mechanism> mechanism;
 
-  /// Of a link's centre of mass, link axes.
+  /// X_WP of a part.
+  btTransform transform(std::size_t part) const;
+  /// X_WS of a link's centre of mass and principal axes.
   btTransform transform(const LinkBody& link) const;
+  void apply_force(std::size_t part, const btVector3& force);    ///< at the centre of mass [N]
+  void apply_torque(std::size_t part, const btVector3& torque);  ///< [N m]
+  bool sleeps() const;  ///< at rest until something touches it
+
+  /// Must be called once after substeps, before transforms of several links are asked for.
+  void update_poses();
+
   /// Motion of every part.
   void motions(std::vector<Motion>& out) const;
   /// Motion of a link.
@@ -91,11 +122,5 @@ struct Body {
 
 /// X_WP of the reference link's part as placed.
 math::Pose base_pose(const Body& body);
-
-/// Builds an entity's bodies where the entity stands. A box, a cylinder, a robot on wheels, or a
-/// prototype of one link without magnets becomes a rigid body, everything else a multi-body with
-/// the reference link in its base. Links on fixed joints are parts of what carries them.
-/// @param physics  whether magnets act: then free spherical magnets are carried; what planes hold
-Body build(const scene::Entity& entity, const scene::Physics& physics);
 
 }  // namespace ziggurat::physics

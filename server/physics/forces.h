@@ -19,7 +19,7 @@ class Gravity final : public Plugin {
 /// Bullet's multi-bodies, for rigid bodies and for links damped unlike their neighbours.
 class ViscousDamping final : public Plugin {
  public:
-  void body_added(const Body& body) override;
+  void body_added(Body& body) override;
   void body_removed(const Body& body) override;
   void before_substep(std::span<Body> bodies, double substep) override;
 

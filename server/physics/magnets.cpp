@@ -13,16 +13,13 @@ using math::Pose;
 using math::Quaternion;
 using math::Vector3;
 
-Magnets::Magnets(const scene::Magnetism& magnetism) : settings_(magnetism) {
-  if (magnetism.max_distance) options_.max_distance = *magnetism.max_distance;
-  if (magnetism.adaptive) options_.precision = magnetism::Precision::adaptive;
-  options_.tolerance = magnetism.tolerance;
-  options_.taper = magnetism.taper;
-}
+namespace {
 
 /// A magnet in the frame of the part that it moves with.
-Magnets::Placed Magnets::place(const Body& body, const scene::Magnet& magnet) const {
-  Placed placed;
+PlacedMagnet place(const Body& body, std::size_t number, const scene::Magnetism& magnetism) {
+  const scene::Magnet& magnet = body.magnets[number].scene;
+  PlacedMagnet placed;
+  placed.number = number;
   placed.entity = body.entity;
   const bool on_origin = magnet.anchor.link == scene::Anchor::origin;
   placed.link = on_origin ? body.reference_link : static_cast<std::size_t>(magnet.anchor.link);
@@ -39,30 +36,58 @@ Magnets::Placed Magnets::place(const Body& body, const scene::Magnet& magnet) co
   if (magnet.shape) {
     placed.magnet.orientation = in_mover.orientation * magnet.shape->orientation;
   }
-  placed.magnet.passive_moment = in_mover.orientation * passive_moment(magnet, settings_);
-  placed.magnet.active_moment = in_mover.orientation * active_moment(magnet, settings_);
+  placed.magnet.passive_moment = in_mover.orientation * passive_moment(magnet, magnetism);
+  placed.magnet.active_moment = in_mover.orientation * active_moment(magnet, magnetism);
   placed.magnet.freely_turning = placed.turning.has_value();
   return placed;
 }
 
-void Magnets::body_added(const Body& body) {
+/// The rate of the stiffest bond of a link's faces, with the mass of all that moves with it. In the
+/// link's axes about the part's centre of mass.
+/// @param of_body  all magnets of the body
+double stiffest_rate(const Body& body, std::size_t number, std::span<const PlacedMagnet> of_body) {
+  const LinkBody& link = body.links[number];
+  const Part& part = body.parts[link.part];
+  if (!part.moves) return 0;
+  const Eigen::Matrix3d into = link.in_part.orientation.conjugate().toRotationMatrix();
+  std::vector<magnetism::Magnet> magnets;
+  for (const PlacedMagnet& placed : of_body) {
+    if (placed.link != number) continue;
+    magnets.push_back(placed.magnet);
+    magnets.back().position = into * placed.magnet.position;
+  }
+  if (magnets.empty()) return 0;
+  const Eigen::Matrix3d inertia = into * part.inertia.asDiagonal() * into.transpose();
+  return magnetism::stiffest_rate(magnets, 0,
+                                  {.half_extents = link.half_extents,
+                                   .offset = into * link.in_part.position,
+                                   .mass = part.mass,
+                                   .inertia = inertia.diagonal()});
+}
+
+}  // namespace
+
+Magnets::Magnets(const scene::Magnetism& magnetism) : settings_(magnetism) {
+  if (magnetism.max_distance) options_.max_distance = *magnetism.max_distance;
+  if (magnetism.adaptive) options_.precision = magnetism::Precision::adaptive;
+  options_.tolerance = magnetism.tolerance;
+  options_.taper = magnetism.taper;
+}
+
+void Magnets::body_added(Body& body) {
   if (body.magnets.empty()) return;
   give_up_field();
-  for (const scene::Magnet& magnet : body.magnets) {
-    magnets_.push_back(place(body, magnet));
-    magnets_.back().number = added_++;
-    currents_.push_back(0);
+  for (std::size_t i = 0; i < body.magnets.size(); ++i) {
+    magnets_.push_back(place(body, i, settings_));
   }
+  currents_.resize(magnets_.size());
 }
 
 void Magnets::body_removed(const Body& body) {
   if (body.magnets.empty()) return;
   give_up_field();
-  for (std::size_t i = magnets_.size(); i-- > 0;) {
-    if (magnets_[i].entity != body.entity) continue;
-    magnets_.erase(magnets_.begin() + static_cast<std::ptrdiff_t>(i));
-    currents_.erase(currents_.begin() + static_cast<std::ptrdiff_t>(i));
-  }
+  std::erase_if(magnets_, [&](const PlacedMagnet& each) { return each.entity == body.entity; });
+  currents_.resize(magnets_.size());
 }
 
 /// The next one goes on with the orientations of this one.
@@ -76,7 +101,7 @@ void Magnets::give_up_field() {
 void Magnets::build_field() {
   carriers_.clear();
   std::vector<magnetism::Magnet> magnets;
-  for (const Placed& placed : magnets_) {
+  for (const PlacedMagnet& placed : magnets_) {
     const std::pair carrier(placed.entity, placed.part);
     auto found = std::find(carriers_.begin(), carriers_.end(), carrier);
     if (found == carriers_.end()) found = carriers_.insert(carriers_.end(), carrier);
@@ -94,18 +119,20 @@ void Magnets::build_field() {
 void Magnets::before_substep(std::span<Body> bodies, double substep) {
   if (magnets_.empty()) return;
   if (!field_) build_field();
-  const auto part_of = [&](std::size_t carrier) -> const Part& {
-    return bodies[carriers_[carrier].first].parts[carriers_[carrier].second];
-  };
+  for (std::size_t i = 0; i < magnets_.size(); ++i) {
+    currents_[i] = bodies[magnets_[i].entity].magnets[magnets_[i].number].current;
+  }
   for (std::size_t i = 0; i < carriers_.size(); ++i) {
-    poses_[i] = from_bullet(part_of(i).transform());
+    const auto [entity, part] = carriers_[i];
+    poses_[i] = from_bullet(bodies[entity].transform(part));
   }
   field_->evaluate(substep, poses_, currents_, wrenches_);
   for (std::size_t i = 0; i < carriers_.size(); ++i) {
-    const Part& part = part_of(i);
-    if (!part.moves) continue;
-    part.apply_force(to_bullet(wrenches_[i].force));
-    part.apply_torque(to_bullet(wrenches_[i].torque));
+    const auto [entity, part] = carriers_[i];
+    Body& body = bodies[entity];
+    if (!body.parts[part].moves) continue;
+    body.apply_force(part, to_bullet(wrenches_[i].force));
+    body.apply_torque(part, to_bullet(wrenches_[i].torque));
   }
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
     if (!magnets_[i].turning) continue;
@@ -113,41 +140,19 @@ void Magnets::before_substep(std::span<Body> bodies, double substep) {
   }
 }
 
-Magnets::Stiffest Magnets::stiffest_bond(std::span<const Body> bodies) const {
-  Stiffest stiffest;
+StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism& magnetism) {
+  StiffestBond stiffest;
   for (const Body& body : bodies) {
+    std::vector<PlacedMagnet> magnets;
+    for (std::size_t i = 0; i < body.magnets.size(); ++i) {
+      magnets.push_back(place(body, i, magnetism));
+    }
     for (std::size_t i = 0; i < body.links.size(); ++i) {
-      const double rate = stiffest_rate(body, i);
+      const double rate = stiffest_rate(body, i, magnets);
       if (rate > stiffest.rate) stiffest = {body.entity, rate};
     }
   }
   return stiffest;
-}
-
-/// Of a link's faces, with the mass of all that moves with it. In the link's axes about the
-/// part's centre of mass.
-double Magnets::stiffest_rate(const Body& body, std::size_t number) const {
-  const LinkBody& link = body.links[number];
-  const Part& part = body.parts[link.part];
-  if (!part.moves) return 0;
-  const Eigen::Matrix3d into = link.in_part.orientation.conjugate().toRotationMatrix();
-  std::vector<magnetism::Magnet> magnets;
-  for (const Placed& placed : magnets_) {
-    if (placed.entity != body.entity || placed.link != number) continue;
-    magnets.push_back(placed.magnet);
-    magnets.back().position = into * placed.magnet.position;
-  }
-  if (magnets.empty()) return 0;
-  const Eigen::Matrix3d inertia = into * part.inertia.asDiagonal() * into.transpose();
-  return magnetism::stiffest_rate(magnets, 0,
-                                  {.half_extents = link.half_extents,
-                                   .offset = into * link.in_part.position,
-                                   .mass = part.mass,
-                                   .inertia = inertia.diagonal()});
-}
-
-void Magnets::set_currents(std::span<const double> currents) {
-  for (std::size_t i = 0; i < magnets_.size(); ++i) currents_[i] = currents[magnets_[i].number];
 }
 
 }  // namespace ziggurat::physics

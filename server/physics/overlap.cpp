@@ -1,11 +1,8 @@
 #include "physics/overlap.h"
 
-#include <BulletCollision/CollisionShapes/btCollisionShape.h>
-
 #include "physics/assembly.h"
-#include "physics/contact/algorithm.h"
 #include "physics/convert.h"
-#include "physics/geometry.h"
+#include "physics/shape.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -21,23 +18,13 @@ std::vector<PlacedCollider> placed_colliders(const scene::Entity& entity) {
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     const scene::Link& link = entity.links[i];
     if (!link.collides) continue;
-    const math::Pose centre{center_of_mass(link.geometry), math::Quaternion::Identity()};
-    placed.push_back({contact_shape(link.geometry), to_bullet(entity.pose * assembled[i] * centre),
-                      bounding_radius(link.geometry)});
+    const math::Pose pose = entity.pose * assembled[i] * shape_frame(link.geometry);
+    placed.push_back({contact_shape(link.geometry), to_bullet(pose)});
   }
   return placed;
 }
 
-PlacedCollider placed_collider(const btCollisionObject& object) {
-  btVector3 centre;
-  btScalar radius;
-  object.getCollisionShape()->getBoundingSphere(centre, radius);
-  return {contact::collider_of(object).shape, object.getWorldTransform(), radius};
-}
-
 bool overlaps(const PlacedCollider& a, const PlacedCollider& b) {
-  const btScalar reach = a.radius + b.radius;
-  if ((a.pose.getOrigin() - b.pose.getOrigin()).length2() > reach * reach) return false;
   const contact::Contacts contacts = contact::find(a.shape, a.pose, b.shape, b.pose, 0);
   for (int i = 0; i < contacts.count; ++i) {
     if (contacts.points[i].distance < overlap) return true;

@@ -1,5 +1,5 @@
 #pragma once
-// Does an entity stand free where it is put? Geometry only: no bodies are built.
+// Whether an entity overlaps others where it is placed. Geometry only: no bodies are built.
 
 #include <cstddef>
 #include <memory>

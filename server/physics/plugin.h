@@ -1,21 +1,57 @@
 #pragma once
-// The plug-in layer: what acts on bodies besides joints and contacts. Floor, gravity, damping
-// and magnetism are plug-ins; each sees bodies come and go and adds forces before a substep.
+// The plug-in layer: what acts on bodies besides joints and contacts, and what watches them.
+// Gravity, damping, magnetism, wheels and contact sensing are plug-ins. physics/plugins.cpp lists
+// them.
 
+#include <compare>
 #include <span>
 
 #include "physics/bodies.h"
 
 namespace ziggurat::physics {
 
+/// One of the two that touch.
+struct ContactSide {
+  static constexpr std::size_t floor = static_cast<std::size_t>(-1);
+  std::size_t entity = floor;  ///< in order of adding
+  std::size_t link = 0;        ///< into Body::links
+  auto operator<=>(const ContactSide&) const = default;
+};
+
+/// Two links, or a link and the floor, in a substep in which they touch: they press each other, or
+/// their surfaces meet.
+struct Contact {
+  ContactSide a, b;                               ///< a < b, so the floor is always b
+  math::Vector3 normal = math::Vector3::Zero();   ///< unit, from b to a, in W
+  math::Vector3 point = math::Vector3::Zero();    ///< the middle of the contact points, in W [m]
+  math::Vector3 impulse = math::Vector3::Zero();  ///< on a, normal and friction, in W [N s]; where
+                                                  ///< both sleep: of the last substep before
+};
+
+/// Every function may do nothing. They are called in the order of a substep.
 class Plugin {
  public:
   virtual ~Plugin() = default;
-  virtual void body_added(const Body&) {}
-  virtual void body_removed(const Body&) {}
-  /// Called before each substep with the poses at its beginning; forces last for it.
+
+  virtual void body_added(Body&) {}
+  virtual void body_removed(const Body&) {}  ///< it still has its links
+  virtual void body_moved(Body&) {}          ///< put to rest elsewhere, as if placed there
+
+  /// Called with the poses at the substep's beginning; forces last for it.
   /// @param substep  its length [s]
-  virtual void before_substep(std::span<Body> bodies, double substep) = 0;
+  virtual void before_substep(std::span<Body> /*bodies*/, double /*substep*/) {}
+
+  /// Contacts cost time: they are reported only if a plug-in asks for them.
+  virtual bool wants_contacts(std::span<const Body> /*bodies*/) const { return false; }
+  /// Each pair that touches is reported once in a substep, in ascending order of a and b: as begun
+  /// if it did not touch in the substep before, otherwise as persisting. Then what has ended, as
+  /// it last was; one of its bodies may have been removed.
+  virtual void contact_begins(std::span<Body> /*bodies*/, const Contact&) {}
+  virtual void contact_persists(std::span<Body> /*bodies*/, const Contact&) {}
+  virtual void contact_ends(std::span<Body> /*bodies*/, const Contact&) {}
+
+  /// Called with the poses at the substep's end, after its contacts.
+  virtual void after_substep(std::span<Body> /*bodies*/, double /*substep*/) {}
 };
 
 }  // namespace ziggurat::physics

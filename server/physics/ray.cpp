@@ -79,27 +79,49 @@ Stay stay_in(const scene::Sphere& sphere, const Vector3& start, const Vector3& w
   return stay;
 }
 
-/// Half extents along the frame's axes, and the centre, of the box that holds a shape.
-struct Extents {
-  Vector3 half, center;
-};
+/// In the cylinder or in one of the balls: of a convex shape that is one stay.
+Stay stay_in(const scene::Capsule& capsule, const Vector3& start, const Vector3& way) {
+  const double low = capsule.radius, high = capsule.height - capsule.radius;
+  Stay side;
+  cut_slab(side, start.z(), way.z(), low, high);
+  cut_round(side, math::Vector2(start.head<2>()), math::Vector2(way.head<2>()), capsule.radius);
+  Stay stay{1, 0};
+  const auto join = [&](const Stay& other) {
+    if (other.from > other.to) return;
+    if (stay.from > stay.to) {
+      stay = other;
+    } else {
+      stay = {std::min(stay.from, other.from), std::max(stay.to, other.to)};
+    }
+  };
+  join(side);
+  for (const double middle : {low, high}) {
+    Stay ball;
+    cut_round(ball, Vector3(start - Vector3(0, 0, middle)), way, capsule.radius);
+    join(ball);
+  }
+  return stay;
+}
 
-Extents extents(const scene::Geometry& geometry) {
-  if (const auto* box = std::get_if<scene::Box>(&geometry)) {
-    return {box->size / 2, Vector3(0, 0, box->size.z() / 2)};
+Stay stay_in(const scene::Hull& hull, const Vector3& start, const Vector3& way) {
+  Stay stay;
+  for (const scene::Polyhedron::Face& face : hull.polyhedron->faces) {
+    const double height = face.normal.dot(start) - face.offset, climb = face.normal.dot(way);
+    if (climb == 0) {
+      if (height > 0) stay.never();
+    } else if (climb < 0) {
+      stay.cut(-height / climb, stay.to);
+    } else {
+      stay.cut(stay.from, -height / climb);
+    }
   }
-  if (const auto* cylinder = std::get_if<scene::Cylinder>(&geometry)) {
-    return {Vector3(cylinder->radius, cylinder->radius, cylinder->height / 2),
-            Vector3(0, 0, cylinder->height / 2)};
-  }
-  const double radius = std::get<scene::Sphere>(geometry).radius;
-  return {Vector3::Constant(radius), Vector3(0, 0, radius)};
+  return stay;
 }
 
 }  // namespace
 
 std::optional<double> enter(const scene::Geometry& geometry, const Vector3& start,
-                            const Vector3& end, double skin) {
+                            const Vector3& end, double depth) {
   const Vector3 way = end - start;
   const double length = way.norm();
   if (!(length > 0)) return std::nullopt;
@@ -107,7 +129,7 @@ std::optional<double> enter(const scene::Geometry& geometry, const Vector3& star
       std::visit([&](const auto& shape) { return stay_in(shape, start, way); }, geometry);
   // A stay of no length is a touch from outside; the end of the segment is not part of it.
   if (!(stay.from <= stay.to) || stay.from >= 1 || stay.to <= 0) return std::nullopt;
-  if (stay.from < -skin / length) return std::nullopt;
+  if (stay.from < -depth / length) return std::nullopt;
   return stay.from;
 }
 
@@ -133,10 +155,10 @@ struct Rays::Parts {
 namespace {
 
 btDbvtVolume volume(const scene::Geometry& geometry, const math::Pose& pose, double margin) {
-  const Extents own = extents(geometry);
+  const scene::Bounds own = scene::bounds(geometry);
   const Vector3 half =
-      pose.orientation.toRotationMatrix().cwiseAbs() * own.half + Vector3::Constant(margin);
-  const Vector3 center = pose * own.center;
+      pose.orientation.toRotationMatrix().cwiseAbs() * (own.size() / 2) + Vector3::Constant(margin);
+  const Vector3 center = pose * own.center();
   return btDbvtVolume::FromCE(to_bullet(center), to_bullet(half));
 }
 

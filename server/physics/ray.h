@@ -38,7 +38,7 @@ class Rays {
   /// @param entity  in order of adding
   void remove(std::size_t entity);
 
-  /// Takes the poses of a tick; due before casts.
+  /// Takes the poses of a tick. Must be called before casts.
   void update(const world::State& state);
 
   /// The closest entity that the segment meets before its end. A body in which the segment starts
@@ -62,7 +62,7 @@ class Rays {
 
 /// Where a segment enters a shape: the share of the segment's length, at least -skin / length and
 /// less than 1. Nothing if it starts inside or misses.
-/// @param start, end  in the shape's bottom-centre frame [m]
+/// @param start, end  in the link's frame [m]
 /// @param skin  depth below the surface that still counts as outside on the way in [m]
 std::optional<double> enter(const scene::Geometry& geometry, const math::Vector3& start,
                             const math::Vector3& end, double skin);

@@ -1,6 +1,6 @@
 #include "physics/turning_magnets.h"
 
-#include "physics/convert.h"
+#include "physics/shape.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -10,7 +10,7 @@ using math::Vector3;
 constexpr double rounding = 1e-9;  // [m]
 
 bool at_centre(const LinkBody& link, const Vector3& offset) {
-  return (offset - link.center_of_mass).norm() < rounding;
+  return (offset - link.center.position).norm() < rounding;
 }
 
 bool has_centred_magnet(const scene::Entity& entity, std::size_t link, const LinkBody& body) {
@@ -28,18 +28,6 @@ bool is_leaf(const scene::Entity& entity, std::size_t link) {
     if (joint.parent == link) return false;
   }
   return true;
-}
-
-/// Whether a sphere lies inside a shape, both about the shape's centre.
-bool holds(const scene::Geometry& geometry, const Vector3& centre, double radius) {
-  if (const auto* box = std::get_if<scene::Box>(&geometry)) {
-    return ((box->size / 2 - centre.cwiseAbs()).array() >= radius - rounding).all();
-  }
-  if (const auto* cylinder = std::get_if<scene::Cylinder>(&geometry)) {
-    return centre.head<2>().norm() + radius <= cylinder->radius + rounding &&
-           std::abs(centre.z()) + radius <= cylinder->height / 2 + rounding;
-  }
-  return centre.norm() + radius <= std::get<scene::Sphere>(geometry).radius + rounding;
 }
 
 /// Mass and inertia of a carrier with what it carries, about its centre and axes.
@@ -76,21 +64,19 @@ void carry_turning_magnets(std::vector<LinkBody>& links, const scene::Entity& en
     LinkBody& child = links[joint.child];
     if (!at_centre(child, joint.child_frame.position)) continue;
     if (!has_centred_magnet(entity, joint.child, child)) continue;
-    const Vector3 centre = joint.parent_frame.position - links[joint.parent].center_of_mass;
-    if (holds(entity.links[joint.parent].geometry, centre, sphere->radius)) {
+    const Vector3 center = math::inverse(links[joint.parent].center) * joint.parent_frame.position;
+    if (holds_ball(entity.links[joint.parent].geometry, center, sphere->radius, rounding)) {
       carried[joint.parent].push_back(joint.child);
     }
   }
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (carried[i].empty()) continue;
     LinkBody& carrier = links[i];
-    const math::Pose carrier_centre =
-        assembled[i] * math::Pose{carrier.center_of_mass, math::Quaternion::Identity()};
+    const math::Pose carrier_center = assembled[i] * carrier.center;
     Load load(carrier);
     for (const std::size_t child : carried[i]) {
-      const math::Pose centre =
-          assembled[child] * math::Pose{links[child].center_of_mass, math::Quaternion::Identity()};
-      load.add(links[child].mass, math::inverse(carrier_centre) * centre.position);
+      const math::Pose center = assembled[child] * links[child].center;
+      load.add(links[child].mass, math::inverse(carrier_center) * center.position);
     }
     if (!load.balanced()) continue;
     carrier.mass = load.mass;

@@ -1,6 +1,6 @@
 #include "physics/welding.h"
 
-#include <Eigen/Eigenvalues>
+#include "math/principal_axes.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -9,13 +9,8 @@ using Eigen::Matrix3d;
 using math::Pose;
 using math::Vector3;
 
-/// Off-diagonal inertia below this share of the diagonal is rounding.
-constexpr double negligible_share = 1e-12;
-
 /// X_ES of a shape's centre.
-Pose centre(const LinkBody& link, const Pose& assembled) {
-  return assembled * Pose{link.center_of_mass, math::Quaternion::Identity()};
-}
+Pose centre(const LinkBody& link, const Pose& assembled) { return assembled * link.center; }
 
 std::vector<LinkBody*> links_of(std::vector<LinkBody>& links, std::size_t part) {
   std::vector<LinkBody*> found;
@@ -36,15 +31,6 @@ Matrix3d inertia_about(const Vector3& point, const std::vector<LinkBody*>& links
   return sum;
 }
 
-/// Principal axes as a rotation; none where the inertia is diagonal already.
-math::Quaternion principal_axes(const Matrix3d& inertia) {
-  const Matrix3d rest = inertia - Matrix3d(inertia.diagonal().asDiagonal());
-  if (rest.norm() <= negligible_share * inertia.norm()) return math::Quaternion::Identity();
-  Matrix3d axes = Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia).eigenvectors();
-  if (axes.determinant() < 0) axes.col(2) *= -1;
-  return math::Quaternion(axes).normalized();
-}
-
 /// Moves a part's frame from its first link's centre to where all its links balance.
 void balance(Part& part, const std::vector<LinkBody*>& links) {
   part.mass = 0;
@@ -55,7 +41,7 @@ void balance(Part& part, const std::vector<LinkBody*>& links) {
   }
   const Vector3 centre_of_mass = moment / part.mass;
   const Matrix3d inertia = inertia_about(centre_of_mass, links);
-  const math::Quaternion axes = principal_axes(inertia);
+  const math::Quaternion axes = math::principal_axes(inertia);
   const Matrix3d rotation = axes.toRotationMatrix();
   part.inertia = (rotation.transpose() * inertia * rotation).diagonal();
   const Pose into = math::inverse({centre_of_mass, axes});
@@ -70,7 +56,6 @@ std::vector<Part> weld(std::vector<LinkBody>& links, const scene::Entity& entity
   std::vector<std::size_t> first;  // link of each part
   const auto begin = [&](std::size_t link) {
     Part part;
-    part.index = static_cast<int>(parts.size()) - 1;
     part.moves = links[link].moves;
     part.mass = links[link].mass;
     part.inertia = links[link].inertia;

@@ -1,6 +1,6 @@
 #pragma once
-// The physical world: bodies, joints and contacts on Bullet, stepped one substep at a time.
-// No Bullet type leaves this module.
+// The physical world, one substep at a time: bodies, the core that moves them, and the plug-ins
+// that push them. No Bullet type leaves this module.
 
 #include <cstddef>
 #include <memory>
@@ -8,15 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "physics/values.h"
 #include "scene/scene.h"
 #include "world/state.h"
 
 namespace ziggurat::physics {
-
-/// A joint with a coordinate, as the world counts them.
-struct JointIndex {
-  std::size_t value = 0;
-};
 
 class World {
  public:
@@ -30,11 +26,11 @@ class World {
   void add(const scene::Entity& entity);
 
   /// Takes an entity out: its bodies, joints and magnets are gone, and what rested on it falls. Its
-  /// number and its places in State::links stay its own, and read() leaves them as they are.
-  /// Nothing else may be asked of it afterwards but its joints, which are at 0.
+  /// number and its places in State::links are not used again, and read() leaves them as they are.
+  /// Afterwards only its joints may be read, which are at 0.
   void remove(std::size_t entity);
 
-  /// The first entity, in order of adding, that another would overlap at its pose as all stand now.
+  /// The first entity, in order of adding, that another would overlap at its pose, at the current poses.
   /// The floor never counts; touching is not overlapping.
   std::optional<std::size_t> overlapped_by(const scene::Entity& entity) const;
 
@@ -43,7 +39,7 @@ class World {
   JointIndex joint(std::size_t entity, std::size_t joint) const;
 
   /// Gives a joint a motor. Targets start at 0.
-  /// @param max_impulse  what it may give per substep [N s] or [N m s]
+  /// @param max_impulse  limit per substep [N s] or [N m s]
   void add_motor(JointIndex joint, scene::JointMode mode, double max_impulse);
   /// @param target  [m] or [rad] in position mode, [m/s] or [rad/s] in velocity mode
   void set_target(JointIndex joint, double target);
@@ -51,12 +47,12 @@ class World {
   double position(JointIndex joint) const;  ///< [m] or [rad]; 0 as assembled
   double velocity(JointIndex joint) const;  ///< [m/s] or [rad/s]
 
-  /// What a robot on wheels is to do over the ground. 0 and 0 at the start.
+  /// The motion over the ground that a robot on wheels aims at. 0 and 0 at the start.
   /// @param entity  one with a traction, in order of adding
   /// @param velocity  along its x axis [m/s];  @param angular_velocity  about z [rad/s]
   void set_velocity(std::size_t entity, double velocity, double angular_velocity);
-  /// @param speed  by which its turret turns more than the robot is to turn [rad/s]; none: the
-  ///               turret turns with the robot, as at the start
+  /// @param speed  of its turret, in addition to the wanted turn rate of the robot [rad/s]; none:
+  ///               the turret turns with the robot, as at the start
   void set_turret(std::size_t entity, std::optional<double> speed);
   double turret(std::size_t entity) const;  ///< of the turret in the robot, [-pi, pi] [rad]
 
@@ -64,6 +60,13 @@ class World {
   /// passive one. 0 at the start; without effect where the scene has no magnetism.
   /// @param currents  of the magnets of all entities, in order of adding
   void set_currents(std::span<const double> currents);
+
+  /// Begins to watch what touches a link of an entity added before.
+  /// @param link  index into Entity::links
+  void watch_contacts(std::size_t entity, std::size_t link);
+  /// How a watched link was touched since the last call, or since it is watched; nothing if its
+  /// entity was removed.
+  LinkTouch take_touch(std::size_t entity, std::size_t link);
 
   /// Puts an entity to rest at a pose of its origin, joints as assembled.
   void move(std::size_t entity, const math::Pose& pose);
@@ -73,6 +76,8 @@ class World {
 
   /// Writes origins and links; tick and time are the caller's.
   void read(world::State& state) const;
+  /// The same of one entity that is present.
+  void read(std::size_t entity, world::State& state) const;
 
   /// How stiff the scene's magnetic bonds are for its substeps: the largest product of substep and
   /// rate, and the entity it belongs to; 0 where there is no magnetism.

@@ -51,7 +51,8 @@ void shrink(const std::uint8_t* from, std::size_t stride, std::size_t width, uns
 Canvas::Canvas(const Meshes& meshes) {
   const OpenGl& gl = context_.gl();
   make_programs();
-  make_body_arrays(meshes);
+  make_body_arrays();
+  take(meshes);
   make_mark_arrays();
   make_shadow_map();
   gl.create_vertex_arrays(1, &no_arrays_);
@@ -86,7 +87,7 @@ void Canvas::make_target(unsigned width, unsigned height) {
   target_height_ = std::max(height, target_height_);
   const auto w = static_cast<GLsizei>(target_width_), h = static_cast<GLsizei>(target_height_);
   const GLuint targets[] = {sampled_, resolved_};
-  gl.delete_framebuffers(2, targets);  // 0 is nobody
+  gl.delete_framebuffers(2, targets);  // 0 is ignored
   gl.delete_renderbuffers(3, buffers_);
   gl.create_framebuffers(1, &sampled_);
   gl.create_framebuffers(1, &resolved_);

@@ -14,6 +14,9 @@ class Canvas {
   /// @throws RenderError
   explicit Canvas(const Meshes& meshes);
 
+  /// Takes meshes again, which have grown.
+  void take(const Meshes& meshes);
+
   /// @throws RenderError if OpenGL fails
   void draw(const Drawing& drawing, const Model& model, const View& view, Picture& picture);
 
@@ -23,7 +26,7 @@ class Canvas {
   };
 
   void make_programs();
-  void make_body_arrays(const Meshes& meshes);
+  void make_body_arrays();
   void make_mark_arrays();
   void make_shadow_map();
   void make_target(unsigned width, unsigned height);
@@ -36,6 +39,7 @@ class Canvas {
   Context context_;
   GLuint body_program_ = 0, shadow_program_ = 0, surroundings_program_ = 0, mark_program_ = 0;
   GLuint body_arrays_ = 0, mark_arrays_ = 0, no_arrays_ = 0;
+  GLuint mesh_buffers_[2]{};  // vertices and indices
   GLuint body_instances_ = 0, mark_instances_ = 0, frame_ = 0;
   GLuint shadow_map_ = 0, shadow_target_ = 0;
   GLuint sampled_ = 0, resolved_ = 0;              // framebuffers: four samples per pixel, and one

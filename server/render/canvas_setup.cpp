@@ -19,7 +19,7 @@ GLuint make_shader(const OpenGl& gl, GLenum stage, const char* text) {
   return shader;
 }
 
-/// What is wrong with a shader is said when it is linked.
+/// Errors of a shader are reported when it is linked.
 GLuint make_program(const OpenGl& gl, const char* vertex, const char* fragment) {
   const GLuint program = gl.create_program();
   gl.attach_shader(program, make_shader(gl, GL_VERTEX_SHADER, vertex));
@@ -81,20 +81,24 @@ void Canvas::make_programs() {
   mark_program_ = make_program(gl, shaders::mark_vertex, shaders::mark_fragment);
 }
 
-void Canvas::make_body_arrays(const Meshes& meshes) {
+void Canvas::take(const Meshes& meshes) {
   const OpenGl& gl = context_.gl();
-  GLuint fixed[2];
-  gl.create_buffers(2, fixed);
-  gl.create_buffers(1, &body_instances_);
-  gl.named_buffer_data(fixed[0], static_cast<GLsizeiptr>(meshes.vertices.size() * sizeof(Vertex)),
+  gl.named_buffer_data(mesh_buffers_[0],
+                       static_cast<GLsizeiptr>(meshes.vertices.size() * sizeof(Vertex)),
                        meshes.vertices.data(), GL_STATIC_DRAW);
-  gl.named_buffer_data(fixed[1],
+  gl.named_buffer_data(mesh_buffers_[1],
                        static_cast<GLsizeiptr>(meshes.indices.size() * sizeof(std::uint32_t)),
                        meshes.indices.data(), GL_STATIC_DRAW);
+}
+
+void Canvas::make_body_arrays() {
+  const OpenGl& gl = context_.gl();
+  gl.create_buffers(2, mesh_buffers_);
+  gl.create_buffers(1, &body_instances_);
   gl.create_vertex_arrays(1, &body_arrays_);
-  gl.vertex_array_element_buffer(body_arrays_, fixed[1]);
+  gl.vertex_array_element_buffer(body_arrays_, mesh_buffers_[1]);
   Attributes attributes(gl, body_arrays_);
-  attributes.buffer(fixed[0], sizeof(Vertex), 0);
+  attributes.buffer(mesh_buffers_[0], sizeof(Vertex), 0);
   attributes.floats(0, offsetof(Vertex, position));
   attributes.floats(1, offsetof(Vertex, normal));
   attributes.floats(2, offsetof(Vertex, edge));

@@ -27,24 +27,19 @@ Float3 to_floats(const Vector3& vector) {
 
 Float3 to_floats(const Rgb& color) { return {color.x(), color.y(), color.z()}; }
 
-/// Full extents along the link's axes [m].
-Vector3 size_of(const scene::Geometry& geometry) {
-  if (const auto* box = std::get_if<scene::Box>(&geometry)) return box->size;
-  if (const auto* cylinder = std::get_if<scene::Cylinder>(&geometry)) {
-    return {2 * cylinder->radius, 2 * cylinder->radius, cylinder->height};
-  }
-  return Vector3::Constant(2 * std::get<scene::Sphere>(geometry).radius);
-}
-
 /// A sphere around a link.
 struct Ball {
   Vector3 center;  ///< [m]
   double radius;   ///< [m]
 };
 
-Ball ball_of(const Pose& link, const scene::Geometry& geometry, const Vector3& size) {
-  const bool sphere = std::holds_alternative<scene::Sphere>(geometry);
-  return {link * Vector3(0, 0, size.z() / 2), sphere ? size.x() / 2 : size.norm() / 2};
+// The ball about a shape, in the link's frame:
+Ball ball_of(const scene::Sphere& sphere) { return {{0, 0, sphere.radius}, sphere.radius}; }
+
+template <class Shape>
+Ball ball_of(const Shape& shape) {
+  const scene::Bounds bounds = scene::bounds(shape);
+  return {bounds.center(), bounds.size().norm() / 2};
 }
 
 /// Whether a ball in the camera's frame may show in the picture.
@@ -111,20 +106,18 @@ void aim_light(const Bounds& visible, const Bounds& all, const View& view, Drawi
   drawing.shadow_texel = texel;
 }
 
-BodyInstance instance_of(const Pose& in_camera, const Body& body, const Vector3& size) {
+/// @param base  where the mesh stands, in the link's frame [m]
+/// @param unit  how long one unit of the mesh is along the link's axes [m]
+BodyInstance instance_of(const Pose& in_camera, const Rgb& color, const Vector3& base,
+                         const Vector3& unit, const Vector3& size) {
   BodyInstance instance;
-  const bool box = std::holds_alternative<scene::Box>(body.geometry);
-  const bool sphere = std::holds_alternative<scene::Sphere>(body.geometry);
-  // What one unit of the mesh is: a box has sides of 1, round shapes a radius of 1.
-  const Vector3 unit(box ? size.x() : size.x() / 2, box ? size.y() : size.y() / 2,
-                     sphere ? size.z() / 2 : size.z());
   const Eigen::Matrix3d axes = in_camera.orientation.toRotationMatrix();
   for (int i = 0; i < 3; ++i) {
     instance.axes[static_cast<std::size_t>(i)] = to_floats(Vector3(axes.col(i) * unit[i]));
   }
-  instance.position = to_floats(in_camera.position);
+  instance.position = to_floats(in_camera * base);
   instance.size = to_floats(size);
-  instance.color = to_floats(body.color);
+  instance.color = to_floats(color);
   return instance;
 }
 
@@ -170,14 +163,65 @@ Draftsman::Draftsman(Model model, const world::Layout& layout)
   mesh_of_bucket_.push_back(meshes_.box);
   for (const auto& mesh : meshes_.cylinders) mesh_of_bucket_.push_back(mesh);
   for (const auto& mesh : meshes_.spheres) mesh_of_bucket_.push_back(mesh);
+  add_hulls(0);
+}
+
+void Draftsman::add(const scene::Entity& entity) {
+  const std::size_t first = model_.bodies.size();
+  render::add_bodies(entity, model_);
+  add_hulls(first);
+}
+
+/// Gives the hulls among new bodies a mesh; those of a model share one.
+void Draftsman::add_hulls(std::size_t first_body) {
+  for (std::size_t i = first_body; i < model_.bodies.size(); ++i) {
+    const auto* hull = std::get_if<scene::Hull>(&model_.bodies[i].geometry);
+    if (!hull || !bucket_of_hull_.emplace(hull->polyhedron, mesh_of_bucket_.size()).second)
+      continue;
+    mesh_of_bucket_.push_back(add_hull(*hull->polyhedron, meshes_));
+  }
   buckets_.resize(mesh_of_bucket_.size());
 }
 
-Draftsman::Bucket& Draftsman::bucket_for(const Body& body, double pixels) {
-  if (std::holds_alternative<scene::Box>(body.geometry)) return buckets_[0];
-  const bool cylinder = std::holds_alternative<scene::Cylinder>(body.geometry);
-  return buckets_[1 + (cylinder ? 0 : roundness.size()) + roundness_for(pixels)];
-}
+/// One link on its way into the buckets.
+struct Draftsman::Stroke {
+  Draftsman& draftsman;
+  const Pose& in_camera;
+  const Rgb& color;
+  double pixels;  ///< of its radius in the picture
+  bool in_view;
+
+  void add(std::size_t bucket, const Vector3& base, const Vector3& unit,
+           const Vector3& size) const {
+    Bucket& into = draftsman.buckets_[bucket];
+    (in_view ? into.visible : into.hidden)
+        .push_back(instance_of(in_camera, color, base, unit, size));
+  }
+  std::size_t cylinders() const { return 1 + roundness_for(pixels); }
+  std::size_t spheres() const { return cylinders() + roundness.size(); }
+
+  void operator()(const scene::Box& box) const { add(0, {0, 0, 0}, box.size, box.size); }
+  void operator()(const scene::Cylinder& cylinder) const {
+    const double r = cylinder.radius, height = cylinder.height;
+    add(cylinders(), {0, 0, 0}, {r, r, height}, {2 * r, 2 * r, height});
+  }
+  void operator()(const scene::Sphere& sphere) const {
+    const Vector3 unit = Vector3::Constant(sphere.radius);
+    add(spheres(), {0, 0, 0}, unit, 2 * unit);
+  }
+  /// Its parts have size 0: no edges are drawn where they meet.
+  void operator()(const scene::Capsule& capsule) const {
+    const double r = capsule.radius, middle = capsule.height - 2 * r;
+    if (middle > 0) add(cylinders(), {0, 0, r}, {r, r, middle}, {0, 0, 0});
+    for (const double base : {0.0, middle}) {
+      add(spheres(), {0, 0, base}, Vector3::Constant(r), {0, 0, 0});
+    }
+  }
+  void operator()(const scene::Hull& hull) const {
+    add(draftsman.bucket_of_hull_.at(hull.polyhedron), {0, 0, 0}, {1, 1, 1},
+        scene::bounds(hull).size());
+  }
+};
 
 void Draftsman::draw(const world::State& state, const View& view, Drawing& drawing) {
   drawing.bodies.clear();
@@ -202,15 +246,14 @@ void Draftsman::add_bodies(const world::State& state, const View& view, Drawing&
   for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
     if (state.is_absent(layout_.links[i].entity)) continue;
     const Body& body = model_.bodies[i];
-    const Vector3 size = size_of(body.geometry);
     const Pose in_camera = camera_from_world * state.links[i].pose;
-    const Ball ball = ball_of(in_camera, body.geometry, size);
-    const Ball lit{to_light * ball_of(state.links[i].pose, body.geometry, size).center,
-                   ball.radius};
+    const Ball own = std::visit([](const auto& shape) { return ball_of(shape); }, body.geometry);
+    const Ball ball{in_camera * own.center, own.radius};
+    const Ball lit{to_light * (state.links[i].pose * own.center), own.radius};
     const double distance = std::max(ball.center.norm() - ball.radius, 0.01 * ball.radius);
-    Bucket& bucket = bucket_for(body, ball.radius * view.focal_length.maxCoeff() / distance);
+    const double pixels = ball.radius * view.focal_length.maxCoeff() / distance;
     const bool in_view = shows(ball, view);
-    (in_view ? bucket.visible : bucket.hidden).push_back(instance_of(in_camera, body, size));
+    std::visit(Stroke{*this, in_camera, body.color, pixels, in_view}, body.geometry);
     if (in_view) visible.add(lit);
     all.add(lit);
   }

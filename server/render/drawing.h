@@ -4,7 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "render/meshes.h"
@@ -56,22 +58,23 @@ struct Drawing {
 /// The side of the shadow map [texels].
 constexpr unsigned shadow_size = 2048;
 
-/// Fills a drawing anew; keeps its memory.
+/// Fills drawings; their memory is used again.
 class Draftsman {
  public:
   Draftsman(Model model, const world::Layout& layout);
 
   const Meshes& meshes() const { return meshes_; }
   const Model& model() const { return model_; }
-  /// An entity that has come since; its links are the next of the layout.
-  void add(const scene::Entity& entity) { render::add_bodies(entity, model_); }
+  /// A new entity; its links are the next of the layout.
+  void add(const scene::Entity& entity);
   void draw(const world::State& state, const View& view, Drawing& drawing);
 
  private:
   struct Bucket {
     std::vector<BodyInstance> visible, hidden;
   };
-  Bucket& bucket_for(const Body& body, double pixels);
+  struct Stroke;
+  void add_hulls(std::size_t first_body);
   void add_bodies(const world::State& state, const View& view, Drawing& drawing);
   void add_marks(const world::State& state, const View& view, Drawing& drawing) const;
 
@@ -79,7 +82,8 @@ class Draftsman {
   const world::Layout& layout_;
   Meshes meshes_;
   std::vector<Mesh> mesh_of_bucket_;
-  std::vector<Bucket> buckets_;
+  std::vector<Bucket> buckets_;  // parallel to mesh_of_bucket_
+  std::unordered_map<std::shared_ptr<const scene::Polyhedron>, std::size_t> bucket_of_hull_;
 };
 
 }  // namespace ziggurat::render

@@ -101,6 +101,32 @@ Mesh add_sphere(Meshes& meshes, unsigned pieces) {
 
 }  // namespace
 
+Mesh add_hull(const scene::Polyhedron& hull, Meshes& meshes) {
+  const Mesh mesh = begin(meshes);
+  std::uint32_t next = 0;
+  for (const scene::Polyhedron::Face& face : hull.faces) {
+    const auto count = static_cast<std::uint32_t>(face.corners.size());
+    const Eigen::Vector3f normal = face.normal.cast<float>();
+    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+    const auto add = [&](const Eigen::Vector3f& at, float edge) {
+      meshes.vertices.push_back({{at.x(), at.y(), at.z()},
+                                 {normal.x(), normal.y(), normal.z()},
+                                 {edge, no_edge, no_edge}});
+    };
+    for (const std::size_t corner : face.corners) {
+      const Eigen::Vector3f at = hull.vertices[corner].cast<float>();
+      add(at, 1);
+      middle += at / static_cast<float>(count);
+    }
+    add(middle, 0);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      add_triangle(meshes, next + count, next + i, next + (i + 1) % count);
+    }
+    next += count + 1;
+  }
+  return finished(mesh, meshes);
+}
+
 Meshes make_meshes() {
   Meshes meshes;
   meshes.box = add_box(meshes);

@@ -1,15 +1,19 @@
 #pragma once
-// The three shapes of links as triangles, in sizes of one, standing on their bottom centre.
+// The shapes of links as triangles: box, cylinder and sphere in sizes of one, standing on their
+// bottom centre, and hulls as they are.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "scene/geometry.h"
+
 namespace ziggurat::render {
 
 struct Vertex {
-  std::array<float, 3> position;  ///< of a unit box, or of a cylinder or sphere of radius 1
+  std::array<float, 3> position;  ///< of a unit box, of a cylinder or sphere of radius 1, or
+                                  ///< of a hull [m]
   std::array<float, 3> normal;    ///< unit, outwards
   /// Where the face's edges are: the vertex' coordinate along each axis with edges at -1 and 1.
   std::array<float, 3> edge;
@@ -34,7 +38,10 @@ struct Meshes {
 
 Meshes make_meshes();
 
-/// Place in `roundness` for a radius of so many pixels, so that straight pieces can't be told.
+/// Adds a hull in its own frame and size.
+Mesh add_hull(const scene::Polyhedron& hull, Meshes& meshes);
+
+/// Place in `roundness` for a radius in pixels, so that straight pieces are not visible.
 std::size_t roundness_for(double radius);
 
 }  // namespace ziggurat::render

@@ -6,7 +6,7 @@
 namespace ziggurat::render {
 namespace {
 
-/// A colour as people write it (sRGB, 0xRRGGBB).
+/// A colour in sRGB, 0xRRGGBB.
 Rgb rgb(unsigned hex) {
   const auto channel = [hex](unsigned shift) {
     return std::pow(static_cast<float>((hex >> shift) & 0xffu) / 255.0f, 2.2f);
@@ -14,16 +14,16 @@ Rgb rgb(unsigned hex) {
   return {channel(16), channel(8), channel(0)};
 }
 
-// The dialect has no colours of its own. These tell apart what matters in a picture: what stands
-// fast, things that lie around, robots, and a robot's wheels and arms from its body.
+// The dialect has no colours. These tell apart what matters in a picture: fixed things, movable
+// things, robots, and a robot's wheels and arms from its body.
 Rgb color_of(const scene::Entity& entity, std::size_t link) {
   const scene::Geometry& geometry = entity.links[link].geometry;
-  const bool box = std::holds_alternative<scene::Box>(geometry);
   if (!entity.movable && !entity.controller) return rgb(0xb4b7ba);
   if (entity.kind == scene::EntityKind::box) return rgb(0xd3a469);
   if (entity.kind == scene::EntityKind::cylinder) return rgb(0x5e9aa0);
   if (std::holds_alternative<scene::Sphere>(geometry)) return rgb(0xc9ccd1);
-  if (!box && link != entity.reference_link) return rgb(0x4a4d52);
+  const bool wheel = std::holds_alternative<scene::Cylinder>(geometry);
+  if (wheel && link != entity.reference_link) return rgb(0x4a4d52);
   const unsigned body = entity.controller ? 0x3f74b3 : 0xc7805a;
   const unsigned part = entity.controller ? 0x86a9d4 : 0xddb08f;
   return rgb(link == entity.reference_link ? body : part);

@@ -1,5 +1,5 @@
 #pragma once
-// What a scene looks like, as far as it stays the same: the surfaces of its links, and its floor.
+// What of a scene's looks never changes: the surfaces of its links, and its floor.
 
 #include <vector>
 
@@ -12,7 +12,7 @@ using Rgb = Eigen::Vector3f;
 
 /// The surface of a link.
 struct Body {
-  scene::Geometry geometry;  ///< stands on its bottom centre
+  scene::Geometry geometry;  ///< in the link's frame
   Rgb color;
 };
 

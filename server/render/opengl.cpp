@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* library_name = "libOSMesa.so.8";
 
-/// Stays loaded: LLVM doesn't like to be unloaded.
+/// Stays loaded: LLVM can't be unloaded safely.
 void* load_library() {
   void* library = dlopen(library_name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (!library) {

@@ -14,7 +14,7 @@
 
 namespace ziggurat::render {
 
-/// There is no OpenGL to render with, or it fails; the message says what to install.
+/// OpenGL is missing or fails; the message says what to install.
 class RenderError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -74,7 +74,7 @@ struct OpenGl {
   decltype(&glViewport) viewport;
 };
 
-/// A context of OpenGL; whatever is made in it ends with it.
+/// A context of OpenGL; all objects that are made in it end with it.
 class Context {
  public:
   Context();  ///< @throws RenderError
@@ -82,7 +82,7 @@ class Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  /// To be called before anything of gl(): another context may have been current since.
+  /// Must be called before functions of gl(): another context may have become current.
   void make_current();
   const OpenGl& gl() const { return gl_; }
 
@@ -90,7 +90,7 @@ class Context {
   decltype(&OSMesaDestroyContext) destroy_ = nullptr;
   decltype(&OSMesaMakeCurrent) make_current_ = nullptr;
   OSMesaContext context_ = nullptr;
-  std::array<std::uint32_t, 16> unused_{};  // OSMesa wants somewhere to draw to
+  std::array<std::uint32_t, 16> unused_{};  // OSMesa needs a buffer to draw to
   OpenGl gl_{};
 };
 

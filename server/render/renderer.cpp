@@ -14,6 +14,7 @@ struct Renderer::Parts {
   Draftsman draftsman;
   Drawing drawing;
   std::optional<Canvas> canvas;
+  std::size_t indices = 0;  // of the meshes that the canvas has
 };
 
 Renderer::Renderer(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
@@ -25,7 +26,14 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 void Renderer::add(const scene::Entity& entity) { parts_->draftsman.add(entity); }
 
 void Renderer::prepare() {
-  if (!parts_->canvas) parts_->canvas.emplace(parts_->draftsman.meshes());
+  Parts& p = *parts_;
+  const Meshes& meshes = p.draftsman.meshes();
+  if (!p.canvas) {
+    p.canvas.emplace(meshes);
+  } else if (p.indices != meshes.indices.size()) {
+    p.canvas->take(meshes);
+  }
+  p.indices = meshes.indices.size();
 }
 
 void Renderer::draw(const world::State& state, const View& view, Picture& picture) {

@@ -12,21 +12,21 @@
 
 namespace ziggurat::render {
 
-/// Draws links, the floor, tags and LEDs as anybody would see them. Nothing is loaded or made
+/// Draws links, the floor, tags and LEDs as an eye would see them. Nothing is loaded or made
 /// before the first picture. The same state and view give the same bytes on one machine.
 class Renderer {
  public:
   /// @param entities  all of them, placed, in scene order
-  /// @param layout    has to outlive this
+  /// @param layout    must outlive this
   Renderer(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
            const world::Layout& layout);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
 
-  /// An entity that has come since; its links are the next of the layout.
+  /// A new entity; its links are the next of the layout.
   void add(const scene::Entity& entity);
 
-  /// Loads and makes what pictures need, so that what is missing is known before the first.
+  /// Loads and makes what pictures need, so that an error is known before the first picture.
   /// @throws RenderError
   void prepare();
 

@@ -5,25 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <variant>
 
 namespace ziggurat::run {
 namespace {
 
 using math::Vector3;
-
-/// How far a shape reaches above the origin of its frame [m].
-double reach_above(const scene::Geometry& geometry, const math::Quaternion& orientation) {
-  if (const auto* sphere = std::get_if<scene::Sphere>(&geometry)) {
-    return sphere->radius * (1 + (orientation * Vector3::UnitZ()).z());
-  }
-  const Vector3 up = orientation.conjugate() * Vector3::UnitZ();
-  if (const auto* cylinder = std::get_if<scene::Cylinder>(&geometry)) {
-    return cylinder->radius * up.head<2>().norm() + std::max(cylinder->height * up.z(), 0.0);
-  }
-  const Vector3& size = std::get<scene::Box>(geometry).size;
-  return 0.5 * size.head<2>().dot(up.head<2>().cwiseAbs()) + std::max(size.z() * up.z(), 0.0);
-}
 
 /// A box's corners in the axes of a camera at the origin.
 struct Corners {
@@ -69,7 +55,9 @@ Extent extent_of(const scene::Scene& scene, const std::vector<scene::Entity>& en
   for (const scene::Entity& entity : entities) {
     for (const scene::Link& link : entity.links) {
       const math::Pose& pose = state.links[next++].pose;
-      top = std::max(top, pose.position.z() + reach_above(link.geometry, pose.orientation));
+      top = std::max(
+          top, pose.position.z() +
+                   scene::reach(link.geometry, pose.orientation.conjugate() * Vector3::UnitZ()));
     }
   }
   box.low.z() = 0;

@@ -11,15 +11,12 @@ namespace {
 
 constexpr const char* name_of_additions = "spawn";
 
-constexpr std::array<std::string_view, 5> known{"box", "cylinder", "prototype", "foot-bot",
-                                                "e-puck"};
-
 void read_addition(Reading& reading, std::string text,
                    const std::function<bool(const std::string&)>& is_taken, Entity& entity) {
   Document& document = reading.add_document(std::move(text), name_of_additions);
   if (!document.root()) return;
   Element element(document, document.root());
-  if (!entity_kind(element.name())) return element.unknown_in("spawn", known);
+  if (!entity_kind(element.name())) return element.unknown_in("spawn", entity_names());
   entity = read_entity(reading, element, Placement::explicit_pose);
   if (!entity.id.empty() && is_taken(entity.id)) {
     element.fault_at("id", "is the id of another entity; give each its own");

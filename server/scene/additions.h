@@ -35,8 +35,8 @@ class Additions {
   Additions(Additions&&) noexcept;
   Additions& operator=(Additions&&) noexcept;
 
-  /// Reads one <box>, <cylinder>, <prototype>, <foot-bot> or <e-puck>. Problems are those of a
-  /// scene's, in a file called `spawn`.
+  /// Reads one <box>, <cylinder>, <sphere>, <prototype>, <foot-bot> or <e-puck>. Problems are those
+  /// of a scene's, in a file called `spawn`.
   /// @param scene     the one that this came with
   /// @param room      for the text with its model written out [bytes]
   /// @param is_taken  whether an id is that of another entity

@@ -7,9 +7,6 @@
 namespace ziggurat::scene {
 namespace {
 
-constexpr std::array<std::string_view, 8> arena_names{
-    "box", "cylinder", "prototype", "foot-bot", "e-puck", "light", "floor", "distribute"};
-
 /// The coloured floor that ground sensors see; the floor that bodies stand on is the engine's.
 void read_ground(Reading& reading, Element element) {
   reading.report.no_effect_yet(element.where(), "ground colours (<floor> of the arena)");
@@ -45,7 +42,7 @@ void read_placed(Reading& reading, Element& element) {
   } else if (element.name() == "floor") {
     read_ground(reading, element);
   } else if (element.name() != "distribute") {
-    element.unknown_in("arena", arena_names);
+    element.unknown_in("arena", entity_names({"light", "floor", "distribute"}));
   }
 }
 

@@ -169,7 +169,7 @@ struct Check {
       return;
     }
     const JointType type = found->second->type;
-    if (type == JointType::prismatic || type == JointType::revolute) return;
+    if (has_coordinate(type)) return;
     const std::string_view is = type == JointType::fixed ? "fixed" : "spherical";
     if (actuated) {
       blame(where, fmt::format("joint {} of {} {} is {}; only prismatic and revolute joints "

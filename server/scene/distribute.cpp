@@ -101,8 +101,6 @@ void take_ids(Reading& reading, Element& pattern, const std::string& id, const D
 }
 
 void read_pattern(Reading& reading, Element& pattern, Distribution& out) {
-  constexpr std::array<std::string_view, 6> known{"box",      "cylinder", "prototype",
-                                                  "foot-bot", "e-puck",   "light"};
   if (entity_kind(pattern.name())) {
     out.entity = read_entity(reading, pattern, Placement::distributed);
     take_ids(reading, pattern, out.entity.id, out);
@@ -111,7 +109,7 @@ void read_pattern(Reading& reading, Element& pattern, Distribution& out) {
     const std::string id = read_light(reading, pattern, Placement::distributed);
     take_ids(reading, pattern, id, out);
   } else {
-    pattern.unknown_in("entity", known);
+    pattern.unknown_in("entity", entity_names({"light"}));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
@@ -94,6 +95,10 @@ class Element {
   /// Where an attribute's value begins, or the element if it has none of that name.
   Location where(const char* attribute) const;
   bool has(const char* attribute) const { return !node_.attribute(attribute).empty(); }
+  /// Whether a value of the attribute has been asked for.
+  bool was_asked(std::string_view attribute) const {
+    return std::ranges::find(asked_attributes_, attribute) != asked_attributes_.end();
+  }
 
   /// What a reader of values gives.
   template <class Read>

@@ -1,4 +1,4 @@
-// The elements of an arena: <box>, <cylinder>, <prototype>; robots are read in robots/.
+// The elements of an arena: <box>, <cylinder>, <sphere>, <prototype>; robots are read in robots/.
 
 #include <array>
 
@@ -11,9 +11,10 @@ namespace {
 constexpr Surface single_body_surface{0.5, 2e-4};
 constexpr Damping single_body_damping{0.0, 0.0};
 
-constexpr std::array<std::pair<std::string_view, EntityKind>, 5> kinds{{
+constexpr std::array<std::pair<std::string_view, EntityKind>, 6> kinds{{
     {"box", EntityKind::box},
     {"cylinder", EntityKind::cylinder},
+    {"sphere", EntityKind::sphere},
     {"prototype", EntityKind::prototype},
     {"foot-bot", EntityKind::foot_bot},
     {"e-puck", EntityKind::e_puck},
@@ -22,12 +23,7 @@ constexpr std::array<std::pair<std::string_view, EntityKind>, 5> kinds{{
 Link read_single_link(Reading& reading, Element& element, Entity& entity) {
   Link link;
   link.where = element.where();
-  if (entity.kind == EntityKind::box) {
-    link.geometry = Box{element.required("size", size, math::Vector3::Ones())};
-  } else {
-    const double radius = element.required("radius", length, 1.0);
-    link.geometry = Cylinder{radius, element.required("height", length, 1.0)};
-  }
+  link.geometry = read_shape(reading, element, to_string(entity.kind));
   entity.movable = element.required("movable", boolean, true);
   if (entity.movable) {
     link.mass = element.required("mass", mass, 1.0);
@@ -65,6 +61,13 @@ std::optional<EntityKind> entity_kind(std::string_view name) {
   return std::nullopt;
 }
 
+std::vector<std::string_view> entity_names(std::initializer_list<std::string_view> others) {
+  std::vector<std::string_view> names;
+  for (const auto& [name, kind] : kinds) names.push_back(name);
+  names.insert(names.end(), others);
+  return names;
+}
+
 std::string_view to_string(EntityKind kind) {
   for (const auto& [name, known] : kinds) {
     if (known == kind) return name;
@@ -100,6 +103,7 @@ void read_body_and_devices(Reading& reading, Element& element, Entity& entity) {
   switch (entity.kind) {
     case EntityKind::box:
     case EntityKind::cylinder:
+    case EntityKind::sphere:
       read_single_body(reading, element, entity);
       break;
     case EntityKind::prototype:

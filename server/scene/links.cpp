@@ -12,30 +12,6 @@ namespace {
 constexpr Surface link_surface{0.5, 0.0};
 constexpr Damping link_damping{0.04, 0.04};
 
-enum class Shape { box, cylinder, sphere };
-
-Geometry read_geometry(Element& link) {
-  constexpr std::string_view why = "the geometry has no such extent";
-  const OneOf<Shape> shapes{
-      {"box", Shape::box}, {"cylinder", Shape::cylinder}, {"sphere", Shape::sphere}};
-  if (!link.has("geometry")) link.missing("geometry");
-  const auto shape = link.optional("geometry", shapes);
-  if (!shape) {
-    for (const char* name : {"size", "radius", "height"}) link.optional(name, text);
-    return Box{math::Vector3::Ones()};
-  }
-  if (shape == Shape::box) {
-    link.without_effect("radius", number, why);
-    link.without_effect("height", number, why);
-    return Box{link.required("size", size, math::Vector3::Ones())};
-  }
-  link.without_effect("size", vector3, why);
-  const double radius = link.required("radius", length, 1.0);
-  if (shape == Shape::cylinder) return Cylinder{radius, link.required("height", length, 1.0)};
-  link.without_effect("height", number, why);
-  return Sphere{radius};
-}
-
 /// @param distinct  made false if the link's name can't be told from another's
 Link read_link(Reading& reading, Element& element, Ids& ids, bool& distinct) {
   Link link;
@@ -50,7 +26,7 @@ Link read_link(Reading& reading, Element& element, Ids& ids, bool& distinct) {
     distinct = false;
     element.fault_at("id", "is the id of an earlier link; give each its own");
   }
-  link.geometry = read_geometry(element);
+  link.geometry = read_geometry(reading, element);
   link.mass = element.required("mass", mass, 1.0);
   link.offset = read_pose(element);
   link.surface = read_surface(reading, element, link_surface);
@@ -84,8 +60,7 @@ bool read_side(const Reading& reading, Element& joint, const char* name, std::si
 }
 
 void read_axis_and_limit(Element& element, Joint& joint) {
-  const bool moves = joint.type == JointType::prismatic || joint.type == JointType::revolute;
-  if (!moves) {
+  if (!has_coordinate(joint.type)) {
     constexpr std::string_view why = "only prismatic and revolute joints have one";
     element.without_effect("axis", vector3, why);
     element.without_effect("limit", range, why);

@@ -7,9 +7,6 @@
 namespace ziggurat::scene {
 namespace {
 
-constexpr std::array<std::string_view, 5> model_kinds{"box", "cylinder", "prototype", "foot-bot",
-                                                      "e-puck"};
-
 void refuse_what_entities_say(Element& element) {
   if (element.has("model")) {
     element.optional("model", identifier);
@@ -94,8 +91,7 @@ void override_movable(Element& element, Entity& entity) {
   if (!movable || *movable == entity.movable) return;
   entity.movable = *movable;
   Link& root = entity.links[entity.reference_link];
-  const bool single = entity.kind == EntityKind::box || entity.kind == EntityKind::cylinder;
-  if (single && !entity.movable) root.mass = 0;
+  if (is_single(entity.kind) && !entity.movable) root.mass = 0;
   if (entity.movable && !(root.mass > 0)) {
     element.fault_at("movable",
                      "needs a mass, and the model has none; write movable=\"true\" and "
@@ -110,7 +106,7 @@ void read_models(Reading& reading, Element& list) {
     if (const auto kind = entity_kind(element.name())) {
       read_model(reading, element, *kind);
     } else {
-      element.unknown_in(list.name(), model_kinds);
+      element.unknown_in(list.name(), entity_names());
     }
   }
   list.done();

@@ -141,9 +141,11 @@ void give_controller(Reading& reading, const ControllerChoice& choice, Entity& e
 /// How an entity is written: in the arena, or as the pattern of a <distribute>.
 enum class Placement { explicit_pose, distributed };
 
-/// Reads <box>, <cylinder>, <prototype>, <foot-bot> or <e-puck>.
+/// Reads <box>, <cylinder>, <sphere>, <prototype>, <foot-bot> or <e-puck>.
 Entity read_entity(Reading& reading, Element& element, Placement placement);
 std::optional<EntityKind> entity_kind(std::string_view name);
+/// The names of all kinds of entities, and others behind them.
+std::vector<std::string_view> entity_names(std::initializer_list<std::string_view> others = {});
 std::string_view to_string(EntityKind kind);
 bool may_have_controller(EntityKind kind);
 
@@ -187,10 +189,17 @@ void read_devices(Reading& reading, Element& element, Entity& entity);
 /// Reads <battery>.
 Battery read_battery(Element& element);
 
-/// Reads <leds> of a box, cylinder or prototype.
+/// Reads <leds> of a single body or prototype.
 void read_leds(Reading& reading, Element& container, Entity& entity);
 
 // --- shared values ------------------------------------------------------------------------------
+
+/// Reads `geometry` of a link with its extents.
+Geometry read_geometry(Reading& reading, Element& link);
+
+/// Reads the extents of a shape.
+/// @param name  as `geometry` would say it; one that is known
+Geometry read_shape(Reading& reading, Element& element, std::string_view name);
 
 /// `friction` and `rolling_friction`.
 Surface read_surface(Reading& reading, Element& element, const Surface& usual);

@@ -2,9 +2,8 @@
 // What a scene file may say, as plain data: everything resolved to SI units, radians and
 // quaternions, names resolved to indices, defaults filled in. Degrees and XML end in the reader.
 //
-// Frames: Z up, right-handed. W world, E entity origin, L link (bottom centre of its shape),
-// J joint. The origin of every box, cylinder and sphere is the centre of its bottom: for a
-// sphere the lowest point, for a box the centre of the lower face.
+// Frames: Z up, right-handed. W world, E entity origin, L link,
+// J joint. scene/geometry.h says where shapes have their frames.
 
 #include <array>
 #include <cstddef>
@@ -12,12 +11,12 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "math/pose.h"
 #include "scene/deadline.h"
 #include "scene/devices.h"
+#include "scene/geometry.h"
 #include "scene/location.h"
 
 namespace ziggurat::scene {
@@ -39,18 +38,6 @@ struct Experiment {
 };
 
 // --- bodies -----------------------------------------------------------------------------------
-
-struct Box {
-  math::Vector3 size;  ///< full extents along x, y, z [m]
-};
-struct Cylinder {
-  double radius;  ///< [m]
-  double height;  ///< along z [m]
-};
-struct Sphere {
-  double radius;  ///< [m]
-};
-using Geometry = std::variant<Box, Cylinder, Sphere>;
 
 /// How a surface rubs. Two surfaces in contact combine by product.
 struct Surface {
@@ -78,6 +65,11 @@ struct Link {
 
 enum class JointType { fixed, spherical, prismatic, revolute };
 
+/// Whether a joint moves along or about an axis, so that it has one coordinate, limits and motors.
+constexpr bool has_coordinate(JointType type) {
+  return type == JointType::prismatic || type == JointType::revolute;
+}
+
 struct JointLimit {
   double lower;  ///< [m] or [rad], relative to the assembled pose; <= upper
   double upper;  ///< [m] or [rad]
@@ -95,7 +87,12 @@ struct Joint {
   Location where;
 };
 
-enum class EntityKind { box, cylinder, prototype, foot_bot, e_puck };
+enum class EntityKind { box, cylinder, sphere, prototype, foot_bot, e_puck };
+
+/// Whether it is one body and no more, without joints, controller or name for its link.
+constexpr bool is_single(EntityKind kind) {
+  return kind == EntityKind::box || kind == EntityKind::cylinder || kind == EntityKind::sphere;
+}
 
 /// What holds a body upright and to a motion over the ground: driven wheels, or the friction of
 /// the ground in a two-dimensional engine, which only brakes.

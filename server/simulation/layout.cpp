@@ -24,8 +24,7 @@ void add_joints(const scene::ControllerDevices& enabled, world::RobotLayout& rob
 
 void append(const scene::Scene& scene, const scene::Entity& entity, world::Layout& layout) {
   const std::size_t index = layout.entities.size();
-  const bool single =
-      entity.kind == scene::EntityKind::box || entity.kind == scene::EntityKind::cylinder;
+  const bool single = scene::is_single(entity.kind);
   layout.entities.push_back({entity.id, {layout.links.size(), entity.links.size()}, !single});
   for (const scene::Link& link : entity.links) {
     layout.links.push_back({single ? "" : link.id, index});

@@ -4,6 +4,8 @@
 #include <BulletCollision/CollisionDispatch/btActivatingCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
+#include <iterator>
+
 namespace ziggurat::physics::contact {
 namespace {
 
@@ -149,7 +151,7 @@ btVector3 Algorithm::slip(const btManifoldPoint& point, const Old* old, Anchor& 
 }
 
 /// Tells Bullet the slips to take back. Anchors set at different times contradict each other by
-/// a hair, and four contradicting points would push each other for ever: what is asked for is
+/// a hair, and four contradicting points would push each other forever: the target is
 /// the rigid motion in the tangent plane that fits them best.
 void Algorithm::take_back(const std::array<btVector3, 4>& slips) {
   const int count = manifold_->getNumContacts();
@@ -193,8 +195,10 @@ btDefaultCollisionConstructionInfo construction_info() {
 std::unique_ptr<btCollisionAlgorithmCreateFunc> register_algorithms(
     btCollisionDispatcher& dispatcher) {
   auto create = std::make_unique<Algorithm::Create>();
-  constexpr int types[] = {BOX_SHAPE_PROXYTYPE, CYLINDER_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
-                           STATIC_PLANE_PROXYTYPE};
+  constexpr int types[] = {BOX_SHAPE_PROXYTYPE,         CYLINDER_SHAPE_PROXYTYPE,
+                           SPHERE_SHAPE_PROXYTYPE,      CAPSULE_SHAPE_PROXYTYPE,
+                           CONVEX_HULL_SHAPE_PROXYTYPE, STATIC_PLANE_PROXYTYPE};
+  static_assert(std::size(types) == std::variant_size_v<Shape>);
   for (const int a : types) {
     for (const int b : types) dispatcher.registerCollisionCreateFunc(a, b, create.get());
   }

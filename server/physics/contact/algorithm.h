@@ -5,19 +5,23 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 
+#include <cstddef>
 #include <memory>
 
 #include "physics/contact/shapes.h"
 
 namespace ziggurat::physics::contact {
 
-/// What the algorithm needs of a collision object, which carries a pointer to it.
+/// What the algorithm needs to know of a collision object, which has a pointer to it.
 struct Collider {
+  static constexpr std::size_t floor = static_cast<std::size_t>(-1);
   Shape shape;
+  std::size_t entity = floor;     ///< in order of adding
+  std::size_t link = 0;           ///< of the entity
   btScalar friction = 0.5;        ///< Coulomb coefficient; two surfaces combine by product
   btScalar rolling_friction = 0;  ///< [m]; two surfaces combine by sum
   bool rolls = false;             ///< has wheels: does not rub on what is below or above it
-  btScalar reach = 0;             ///< how far ahead this body is looked for, this substep [m]
+  btScalar reach = 0;             ///< distance at which contacts are kept, this substep [m]
   btTransform previous = btTransform::getIdentity();  ///< pose one substep ago
 };
 
@@ -27,7 +31,7 @@ const Collider& collider_of(const btCollisionObject& object);
 /// Bullet's pools with elements large enough for our algorithm; without it the heap is overrun.
 btDefaultCollisionConstructionInfo construction_info();
 
-/// Makes our algorithm answer for all pairs of box, cylinder, sphere and plane. The returned
+/// Makes our algorithm answer for all pairs of shapes. The returned
 /// object must outlive the dispatcher's use of it.
 std::unique_ptr<btCollisionAlgorithmCreateFunc> register_algorithms(
     btCollisionDispatcher& dispatcher);

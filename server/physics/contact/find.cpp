@@ -1,6 +1,7 @@
 // Chooses the function for a pair of shapes, and thins out what it found.
 
 #include <algorithm>
+#include <type_traits>
 
 #include "physics/contact/pairs.h"
 #include "physics/contact/sort.h"
@@ -8,42 +9,11 @@
 namespace ziggurat::physics::contact {
 namespace {
 
-/// Fills `out` if a function for (a, b) in this order exists.
-bool find_in_order(const Shape& a, const btTransform& pose_a, const Shape& b,
-                   const btTransform& pose_b, btScalar reach, Contacts& out) {
-  if (const auto* sphere = std::get_if<Sphere>(&a)) {
-    if (const auto* other = std::get_if<Sphere>(&b)) {
-      sphere_sphere(*sphere, pose_a, *other, pose_b, reach, out);
-    } else if (const auto* box = std::get_if<Box>(&b)) {
-      sphere_box(*sphere, pose_a, *box, pose_b, reach, out);
-    } else if (const auto* cylinder = std::get_if<Cylinder>(&b)) {
-      sphere_cylinder(*sphere, pose_a, *cylinder, pose_b, reach, out);
-    } else {
-      sphere_plane(*sphere, pose_a, pose_b, reach, out);
-    }
-    return true;
-  }
-  if (const auto* cylinder = std::get_if<Cylinder>(&a)) {
-    if (std::holds_alternative<Sphere>(b)) return false;
-    if (std::holds_alternative<HalfSpace>(b)) {
-      cylinder_plane(*cylinder, pose_a, pose_b, reach, out);
-    } else {
-      cylinder_convex(*cylinder, pose_a, b, pose_b, reach, out);
-    }
-    return true;
-  }
-  if (const auto* box = std::get_if<Box>(&a)) {
-    if (const auto* other = std::get_if<Box>(&b)) {
-      box_box(*box, pose_a, *other, pose_b, reach, out);
-      return true;
-    }
-    if (std::holds_alternative<HalfSpace>(b)) {
-      box_plane(*box, pose_a, pose_b, reach, out);
-      return true;
-    }
-  }
-  return false;
-}
+/// Whether a function for (A, B) in this order exists.
+template <class A, class B>
+concept Ordered = requires(const A& a, const B& b, const Placement& at, Contacts& out) {
+  contact_points(a, b, at, out);
+};
 
 /// Grows with the angle of (x, y) from 0 to 4 over a full turn; cheaper than an arc tangent and
 /// the same on every processor.
@@ -54,15 +24,20 @@ btScalar turn(btScalar x, btScalar y) {
   return y < 0 ? 3 + part : 1 - part;
 }
 
-/// Radius of the sphere about the shape's centre that holds it [m].
+// Radius of the sphere about the shape's centre that holds it [m]:
+btScalar radius_of(const Box& box) { return box.half.length(); }
+btScalar radius_of(const Cylinder& cylinder) {
+  return btSqrt(cylinder.radius * cylinder.radius + cylinder.half_height * cylinder.half_height);
+}
+btScalar radius_of(const Sphere& sphere) { return sphere.radius; }
+btScalar radius_of(const Capsule& capsule) { return capsule.radius + capsule.half_length; }
+btScalar radius_of(const Hull& hull) { return hull.polyhedron->radius; }
+btScalar radius_of(const HalfSpace&) {
+  return 0;
+}  // it is no ball: far_apart() treats it by itself
+
 btScalar bounding_radius(const Shape& shape) {
-  if (const auto* box = std::get_if<Box>(&shape)) return box->half.length();
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    return btSqrt(cylinder->radius * cylinder->radius +
-                  cylinder->half_height * cylinder->half_height);
-  }
-  const auto* sphere = std::get_if<Sphere>(&shape);
-  return sphere ? sphere->radius : 0;
+  return std::visit([](const auto& each) { return radius_of(each); }, shape);
 }
 
 /// Whether the bodies are too far apart for any contact; costs next to nothing.
@@ -92,10 +67,18 @@ Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const b
               btScalar reach) {
   Contacts out;
   if (far_apart(a, pose_a, b, pose_b, reach)) return out;
-  if (!find_in_order(a, pose_a, b, pose_b, reach, out) &&
-      find_in_order(b, pose_b, a, pose_a, reach, out)) {
-    swap_sides(out);
-  }
+  std::visit(
+      [&](const auto& first, const auto& second) {
+        using A = std::decay_t<decltype(first)>;
+        using B = std::decay_t<decltype(second)>;
+        if constexpr (Ordered<A, B>) {
+          contact_points(first, second, {pose_a, pose_b, reach}, out);
+        } else {
+          contact_points(second, first, {pose_b, pose_a, reach}, out);
+          swap_sides(out);
+        }
+      },
+      a, b);
   return out;
 }
 

@@ -1,4 +1,4 @@
-// Boxes, cylinders and spheres against a half-space.
+// All shapes against a half-space.
 
 #include "physics/contact/pairs.h"
 #include "physics/contact/sort.h"
@@ -27,8 +27,8 @@ constexpr btScalar standing = 0.7;
 
 }  // namespace
 
-void box_plane(const Box& a, const btTransform& pose_a, const btTransform& plane, btScalar reach,
-               Contacts& out) {
+void contact_points(const Box& a, const HalfSpace&, const Placement& at, Contacts& out) {
+  const auto& [pose_a, plane, reach] = at;
   out.normal = plane.getBasis().getColumn(2);
   const btVector3& half = a.half;
   for (int corner = 0; corner < 8; ++corner) {
@@ -39,8 +39,8 @@ void box_plane(const Box& a, const btTransform& pose_a, const btTransform& plane
   keep_lowest(out, 4);
 }
 
-void cylinder_plane(const Cylinder& a, const btTransform& pose_a, const btTransform& plane,
-                    btScalar reach, Contacts& out) {
+void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Contacts& out) {
+  const auto& [pose_a, plane, reach] = at;
   out.normal = plane.getBasis().getColumn(2);
   // The lower cap is the one that faces the plane.
   const btVector3 axis = pose_a.getBasis().getColumn(2);
@@ -64,10 +64,25 @@ void cylinder_plane(const Cylinder& a, const btTransform& pose_a, const btTransf
   add(lower - down, plane, reach, out);
 }
 
-void sphere_plane(const Sphere& a, const btTransform& pose_a, const btTransform& plane,
-                  btScalar reach, Contacts& out) {
+void contact_points(const Sphere& a, const HalfSpace&, const Placement& at, Contacts& out) {
+  const auto& [pose_a, plane, reach] = at;
   out.normal = plane.getBasis().getColumn(2);
   add(pose_a.getOrigin() - out.normal * a.radius, plane, reach, out);
+}
+
+void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Contacts& out) {
+  const auto& [pose_a, plane, reach] = at;
+  out.normal = plane.getBasis().getColumn(2);
+  const btVector3 to_end = pose_a.getBasis().getColumn(2) * a.half_length;
+  const btVector3 lowest = pose_a.getOrigin() - out.normal * a.radius;
+  add(lowest + to_end, plane, reach, out);
+  if (a.half_length > 0) add(lowest - to_end, plane, reach, out);
+}
+
+void contact_points(const Hull& a, const HalfSpace&, const Placement& at, Contacts& out) {
+  const auto& [pose_a, plane, reach] = at;
+  out.normal = plane.getBasis().getColumn(2);
+  for (const btVector3& corner : a.polyhedron->corners) add(pose_a * corner, plane, reach, out);
 }
 
 }  // namespace ziggurat::physics::contact

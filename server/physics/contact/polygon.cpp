@@ -1,5 +1,7 @@
 #include "physics/contact/polygon.h"
 
+#include <algorithm>
+
 namespace ziggurat::physics::contact {
 
 void clip(Polygon& polygon, const btVector3& normal, btScalar offset) {
@@ -16,7 +18,8 @@ void clip(Polygon& polygon, const btVector3& normal, btScalar offset) {
       kept.add(from + (to - from) * (beyond_from / (beyond_from - beyond_to)));
     }
   }
-  polygon = kept;
+  polygon.count = kept.count;
+  std::copy_n(kept.vertices.begin(), kept.count, polygon.vertices.begin());
 }
 
 }  // namespace ziggurat::physics::contact

@@ -8,7 +8,7 @@
 namespace ziggurat::physics::contact {
 
 struct Polygon {
-  static constexpr int capacity = 28;
+  static constexpr int capacity = 96;
   int count = 0;
   std::array<btVector3, capacity> vertices;
 

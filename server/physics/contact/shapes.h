@@ -6,10 +6,13 @@
 // one point per step, so centimetre-sized bodies sink, tilt and explode at 10 ms substeps.
 // Here a whole manifold is made each step, points still apart included.
 
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <LinearMath/btTransform.h>
 
 #include <array>
+#include <memory>
 #include <variant>
+#include <vector>
 
 namespace ziggurat::physics::contact {
 
@@ -23,10 +26,32 @@ struct Cylinder {
 struct Sphere {
   btScalar radius;  ///< [m]
 };
+/// What is within `radius` of a segment.
+struct Capsule {
+  btScalar radius;       ///< [m]
+  btScalar half_length;  ///< of the segment, along its z [m]
+};
+/// A convex solid with flat faces about its frame's origin.
+struct Polyhedron {
+  struct Face {
+    btVector3 normal;          ///< unit, outwards
+    btScalar offset;           ///< normal . x of its points [m]
+    std::vector<int> corners;  ///< counterclockwise seen from outside
+  };
+  std::vector<btVector3> corners;  ///< [m]
+  std::vector<Face> faces;
+  btScalar radius = 0;    ///< of the sphere about the origin that holds it [m]
+  btScalar smallest = 0;  ///< distance of the nearest face from the origin [m]
+  std::unique_ptr<const btConvexShape> bullet;  ///< the same for GJK, without margin
+};
+struct Hull {
+  static constexpr int most_corners = 64;
+  std::shared_ptr<const Polyhedron> polyhedron;
+};
 /// The half-space z <= 0 of its frame.
 struct HalfSpace {};
 
-using Shape = std::variant<Box, Cylinder, Sphere, HalfSpace>;
+using Shape = std::variant<Box, Cylinder, Sphere, Capsule, Hull, HalfSpace>;
 
 struct Point {
   btVector3 on_b;     ///< on the surface of B, in the world [m]
@@ -35,7 +60,7 @@ struct Point {
 
 /// Points that share one normal. Before reduction there may be up to `capacity` of them.
 struct Contacts {
-  static constexpr int capacity = 24;
+  static constexpr int capacity = Hull::most_corners;
   btVector3 normal{0, 0, 0};  ///< unit, from B to A
   int count = 0;
   std::array<Point, capacity> points;

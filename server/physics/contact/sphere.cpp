@@ -1,4 +1,7 @@
-// Spheres against round and square bodies: one point, in closed form.
+// Spheres against all others: one point, in closed form but for hulls.
+
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
 #include "physics/contact/pairs.h"
 
@@ -15,18 +18,30 @@ void add(const Sphere& a, const btVector3& surface, const btVector3& outward, bt
   out.add(surface, distance);
 }
 
-}  // namespace
-
-void sphere_sphere(const Sphere& a, const btTransform& pose_a, const Sphere& b,
-                   const btTransform& pose_b, btScalar reach, Contacts& out) {
-  const btVector3 between = pose_a.getOrigin() - pose_b.getOrigin();
+/// One contact of a sphere with another.
+void add_round(const Sphere& a, const btVector3& center_a, btScalar radius_b,
+               const btVector3& center_b, btScalar reach, Contacts& out) {
+  const btVector3 between = center_a - center_b;
   const btScalar length = between.length();
   const btVector3 outward = length > 0 ? between / length : btVector3(0, 0, 1);
-  add(a, pose_b.getOrigin() + outward * b.radius, outward, length - b.radius, reach, out);
+  add(a, center_b + outward * radius_b, outward, length - radius_b, reach, out);
 }
 
-void sphere_box(const Sphere& a, const btTransform& pose_a, const Box& b, const btTransform& pose_b,
-                btScalar reach, Contacts& out) {
+}  // namespace
+
+void contact_points(const Sphere& a, const Sphere& b, const Placement& at, Contacts& out) {
+  add_round(a, at.a.getOrigin(), b.radius, at.b.getOrigin(), at.reach, out);
+}
+
+void contact_points(const Sphere& a, const Capsule& b, const Placement& at, Contacts& out) {
+  const btVector3 axis = at.b.getBasis().getColumn(2);
+  const btScalar along = axis.dot(at.a.getOrigin() - at.b.getOrigin());
+  const btScalar nearest = btMax(-b.half_length, btMin(b.half_length, along));
+  add_round(a, at.a.getOrigin(), b.radius, at.b.getOrigin() + axis * nearest, at.reach, out);
+}
+
+void contact_points(const Sphere& a, const Box& b, const Placement& at, Contacts& out) {
+  const auto& [pose_a, pose_b, reach] = at;
   const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
   btVector3 nearest = centre;
   nearest.setMax(-b.half);
@@ -53,8 +68,8 @@ void sphere_box(const Sphere& a, const btTransform& pose_a, const Box& b, const 
   add(a, pose_b * nearest, pose_b.getBasis() * outward, -depth, reach, out);
 }
 
-void sphere_cylinder(const Sphere& a, const btTransform& pose_a, const Cylinder& b,
-                     const btTransform& pose_b, btScalar reach, Contacts& out) {
+void contact_points(const Sphere& a, const Cylinder& b, const Placement& at, Contacts& out) {
+  const auto& [pose_a, pose_b, reach] = at;
   const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
   const btScalar radial = btSqrt(centre.x() * centre.x() + centre.y() * centre.y());
   const btVector3 side =
@@ -78,6 +93,33 @@ void sphere_cylinder(const Sphere& a, const btTransform& pose_a, const Cylinder&
     outward /= depth;
   }
   add(a, pose_b * nearest, pose_b.getBasis() * outward, depth, reach, out);
+}
+
+void contact_points(const Sphere& a, const Hull& b, const Placement& at, Contacts& out) {
+  const auto& [pose_a, pose_b, reach] = at;
+  const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
+  const Polyhedron::Face* nearest = &b.polyhedron->faces[0];
+  const auto height = [&](const Polyhedron::Face& face) {
+    return face.normal.dot(centre) - face.offset;
+  };
+  for (const Polyhedron::Face& face : b.polyhedron->faces) {
+    if (height(face) > height(*nearest)) nearest = &face;
+  }
+  const btScalar depth = height(*nearest);
+  if (depth - a.radius > reach) return;
+  if (depth > 0) {
+    btSphereShape ball(a.radius);
+    btGjkEpaSolver2::sResults results;
+    if (btGjkEpaSolver2::Distance(&ball, pose_a, b.polyhedron->bullet.get(), pose_b,
+                                  btVector3(1, 0, 0), results)) {
+      const btVector3 between = pose_a.getOrigin() - results.witnesses[1];
+      const btScalar length = between.length();
+      if (length > 0) return add(a, results.witnesses[1], between / length, length, reach, out);
+    }
+  }
+  // The centre is inside, or touches: leave by the nearest face.
+  add(a, pose_b * (centre - nearest->normal * depth), pose_b.getBasis() * nearest->normal, depth,
+      reach, out);
 }
 
 }  // namespace ziggurat::physics::contact

@@ -56,6 +56,28 @@ TEST(Ray, HitsATurnedBoxAtTheClosedFormDistance) {
   EXPECT_FALSE(distance(rays, {0, 0, 1.001}, {2, 0, 1.001}));
 }
 
+TEST(Ray, HitsACapsuleAtItsSideAndItsBalls) {
+  const Rays rays = rays_among({solid(scene::Capsule{0.1, 0.5}, {{1, 0, 0}, {1, 0, 0, 0}})});
+  EXPECT_DOUBLE_EQ(*distance(rays, {0, 0, 0.25}, {3, 0, 0.25}), 0.9);
+  EXPECT_DOUBLE_EQ(*distance(rays, {1, 0, 2}, {1, 0, -1}), 1.5);
+  const double height = 0.06;  // above the middle of the upper ball
+  EXPECT_NEAR(*distance(rays, {0, 0, 0.4 + height}, {3, 0, 0.4 + height}),
+              1 - std::sqrt(0.01 - height * height), 1e-12);
+  EXPECT_FALSE(distance(rays, {0, 0, 0.501}, {3, 0, 0.501}));
+  EXPECT_FALSE(distance(rays, {0.92, 0.2, 0.499}, {0.92, -0.2, 0.499}));  // beside the ball's top
+}
+
+TEST(Ray, HitsAHullAtItsFaces) {
+  const scene::Hull ramp = std::get<scene::Hull>(scene::make_hull(std::vector<Vector3>{
+      {0, 0, 0}, {0.4, 0, 0}, {0, 0.2, 0}, {0.4, 0.2, 0}, {0, 0, 0.2}, {0, 0.2, 0.2}}));
+  const Rays rays = rays_among({solid(ramp, {{1, -0.1, 0}, {1, 0, 0, 0}})});
+  EXPECT_NEAR(*distance(rays, {0, 0, 0.1}, {3, 0, 0.1}), 1, 1e-12);      // the upright face
+  EXPECT_NEAR(*distance(rays, {3, 0, 0.1}, {0, 0, 0.1}), 1.8, 1e-12);    // half way up the slope
+  EXPECT_NEAR(*distance(rays, {1.1, 0, 1}, {1.1, 0, -1}), 0.85, 1e-12);  // from above
+  EXPECT_FALSE(distance(rays, {1.3, 0, 0.06}, {1.3, 0, 1}));
+  EXPECT_FALSE(distance(rays, {1.1, 0, 0.1}, {1.11, 0, 0.1}));  // from inside
+}
+
 TEST(Ray, HitsACylinderAtSideAndCap) {
   const Rays rays = rays_among({solid(scene::Cylinder{0.1, 0.5}, {{0, 0, 2}, {1, 0, 0, 0}})});
   EXPECT_NEAR(*distance(rays, {1, 0.06, 2.2}, {-1, 0.06, 2.2}), 1 - 0.08, 1e-12);

@@ -53,6 +53,41 @@ TEST(Drawing, UsesFinerMeshesForLargeBodies) {
   EXPECT_LT(far.batches.at(0).mesh.indices, near.batches.at(0).mesh.indices / 10);
 }
 
+TEST(Drawing, PutsTogetherACapsuleOfACylinderAndTwoSpheres) {
+  SmallWorld world;
+  world.add(scene::Capsule{0.1, 0.5}, {{3, 0, 0}, math::Quaternion::Identity()});
+  const Drawing drawing = drawing_of(world, forward_view());
+  ASSERT_EQ(drawing.bodies.size(), 3u);
+  // In the camera's frame y is down: the feet are at the heights of the two balls' lowest points
+  // and of the cylinder's lower end.
+  EXPECT_NEAR(drawing.bodies[0].position[1], -0.1, 1e-6);
+  EXPECT_NEAR(drawing.bodies[1].position[1], 0, 1e-6);
+  EXPECT_NEAR(drawing.bodies[2].position[1], -0.3, 1e-6);
+}
+
+TEST(Drawing, SharesTheMeshOfAHullAndTakesNewOnes) {
+  SmallWorld world;
+  const auto pyramid = [](double height) {
+    return std::get<scene::Hull>(scene::make_hull(
+        std::vector<math::Vector3>{{0, 0, 0}, {0.2, 0, 0}, {0, 0.2, 0}, {0, 0, height}}));
+  };
+  const scene::Hull low = pyramid(0.1);
+  world.add(low, {{3, 0, 0}, math::Quaternion::Identity()});
+  world.add(low, {{4, 0, 0}, math::Quaternion::Identity()});
+  Draftsman draftsman(make_model(world.scene, world.entities), world.layout);
+  Drawing drawing;
+  draftsman.draw(world.state, forward_view(), drawing);
+  ASSERT_EQ(drawing.batches.size(), 1u);
+  EXPECT_EQ(drawing.batches[0].all, 2u);
+  EXPECT_EQ(drawing.batches[0].mesh.indices, 3u * 12);
+  const std::size_t before = draftsman.meshes().indices.size();
+  world.add(pyramid(0.3), {{5, 0, 0}, math::Quaternion::Identity()});
+  draftsman.add(world.entities.back());
+  EXPECT_EQ(draftsman.meshes().indices.size(), before + 36);
+  draftsman.draw(world.state, forward_view(), drawing);
+  EXPECT_EQ(drawing.batches.size(), 2u);
+}
+
 TEST(Drawing, MapsEverythingInViewToTheShadowMap) {
   SmallWorld world;
   world.add(scene::Box{{1, 1, 1}}, {{4, 0, -1}, math::Quaternion::Identity()});

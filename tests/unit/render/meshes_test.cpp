@@ -56,6 +56,15 @@ TEST(Meshes, AreClosedWithOutwardNormals) {
   }
 }
 
+TEST(Meshes, AHullIsClosedAndOutwards) {
+  const scene::Hull ramp = std::get<scene::Hull>(scene::make_hull(std::vector<math::Vector3>{
+      {0, 0, 0}, {4, 0, 0}, {0, 2, 0}, {4, 2, 0}, {0, 0, 1}, {0, 2, 1}}));
+  Meshes meshes = make_meshes();
+  const Measure hull = measure(meshes, add_hull(*ramp.polyhedron, meshes));
+  EXPECT_NEAR(hull.volume, 4, 1e-6);
+  EXPECT_NEAR(hull.worst_turn, 1, 1e-6);
+}
+
 TEST(RoundnessFor, DeviatesFromACircleByATwentiethOfAPixelAtMost) {
   EXPECT_EQ(roundness_for(0), 0u);
   for (const double radius : {1.0, 10.0, 100.0, 600.0}) {

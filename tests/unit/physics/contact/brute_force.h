@@ -24,6 +24,16 @@ struct Solid {
       return cylinder->radius * std::hypot(local.x(), local.y()) +
              cylinder->half_height * std::fabs(local.z());
     }
+    if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+      return capsule->radius + capsule->half_length * std::fabs(local.z());
+    }
+    if (const auto* hull = std::get_if<Hull>(&shape)) {
+      btScalar most = -BT_LARGE_FLOAT;
+      for (const btVector3& corner : hull->polyhedron->corners) {
+        most = std::max(most, corner.dot(local));
+      }
+      return most;
+    }
     return std::get<Sphere>(shape).radius;
   }
 
@@ -43,6 +53,17 @@ struct Solid {
              std::min(std::max(side, cap), btScalar(0));
     }
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return local.length() - sphere->radius;
+    if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+      const btScalar along = std::clamp(local.z(), -capsule->half_length, capsule->half_length);
+      return (local - btVector3(0, 0, along)).length() - capsule->radius;
+    }
+    if (const auto* hull = std::get_if<Hull>(&shape)) {  // outside: no more than the distance
+      btScalar most = -BT_LARGE_FLOAT;
+      for (const auto& face : hull->polyhedron->faces) {
+        most = std::max(most, face.normal.dot(local) - face.offset);
+      }
+      return most;
+    }
     return local.z();
   }
 
@@ -52,6 +73,8 @@ struct Solid {
     if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
       return std::min(cylinder->radius, cylinder->half_height);
     }
+    if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
+    if (const auto* hull = std::get_if<Hull>(&shape)) return hull->polyhedron->smallest;
     const auto* sphere = std::get_if<Sphere>(&shape);
     return sphere ? sphere->radius : BT_LARGE_FLOAT;
   }
@@ -62,7 +85,7 @@ inline btScalar slab_gap(const Solid& a, const Solid& b, const btVector3& b_to_a
   if (std::holds_alternative<HalfSpace>(b.shape)) {
     return b_to_a.dot(a.pose.getOrigin() - b.pose.getOrigin()) - a.extent(-b_to_a);
   }
-  return b_to_a.dot(a.pose.getOrigin() - b.pose.getOrigin()) - a.extent(b_to_a) - b.extent(b_to_a);
+  return b_to_a.dot(a.pose.getOrigin() - b.pose.getOrigin()) - a.extent(-b_to_a) - b.extent(b_to_a);
 }
 
 struct Gap {

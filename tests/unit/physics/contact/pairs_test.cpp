@@ -7,6 +7,7 @@
 
 #include "brute_force.h"
 #include "math/random.h"
+#include "physics/shape.h"
 
 namespace ziggurat::physics::contact {
 namespace {
@@ -26,6 +27,18 @@ void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.name; }
 const Box cube{{0.005, 0.005, 0.005}}, slab{{0.05, 0.025, 0.01}};
 const Cylinder can{0.005, 0.005}, wheel{0.02, 0.0025}, rod{0.004, 0.03};
 const Sphere ball{0.005}, football{0.03};
+const Capsule pill{0.005, 0.01}, peg{0.004, 0.004};
+
+Shape hull(const std::vector<math::Vector3>& points) {
+  return contact_shape(std::get<scene::Hull>(scene::make_hull(points)));
+}
+
+/// A ramp of 40 x 20 x 16 mm: its principal axes are not those of its edges.
+const Shape wedge =
+    hull({{0, 0, 0}, {0.04, 0, 0}, {0, 0.02, 0}, {0.04, 0.02, 0}, {0, 0, 0.016}, {0, 0.02, 0.016}});
+/// An octahedron of 2 cm.
+const Shape dice =
+    hull({{0.01, 0, 0}, {-0.01, 0, 0}, {0, 0.01, 0}, {0, -0.01, 0}, {0, 0, 0.01}, {0, 0, -0.01}});
 
 const Pair pairs[] = {
     {"BoxPlane", slab, HalfSpace{}, 1e-09, 1e-09},
@@ -46,6 +59,18 @@ const Pair pairs[] = {
     {"CylinderCylinder", can, can, 0.04, 0.1},
     {"WheelRod", wheel, rod, 0.04, 0.1},
     {"RodRod", rod, rod, 0.04, 0.1},
+    {"CapsulePlane", pill, HalfSpace{}, 1e-09, 0.01},
+    {"SphereCapsule", football, pill, 0.001, 1e-09},
+    {"CapsuleCapsule", pill, peg, 0.04, 0.1},
+    {"CapsuleCube", peg, cube, 0.04, 0.1},
+    {"SlabCapsule", slab, pill, 0.04, 0.1},
+    {"CapsuleRod", pill, rod, 0.04, 0.1},
+    {"HullPlane", wedge, HalfSpace{}, 1e-09, 1e-09},
+    {"SphereHull", ball, wedge, 0.01, 0.1},
+    {"HullCube", wedge, cube, 0.04, 0.1},
+    {"HullCylinder", wedge, can, 0.04, 0.1},
+    {"CapsuleHull", pill, wedge, 0.04, 0.1},
+    {"HullHull", wedge, dice, 0.04, 0.1},
 };
 
 // Each number is drawn in a separate statement: compilers evaluate arguments in different orders.
@@ -88,7 +113,7 @@ void place(math::RandomStream& random, int i, Solid& a, Solid& b) {
     a.pose.setOrigin(a.pose.getOrigin() + up * (a.smallest() * random.uniform(-0.2, 1.5) - gap));
     return;
   }
-  const btScalar touching = a.extent(direction) + b.extent(direction);
+  const btScalar touching = a.extent(-direction) + b.extent(direction);
   const btScalar share = i % 7 ? random.uniform(-0.15, 0.4) : 0;
   a.pose.setOrigin(origin + direction * (touching + share * std::min(a.smallest(), b.smallest())));
 }

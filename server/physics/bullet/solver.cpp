@@ -1,4 +1,4 @@
-#include "physics/solver.h"
+#include "physics/bullet/solver.h"
 
 #include <algorithm>
 
@@ -30,8 +30,8 @@ inline btScalar dot(const btScalar* a, const btScalar* b, int count) {
 }  // namespace
 
 // The impulses of this step change a multi-body's velocities in its own vector, which Bullet adds
-// to them at the end. Bullet's second copy of it, m_deltaVelocities, is not kept up: nobody reads
-// it.
+// to them at the end. Bullet's second copy of it, m_deltaVelocities, is not updated: it is never
+// read.
 
 /// What the impulses of this step have changed of the row's relative velocity so far.
 btScalar Solver::speed_change(const Row& row) const {

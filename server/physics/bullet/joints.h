@@ -27,16 +27,16 @@ struct MovingJoint {
   std::unique_ptr<btMultiBodyJointLimitConstraint> limit;
   Motor motor;
 
-  /// Room that steer() works in, kept so that a substep allocates nothing.
+  /// Memory of steer(), kept so that a substep allocates nothing.
   struct Scratch {
     btAlignedObjectArray<btScalar> impulse, response, scalars;
     btAlignedObjectArray<btVector3> vectors;
   } scratch;
 };
 
-/// Tells a motor what velocity to reach at the end of the coming substep.
+/// Sets the velocity that a motor must reach at the end of the coming substep.
 /// @param length     of the (internal) substep [s]
-/// @param impulse    what it may give in it [N s] or [N m s]
+/// @param impulse    its limit in that substep [N s] or [N m s]
 void steer(MovingJoint& joint, double length, double impulse);
 
 }  // namespace ziggurat::physics

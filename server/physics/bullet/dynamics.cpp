@@ -1,4 +1,4 @@
-#include "physics/dynamics.h"
+#include "physics/bullet/dynamics.h"
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
@@ -38,7 +38,7 @@ Dynamics::Dynamics(btDispatcher& dispatcher, btDbvtBroadphase& broadphase,
       broadphase_(broadphase) {}
 
 /// Bullet's boxes only grow: a body that fell fast would keep a large one, and a neighbour in
-/// each pair it makes, for ever. Ours are renewed when too small or much too large.
+/// each pair it makes, forever. Ours are renewed when too small or much too large.
 void Dynamics::keep_in_box(btBroadphaseProxy& proxy, const btVector3& low, const btVector3& high) {
   const btVector3 slack(box_slack, box_slack, box_slack);
   const auto inside = [](const btVector3& outer_low, const btVector3& outer_high,

@@ -1,4 +1,4 @@
-#include "physics/joints.h"
+#include "physics/bullet/joints.h"
 
 #include <algorithm>
 #include <cmath>

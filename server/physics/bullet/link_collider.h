@@ -21,12 +21,12 @@ class LinkCollider final : public btMultiBodyLinkCollider {
 
   /// Whether its place is another than Bullet's.
   bool displaced() const { return leader_ != this || !centred_; }
-  /// X_WP of the part. Asked of a leader.
+  /// X_WP of the part. Leaders only.
   const btTransform& part() const { return centred_ ? getWorldTransform() : part_; }
 
-  /// Takes the place to which Bullet has moved a leader for its part's.
+  /// Takes the pose to which Bullet has moved a leader as that of its part.
   void note() { part_ = getWorldTransform(); }
-  /// Goes where the shape is. Due when the leader has noted.
+  /// Goes where the shape is. The leader must have noted its part before.
   void settle() { setWorldTransform(leader_->part() * in_part_); }
 
  private:

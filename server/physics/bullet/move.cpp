@@ -1,6 +1,4 @@
-#include "physics/move.h"
-
-#include "physics/convert.h"
+#include "physics/bullet/move.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -28,8 +26,8 @@ void assemble_joints(btMultiBody& multi) {
   }
 }
 
-void move_multi(Body& body, const btTransform& base, btDynamicsWorld& world) {
-  btMultiBody& multi = *body.multi;
+void move_multi(Mechanism& mechanism, const btTransform& base, btDynamicsWorld& world) {
+  btMultiBody& multi = *mechanism.multi;
   multi.setBaseWorldTransform(base);
   multi.setBaseVel(btVector3(0, 0, 0));
   multi.setBaseOmega(btVector3(0, 0, 0));
@@ -40,10 +38,10 @@ void move_multi(Body& body, const btTransform& base, btDynamicsWorld& world) {
   btAlignedObjectArray<btVector3> positions;
   multi.forwardKinematics(rotations, positions);
   multi.updateCollisionObjectWorldTransforms(rotations, positions);
-  for (auto& collider : body.link_colliders) {
+  for (auto& collider : mechanism.link_colliders) {
     if (collider->leader() == collider.get()) collider->note();
   }
-  for (auto& collider : body.link_colliders) {
+  for (auto& collider : mechanism.link_colliders) {
     collider->settle();
     place(*collider, collider->getWorldTransform(), world);
   }
@@ -63,21 +61,13 @@ void wake_neighbours(const btCollisionObject& object, btDynamicsWorld& world) {
   }
 }
 
-void move(Body& body, const math::Pose& pose, btDynamicsWorld& world) {
-  const math::Pose from_placed = pose * math::inverse(body.placed);
-  body.placed = pose;
-  for (LinkBody& link : body.links) {
-    link.placed = from_placed * link.placed;
-    link.turn = math::Quaternion::Identity();
-    link.spin = 0;
-  }
-  if (body.drive) body.drive->turret_angle = 0;
-  const btTransform transform = to_bullet(base_pose(body));
-  if (body.multi) return move_multi(body, transform, world);
-  body.rigid->setLinearVelocity(btVector3(0, 0, 0));
-  body.rigid->setAngularVelocity(btVector3(0, 0, 0));
-  body.rigid->clearForces();
-  place(*body.rigid, transform, world);
+void move(Mechanism& mechanism, const btTransform& base, btDynamicsWorld& world) {
+  if (mechanism.multi) return move_multi(mechanism, base, world);
+  btRigidBody& rigid = *mechanism.rigid;
+  rigid.setLinearVelocity(btVector3(0, 0, 0));
+  rigid.setAngularVelocity(btVector3(0, 0, 0));
+  rigid.clearForces();
+  place(rigid, base, world);
 }
 
 }  // namespace ziggurat::physics

@@ -1,12 +1,12 @@
 #pragma once
-// Bullet's multi-body world with bounding boxes that look ahead as far as our contacts do.
+// Bullet's multi-body world with bounding boxes as large as the reach of our contacts.
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 
 #include <vector>
 
-#include "physics/link_collider.h"
+#include "physics/bullet/link_collider.h"
 
 namespace ziggurat::physics {
 
@@ -24,9 +24,9 @@ class Dynamics final : public btMultiBodyDynamicsWorld {
   void addCollisionObject(btCollisionObject* object, int group, int mask) override;
   void removeCollisionObject(btCollisionObject* object) override;
 
-  /// Without the poses that multi-bodies would reach if nothing stopped them: nobody reads those.
+  /// Without the poses that multi-bodies would reach if nothing stopped them: they are never read.
   void predictUnconstraintMotion(btScalar length) override;
-  /// Moves bodies, and the colliders that Bullet does not know of with them.
+  /// Moves bodies, and with them the colliders that Bullet does not know.
   void integrateTransforms(btScalar length) override;
   /// Colliders of one part are in one island.
   void calculateSimulationIslands() override;

@@ -1,0 +1,15 @@
+#pragma once
+// What Bullet's manifolds say of the last substep, for plug-ins.
+
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+
+#include <vector>
+
+#include "physics/plugin.h"
+
+namespace ziggurat::physics {
+
+/// @param out  emptied before; in ascending order of its sides
+void collect(btDispatcher& dispatcher, std::vector<Contact>& out);
+
+}  // namespace ziggurat::physics

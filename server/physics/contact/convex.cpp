@@ -1,0 +1,199 @@
+// Cylinders, capsules and hulls against each other and against boxes. The normal is the best of the
+// flat faces' axes and of what GJK finds; the contact points are the other body's feature clipped
+// against that face.
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
+
+#include <type_traits>
+
+#include "physics/contact/features.h"
+#include "physics/contact/pairs.h"
+
+namespace ziggurat::physics::contact {
+namespace {
+
+btScalar separation(const Body& a, const Body& b, const btVector3& b_to_a) {
+  return b_to_a.dot(a.centre - b.centre) - extent(a, -b_to_a) - extent(b, b_to_a);
+}
+
+/// The nearest direction by GJK on cores shrunk by a margin, or EPA where they overlap.
+struct Nearest {
+  btVector3 b_to_a{0, 0, 1};
+  btVector3 on_b{0, 0, 0};
+  btScalar distance = -BT_LARGE_FLOAT;
+};
+
+Nearest search(const Body& a, const btConvexShape& shape_a, const Body& b,
+               const btConvexShape& shape_b, const Placement& at) {
+  Nearest found;
+  btGjkEpaSolver2::sResults results;
+  // Bullet takes the guess and gives the normal in A's frame, the witnesses in the world.
+  const btMatrix3x3& basis = at.a.getBasis();
+  const btVector3 guess = basis.transpose() * (at.a.getOrigin() - at.b.getOrigin());
+  const bool apart = btGjkEpaSolver2::Distance(&shape_a, at.a, &shape_b, at.b, guess, results) &&
+                     results.distance > 0;
+  if (!apart && !btGjkEpaSolver2::Penetration(&shape_a, at.a, &shape_b, at.b, guess, results)) {
+    return found;
+  }
+  const btScalar length = results.normal.length();
+  if (!(length > SIMD_EPSILON)) return found;
+  found.b_to_a = basis * (results.normal / length);
+  if (separation(a, b, -found.b_to_a) > separation(a, b, found.b_to_a))
+    found.b_to_a = -found.b_to_a;
+  found.distance = separation(a, b, found.b_to_a);
+  found.on_b = results.witnesses[1];
+  if (apart) found.on_b += found.b_to_a * shape_b.getMargin();
+  return found;
+}
+
+// Calls `use` with a shape of Bullet's.
+template <class Use>
+Nearest with_shape(const Box& box, btScalar margin, Use use) {
+  btBoxShape shape(box.half);
+  shape.setMargin(margin);
+  return use(shape);
+}
+template <class Use>
+Nearest with_shape(const Cylinder& cylinder, btScalar margin, Use use) {
+  btCylinderShapeZ shape({cylinder.radius, cylinder.radius, cylinder.half_height});
+  shape.setMargin(margin);
+  return use(shape);
+}
+template <class Use>
+Nearest with_shape(const Capsule& capsule, btScalar, Use use) {
+  return use(btCapsuleShapeZ(capsule.radius, 2 * capsule.half_length));  // its margin: the radius
+}
+template <class Use>
+Nearest with_shape(const Hull& hull, btScalar, Use use) {
+  return use(*hull.polyhedron->bullet);
+}
+
+Nearest nearest(const Body& a, const Body& b, const Placement& at) {
+  const btScalar margin = btScalar(0.1) * btMin(smallest(a), smallest(b));
+  return std::visit(
+      [&](const auto* first, const auto* second) {
+        return with_shape(*first, margin, [&](const btConvexShape& shape_a) {
+          return with_shape(*second, margin, [&](const btConvexShape& shape_b) {
+            return search(a, shape_a, b, shape_b, at);
+          });
+        });
+      },
+      a.shape, b.shape);
+}
+
+/// The flat face whose axis separates best.
+struct BestFace {
+  bool of_a = false;
+  int number = -1;
+  btVector3 outward;
+  btScalar distance = -BT_LARGE_FLOAT;
+};
+
+void consider_faces(const Body& body, const Body& other, bool of_a, btScalar prefer,
+                    BestFace& best) {
+  for (int i = 0; i < face_count(body); ++i) {
+    const btVector3 outward = face_towards(body, i, other.centre);
+    const btScalar distance =
+        of_a ? separation(body, other, -outward) : separation(other, body, outward);
+    if (distance > best.distance + (best.number >= 0 ? prefer : 0))
+      best = {of_a, i, outward, distance};
+  }
+}
+
+void clip_features(const BestFace& face, const Body& reference, const Body& incident,
+                   btScalar reach, Contacts& out) {
+  Polygon polygon = feature(incident, -face.outward);
+  clip_to_face(polygon, reference, face.number);
+  const btScalar plane = face.outward.dot(reference.centre) + extent(reference, face.outward);
+  for (int i = 0; i < polygon.count; ++i) {
+    const btVector3& vertex = polygon.vertices[i];
+    const btScalar distance = face.outward.dot(vertex) - plane;
+    if (distance <= reach) {
+      out.add(face.of_a ? vertex : vertex - face.outward * distance, distance);
+    }
+  }
+}
+
+/// The side of A along an edge or side line of B: the two ends of what they share.
+bool add_line(const Body& a, const Body& b, const Nearest& near, Contacts& out) {
+  const btVector3& axis = a.axis[2];
+  const btScalar half_length = half_side(a);
+  Line line;
+  if (half_length == 0 || btFabs(axis.dot(near.b_to_a)) > btScalar(0.1) ||
+      !edge_along(b, near.b_to_a, axis, line)) {
+    return false;
+  }
+  const btScalar offset = axis.dot(line.middle - a.centre);
+  const btScalar from = btMax(-half_length, offset - line.half_length);
+  const btScalar to = btMin(half_length, offset + line.half_length);
+  if (to - from < btScalar(0.1) * half_length) return false;
+  out.add(line.middle + axis * (from - offset), near.distance);
+  out.add(line.middle + axis * (to - offset), near.distance);
+  return true;
+}
+
+btScalar least(const Contacts& contacts) {
+  btScalar distance = BT_LARGE_FLOAT;
+  for (int i = 0; i < contacts.count; ++i) {
+    distance = btMin(distance, contacts.points[i].distance);
+  }
+  return distance;
+}
+
+template <class A, class B>
+void convex(const A& shape_a, const B& shape_b, const Placement& at, Contacts& out) {
+  const Body a(&shape_a, at.a), b(&shape_b, at.b);
+  const btScalar prefer = btScalar(1e-3) * btMin(smallest(a), smallest(b));
+
+  BestFace face;
+  consider_faces(b, a, false, prefer, face);
+  if (face.distance > at.reach) return;
+  consider_faces(a, b, true, prefer, face);
+  if (face.distance > at.reach) return;
+  const Nearest near = nearest(a, b, at);
+  if (near.distance > at.reach) return;
+
+  if (face.distance >= near.distance - 5 * prefer) {
+    out.normal = face.of_a ? -face.outward : face.outward;
+    clip_features(face, face.of_a ? a : b, face.of_a ? b : a, at.reach, out);
+    // The ball at the end of a capsule may be nearest beyond the face's outline.
+    const bool enough = !std::is_same_v<A, Capsule> || least(out) < near.distance + 5 * prefer;
+    if (out.count > 0 && enough) return;
+    out.count = 0;
+  }
+  if (near.distance == -BT_LARGE_FLOAT) return;
+  out.normal = near.b_to_a;
+  if (!add_line(a, b, near, out)) out.add(near.on_b, near.distance);
+}
+
+}  // namespace
+
+void contact_points(const Cylinder& a, const Box& b, const Placement& at, Contacts& out) {
+  convex(a, b, at, out);
+}
+void contact_points(const Cylinder& a, const Cylinder& b, const Placement& at, Contacts& out) {
+  convex(a, b, at, out);
+}
+void contact_points(const Cylinder& a, const Hull& b, const Placement& at, Contacts& out) {
+  convex(a, b, at, out);
+}
+void contact_points(const Capsule& a, const Box& b, const Placement& at, Contacts& out) {
+  convex(a, b, at, out);
+}
+void contact_points(const Capsule& a, const Cylinder& b, const Placement& at, Contacts& out) {
+  convex(a, b, at, out);
+}
+void contact_points(const Capsule& a, const Hull& b, const Placement& at, Contacts& out) {
+  convex(a, b, at, out);
+}
+void contact_points(const Hull& a, const Box& b, const Placement& at, Contacts& out) {
+  convex(a, b, at, out);
+}
+void contact_points(const Hull& a, const Hull& b, const Placement& at, Contacts& out) {
+  convex(a, b, at, out);
+}
+
+}  // namespace ziggurat::physics::contact

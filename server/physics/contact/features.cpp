@@ -1,0 +1,269 @@
+#include "physics/contact/features.h"
+
+namespace ziggurat::physics::contact {
+namespace {
+
+btVector3 perpendicular(const btVector3& axis, const btVector3& towards,
+                        const btVector3& fallback) {
+  btVector3 result = towards - axis * axis.dot(towards);
+  if (result.length2() < btScalar(1e-12)) return fallback;
+  return result.normalized();
+}
+
+btVector3 to_body(const Body& body, const btVector3& direction) {
+  return {body.axis[0].dot(direction), body.axis[1].dot(direction), body.axis[2].dot(direction)};
+}
+
+btVector3 to_world(const Body& body, const btVector3& in_body) {
+  return body.axis[0] * in_body.x() + body.axis[1] * in_body.y() + body.axis[2] * in_body.z();
+}
+
+// --- box ----------------------------------------------------------------------------------------
+
+btScalar extent_of(const Box& box, const Body& body, const btVector3& direction) {
+  return box.half[0] * btFabs(body.axis[0].dot(direction)) +
+         box.half[1] * btFabs(body.axis[1].dot(direction)) +
+         box.half[2] * btFabs(body.axis[2].dot(direction));
+}
+
+btScalar smallest_of(const Box& box) { return box.half[box.half.minAxis()]; }
+int faces_of(const Box&) { return 3; }
+
+btVector3 normal_of(const Box&, const Body& body, int face, const btVector3& point) {
+  return body.axis[face].dot(point - body.centre) < 0 ? -body.axis[face] : body.axis[face];
+}
+
+Polygon feature_of(const Box& box, const Body& body, const btVector3& towards) {
+  Polygon polygon;
+  int face = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (btFabs(body.axis[i].dot(towards)) > btFabs(body.axis[face].dot(towards))) face = i;
+  }
+  const btVector3& half = box.half;
+  const btScalar sign = body.axis[face].dot(towards) < 0 ? -1 : 1;
+  const btVector3 centre = body.centre + body.axis[face] * (sign * half[face]);
+  const int u = (face + 1) % 3, v = (face + 2) % 3;
+  const btVector3 du = body.axis[u] * half[u], dv = body.axis[v] * half[v];
+  polygon.add(centre + du + dv);
+  polygon.add(centre - du + dv);
+  polygon.add(centre - du - dv);
+  polygon.add(centre + du - dv);
+  return polygon;
+}
+
+void clip_to(const Box& box, const Body& body, int face, Polygon& polygon) {
+  for (const int side : {(face + 1) % 3, (face + 2) % 3}) {
+    for (const int sign : {1, -1}) {
+      const btVector3 normal = body.axis[side] * sign;
+      clip(polygon, normal, normal.dot(body.centre) + box.half[side]);
+    }
+  }
+}
+
+btScalar side_of(const Box&) { return 0; }
+
+bool edge_of(const Box& box, const Body& b, const btVector3& b_to_a, const btVector3& direction,
+             Line& line) {
+  for (int i = 0; i < 3; ++i) {
+    if (btFabs(b.axis[i].dot(direction)) < btScalar(0.99)) continue;
+    line.middle = b.centre;
+    for (const int side : {(i + 1) % 3, (i + 2) % 3}) {
+      line.middle +=
+          b.axis[side] * (b.axis[side].dot(b_to_a) < 0 ? -box.half[side] : box.half[side]);
+    }
+    line.half_length = box.half[i];
+    return true;
+  }
+  return false;
+}
+
+// --- round sides --------------------------------------------------------------------------------
+
+bool side_line(const Body& b, btScalar radius, btScalar half_length, const btVector3& b_to_a,
+               const btVector3& direction, Line& line) {
+  if (btFabs(b.axis[2].dot(b_to_a)) > btScalar(0.1) ||
+      btFabs(b.axis[2].dot(direction)) < btScalar(0.99)) {
+    return false;
+  }
+  line.middle = b.centre + perpendicular(b.axis[2], b_to_a, b.axis[0]) * radius;
+  line.half_length = half_length;
+  return true;
+}
+
+// --- cylinder -----------------------------------------------------------------------------------
+
+btScalar extent_of(const Cylinder& cylinder, const Body& body, const btVector3& direction) {
+  const btScalar along = body.axis[2].dot(direction);
+  return cylinder.half_height * btFabs(along) +
+         cylinder.radius * btSqrt(btMax(btScalar(0), 1 - along * along));
+}
+
+btScalar smallest_of(const Cylinder& cylinder) {
+  return btMin(cylinder.radius, cylinder.half_height);
+}
+int faces_of(const Cylinder&) { return 1; }
+
+btVector3 normal_of(const Cylinder&, const Body& body, int, const btVector3& point) {
+  return body.axis[2].dot(point - body.centre) < 0 ? -body.axis[2] : body.axis[2];
+}
+
+Polygon feature_of(const Cylinder& cylinder, const Body& body, const btVector3& towards) {
+  Polygon polygon;
+  const btVector3& axis = body.axis[2];
+  const btScalar along = axis.dot(towards);
+  const btVector3 deepest = perpendicular(axis, towards, body.axis[0]);
+  const btVector3 rim = deepest * cylinder.radius;
+  if (btFabs(along) < btScalar(0.5)) {
+    polygon.add(body.centre + axis * cylinder.half_height + rim);
+    polygon.add(body.centre - axis * cylinder.half_height + rim);
+    return polygon;
+  }
+  const btVector3 centre =
+      body.centre + axis * (along < 0 ? -cylinder.half_height : cylinder.half_height);
+  const btVector3 across = axis.cross(rim);
+  const btScalar diagonal = SIMDSQRT12;
+  polygon.add(centre + rim);
+  polygon.add(centre + (rim + across) * diagonal);
+  polygon.add(centre + across);
+  polygon.add(centre + (across - rim) * diagonal);
+  polygon.add(centre - rim);
+  polygon.add(centre - (rim + across) * diagonal);
+  polygon.add(centre - across);
+  polygon.add(centre + (rim - across) * diagonal);
+  return polygon;
+}
+
+void clip_to(const Cylinder& cylinder, const Body& body, int, Polygon& polygon) {
+  static const btScalar cosines[16] = {1,  .92387953251128674,  SIMDSQRT12,  .38268343236508978,
+                                       0,  -.38268343236508978, -SIMDSQRT12, -.92387953251128674,
+                                       -1, -.92387953251128674, -SIMDSQRT12, -.38268343236508978,
+                                       0,  .38268343236508978,  SIMDSQRT12,  .92387953251128674};
+  for (int i = 0; i < 16; ++i) {
+    const btVector3 normal = body.axis[0] * cosines[i] + body.axis[1] * cosines[(i + 12) % 16];
+    clip(polygon, normal, normal.dot(body.centre) + cylinder.radius);
+  }
+}
+
+btScalar side_of(const Cylinder& cylinder) { return cylinder.half_height; }
+
+bool edge_of(const Cylinder& cylinder, const Body& b, const btVector3& b_to_a,
+             const btVector3& direction, Line& line) {
+  return side_line(b, cylinder.radius, cylinder.half_height, b_to_a, direction, line);
+}
+
+// --- capsule ------------------------------------------------------------------------------------
+
+btScalar extent_of(const Capsule& capsule, const Body& body, const btVector3& direction) {
+  return capsule.half_length * btFabs(body.axis[2].dot(direction)) + capsule.radius;
+}
+
+btScalar smallest_of(const Capsule& capsule) { return capsule.radius; }
+int faces_of(const Capsule&) { return 0; }
+btVector3 normal_of(const Capsule&, const Body&, int, const btVector3&) { return {0, 0, 1}; }
+
+/// The deepest points of both balls.
+Polygon feature_of(const Capsule& capsule, const Body& body, const btVector3& towards) {
+  Polygon polygon;
+  const btVector3 deepest = body.centre + towards * capsule.radius;
+  polygon.add(deepest + body.axis[2] * capsule.half_length);
+  polygon.add(deepest - body.axis[2] * capsule.half_length);
+  return polygon;
+}
+
+void clip_to(const Capsule&, const Body&, int, Polygon&) {}
+btScalar side_of(const Capsule& capsule) { return capsule.half_length; }
+
+bool edge_of(const Capsule& capsule, const Body& b, const btVector3& b_to_a,
+             const btVector3& direction, Line& line) {
+  return side_line(b, capsule.radius, capsule.half_length, b_to_a, direction, line);
+}
+
+// --- hull ---------------------------------------------------------------------------------------
+
+btScalar extent_of(const Hull& hull, const Body& body, const btVector3& direction) {
+  const btVector3 in_body = to_body(body, direction);
+  btScalar most = -BT_LARGE_FLOAT;
+  for (const btVector3& corner : hull.polyhedron->corners) most = btMax(most, corner.dot(in_body));
+  return most;
+}
+
+btScalar smallest_of(const Hull& hull) { return hull.polyhedron->smallest; }
+int faces_of(const Hull& hull) { return static_cast<int>(hull.polyhedron->faces.size()); }
+
+const Polyhedron::Face& face_of(const Hull& hull, int face) {
+  return hull.polyhedron->faces[static_cast<std::size_t>(face)];
+}
+
+btVector3 corner_of(const Hull& hull, const Body& body, int corner) {
+  return body.centre + to_world(body, hull.polyhedron->corners[static_cast<std::size_t>(corner)]);
+}
+
+btVector3 normal_of(const Hull& hull, const Body& body, int face, const btVector3&) {
+  return to_world(body, face_of(hull, face).normal);
+}
+
+Polygon feature_of(const Hull& hull, const Body& body, const btVector3& towards) {
+  const btVector3 in_body = to_body(body, towards);
+  const Polyhedron::Face* best = &hull.polyhedron->faces[0];
+  for (const Polyhedron::Face& face : hull.polyhedron->faces) {
+    if (face.normal.dot(in_body) > best->normal.dot(in_body)) best = &face;
+  }
+  Polygon polygon;
+  for (const int corner : best->corners) polygon.add(corner_of(hull, body, corner));
+  return polygon;
+}
+
+void clip_to(const Hull& hull, const Body& body, int face, Polygon& polygon) {
+  const Polyhedron::Face& outline = face_of(hull, face);
+  const btVector3 outward = to_world(body, outline.normal);
+  btVector3 from = corner_of(hull, body, outline.corners.back());
+  for (const int corner : outline.corners) {
+    const btVector3 to = corner_of(hull, body, corner);
+    const btVector3 normal = (to - from).cross(outward);
+    clip(polygon, normal, normal.dot(from));
+    from = to;
+  }
+}
+
+btScalar side_of(const Hull&) { return 0; }
+bool edge_of(const Hull&, const Body&, const btVector3&, const btVector3&, Line&) { return false; }
+
+}  // namespace
+
+btScalar extent(const Body& body, const btVector3& direction) {
+  return std::visit([&](const auto* shape) { return extent_of(*shape, body, direction); },
+                    body.shape);
+}
+
+btScalar smallest(const Body& body) {
+  return std::visit([](const auto* shape) { return smallest_of(*shape); }, body.shape);
+}
+
+int face_count(const Body& body) {
+  return std::visit([](const auto* shape) { return faces_of(*shape); }, body.shape);
+}
+
+btVector3 face_towards(const Body& body, int face, const btVector3& point) {
+  return std::visit([&](const auto* shape) { return normal_of(*shape, body, face, point); },
+                    body.shape);
+}
+
+Polygon feature(const Body& body, const btVector3& towards) {
+  return std::visit([&](const auto* shape) { return feature_of(*shape, body, towards); },
+                    body.shape);
+}
+
+void clip_to_face(Polygon& polygon, const Body& body, int face) {
+  std::visit([&](const auto* shape) { clip_to(*shape, body, face, polygon); }, body.shape);
+}
+
+btScalar half_side(const Body& body) {
+  return std::visit([](const auto* shape) { return side_of(*shape); }, body.shape);
+}
+
+bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& direction, Line& line) {
+  return std::visit([&](const auto* shape) { return edge_of(*shape, b, b_to_a, direction, line); },
+                    b.shape);
+}
+
+}  // namespace ziggurat::physics::contact

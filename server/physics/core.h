@@ -1,0 +1,58 @@
+#pragma once
+// The mechanical core: joints, motors, contacts, and the equations of motion, on Bullet. World adds
+// bodies to it, plug-ins push them, and it moves them on by a substep. No Bullet class beyond a
+// vector leaves bullet/, so that this file is all that another core must offer.
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "physics/bodies.h"
+#include "physics/overlap.h"
+#include "physics/plugin.h"
+#include "scene/scene.h"
+
+namespace ziggurat::physics {
+
+class Core {
+ public:
+  explicit Core(const scene::Physics& physics);
+  ~Core();  ///< Bodies in it must be removed before.
+
+  /// Adds the half-space z <= 0.
+  void add_floor(const scene::Surface& surface);
+
+  /// Builds an entity where it stands and puts it in.
+  /// @param number  its place in the order of adding
+  Body add(const scene::Entity& entity, std::size_t number);
+  /// Takes a body out; what rested on it falls. Its joints stay, without a coordinate.
+  void remove(Body& body);
+  /// Puts a body to rest where `placed` says, joints as assembled; it remembers no contact.
+  void move(Body& body);
+
+  /// The first entity, in order of adding, that one of the colliders overlaps. The floor doesn't
+  /// count; touching is not overlapping.
+  std::optional<std::size_t> overlapped_by(std::span<const PlacedCollider> colliders) const;
+
+  JointIndex joint(std::size_t entity, std::size_t joint) const;
+  void add_motor(JointIndex joint, scene::JointMode mode, double max_impulse);
+  void set_target(JointIndex joint, double target);
+  double position(JointIndex joint) const;  ///< [m] or [rad]
+  double velocity(JointIndex joint) const;  ///< [m/s] or [rad/s]
+
+  /// Moves all bodies on, with the forces that were applied since the last substep.
+  /// @param length  [s]
+  /// @param splits  a motor may give its impulse in so many substeps
+  void substep(std::span<Body> bodies, double length, int splits);
+
+  /// What touched in the last substep, in ascending order.
+  void contacts(std::vector<Contact>& out) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace ziggurat::physics

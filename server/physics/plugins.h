@@ -1,0 +1,35 @@
+#pragma once
+// The plug-ins of a world, and what they are told of contacts.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "physics/core.h"
+#include "physics/plugin.h"
+
+namespace ziggurat::physics {
+
+class Plugins {
+ public:
+  /// Those that the scene chooses, and those that every world has.
+  Plugins(const scene::Physics& physics, Core& core);
+
+  /// One more, which acts behind the others.
+  void add(std::unique_ptr<Plugin> plugin);
+
+  void add(Body& body);
+  void remove(const Body& body);
+  void move(Body& body);
+  void before_substep(std::span<Body> bodies, double substep);
+  /// Tells of contacts, then of the end.
+  void after_substep(std::span<Body> bodies, double substep, const Core& core);
+
+ private:
+  void tell_contacts(std::span<Body> bodies);
+
+  std::vector<std::unique_ptr<Plugin>> plugins_;  // in the order in which they act
+  std::vector<Contact> before_, now_;             // ascending
+};
+
+}  // namespace ziggurat::physics

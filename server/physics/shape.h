@@ -1,0 +1,34 @@
+#pragma once
+// What physics needs of a shape. Each function is written for each shape in shape.cpp; a shape
+// without one does not compile.
+//
+// S, the frame of a shape, is at its centre of mass, along its principal axes.
+
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
+#include <memory>
+
+#include "physics/contact/shapes.h"
+#include "scene/geometry.h"
+
+namespace ziggurat::physics {
+
+/// X_LS of a shape in its link. For all but hulls the axes are the link's.
+math::Pose shape_frame(const scene::Geometry& geometry);
+
+/// Principal moments of inertia of the solid [kg m^2].
+math::Vector3 inertia(const scene::Geometry& geometry, double mass);
+
+/// Of the box about the shape and S's origin, along S's axes [m].
+math::Vector3 half_extents(const scene::Geometry& geometry);
+
+/// Whether a ball lies inside.
+/// @param center  in S [m];  @param slack  by which it may reach out [m]
+bool holds_ball(const scene::Geometry& geometry, const math::Vector3& center, double radius,
+                double slack);
+
+/// In S.
+std::unique_ptr<btCollisionShape> bullet_shape(const scene::Geometry& geometry);
+contact::Shape contact_shape(const scene::Geometry& geometry);
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,151 @@
+// The shape of a link or of a single body: attributes, and for a hull its corners.
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "scene/mesh_file.h"
+#include "scene/reading.h"
+
+namespace ziggurat::scene {
+namespace {
+
+Box read_box(Reading&, Element& element) {
+  return {element.required("size", size, math::Vector3::Ones())};
+}
+
+Cylinder read_cylinder(Reading&, Element& element) {
+  const double radius = element.required("radius", length, 1.0);
+  return {radius, element.required("height", length, 1.0)};
+}
+
+Sphere read_sphere(Reading&, Element& element) { return {element.required("radius", length, 1.0)}; }
+
+Capsule read_capsule(Reading&, Element& element) {
+  const double radius = element.required("radius", length, 1.0);
+  const double height = element.required("height", length, 2 * radius);
+  if (height < 2 * radius) {
+    element.fault_at("height", fmt::format("is less than both half-balls; height is from end to "
+                                           "end, so write at least {}",
+                                           2 * radius));
+  }
+  return {radius, height};
+}
+
+std::vector<math::Vector3> listed_vertices(Element& hull) {
+  constexpr std::string_view known[] = {"vertex"};
+  std::vector<math::Vector3> points;
+  for (Element& vertex : hull.children()) {
+    if (vertex.name() != "vertex") {
+      vertex.unknown_in("hull", known);
+      continue;
+    }
+    points.push_back(vertex.required("position", position));
+    vertex.done();
+  }
+  return points;
+}
+
+/// Whether a path leads into the folder that it is relative to.
+bool stays_inside(const std::filesystem::path& path) {
+  if (path.is_absolute() || path.has_root_path()) return false;
+  return std::ranges::find(path, "..") == path.end();
+}
+
+/// The vertices in a file, times `scale`.
+std::vector<math::Vector3> read_vertices(Reading& reading, Element& hull) {
+  const std::filesystem::path written = hull.required("file", path);
+  const double scale = hull.optional("scale", positive, 1.0);
+  if (written.empty()) return {};
+  if (!stays_inside(written)) {
+    hull.fault_at("file",
+                  "leads out of its folder; write a path without .. that is relative to "
+                  "the file it is written in");
+    return {};
+  }
+  const std::filesystem::path path =
+      std::filesystem::path(file_of(reading.scene, hull.where())).parent_path() / written;
+  auto opened = reading.options.open(path, std::min(most_mesh_bytes, reading.room.bytes));
+  if (const std::string* why = std::get_if<std::string>(&opened)) {
+    hull.fault_at("file", fmt::format("names {}, which {}", in_quotes(path.string()), *why));
+    return {};
+  }
+  const std::string& bytes = std::get<File>(opened).text;
+  reading.room.bytes -= std::min(bytes.size(), reading.room.bytes);
+  auto points = read_mesh(written, bytes);
+  if (const std::string* why = std::get_if<std::string>(&points)) {
+    hull.fault_at("file", *why);
+    return {};
+  }
+  for (math::Vector3& point : std::get<0>(points)) point *= scale;
+  return std::get<0>(std::move(points));
+}
+
+Hull unit_hull() {
+  constexpr double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<math::Vector3> points;
+  for (const auto& [x, y, z] : corners) points.emplace_back(x, y, z);
+  return std::get<Hull>(make_hull(points));
+}
+
+Hull read_hull(Reading& reading, Element& element) {
+  auto child = element.required_child("hull");
+  if (!child) return unit_hull();
+  const bool from_file = child->has("file");
+  const auto points = from_file ? read_vertices(reading, *child) : listed_vertices(*child);
+  child->done(from_file ? "its vertices are those of the file" : "");
+  if (from_file && points.empty()) return unit_hull();  // told already
+  auto hull = make_hull(points);
+  if (const std::string* why = std::get_if<std::string>(&hull)) {
+    child->fault(*why);
+    return unit_hull();
+  }
+  return std::get<Hull>(std::move(hull));
+}
+
+/// A shape as attributes name it.
+struct Named {
+  std::string_view name;
+  Geometry (*read)(Reading&, Element&);
+};
+
+template <auto read>
+Geometry as_geometry(Reading& reading, Element& element) {
+  return read(reading, element);
+}
+
+constexpr std::array<Named, std::variant_size_v<Geometry>> shapes{{
+    {"box", as_geometry<read_box>},
+    {"cylinder", as_geometry<read_cylinder>},
+    {"sphere", as_geometry<read_sphere>},
+    {"capsule", as_geometry<read_capsule>},
+    {"hull", as_geometry<read_hull>},
+}};
+
+}  // namespace
+
+Geometry read_shape(Reading& reading, Element& element, std::string_view name) {
+  const auto shape = std::ranges::find(shapes, name, &Named::name);
+  return shape->read(reading, element);
+}
+
+Geometry read_geometry(Reading& reading, Element& link) {
+  std::vector<std::string_view> names;
+  for (const Named& shape : shapes) names.push_back(shape.name);
+  if (!link.has("geometry")) link.missing("geometry");
+  const auto name = link.optional("geometry", Words(names));
+  if (!name) {
+    for (const char* extent : {"size", "radius", "height"}) link.optional(extent, text);
+    link.child("hull");
+    return Box{math::Vector3::Ones()};
+  }
+  const Geometry geometry = read_shape(reading, link, *name);
+  constexpr std::string_view why = "the geometry has no such extent";
+  if (!link.was_asked("size")) link.without_effect("size", vector3, why);
+  for (const char* extent : {"radius", "height"}) {
+    if (!link.was_asked(extent)) link.without_effect(extent, number, why);
+  }
+  return geometry;
+}
+
+}  // namespace ziggurat::scene
