@@ -19,7 +19,6 @@ set(magnetism server/magnetism/adaptive.cpp server/magnetism/charges.cpp
 set(physics server/physics/welding.cpp)
 stand_alone(ziggurat_scene ${scene})
 stand_alone(ziggurat_magnetism ${magnetism})
-stand_alone(ziggurat_wire server/wire/command_driving.cpp)
 stand_alone(ziggurat_network server/network/barrier_supervision.cpp server/network/reception.cpp)
 stand_alone(ziggurat_physics ${physics})
 stand_alone(ziggurat_run server/run/inject_option.cpp)

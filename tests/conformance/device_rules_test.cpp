@@ -155,7 +155,9 @@ TEST_F(Radios, D5_ASessionThatWouldHearTooMuchIsLost) {
 struct DrivingAndCameras : ::testing::Test {
   DrivingAndCameras() : small(2), peers(equipped()) {
     peers.commands.wheels.resize(2);
-    peers.commands.turrets.resize(2);
+    peers.commands.turret_modes.resize(2);
+    peers.commands.turret_rotations.resize(2);
+    peers.commands.turret_speeds.resize(2);
     peers.join("p", "robot*");
     peers.publish(sight(5));
     peers.inboxes.clear();
@@ -195,7 +197,7 @@ struct DrivingAndCameras : ::testing::Test {
     EXPECT_EQ(told.error().severity(), v1::Error::DISCARD);
     EXPECT_EQ(told.error().tick(), 5U);
     EXPECT_EQ(peers.commands.wheels[0].left, 0);
-    EXPECT_EQ(peers.commands.turrets[0].mode, world::TurretMode::passive);
+    EXPECT_EQ(peers.commands.turret_modes[0], world::TurretMode::passive);
     return told.error();
   }
   static v1::ClientMessage drive(std::vector<double> velocities) {
@@ -244,7 +246,7 @@ TEST_F(DrivingAndCameras, D7_TurretsTakeTheModesThereAre) {
   message.mutable_command()->mutable_turret_speeds()->RemoveLast();
   peers.say("p", message);
   EXPECT_TRUE(peers.barrier.complete());
-  EXPECT_EQ(peers.commands.turrets[0].mode, world::TurretMode::speed);
+  EXPECT_EQ(peers.commands.turret_modes[0], world::TurretMode::speed);
 }
 
 TEST_F(DrivingAndCameras, D8_DetectorsCountPerCamera) {
@@ -275,14 +277,14 @@ TEST_F(DrivingAndCameras, D5_PicturesAndPayloadsCount) {
 }
 
 TEST_F(DrivingAndCameras, L1_WhoLeavesStands) {
-  peers.commands.turrets[0].speed = 3;
+  peers.commands.turret_speeds[0] = 3;
   peers.say("p", drive({0.5, 0.5}));
   peers.publish(sight(6));
   peers.say("p", Peers::leave({0}));
   peers.say("p", Peers::command(6));
   peers.barrier.zero_missing(peers.commands);
   EXPECT_EQ(peers.commands.wheels[0].left, 0);
-  EXPECT_EQ(peers.commands.turrets[0].speed, 0);
+  EXPECT_EQ(peers.commands.turret_speeds[0], 0);
 }
 
 }  // namespace

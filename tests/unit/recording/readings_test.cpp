@@ -195,7 +195,9 @@ TEST(Readings, NamesWheelsAndTurrets) {
   world.observations.wheels = {{}, {1, 2, 3, 4}};
   world.observations.turrets = {9, -0.5};
   world.commands.wheels = {{0.25, -0.5}, {}};
-  world.commands.turrets = {{world::TurretMode::speed, 1, 2}, {}};
+  world.commands.turret_modes = {world::TurretMode::speed, world::TurretMode::passive};
+  world.commands.turret_rotations = {1, 0};
+  world.commands.turret_speeds = {2, 0};
   Readings readings(path, robots);
   readings.write(world.state, world.observations, world.commands);
   readings.close();

@@ -243,7 +243,7 @@ TEST(Controllers, TheLastOfTwoDevicesIsUsed) {
                      R"(</sensors><params/></lua_controller></controllers>)";
   const ReadResult result = text.read();
   ASSERT_TRUE(result.ok()) << all_problems(result);
-  const auto& joints = result.scene.controllers[0].devices.joint_sensors;
+  const auto& joints = result.scene.controllers[0].devices.joints.sensors;
   ASSERT_EQ(joints.size(), 1u);
   EXPECT_EQ(joints[0].joint, "b");
   EXPECT_EQ(count_containing(notices(result), "this <joints> has no effect"), 1u);

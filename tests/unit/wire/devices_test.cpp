@@ -101,18 +101,18 @@ TEST_F(DeviceWire, WhoIsGoneKeepsItsColorsAndIsOtherwiseZero) {
 
 TEST_F(DeviceWire, WrongLengths) {
   for (int i = 0; i < 4; ++i) command->add_led_colors(1);
-  expect_fault(ErrorCode::bad_value, "led_colors", "", "4 LED colors were given; the robots");
+  expect_fault(ErrorCode::bad_value, "led_colors", "", "is 4; it must be 3 (3 LEDs");
   command->add_directional_led_colors(1);
-  expect_fault(ErrorCode::bad_value, "directional_led_colors", "", "have 3 directional LEDs");
+  expect_fault(ErrorCode::bad_value, "directional_led_colors", "", "(3 directional LEDs");
   command->add_tag_payloads("x");
-  expect_fault(ErrorCode::bad_value, "tag_payloads", "", "1 payloads");
+  expect_fault(ErrorCode::bad_value, "tag_payloads", "", "is 1; it must be 3");
   command->add_magnet_currents(1);
-  expect_fault(ErrorCode::bad_value, "magnet_currents", "", "have 3 magnets");
+  expect_fault(ErrorCode::bad_value, "magnet_currents", "", "(3 magnets");
   command->set_range_and_bearing_data("123456789");
-  expect_fault(ErrorCode::bad_value, "range_and_bearing_data", "", "9 bytes were given");
+  expect_fault(ErrorCode::bad_value, "range_and_bearing_data", "", "is 9; it must be 8");
   command->add_robots(1);
   command->add_led_colors(1);
-  expect_fault(ErrorCode::bad_value, "led_colors", "", "have 0 LEDs");
+  expect_fault(ErrorCode::bad_value, "led_colors", "", "(0 LEDs");
 }
 
 TEST_F(DeviceWire, ValuesThatCannotBe) {
@@ -130,7 +130,7 @@ TEST_F(DeviceWire, ValuesThatCannotBe) {
   for (const std::size_t size : {0U, 1U, 0U}) {
     command->add_tag_payloads(std::string(world::most_tag_payload_bytes + size, 'x'));
   }
-  expect_fault(ErrorCode::too_large, "tag_payloads", "c", "tag 'tag2' of robot 'c' has 65537");
+  expect_fault(ErrorCode::too_large, "tag_payloads", "c", "tag 'tag2' of robot 'c' is 65537 bytes");
 }
 
 TEST_F(DeviceWire, RadiosThatAreNotThere) {

@@ -83,7 +83,9 @@ class EquippedRun {
     commands.magnet_currents.resize(4);
     commands.range_and_bearing_data.resize(12);
     commands.wheels.resize(3);
-    commands.turrets.resize(2);
+    commands.turret_modes.resize(2);
+    commands.turret_rotations.resize(2);
+    commands.turret_speeds.resize(2);
     return commands;
   }
 

@@ -1,9 +1,39 @@
-#include "wire/description.h"
+#include "wire/devices.h"
 
+#include <tuple>
+
+#include "wire/channels.h"
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat::wire {
 namespace {
+
+// --- which field carries which channel ----------------------------------------------------------
+
+constexpr std::tuple observation_fields{
+    ObservationField{&world::Observations::joint_readings,
+                     &v1::Observation::mutable_joint_readings},
+    ObservationField{&world::Observations::proximity, &v1::Observation::mutable_proximity},
+    ObservationField{&world::Observations::positioning, &v1::Observation::mutable_positioning},
+    ObservationField{&world::Observations::batteries, &v1::Observation::mutable_batteries},
+    ObservationField{&world::Observations::wheels, &v1::Observation::mutable_wheels},
+    ObservationField{&world::Observations::turrets, &v1::Observation::mutable_turret_rotations},
+};
+
+constexpr std::tuple command_fields{
+    CommandField{&world::Commands::joint_targets, &v1::Command::joint_targets},
+    CommandField{&world::Commands::led_colors, &v1::Command::led_colors},
+    CommandField{&world::Commands::directional_led_colors, &v1::Command::directional_led_colors},
+    CommandField{&world::Commands::tag_payloads, &v1::Command::tag_payloads},
+    CommandField{&world::Commands::magnet_currents, &v1::Command::magnet_currents},
+    CommandField{&world::Commands::range_and_bearing_data, &v1::Command::range_and_bearing_data},
+    CommandField{&world::Commands::wheels, &v1::Command::wheel_velocities},
+    CommandField{&world::Commands::turret_modes, &v1::Command::turret_modes},
+    CommandField{&world::Commands::turret_rotations, &v1::Command::turret_rotations},
+    CommandField{&world::Commands::turret_speeds, &v1::Command::turret_speeds},
+};
+
+// --- what a client is told in Welcome -----------------------------------------------------------
 
 v1::JointDescription::Mode mode_of(bool disabled, bool velocity) {
   if (disabled) return v1::JointDescription::DISABLED;
@@ -145,6 +175,40 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
   }
   description.set_positioning(layout.positioning.count > 0);
   description.set_battery(layout.batteries.count > 0);
+}
+
+// --- values -------------------------------------------------------------------------------------
+
+void add_channels(const Roster& roster, const world::Observations& from, v1::Observation& to) {
+  world::for_each_channel(world::sensed, [&](auto i) {
+    constexpr const auto& field = field_of<observation_fields, world::sensed, i>();
+    add(roster.sensed[i], from.*field.values, *(to.*field.packed)());
+  });
+}
+
+std::optional<Fault> check_channels(const v1::Command& command, const Roster& roster,
+                                    const world::Layout& layout) {
+  std::optional<Fault> found;
+  world::for_each_channel(world::commanded, [&](auto i) {
+    constexpr const auto& field = field_of<command_fields, world::commanded, i>();
+    if (found) return;
+    found = check_count(command, roster.commanded[i], std::get<i>(world::commanded),
+                        (command.*field.packed)());
+  });
+  world::for_each_channel(world::commanded, [&](auto i) {
+    constexpr const auto& field = field_of<command_fields, world::commanded, i>();
+    if (found) return;
+    found = check_values(command, roster, layout, roster.commanded[i],
+                         std::get<i>(world::commanded), (command.*field.packed)());
+  });
+  return found;
+}
+
+void apply_channels(const v1::Command& command, const Roster& roster, world::Commands& commands) {
+  world::for_each_channel(world::commanded, [&](auto i) {
+    constexpr const auto& field = field_of<command_fields, world::commanded, i>();
+    apply(command, roster, roster.commanded[i], (command.*field.packed)(), commands.*field.values);
+  });
 }
 
 }  // namespace ziggurat::wire
