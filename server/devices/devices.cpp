@@ -43,6 +43,10 @@ void Devices::apply(Tick& tick) {
   for (const auto& kind : kinds_) kind->apply(tick);
 }
 
+void Devices::after_substep(Tick& tick) {
+  for (const auto& kind : kinds_) kind->after_substep(tick);
+}
+
 void Devices::sense(Tick& tick) {
   for (const auto& kind : kinds_) kind->sense(tick);
 }

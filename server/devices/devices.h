@@ -19,6 +19,7 @@ class Devices {
   void add(const Setting& setting);
   void start(Tick& tick);
   void apply(Tick& tick);
+  void after_substep(Tick& tick);
   void sense(Tick& tick);
   bool casts_rays() const;
   bool needs_index() const;

@@ -29,6 +29,10 @@ class Kind {
   /// Before physics: what was commanded takes effect, at the poses of the last tick.
   virtual void apply(Tick& /*tick*/) {}
 
+  /// After each substep of the physics. Tick::state, rays and index are still those of the tick's
+  /// start; Tick::physics reads the state of an entity.
+  virtual void after_substep(Tick& /*tick*/) {}
+
   /// After physics, with rays and index at the new poses.
   virtual void sense(Tick& /*tick*/) {}
 

@@ -22,6 +22,7 @@ struct Setting {
   const world::Layout& layout;              ///< of all; outlives the devices
   std::uint64_t seed;                       ///< of random streams
   double tick_length;                       ///< simulated time per tick [s]
+  double substep;                           ///< physical time per substep [s]
   physics::World& physics;
   std::size_t first_entity = 0, first_robot = 0;  ///< into the layout: the first new ones
   /// All entities as they were placed, in scene order; costs time.

@@ -294,31 +294,35 @@ void World::step() {
 }
 
 void World::read(world::State& state) const {
+  for (std::size_t entity = 0; entity < parts_->bodies.size(); ++entity) {
+    if (!parts_->bodies[entity].links.empty()) read(entity, state);  // not removed
+  }
+}
+
+void World::read(std::size_t entity, world::State& state) const {
   Parts& p = *parts_;
   state.origins.resize(p.bodies.size());
   state.links.resize(p.link_count);
   auto& [motions, rotations, positions] = p.reading;
-  for (const Body& body : p.bodies) {
-    if (body.links.empty()) continue;  // removed
-    const bool stepped = body.entity < p.stepped;
-    if (body.multi && stepped) body.multi->forwardKinematics(rotations, positions);
-    body.motions(motions);
-    for (std::size_t i = 0; i < body.links.size(); ++i) {
-      const LinkBody& link = body.links[i];
-      world::LinkState& out = state.links[body.first_link + i];
-      out.pose = link.placed;
-      if (stepped && link.moves) {
-        out.pose = from_bullet(body.transform(link));
-        out.pose.position -= out.pose.orientation * link.center_of_mass;
-      }
-      const Motion motion = body.motion(link, motions);
-      out.angular_velocity = from_bullet(motion.angular_velocity);
-      const math::Vector3 arm = out.pose.orientation * -link.center_of_mass;
-      out.velocity = from_bullet(motion.velocity) + out.angular_velocity.cross(arm);
+  const Body& body = p.bodies[entity];
+  const bool stepped = entity < p.stepped;
+  if (body.multi && stepped) body.multi->forwardKinematics(rotations, positions);
+  body.motions(motions);
+  for (std::size_t i = 0; i < body.links.size(); ++i) {
+    const LinkBody& link = body.links[i];
+    world::LinkState& out = state.links[body.first_link + i];
+    out.pose = link.placed;
+    if (stepped && link.moves) {
+      out.pose = from_bullet(body.transform(link));
+      out.pose.position -= out.pose.orientation * link.center_of_mass;
     }
-    const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
-    state.origins[body.entity] = stepped ? reference * body.origin_from_reference : body.placed;
+    const Motion motion = body.motion(link, motions);
+    out.angular_velocity = from_bullet(motion.angular_velocity);
+    const math::Vector3 arm = out.pose.orientation * -link.center_of_mass;
+    out.velocity = from_bullet(motion.velocity) + out.angular_velocity.cross(arm);
   }
+  const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
+  state.origins[entity] = stepped ? reference * body.origin_from_reference : body.placed;
 }
 
 World::Stiffness World::stiffest_bond() const {

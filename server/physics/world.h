@@ -73,6 +73,8 @@ class World {
 
   /// Writes origins and links; tick and time are the caller's.
   void read(world::State& state) const;
+  /// The same of one entity that is present.
+  void read(std::size_t entity, world::State& state) const;
 
   /// How stiff the scene's magnetic bonds are for its substeps: the largest product of substep and
   /// rate, and the entity it belongs to; 0 where there is no magnetism.

@@ -64,7 +64,7 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
     rays.add(entity);
   }
   index.emplace(layout);
-  devices.add({scene, entities, layout, seed, 1.0 / ticks_per_second, physics, 0, 0,
+  devices.add({scene, entities, layout, seed, 1.0 / ticks_per_second, substep, physics, 0, 0,
                [&] { return entities; }});
   physics.read(state);
   look_around();
@@ -85,8 +85,8 @@ void Simulation::Parts::spawn(const scene::Scene& scene, const scene::Entity& en
   physics.add(entity);
   rays.add(entity);
   index.emplace(layout);
-  devices.add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, physics,
-               first_entity, first_robot, [&] { return entities; }});
+  devices.add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, substep,
+               physics, first_entity, first_robot, [&] { return entities; }});
   physics.read(state);
   look_around();
   devices::Tick first = tick();
@@ -145,7 +145,10 @@ void Simulation::step() {
   p.state.rays.clear();
   p.state.frusta.clear();
   p.devices.apply(tick);
-  for (unsigned i = 0; i < p.substeps; ++i) p.physics.step();
+  for (unsigned i = 0; i < p.substeps; ++i) {
+    p.physics.step();
+    p.devices.after_substep(tick);
+  }
   p.state.tick += 1;
   p.state.time_ns =
       std::llround(static_cast<long double>(p.state.tick) * 1e9L / p.ticks_per_second);

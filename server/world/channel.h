@@ -62,7 +62,7 @@ struct Sensed {
 template <class T>
 struct Shown {
   std::vector<T> State::*values;
-  const char* recorded = nullptr;           ///< as above; null: not recorded
+  const char* recorded = nullptr;          ///< as above; null: not recorded
   Range EntityLayout::*devices = nullptr;  ///< if it is recorded
   Hashed hashed = Hashed::second;
 };
@@ -102,7 +102,8 @@ template <class Table, class Visit>
 constexpr void for_each_row(const Table&, Visit visit) {
   [&]<std::size_t... i>(std::index_sequence<i...>) {
     (visit(std::integral_constant<std::size_t, i>()), ...);
-  }(std::make_index_sequence<std::tuple_size_v<Table>>());
+  }
+  (std::make_index_sequence<std::tuple_size_v<Table>>());
 }
 
 /// The same for the channels among the rows.
@@ -145,16 +146,16 @@ consteval std::size_t field_count() {
 template <class Struct, class Table>
 consteval bool lists_all_fields(const Table& table) {
   bool once = field_count<Struct>() == std::tuple_size_v<Table>;
-  for_each_row(table, [&](auto i) {
-    once = once && row_of(table, std::get<i>(table).values) == i;
-  });
+  for_each_row(table,
+               [&](auto i) { once = once && row_of(table, std::get<i>(table).values) == i; });
   return once;
 }
 
 /// A value that consists of `double` only: those of wheels, for example.
 template <class T>
 concept Numbers = std::is_trivially_copyable_v<T> && std::is_class_v<T> &&
-                  alignof(T) == alignof(double) && sizeof(T) % sizeof(double) == 0;
+                      alignof(T) == alignof(double) &&
+                  sizeof(T) % sizeof(double) == 0;
 
 /// The numbers of a value, in the order in which messages and recordings have them.
 inline std::array<double, 7> numbers(const math::Pose& pose) {
