@@ -3,7 +3,9 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace ziggurat {
 
@@ -45,6 +47,23 @@ struct Positioning {
 struct Battery {
   double available_charge = 0;  ///< share of the full charge, in [0, 1]
   double time_left = 0;         ///< at the rate of the last tick [s]; may be infinite
+};
+
+/// The sensors of a robot that its controller enables, in scene order.
+class Sensors {
+ public:
+  std::span<const ProximitySensor> proximity_sensors() const noexcept { return proximity_; }
+  /// Null without such a sensor, as are those that follow.
+  const Positioning* positioning() const noexcept {
+    return positioning_ ? &*positioning_ : nullptr;
+  }
+  const Battery* battery() const noexcept { return battery_ ? &*battery_ : nullptr; }
+
+ private:
+  friend struct Layout;
+  std::vector<ProximitySensor> proximity_;
+  std::optional<Positioning> positioning_;
+  std::optional<Battery> battery_;
 };
 
 }  // namespace ziggurat

@@ -1,0 +1,59 @@
+"""Sensors that read a fixed number of values each, and what a robot has of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import List, NamedTuple, Optional, Sequence
+
+from .. import protocol_pb2 as v1
+from ..exchange import Exchange, Readings
+from .device import Quaternion, Vector
+
+__all__ = ["Battery", "Pose", "ProximitySensor", "Sensors"]
+
+
+class Pose(NamedTuple):
+    """Of the robot's origin in the world."""
+
+    position: Vector  # [m]
+    orientation: Quaternion
+
+
+class Battery(NamedTuple):
+    available_charge: float  # share of the full charge, 0 … 1
+    time_left: float  # [s], may be infinite
+
+
+@dataclass(frozen=True)
+class ProximitySensor:
+    """The position of a sensor. Its reading is at the same index of Robot.proximity."""
+
+    anchor: str  # id of a link, or "origin"
+    position: Vector  # start of the ray in the anchor's frame [m]
+    direction: Vector  # in the anchor's frame, of length 1
+    range: float  # [m]
+    angle: Optional[float] = None  # of the ray about +z from +x [rad]; only foot-bots
+
+
+class Sensors:
+    """Those of a robot that the scene's controller enables."""
+
+    pose = Readings("positioning", 7, lambda values: Pose(tuple(values[:3]), tuple(values[3:])),
+                    lambda given: given.positioning)
+    battery = Readings("batteries", 2, Battery._make, lambda given: given.battery)
+
+    def __init__(self, exchange: Exchange, given: v1.RobotDescription):
+        self._exchange = exchange
+        self._places = {readings: readings.place(exchange, given)
+                        for readings in vars(Sensors).values() if isinstance(readings, Readings)}
+        self.proximity_sensors: List[ProximitySensor] = [
+            ProximitySensor(sensor.anchor, tuple(sensor.position), tuple(sensor.direction),
+                            sensor.range, sensor.angle if sensor.HasField("angle") else None)
+            for sensor in given.proximity_sensors]
+        self._proximity = [exchange.place("proximity") for _ in self.proximity_sensors]
+
+    @property
+    def proximity(self) -> Sequence[float]:
+        """One reading per proximity sensor: 0 (nothing) … 1 (contact)."""
+        readings = self._exchange.seen.proximity
+        return [readings[place] if readings else 0.0 for place in self._proximity]
