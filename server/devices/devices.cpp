@@ -17,12 +17,13 @@ std::unique_ptr<Kind> make_positioning();
 std::unique_ptr<Kind> make_batteries();
 std::unique_ptr<Kind> make_cameras();
 std::unique_ptr<Kind> make_pictures();
+std::unique_ptr<Kind> make_imus();
 
 Devices::Devices() {
   constexpr std::array kinds{
       make_joints,    make_wheels,    make_turrets,           make_visible,
       make_radios,    make_proximity, make_range_and_bearing, make_positioning,
-      make_batteries, make_cameras,   make_pictures};
+      make_batteries, make_cameras,   make_pictures,          make_imus};
   for (const auto make : kinds) kinds_.push_back(make());
 }
 

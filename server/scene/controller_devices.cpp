@@ -153,6 +153,46 @@ void enable_range_and_bearing_sensor(const Enabling& e) {
   use.show_rays = e.element.optional("show_rays", boolean, false);
 }
 
+/// Reads the children of a sensor that says where its devices are fixed: all named `name`, each
+/// with an id and an anchor, and what `read` reads.
+template <class Device, class Read>
+void read_mounted(const Enabling& e, std::string_view name, std::vector<Device>& devices,
+                  Read read) {
+  Ids ids;
+  for (Element& element : e.element.children()) {
+    if (element.name() != name) {
+      element.unknown_in(e.element.name(), std::array{name});
+      continue;
+    }
+    Device device;
+    device.id = element.required("id", identifier);
+    device.anchor = element.required("anchor", identifier);
+    if (!device.id.empty() && !ids.add(device.id)) {
+      element.fault_at("id", fmt::format("is the id of an earlier {}; give each its own", name));
+    }
+    e.use.anchors.push_back(
+        {fmt::format("{} {}", name, in_quotes(device.id)), device.anchor, element.where("anchor")});
+    read(element, device);
+    element.done();
+    devices.push_back(std::move(device));
+  }
+  if (devices.empty()) {
+    e.element.fault(
+        fmt::format("has no sensor; write <{} id=\"…\" anchor=\"origin\"/> in it", name));
+  }
+}
+
+void enable_imus(const Enabling& e) {
+  read_mounted(e, "imu", e.devices.imus, [](Element& element, Imu& imu) {
+    imu.pose = read_pose(element);
+    imu.acceleration_noise = element.optional("acceleration_noise", non_negative, 0.0);
+    imu.acceleration_bias_walk = element.optional("acceleration_bias_walk", non_negative, 0.0);
+    imu.angular_velocity_noise = element.optional("angular_velocity_noise", non_negative, 0.0);
+    imu.angular_velocity_bias_walk =
+        element.optional("angular_velocity_bias_walk", non_negative, 0.0);
+  });
+}
+
 // --- devices of robots on wheels ----------------------------------------------------------------
 
 /// What is said of the left and of the right wheel, or of both.
@@ -222,10 +262,11 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
     {"footbot_distance_scanner", "default", "footbot_distance_scanner devices", enable_plain},
 }};
 
-constexpr std::array<DeviceRow, 18> sensor_rows{{
+constexpr std::array<DeviceRow, 19> sensor_rows{{
     {"joints", "default", "", enable_joint_sensors, false},
     {"radios", "default", "", enable_radios_sensor},
     {"cameras", "default", "", enable_cameras, false},
+    {"imus", "default", "", enable_imus, false},
     {"proximity", "default", "", enable_proximity},
     {"positioning", "default", "", enable_positioning, false},
     {"differential_steering", "default", "", enable_wheel_encoders},

@@ -173,6 +173,18 @@ struct Camera {
   Location where;
 };
 
+/// An accelerometer and a gyroscope. Each axis of each has white noise and a bias that starts at 0
+/// and walks: its change in a time t has a standard deviation of `…_bias_walk` times the root of t.
+struct Imu {
+  std::string id;
+  std::string anchor;                     ///< resolved against each entity of the controller
+  math::Pose pose;                        ///< in the anchor frame
+  double acceleration_noise = 0;          ///< standard deviation [m/s^2]
+  double acceleration_bias_walk = 0;      ///< [m/s^2/sqrt(s)]
+  double angular_velocity_noise = 0;      ///< standard deviation [rad/s]
+  double angular_velocity_bias_walk = 0;  ///< [rad/s/sqrt(s)]
+};
+
 /// An offset drawn uniformly from [min, max].
 struct NoiseRange {
   double min = 0, max = 0;
@@ -254,6 +266,7 @@ struct ControllerDevices {
   std::optional<WheelsUse> wheels;
   std::optional<TurretUse> turret;
   std::optional<CamerasUse> cameras;
+  std::vector<Imu> imus;
 };
 
 }  // namespace ziggurat::scene

@@ -18,6 +18,7 @@ constexpr std::tuple observation_fields{
     ObservationField{&world::Observations::batteries, &v1::Observation::mutable_batteries},
     ObservationField{&world::Observations::wheels, &v1::Observation::mutable_wheels},
     ObservationField{&world::Observations::turrets, &v1::Observation::mutable_turret_rotations},
+    ObservationField{&world::Observations::imus, &v1::Observation::mutable_imus},
 };
 
 constexpr std::tuple command_fields{
@@ -98,6 +99,17 @@ std::string anchor_of(const world::Layout& all, const world::Mount& mount) {
   return mount.link ? v1::valid_utf8(all.links[*mount.link].id) : "origin";
 }
 
+/// Where a device is fixed: anchor, position, orientation.
+template <class Description>
+void describe_mount(const world::Layout& all, const world::Mount& mount, Description& to) {
+  to.set_anchor(anchor_of(all, mount));
+  for (const double value : mount.pose.position) to.add_position(value);
+  const math::Quaternion& turned = mount.pose.orientation;
+  for (const double value : {turned.w(), turned.x(), turned.y(), turned.z()}) {
+    to.add_orientation(value);
+  }
+}
+
 void describe_proximity(const world::Layout& all, const world::RobotLayout& robot,
                         v1::RobotDescription& description) {
   for (std::size_t i = robot.proximity.begin; i < robot.proximity.end(); ++i) {
@@ -117,12 +129,7 @@ void describe_cameras(const world::Layout& all, const world::RobotLayout& robot,
     const world::CameraLayout& camera = all.cameras[i];
     v1::CameraDescription& to = *description.add_cameras();
     to.set_id(v1::valid_utf8(camera.id));
-    to.set_anchor(anchor_of(all, camera.mount));
-    for (const double value : camera.mount.pose.position) to.add_position(value);
-    const math::Quaternion& turned = camera.mount.pose.orientation;
-    for (const double value : {turned.w(), turned.x(), turned.y(), turned.z()}) {
-      to.add_orientation(value);
-    }
+    describe_mount(all, camera.mount, to);
     to.set_near(camera.near);
     to.set_far(camera.far);
     for (const double value : camera.focal_length) to.add_focal_length(value);
@@ -133,6 +140,16 @@ void describe_cameras(const world::Layout& all, const world::RobotLayout& robot,
     to.set_detects_directional_leds(camera.directional_leds.has_value());
     to.set_detects_tags(camera.tags.has_value());
     to.set_image(camera.image);
+  }
+}
+
+void describe_imus(const world::Layout& all, const world::RobotLayout& robot,
+                   v1::RobotDescription& description) {
+  for (std::size_t i = robot.imus.begin; i < robot.imus.end(); ++i) {
+    const world::ImuLayout& imu = all.imus[i];
+    v1::ImuDescription& to = *description.add_imus();
+    to.set_id(v1::valid_utf8(imu.id));
+    describe_mount(all, imu.mount, to);
   }
 }
 
@@ -170,6 +187,7 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
   describe_proximity(run.layout, layout, description);
   describe_cameras(run.layout, layout, description);
   describe_driving(run.layout, layout, description);
+  describe_imus(run.layout, layout, description);
   for (std::size_t i = layout.magnets.begin; i < layout.magnets.end(); ++i) {
     description.add_magnets()->set_id(v1::valid_utf8(run.layout.magnets[i].id));
   }

@@ -1,7 +1,8 @@
 #pragma once
 // Each kind of device in the world: what does not change while the world runs (…Layout), what a
-// robot senses (Observations) and what it sets (Commands). All arrays are in scene order and indexed
-// by the lists of Layout. A field of Observations or Commands has its row in the table below it.
+// robot senses (Observations) and what it sets (Commands). All arrays are in scene order and
+// indexed by the lists of Layout. A field of Observations or Commands has its row in the table
+// below it.
 
 #include <array>
 #include <cmath>
@@ -152,6 +153,12 @@ struct TurretLayout {
   bool measures = false;  ///< its controller has the encoder
 };
 
+/// An inertial measurement unit of a robot whose controller has the sensor.
+struct ImuLayout {
+  std::string id;
+  Mount mount;  ///< readings are in its frame
+};
+
 /// All devices of the world, kind by kind.
 struct DeviceLists {
   std::vector<JointSensorLayout> joint_sensors;
@@ -168,6 +175,7 @@ struct DeviceLists {
   std::vector<CameraLayout> cameras;
   std::vector<WheelsLayout> wheels;
   std::vector<TurretLayout> turrets;
+  std::vector<ImuLayout> imus;
 };
 
 /// Those of one robot: into the list of the same name. Empty unless its controller enables them.
@@ -184,6 +192,7 @@ struct DeviceRanges {
   Range cameras;
   Range wheels;
   Range turrets;
+  Range imus;
 };
 
 // --- what a robot senses ------------------------------------------------------------------------
@@ -248,6 +257,14 @@ struct WheelsReading {
   double distance_left = 0, distance_right = 0;  ///< in the last tick, with the sensor's noise [m]
 };
 
+/// In the frame of the sensor, means over the last tick.
+struct ImuReading {
+  /// What an accelerometer feels [m/s^2]: acceleration minus that of free fall. At rest it points
+  /// up with the strength of gravity, in free fall it is 0.
+  std::array<double, 3> acceleration{};
+  std::array<double, 3> angular_velocity{};  ///< relative to the world [rad/s]
+};
+
 /// A picture that a camera took: rows from top to bottom, pixels from left to right, red, green
 /// and blue of one byte each. Empty at tick 0.
 struct Image {
@@ -260,9 +277,9 @@ struct Observations {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;
   std::vector<double> joint_readings;  ///< [m], [rad], [m/s] or [rad/s] as the sensor's mode says
-  RadioMessages radio_messages;        ///< received since the last tick: entries ascend by receiver;
-                                       ///< for each, by sender, then in the order of sending
-  std::vector<double> proximity;       ///< 0 (nothing) ... 1, or as the sensor's response says
+  RadioMessages radio_messages;   ///< received since the last tick: entries ascend by receiver;
+                                  ///< for each, by sender, then in the order of sending
+  std::vector<double> proximity;  ///< 0 (nothing) ... 1, or as the sensor's response says
   std::vector<RangeAndBearingPacket> range_and_bearing;  ///< ascending by receiver, then by sender
   std::vector<std::uint8_t> range_and_bearing_data;      ///< of all packets
   std::vector<math::Pose> positioning;                   ///< X_WE, with the sensor's noise
@@ -272,7 +289,8 @@ struct Observations {
   std::vector<TagReading> tags;              ///< likewise
   std::vector<WheelsReading> wheels;         ///< zeros where the controller has no sensor
   std::vector<double> turrets;               ///< about +z of the robot's origin, [-pi, pi] [rad]
-  std::vector<Image> images;                 ///< of cameras that take pictures
+  std::vector<ImuReading> imus;
+  std::vector<Image> images;  ///< of cameras that take pictures
 };
 
 /// All devices of a kind that a robot has.
@@ -315,6 +333,7 @@ inline constexpr std::tuple sensed{
     ByHand{&Observations::leds, Hashed::second},
     ByHand{&Observations::directional_leds, Hashed::second},
     ByHand{&Observations::tags, Hashed::second},
+    Sensed<ImuReading>{&Observations::imus, "imus", all<&Ranges::imus>, id<&Lists::imus>},
     ByHand{&Observations::images, Hashed::no},
 };
 // clang-format on

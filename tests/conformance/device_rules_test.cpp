@@ -287,5 +287,24 @@ TEST_F(DrivingAndCameras, L1_WhoLeavesStands) {
   EXPECT_EQ(peers.commands.turret_speeds[0], 0);
 }
 
+TEST(Imus, D9_SixValuesEach) {
+  SmallRun small(2);
+  small.layout().imus.resize(3);
+  small.layout().robots[0].imus = {0, 1};
+  small.layout().robots[1].imus = {1, 2};
+  Peers peers(small);
+  peers.join("p", "robot1");
+  peers.inboxes.clear();
+  world::Observations seen = small.observations(5);
+  seen.imus.resize(3);
+  seen.imus[1].acceleration[0] = 3;
+  seen.imus[2].angular_velocity[2] = 7;
+  peers.publish(seen);
+  const auto told = peers.told("p").observation();
+  ASSERT_EQ(told.imus_size(), 12);
+  EXPECT_EQ(told.imus(0), 3);
+  EXPECT_EQ(told.imus(11), 7);
+}
+
 }  // namespace
 }  // namespace ziggurat::network

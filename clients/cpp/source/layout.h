@@ -23,6 +23,7 @@ struct Layout {
   void add_all() {
     add_batteries();
     add_cameras();
+    add_imus();
     add_joints();
     add_leds();
     add_magnets();
@@ -38,6 +39,7 @@ struct Layout {
  private:
   void add_batteries();
   void add_cameras();
+  void add_imus();
   void add_joints();
   void add_leds();
   void add_magnets();

@@ -224,6 +224,48 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   }
 }
 
+SceneText with_imus(const std::string& imus) {
+  SceneText text;
+  text.controllers =
+      R"(<controllers><lua_controller id="c"><actuators/><sensors><imus implementation="default">)" +
+      imus + "</imus></sensors><params/></lua_controller></controllers>";
+  return text;
+}
+
+TEST(Controllers, Imus) {
+  const ReadResult result =
+      with_imus(R"(<imu id="a" anchor="origin"/><imu id="b" anchor="base" position="1,2,3")"
+                R"( orientation="90,0,0" acceleration_noise="0.1" acceleration_bias_walk="0.2")"
+                R"( angular_velocity_noise="0.3" angular_velocity_bias_walk="0.4"/>)")
+          .read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  const std::vector<Imu>& imus = result.scene.controllers[0].devices.imus;
+  ASSERT_EQ(imus.size(), 2u);
+  EXPECT_EQ(imus[0].acceleration_noise, 0);
+  EXPECT_EQ(imus[1].anchor, "base");
+  EXPECT_EQ(imus[1].pose.position, math::Vector3(1, 2, 3));
+  EXPECT_NEAR((imus[1].pose.orientation * math::Vector3::UnitX()).y(), 1, 1e-12);
+  EXPECT_EQ(imus[1].acceleration_noise, 0.1);
+  EXPECT_EQ(imus[1].acceleration_bias_walk, 0.2);
+  EXPECT_EQ(imus[1].angular_velocity_noise, 0.3);
+  EXPECT_EQ(imus[1].angular_velocity_bias_walk, 0.4);
+}
+
+TEST(Controllers, ImusWithFaults) {
+  const std::pair<const char*, const char*> faults[] = {
+      {"", "has no sensor; write <imu"},
+      {R"(<imu id="a"/>)", "anchor"},
+      {R"(<imu id="a" anchor="origin"/><imu id="a" anchor="origin"/>)", "earlier imu"},
+      {R"(<imu id="a" anchor="origin" acceleration_noise="-1"/>)", "acceleration_noise"},
+      {R"(<imu id="a" anchor="origin" noise="1"/>)", "noise"},
+      {R"(<gyroscope/>)", "gyroscope"}};
+  for (const auto& [imus, words] : faults) {
+    const ReadResult result = with_imus(imus).read();
+    EXPECT_FALSE(result.ok()) << imus;
+    EXPECT_NE(all_problems(result).find(words), std::string::npos) << all_problems(result);
+  }
+}
+
 TEST(Controllers, AttributesWithoutEffectGiveNotices) {
   SceneText text;
   text.controllers =

@@ -189,6 +189,7 @@ TEST_F(DeviceWireOfC, SensesWhatIsItsOwn) {
   seen.proximity = {0.1, 0.2, 0.3};
   seen.positioning[1] = {{1, 2, 3}, math::Quaternion(0.5, -0.5, 0.5, -0.5)};
   seen.batteries = {{1, 1}, {1, 1}, {0.25, 60}};
+  seen.imus[2] = {{1, 2, 3}, {4, 5, 6}};
   seen.range_and_bearing_data = {1, 2, 3, 4, 5, 6, 7, 8};
   seen.range_and_bearing = {{0, 1, 1, 1, {0, 4}}, {2, 1.5, -0.5, 0.25, {4, 4}}};
   Outbox outbox;
@@ -205,6 +206,9 @@ TEST_F(DeviceWireOfC, SensesWhatIsItsOwn) {
   EXPECT_EQ(pose, (std::vector<double>{1, 2, 3, 0.5, -0.5, 0.5, -0.5}));
   ASSERT_EQ(observation.batteries_size(), 2);
   EXPECT_EQ(observation.batteries(1), 60);
+  ASSERT_EQ(observation.imus_size(), 6 * observation.batteries_size() / 2 + 6);  // c has two
+  EXPECT_EQ(observation.imus(6 * observation.batteries_size() / 2), 1);
+  EXPECT_EQ(*observation.imus().rbegin(), 6);
   ASSERT_EQ(observation.range_and_bearing_size(), 1);
   const auto& packet = observation.range_and_bearing(0);
   EXPECT_EQ(packet.robot(), 0U);
@@ -272,6 +276,12 @@ TEST_F(DeviceWire, WelcomeDescribesThem) {
   EXPECT_EQ(a.range_and_bearing().data_size(), 4U);
   EXPECT_TRUE(a.range_and_bearing().sends() && a.range_and_bearing().receives());
   EXPECT_TRUE(a.positioning() && a.battery());
+  ASSERT_EQ(c.imus_size(), 2);
+  EXPECT_EQ(c.imus(0).anchor(), "origin");
+  EXPECT_EQ(c.imus(1).id(), "imu2");
+  EXPECT_EQ(c.imus(1).anchor(), "base");
+  EXPECT_EQ(c.imus(1).position(2), 3);
+  EXPECT_EQ(c.imus(1).orientation(2), 1);
 }
 
 }  // namespace

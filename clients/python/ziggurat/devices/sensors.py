@@ -7,9 +7,10 @@ from typing import List, NamedTuple, Optional, Sequence
 
 from .. import protocol_pb2 as v1
 from ..exchange import Exchange, Readings
-from .device import Quaternion, Vector
+from ..named import Named
+from .device import Device, Quaternion, Vector
 
-__all__ = ["Battery", "Pose", "ProximitySensor", "Sensors"]
+__all__ = ["Battery", "Imu", "Pose", "ProximitySensor", "Sensors"]
 
 
 class Pose(NamedTuple):
@@ -35,6 +36,34 @@ class ProximitySensor:
     angle: Optional[float] = None  # of the ray about +z from +x [rad]; only foot-bots
 
 
+class Imu(Device):
+    """An accelerometer and a gyroscope. Readings are in its frame, means over the last tick; 0 before
+    the first."""
+
+    __slots__ = ("anchor", "position", "orientation", "_place")
+
+    def __init__(self, exchange: Exchange, given: v1.ImuDescription):
+        super().__init__(exchange, given.id)
+        self.anchor: str = given.anchor  # id of a link, or "origin"
+        self.position: Vector = tuple(given.position)  # in the anchor's frame [m]
+        self.orientation: Quaternion = tuple(given.orientation)  # in the anchor's frame
+        self._place = 6 * exchange.place("imus")
+
+    def _read(self, first: int) -> Vector:
+        first += self._place
+        return tuple(self._exchange.seen.imus[first:first + 3]) or (0.0, 0.0, 0.0)
+
+    @property
+    def acceleration(self) -> Vector:
+        """As an accelerometer feels it [m/s²]: up at rest, 0 in free fall."""
+        return self._read(0)
+
+    @property
+    def angular_velocity(self) -> Vector:
+        """Relative to the world [rad/s]."""
+        return self._read(3)
+
+
 class Sensors:
     """Those of a robot that the scene's controller enables."""
 
@@ -50,6 +79,7 @@ class Sensors:
             ProximitySensor(sensor.anchor, tuple(sensor.position), tuple(sensor.direction),
                             sensor.range, sensor.angle if sensor.HasField("angle") else None)
             for sensor in given.proximity_sensors]
+        self.imus: Named[Imu] = Named([Imu(exchange, imu) for imu in given.imus], "IMU")
         self._proximity = [exchange.place("proximity") for _ in self.proximity_sensors]
 
     @property

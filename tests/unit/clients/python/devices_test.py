@@ -50,10 +50,19 @@ class Devices(unittest.TestCase):
         self.assertEqual(list(self.two.proximity), [0, 0])
         self.assertIsNone(self.two.pose)
         self.assertIsNone(self.two.battery)
+        self.assertEqual(self.two.imus["imu"].acceleration, (0, 0, 0))
         self.assertEqual(self.two.cameras["front"].tags, [])
         self.assertEqual(self.two.cameras["front"].image, b"")
         self.assertEqual(self.two.wheels.velocity, (0, 0))
         self.assertEqual(self.two.turret.rotation, 0)
+
+    def test_imus(self):
+        self.see(imus=range(12))
+        imu = self.two.imus["imu"]
+        self.assertEqual((imu.anchor, imu.position, imu.orientation),
+                         ("base", (1, 2, 3), (0, 1, 0, 0)))
+        self.assertEqual(imu.acceleration, (6, 7, 8))
+        self.assertEqual(imu.angular_velocity, (9, 10, 11))
 
     def test_radios(self):
         self.see(radio_messages=[v1.RadioMessage(radio=1, payload=b"x"),
