@@ -15,7 +15,7 @@ struct Carrier {
   std::size_t index;                        ///< into Layout::entities, where it stands already
   const scene::ControllerDevices& enabled;  ///< by its controller; nothing without one
 
-  /// @param id  of a link, or "origin"; the reader has made sure that there is one
+  /// @param id  of a link, or "origin"; the reader has checked that it exists
   scene::Anchor anchor(const std::string& id) const {
     scene::Anchor found;
     for (std::size_t i = 0; i < entity.links.size(); ++i) {

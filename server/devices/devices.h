@@ -14,7 +14,7 @@ class Devices {
   /// Without devices: they come with lay_out() and add().
   Devices();
 
-  /// What Kind says, for all kinds.
+  // Each calls the function of the same name of all kinds.
   void lay_out(const Carrier& carrier, world::RobotLayout& robot, world::Layout& layout) const;
   void add(const Setting& setting);
   void start(Tick& tick);

@@ -8,7 +8,7 @@
 namespace ziggurat::devices {
 namespace {
 
-/// Index into Entity::joints; the reader has made sure that it is there.
+/// Index into Entity::joints; the reader has checked that it exists.
 std::size_t find_joint(const scene::Entity& entity, const std::string& id) {
   std::size_t joint = 0;
   while (entity.joints[joint].id != id) ++joint;

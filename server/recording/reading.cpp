@@ -26,7 +26,7 @@ void add_bytes(std::span<const std::uint8_t> bytes,
 
 using MessageMap = google::protobuf::Map<std::string, v1::Messages>;
 
-/// Entries of a robot's radios that `uses` says; those may stand in any order of radios.
+/// The messages of a robot's radios for which `uses` is true; entries are in any order of radios.
 template <class Uses>
 void add_messages(const Moment& moment, const world::Range& radios,
                   const world::RadioMessages& messages, Uses uses, MessageMap& out) {

@@ -1,4 +1,4 @@
-// <actuators> and <sensors>: a table of all names of the dialect, and what each may say.
+// <actuators> and <sensors>: a table of all names of the dialect, and the attributes of each.
 
 #include <array>
 #include <numbers>
@@ -153,7 +153,7 @@ void enable_range_and_bearing_sensor(const Enabling& e) {
   use.show_rays = e.element.optional("show_rays", boolean, false);
 }
 
-/// Reads the children of a sensor that says where its devices are fixed: all named `name`, each
+/// Reads the children of a sensor that are fixed to an anchor: all named `name`, each
 /// with an id and an anchor, and what `read` reads.
 template <class Device, class Read>
 void read_mounted(const Enabling& e, std::string_view name, std::vector<Device>& devices,

@@ -80,7 +80,7 @@ struct Magnet {
   math::Vector3 remanence = math::Vector3::Zero();  ///< likewise, times the shape's volume [T]
 };
 
-/// What a proximity sensor reads at a distance, as its data sheet says: straight lines between
+/// What a proximity sensor reads at a distance, from its data sheet: straight lines between
 /// the points, level outside of them.
 struct Response {
   struct Point {
@@ -95,12 +95,12 @@ struct ProximitySensor {
   math::Vector3 offset;              ///< start of the ray in the anchor frame [m]
   math::Vector3 direction;           ///< unit, in the anchor frame
   double range;                      ///< length of the ray [m]
-  std::optional<bool> sees_floor;    ///< none: as the controller's sensor says
-  std::optional<Response> response;  ///< none: as the controller's sensor says
+  std::optional<bool> sees_floor;    ///< none: that of the controller's sensor
+  std::optional<Response> response;  ///< none: that of the controller's sensor
   Location where;
 };
 
-/// Tells others in line of sight where it is and some bytes, and hears the same of them.
+/// Sends its position and some bytes to others in line of sight, and receives theirs.
 struct RangeAndBearing {
   Anchor anchor;
   math::Pose pose;     ///< in the anchor frame; bearings are relative to it
@@ -190,7 +190,7 @@ struct NoiseRange {
   double min = 0, max = 0;
 };
 
-/// A wheel that does not do as it is told: it runs at factor * (speed + bias).
+/// The error of a wheel: it runs at factor * (speed + bias).
 struct WheelNoise {
   double bias_mean = 0, bias_deviation = 0;      ///< drawn once per robot [m/s]
   double factor_mean = 1, factor_deviation = 0;  ///< drawn at every tick

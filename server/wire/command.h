@@ -24,7 +24,7 @@ std::optional<Fault> check(const v1::Leave& leave, const Roster& roster,
 std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::LogLine>& log,
                            const Roster& roster);
 
-/// Writes a checked command's values. Those of robots that are gone are skipped.
+/// Writes a checked command's values. Those of robots that left are skipped.
 void apply(const v1::Command& command, const Roster& roster, world::Commands& commands);
 
 /// Appends checked lines.

@@ -34,7 +34,7 @@ constexpr std::tuple command_fields{
     CommandField{&world::Commands::turret_speeds, &v1::Command::turret_speeds},
 };
 
-// --- what a client is told in Welcome -----------------------------------------------------------
+// --- descriptions in Welcome --------------------------------------------------------------------
 
 v1::JointDescription::Mode mode_of(bool disabled, bool velocity) {
   if (disabled) return v1::JointDescription::DISABLED;

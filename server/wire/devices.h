@@ -1,6 +1,6 @@
 #pragma once
-// Devices on the wire: what a client is told of them in Welcome, and the channels of Observation
-// and Command. Radios, range and bearing and cameras have files of their own for what they send.
+// Devices on the wire: their descriptions in Welcome, and the channels of Observation and Command.
+// The messages of radios, range and bearing and cameras have files of their own.
 
 #include <cstddef>
 #include <optional>

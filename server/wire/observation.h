@@ -21,7 +21,7 @@ std::size_t payload_bytes(const Roster& roster, const world::Observations& from,
 /// Bytes of pictures that they took.
 std::size_t image_bytes(const Roster& roster, const world::Observations& from);
 
-/// Writes what they see. A camera whose picture is not there sends an empty one.
+/// Writes what they see. A camera without a picture yet sends an empty one.
 void add_cameras(const Roster& roster, const world::Observations& from,
                  std::span<const std::string> tag_payloads, v1::Observation& to);
 

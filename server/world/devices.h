@@ -276,10 +276,10 @@ struct Image {
 struct Observations {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;
-  std::vector<double> joint_readings;  ///< [m], [rad], [m/s] or [rad/s] as the sensor's mode says
+  std::vector<double> joint_readings;  ///< [m], [rad], [m/s] or [rad/s] by the sensor's mode
   RadioMessages radio_messages;   ///< received since the last tick: entries ascend by receiver;
                                   ///< for each, by sender, then in the order of sending
-  std::vector<double> proximity;  ///< 0 (nothing) ... 1, or as the sensor's response says
+  std::vector<double> proximity;  ///< 0 (nothing) ... 1, or a value of the sensor's response
   std::vector<RangeAndBearingPacket> range_and_bearing;  ///< ascending by receiver, then by sender
   std::vector<std::uint8_t> range_and_bearing_data;      ///< of all packets
   std::vector<math::Pose> positioning;                   ///< X_WE, with the sensor's noise
@@ -349,10 +349,10 @@ struct WheelsCommand {
   double left = 0, right = 0;  ///< speed over the floor [m/s]
 };
 
-/// What all robots want. Values persist until changed; initially they are what the scene says.
+/// What all robots want. Values persist until changed; initially they are those of the scene.
 /// Values of entities that no robot may set stay.
 struct Commands {
-  std::vector<double> joint_targets;  ///< [m], [rad], [m/s] or [rad/s] as the actuator's mode says
+  std::vector<double> joint_targets;  ///< [m], [rad], [m/s] or [rad/s] by the actuator's mode
   std::vector<Color> led_colors;      ///< at most 0xFFFFFF
   std::vector<Color> directional_led_colors;  ///< at most 0xFFFFFF
   std::vector<std::string> tag_payloads;      ///< any bytes, up to most_tag_payload_bytes

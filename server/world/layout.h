@@ -1,5 +1,5 @@
 #pragma once
-// Who is in the world, in scene order: names, and positions in the flat arrays of State,
+// The entities of the world in scene order: names, and positions in the flat arrays of State,
 // Observations and Commands. While a world runs it only grows: a new entity stands behind all
 // others, one that is removed leaves its places empty (State::absent).
 

@@ -21,7 +21,7 @@ struct LinkState {
 };
 
 /// A segment that a device tested, or a link between two devices; only of devices that ask for
-/// it (`show_rays`).
+/// them (`show_rays`).
 struct Ray {
   enum class Kind : std::uint8_t {
     proximity,          ///< from the sensor to the end of its range, or to what it met
@@ -30,7 +30,7 @@ struct Ray {
     camera,             ///< from the camera to what it looked for, or to what was in between
   };
   Kind kind = Kind::proximity;
-  std::size_t robot = 0;     ///< into Layout::robots: whose device it is; the receiver's
+  std::size_t robot = 0;     ///< into Layout::robots: the one with the device; of a link, with the receiver
   math::Vector3 start, end;  ///< in W [m]
   bool hit = false;          ///< not radio: an entity was met at `end`
 };
@@ -55,7 +55,7 @@ struct State {
   std::vector<Color> directional_led_colors;
   std::vector<std::string> tag_payloads;             ///< any bytes
   std::vector<math::Vector3> magnet_fields;          ///< anchor frame, the dialect's unit
-  std::vector<std::uint8_t> range_and_bearing_data;  ///< as RangeAndBearingLayout::data says
+  std::vector<std::uint8_t> range_and_bearing_data;  ///< at RangeAndBearingLayout::data
 
   std::vector<Ray> rays;
   std::vector<Frustum> frusta;
