@@ -18,12 +18,14 @@ std::unique_ptr<Kind> make_batteries();
 std::unique_ptr<Kind> make_cameras();
 std::unique_ptr<Kind> make_pictures();
 std::unique_ptr<Kind> make_imus();
+std::unique_ptr<Kind> make_contact_sensors();
 
 Devices::Devices() {
   constexpr std::array kinds{
-      make_joints,    make_wheels,    make_turrets,           make_visible,
-      make_radios,    make_proximity, make_range_and_bearing, make_positioning,
-      make_batteries, make_cameras,   make_pictures,          make_imus};
+      make_joints,         make_wheels,    make_turrets,           make_visible,
+      make_radios,         make_proximity, make_range_and_bearing, make_positioning,
+      make_batteries,      make_cameras,   make_pictures,          make_imus,
+      make_contact_sensors};
   for (const auto make : kinds) kinds_.push_back(make());
 }
 

@@ -193,6 +193,10 @@ void enable_imus(const Enabling& e) {
   });
 }
 
+void enable_contact_sensors(const Enabling& e) {
+  read_mounted(e, "contact_sensor", e.devices.contact_sensors, [](Element&, ContactSensor&) {});
+}
+
 // --- devices of robots on wheels ----------------------------------------------------------------
 
 /// What is said of the left and of the right wheel, or of both.
@@ -262,11 +266,12 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
     {"footbot_distance_scanner", "default", "footbot_distance_scanner devices", enable_plain},
 }};
 
-constexpr std::array<DeviceRow, 19> sensor_rows{{
+constexpr std::array<DeviceRow, 20> sensor_rows{{
     {"joints", "default", "", enable_joint_sensors, false},
     {"radios", "default", "", enable_radios_sensor},
     {"cameras", "default", "", enable_cameras, false},
     {"imus", "default", "", enable_imus, false},
+    {"contact_sensors", "default", "", enable_contact_sensors, false},
     {"proximity", "default", "", enable_proximity},
     {"positioning", "default", "", enable_positioning, false},
     {"differential_steering", "default", "", enable_wheel_encoders},

@@ -185,6 +185,12 @@ struct Imu {
   double angular_velocity_bias_walk = 0;  ///< [rad/s/sqrt(s)]
 };
 
+/// Feels what touches a link.
+struct ContactSensor {
+  std::string id;
+  std::string anchor;  ///< resolved against each entity of the controller; origin: the root link
+};
+
 /// An offset drawn uniformly from [min, max].
 struct NoiseRange {
   double min = 0, max = 0;
@@ -267,6 +273,7 @@ struct ControllerDevices {
   std::optional<TurretUse> turret;
   std::optional<CamerasUse> cameras;
   std::vector<Imu> imus;
+  std::vector<ContactSensor> contact_sensors;
 };
 
 }  // namespace ziggurat::scene

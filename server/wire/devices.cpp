@@ -19,6 +19,8 @@ constexpr std::tuple observation_fields{
     ObservationField{&world::Observations::wheels, &v1::Observation::mutable_wheels},
     ObservationField{&world::Observations::turrets, &v1::Observation::mutable_turret_rotations},
     ObservationField{&world::Observations::imus, &v1::Observation::mutable_imus},
+    ObservationField{&world::Observations::contact_sensors,
+                     &v1::Observation::mutable_contact_sensors},
 };
 
 constexpr std::tuple command_fields{
@@ -153,6 +155,15 @@ void describe_imus(const world::Layout& all, const world::RobotLayout& robot,
   }
 }
 
+void describe_contact_sensors(const world::Layout& all, const world::RobotLayout& robot,
+                              v1::RobotDescription& description) {
+  for (std::size_t i = robot.contact_sensors.begin; i < robot.contact_sensors.end(); ++i) {
+    v1::ContactSensorDescription& to = *description.add_contact_sensors();
+    to.set_id(v1::valid_utf8(all.contact_sensors[i].id));
+    to.set_anchor(v1::valid_utf8(all.contact_sensors[i].anchor));
+  }
+}
+
 void describe_driving(const world::Layout& all, const world::RobotLayout& robot,
                       v1::RobotDescription& description) {
   if (robot.wheels.count > 0) {
@@ -188,6 +199,7 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
   describe_cameras(run.layout, layout, description);
   describe_driving(run.layout, layout, description);
   describe_imus(run.layout, layout, description);
+  describe_contact_sensors(run.layout, layout, description);
   for (std::size_t i = layout.magnets.begin; i < layout.magnets.end(); ++i) {
     description.add_magnets()->set_id(v1::valid_utf8(run.layout.magnets[i].id));
   }

@@ -159,6 +159,14 @@ struct ImuLayout {
   Mount mount;  ///< readings are in its frame
 };
 
+/// A contact sensor of a robot whose controller has the sensor.
+struct ContactSensorLayout {
+  std::string id;
+  std::string anchor;      ///< of the scene: id of a link, or `origin`
+  std::size_t entity = 0;  ///< into Layout::entities
+  std::size_t link = 0;    ///< into State::links; readings are in its frame
+};
+
 /// All devices of the world, kind by kind.
 struct DeviceLists {
   std::vector<JointSensorLayout> joint_sensors;
@@ -176,6 +184,7 @@ struct DeviceLists {
   std::vector<WheelsLayout> wheels;
   std::vector<TurretLayout> turrets;
   std::vector<ImuLayout> imus;
+  std::vector<ContactSensorLayout> contact_sensors;
 };
 
 /// Those of one robot: into the list of the same name. Empty unless its controller enables them.
@@ -193,6 +202,7 @@ struct DeviceRanges {
   Range wheels;
   Range turrets;
   Range imus;
+  Range contact_sensors;
 };
 
 // --- what a robot senses ------------------------------------------------------------------------
@@ -265,6 +275,15 @@ struct ImuReading {
   std::array<double, 3> angular_velocity{};  ///< relative to the world [rad/s]
 };
 
+/// What touched a link during the last tick: other entities and the floor.
+struct ContactReading {
+  double touches = 0;             ///< 1: something did, if only for a substep; 0: nothing
+  std::array<double, 3> force{};  ///< sum of all contact forces on the link, normal and friction,
+                                  ///< mean over the tick, in the link's frame [N]
+  double strength = 0;  ///< sum of their absolute values [N]: more than that of `force` where
+                        ///< contacts press against each other
+};
+
 /// A picture that a camera took: rows from top to bottom, pixels from left to right, red, green
 /// and blue of one byte each. Empty at tick 0.
 struct Image {
@@ -290,6 +309,7 @@ struct Observations {
   std::vector<WheelsReading> wheels;         ///< zeros where the controller has no sensor
   std::vector<double> turrets;               ///< about +z of the robot's origin, [-pi, pi] [rad]
   std::vector<ImuReading> imus;
+  std::vector<ContactReading> contact_sensors;
   std::vector<Image> images;  ///< of cameras that take pictures
 };
 
@@ -334,6 +354,8 @@ inline constexpr std::tuple sensed{
     ByHand{&Observations::directional_leds, Hashed::second},
     ByHand{&Observations::tags, Hashed::second},
     Sensed<ImuReading>{&Observations::imus, "imus", all<&Ranges::imus>, id<&Lists::imus>},
+    Sensed<ContactReading>{&Observations::contact_sensors, "contact_sensors",
+                           all<&Ranges::contact_sensors>, id<&Lists::contact_sensors>},
     ByHand{&Observations::images, Hashed::no},
 };
 // clang-format on

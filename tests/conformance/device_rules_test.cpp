@@ -287,6 +287,23 @@ TEST_F(DrivingAndCameras, L1_WhoLeavesStands) {
   EXPECT_EQ(peers.commands.turret_speeds[0], 0);
 }
 
+TEST(ContactSensors, D10_FiveValuesEach) {
+  SmallRun small(2);
+  small.layout().contact_sensors.resize(2);
+  small.layout().robots[1].contact_sensors = {1, 1};
+  Peers peers(small);
+  peers.join("p", "robot*");
+  peers.inboxes.clear();
+  world::Observations seen = small.observations(5);
+  seen.contact_sensors.resize(2);
+  seen.contact_sensors[1] = {1, {2, 3, 4}, 9};
+  peers.publish(seen);
+  const auto told = peers.told("p").observation();
+  ASSERT_EQ(told.contact_sensors_size(), 5);
+  EXPECT_EQ(told.contact_sensors(0), 1);
+  EXPECT_EQ(told.contact_sensors(4), 9);
+}
+
 TEST(Imus, D9_SixValuesEach) {
   SmallRun small(2);
   small.layout().imus.resize(3);

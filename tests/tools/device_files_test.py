@@ -1,4 +1,5 @@
-"""The list of files in docs/adding-a-device.md is that of the files that name the device.
+"""The list of files in docs/adding-a-device.md is that of the files that name the IMU; the contact
+sensor is in no more.
 
 usage: device_files_test.py SOURCE_FOLDER
 """
@@ -12,17 +13,21 @@ sources = ("server", "clients", "protocol", "cmake", "tools")
 endings = {".cpp", ".h", ".py", ".proto", ".txt", ".cmake", ".lua"}
 
 
-def files_that_name_it():
+IMU = re.compile(r"(\w+_)?imus?(_\w+)?|Imus?([A-Z]\w*)?")
+CONTACT_SENSOR = re.compile(r"(\w+_)?contact_sensors?(_\w+)?|ContactSensors?([A-Z]\w*)?")
+
+
+def files_that_name(device):
     for folder in sources:
         for path in (root / folder).rglob("*"):
             if path.suffix not in endings or not path.is_file():
                 continue
             words = re.findall(r"\w+", path.read_text())
-            if any(re.fullmatch(r"(\w+_)?imus?(_\w+)?|Imus?([A-Z]\w*)?", word) for word in words):
+            if any(device.fullmatch(word) for word in words):
                 yield path.relative_to(root).as_posix()
 
 
-found = set(files_that_name_it())
+found = set(files_that_name(IMU))
 table = (root / "docs" / "adding-a-device.md").read_text().split("## 1.")[0]
 listed = set(re.findall(r"^\| `([^`]+)` \|", table, re.MULTILINE))
 
@@ -33,4 +38,7 @@ for path in sorted(listed - found):
 most = 14
 if len(listed) > most:
     print(f"the IMU is in {len(listed)} files; a device must cost at most {most}")
-sys.exit(found != listed or len(listed) > most)
+others = set(files_that_name(CONTACT_SENSOR))
+if len(others) > len(listed):
+    print(f"the contact sensor is in {len(others)} files: {', '.join(sorted(others))}")
+sys.exit(found != listed or len(listed) > most or len(others) > len(listed))

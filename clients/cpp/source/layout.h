@@ -23,6 +23,7 @@ struct Layout {
   void add_all() {
     add_batteries();
     add_cameras();
+    add_contact_sensors();
     add_imus();
     add_joints();
     add_leds();
@@ -39,6 +40,7 @@ struct Layout {
  private:
   void add_batteries();
   void add_cameras();
+  void add_contact_sensors();
   void add_imus();
   void add_joints();
   void add_leds();

@@ -1,5 +1,5 @@
-"""Section 3.1: wheels, turrets, pictures and IMUs, in a scene of their own. rover0 and rover1 drive and
-measure, rover2 only measures. rover1 has an IMU."""
+"""Section 3.1: wheels, turrets, pictures, IMUs and contact sensors, in a scene of their own. rover0 and rover1 drive and
+measure, rover2 only measures. rover1 has an IMU and a contact sensor."""
 
 import math
 
@@ -87,6 +87,12 @@ def _feels(stage) -> str:
     return f"imus is {found}; [0, 0, 9.8, 0, 0, 0] is expected" if wrong else ""
 
 
+def _touches(stage) -> str:
+    found = list(stage.peer("p").observation.contact_sensors)
+    wrong = len(found) != 5 or found[0] != 1 or found[3] <= 0 or found[4] < found[3] - 1e-9
+    return f"contact_sensors is {found}; [1, x, y, force up, strength] is expected" if wrong else ""
+
+
 def _bad(rule: str, name: str, title: str, field: str, values: list, **more) -> Case:
     """A command that is BAD_VALUE and has no effect; a right one follows."""
     return _case(f"{rule}.{name}", title, ALL, _stands(), answer("p", **{field: values}, **more),
@@ -163,4 +169,9 @@ CASES = [
                              "orientation": [1.0, 0.0, 0.0, 0.0]}]}, {}]})),
     _case("D9.six-values", "An IMU has six values; at rest it feels the ground push up", ALL, _stands(),
           Check("imus", _feels), answer("p"), observe("p"), Check("imus", _feels)),
+    _case("D10.described", "Welcome says which contact sensors there are",
+          Join("p", hello("*"), {"robots": [
+              {}, {"contact_sensors": [{"id": "skin", "anchor": "origin"}]}, {}]})),
+    _case("D10.five-values", "A contact sensor has five values; on the ground it touches", ALL, _stands(),
+          Check("contact_sensors", _touches)),
 ]

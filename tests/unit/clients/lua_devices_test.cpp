@@ -329,6 +329,23 @@ TEST_F(Devices, ImusRead) {
   EXPECT_RUNS(step());
 }
 
+TEST_F(Devices, ContactSensorsRead) {
+  robot_.add_contact_sensors()->set_id("left");
+  robot_.add_contact_sensors()->set_id("right");
+  EXPECT_RUNS(start(R"lua(
+    right = robot.contact_sensors.right
+    force = right.force
+    assert(right.touches == false and right.strength == 0 and force.z == 0)
+    function step()
+      assert(not robot.contact_sensors.left.touches)
+      assert(right.touches == true and right.strength == 9)
+      assert(force.x == 2 and force.y == 3 and force.z == 4)
+    end
+  )lua"));
+  assign(*seen().mutable_contact_sensors(), {0, 0, 0, 0, 0, 1, 2, 3, 4, 9});
+  EXPECT_RUNS(step());
+}
+
 TEST_F(Devices, BatteryReads) {
   robot_.set_battery(true);
   EXPECT_RUNS(start(R"lua(

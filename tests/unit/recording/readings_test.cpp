@@ -119,6 +119,9 @@ TEST(Readings, NamesEveryDevice) {
   world.observations.batteries = {{0.75, 30}};
   robots.imus = {{"imu", {}}};
   robots.robots[0].imus = {0, 1};
+  robots.contact_sensors = {{"skin", "base", 0, 0}};
+  robots.robots[0].contact_sensors = {0, 1};
+  world.observations.contact_sensors = {{1, {2, 3, 4}, 9}};
   world.observations.imus = {{{1, 2, 3}, {4, 5, 6}}};
   world.commands.radio_messages.add(1, hello);
   world.commands.led_colors = {0, 0x0000FF};
@@ -139,6 +142,9 @@ TEST(Readings, NamesEveryDevice) {
   EXPECT_EQ(sensed.range_and_bearing(0).data(1), 8u);
   EXPECT_EQ(sensed.positioning().z(), 3);
   EXPECT_EQ(sensed.battery().available_charge(), 0.75);
+  EXPECT_EQ(sensed.contact_sensors().at("skin").touches(), 1);
+  EXPECT_EQ(sensed.contact_sensors().at("skin").force_z(), 4);
+  EXPECT_EQ(sensed.contact_sensors().at("skin").strength(), 9);
   EXPECT_EQ(sensed.imus().at("imu").acceleration_z(), 3);
   EXPECT_EQ(sensed.imus().at("imu").angular_velocity_x(), 4);
   EXPECT_EQ(sensed.led_colors(0).red(), 255u);

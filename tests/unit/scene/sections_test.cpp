@@ -251,6 +251,21 @@ TEST(Controllers, Imus) {
   EXPECT_EQ(imus[1].angular_velocity_bias_walk, 0.4);
 }
 
+TEST(Controllers, ContactSensors) {
+  SceneText text;
+  text.controllers =
+      R"(<controllers><lua_controller id="c"><actuators/><sensors>)"
+      R"(<contact_sensors implementation="default"><contact_sensor id="a" anchor="base"/>)"
+      R"(<contact_sensor id="b" anchor="origin"/></contact_sensors></sensors><params/>)"
+      R"(</lua_controller></controllers>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  const auto& sensors = result.scene.controllers[0].devices.contact_sensors;
+  ASSERT_EQ(sensors.size(), 2u);
+  EXPECT_EQ(sensors[0].anchor, "base");
+  EXPECT_EQ(sensors[1].id, "b");
+}
+
 TEST(Controllers, ImusWithFaults) {
   const std::pair<const char*, const char*> faults[] = {
       {"", "has no sensor; write <imu"},

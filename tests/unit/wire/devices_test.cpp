@@ -190,6 +190,7 @@ TEST_F(DeviceWireOfC, SensesWhatIsItsOwn) {
   seen.positioning[1] = {{1, 2, 3}, math::Quaternion(0.5, -0.5, 0.5, -0.5)};
   seen.batteries = {{1, 1}, {1, 1}, {0.25, 60}};
   seen.imus[2] = {{1, 2, 3}, {4, 5, 6}};
+  seen.contact_sensors[1] = {1, {2, 3, 4}, 9};
   seen.range_and_bearing_data = {1, 2, 3, 4, 5, 6, 7, 8};
   seen.range_and_bearing = {{0, 1, 1, 1, {0, 4}}, {2, 1.5, -0.5, 0.25, {4, 4}}};
   Outbox outbox;
@@ -209,6 +210,7 @@ TEST_F(DeviceWireOfC, SensesWhatIsItsOwn) {
   ASSERT_EQ(observation.imus_size(), 6 * observation.batteries_size() / 2 + 6);  // c has two
   EXPECT_EQ(observation.imus(6 * observation.batteries_size() / 2), 1);
   EXPECT_EQ(*observation.imus().rbegin(), 6);
+  EXPECT_EQ(*observation.contact_sensors().rbegin(), 9);
   ASSERT_EQ(observation.range_and_bearing_size(), 1);
   const auto& packet = observation.range_and_bearing(0);
   EXPECT_EQ(packet.robot(), 0U);
@@ -276,6 +278,9 @@ TEST_F(DeviceWire, WelcomeDescribesThem) {
   EXPECT_EQ(a.range_and_bearing().data_size(), 4U);
   EXPECT_TRUE(a.range_and_bearing().sends() && a.range_and_bearing().receives());
   EXPECT_TRUE(a.positioning() && a.battery());
+  ASSERT_EQ(c.contact_sensors_size(), 1);
+  EXPECT_EQ(c.contact_sensors(0).id(), "skin1");
+  EXPECT_EQ(c.contact_sensors(0).anchor(), "origin");
   ASSERT_EQ(c.imus_size(), 2);
   EXPECT_EQ(c.imus(0).anchor(), "origin");
   EXPECT_EQ(c.imus(1).id(), "imu2");

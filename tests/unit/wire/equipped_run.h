@@ -13,9 +13,9 @@ namespace ziggurat::wire {
 
 /// Robots "a" (everything once, radios twice), "b" (nothing) and "c" (everything twice, one radio
 /// that only sends, one that only receives). Everything of c comes after that of a, and LED,
-/// magnet and tag 1 belong to an entity that is not a robot. a's camera sees LEDs and tags and takes
-/// pictures of 2 x 1 pixels, c's first sees tags and directional LEDs, c's second all but takes no
-/// pictures. a drives wheels and turret and measures neither; c does both.
+/// magnet and tag 1 belong to an entity that is not a robot. a's camera sees LEDs and tags and
+/// takes pictures of 2 x 1 pixels, c's first sees tags and directional LEDs, c's second all but
+/// takes no pictures. a drives wheels and turret and measures neither; c does both.
 class EquippedRun {
  public:
   EquippedRun() {
@@ -30,6 +30,7 @@ class EquippedRun {
     layout_.positioning = {0, 2};
     layout_.batteries.resize(3);
     layout_.imus.resize(3);
+    layout_.contact_sensors = {{"skin0", "base", 0, 0}, {"skin1", "origin", 2, 0}};
     layout_.range_and_bearing.resize(3);
     for (std::size_t i = 0; i < 4; ++i) {
       const std::string number = std::to_string(i);
@@ -67,6 +68,7 @@ class EquippedRun {
     a.positioning = {0, 1}, c.positioning = {1, 1};
     a.batteries = {0, 1}, c.batteries = {2, 1};
     a.imus = {0, 1}, c.imus = {1, 2};
+    a.contact_sensors = {0, 1}, c.contact_sensors = {1, 1};
     a.cameras = {0, 1}, c.cameras = {1, 2};
     a.wheels = {0, 1}, c.wheels = {2, 1};
     a.turrets = {0, 1}, c.turrets = {1, 1};
@@ -100,6 +102,7 @@ class EquippedRun {
     observations.positioning.resize(2);
     observations.batteries.resize(3);
     observations.imus.resize(3);
+    observations.contact_sensors.resize(2);
     observations.wheels.resize(3);
     observations.turrets.resize(2);
     return observations;

@@ -40,6 +40,7 @@ Moment full() {
   for (auto& corner : seen.tags[0].corners) corner.setZero();
   seen.wheels = {{1, 2, 3, 4}};
   seen.turrets = {0.125};
+  seen.contact_sensors = {{1, {2, 3, 4}, 9}};
   seen.imus = {{{1, 2, 3}, {4, 5, 6}}};
   return moment;
 }
@@ -71,6 +72,7 @@ TEST(Hash, IsOfEveryChannelAndEveryListOfReadings) {
       [](Moment& m) { m.observations.tags[0].corners[3].y() = 9; },
       [](Moment& m) { m.observations.wheels[0].distance_right = 9; },
       [](Moment& m) { m.observations.turrets[0] = 9; },
+      [](Moment& m) { m.observations.contact_sensors[0].strength = 7; },
       [](Moment& m) { m.observations.imus[0].angular_velocity[2] = 9; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {

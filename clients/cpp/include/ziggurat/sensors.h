@@ -80,6 +80,32 @@ class Imu {
   Reading reading_;
 };
 
+/// Feels what touches a link. A handle into its session, valid while the session lives.
+class ContactSensor {
+ public:
+  const std::string& id() const noexcept { return id_; }
+  /// Id of the link, or `origin` for the robot's root link.
+  const std::string& anchor() const noexcept { return anchor_; }
+
+  /// Something touched the link in the last tick.
+  bool touches() const noexcept { return reading_.touches != 0; }
+  /// Sum of the forces of all contacts on the link, in its frame, mean over the tick: x, y, z [N].
+  const std::array<double, 3>& force() const noexcept { return reading_.force; }
+  /// Sum of the absolute values of these forces [N]: more than that of force() where contacts press
+  /// against each other.
+  double strength() const noexcept { return reading_.strength; }
+
+ private:
+  friend struct Layout;
+  struct Reading {
+    double touches = 0;
+    std::array<double, 3> force{};
+    double strength = 0;
+  };
+  std::string id_, anchor_;
+  Reading reading_;
+};
+
 /// The sensors of a robot that its controller enables, in scene order.
 class Sensors {
  public:
@@ -93,6 +119,8 @@ class Sensors {
   std::span<const Imu> imus() const noexcept { return imus_; }
   /// @throws std::out_of_range, naming those there are
   const Imu& imu(std::string_view id) const;
+  std::span<const ContactSensor> contact_sensors() const noexcept { return contact_sensors_; }
+  const ContactSensor& contact_sensor(std::string_view id) const;  ///< throws as above
 
  private:
   friend struct Layout;
@@ -100,6 +128,7 @@ class Sensors {
   std::optional<Positioning> positioning_;
   std::optional<Battery> battery_;
   std::vector<Imu> imus_;
+  std::vector<ContactSensor> contact_sensors_;
 };
 
 }  // namespace ziggurat

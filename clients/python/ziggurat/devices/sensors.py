@@ -10,7 +10,7 @@ from ..exchange import Exchange, Readings
 from ..named import Named
 from .device import Device, Quaternion, Vector
 
-__all__ = ["Battery", "Imu", "Pose", "ProximitySensor", "Sensors"]
+__all__ = ["Battery", "ContactSensor", "Imu", "Pose", "ProximitySensor", "Sensors"]
 
 
 class Pose(NamedTuple):
@@ -64,6 +64,35 @@ class Imu(Device):
         return self._read(3)
 
 
+class ContactSensor(Device):
+    """Feels what touches a link. Readings are means over the last tick; 0 before the first."""
+
+    __slots__ = ("anchor", "_place")
+
+    def __init__(self, exchange: Exchange, given: v1.ContactSensorDescription):
+        super().__init__(exchange, given.id)
+        self.anchor: str = given.anchor  # id of the link, or "origin" for the root link
+        self._place = 5 * exchange.place("contact_sensors")
+
+    def _read(self, first: int, last: int) -> Sequence[float]:
+        readings = self._exchange.seen.contact_sensors
+        return readings[self._place + first:self._place + last] or [0.0] * (last - first)
+
+    @property
+    def touches(self) -> bool:
+        return self._read(0, 1)[0] != 0
+
+    @property
+    def force(self) -> Vector:
+        """The sum of the forces of all contacts on the link, in its frame [N]."""
+        return tuple(self._read(1, 4))
+
+    @property
+    def strength(self) -> float:
+        """The sum of the absolute values of these forces [N]."""
+        return self._read(4, 5)[0]
+
+
 class Sensors:
     """Those of a robot that the scene's controller enables."""
 
@@ -80,6 +109,8 @@ class Sensors:
                             sensor.range, sensor.angle if sensor.HasField("angle") else None)
             for sensor in given.proximity_sensors]
         self.imus: Named[Imu] = Named([Imu(exchange, imu) for imu in given.imus], "IMU")
+        self.contact_sensors: Named[ContactSensor] = Named(
+            [ContactSensor(exchange, sensor) for sensor in given.contact_sensors], "contact sensor")
         self._proximity = [exchange.place("proximity") for _ in self.proximity_sensors]
 
     @property

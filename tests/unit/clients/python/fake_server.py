@@ -63,6 +63,7 @@ def equipped(id, **fields):
         range_and_bearing=v1.RangeAndBearingDescription(range=3, data_size=2, sends=True,
                                                         receives=True),
         positioning=True, battery=True,
+        contact_sensors=[v1.ContactSensorDescription(id="skin", anchor="base")],
         imus=[v1.ImuDescription(id="imu", anchor="base", position=[1, 2, 3],
                                 orientation=[0, 1, 0, 0])],
         cameras=[v1.CameraDescription(id="front", near=0.1, far=2, width=4, height=2,
