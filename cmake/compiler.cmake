@@ -16,13 +16,13 @@ if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
 endif()
 
+add_compile_options(-ffp-contract=off -fno-fast-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
 # Most of the time of most sources is headers. A unity build (the presets release, sanitized and
 # tsan) compiles a dozen sources of a target as one, which takes less than half of it. So a name in an
 # anonymous namespace is not that of another one in the same target.
 if(CMAKE_UNITY_BUILD)
   add_compile_options(-Wno-shadow)  # of names in another source
 endif()
-add_compile_options(-ffp-contract=off -fno-fast-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC 12 sees overlaps in std::string::assign(const char*) that are not there (its bug 105651).
   add_compile_options($<$<NOT:$<CONFIG:Debug>>:-Wno-restrict>)

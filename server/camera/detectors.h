@@ -48,7 +48,7 @@ struct View {
 
 // Each appends what is seen, in scene order; nothing if the camera lacks the detector. Tests come
 // in the order off, faces, in view, line of sight; each that fails spares the next.
-/// @param found  room to work in
+/// @param found  working memory
 
 void detect_leds(const View& view, const LineOfSight& clear, std::vector<std::size_t>& found,
                  std::vector<world::LedReading>& readings);

@@ -45,7 +45,7 @@ Bounds bounds(const std::array<Vector3, 8>& corners) {
     box.low = box.low.cwiseMin(corner);
     box.high = box.high.cwiseMax(corner);
   }
-  // Room for rounding, and for what counts as inside at the edges.
+  // A margin for rounding, and for what counts as inside at the edges.
   const double margin = 1e-6 + 1e-9 * (box.high - box.low).maxCoeff();
   box.low.array() -= margin;
   box.high.array() += margin;

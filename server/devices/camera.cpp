@@ -1,14 +1,18 @@
+// Cameras: each looks for LEDs, directional LEDs and tags at the end of a tick's physics.
+
 #include "devices/camera.h"
 
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "camera/detectors.h"
+#include "devices/kind.h"
+
 namespace ziggurat::devices {
-namespace {
-
-constexpr double at_target = 1e-4;         // devices may be mounted flush [m]
-constexpr std::size_t few_colliders = 32;  // more are left to the tree
-
-}  // namespace
 
 bool Sight::clear(const math::Vector3& eye, const math::Vector3& target) const {
+  constexpr double at_target = 1e-4;  // devices may be mounted flush [m]
   const math::Vector3 way = target - eye;
   const double length = way.norm();
   const physics::RayQuery ray{eye, target, {}, false};
@@ -22,45 +26,104 @@ bool Sight::clear(const math::Vector3& eye, const math::Vector3& target) const {
   return !blocked;
 }
 
-void Cameras::add(const Setting& setting) {
-  for (const world::CameraLayout& camera : setting.layout.cameras) {
-    detects_ = detects_ || camera.leds || camera.directional_leds || camera.tags;
+namespace {
+
+constexpr std::size_t few_colliders = 32;  // more are left to the tree
+
+world::CameraLayout camera_layout(const Carrier& carrier, const scene::Camera& from,
+                                  const world::Layout& layout) {
+  world::CameraLayout camera;
+  camera.id = from.id;
+  camera.mount = carrier.mount(carrier.anchor(from.anchor), from.pose, layout);
+  camera.near = from.near;
+  camera.far = from.far;
+  camera.focal_length = from.focal_length;
+  camera.principal_point = from.principal_point;
+  camera.resolution = from.resolution;
+  for (const scene::Detector& detector : from.detectors) {
+    const world::DetectorLayout looks{detector.medium, detector.show_rays};
+    switch (detector.kind) {
+      case scene::Detector::Kind::led:
+        camera.leds = looks;
+        break;
+      case scene::Detector::Kind::directional_led:
+        camera.directional_leds = looks;
+        break;
+      case scene::Detector::Kind::tag:
+        camera.tags = looks;
+        break;
+    }
   }
+  camera.shows_frustum = carrier.enabled.cameras->show_frustum;
+  camera.image = from.image;
+  return camera;
 }
 
-void Cameras::sense(Tick& tick) {
-  tick.observations.leds.clear();
-  tick.observations.directional_leds.clear();
-  tick.observations.tags.clear();
-  for (std::size_t robot = 0; robot < tick.layout.robots.size(); ++robot) {
-    if (tick.state.is_absent(tick.layout.robots[robot].entity)) continue;
-    const world::Range& cameras = tick.layout.robots[robot].cameras;
-    for (std::size_t i = cameras.begin; i < cameras.end(); ++i) sense(tick, robot, i);
+class Cameras final : public Kind {
+ public:
+  void lay_out(const Carrier& carrier, world::RobotLayout& robot,
+               world::Layout& layout) const override {
+    robot.cameras.begin = layout.cameras.size();
+    if (!carrier.enabled.cameras) return;
+    robot.cameras =
+        append(carrier.enabled.cameras->cameras, layout.cameras,
+               [&](const auto& camera) { return camera_layout(carrier, camera, layout); });
   }
-}
 
-void Cameras::sense(Tick& tick, std::size_t robot, std::size_t camera) {
-  const world::CameraLayout& lens = tick.layout.cameras[camera];
-  const camera::View view(tick.layout, tick.state, tick.index, camera);
-  if (lens.shows_frustum) tick.state.frusta.push_back({camera, view.corners});
-  // All rays of a camera lie in the box of its eye and its frustum.
-  tick.rays.find(view.bounds.low.cwiseMin(view.pose.position),
-                 view.bounds.high.cwiseMax(view.pose.position), colliders_);
-  Sight sight{tick.rays, robot, nullptr, colliders_, colliders_.size() <= few_colliders};
-  // One reference: a function that holds more would allocate.
-  const camera::LineOfSight clear = [&sight](const math::Vector3& eye,
-                                             const math::Vector3& target) {
-    return sight.clear(eye, target);
-  };
-  const auto showing = [&](const std::optional<world::DetectorLayout>& detector) {
-    return detector && detector->shows_rays ? &tick.state.rays : nullptr;
-  };
-  sight.shown = showing(lens.leds);
-  camera::detect_leds(view, clear, found_, tick.observations.leds);
-  sight.shown = showing(lens.directional_leds);
-  camera::detect_directional_leds(view, clear, found_, tick.observations.directional_leds);
-  sight.shown = showing(lens.tags);
-  camera::detect_tags(view, clear, found_, tick.observations.tags);
-}
+  void add(const Setting& setting) override {
+    for (const world::CameraLayout& camera : setting.layout.cameras) {
+      detects_ = detects_ || camera.leds || camera.directional_leds || camera.tags;
+    }
+  }
+
+  // The detectors need both.
+  bool casts_rays() const override { return detects_; }
+  bool needs_index() const override { return detects_; }
+
+  /// Replaces the readings of all cameras.
+  void sense(Tick& tick) override {
+    tick.observations.leds.clear();
+    tick.observations.directional_leds.clear();
+    tick.observations.tags.clear();
+    for (std::size_t robot = 0; robot < tick.layout.robots.size(); ++robot) {
+      if (tick.state.is_absent(tick.layout.robots[robot].entity)) continue;
+      const world::Range& cameras = tick.layout.robots[robot].cameras;
+      for (std::size_t i = cameras.begin; i < cameras.end(); ++i) sense(tick, robot, i);
+    }
+  }
+
+ private:
+  void sense(Tick& tick, std::size_t robot, std::size_t camera) {
+    const world::CameraLayout& lens = tick.layout.cameras[camera];
+    const camera::View view(tick.layout, tick.state, tick.index, camera);
+    if (lens.shows_frustum) tick.state.frusta.push_back({camera, view.corners});
+    // All rays of a camera lie in the box of its eye and its frustum.
+    tick.rays.find(view.bounds.low.cwiseMin(view.pose.position),
+                   view.bounds.high.cwiseMax(view.pose.position), colliders_);
+    Sight sight{tick.rays, robot, nullptr, colliders_, colliders_.size() <= few_colliders};
+    // One reference: a function that holds more would allocate.
+    const camera::LineOfSight clear = [&sight](const math::Vector3& eye,
+                                               const math::Vector3& target) {
+      return sight.clear(eye, target);
+    };
+    const auto showing = [&](const std::optional<world::DetectorLayout>& detector) {
+      return detector && detector->shows_rays ? &tick.state.rays : nullptr;
+    };
+    sight.shown = showing(lens.leds);
+    camera::detect_leds(view, clear, found_, tick.observations.leds);
+    sight.shown = showing(lens.directional_leds);
+    camera::detect_directional_leds(view, clear, found_, tick.observations.directional_leds);
+    sight.shown = showing(lens.tags);
+    camera::detect_tags(view, clear, found_, tick.observations.tags);
+  }
+
+  bool detects_ = false;
+  std::vector<std::size_t> found_;
+  std::vector<std::size_t> colliders_;  // about one camera
+};
+
+}  // namespace
+
+std::unique_ptr<Kind> make_cameras() { return std::make_unique<Cameras>(); }
 
 }  // namespace ziggurat::devices

@@ -1,61 +1,65 @@
 #include "devices/devices.h"
 
+#include <algorithm>
+#include <array>
+
 namespace ziggurat::devices {
 
-Devices::Devices(const Setting& setting, physics::World& physics)
-    : joints_(setting, physics),
-      wheels_(setting),
-      turrets_(setting),
-      radios_(setting),
-      proximity_(setting),
-      range_and_bearing_(setting),
-      positioning_(setting),
-      batteries_(setting),
-      cameras_(setting),
-      pictures_(setting) {}
+// Each in its own file.
+std::unique_ptr<Kind> make_joints();
+std::unique_ptr<Kind> make_wheels();
+std::unique_ptr<Kind> make_turrets();
+std::unique_ptr<Kind> make_visible();
+std::unique_ptr<Kind> make_radios();
+std::unique_ptr<Kind> make_proximity();
+std::unique_ptr<Kind> make_range_and_bearing();
+std::unique_ptr<Kind> make_positioning();
+std::unique_ptr<Kind> make_batteries();
+std::unique_ptr<Kind> make_cameras();
+std::unique_ptr<Kind> make_pictures();
+std::unique_ptr<Kind> make_imus();
+std::unique_ptr<Kind> make_contact_sensors();
 
-void Devices::add(const Setting& setting, physics::World& physics) {
-  joints_.add(setting, physics);
-  wheels_.add(setting);
-  turrets_.add(setting);
-  radios_.add(setting);
-  proximity_.add(setting);
-  range_and_bearing_.add(setting);
-  positioning_.add(setting);
-  batteries_.add(setting);
-  cameras_.add(setting);
-  pictures_.add(setting);
+Devices::Devices() {
+  constexpr std::array kinds{
+      make_joints,         make_wheels,    make_turrets,           make_visible,
+      make_radios,         make_proximity, make_range_and_bearing, make_positioning,
+      make_batteries,      make_cameras,   make_pictures,          make_imus,
+      make_contact_sensors};
+  for (const auto make : kinds) kinds_.push_back(make());
+}
+
+void Devices::lay_out(const Carrier& carrier, world::RobotLayout& robot,
+                      world::Layout& layout) const {
+  for (const auto& kind : kinds_) kind->lay_out(carrier, robot, layout);
+}
+
+void Devices::add(const Setting& setting) {
+  for (const auto& kind : kinds_) kind->add(setting);
 }
 
 void Devices::start(Tick& tick) {
-  joints_.start(tick);
-  wheels_.start(tick);
-  turrets_.start(tick);
-  start_visible(tick);
-  proximity_.start(tick);
-  positioning_.start(tick);
-  batteries_.start(tick);
-  pictures_.start(tick);
+  for (const auto& kind : kinds_) kind->start(tick);
 }
 
 void Devices::apply(Tick& tick) {
-  joints_.apply(tick);
-  wheels_.apply(tick);
-  turrets_.apply(tick);
-  apply_visible(tick);
-  radios_.apply(tick);
+  for (const auto& kind : kinds_) kind->apply(tick);
+}
+
+void Devices::after_substep(Tick& tick) {
+  for (const auto& kind : kinds_) kind->after_substep(tick);
 }
 
 void Devices::sense(Tick& tick) {
-  joints_.sense(tick);
-  wheels_.sense(tick);
-  turrets_.sense(tick);
-  proximity_.sense(tick);
-  range_and_bearing_.sense(tick);
-  positioning_.sense(tick);
-  batteries_.sense(tick);
-  cameras_.sense(tick);
-  pictures_.sense(tick);
+  for (const auto& kind : kinds_) kind->sense(tick);
+}
+
+bool Devices::casts_rays() const {
+  return std::ranges::any_of(kinds_, [](const auto& kind) { return kind->casts_rays(); });
+}
+
+bool Devices::needs_index() const {
+  return std::ranges::any_of(kinds_, [](const auto& kind) { return kind->needs_index(); });
 }
 
 }  // namespace ziggurat::devices

@@ -1,58 +1,93 @@
-#include "devices/joint.h"
+// Joint encoders and motors.
 
 #include <string>
+#include <vector>
+
+#include "devices/kind.h"
 
 namespace ziggurat::devices {
 namespace {
 
-/// Index into Entity::joints; the reader has made sure that it is there.
+/// Index into Entity::joints; the reader has checked that it exists.
 std::size_t find_joint(const scene::Entity& entity, const std::string& id) {
   std::size_t joint = 0;
   while (entity.joints[joint].id != id) ++joint;
   return joint;
 }
 
-}  // namespace
+class Joints final : public Kind {
+ public:
+  void lay_out(const Carrier& carrier, world::RobotLayout& robot,
+               world::Layout& layout) const override {
+    using scene::JointMode;
+    const scene::JointsUse& joints = carrier.enabled.joints;
+    robot.joint_sensors = append(joints.sensors, layout.joint_sensors, [](const auto& sensor) {
+      return world::JointSensorLayout{sensor.joint, sensor.mode == JointMode::velocity,
+                                      sensor.mode == JointMode::disabled};
+    });
+    robot.joint_actuators =
+        append(joints.actuators, layout.joint_actuators, [](const auto& actuator) {
+          return world::JointActuatorLayout{actuator.joint, actuator.mode == JointMode::velocity,
+                                            actuator.mode == JointMode::disabled,
+                                            actuator.max_impulse};
+        });
+  }
 
-void Joints::add(const Setting& setting, physics::World& physics) {
-  for (const world::RobotLayout& robot : setting.new_robots()) {
-    const scene::Entity& entity = setting.entity(robot.entity);
-    const scene::ControllerDevices& enabled = setting.enabled(robot);
-    for (const scene::JointActuator& actuator : enabled.joint_actuators) {
-      actuators_.push_back(physics.joint(robot.entity, find_joint(entity, actuator.joint)));
-      physics.add_motor(actuators_.back(), actuator.mode, actuator.max_impulse);
-    }
-    for (const scene::JointSensor& sensor : enabled.joint_sensors) {
-      const std::size_t joint = find_joint(entity, sensor.joint);
-      if (sensor.mode == scene::JointMode::disabled ||
-          !scene::has_coordinate(entity.joints[joint].type)) {
-        sensors_.push_back({{}, false, true});
-      } else {
-        sensors_.push_back(
-            {physics.joint(robot.entity, joint), sensor.mode == scene::JointMode::velocity, false});
+  /// Adds motors to the joints that have an actuator.
+  void add(const Setting& setting) override {
+    for (const world::RobotLayout& robot : setting.new_robots()) {
+      const scene::Entity& entity = setting.entity(robot.entity);
+      const scene::JointsUse& joints = setting.enabled(robot).joints;
+      for (const scene::JointActuator& actuator : joints.actuators) {
+        actuators_.push_back(
+            setting.physics.joint(robot.entity, find_joint(entity, actuator.joint)));
+        setting.physics.add_motor(actuators_.back(), actuator.mode, actuator.max_impulse);
+      }
+      for (const scene::JointSensor& sensor : joints.sensors) {
+        const std::size_t joint = find_joint(entity, sensor.joint);
+        if (sensor.mode == scene::JointMode::disabled || !scene::has_coordinate(entity.joints[joint].type)) {
+          sensors_.push_back({{}, false, true});
+        } else {
+          sensors_.push_back({setting.physics.joint(robot.entity, joint),
+                              sensor.mode == scene::JointMode::velocity, false});
+        }
       }
     }
   }
-}
 
-void Joints::start(Tick& tick) const {
-  tick.commands.joint_targets.resize(actuators_.size(), 0);
-  tick.observations.joint_readings.resize(sensors_.size(), 0);
-}
-
-void Joints::apply(Tick& tick) const {
-  for (std::size_t i = 0; i < actuators_.size(); ++i) {
-    tick.physics.set_target(actuators_[i], tick.commands.joint_targets[i]);
+  void start(Tick& tick) override {
+    tick.commands.joint_targets.resize(actuators_.size(), 0);
+    tick.observations.joint_readings.resize(sensors_.size(), 0);
   }
-}
 
-void Joints::sense(Tick& tick) const {
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    const Sensor& sensor = sensors_[i];
-    if (sensor.disabled) continue;
-    tick.observations.joint_readings[i] =
-        sensor.velocity ? tick.physics.velocity(sensor.joint) : tick.physics.position(sensor.joint);
+  void apply(Tick& tick) override {
+    for (std::size_t i = 0; i < actuators_.size(); ++i) {
+      tick.physics.set_target(actuators_[i], tick.commands.joint_targets[i]);
+    }
   }
-}
+
+  void sense(Tick& tick) override {
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+      const Sensor& sensor = sensors_[i];
+      if (sensor.disabled) continue;
+      tick.observations.joint_readings[i] = sensor.velocity ? tick.physics.velocity(sensor.joint)
+                                                            : tick.physics.position(sensor.joint);
+    }
+  }
+
+ private:
+  struct Sensor {
+    physics::JointIndex joint;
+    bool velocity = false;
+    bool disabled = false;
+  };
+
+  std::vector<physics::JointIndex> actuators_;  // parallel to Layout::joint_actuators
+  std::vector<Sensor> sensors_;                 // parallel to Layout::joint_sensors
+};
+
+}  // namespace
+
+std::unique_ptr<Kind> make_joints() { return std::make_unique<Joints>(); }
 
 }  // namespace ziggurat::devices

@@ -1,4 +1,9 @@
-#include "devices/positioning.h"
+// Ground truth: the pose of a robot's origin in the world, with noise where asked for.
+
+#include <vector>
+
+#include "devices/kind.h"
+#include "math/random.h"
 
 namespace ziggurat::devices {
 namespace {
@@ -11,39 +16,61 @@ math::Vector3 draw(const scene::NoiseRange& noise, math::RandomStream& random) {
   return offset;
 }
 
+class Positioning final : public Kind {
+ public:
+  void lay_out(const Carrier& carrier, world::RobotLayout& robot,
+               world::Layout& layout) const override {
+    robot.positioning =
+        append_if(carrier.enabled.positioning.has_value(), layout.positioning, carrier.index);
+  }
+
+  void add(const Setting& setting) override {
+    for (const world::RobotLayout& robot : setting.new_robots()) {
+      if (robot.positioning.count == 0) continue;
+      const scene::PositioningUse& use = *setting.enabled(robot).positioning;
+      sensors_.push_back({use, math::RandomStream(setting.seed, "positioning/" + robot.id)});
+    }
+  }
+
+  /// New sensors sense at once.
+  void start(Tick& tick) override {
+    const std::size_t known = tick.observations.positioning.size();
+    tick.observations.positioning.resize(sensors_.size());
+    sense(tick, known);
+  }
+
+  void sense(Tick& tick) override { sense(tick, 0); }
+
+ private:
+  void sense(Tick& tick, std::size_t first) {
+    std::vector<math::Pose>& poses = tick.observations.positioning;
+    for (std::size_t i = first; i < sensors_.size(); ++i) {
+      Sensor& sensor = sensors_[i];
+      math::Pose pose = tick.state.origins[tick.layout.positioning[i]];
+      if (!is_silent(sensor.noise.position))
+        pose.position += draw(sensor.noise.position, sensor.random);
+      if (!is_silent(sensor.noise.angle) || !is_silent(sensor.noise.axis)) {
+        const Eigen::AngleAxisd turn(pose.orientation);
+        const double angle =
+            turn.angle() + sensor.random.uniform(sensor.noise.angle.min, sensor.noise.angle.max);
+        math::Vector3 axis = turn.axis();
+        if (!is_silent(sensor.noise.axis)) axis += draw(sensor.noise.axis, sensor.random);
+        if (axis.norm() < 1e-12) axis = turn.axis();  // the noise took it away
+        pose.orientation = Eigen::AngleAxisd(angle, axis.normalized());
+      }
+      poses[i] = pose;
+    }
+  }
+
+  struct Sensor {
+    scene::PositioningUse noise;
+    math::RandomStream random;
+  };
+  std::vector<Sensor> sensors_;  // parallel to Layout::positioning
+};
+
 }  // namespace
 
-void Positioning::add(const Setting& setting) {
-  for (const world::RobotLayout& robot : setting.new_robots()) {
-    if (robot.positioning.count == 0) continue;
-    const scene::ControllerDevices& enabled = setting.enabled(robot);
-    sensors_.push_back({enabled.position_noise, enabled.angle_noise, enabled.axis_noise,
-                        math::RandomStream(setting.seed, "positioning/" + robot.id)});
-  }
-}
-
-void Positioning::start(Tick& tick) {
-  const std::size_t known = tick.observations.positioning.size();
-  tick.observations.positioning.resize(sensors_.size());
-  sense(tick, known);
-}
-
-void Positioning::sense(Tick& tick, std::size_t first) {
-  std::vector<math::Pose>& poses = tick.observations.positioning;
-  for (std::size_t i = first; i < sensors_.size(); ++i) {
-    Sensor& sensor = sensors_[i];
-    math::Pose pose = tick.state.origins[tick.layout.positioning[i]];
-    if (!is_silent(sensor.position)) pose.position += draw(sensor.position, sensor.random);
-    if (!is_silent(sensor.angle) || !is_silent(sensor.axis)) {
-      const Eigen::AngleAxisd turn(pose.orientation);
-      const double angle = turn.angle() + sensor.random.uniform(sensor.angle.min, sensor.angle.max);
-      math::Vector3 axis = turn.axis();
-      if (!is_silent(sensor.axis)) axis += draw(sensor.axis, sensor.random);
-      if (axis.norm() < 1e-12) axis = turn.axis();  // the noise took it away
-      pose.orientation = Eigen::AngleAxisd(angle, axis.normalized());
-    }
-    poses[i] = pose;
-  }
-}
+std::unique_ptr<Kind> make_positioning() { return std::make_unique<Positioning>(); }
 
 }  // namespace ziggurat::devices

@@ -1,10 +1,15 @@
-#include "devices/proximity.h"
+// Proximity sensors: rays that read how close the nearest foreign body is.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
+
+#include "devices/kind.h"
+#include "math/random.h"
 
 namespace ziggurat::devices {
+namespace {
 
 double proximity_reading(double distance, const scene::Response* response) {
   if (!response) return std::exp(-distance);
@@ -25,63 +30,105 @@ double footbot_proximity_reading(double distance) {
   return std::min(1.0, strength / (distance + offset));
 }
 
-void Proximity::add(const Setting& setting) {
-  for (std::size_t r = setting.first_robot; r < setting.layout.robots.size(); ++r) {
-    const world::RobotLayout& robot = setting.layout.robots[r];
-    if (robot.proximity.count == 0) continue;
-    const scene::ControllerDevices& enabled = setting.enabled(robot);
-    robots_.push_back({r, enabled.proximity_noise, enabled.proximity_show_rays,
-                       math::RandomStream(setting.seed, "proximity/" + robot.id)});
-    for (const auto& from : setting.entity(robot.entity).devices.proximity_sensors) {
-      Sensor sensor;
-      sensor.footbot = enabled.footbot_proximity;
-      sensor.response = from.response ? from.response : enabled.proximity_response;
-      sensor.sees_floor = from.sees_floor.value_or(enabled.proximity_sees_floor);
-      if (sensor.response) {
-        sensor.most = 0;
-        for (const auto& point : sensor.response->points) {
-          sensor.least = std::min(sensor.least, point.reading);
-          sensor.most = std::max(sensor.most, point.reading);
+class Proximity final : public Kind {
+ public:
+  void lay_out(const Carrier& carrier, world::RobotLayout& robot,
+               world::Layout& layout) const override {
+    robot.proximity.begin = layout.proximity.size();
+    const auto& use = carrier.enabled.proximity;
+    if (!use) return;
+    robot.proximity =
+        append(carrier.entity.devices.proximity_sensors, layout.proximity, [&](const auto& sensor) {
+          world::ProximityLayout ray{carrier.mount(sensor.anchor, sensor.offset, layout),
+                                     sensor.direction,
+                                     sensor.range,
+                                     {}};
+          if (use->footbot) ray.angle = std::atan2(sensor.direction.y(), sensor.direction.x());
+          return ray;
+        });
+  }
+
+  void add(const Setting& setting) override {
+    for (std::size_t r = setting.first_robot; r < setting.layout.robots.size(); ++r) {
+      const world::RobotLayout& robot = setting.layout.robots[r];
+      if (robot.proximity.count == 0) continue;
+      const scene::ProximityUse& use = *setting.enabled(robot).proximity;
+      robots_.push_back(
+          {r, use.noise, use.show_rays, math::RandomStream(setting.seed, "proximity/" + robot.id)});
+      for (const auto& from : setting.entity(robot.entity).devices.proximity_sensors) {
+        Sensor sensor;
+        sensor.footbot = use.footbot;
+        sensor.response = from.response ? from.response : use.response;
+        sensor.sees_floor = from.sees_floor.value_or(use.sees_floor);
+        if (sensor.response) {
+          sensor.most = 0;
+          for (const auto& point : sensor.response->points) {
+            sensor.least = std::min(sensor.least, point.reading);
+            sensor.most = std::max(sensor.most, point.reading);
+          }
         }
+        sensors_.push_back(std::move(sensor));
       }
-      sensors_.push_back(std::move(sensor));
     }
   }
-}
 
-void Proximity::start(Tick& tick) const { tick.observations.proximity.resize(sensors_.size(), 0); }
+  void start(Tick& tick) override { tick.observations.proximity.resize(sensors_.size(), 0); }
 
-void Proximity::sense(Tick& tick) {
-  for (Robot& robot : robots_) sense(tick, robot);
-}
-
-void Proximity::sense(Tick& tick, Robot& robot) {
-  const world::RobotLayout& layout = tick.layout.robots[robot.index];
-  if (tick.state.is_absent(layout.entity)) return;
-  const std::array own{layout.entity};
-  for (std::size_t i = layout.proximity.begin; i < layout.proximity.end(); ++i) {
-    const world::ProximityLayout& ray = tick.layout.proximity[i];
-    const Sensor& sensor = sensors_[i];
-    const math::Pose start = world::pose_of(tick.state, ray.mount);
-    const math::Vector3 way = start.orientation * ray.direction;
-    const math::Vector3 end = start.position + ray.range * way;
-    const auto hit = tick.rays.cast({start.position, end, own, sensor.sees_floor});
-    double reading = 0;
-    if (hit) {
-      reading = sensor.footbot ? footbot_proximity_reading(hit->distance)
-                               : proximity_reading(hit->distance,
-                                                   sensor.response ? &*sensor.response : nullptr);
-    }
-    if (robot.noise > 0) {
-      reading += robot.random.uniform(-robot.noise, robot.noise);
-      reading = std::clamp(reading, sensor.least, sensor.most);
-    }
-    tick.observations.proximity[i] = reading;
-    if (!robot.shows_rays) continue;
-    const math::Vector3 seen = hit ? math::Vector3(start.position + hit->distance * way) : end;
-    tick.state.rays.push_back(
-        {world::Ray::Kind::proximity, robot.index, start.position, seen, hit.has_value()});
+  void sense(Tick& tick) override {
+    for (Robot& robot : robots_) sense(tick, robot);
   }
-}
+
+  bool casts_rays() const override { return !sensors_.empty(); }
+
+ private:
+  struct Sensor {
+    std::optional<scene::Response> response;
+    bool footbot = false;  // has the foot-bot's own response
+    bool sees_floor = false;
+    double least = 0, most = 1;  // of readings with noise
+  };
+  struct Robot {
+    std::size_t index;  // into Layout::robots
+    double noise;       // uniform in ± this
+    bool shows_rays;
+    math::RandomStream random;
+  };
+
+  void sense(Tick& tick, Robot& robot) {
+    const world::RobotLayout& layout = tick.layout.robots[robot.index];
+    if (tick.state.is_absent(layout.entity)) return;
+    const std::array own{layout.entity};
+    for (std::size_t i = layout.proximity.begin; i < layout.proximity.end(); ++i) {
+      const world::ProximityLayout& ray = tick.layout.proximity[i];
+      const Sensor& sensor = sensors_[i];
+      const math::Pose start = world::pose_of(tick.state, ray.mount);
+      const math::Vector3 way = start.orientation * ray.direction;
+      const math::Vector3 end = start.position + ray.range * way;
+      const auto hit = tick.rays.cast({start.position, end, own, sensor.sees_floor});
+      double reading = 0;
+      if (hit) {
+        reading = sensor.footbot ? footbot_proximity_reading(hit->distance)
+                                 : proximity_reading(hit->distance,
+                                                     sensor.response ? &*sensor.response : nullptr);
+      }
+      if (robot.noise > 0) {
+        reading += robot.random.uniform(-robot.noise, robot.noise);
+        reading = std::clamp(reading, sensor.least, sensor.most);
+      }
+      tick.observations.proximity[i] = reading;
+      if (!robot.shows_rays) continue;
+      const math::Vector3 seen = hit ? math::Vector3(start.position + hit->distance * way) : end;
+      tick.state.rays.push_back(
+          {world::Ray::Kind::proximity, robot.index, start.position, seen, hit.has_value()});
+    }
+  }
+
+  std::vector<Sensor> sensors_;  // parallel to Layout::proximity
+  std::vector<Robot> robots_;    // that have sensors
+};
+
+}  // namespace
+
+std::unique_ptr<Kind> make_proximity() { return std::make_unique<Proximity>(); }
 
 }  // namespace ziggurat::devices

@@ -1,66 +1,114 @@
-#include "devices/range_and_bearing.h"
+// Range and bearing: packets of all devices in range and sight, with noise and loss.
+
+#include "media/range_and_bearing.h"
 
 #include <array>
+#include <optional>
+#include <vector>
+
+#include "devices/kind.h"
+#include "math/random.h"
 
 namespace ziggurat::devices {
+namespace {
 
-void RangeAndBearing::add(const Setting& setting) {
-  const world::Layout& layout = setting.layout;
-  receivers_.resize(layout.range_and_bearing.size());
-  for (std::size_t r = setting.first_robot; r < layout.robots.size(); ++r) {
-    const world::RobotLayout& robot = layout.robots[r];
-    const scene::ControllerDevices& enabled = setting.enabled(robot);
-    if (robot.range_and_bearing.count == 0 || !enabled.range_and_bearing_sensor) continue;
-    const std::size_t device = robot.range_and_bearing.begin;
-    const std::size_t medium = layout.range_and_bearing[device].medium;
-    const bool occludes = setting.scene.media[medium].checks_occlusions;
-    receivers_[device].emplace(
-        Receiver{r, enabled.range_and_bearing_noise, enabled.range_and_bearing_loss,
-                 enabled.range_and_bearing_show_rays, occludes,
-                 math::RandomStream(setting.seed, "range_and_bearing/" + robot.id)});
-    needs_index_ = true;
-    casts_rays_ = casts_rays_ || occludes;
+class RangeAndBearing final : public Kind {
+ public:
+  void lay_out(const Carrier& carrier, world::RobotLayout& robot,
+               world::Layout& layout) const override {
+    auto& list = layout.range_and_bearing;
+    robot.range_and_bearing.begin = list.size();
+    const scene::Devices& carried = carrier.entity.devices;
+    if (!carried.range_and_bearing) return;
+    const scene::RangeAndBearing& device = *carried.range_and_bearing;
+    const auto& enabled = carrier.enabled.range_and_bearing;
+    const auto use = enabled.value_or(scene::RangeAndBearingUse{});
+    const world::Range data{list.empty() ? 0 : list.back().data.end(), device.data_size};
+    list.push_back({carrier.mount(device.anchor, device.pose, layout), device.range,
+                    use.medium.value_or(carried.range_and_bearing_medium.value_or(0)), data,
+                    use.actuator, use.sensor});
+    robot.range_and_bearing.count = enabled ? 1 : 0;
   }
-}
 
-void RangeAndBearing::sense(Tick& tick) {
-  tick.observations.range_and_bearing.clear();
-  if (!needs_index_) return;
-  tick.observations.range_and_bearing_data = tick.state.range_and_bearing_data;
-  for (const media::Sighting& pair : medium_.sight(tick.layout, tick.index)) {
-    receive(tick, pair, *receivers_[pair.receiver]);
-  }
-}
-
-void RangeAndBearing::receive(Tick& tick, const media::Sighting& pair, Receiver& receiver) {
-  const auto& devices = tick.layout.range_and_bearing;
-  const auto &from = devices[pair.sender], &to = devices[pair.receiver];
-  const math::Pose own = world::pose_of(tick.state, to.mount);
-  const math::Vector3 other = world::position_of(tick.state, from.mount);
-  if (receiver.checks_occlusions) {
-    // The two carriers are not in their own way.
-    const std::array carriers{to.mount.entity, from.mount.entity};
-    const auto hit = tick.rays.cast({other, own.position, carriers, false});
-    if (receiver.shows_rays) {
-      const math::Vector3 way = own.position - other;
-      const math::Vector3 end =
-          hit ? math::Vector3(other + way.normalized() * hit->distance) : own.position;
-      tick.state.rays.push_back(
-          {world::Ray::Kind::range_and_bearing, receiver.robot, other, end, hit.has_value()});
+  void add(const Setting& setting) override {
+    const world::Layout& layout = setting.layout;
+    receivers_.resize(layout.range_and_bearing.size());
+    for (std::size_t r = setting.first_robot; r < layout.robots.size(); ++r) {
+      const world::RobotLayout& robot = layout.robots[r];
+      const auto& use = setting.enabled(robot).range_and_bearing;
+      if (robot.range_and_bearing.count == 0 || !use->sensor) continue;
+      const std::size_t device = robot.range_and_bearing.begin;
+      const std::size_t medium = layout.range_and_bearing[device].medium;
+      const bool occludes = setting.scene.media[medium].checks_occlusions;
+      receivers_[device].emplace(
+          Receiver{r, use->noise, use->loss, use->show_rays, occludes,
+                   math::RandomStream(setting.seed, "range_and_bearing/" + robot.id)});
+      needs_index_ = true;
+      casts_rays_ = casts_rays_ || occludes;
     }
-    if (hit) return;
-  } else if (receiver.shows_rays) {
-    tick.state.rays.push_back(
-        {world::Ray::Kind::range_and_bearing, receiver.robot, other, own.position, false});
   }
-  if (receiver.loss > 0 && receiver.random.uniform(0, 1) < receiver.loss) return;
-  math::Vector3 seen = math::inverse(own) * other;
-  if (receiver.noise > 0) {
-    for (double& coordinate : seen) coordinate += receiver.random.gaussian(0, receiver.noise);
+
+  void sense(Tick& tick) override {
+    tick.observations.range_and_bearing.clear();
+    if (!needs_index_) return;
+    tick.observations.range_and_bearing_data = tick.state.range_and_bearing_data;
+    for (const media::Sighting& pair : medium_.sight(tick.layout, tick.index)) {
+      receive(tick, pair, *receivers_[pair.receiver]);
+    }
   }
-  const media::Bearing bearing = media::bearing_of(seen);
-  tick.observations.range_and_bearing.push_back(
-      {pair.receiver, bearing.range, bearing.horizontal, bearing.vertical, from.data});
-}
+
+  bool casts_rays() const override { return casts_rays_; }
+  bool needs_index() const override { return needs_index_; }
+
+ private:
+  struct Receiver {
+    std::size_t robot = 0;  // into Layout::robots
+    double noise = 0;       // standard deviation of each coordinate of a sender [m]
+    double loss = 0;        // probability
+    bool shows_rays = false;
+    bool checks_occlusions = true;
+    math::RandomStream random;
+  };
+
+  void receive(Tick& tick, const media::Sighting& pair, Receiver& receiver) {
+    const auto& devices = tick.layout.range_and_bearing;
+    const auto &from = devices[pair.sender], &to = devices[pair.receiver];
+    const math::Pose own = world::pose_of(tick.state, to.mount);
+    const math::Vector3 other = world::position_of(tick.state, from.mount);
+    if (receiver.checks_occlusions) {
+      // The two carriers are not in their own way.
+      const std::array carriers{to.mount.entity, from.mount.entity};
+      const auto hit = tick.rays.cast({other, own.position, carriers, false});
+      if (receiver.shows_rays) {
+        const math::Vector3 way = own.position - other;
+        const math::Vector3 end =
+            hit ? math::Vector3(other + way.normalized() * hit->distance) : own.position;
+        tick.state.rays.push_back(
+            {world::Ray::Kind::range_and_bearing, receiver.robot, other, end, hit.has_value()});
+      }
+      if (hit) return;
+    } else if (receiver.shows_rays) {
+      tick.state.rays.push_back(
+          {world::Ray::Kind::range_and_bearing, receiver.robot, other, own.position, false});
+    }
+    if (receiver.loss > 0 && receiver.random.uniform(0, 1) < receiver.loss) return;
+    math::Vector3 seen = math::inverse(own) * other;
+    if (receiver.noise > 0) {
+      for (double& coordinate : seen) coordinate += receiver.random.gaussian(0, receiver.noise);
+    }
+    const media::Bearing bearing = media::bearing_of(seen);
+    tick.observations.range_and_bearing.push_back(
+        {pair.receiver, bearing.range, bearing.horizontal, bearing.vertical, from.data});
+  }
+
+  media::RangeAndBearingMedium medium_;
+  std::vector<std::optional<Receiver>> receivers_;  // parallel to Layout::range_and_bearing
+  bool casts_rays_ = false;
+  bool needs_index_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Kind> make_range_and_bearing() { return std::make_unique<RangeAndBearing>(); }
 
 }  // namespace ziggurat::devices

@@ -15,14 +15,16 @@
 
 namespace ziggurat::devices {
 
-/// The world at its start, or what has come since the devices were told of it last.
+/// The world at its start, or what was added since the last call.
 struct Setting {
   const scene::Scene& scene;
-  std::span<const scene::Entity> entities;        ///< those that are new, placed, in scene order
-  const world::Layout& layout;                    ///< of all; outlives the devices
-  std::uint64_t seed;                             ///< of random streams
-  double tick_length;                             ///< simulated time per tick [s]
-  std::size_t first_entity = 0, first_robot = 0;  ///< into the layout: those before are known
+  std::span<const scene::Entity> entities;  ///< the new ones, placed, in scene order
+  const world::Layout& layout;              ///< of all; outlives the devices
+  std::uint64_t seed;                       ///< of random streams
+  double tick_length;                       ///< simulated time per tick [s]
+  double substep;                           ///< physical time per substep [s]
+  physics::World& physics;
+  std::size_t first_entity = 0, first_robot = 0;  ///< into the layout: the first new ones
   /// All entities as they were placed, in scene order; costs time.
   std::function<std::vector<scene::Entity>()> all_entities = {};
 

@@ -13,13 +13,13 @@ namespace ziggurat::media {
 
 class DevicesIndex {
  public:
-  /// LEDs, directional LEDs and tags are indexed if some camera detects them.
+  /// LEDs, directional LEDs and tags are indexed if a camera detects them.
   explicit DevicesIndex(const world::Layout& layout);
 
   /// Takes the poses of a tick.
   void build(const world::State& state);
 
-  // Each kind's stretch of all devices; empty if nobody asks for it.
+  // The range of each kind among all devices; empty if it is not indexed.
   world::Range radios, range_and_bearing, leds, directional_leds, tags;
 
   /// In W [m]; of what is absent not a number.

@@ -19,8 +19,8 @@ struct RadioLink {
 
 class RadioMedium {
  public:
-  /// Delivers what was sent. Who hears whom is decided after everything is known, so the result
-  /// depends neither on the order of `sent` (between radios) nor on that of robots.
+  /// Delivers what was sent. All messages of a tick are known before the first is delivered, so the
+  /// result depends neither on the order of `sent` (between radios) nor on that of robots.
   /// @param index     of the poses that the messages leave at
   /// @param sent      emptied
   /// @param received  replaced: ascending by receiver, then sender, then as sent

@@ -1,6 +1,6 @@
 #pragma once
-// Range and bearing: each device sends its data at every tick; who is strictly closer than the
-// sender's range, sends packets of the same size and is in sight learns where the sender is.
+// Range and bearing: each device sends its data at every tick. A device that is strictly closer
+// than the sender's range, is in sight and has packets of the same size learns where the sender is.
 
 #include <cstddef>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace ziggurat::media {
 
-/// A sender within reach of a receiver; whether anything is in between is not looked at.
+/// A sender within reach of a receiver, whether anything is in between or not.
 struct Sighting {
   std::size_t sender = 0, receiver = 0;  ///< into Layout::range_and_bearing
 };

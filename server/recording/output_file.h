@@ -9,7 +9,7 @@
 
 namespace ziggurat::recording {
 
-/// A file can't be created or written; the message names it and says why.
+/// A file cannot be created or written; the message names the file and the cause.
 class WriteError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -27,7 +27,7 @@ class OutputFile {
   /// Append here; then call written().
   fmt::memory_buffer& buffer() { return buffer_; }
 
-  /// Says that a whole line stands in the buffer: a full buffer goes to the disk.
+  /// Call it after each whole line: a full buffer is written to the disk.
   /// @throws WriteError
   void written();
 

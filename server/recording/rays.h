@@ -1,5 +1,5 @@
 #pragma once
-// What was tested and who was reached: `--rays`.
+// Rays that sensors tested, and links between devices: `--rays`.
 
 #include <string>
 

@@ -79,8 +79,9 @@ std::vector<Camera> read_cameras(Reading& reading, Element& sensor, ControllerUs
       continue;
     }
     cameras.push_back(read_camera(reading, element));
-    use.camera_anchors.push_back(element.where("anchor"));
     const std::string& id = cameras.back().id;
+    use.anchors.push_back(
+        {"camera " + in_quotes(id), cameras.back().anchor, element.where("anchor")});
     if (!id.empty() && !ids.add(id)) {
       element.fault_at("id", "is the id of an earlier camera; give each its own");
     }

@@ -1,4 +1,4 @@
-// <actuators> and <sensors>: a table of all names of the dialect, and what each may say.
+// <actuators> and <sensors>: a table of all names of the dialect, and the attributes of each.
 
 #include <array>
 #include <numbers>
@@ -30,6 +30,7 @@ struct DeviceRow {
   std::string_view implementation;
   std::string_view subject;  ///< of the notice that it has no effect yet; empty: it has
   Enable enable;
+  bool is_carried = true;  ///< an entity must carry it: controllers.cpp checks that
 };
 
 // --- joints -------------------------------------------------------------------------------------
@@ -54,13 +55,13 @@ void read_joint_list(Element& element, Read read) {
 void enable_joint_actuators(const Enabling& e) {
   read_joint_list(e.element, [&](Element& joint, const std::string& id, JointMode mode) {
     const double impulse = joint.required("max_impulse", non_negative);
-    if (!id.empty()) e.devices.joint_actuators.push_back({id, mode, impulse, joint.where()});
+    if (!id.empty()) e.devices.joints.actuators.push_back({id, mode, impulse, joint.where()});
   });
 }
 
 void enable_joint_sensors(const Enabling& e) {
   read_joint_list(e.element, [&](Element& joint, const std::string& id, JointMode mode) {
-    if (!id.empty()) e.devices.joint_sensors.push_back({id, mode, joint.where()});
+    if (!id.empty()) e.devices.joints.sensors.push_back({id, mode, joint.where()});
   });
 }
 
@@ -68,85 +69,132 @@ void enable_joint_sensors(const Enabling& e) {
 
 constexpr std::string_view own_medium = "the medium is that of the entity's own <devices>";
 
-void read_radios_use(const Enabling& e) {
+/// What the controller enables of a kind that has both an actuator and a sensor.
+template <class Use>
+Use& use_of(std::optional<Use>& use) {
+  return use ? *use : use.emplace();
+}
+
+RadiosUse& read_radios_use(const Enabling& e) {
+  RadiosUse& use = use_of(e.devices.radios);
   e.element.without_effect("medium", text, own_medium);
-  if (e.element.optional("show_rays", boolean, false)) e.devices.radios_show_rays = true;
+  if (e.element.optional("show_rays", boolean, false)) use.show_rays = true;
+  return use;
 }
 
-void enable_radios_actuator(const Enabling& e) {
-  e.devices.radios_actuator = true;
-  read_radios_use(e);
-}
-
-void enable_radios_sensor(const Enabling& e) {
-  e.devices.radios_sensor = true;
-  read_radios_use(e);
-}
+void enable_radios_actuator(const Enabling& e) { read_radios_use(e).actuator = true; }
+void enable_radios_sensor(const Enabling& e) { read_radios_use(e).sensor = true; }
 
 void enable_leds(const Enabling& e) {
-  e.devices.leds_actuator = true;
-  e.devices.leds_medium = read_medium(e.reading, e.element, MediumKind::led);
+  e.devices.leds.emplace().medium = read_medium(e.reading, e.element, MediumKind::led);
 }
 
 void enable_directional_leds(const Enabling& e) {
-  e.devices.directional_leds_actuator = true;
+  e.devices.directional_leds = true;
   e.element.without_effect("medium", text, own_medium);
 }
 
 void enable_tags(const Enabling& e) {
-  e.devices.tags_actuator = true;
+  e.devices.tags = true;
   e.element.without_effect("medium", text, own_medium);
 }
 
-void enable_magnets(const Enabling& e) { e.devices.magnets_actuator = true; }
+void enable_magnets(const Enabling& e) { e.devices.magnets = true; }
 
-/// Both sensors make the same table of a robot.
-void note_second_proximity(const Enabling& e, std::string_view other) {
-  if (!e.devices.proximity_sensor) return;
-  e.reading.report.notice(
-      e.element.where(),
-      fmt::format("<{}> replaces <{}>: both make robot.proximity", e.element.name(), other));
+/// <proximity> or <footbot_proximity>: both make the same table of a robot.
+ProximityUse& enable_rays(const Enabling& e, std::string_view other) {
+  if (e.devices.proximity) {
+    e.reading.report.notice(
+        e.element.where(),
+        fmt::format("<{}> replaces <{}>: both make robot.proximity", e.element.name(), other));
+  }
+  ProximityUse& use = e.devices.proximity.emplace();
+  use.show_rays = e.element.optional("show_rays", boolean, false);
+  use.noise = e.element.optional("noise_level", non_negative, 0.0);
+  return use;
 }
 
 void enable_proximity(const Enabling& e) {
-  note_second_proximity(e, "footbot_proximity");
-  e.devices.footbot_proximity = false;
-  e.devices.proximity_sensor = true;
-  e.devices.proximity_show_rays = e.element.optional("show_rays", boolean, false);
-  e.devices.proximity_noise = e.element.optional("noise_level", non_negative, 0.0);
-  e.devices.proximity_sees_floor = e.element.optional("floor", boolean, false);
-  e.devices.proximity_response = e.element.optional("response", response);
+  ProximityUse& use = enable_rays(e, "footbot_proximity");
+  use.sees_floor = e.element.optional("floor", boolean, false);
+  use.response = e.element.optional("response", response);
 }
 
 void enable_cameras(const Enabling& e) {
-  e.devices.cameras_show_frustum = e.element.optional("show_frustum", boolean, false);
-  e.devices.cameras = read_cameras(e.reading, e.element, e.use);
+  CamerasUse& use = e.devices.cameras.emplace();
+  use.show_frustum = e.element.optional("show_frustum", boolean, false);
+  use.cameras = read_cameras(e.reading, e.element, e.use);
+}
+
+NoiseRange read_noise(Element& element, const char* name, double unit = 1) {
+  const auto [min, max] = element.optional(name, range, {0.0, 0.0});
+  return {min * unit, max * unit};
 }
 
 void enable_positioning(const Enabling& e) {
-  const auto noise = [&](const char* name, double unit) {
-    const auto [min, max] = e.element.optional(name, range, {0.0, 0.0});
-    return NoiseRange{min * unit, max * unit};
-  };
-  e.devices.positioning_sensor = true;
-  e.devices.position_noise = noise("pos_noise_range", 1);
-  e.devices.angle_noise = noise("angle_noise_range", std::numbers::pi / 180);
-  e.devices.axis_noise = noise("axis_noise_range", 1);
+  PositioningUse& use = e.devices.positioning.emplace();
+  use.position = read_noise(e.element, "pos_noise_range");
+  use.angle = read_noise(e.element, "angle_noise_range", std::numbers::pi / 180);
+  use.axis = read_noise(e.element, "axis_noise_range");
 }
 
-void enable_battery(const Enabling& e) { e.devices.battery_sensor = true; }
+void enable_battery(const Enabling& e) { e.devices.battery = true; }
 
 void enable_range_and_bearing_actuator(const Enabling& e) {
-  e.devices.range_and_bearing_actuator = true;
+  use_of(e.devices.range_and_bearing).actuator = true;
 }
 
 void enable_range_and_bearing_sensor(const Enabling& e) {
-  e.devices.range_and_bearing_sensor = true;
-  e.devices.range_and_bearing_medium =
-      read_medium(e.reading, e.element, MediumKind::range_and_bearing);
-  e.devices.range_and_bearing_noise = e.element.optional("noise_std_dev", non_negative, 0.0);
-  e.devices.range_and_bearing_loss = e.element.optional("packet_drop_prob", probability, 0.0);
-  e.devices.range_and_bearing_show_rays = e.element.optional("show_rays", boolean, false);
+  RangeAndBearingUse& use = use_of(e.devices.range_and_bearing);
+  use.sensor = true;
+  use.medium = read_medium(e.reading, e.element, MediumKind::range_and_bearing);
+  use.noise = e.element.optional("noise_std_dev", non_negative, 0.0);
+  use.loss = e.element.optional("packet_drop_prob", probability, 0.0);
+  use.show_rays = e.element.optional("show_rays", boolean, false);
+}
+
+/// Reads the children of a sensor that are fixed to an anchor: all named `name`, each
+/// with an id and an anchor, and what `read` reads.
+template <class Device, class Read>
+void read_mounted(const Enabling& e, std::string_view name, std::vector<Device>& devices,
+                  Read read) {
+  Ids ids;
+  for (Element& element : e.element.children()) {
+    if (element.name() != name) {
+      element.unknown_in(e.element.name(), std::array{name});
+      continue;
+    }
+    Device device;
+    device.id = element.required("id", identifier);
+    device.anchor = element.required("anchor", identifier);
+    if (!device.id.empty() && !ids.add(device.id)) {
+      element.fault_at("id", fmt::format("is the id of an earlier {}; give each its own", name));
+    }
+    e.use.anchors.push_back(
+        {fmt::format("{} {}", name, in_quotes(device.id)), device.anchor, element.where("anchor")});
+    read(element, device);
+    element.done();
+    devices.push_back(std::move(device));
+  }
+  if (devices.empty()) {
+    e.element.fault(
+        fmt::format("has no sensor; write <{} id=\"…\" anchor=\"origin\"/> in it", name));
+  }
+}
+
+void enable_imus(const Enabling& e) {
+  read_mounted(e, "imu", e.devices.imus, [](Element& element, Imu& imu) {
+    imu.pose = read_pose(element);
+    imu.acceleration_noise = element.optional("acceleration_noise", non_negative, 0.0);
+    imu.acceleration_bias_walk = element.optional("acceleration_bias_walk", non_negative, 0.0);
+    imu.angular_velocity_noise = element.optional("angular_velocity_noise", non_negative, 0.0);
+    imu.angular_velocity_bias_walk =
+        element.optional("angular_velocity_bias_walk", non_negative, 0.0);
+  });
+}
+
+void enable_contact_sensors(const Enabling& e) {
+  read_mounted(e, "contact_sensor", e.devices.contact_sensors, [](Element&, ContactSensor&) {});
 }
 
 // --- devices of robots on wheels ----------------------------------------------------------------
@@ -160,7 +208,6 @@ std::array<double, 2> read_sides(Element& element, std::array<const char*, 3> na
 }
 
 void enable_wheels(const Enabling& e) {
-  e.devices.wheels_actuator = true;
   const auto bias_mean =
       read_sides(e.element, {"bias_avg", "bias_avg_left", "bias_avg_right"}, number, 0);
   const auto bias_deviation = read_sides(
@@ -169,32 +216,23 @@ void enable_wheels(const Enabling& e) {
       read_sides(e.element, {"factor_avg", "factor_avg_left", "factor_avg_right"}, number, 1);
   const auto factor_deviation = read_sides(
       e.element, {"factor_stddev", "factor_stddev_left", "factor_stddev_right"}, non_negative, 0);
+  WheelsUse& use = use_of(e.devices.wheels);
+  use.actuator = true;
   for (std::size_t i = 0; i < 2; ++i) {
-    e.devices.wheel_noise[i] = {bias_mean[i], bias_deviation[i], factor_mean[i],
-                                factor_deviation[i]};
+    use.noise[i] = {bias_mean[i], bias_deviation[i], factor_mean[i], factor_deviation[i]};
   }
 }
 
-NoiseRange read_noise(Element& element, const char* name) {
-  const auto [min, max] = element.optional(name, range, {0.0, 0.0});
-  return {min, max};
-}
-
 void enable_wheel_encoders(const Enabling& e) {
-  e.devices.wheels_sensor = true;
-  e.devices.wheel_velocity_noise = read_noise(e.element, "vel_noise_range");
-  e.devices.wheel_distance_noise = read_noise(e.element, "dist_noise_range");
+  WheelsUse& use = use_of(e.devices.wheels);
+  use.sensor = true;
+  use.velocity_noise = read_noise(e.element, "vel_noise_range");
+  use.distance_noise = read_noise(e.element, "dist_noise_range");
 }
 
-void enable_turret(const Enabling& e) { e.devices.turret_actuator = true; }
-void enable_turret_encoder(const Enabling& e) { e.devices.turret_encoder = true; }
-
-void enable_footbot_proximity(const Enabling& e) {
-  note_second_proximity(e, "proximity");
-  e.devices.proximity_sensor = e.devices.footbot_proximity = true;
-  e.devices.proximity_show_rays = e.element.optional("show_rays", boolean, false);
-  e.devices.proximity_noise = e.element.optional("noise_level", non_negative, 0.0);
-}
+void enable_turret(const Enabling& e) { use_of(e.devices.turret).actuator = true; }
+void enable_turret_encoder(const Enabling& e) { use_of(e.devices.turret).encoder = true; }
+void enable_footbot_proximity(const Enabling& e) { enable_rays(e, "proximity").footbot = true; }
 
 // --- devices that are only checked so far -------------------------------------------------------
 
@@ -212,7 +250,7 @@ void enable_blob_camera(const Enabling& e) {
 // --- the tables ---------------------------------------------------------------------------------
 
 constexpr std::array<DeviceRow, 14> actuator_rows{{
-    {"joints", "default", "", enable_joint_actuators},
+    {"joints", "default", "", enable_joint_actuators, false},
     {"radios", "default", "", enable_radios_actuator},
     {"leds", "default", "", enable_leds},
     {"directional_leds", "default", "", enable_directional_leds},
@@ -228,12 +266,14 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
     {"footbot_distance_scanner", "default", "footbot_distance_scanner devices", enable_plain},
 }};
 
-constexpr std::array<DeviceRow, 18> sensor_rows{{
-    {"joints", "default", "", enable_joint_sensors},
+constexpr std::array<DeviceRow, 20> sensor_rows{{
+    {"joints", "default", "", enable_joint_sensors, false},
     {"radios", "default", "", enable_radios_sensor},
-    {"cameras", "default", "", enable_cameras},
+    {"cameras", "default", "", enable_cameras, false},
+    {"imus", "default", "", enable_imus, false},
+    {"contact_sensors", "default", "", enable_contact_sensors, false},
     {"proximity", "default", "", enable_proximity},
-    {"positioning", "default", "", enable_positioning},
+    {"positioning", "default", "", enable_positioning, false},
     {"differential_steering", "default", "", enable_wheel_encoders},
     {"battery", "default", "", enable_battery},
     {"ground", "rot_z_only", "ground sensors", enable_plain},
@@ -253,7 +293,7 @@ constexpr std::array<DeviceRow, 18> sensor_rows{{
 void read_device(const Enabling& e, const DeviceRow& row) {
   e.element.required("implementation", Words{row.implementation});
   if (!row.subject.empty()) e.reading.report.no_effect_yet(e.element.where(), row.subject);
-  e.use.devices.push_back({std::string(row.name), e.element.where()});
+  if (row.is_carried) e.use.devices.push_back({std::string(row.name), e.element.where()});
   row.enable(e);
   e.element.done();
 }

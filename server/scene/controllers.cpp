@@ -130,7 +130,6 @@ std::string_view kind_of(const Entity& entity) {
 
 /// What an entity lacks for a device, or nothing.
 std::optional<std::string> lacking(const Entity& entity, const DeviceUse& use) {
-  if (use.name == "joints" || use.name == "cameras" || use.name == "positioning") return {};
   const bool prototype = entity.kind == EntityKind::prototype;
   const auto component = std::ranges::find(components, use.name, &Component::device);
   if (component != components.end()) {
@@ -185,20 +184,20 @@ struct Check {
   void check_joints(const ControllerDevices& devices) const {
     std::unordered_map<std::string_view, const Joint*> joints;
     for (const Joint& joint : entity.joints) joints.emplace(joint.id, &joint);
-    for (const JointActuator& a : devices.joint_actuators) {
+    for (const JointActuator& a : devices.joints.actuators) {
       check_joint(a.joint, a.where, true, joints);
     }
-    for (const JointSensor& s : devices.joint_sensors) check_joint(s.joint, s.where, false, joints);
+    for (const JointSensor& s : devices.joints.sensors)
+      check_joint(s.joint, s.where, false, joints);
   }
 
-  void check_cameras(const ControllerDevices& devices) const {
-    for (std::size_t i = 0; i < devices.cameras.size(); ++i) {
-      const std::string& anchor = devices.cameras[i].anchor;
+  void check_anchors() const {
+    for (const AnchorUse& device : use.anchors) {
+      const std::string& anchor = device.anchor;
       if (anchor.empty() || anchor == "origin" || reading.anchors.contains(anchor)) continue;
-      blame(use.camera_anchors[i],
-            fmt::format("anchor {} of camera {} does not exist in {} {}; {}", in_quotes(anchor),
-                        in_quotes(devices.cameras[i].id), kind_of(entity), in_quotes(entity.id),
-                        advice(anchor, anchor_names(reading))));
+      blame(device.where, fmt::format("anchor {} of {} does not exist in {} {}; {}",
+                                      in_quotes(anchor), device.device, kind_of(entity),
+                                      in_quotes(entity.id), advice(anchor, anchor_names(reading))));
     }
   }
 
@@ -237,7 +236,7 @@ void check_use(Reading& reading, const Entity& entity) {
   if (use.faults > most_faults_with_entities) return;
   const Check check{reading, entity, use};
   check.check_joints(controller.devices);
-  check.check_cameras(controller.devices);
+  check.check_anchors();
   check.check_components();
 }
 

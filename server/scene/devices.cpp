@@ -98,7 +98,7 @@ MagnetShape read_magnet_shape(Element& element) {
   return shape;
 }
 
-/// A magnet says how strong it is in the dialect's unit or in SI: one of the two.
+/// The strength of a magnet is written in the dialect's unit or in SI, not in both.
 Magnet read_magnet(Reading& reading, Element& element, std::string id) {
   Magnet magnet;
   magnet.id = std::move(id);
@@ -120,7 +120,7 @@ Magnet read_magnet(Reading& reading, Element& element, std::string id) {
   if (element.has("passive_field") && (element.has("moment") || element.has("remanence"))) {
     element.fault_at(
         "passive_field",
-        "says the strength a second time; keep one of passive_field, moment and remanence");
+        "gives the strength a second time; keep one of passive_field, moment and remanence");
     element.optional("passive_field", vector3);
   }
   magnet.active_field = element.optional("active_field", vector3, math::Vector3::Zero());
@@ -134,7 +134,7 @@ void read_magnets(Reading& reading, Element& container, Entity& entity) {
       });
 }
 
-/// What a sensor perceives of what is there; a value that is not set comes from the next container outwards.
+/// What a sensor perceives; an element that leaves it open takes it from the next outer one.
 struct Perception {
   std::optional<bool> sees_floor;
   std::optional<Response> response;
@@ -173,7 +173,7 @@ struct RingDefaults {
   std::optional<unsigned> num_sensors;
 };
 
-/// What <proximity_sensors> itself says for rings that leave it out, as beta50 reads it.
+/// Attributes of <proximity_sensors> for rings without them, as beta50 reads it.
 RingDefaults read_ring_defaults(Element& container) {
   return {container.optional("center", position), container.optional("radius", length),
           container.optional("range", length), container.optional("start_angle", angle),

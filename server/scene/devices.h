@@ -80,7 +80,7 @@ struct Magnet {
   math::Vector3 remanence = math::Vector3::Zero();  ///< likewise, times the shape's volume [T]
 };
 
-/// What a proximity sensor reads at a distance, as its data sheet says: straight lines between
+/// What a proximity sensor reads at a distance, from its data sheet: straight lines between
 /// the points, level outside of them.
 struct Response {
   struct Point {
@@ -95,12 +95,12 @@ struct ProximitySensor {
   math::Vector3 offset;              ///< start of the ray in the anchor frame [m]
   math::Vector3 direction;           ///< unit, in the anchor frame
   double range;                      ///< length of the ray [m]
-  std::optional<bool> sees_floor;    ///< none: as the controller's sensor says
-  std::optional<Response> response;  ///< none: as the controller's sensor says
+  std::optional<bool> sees_floor;    ///< none: that of the controller's sensor
+  std::optional<Response> response;  ///< none: that of the controller's sensor
   Location where;
 };
 
-/// Tells others in line of sight where it is and some bytes, and hears the same of them.
+/// Sends its position and some bytes to others in line of sight, and receives theirs.
 struct RangeAndBearing {
   Anchor anchor;
   math::Pose pose;     ///< in the anchor frame; bearings are relative to it
@@ -173,55 +173,107 @@ struct Camera {
   Location where;
 };
 
+/// An accelerometer and a gyroscope. Each axis of each has white noise and a bias that starts at 0
+/// and walks: its change in a time t has a standard deviation of `…_bias_walk` times the root of t.
+struct Imu {
+  std::string id;
+  std::string anchor;                     ///< resolved against each entity of the controller
+  math::Pose pose;                        ///< in the anchor frame
+  double acceleration_noise = 0;          ///< standard deviation [m/s^2]
+  double acceleration_bias_walk = 0;      ///< [m/s^2/sqrt(s)]
+  double angular_velocity_noise = 0;      ///< standard deviation [rad/s]
+  double angular_velocity_bias_walk = 0;  ///< [rad/s/sqrt(s)]
+};
+
+/// Feels what touches a link.
+struct ContactSensor {
+  std::string id;
+  std::string anchor;  ///< resolved against each entity of the controller; origin: the root link
+};
+
 /// An offset drawn uniformly from [min, max].
 struct NoiseRange {
   double min = 0, max = 0;
 };
 
-/// A wheel that does not do as it is told: it runs at factor * (speed + bias).
+/// The error of a wheel: it runs at factor * (speed + bias).
 struct WheelNoise {
   double bias_mean = 0, bias_deviation = 0;      ///< drawn once per robot [m/s]
   double factor_mean = 1, factor_deviation = 0;  ///< drawn at every tick
 };
 
-/// What a controller's <actuators> and <sensors> enable.
-struct ControllerDevices {
-  std::vector<JointActuator> joint_actuators;
-  std::vector<JointSensor> joint_sensors;
-  bool radios_actuator = false;
-  bool radios_sensor = false;
-  bool radios_show_rays = false;
-  bool leds_actuator = false;
-  std::optional<std::size_t> leds_medium;  ///< the actuator assigns all LEDs to it
-  bool directional_leds_actuator = false;
-  bool tags_actuator = false;
-  bool magnets_actuator = false;
-  bool proximity_sensor = false;
-  bool footbot_proximity = false;  ///< that sensor is the foot-bot's own: its response, with angles
-  bool proximity_show_rays = false;
-  double proximity_noise = 0;                  ///< uniform in ± this, >= 0
-  bool proximity_sees_floor = false;           ///< of sensors that don't say
-  std::optional<Response> proximity_response;  ///< of sensors that don't say; none: exp(-distance)
-  bool range_and_bearing_actuator = false;
-  bool range_and_bearing_sensor = false;
-  std::optional<std::size_t> range_and_bearing_medium;  ///< the sensor assigns the device to it
-  bool range_and_bearing_show_rays = false;
-  double range_and_bearing_noise = 0;  ///< standard deviation of each coordinate of the other [m]
-  double range_and_bearing_loss = 0;   ///< probability that a packet is lost, 0 ... 1
-  bool positioning_sensor = false;
-  NoiseRange position_noise;  ///< of each coordinate [m]
-  NoiseRange angle_noise;     ///< of the angle of rotation [rad]
-  NoiseRange axis_noise;      ///< of each coordinate of the unit axis of rotation
-  bool battery_sensor = false;
-  bool wheels_actuator = false;
-  std::array<WheelNoise, 2> wheel_noise;  ///< left, right
-  bool wheels_sensor = false;
-  NoiseRange wheel_velocity_noise;  ///< [m/s]
-  NoiseRange wheel_distance_noise;  ///< [m]
-  bool turret_actuator = false;
-  bool turret_encoder = false;
-  bool cameras_show_frustum = false;
+// --- what a controller enables, one struct per kind ---------------------------------------------
+
+struct JointsUse {
+  std::vector<JointActuator> actuators;
+  std::vector<JointSensor> sensors;
+};
+
+struct RadiosUse {
+  bool actuator = false, sensor = false;
+  bool show_rays = false;
+};
+
+struct LedsUse {
+  std::optional<std::size_t> medium;  ///< the actuator assigns all LEDs to it
+};
+
+struct ProximityUse {
+  bool footbot = false;  ///< the sensor is the foot-bot's own: its response, with angles
+  bool show_rays = false;
+  double noise = 0;                  ///< uniform in ± this, >= 0
+  bool sees_floor = false;           ///< of sensors that leave it open
+  std::optional<Response> response;  ///< of sensors that leave it open; none: exp(-distance)
+};
+
+struct RangeAndBearingUse {
+  bool actuator = false, sensor = false;
+  std::optional<std::size_t> medium;  ///< the sensor assigns the device to it
+  bool show_rays = false;
+  double noise = 0;  ///< standard deviation of each coordinate of the other device [m]
+  double loss = 0;   ///< probability that a packet is lost, 0 ... 1
+};
+
+struct PositioningUse {
+  NoiseRange position;  ///< of each coordinate [m]
+  NoiseRange angle;     ///< of the angle of rotation [rad]
+  NoiseRange axis;      ///< of each coordinate of the unit axis of rotation
+};
+
+struct WheelsUse {
+  bool actuator = false;
+  std::array<WheelNoise, 2> noise;  ///< left, right
+  bool sensor = false;
+  NoiseRange velocity_noise;  ///< [m/s]
+  NoiseRange distance_noise;  ///< [m]
+};
+
+struct TurretUse {
+  bool actuator = false, encoder = false;
+};
+
+struct CamerasUse {
+  bool show_frustum = false;
   std::vector<Camera> cameras;
+};
+
+/// What a controller's <actuators> and <sensors> enable. Kinds without settings are a bool.
+struct ControllerDevices {
+  JointsUse joints;
+  std::optional<RadiosUse> radios;
+  std::optional<LedsUse> leds;
+  bool directional_leds = false;
+  bool tags = false;
+  bool magnets = false;
+  std::optional<ProximityUse> proximity;
+  std::optional<RangeAndBearingUse> range_and_bearing;
+  std::optional<PositioningUse> positioning;
+  bool battery = false;
+  std::optional<WheelsUse> wheels;
+  std::optional<TurretUse> turret;
+  std::optional<CamerasUse> cameras;
+  std::vector<Imu> imus;
+  std::vector<ContactSensor> contact_sensors;
 };
 
 }  // namespace ziggurat::scene

@@ -30,6 +30,13 @@ struct DeviceUse {
   Location where;
 };
 
+/// An anchor that a controller names for a device; each entity with the controller must have it.
+struct AnchorUse {
+  std::string device;  ///< in words: "camera 'front'"
+  std::string anchor;  ///< id of a link, "origin", or empty if it was a fault already
+  Location where;
+};
+
 /// Something that the scene lacks for a model or a controller: a fault once that is used.
 struct Lack {
   Location where;
@@ -40,8 +47,8 @@ struct Lack {
 struct ControllerUse {
   bool has_actuators = false, has_sensors = false, has_params = false;
   std::vector<DeviceUse> devices;
-  std::vector<Location> camera_anchors;  ///< of Controller::devices.cameras, same order
-  unsigned faults = 0;                   ///< found with entities so far
+  std::vector<AnchorUse> anchors;
+  unsigned faults = 0;  ///< found with entities so far
   std::vector<Lack> lacks;
 };
 

@@ -3,13 +3,15 @@
 
 #include <vector>
 
+#include "devices/devices.h"
 #include "scene/scene.h"
 #include "world/layout.h"
 
 namespace ziggurat::simulation {
 
 /// Appends an entity behind all others.
-void append(const scene::Scene& scene, const scene::Entity& entity, world::Layout& layout);
+void append(const scene::Scene& scene, const scene::Entity& entity, const devices::Devices& devices,
+            world::Layout& layout);
 
 /// @param entities  all of them, placed, in scene order
 world::Layout make_layout(const scene::Scene& scene, const std::vector<scene::Entity>& entities);

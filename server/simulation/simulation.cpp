@@ -45,7 +45,7 @@ struct Simulation::Parts {
   world::Observations observations;
   world::Commands commands;
   std::optional<media::DevicesIndex> index;
-  std::optional<devices::Devices> devices;
+  devices::Devices devices;
   std::vector<scene::Entity> entities;  // placed, then spawned: as in the layout
 };
 
@@ -64,36 +64,33 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
     rays.add(entity);
   }
   index.emplace(layout);
-  devices.emplace(devices::Setting{scene, entities, layout, seed, 1.0 / ticks_per_second, 0, 0,
-                                   [&] { return entities; }},
-                  physics);
+  devices.add({scene, entities, layout, seed, 1.0 / ticks_per_second, substep, physics, 0, 0,
+               [&] { return entities; }});
   physics.read(state);
   look_around();
   devices::Tick first = tick();
-  devices->start(first);
+  devices.start(first);
 }
 
 void Simulation::Parts::look_around() {
-  if (devices->casts_rays()) rays.update(state);
-  if (devices->needs_index()) index->build(state);
+  if (devices.casts_rays()) rays.update(state);
+  if (devices.needs_index()) index->build(state);
 }
 
 void Simulation::Parts::spawn(const scene::Scene& scene, const scene::Entity& entity,
                               world::Layout& grown) {
   const std::size_t first_entity = grown.entities.size(), first_robot = grown.robots.size();
-  append(scene, entity, grown);
+  append(scene, entity, devices, grown);
   entities.push_back(entity);
   physics.add(entity);
   rays.add(entity);
   index.emplace(layout);
-  devices->add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, first_entity,
-                first_robot,
-                [&] { return entities; }},
-               physics);
+  devices.add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, substep,
+               physics, first_entity, first_robot, [&] { return entities; }});
   physics.read(state);
   look_around();
   devices::Tick first = tick();
-  devices->start(first);
+  devices.start(first);
 }
 
 void Simulation::Parts::remove(std::size_t entity) {
@@ -147,8 +144,11 @@ void Simulation::step() {
   devices::Tick tick = p.tick();
   p.state.rays.clear();
   p.state.frusta.clear();
-  p.devices->apply(tick);
-  for (unsigned i = 0; i < p.substeps; ++i) p.physics.step();
+  p.devices.apply(tick);
+  for (unsigned i = 0; i < p.substeps; ++i) {
+    p.physics.step();
+    p.devices.after_substep(tick);
+  }
   p.state.tick += 1;
   p.state.time_ns =
       std::llround(static_cast<long double>(p.state.tick) * 1e9L / p.ticks_per_second);
@@ -156,7 +156,7 @@ void Simulation::step() {
   p.look_around();
   p.observations.tick = p.state.tick;
   p.observations.time_ns = p.state.time_ns;
-  p.devices->sense(tick);
+  p.devices.sense(tick);
 }
 
 std::uint64_t Simulation::hash() const { return world::hash(parts_->state, parts_->observations); }

@@ -34,8 +34,8 @@ class Simulation {
   const world::Observations& observations() const;  ///< of the last tick
   world::Commands& commands();  ///< applied at the start of the next tick; values persist
 
-  /// Destroys the world and builds it anew, as a fresh simulation of the same scene would be: who
-  /// was removed is back, who was spawned is gone from the layout. The layout stays where it is;
+  /// Destroys the world and builds it again as a new simulation of the same scene: removed entities
+  /// are back, spawned ones are no longer in the layout. The layout stays where it is;
   /// states, observations and commands move.
   /// @throws scene::SceneError if something can't be placed with this seed; then nothing changes
   void reset(const scene::Scene& scene, const Options& options);
@@ -46,10 +46,10 @@ class Simulation {
   void move(std::size_t entity, const math::Pose& pose);
 
   /// Adds an entity behind all others; nothing of what the others are, sense or do changes before
-  /// the next tick. Observations of the last tick say of a robot what they say at tick 0.
+  /// the next tick. The observations of a new robot are those of tick 0.
   /// @param scene  the one that this was made from
-  /// @param entity  its id is nobody's who is present
-  /// @throws scene::SceneError if it overlaps somebody; then nothing changes
+  /// @param entity  its id must differ from those of all entities that are present
+  /// @throws scene::SceneError if it overlaps another entity; then nothing changes
   void spawn(const scene::Scene& scene, const scene::Entity& entity);
 
   /// Takes an entity out. Its places stay in all arrays, as they are; so does its name.

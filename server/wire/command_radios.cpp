@@ -1,5 +1,3 @@
-#include "wire/command_radios.h"
-
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -7,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "wire/command.h"
 #include "wire/fault.h"
 #include "world/limits.h"
 

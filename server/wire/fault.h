@@ -1,5 +1,5 @@
 #pragma once
-// The short way to say what is wrong with a message.
+// A short way to make a fault.
 
 #include <string>
 #include <utility>

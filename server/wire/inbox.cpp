@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "wire/command.h"
-#include "wire/leave.h"
 #include "wire/response.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"

@@ -32,10 +32,10 @@ class Inbox {
 
   /// In either form, see encoding_of().
   Kind parse(std::string_view bytes);
-  /// What makes the message in hand malformed, for people; empty where there is no more to say.
+  /// What makes the current message malformed, for people; may be empty.
   const std::string& complaint() const;
 
-  // Of the message in hand, if it is of that kind.
+  // Of the current message, if it is of that kind.
   Hello hello() const;
   Leave leave() const;
   std::uint64_t heartbeat() const;  ///< its sequence
@@ -43,9 +43,9 @@ class Inbox {
   std::uint64_t request_id() const;
   Request request() const;
 
-  /// What is wrong with the command or leave in hand but its tick, if anything.
+  /// What is wrong with the current command or leave, if anything. Its tick is not checked.
   std::optional<Fault> check(const Roster& roster, const world::Layout& layout) const;
-  /// Writes the checked command's values; those of robots that are gone are skipped.
+  /// Writes the checked command's values; those of robots that left are skipped.
   void apply(const Roster& roster, world::Commands& commands) const;
   /// Appends the lines that the checked command or leave brings.
   void append_log(const Roster& roster, std::vector<LogLine>& lines) const;

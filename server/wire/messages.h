@@ -1,6 +1,6 @@
 #pragma once
-// The protocol's messages as plain data, for whoever must not see protobuf. docs/protocol.md
-// says what they mean; protocol/ziggurat/v1/protocol.proto is how they travel.
+// The protocol's messages as plain data, for modules that do not know protobuf. docs/protocol.md
+// defines their meaning, protocol/ziggurat/v1/protocol.proto their form.
 
 #include <cstddef>
 #include <cstdint>
@@ -33,7 +33,7 @@ struct Version {
   bool operator==(const Version&) const = default;
 };
 
-/// What this server speaks. A client of the same major version is welcome.
+/// Version of the server. A client must have the same major version.
 inline constexpr Version version{1, 0};
 
 enum class Role { unspecified, controller, supervisor, observer };
@@ -52,7 +52,7 @@ struct Hello {
   std::string session_token;  ///< of a session to resume; empty: a new one
   /// A wish. The action may be a number that is none; unspecified is read as wait.
   std::optional<DeadlinePolicy> deadline;
-  bool takeover = false;  ///< also robots that others hold
+  bool takeover = false;  ///< take robots from other sessions too
 };
 
 /// A line that a controller logged.
@@ -101,7 +101,7 @@ enum class Severity {
   fatal,    ///< the session is over
 };
 
-/// What was wrong with a peer's message.
+/// An error in a peer's message.
 struct Fault {
   ErrorCode code = ErrorCode::unspecified;
   Severity severity = Severity::discard;
@@ -115,10 +115,10 @@ struct Fault {
 struct Refusal {
   Fault fault;
   Version client_version;
-  std::string holder;  ///< robot_taken: name of the client that drives it
+  std::string holder;  ///< robot_taken: name of the client that has it
 };
 
-/// What a session is told of itself when it begins.
+/// What Welcome tells a session about itself.
 struct Welcome {
   std::string_view token;
   std::uint32_t minor = 0;  ///< of the protocol, as agreed
@@ -136,7 +136,7 @@ struct End {
   std::uint64_t tick = 0;  ///< the last one
 };
 
-/// What every session is told of the run when it is welcomed.
+/// What Welcome tells every session about the run.
 struct Run {
   const world::Layout& layout;
   const std::vector<scene::Controller>& controllers;  ///< of the scene
@@ -148,7 +148,7 @@ struct Run {
   std::string scene_hash;  ///< 16 hexadecimal digits
   std::string server_version;
   std::uint64_t max_message_bytes = std::uint64_t{64} << 20;
-  bool is_hardware_in_the_loop = false;  ///< paced, and nobody is waited for
+  bool is_hardware_in_the_loop = false;  ///< paced by the clock; no session is waited for
 };
 
 /// The name in docs/protocol.md, for example "ROBOT_TAKEN".

@@ -4,18 +4,10 @@
 #include <cstddef>
 #include <span>
 
-#include "wire/observation_cameras.h"
+#include "wire/devices.h"
 
 namespace ziggurat::wire {
 namespace {
-
-void add(const Packing& packing, const std::vector<double>& flat,
-         google::protobuf::RepeatedField<double>& packed) {
-  for (const Packing::Stretch& piece : packing.stretches) {
-    const double* begin = flat.data() + piece.flat;
-    packed.Add(begin, begin + piece.count);
-  }
-}
 
 void assign(std::string& to, std::span<const std::uint8_t> from) {
   to.assign(reinterpret_cast<const char*>(from.data()), from.size());
@@ -63,32 +55,6 @@ void add_packets(const Roster& roster, const world::Observations& from, v1::Obse
       });
 }
 
-void add_poses(const Packing& packing, const std::vector<math::Pose>& flat,
-               google::protobuf::RepeatedField<double>& packed) {
-  for (const Packing::Stretch& piece : packing.stretches) {
-    for (std::size_t i = piece.flat; i < piece.flat + piece.count; ++i) {
-      const math::Vector3& at = flat[i].position;
-      const math::Quaternion& turned = flat[i].orientation;
-      for (const double value :
-           {at.x(), at.y(), at.z(), turned.w(), turned.x(), turned.y(), turned.z()}) {
-        packed.Add(value);
-      }
-    }
-  }
-}
-
-void add_wheels(const Packing& packing, const std::vector<world::WheelsReading>& flat,
-                google::protobuf::RepeatedField<double>& packed) {
-  for (const Packing::Stretch& piece : packing.stretches) {
-    for (std::size_t i = piece.flat; i < piece.flat + piece.count; ++i) {
-      packed.Add(flat[i].velocity_left);
-      packed.Add(flat[i].velocity_right);
-      packed.Add(flat[i].distance_left);
-      packed.Add(flat[i].distance_right);
-    }
-  }
-}
-
 }  // namespace
 
 std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messages) {
@@ -103,20 +69,10 @@ void fill(const Roster& roster, const world::Observations& from,
           std::span<const std::string> tag_payloads, v1::Observation& to) {
   to.set_tick(from.tick);
   to.set_time_ns(from.time_ns);
-  add(roster.joint_sensors, from.joint_readings, *to.mutable_joint_readings());
+  add_channels(roster, from, to);
   add_radio_messages(roster, from.radio_messages, to);
-  add(roster.proximity, from.proximity, *to.mutable_proximity());
   add_packets(roster, from, to);
-  add_poses(roster.positioning, from.positioning, *to.mutable_positioning());
-  for (const Packing::Stretch& piece : roster.batteries.stretches) {
-    for (std::size_t i = piece.flat; i < piece.flat + piece.count; ++i) {
-      to.add_batteries(from.batteries[i].available_charge);
-      to.add_batteries(from.batteries[i].time_left);
-    }
-  }
   add_cameras(roster, from, tag_payloads, to);
-  add_wheels(roster.wheel_sensors, from.wheels, *to.mutable_wheels());
-  add(roster.turret_encoders, from.turrets, *to.mutable_turret_rotations());
 }
 
 }  // namespace ziggurat::wire

@@ -1,5 +1,5 @@
 #pragma once
-// world::Observations -> Observation.
+// world::Observations -> Observation. The cameras' part is in observation_cameras.cpp.
 
 #include <cstddef>
 #include <span>
@@ -13,6 +13,17 @@ namespace ziggurat::wire {
 
 /// Bytes that radios of the session's robots received.
 std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messages);
+
+/// Bytes of payloads that cameras of the session's robots read.
+std::size_t payload_bytes(const Roster& roster, const world::Observations& from,
+                          std::span<const std::string> tag_payloads);
+
+/// Bytes of pictures that they took.
+std::size_t image_bytes(const Roster& roster, const world::Observations& from);
+
+/// Writes what they see. A camera without a picture yet sends an empty one.
+void add_cameras(const Roster& roster, const world::Observations& from,
+                 std::span<const std::string> tag_payloads, v1::Observation& to);
 
 /// Writes what a session's robots sense; `to` is clear.
 /// @param tag_payloads  of the same tick, for each of Layout::tags

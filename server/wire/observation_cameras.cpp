@@ -1,8 +1,8 @@
-#include "wire/observation_cameras.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <vector>
+
+#include "wire/observation.h"
 
 namespace ziggurat::wire {
 namespace {

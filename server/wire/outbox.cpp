@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "wire/description.h"
+#include "wire/devices.h"
 #include "wire/observation.h"
-#include "wire/observation_cameras.h"
 #include "wire/response.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"

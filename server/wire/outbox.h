@@ -20,7 +20,7 @@ class ServerMessage;
 namespace ziggurat::wire {
 
 /// A protobuf message has less than 2 GiB. Radios and cameras of many robots in one session could
-/// have more to say.
+/// exceed it.
 inline constexpr std::size_t max_observation_bytes = std::size_t{1} << 30;
 
 /// The same for a session in JSON, of the binary form: in JSON an observation has up to thirteen
@@ -38,7 +38,7 @@ class Outbox {
 
   void welcome(const Run& run, const Roster& roster, const Welcome& session);
   void refusal(const Refusal& refusal);
-  /// False if it would have more than `limit` bytes in binary form; then nothing is in hand.
+  /// False if it would have more than `limit` bytes in binary form; then there is no message.
   /// @param tag_payloads  of the same tick, for each of Layout::tags
   bool observation(const Roster& roster, const world::Observations& observations,
                    std::span<const std::string> tag_payloads,
@@ -47,7 +47,7 @@ class Outbox {
   void error(const Fault& fault);
   void heartbeat(std::uint64_t sequence);
   void reset(std::uint64_t seed);
-  // That a request was done at this tick, and what it was for.
+  // A request was done at this tick, with its result.
   void response(std::uint64_t request, std::uint64_t tick);
   void response(std::uint64_t request, const Status& status);
   /// @param entities  into Layout::entities, ascending;  @param hash  16 hexadecimal digits
@@ -57,14 +57,14 @@ class Outbox {
   void paused(std::uint64_t tick);
   /// @param by  name of the client that has the robots now
   void displaced(std::string_view by, std::string_view message);
-  /// That a request was not done, and why.
+  /// A request was not done, and why.
   void response(std::uint64_t request, const Fault& fault);
 
-  /// The form that size() and write() give the message in hand; binary unless asked for.
+  /// Chooses the form for size() and write() of the current message; binary by default.
   void encode(Encoding encoding);
 
-  const v1::ServerMessage& message() const;  ///< the message in hand
-  std::size_t size() const;            ///< of the message in hand [bytes]
+  const v1::ServerMessage& message() const;  ///< the current one
+  std::size_t size() const;            ///< of the current message [bytes]
   void write(std::uint8_t* to) const;  ///< writes size() bytes
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What supervisors and observers ask for, and what they are told (docs/protocol.md, section 9).
+// Requests of supervisors and observers, and the answers (docs/protocol.md, section 9).
 
 #include <cstdint>
 #include <optional>
@@ -49,7 +49,7 @@ struct SessionStatus {
   std::vector<std::string> robots;  ///< ids
   std::uint64_t tick = 0;           ///< of its last observation
   double wall_waiting_s = 0;        ///< owing or lost: for how long
-  double wall_last_message_s = 0;   ///< since it was last heard of
+  double wall_last_message_s = 0;   ///< since its last message
   Latency latency;                  ///< from observation to command
   std::uint64_t misses = 0;         ///< deadlines missed
   scene::DeadlinePolicy deadline;
@@ -63,9 +63,9 @@ struct Status {
   bool is_hardware_in_the_loop = false;
   std::uint64_t seed = 0;
   std::string scene, scene_hash;
-  std::uint64_t last_tick = 0;  ///< 0: until somebody stops it
+  std::uint64_t last_tick = 0;  ///< 0: until it is stopped
   std::vector<SessionStatus> sessions;
-  std::vector<std::string> free_robots;  ///< ids: the barrier waits for somebody to hold them
+  std::vector<std::string> free_robots;  ///< ids: the barrier waits for a session that takes them
   std::vector<std::string> gone_robots;  ///< ids
   struct PhaseBudget {
     std::string phase;

@@ -5,29 +5,12 @@
 namespace ziggurat::wire {
 namespace {
 
-/// The bytes that a robot broadcasts, if it has an actuator for that.
-world::Range range_and_bearing_data(const world::Layout& layout, const world::RobotLayout& robot) {
-  if (robot.range_and_bearing.count == 0) return {};
-  const auto& device = layout.range_and_bearing[robot.range_and_bearing.begin];
-  return device.sends ? device.data : world::Range{device.data.begin, 0};
-}
-
-/// The robot's one device, if the controller uses it so.
-world::Range only_if(bool used, const world::Range& device) {
-  return {device.begin, used ? device.count : 0};
-}
-
-void append_driving(const world::Layout& layout, const world::RobotLayout& robot, Roster& roster) {
-  const bool has_wheels = robot.wheels.count > 0;
-  const world::WheelsLayout wheels =
-      has_wheels ? layout.wheels[robot.wheels.begin] : world::WheelsLayout{};
-  roster.wheel_actuators.append(only_if(wheels.drives, robot.wheels));
-  roster.wheel_sensors.append(only_if(wheels.measures, robot.wheels));
-  const bool has_turret = robot.turrets.count > 0;
-  const world::TurretLayout turret =
-      has_turret ? layout.turrets[robot.turrets.begin] : world::TurretLayout{};
-  roster.turret_actuators.append(only_if(turret.drives, robot.turrets));
-  roster.turret_encoders.append(only_if(turret.measures, robot.turrets));
+/// Appends the robot's values of each channel of a table.
+template <class Table>
+void append_channels(const Table& table, const world::Layout& layout,
+                     const world::RobotLayout& robot, auto& packings) {
+  world::for_each_channel(
+      table, [&](auto i) { packings[i].append(std::get<i>(table).devices(layout, robot)); });
 }
 
 void append_cameras(const world::Layout& layout, const world::RobotLayout& robot, Roster& roster) {
@@ -74,19 +57,10 @@ Roster make_roster(const world::Layout& layout, std::span<const std::size_t> rob
   roster.gone.assign(robots.size(), false);
   for (const std::size_t index : robots) {
     const world::RobotLayout& robot = layout.robots[index];
-    roster.joint_sensors.append(robot.joint_sensors);
-    roster.joint_actuators.append(robot.joint_actuators);
+    append_channels(world::sensed, layout, robot, roster.sensed);
+    append_channels(world::commanded, layout, robot, roster.commanded);
     roster.radios.append(robot.radios);
-    roster.leds.append(robot.leds);
-    roster.directional_leds.append(robot.directional_leds);
-    roster.tags.append(robot.tags);
-    roster.magnets.append(robot.magnets);
-    roster.proximity.append(robot.proximity);
     roster.range_and_bearing.append(robot.range_and_bearing);
-    roster.range_and_bearing_data.append(range_and_bearing_data(layout, robot));
-    roster.positioning.append(robot.positioning);
-    roster.batteries.append(robot.batteries);
-    append_driving(layout, robot, roster);
     append_cameras(layout, robot, roster);
   }
   return roster;

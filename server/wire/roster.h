@@ -2,8 +2,10 @@
 // The robots of one session, and where each device value stands: in the session's packed arrays
 // on one side, in the world's flat arrays on the other.
 
+#include <array>
 #include <cstddef>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "world/layout.h"
@@ -32,22 +34,11 @@ struct Roster {
   std::vector<std::size_t> robots;  ///< into Layout::robots, in scene order
   std::vector<bool> gone;           ///< per robot: left the barrier for good
   std::size_t gone_count = 0;
-  Packing joint_sensors;
-  Packing joint_actuators;
+  // By the row of a channel in the tables of world/devices.h; empty for fields handled by hand.
+  std::array<Packing, std::tuple_size_v<decltype(world::sensed)>> sensed;
+  std::array<Packing, std::tuple_size_v<decltype(world::commanded)>> commanded;
   Packing radios;
-  Packing leds;
-  Packing directional_leds;
-  Packing tags;
-  Packing magnets;
-  Packing proximity;
-  Packing range_and_bearing;       ///< devices: 0 or 1 of each robot
-  Packing range_and_bearing_data;  ///< bytes that these robots may set
-  Packing positioning;
-  Packing batteries;
-  Packing wheel_actuators;   ///< of robots that drive: 0 or 1 of each
-  Packing wheel_sensors;     ///< of robots that measure
-  Packing turret_actuators;  ///< of robots that drive
-  Packing turret_encoders;   ///< of robots that measure
+  Packing range_and_bearing;  ///< devices: 0 or 1 of each robot
 
   // Cameras that have the detector, or take pictures: into Layout::cameras, ascending.
   std::vector<std::size_t> led_cameras;

@@ -1,5 +1,5 @@
 #pragma once
-// What becomes of the commands of a robot that left, or that is commanded anew.
+// Commands of a robot that left, or that a new session takes.
 
 #include <cstddef>
 

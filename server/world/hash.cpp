@@ -1,102 +1,113 @@
+// The fields of State and Observations in the order of their tables: those that are hashed first,
+// then the others.
+
 #include <span>
 #include <string_view>
 
+#include "math/hash.h"
 #include "world/state.h"
 
 namespace ziggurat::world {
 namespace {
 
-void add(math::Hash& hash, const math::Pose& pose) {
-  hash.add(std::span(pose.position.data(), 3));
-  hash.add(std::span(pose.orientation.coeffs().data(), 4));
-}
+/// Adds one value or field after the other.
+struct Hasher {
+  const State& state;
+  const Observations& observations;
+  math::Hash hash = {};
 
-void add(math::Hash& hash, const std::vector<Color>& colors) {
-  for (const Color color : colors) hash.add(std::uint64_t{color});
-}
+  void add(double value) { hash.add(value); }
+  void add(std::uint64_t number) { hash.add(number); }
+  void add(Color color) { hash.add(std::uint64_t{color}); }
+  void add(const std::string& text) { hash.add(std::string_view(text)); }
+  void add(std::span<const std::uint8_t> bytes) {
+    hash.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  }
+  void add(const std::vector<std::uint8_t>& bytes) { add(std::span(bytes)); }
+  void add(const std::vector<double>& values) { hash.add(values); }
+  void add(const math::Vector2& vector) { hash.add(std::span(vector.data(), 2)); }
+  void add(const math::Vector3& vector) { hash.add(std::span(vector.data(), 3)); }
+  void add(const math::Pose& pose) {
+    add(pose.position);
+    hash.add(std::span(pose.orientation.coeffs().data(), 4));
+  }
+  template <Numbers T>
+  void add(const T& value) {
+    hash.add(numbers(value));
+  }
+  void add(const LinkState& link) {
+    add(link.pose);
+    add(link.velocity);
+    add(link.angular_velocity);
+  }
+  /// As many as there are devices, or links, or entities: their number need not be added.
+  template <class T>
+  void add(const std::vector<T>& values) {
+    for (const T& value : values) add(value);
+  }
 
-void add(math::Hash& hash, std::span<const std::uint8_t> bytes) {
-  hash.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-}
+  void add(const std::vector<bool>& absent) {
+    for (std::size_t i = 0; i < absent.size(); ++i) {
+      if (absent[i]) add(std::uint64_t{i});
+    }
+  }
 
-void add_visible(math::Hash& hash, const State& state) {
-  add(hash, state.led_colors);
-  add(hash, state.directional_led_colors);
-  for (const std::string& payload : state.tag_payloads) hash.add(std::string_view(payload));
-  for (const math::Vector3& field : state.magnet_fields) hash.add(std::span(field.data(), 3));
-  add(hash, state.range_and_bearing_data);
-}
+  // Fields of which there may be any number of values.
+  void add(const RadioMessages& messages) {
+    add(std::uint64_t{messages.entries.size()});
+    for (const RadioMessages::Entry& entry : messages.entries) {
+      add(std::uint64_t{entry.radio});
+      add(messages.payload(entry));
+    }
+  }
+  void add(const std::vector<RangeAndBearingPacket>& packets) {
+    const std::span data(observations.range_and_bearing_data);
+    add(std::uint64_t{packets.size()});
+    for (const RangeAndBearingPacket& packet : packets) {
+      add(std::uint64_t{packet.receiver});
+      add(packet.range);
+      add(packet.horizontal_bearing);
+      add(packet.vertical_bearing);
+      add(data.subspan(packet.data.begin, packet.data.count));
+    }
+  }
+  void add(const std::vector<LedReading>& readings) {
+    add(std::uint64_t{readings.size()});
+    for (const LedReading& reading : readings) {
+      add(std::uint64_t{reading.camera});
+      add(reading.color);
+      add(reading.center);
+    }
+  }
+  void add(const std::vector<TagReading>& readings) {
+    add(std::uint64_t{readings.size()});
+    for (const TagReading& reading : readings) {
+      add(std::uint64_t{reading.camera});
+      add(state.tag_payloads[reading.tag]);
+      add(reading.center);
+      for (const math::Vector2& corner : reading.corners) add(corner);
+    }
+  }
 
-void add_sensed(math::Hash& hash, const Observations& observations) {
-  hash.add(std::uint64_t{observations.radio_messages.entries.size()});
-  for (const RadioMessages::Entry& entry : observations.radio_messages.entries) {
-    hash.add(std::uint64_t{entry.radio});
-    add(hash, observations.radio_messages.payload(entry));
+  /// The fields of a table that are hashed at a stage.
+  template <Hashed stage, const auto& table, class Struct>
+  void add_fields(const Struct& fields) {
+    for_each_row(table, [&](auto i) {
+      constexpr auto& row = std::get<i>(table);
+      if constexpr (row.hashed == stage) add(fields.*row.values);
+    });
   }
-  hash.add(observations.proximity);
-  hash.add(std::uint64_t{observations.range_and_bearing.size()});
-  for (const RangeAndBearingPacket& packet : observations.range_and_bearing) {
-    hash.add(std::uint64_t{packet.receiver});
-    hash.add(packet.range);
-    hash.add(packet.horizontal_bearing);
-    hash.add(packet.vertical_bearing);
-    add(hash, std::span(observations.range_and_bearing_data)
-                  .subspan(packet.data.begin, packet.data.count));
-  }
-  for (const math::Pose& pose : observations.positioning) add(hash, pose);
-  for (const BatteryReading& battery : observations.batteries) {
-    hash.add(battery.available_charge);
-    hash.add(battery.time_left);
-  }
-  for (const WheelsReading& wheels : observations.wheels) {
-    hash.add(wheels.velocity_left);
-    hash.add(wheels.velocity_right);
-    hash.add(wheels.distance_left);
-    hash.add(wheels.distance_right);
-  }
-  hash.add(observations.turrets);
-}
-
-void add(math::Hash& hash, const std::vector<LedReading>& readings) {
-  hash.add(std::uint64_t{readings.size()});
-  for (const LedReading& reading : readings) {
-    hash.add(std::uint64_t{reading.camera});
-    hash.add(std::uint64_t{reading.color});
-    hash.add(std::span(reading.center.data(), 2));
-  }
-}
-
-void add_detected(math::Hash& hash, const State& state, const Observations& observations) {
-  add(hash, observations.leds);
-  add(hash, observations.directional_leds);
-  hash.add(std::uint64_t{observations.tags.size()});
-  for (const TagReading& reading : observations.tags) {
-    hash.add(std::uint64_t{reading.camera});
-    hash.add(std::string_view(state.tag_payloads[reading.tag]));
-    hash.add(std::span(reading.center.data(), 2));
-    for (const math::Vector2& corner : reading.corners) hash.add(std::span(corner.data(), 2));
-  }
-}
+};
 
 }  // namespace
 
 std::uint64_t hash(const State& state, const Observations& observations) {
-  math::Hash hash;
-  hash.add(state.tick);
-  for (const auto& origin : state.origins) add(hash, origin);
-  for (const auto& link : state.links) {
-    add(hash, link.pose);
-    hash.add(std::span(link.velocity.data(), 3));
-    hash.add(std::span(link.angular_velocity.data(), 3));
-  }
-  for (std::size_t i = 0; i < state.absent.size(); ++i) {
-    if (state.absent[i]) hash.add(std::uint64_t{i});
-  }
-  hash.add(observations.joint_readings);
-  add_visible(hash, state);
-  add_sensed(hash, observations);
-  add_detected(hash, state, observations);
-  return hash.digest();
+  Hasher hasher{state, observations};
+  hasher.add_fields<Hashed::first, state_fields>(state);
+  hasher.add_fields<Hashed::first, sensed>(observations);
+  hasher.add_fields<Hashed::second, state_fields>(state);
+  hasher.add_fields<Hashed::second, sensed>(observations);
+  return hasher.hash.digest();
 }
 
 }  // namespace ziggurat::world

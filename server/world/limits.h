@@ -1,5 +1,5 @@
 #pragma once
-// What a robot may ask for in one tick. More is an error of whoever asks.
+// Limits of what a robot may send in one tick. More is an error of its controller.
 
 #include <cstddef>
 

@@ -155,7 +155,9 @@ TEST_F(Radios, D5_ASessionThatWouldHearTooMuchIsLost) {
 struct DrivingAndCameras : ::testing::Test {
   DrivingAndCameras() : small(2), peers(equipped()) {
     peers.commands.wheels.resize(2);
-    peers.commands.turrets.resize(2);
+    peers.commands.turret_modes.resize(2);
+    peers.commands.turret_rotations.resize(2);
+    peers.commands.turret_speeds.resize(2);
     peers.join("p", "robot*");
     peers.publish(sight(5));
     peers.inboxes.clear();
@@ -195,7 +197,7 @@ struct DrivingAndCameras : ::testing::Test {
     EXPECT_EQ(told.error().severity(), v1::Error::DISCARD);
     EXPECT_EQ(told.error().tick(), 5U);
     EXPECT_EQ(peers.commands.wheels[0].left, 0);
-    EXPECT_EQ(peers.commands.turrets[0].mode, world::TurretMode::passive);
+    EXPECT_EQ(peers.commands.turret_modes[0], world::TurretMode::passive);
     return told.error();
   }
   static v1::ClientMessage drive(std::vector<double> velocities) {
@@ -244,7 +246,7 @@ TEST_F(DrivingAndCameras, D7_TurretsTakeTheModesThereAre) {
   message.mutable_command()->mutable_turret_speeds()->RemoveLast();
   peers.say("p", message);
   EXPECT_TRUE(peers.is_complete());
-  EXPECT_EQ(peers.commands.turrets[0].mode, world::TurretMode::speed);
+  EXPECT_EQ(peers.commands.turret_modes[0], world::TurretMode::speed);
 }
 
 TEST_F(DrivingAndCameras, D8_DetectorsCountPerCamera) {
@@ -275,14 +277,50 @@ TEST_F(DrivingAndCameras, D5_PicturesAndPayloadsCount) {
 }
 
 TEST_F(DrivingAndCameras, L1_ARobotThatLeavesStands) {
-  peers.commands.turrets[0].speed = 3;
+  peers.commands.turret_speeds[0] = 3;
   peers.say("p", drive({0.5, 0.5}));
   peers.publish(sight(6));
   peers.say("p", Peers::leave({0}));
   peers.say("p", Peers::command(6));
   zero_missing(peers.barrier, peers.commands);
   EXPECT_EQ(peers.commands.wheels[0].left, 0);
-  EXPECT_EQ(peers.commands.turrets[0].speed, 0);
+  EXPECT_EQ(peers.commands.turret_speeds[0], 0);
+}
+
+TEST(ContactSensors, D10_FiveValuesEach) {
+  SmallRun small(2);
+  small.layout().contact_sensors.resize(2);
+  small.layout().robots[1].contact_sensors = {1, 1};
+  Peers peers(small);
+  peers.join("p", "robot*");
+  peers.inboxes.clear();
+  world::Observations seen = small.observations(5);
+  seen.contact_sensors.resize(2);
+  seen.contact_sensors[1] = {1, {2, 3, 4}, 9};
+  peers.publish(seen);
+  const auto told = peers.told("p").observation();
+  ASSERT_EQ(told.contact_sensors_size(), 5);
+  EXPECT_EQ(told.contact_sensors(0), 1);
+  EXPECT_EQ(told.contact_sensors(4), 9);
+}
+
+TEST(Imus, D9_SixValuesEach) {
+  SmallRun small(2);
+  small.layout().imus.resize(3);
+  small.layout().robots[0].imus = {0, 1};
+  small.layout().robots[1].imus = {1, 2};
+  Peers peers(small);
+  peers.join("p", "robot1");
+  peers.inboxes.clear();
+  world::Observations seen = small.observations(5);
+  seen.imus.resize(3);
+  seen.imus[1].acceleration[0] = 3;
+  seen.imus[2].angular_velocity[2] = 7;
+  peers.publish(seen);
+  const auto told = peers.told("p").observation();
+  ASSERT_EQ(told.imus_size(), 12);
+  EXPECT_EQ(told.imus(0), 3);
+  EXPECT_EQ(told.imus(11), 7);
 }
 
 }  // namespace

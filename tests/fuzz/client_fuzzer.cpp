@@ -93,6 +93,8 @@ void see_robot(Robot& robot) {
     require(!device->sends() || device->data().size() == device->data_size());
   }
   if (const auto* sensor = robot.positioning()) seen += sensor->orientation[3];
+  for (const auto& imu : robot.imus()) seen += imu.acceleration()[0] + imu.angular_velocity()[2];
+  for (const auto& sensor : robot.contact_sensors()) seen += sensor.force()[2] + sensor.strength();
   if (const auto* sensor = robot.battery()) seen += sensor->time_left;
   if (const auto* wheels = robot.wheels()) seen += wheels->reading().distance_right;
   if (const auto* turret = robot.turret()) seen += turret->rotation();

@@ -56,7 +56,9 @@ inline world::Commands make_commands(std::size_t devices) {
   commands.magnet_currents.resize(devices);
   commands.range_and_bearing_data.resize(devices);
   commands.wheels.resize(3);
-  commands.turrets.resize(3);
+  commands.turret_modes.resize(3);
+  commands.turret_rotations.resize(3);
+  commands.turret_speeds.resize(3);
   return commands;
 }
 
@@ -72,11 +74,10 @@ inline void receive_command(const wire::Inbox& inbox, const wire::Roster& roster
   for (const auto& [left, right] : commands.wheels) {
     require(std::isfinite(left) && std::isfinite(right));
   }
-  for (const world::TurretCommand& turret : commands.turrets) {
-    require(turret.mode <= world::TurretMode::speed);
-    require(std::isfinite(turret.rotation) && std::isfinite(turret.speed));
-  }
-  require(commands.wheels[1].left == 0 && commands.turrets[1].speed == 0);
+  for (const auto mode : commands.turret_modes) require(mode <= world::TurretMode::speed);
+  for (const double rotation : commands.turret_rotations) require(std::isfinite(rotation));
+  for (const double speed : commands.turret_speeds) require(std::isfinite(speed));
+  require(commands.wheels[1].left == 0 && commands.turret_speeds[1] == 0);
   for (const auto& entry : commands.radio_messages.entries) {
     require(entry.radio < layout.radios.size() && layout.radios[entry.radio].sends);
     commands.radio_messages.payload(entry);

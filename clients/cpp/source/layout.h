@@ -23,6 +23,8 @@ struct Layout {
   void add_all() {
     add_batteries();
     add_cameras();
+    add_contact_sensors();
+    add_imus();
     add_joints();
     add_leds();
     add_magnets();
@@ -38,6 +40,8 @@ struct Layout {
  private:
   void add_batteries();
   void add_cameras();
+  void add_contact_sensors();
+  void add_imus();
   void add_joints();
   void add_leds();
   void add_magnets();

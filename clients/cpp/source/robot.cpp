@@ -2,39 +2,28 @@
 
 #include <stdexcept>
 
+#include "find.h"
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat {
 
-namespace {
-
-/// @throws std::out_of_range, listing the ids that exist
-template <typename Devices>
-auto& find(Devices& devices, std::string_view id, const std::string& robot,
-           const std::string& kind) {
-  for (auto& device : devices) {
-    if (device.id() == id) return device;
-  }
-  std::string message = "robot '" + robot + "' has no " + kind + " '" + std::string(id) +
-                        "' that its controller has a sensor or an actuator for; it has ";
-  if (devices.empty()) message += "none";
-  for (const auto& device : devices) {
-    message += (&device == devices.data() ? "'" : ", '") + device.id() + "'";
-  }
-  throw std::out_of_range(message);
+Joint& Robot::joint(std::string_view id) {
+  return find(joints_, id, "robot '" + id_ + "'", "joint");
 }
-
-}  // namespace
-
-Joint& Robot::joint(std::string_view id) { return find(joints_, id, id_, "joint"); }
-Radio& Robot::radio(std::string_view id) { return find(radios_, id, id_, "radio"); }
-Led& Robot::led(std::string_view id) { return find(leds_, id, id_, "LED"); }
+Radio& Robot::radio(std::string_view id) {
+  return find(radios_, id, "robot '" + id_ + "'", "radio");
+}
+Led& Robot::led(std::string_view id) { return find(leds_, id, "robot '" + id_ + "'", "LED"); }
 Led& Robot::directional_led(std::string_view id) {
-  return find(directional_leds_, id, id_, "directional LED");
+  return find(directional_leds_, id, "robot '" + id_ + "'", "directional LED");
 }
-Tag& Robot::tag(std::string_view id) { return find(tags_, id, id_, "tag"); }
-const Camera& Robot::camera(std::string_view id) const { return find(cameras_, id, id_, "camera"); }
-Magnet& Robot::magnet(std::string_view id) { return find(magnets_, id, id_, "magnet"); }
+Tag& Robot::tag(std::string_view id) { return find(tags_, id, "robot '" + id_ + "'", "tag"); }
+const Camera& Robot::camera(std::string_view id) const {
+  return find(cameras_, id, "robot '" + id_ + "'", "camera");
+}
+Magnet& Robot::magnet(std::string_view id) {
+  return find(magnets_, id, "robot '" + id_ + "'", "magnet");
+}
 
 void Robot::log(std::string_view text) { add_line(false, text); }
 void Robot::log_error(std::string_view text) { add_line(true, text); }

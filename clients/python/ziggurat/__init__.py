@@ -9,8 +9,9 @@
 from .connection import Curve
 from .devices import *
 from .errors import ConnectionLost, Displaced, ProtocolError, Refused, Timeout, ZigguratError
+from .named import Named
 from .parallel import ParallelEnv, all_readings, joint_targets, parallel_env
-from .robot import Named, Robot
+from .robot import Robot
 from .server import Server
 from .session import Deadline, Ending, Event, Session, Tick, connect, resume
 from .supervisor import EntityState, LinkState, SessionStatus, States, Status, Supervisor, supervise

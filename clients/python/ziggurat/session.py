@@ -10,7 +10,8 @@ from . import protocol_pb2 as v1
 from .connection import Connection, Curve
 from .errors import Displaced, ProtocolError
 from .exchange import Exchange
-from .robot import Named, Robot
+from .named import Named
+from .robot import Robot
 
 # Errors for a command that came too late or twice: harmless, as the next observation arrives anyway.
 # A command that was sent before a Reset arrived may have a future tick.

@@ -38,12 +38,17 @@ def rover(id: str) -> dict:
                      "detects_tags": True, "image": True}],
         "wheels": {"axle_length": 0.14, "drives": True, "measures": True},
         "turret": {"drives": True, "measures": True},
+        "contact_sensors": [{"id": "skin", "anchor": "base"}],
+        "imus": [{"id": "imu", "anchor": "base", "position": [0.0, 0.0, 0.1],
+                  "orientation": [1.0, 0.0, 0.0, 0.0]}],
     }
 
 
 def sights(led: int = 0, directional_led: int = 0, tag: int = 0, image: bytes = b"") -> dict:
     """What two rovers read: the first sees nothing, the second so many of each."""
     seen = {"wheels": [0.1, 0.2, 0.01, 0.02] * 2, "turret_rotations": [0.5, -0.5],
+            "contact_sensors": [1.0, 0.0, 0.5, 9.8, 10.0] * 2,
+            "imus": [0.1, -0.2, 9.8, 0.0, 0.0, 1.0] * 2,
             "tag_payloads": [b"\0\xff"] * tag, "tag_corners": [0.5] * 8 * tag,
             "camera_images": [b"", image]}
     for name, count in (("led", led), ("directional_led", directional_led), ("tag", tag)):

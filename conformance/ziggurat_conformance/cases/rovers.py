@@ -1,5 +1,5 @@
-"""Section 3.1: wheels, turrets and pictures, in a scene of their own. rover0 and rover1 drive and measure,
-rover2 only measures."""
+"""Section 3.1: wheels, turrets, pictures, IMUs and contact sensors, in a scene of their own. rover0 and rover1 drive and
+measure, rover2 only measures. rover1 has an IMU and a contact sensor."""
 
 import math
 
@@ -80,6 +80,19 @@ def _images(size: int) -> Check:
     return Check("pictures", check)
 
 
+def _feels(stage) -> str:
+    """rover1 stands on level ground."""
+    found = list(stage.peer("p").observation.imus)
+    wrong = len(found) != 6 or any(abs(a - b) > 1e-3 for a, b in zip(found, [0, 0, 9.8, 0, 0, 0]))
+    return f"imus is {found}; [0, 0, 9.8, 0, 0, 0] is expected" if wrong else ""
+
+
+def _touches(stage) -> str:
+    found = list(stage.peer("p").observation.contact_sensors)
+    wrong = len(found) != 5 or found[0] != 1 or found[3] <= 0 or found[4] < found[3] - 1e-9
+    return f"contact_sensors is {found}; [1, x, y, force up, strength] is expected" if wrong else ""
+
+
 def _bad(rule: str, name: str, title: str, field: str, values: list, **more) -> Case:
     """A command that is BAD_VALUE and has no effect; a right one follows."""
     return _case(f"{rule}.{name}", title, ALL, _stands(), answer("p", **{field: values}, **more),
@@ -150,4 +163,15 @@ CASES = [
     _case("D8.picture", "A camera with `image` has a picture of width × height × 3 bytes",
           ALL, answer("p"), observe("p"), _images(16 * 12 * 3)),
     _case("D8.no-picture-at-tick-0", "At tick 0 it is empty", ALL, _images(0), fresh=True),
+    _case("D9.described", "Welcome says which IMUs there are, and where",
+          Join("p", hello("*"), {"robots": [
+              {}, {"imus": [{"id": "imu", "anchor": "origin", "position": [0.0, 0.0, 0.05],
+                             "orientation": [1.0, 0.0, 0.0, 0.0]}]}, {}]})),
+    _case("D9.six-values", "An IMU has six values; at rest it feels the ground push up", ALL, _stands(),
+          Check("imus", _feels), answer("p"), observe("p"), Check("imus", _feels)),
+    _case("D10.described", "Welcome says which contact sensors there are",
+          Join("p", hello("*"), {"robots": [
+              {}, {"contact_sensors": [{"id": "skin", "anchor": "origin"}]}, {}]})),
+    _case("D10.five-values", "A contact sensor has five values; on the ground it touches", ALL, _stands(),
+          Check("contact_sensors", _touches)),
 ]

@@ -66,6 +66,12 @@ inline v1::ServerMessage welcome() {
     robot.mutable_range_and_bearing()->set_receives(true);
     robot.set_positioning(true);
     robot.set_battery(true);
+    v1::ImuDescription& imu = *robot.add_imus();
+    imu.set_id("imu");
+    imu.set_anchor("base");
+    for (const double value : {1.0, 2.0, 3.0}) imu.add_position(value);
+    for (const double value : {0.0, 1.0, 0.0, 0.0}) imu.add_orientation(value);
+    robot.add_contact_sensors()->set_id("skin");
     add_cameras(robot);
     robot.mutable_wheels()->set_axle_length(0.14);
     robot.mutable_wheels()->set_drives(true);
@@ -92,6 +98,10 @@ inline v1::ServerMessage observation(std::uint64_t tick) {
   for (int i = 0; i < 4; ++i) observation.add_tag_counts(0);
   for (int i = 0; i < 8; ++i) observation.add_wheels(0.01 * i);
   for (const double value : {0.5, -3.0}) observation.add_turret_rotations(value);
+  for (int i = 0; i < 12; ++i) observation.add_imus(0.5 * i);
+  for (const double value : {0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 9.0}) {
+    observation.add_contact_sensors(value);
+  }
   return message;
 }
 

@@ -312,6 +312,40 @@ TEST_F(Devices, PositioningIsPositionAngleAndAxis) {
   EXPECT_RUNS(step());
 }
 
+TEST_F(Devices, ImusRead) {
+  robot_.add_imus()->set_id("front");
+  robot_.add_imus()->set_id("rear");
+  EXPECT_RUNS(start(R"lua(
+    acceleration, turning = robot.imus.front.acceleration, robot.imus.rear.angular_velocity
+    assert(acceleration.x == 0 and turning.z == 0)
+    function step()
+      assert(acceleration.x == 1 and acceleration.y == 2 and acceleration.z == 3)
+      assert(robot.imus.rear.acceleration.z == 9)
+      assert(turning.x == 10 and turning.y == 11 and turning.z == 12)
+      robot.imus = nil
+    end
+  )lua"));
+  assign(*seen().mutable_imus(), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+  EXPECT_RUNS(step());
+}
+
+TEST_F(Devices, ContactSensorsRead) {
+  robot_.add_contact_sensors()->set_id("left");
+  robot_.add_contact_sensors()->set_id("right");
+  EXPECT_RUNS(start(R"lua(
+    right = robot.contact_sensors.right
+    force = right.force
+    assert(right.touches == false and right.strength == 0 and force.z == 0)
+    function step()
+      assert(not robot.contact_sensors.left.touches)
+      assert(right.touches == true and right.strength == 9)
+      assert(force.x == 2 and force.y == 3 and force.z == 4)
+    end
+  )lua"));
+  assign(*seen().mutable_contact_sensors(), {0, 0, 0, 0, 0, 1, 2, 3, 4, 9});
+  EXPECT_RUNS(step());
+}
+
 TEST_F(Devices, BatteryReads) {
   robot_.set_battery(true);
   EXPECT_RUNS(start(R"lua(

@@ -16,6 +16,8 @@ class OneRobot {
     seen.mutable_joint_readings()->Resize(description.joint_sensors_size(), 0);
     seen.mutable_proximity()->Resize(description.proximity_sensors_size(), 0);
     if (description.positioning()) seen.mutable_positioning()->Resize(7, 0);
+    seen.mutable_contact_sensors()->Resize(5 * description.contact_sensors_size(), 0);
+    seen.mutable_imus()->Resize(6 * description.imus_size(), 0);
     if (description.battery()) seen.mutable_batteries()->Resize(2, 0);
     if (description.wheels().measures()) seen.mutable_wheels()->Resize(4, 0);
     if (description.turret().measures()) seen.mutable_turret_rotations()->Resize(1, 0);

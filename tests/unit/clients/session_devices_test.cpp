@@ -43,6 +43,12 @@ TEST(Devices, AreDescribed) {
   EXPECT_EQ(c.proximity_sensors()[0].range(), 0.25);
   EXPECT_EQ(c.proximity_sensors()[0].angle(), -0.5);
   EXPECT_FALSE(session.robot("b").proximity_sensors()[0].angle());
+  EXPECT_EQ(c.imus()[0].anchor(), "base");
+  EXPECT_EQ(c.imu("imu").position()[2], 3);
+  EXPECT_EQ(c.imu("imu").orientation()[1], 1);
+  EXPECT_THROW(c.imu("gyro"), std::out_of_range);
+  EXPECT_TRUE(a.imus().empty() && a.contact_sensors().empty());
+  EXPECT_EQ(c.contact_sensors()[0].id(), "skin");
   EXPECT_EQ(c.range_and_bearing()->data_size(), 2U);
   EXPECT_EQ(text_of(c.range_and_bearing()->data()), std::string(2, '\0'));
   try {
@@ -82,6 +88,12 @@ TEST(Devices, ReadingsBelongToTheirTick) {
   EXPECT_EQ(c.positioning()->orientation[3], 13);
   EXPECT_EQ(c.battery()->available_charge, 0.5);
   EXPECT_EQ(c.battery()->time_left, 50);
+  EXPECT_FALSE(b.contact_sensor("skin").touches());
+  EXPECT_TRUE(c.contact_sensor("skin").touches());
+  EXPECT_EQ(c.contact_sensor("skin").force(), (std::array<double, 3>{2, 3, 4}));
+  EXPECT_EQ(c.contact_sensor("skin").strength(), 9);
+  EXPECT_EQ(c.imu("imu").acceleration(), (std::array<double, 3>{3, 3.5, 4}));
+  EXPECT_EQ(c.imu("imu").angular_velocity(), (std::array<double, 3>{4.5, 5, 5.5}));
   EXPECT_TRUE(b.radio("ears").received().empty());
   ASSERT_EQ(c.radio("ears").received().size(), 2U);
   EXPECT_EQ(text_of(c.radio("ears").received()[0]), std::string("\0\xff", 2));

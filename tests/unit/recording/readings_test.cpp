@@ -117,6 +117,12 @@ TEST(Readings, NamesEveryDevice) {
   world.observations.positioning.resize(1);
   world.observations.positioning[0].position = {1, 2, 3};
   world.observations.batteries = {{0.75, 30}};
+  robots.imus = {{"imu", {}}};
+  robots.robots[0].imus = {0, 1};
+  robots.contact_sensors = {{"skin", "base", 0, 0}};
+  robots.robots[0].contact_sensors = {0, 1};
+  world.observations.contact_sensors = {{1, {2, 3, 4}, 9}};
+  world.observations.imus = {{{1, 2, 3}, {4, 5, 6}}};
   world.commands.radio_messages.add(1, hello);
   world.commands.led_colors = {0, 0x0000FF};
   world.commands.magnet_currents = {-1.5};
@@ -136,6 +142,11 @@ TEST(Readings, NamesEveryDevice) {
   EXPECT_EQ(sensed.range_and_bearing(0).data(1), 8u);
   EXPECT_EQ(sensed.positioning().z(), 3);
   EXPECT_EQ(sensed.battery().available_charge(), 0.75);
+  EXPECT_EQ(sensed.contact_sensors().at("skin").touches(), 1);
+  EXPECT_EQ(sensed.contact_sensors().at("skin").force_z(), 4);
+  EXPECT_EQ(sensed.contact_sensors().at("skin").strength(), 9);
+  EXPECT_EQ(sensed.imus().at("imu").acceleration_z(), 3);
+  EXPECT_EQ(sensed.imus().at("imu").angular_velocity_x(), 4);
   EXPECT_EQ(sensed.led_colors(0).red(), 255u);
   EXPECT_EQ(sensed.led_colors(0).blue(), 16u);
   EXPECT_EQ(sensed.directional_led_colors(0).green(), 255u);
@@ -195,7 +206,9 @@ TEST(Readings, NamesWheelsAndTurrets) {
   world.observations.wheels = {{}, {1, 2, 3, 4}};
   world.observations.turrets = {9, -0.5};
   world.commands.wheels = {{0.25, -0.5}, {}};
-  world.commands.turrets = {{world::TurretMode::speed, 1, 2}, {}};
+  world.commands.turret_modes = {world::TurretMode::speed, world::TurretMode::passive};
+  world.commands.turret_rotations = {1, 0};
+  world.commands.turret_speeds = {2, 0};
   Readings readings(path, robots);
   readings.write(world.state, world.observations, world.commands);
   readings.close();

@@ -223,11 +223,11 @@ TEST(Listings, Vehicle) {
   EXPECT_EQ(entity.joints[0].child, 2u);
   EXPECT_EQ(entity.controller, 0u);
   const Controller& controller = result.scene.controllers.at(0);
-  ASSERT_EQ(controller.devices.joint_actuators.size(), 4u);
-  EXPECT_EQ(controller.devices.joint_actuators[1].joint, "base_wheel_fl");
-  EXPECT_EQ(controller.devices.joint_actuators[1].max_impulse, 0.005);
-  EXPECT_EQ(controller.devices.joint_actuators[1].mode, JointMode::velocity);
-  EXPECT_EQ(controller.devices.joint_sensors.size(), 4u);
+  ASSERT_EQ(controller.devices.joints.actuators.size(), 4u);
+  EXPECT_EQ(controller.devices.joints.actuators[1].joint, "base_wheel_fl");
+  EXPECT_EQ(controller.devices.joints.actuators[1].max_impulse, 0.005);
+  EXPECT_EQ(controller.devices.joints.actuators[1].mode, JointMode::velocity);
+  EXPECT_EQ(controller.devices.joints.sensors.size(), 4u);
   ASSERT_EQ(controller.params.size(), 1u);
   EXPECT_EQ(controller.params[0].second, "path/to/script.lua");
 }
@@ -261,7 +261,7 @@ TEST(Listings, FootBotControllerAndTarget) {
   text.media = all_media;
   const ReadResult result = text.read();
   ASSERT_TRUE(result.ok()) << all_problems(result);
-  const auto& cameras = result.scene.controllers.at(0).devices.cameras;
+  const auto& cameras = result.scene.controllers.at(0).devices.cameras->cameras;
   ASSERT_EQ(cameras.size(), 2u);
   EXPECT_EQ(cameras[1].anchor, "turret");
   EXPECT_EQ(cameras[0].near, 0.025);

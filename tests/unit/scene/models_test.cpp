@@ -205,7 +205,7 @@ TEST(Models, FootBotAndEPuckCanBeModels) {
   EXPECT_TRUE(a.movable);
   EXPECT_EQ(a.pose.position, math::Vector3(1, 2, 0));
   ASSERT_EQ(a.controller, 1u);
-  EXPECT_EQ(scene.controllers[1].devices.leds_medium, 1u);
+  EXPECT_EQ(scene.controllers[1].devices.leds->medium, 1u);
   EXPECT_FALSE(b.movable);
   EXPECT_EQ(b.controller, 0u);
   text.arena = R"(<arena size="2,2,2"><foot-bot id="a" model="rover"><body/></foot-bot></arena>)";

@@ -224,6 +224,63 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   }
 }
 
+SceneText with_imus(const std::string& imus) {
+  SceneText text;
+  text.controllers =
+      R"(<controllers><lua_controller id="c"><actuators/><sensors><imus implementation="default">)" +
+      imus + "</imus></sensors><params/></lua_controller></controllers>";
+  return text;
+}
+
+TEST(Controllers, Imus) {
+  const ReadResult result =
+      with_imus(R"(<imu id="a" anchor="origin"/><imu id="b" anchor="base" position="1,2,3")"
+                R"( orientation="90,0,0" acceleration_noise="0.1" acceleration_bias_walk="0.2")"
+                R"( angular_velocity_noise="0.3" angular_velocity_bias_walk="0.4"/>)")
+          .read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  const std::vector<Imu>& imus = result.scene.controllers[0].devices.imus;
+  ASSERT_EQ(imus.size(), 2u);
+  EXPECT_EQ(imus[0].acceleration_noise, 0);
+  EXPECT_EQ(imus[1].anchor, "base");
+  EXPECT_EQ(imus[1].pose.position, math::Vector3(1, 2, 3));
+  EXPECT_NEAR((imus[1].pose.orientation * math::Vector3::UnitX()).y(), 1, 1e-12);
+  EXPECT_EQ(imus[1].acceleration_noise, 0.1);
+  EXPECT_EQ(imus[1].acceleration_bias_walk, 0.2);
+  EXPECT_EQ(imus[1].angular_velocity_noise, 0.3);
+  EXPECT_EQ(imus[1].angular_velocity_bias_walk, 0.4);
+}
+
+TEST(Controllers, ContactSensors) {
+  SceneText text;
+  text.controllers =
+      R"(<controllers><lua_controller id="c"><actuators/><sensors>)"
+      R"(<contact_sensors implementation="default"><contact_sensor id="a" anchor="base"/>)"
+      R"(<contact_sensor id="b" anchor="origin"/></contact_sensors></sensors><params/>)"
+      R"(</lua_controller></controllers>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  const auto& sensors = result.scene.controllers[0].devices.contact_sensors;
+  ASSERT_EQ(sensors.size(), 2u);
+  EXPECT_EQ(sensors[0].anchor, "base");
+  EXPECT_EQ(sensors[1].id, "b");
+}
+
+TEST(Controllers, ImusWithFaults) {
+  const std::pair<const char*, const char*> faults[] = {
+      {"", "has no sensor; write <imu"},
+      {R"(<imu id="a"/>)", "anchor"},
+      {R"(<imu id="a" anchor="origin"/><imu id="a" anchor="origin"/>)", "earlier imu"},
+      {R"(<imu id="a" anchor="origin" acceleration_noise="-1"/>)", "acceleration_noise"},
+      {R"(<imu id="a" anchor="origin" noise="1"/>)", "noise"},
+      {R"(<gyroscope/>)", "gyroscope"}};
+  for (const auto& [imus, words] : faults) {
+    const ReadResult result = with_imus(imus).read();
+    EXPECT_FALSE(result.ok()) << imus;
+    EXPECT_NE(all_problems(result).find(words), std::string::npos) << all_problems(result);
+  }
+}
+
 TEST(Controllers, AttributesWithoutEffectGiveNotices) {
   SceneText text;
   text.controllers =
@@ -243,7 +300,7 @@ TEST(Controllers, TheLastOfTwoDevicesIsUsed) {
                      R"(</sensors><params/></lua_controller></controllers>)";
   const ReadResult result = text.read();
   ASSERT_TRUE(result.ok()) << all_problems(result);
-  const auto& joints = result.scene.controllers[0].devices.joint_sensors;
+  const auto& joints = result.scene.controllers[0].devices.joints.sensors;
   ASSERT_EQ(joints.size(), 1u);
   EXPECT_EQ(joints[0].joint, "b");
   EXPECT_EQ(count_containing(notices(result), "this <joints> has no effect"), 1u);

@@ -273,7 +273,8 @@ TEST(Spawn, AFootBotIsDrivenAndItsPlacesStayWhenItIsRemoved) {
   EXPECT_NEAR(world.simulation.observations().positioning[1].position.x(), 2.2, 0.005);
   const auto where = world.simulation.state().origins[1].position;
   world.simulation.remove(1);
-  world.simulation.commands().turrets[1] = {world::TurretMode::speed, 0, 1};
+  world.simulation.commands().turret_modes[1] = world::TurretMode::speed;
+  world.simulation.commands().turret_speeds[1] = 1;
   world.step(10);
   EXPECT_EQ(world.simulation.state().origins[1].position, where);
   EXPECT_NEAR(world.simulation.state().origins[0].position.x(), 0.4, 0.01);

@@ -33,6 +33,14 @@ void drive(Simulation& simulation, double left, double right) {
   simulation.commands().wheels.at(0) = {left, right};
 }
 
+/// The first robot's turret. @param value  [rad] or [rad/s], as the mode says
+void turn(Simulation& simulation, TurretMode mode, double value) {
+  world::Commands& commands = simulation.commands();
+  commands.turret_modes.at(0) = mode;
+  commands.turret_rotations.at(0) = mode == TurretMode::position ? value : 0;
+  commands.turret_speeds.at(0) = mode == TurretMode::speed ? value : 0;
+}
+
 TEST(FootBot, TurnsOnTheSpotAsTheClosedFormSays) {
   Simulation simulation = SmallScene{wheels, "", foot_bot(), ground}.run();
   drive(simulation, 0.0025, -0.0025);
@@ -133,7 +141,7 @@ TEST(FootBot, StaysWhereItIsIfItMayNotMove) {
                  foot_bot("", "", "movable=\"false\""), ground}
           .run();
   drive(simulation, 0.1, 0.1);
-  simulation.commands().turrets.at(0) = {TurretMode::speed, 0, 0.5};
+  turn(simulation, TurretMode::speed, 0.5);
   for (int i = 0; i < 10; ++i) simulation.step();
   EXPECT_EQ(simulation.state().origins[0].position, math::Vector3::Zero());
   EXPECT_NEAR(yaw(simulation.state().links[1].pose), 0.5, 1e-9);
@@ -195,7 +203,7 @@ TEST(Turret, TurnsAtItsSpeedOnTopOfTheRobots) {
       SmallScene{std::string(wheels) + turret, encoder, foot_bot(), ground}.run();
   drive(simulation, -0.01, 0.01);
   const double rate = 2 * std::numbers::pi / 30;  // 2 RPM
-  simulation.commands().turrets.at(0) = {TurretMode::speed, 0, rate};
+  turn(simulation, TurretMode::speed, rate);
   simulation.step();
   EXPECT_NEAR(simulation.observations().turrets.at(0), 0.0209439510, 1e-9);
   EXPECT_NEAR(simulation.state().links[1].angular_velocity.z(), rate + 0.02 / axle, 1e-9);
@@ -208,7 +216,7 @@ TEST(Turret, TurnsAtItsSpeedOnTopOfTheRobots) {
 
 TEST(Turret, ApproachesItsAngleByTheDialectsFormula) {
   Simulation simulation = SmallScene{turret, encoder, foot_bot(), ground}.run();
-  simulation.commands().turrets.at(0) = {TurretMode::position, 0.5, 0};
+  turn(simulation, TurretMode::position, 0.5);
   double angle = 0, last = 0;
   for (int i = 0; i < 30; ++i) {
     const double error = 0.5 - angle;
@@ -217,7 +225,7 @@ TEST(Turret, ApproachesItsAngleByTheDialectsFormula) {
     simulation.step();
     EXPECT_NEAR(simulation.observations().turrets.at(0), angle, 1e-9);
   }
-  simulation.commands().turrets[0].mode = TurretMode::passive;
+  turn(simulation, TurretMode::passive, 0);
   for (int i = 0; i < 5; ++i) simulation.step();
   EXPECT_NEAR(simulation.observations().turrets[0], angle, 1e-12);
 }

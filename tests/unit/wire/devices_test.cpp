@@ -101,18 +101,18 @@ TEST_F(DeviceWire, WhoIsGoneKeepsItsColorsAndIsOtherwiseZero) {
 
 TEST_F(DeviceWire, WrongLengths) {
   for (int i = 0; i < 4; ++i) command->add_led_colors(1);
-  expect_fault(ErrorCode::bad_value, "led_colors", "", "4 LED colors were given; the robots");
+  expect_fault(ErrorCode::bad_value, "led_colors", "", "is 4; it must be 3 (3 LEDs");
   command->add_directional_led_colors(1);
-  expect_fault(ErrorCode::bad_value, "directional_led_colors", "", "have 3 directional LEDs");
+  expect_fault(ErrorCode::bad_value, "directional_led_colors", "", "(3 directional LEDs");
   command->add_tag_payloads("x");
-  expect_fault(ErrorCode::bad_value, "tag_payloads", "", "1 payloads");
+  expect_fault(ErrorCode::bad_value, "tag_payloads", "", "is 1; it must be 3");
   command->add_magnet_currents(1);
-  expect_fault(ErrorCode::bad_value, "magnet_currents", "", "have 3 magnets");
+  expect_fault(ErrorCode::bad_value, "magnet_currents", "", "(3 magnets");
   command->set_range_and_bearing_data("123456789");
-  expect_fault(ErrorCode::bad_value, "range_and_bearing_data", "", "9 bytes were given");
+  expect_fault(ErrorCode::bad_value, "range_and_bearing_data", "", "is 9; it must be 8");
   command->add_robots(1);
   command->add_led_colors(1);
-  expect_fault(ErrorCode::bad_value, "led_colors", "", "have 0 LEDs");
+  expect_fault(ErrorCode::bad_value, "led_colors", "", "(0 LEDs");
 }
 
 TEST_F(DeviceWire, ValuesThatCannotBe) {
@@ -130,7 +130,7 @@ TEST_F(DeviceWire, ValuesThatCannotBe) {
   for (const std::size_t size : {0U, 1U, 0U}) {
     command->add_tag_payloads(std::string(world::most_tag_payload_bytes + size, 'x'));
   }
-  expect_fault(ErrorCode::too_large, "tag_payloads", "c", "tag 'tag2' of robot 'c' has 65537");
+  expect_fault(ErrorCode::too_large, "tag_payloads", "c", "tag 'tag2' of robot 'c' is 65537 bytes");
 }
 
 TEST_F(DeviceWire, RadiosThatAreNotThere) {
@@ -189,6 +189,8 @@ TEST_F(DeviceWireOfC, SensesWhatIsItsOwn) {
   seen.proximity = {0.1, 0.2, 0.3};
   seen.positioning[1] = {{1, 2, 3}, math::Quaternion(0.5, -0.5, 0.5, -0.5)};
   seen.batteries = {{1, 1}, {1, 1}, {0.25, 60}};
+  seen.imus[2] = {{1, 2, 3}, {4, 5, 6}};
+  seen.contact_sensors[1] = {1, {2, 3, 4}, 9};
   seen.range_and_bearing_data = {1, 2, 3, 4, 5, 6, 7, 8};
   seen.range_and_bearing = {{0, 1, 1, 1, {0, 4}}, {2, 1.5, -0.5, 0.25, {4, 4}}};
   Outbox outbox;
@@ -205,6 +207,10 @@ TEST_F(DeviceWireOfC, SensesWhatIsItsOwn) {
   EXPECT_EQ(pose, (std::vector<double>{1, 2, 3, 0.5, -0.5, 0.5, -0.5}));
   ASSERT_EQ(observation.batteries_size(), 2);
   EXPECT_EQ(observation.batteries(1), 60);
+  ASSERT_EQ(observation.imus_size(), 6 * observation.batteries_size() / 2 + 6);  // c has two
+  EXPECT_EQ(observation.imus(6 * observation.batteries_size() / 2), 1);
+  EXPECT_EQ(*observation.imus().rbegin(), 6);
+  EXPECT_EQ(*observation.contact_sensors().rbegin(), 9);
   ASSERT_EQ(observation.range_and_bearing_size(), 1);
   const auto& packet = observation.range_and_bearing(0);
   EXPECT_EQ(packet.robot(), 0U);
@@ -272,6 +278,15 @@ TEST_F(DeviceWire, WelcomeDescribesThem) {
   EXPECT_EQ(a.range_and_bearing().data_size(), 4U);
   EXPECT_TRUE(a.range_and_bearing().sends() && a.range_and_bearing().receives());
   EXPECT_TRUE(a.positioning() && a.battery());
+  ASSERT_EQ(c.contact_sensors_size(), 1);
+  EXPECT_EQ(c.contact_sensors(0).id(), "skin1");
+  EXPECT_EQ(c.contact_sensors(0).anchor(), "origin");
+  ASSERT_EQ(c.imus_size(), 2);
+  EXPECT_EQ(c.imus(0).anchor(), "origin");
+  EXPECT_EQ(c.imus(1).id(), "imu2");
+  EXPECT_EQ(c.imus(1).anchor(), "base");
+  EXPECT_EQ(c.imus(1).position(2), 3);
+  EXPECT_EQ(c.imus(1).orientation(2), 1);
 }
 
 }  // namespace

@@ -32,12 +32,12 @@ TEST_F(Driving, ValuesOfAllRobots) {
   turn({v1::TURRET_SPEED, v1::TURRET_POSITION}, {0.25, 0.5}, {-1, 2});
   apply();
   EXPECT_EQ(wheels(), (std::vector<double>{1, -2, 0, 0, 3, 4})) << "no robot drives the second";
-  EXPECT_EQ(commands.turrets[0].mode, world::TurretMode::speed);
-  EXPECT_EQ(commands.turrets[1].mode, world::TurretMode::position);
-  EXPECT_EQ(commands.turrets[0].rotation, 0.25);
-  EXPECT_EQ(commands.turrets[1].rotation, 0.5);
-  EXPECT_EQ(commands.turrets[0].speed, -1);
-  EXPECT_EQ(commands.turrets[1].speed, 2);
+  EXPECT_EQ(commands.turret_modes[0], world::TurretMode::speed);
+  EXPECT_EQ(commands.turret_modes[1], world::TurretMode::position);
+  EXPECT_EQ(commands.turret_rotations[0], 0.25);
+  EXPECT_EQ(commands.turret_rotations[1], 0.5);
+  EXPECT_EQ(commands.turret_speeds[0], -1);
+  EXPECT_EQ(commands.turret_speeds[1], 2);
 }
 
 TEST_F(Driving, ValuesOfSomeRobotsInTheOrderGiven) {
@@ -46,10 +46,10 @@ TEST_F(Driving, ValuesOfSomeRobotsInTheOrderGiven) {
   turn({v1::TURRET_POSITION, v1::TURRET_PASSIVE}, {}, {5, 6});
   apply();
   EXPECT_EQ(wheels(), (std::vector<double>{3, 4, 0, 0, 1, 2}));
-  EXPECT_EQ(commands.turrets[0].mode, world::TurretMode::passive);
-  EXPECT_EQ(commands.turrets[1].mode, world::TurretMode::position);
-  EXPECT_EQ(commands.turrets[0].speed, 6);
-  EXPECT_EQ(commands.turrets[1].rotation, 0) << "was not given";
+  EXPECT_EQ(commands.turret_modes[0], world::TurretMode::passive);
+  EXPECT_EQ(commands.turret_modes[1], world::TurretMode::position);
+  EXPECT_EQ(commands.turret_speeds[0], 6);
+  EXPECT_EQ(commands.turret_rotations[1], 0) << "was not given";
 }
 
 TEST_F(Driving, WhoIsGoneSetsNothing) {
@@ -58,36 +58,38 @@ TEST_F(Driving, WhoIsGoneSetsNothing) {
   turn({v1::TURRET_SPEED, v1::TURRET_SPEED}, {}, {});
   apply();
   EXPECT_EQ(wheels(), (std::vector<double>{0, 0, 0, 0, 3, 4}));
-  EXPECT_EQ(commands.turrets[0].mode, world::TurretMode::passive);
-  EXPECT_EQ(commands.turrets[1].mode, world::TurretMode::speed);
+  EXPECT_EQ(commands.turret_modes[0], world::TurretMode::passive);
+  EXPECT_EQ(commands.turret_modes[1], world::TurretMode::speed);
 }
 
 TEST_F(Driving, WhoIsGoneStands) {
   commands.wheels = {{1, 2}, {3, 4}, {5, 6}};
-  commands.turrets = {{world::TurretMode::speed, 1, 2}, {world::TurretMode::speed, 3, 4}};
+  commands.turret_modes = {world::TurretMode::speed, world::TurretMode::speed};
+  commands.turret_rotations = {1, 3};
+  commands.turret_speeds = {2, 4};
   zero(run.layout(), 2, commands);
   EXPECT_EQ(wheels(), (std::vector<double>{1, 2, 3, 4, 0, 0}));
-  EXPECT_EQ(commands.turrets[0].speed, 2);
-  EXPECT_EQ(commands.turrets[1].speed, 0);
-  EXPECT_EQ(commands.turrets[1].rotation, 3) << "it stays where it is";
-  EXPECT_EQ(commands.turrets[1].mode, world::TurretMode::speed);
+  EXPECT_EQ(commands.turret_speeds[0], 2);
+  EXPECT_EQ(commands.turret_speeds[1], 0);
+  EXPECT_EQ(commands.turret_rotations[1], 3) << "it stays where it is";
+  EXPECT_EQ(commands.turret_modes[1], world::TurretMode::speed);
 }
 
 TEST_F(Driving, WrongLengths) {
   drive({1, 2, 3});
-  expect_fault(ErrorCode::bad_value, "wheel_velocities", "", "3 wheel speeds were given");
+  expect_fault(ErrorCode::bad_value, "wheel_velocities", "", "is 3; it must be 4 (2 pairs");
   drive({1, 2, 3, 4, 5, 6});
   expect_fault(ErrorCode::bad_value, "wheel_velocities", "",
-               "have 2 pairs of wheels with an actuator, 2 values each");
+               "(2 pairs of wheels with an actuator, 2 values each");
   turn({v1::TURRET_SPEED}, {}, {});
-  expect_fault(ErrorCode::bad_value, "turret_modes", "", "1 turret modes");
+  expect_fault(ErrorCode::bad_value, "turret_modes", "", "is 1; it must be 2 (2 turrets");
   turn({}, {1, 2, 3}, {});
-  expect_fault(ErrorCode::bad_value, "turret_rotations", "", "have 2 turrets with an actuator");
+  expect_fault(ErrorCode::bad_value, "turret_rotations", "", "(2 turrets with an actuator");
   turn({}, {}, {1});
-  expect_fault(ErrorCode::bad_value, "turret_speeds", "", "1 turret speeds");
+  expect_fault(ErrorCode::bad_value, "turret_speeds", "", "is 1; it must be 2 (2 turrets");
   command->add_robots(1);
   drive({1, 2});
-  expect_fault(ErrorCode::bad_value, "wheel_velocities", "", "have 0 pairs");
+  expect_fault(ErrorCode::bad_value, "wheel_velocities", "", "(0 pairs");
 }
 
 TEST_F(Driving, ValuesThatCannotBe) {
@@ -114,7 +116,7 @@ TEST_F(Driving, ACommandIsCheckedWhole) {
   turn({v1::TURRET_SPEED, v1::TURRET_SPEED}, {}, {0, nan});
   expect_fault(ErrorCode::bad_value, "turret_speeds", "c", "nan");
   EXPECT_EQ(wheels(), std::vector<double>(6));
-  EXPECT_EQ(commands.turrets[0].mode, world::TurretMode::passive);
+  EXPECT_EQ(commands.turret_modes[0], world::TurretMode::passive);
 }
 
 TEST_F(Driving, ReadingsOfThoseThatMeasure) {

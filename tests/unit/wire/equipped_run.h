@@ -13,9 +13,9 @@ namespace ziggurat::wire {
 
 /// Robots "a" (everything once, radios twice), "b" (nothing) and "c" (everything twice, one radio
 /// that only sends, one that only receives). Everything of c comes after that of a, and LED,
-/// magnet and tag 1 belong to an entity that is not a robot. a's camera sees LEDs and tags and takes
-/// pictures of 2 x 1 pixels, c's first sees tags and directional LEDs, c's second all but takes no
-/// pictures. a drives wheels and turret and measures neither; c does both.
+/// magnet and tag 1 belong to an entity that is not a robot. a's camera sees LEDs and tags and
+/// takes pictures of 2 x 1 pixels, c's first sees tags and directional LEDs, c's second all but
+/// takes no pictures. a drives wheels and turret and measures neither; c does both.
 class EquippedRun {
  public:
   EquippedRun() {
@@ -29,6 +29,8 @@ class EquippedRun {
     layout_.radios.resize(4);
     layout_.positioning = {0, 2};
     layout_.batteries.resize(3);
+    layout_.imus.resize(3);
+    layout_.contact_sensors = {{"skin0", "base", 0, 0}, {"skin1", "origin", 2, 0}};
     layout_.range_and_bearing.resize(3);
     for (std::size_t i = 0; i < 4; ++i) {
       const std::string number = std::to_string(i);
@@ -43,11 +45,13 @@ class EquippedRun {
       layout_.radios[i].receives = i != 2;
     }
     for (std::size_t i = 0; i < 3; ++i) {
+      layout_.imus[i].id = "imu" + std::to_string(i);
       layout_.directional_leds[i].id = "directional" + std::to_string(i);
       layout_.range_and_bearing[i] = {{}, 3.0, 0, {4 * i, 4}, i != 1, true};
       layout_.proximity[i].range = 0.1 * static_cast<double>(i + 1);
     }
     layout_.proximity[0].mount.link = 0;
+    layout_.imus[2].mount = {0, 0, {{1, 2, 3}, math::Quaternion(0, 0, 1, 0)}};
     layout_.proximity[1].angle = -2.5;
     add_cameras();
     layout_.wheels = {{0, 0.14, true, false}, {1, 0.1, false, true}, {2, 0.053, true, true}};
@@ -63,6 +67,8 @@ class EquippedRun {
     a.range_and_bearing = {0, 1}, c.range_and_bearing = {2, 1};
     a.positioning = {0, 1}, c.positioning = {1, 1};
     a.batteries = {0, 1}, c.batteries = {2, 1};
+    a.imus = {0, 1}, c.imus = {1, 2};
+    a.contact_sensors = {0, 1}, c.contact_sensors = {1, 1};
     a.cameras = {0, 1}, c.cameras = {1, 2};
     a.wheels = {0, 1}, c.wheels = {2, 1};
     a.turrets = {0, 1}, c.turrets = {1, 1};
@@ -83,7 +89,9 @@ class EquippedRun {
     commands.magnet_currents.resize(4);
     commands.range_and_bearing_data.resize(12);
     commands.wheels.resize(3);
-    commands.turrets.resize(2);
+    commands.turret_modes.resize(2);
+    commands.turret_rotations.resize(2);
+    commands.turret_speeds.resize(2);
     return commands;
   }
 
@@ -93,6 +101,8 @@ class EquippedRun {
     observations.proximity.resize(3);
     observations.positioning.resize(2);
     observations.batteries.resize(3);
+    observations.imus.resize(3);
+    observations.contact_sensors.resize(2);
     observations.wheels.resize(3);
     observations.turrets.resize(2);
     return observations;

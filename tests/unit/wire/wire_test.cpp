@@ -39,15 +39,20 @@ std::string bytes_of(const Outbox& outbox) {
   return bytes;
 }
 
+const Packing& joint_readings(const Roster& roster) {
+  return roster.sensed[world::row_of(world::sensed, &world::Observations::joint_readings)];
+}
+
 TEST(Roster, NeighboursAreCopiedInOnePiece) {
   SmallRun small(6);
   const std::vector<std::size_t> robots{0, 1, 2, 4, 5};
   const Roster roster = make_roster(small.layout(), robots);
-  ASSERT_EQ(roster.joint_sensors.stretches.size(), 2U);
-  EXPECT_EQ(roster.joint_sensors.stretches[1].packed, 3U);
-  EXPECT_EQ(roster.joint_sensors.stretches[1].flat, 4U);
-  EXPECT_EQ(roster.joint_sensors.stretches[1].count, 2U);
-  EXPECT_EQ(roster.joint_sensors.count, 5U);
+  const Packing& readings = joint_readings(roster);
+  ASSERT_EQ(readings.stretches.size(), 2U);
+  EXPECT_EQ(readings.stretches[1].packed, 3U);
+  EXPECT_EQ(readings.stretches[1].flat, 4U);
+  EXPECT_EQ(readings.stretches[1].count, 2U);
+  EXPECT_EQ(readings.count, 5U);
 }
 
 TEST(Roster, RobotsWithoutJointsAreNoObstacle) {
@@ -55,8 +60,9 @@ TEST(Roster, RobotsWithoutJointsAreNoObstacle) {
   small.layout().robots[1].joint_sensors = {0, 0};
   const std::vector<std::size_t> robots{0, 1, 2};
   const Roster roster = make_roster(small.layout(), robots);
-  EXPECT_EQ(roster.joint_sensors.count, 2U);
-  EXPECT_EQ(roster.joint_sensors.robots[2].packed, 1U);
+  const Packing& readings = joint_readings(roster);
+  EXPECT_EQ(readings.count, 2U);
+  EXPECT_EQ(readings.robots[2].packed, 1U);
 }
 
 TEST(Outbox, ObservationBytes) {

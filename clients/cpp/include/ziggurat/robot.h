@@ -25,7 +25,7 @@ namespace ziggurat {
 
 /// A handle into its session, valid while the session lives. Look up devices by id once, before
 /// the loop, and keep the references.
-class Robot {
+class Robot : public Sensors {
  public:
   const std::string& id() const noexcept { return id_; }
   /// Id of its controller in the scene.
@@ -55,17 +55,12 @@ class Robot {
   Tag& tag(std::string_view id);
   std::span<Magnet> magnets() noexcept { return magnets_; }
   Magnet& magnet(std::string_view id);
-  std::span<const ProximitySensor> proximity_sensors() const noexcept { return proximity_; }
   std::span<const Camera> cameras() const noexcept { return cameras_; }
   const Camera& camera(std::string_view id) const;
   // These are null if the robot has no such device.
   RangeAndBearing* range_and_bearing() noexcept {
     return range_and_bearing_ ? &*range_and_bearing_ : nullptr;
   }
-  const Positioning* positioning() const noexcept {
-    return positioning_ ? &*positioning_ : nullptr;
-  }
-  const Battery* battery() const noexcept { return battery_ ? &*battery_ : nullptr; }
   Wheels* wheels() noexcept { return wheels_ ? &*wheels_ : nullptr; }
   Turret* turret() noexcept { return turret_ ? &*turret_ : nullptr; }
 
@@ -105,11 +100,8 @@ class Robot {
   std::vector<Led> directional_leds_;
   std::vector<Tag> tags_;
   std::vector<Magnet> magnets_;
-  std::vector<ProximitySensor> proximity_;
   std::vector<Camera> cameras_;
   std::optional<RangeAndBearing> range_and_bearing_;
-  std::optional<Positioning> positioning_;
-  std::optional<Battery> battery_;
   std::optional<Wheels> wheels_;
   std::optional<Turret> turret_;
   std::uint32_t position_ = 0;  // in the session

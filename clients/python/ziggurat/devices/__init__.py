@@ -5,16 +5,14 @@ Numbers are SI: m, rad, s, m/s, rad/s; pixels are counted from the top left corn
 to the right and v down.
 """
 
-from .battery import Battery
 from .camera import Camera, LedReading, TagReading
 from .device import Device, Quaternion, Vector
 from .joint import Joint
 from .led import OFF, Color, Led
 from .magnet import Magnet
-from .positioning import Pose
-from .proximity import ProximitySensor
 from .radio import MAX_MESSAGE, Radio
 from .range_and_bearing import Packet, RangeAndBearing
+from .sensors import *
 from .tag import MAX_PAYLOAD, Tag
 from .turret import Turret
 from .wheels import Wheels

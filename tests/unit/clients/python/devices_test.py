@@ -50,10 +50,28 @@ class Devices(unittest.TestCase):
         self.assertEqual(list(self.two.proximity), [0, 0])
         self.assertIsNone(self.two.pose)
         self.assertIsNone(self.two.battery)
+        self.assertEqual(self.two.imus["imu"].acceleration, (0, 0, 0))
+        self.assertFalse(self.two.contact_sensors["skin"].touches)
+        self.assertEqual(self.two.contact_sensors["skin"].force, (0, 0, 0))
         self.assertEqual(self.two.cameras["front"].tags, [])
         self.assertEqual(self.two.cameras["front"].image, b"")
         self.assertEqual(self.two.wheels.velocity, (0, 0))
         self.assertEqual(self.two.turret.rotation, 0)
+
+    def test_imus(self):
+        self.see(imus=range(12))
+        imu = self.two.imus["imu"]
+        self.assertEqual((imu.anchor, imu.position, imu.orientation),
+                         ("base", (1, 2, 3), (0, 1, 0, 0)))
+        self.assertEqual(imu.acceleration, (6, 7, 8))
+        self.assertEqual(imu.angular_velocity, (9, 10, 11))
+
+    def test_contact_sensors(self):
+        self.see(contact_sensors=[0, 0, 0, 0, 0, 1, 2, 3, 4, 9])
+        self.assertFalse(self.one.contact_sensors["skin"].touches)
+        skin = self.two.contact_sensors["skin"]
+        self.assertEqual((skin.anchor, skin.touches, skin.force, skin.strength),
+                         ("base", True, (2, 3, 4), 9))
 
     def test_radios(self):
         self.see(radio_messages=[v1.RadioMessage(radio=1, payload=b"x"),

@@ -1,9 +1,42 @@
-#include "wire/description.h"
+#include "wire/devices.h"
 
+#include <tuple>
+
+#include "wire/channels.h"
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat::wire {
 namespace {
+
+// --- which field carries which channel ----------------------------------------------------------
+
+constexpr std::tuple observation_fields{
+    ObservationField{&world::Observations::joint_readings,
+                     &v1::Observation::mutable_joint_readings},
+    ObservationField{&world::Observations::proximity, &v1::Observation::mutable_proximity},
+    ObservationField{&world::Observations::positioning, &v1::Observation::mutable_positioning},
+    ObservationField{&world::Observations::batteries, &v1::Observation::mutable_batteries},
+    ObservationField{&world::Observations::wheels, &v1::Observation::mutable_wheels},
+    ObservationField{&world::Observations::turrets, &v1::Observation::mutable_turret_rotations},
+    ObservationField{&world::Observations::imus, &v1::Observation::mutable_imus},
+    ObservationField{&world::Observations::contact_sensors,
+                     &v1::Observation::mutable_contact_sensors},
+};
+
+constexpr std::tuple command_fields{
+    CommandField{&world::Commands::joint_targets, &v1::Command::joint_targets},
+    CommandField{&world::Commands::led_colors, &v1::Command::led_colors},
+    CommandField{&world::Commands::directional_led_colors, &v1::Command::directional_led_colors},
+    CommandField{&world::Commands::tag_payloads, &v1::Command::tag_payloads},
+    CommandField{&world::Commands::magnet_currents, &v1::Command::magnet_currents},
+    CommandField{&world::Commands::range_and_bearing_data, &v1::Command::range_and_bearing_data},
+    CommandField{&world::Commands::wheels, &v1::Command::wheel_velocities},
+    CommandField{&world::Commands::turret_modes, &v1::Command::turret_modes},
+    CommandField{&world::Commands::turret_rotations, &v1::Command::turret_rotations},
+    CommandField{&world::Commands::turret_speeds, &v1::Command::turret_speeds},
+};
+
+// --- descriptions in Welcome --------------------------------------------------------------------
 
 v1::JointDescription::Mode mode_of(bool disabled, bool velocity) {
   if (disabled) return v1::JointDescription::DISABLED;
@@ -68,6 +101,17 @@ std::string anchor_of(const world::Layout& all, const world::Mount& mount) {
   return mount.link ? v1::valid_utf8(all.links[*mount.link].id) : "origin";
 }
 
+/// Where a device is fixed: anchor, position, orientation.
+template <class Description>
+void describe_mount(const world::Layout& all, const world::Mount& mount, Description& to) {
+  to.set_anchor(anchor_of(all, mount));
+  for (const double value : mount.pose.position) to.add_position(value);
+  const math::Quaternion& turned = mount.pose.orientation;
+  for (const double value : {turned.w(), turned.x(), turned.y(), turned.z()}) {
+    to.add_orientation(value);
+  }
+}
+
 void describe_proximity(const world::Layout& all, const world::RobotLayout& robot,
                         v1::RobotDescription& description) {
   for (std::size_t i = robot.proximity.begin; i < robot.proximity.end(); ++i) {
@@ -87,12 +131,7 @@ void describe_cameras(const world::Layout& all, const world::RobotLayout& robot,
     const world::CameraLayout& camera = all.cameras[i];
     v1::CameraDescription& to = *description.add_cameras();
     to.set_id(v1::valid_utf8(camera.id));
-    to.set_anchor(anchor_of(all, camera.mount));
-    for (const double value : camera.mount.pose.position) to.add_position(value);
-    const math::Quaternion& turned = camera.mount.pose.orientation;
-    for (const double value : {turned.w(), turned.x(), turned.y(), turned.z()}) {
-      to.add_orientation(value);
-    }
+    describe_mount(all, camera.mount, to);
     to.set_near(camera.near);
     to.set_far(camera.far);
     for (const double value : camera.focal_length) to.add_focal_length(value);
@@ -103,6 +142,25 @@ void describe_cameras(const world::Layout& all, const world::RobotLayout& robot,
     to.set_detects_directional_leds(camera.directional_leds.has_value());
     to.set_detects_tags(camera.tags.has_value());
     to.set_image(camera.image);
+  }
+}
+
+void describe_imus(const world::Layout& all, const world::RobotLayout& robot,
+                   v1::RobotDescription& description) {
+  for (std::size_t i = robot.imus.begin; i < robot.imus.end(); ++i) {
+    const world::ImuLayout& imu = all.imus[i];
+    v1::ImuDescription& to = *description.add_imus();
+    to.set_id(v1::valid_utf8(imu.id));
+    describe_mount(all, imu.mount, to);
+  }
+}
+
+void describe_contact_sensors(const world::Layout& all, const world::RobotLayout& robot,
+                              v1::RobotDescription& description) {
+  for (std::size_t i = robot.contact_sensors.begin; i < robot.contact_sensors.end(); ++i) {
+    v1::ContactSensorDescription& to = *description.add_contact_sensors();
+    to.set_id(v1::valid_utf8(all.contact_sensors[i].id));
+    to.set_anchor(v1::valid_utf8(all.contact_sensors[i].anchor));
   }
 }
 
@@ -140,11 +198,47 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
   describe_proximity(run.layout, layout, description);
   describe_cameras(run.layout, layout, description);
   describe_driving(run.layout, layout, description);
+  describe_imus(run.layout, layout, description);
+  describe_contact_sensors(run.layout, layout, description);
   for (std::size_t i = layout.magnets.begin; i < layout.magnets.end(); ++i) {
     description.add_magnets()->set_id(v1::valid_utf8(run.layout.magnets[i].id));
   }
   description.set_positioning(layout.positioning.count > 0);
   description.set_battery(layout.batteries.count > 0);
+}
+
+// --- values -------------------------------------------------------------------------------------
+
+void add_channels(const Roster& roster, const world::Observations& from, v1::Observation& to) {
+  world::for_each_channel(world::sensed, [&](auto i) {
+    constexpr const auto& field = field_of<observation_fields, world::sensed, i>();
+    add(roster.sensed[i], from.*field.values, *(to.*field.packed)());
+  });
+}
+
+std::optional<Fault> check_channels(const v1::Command& command, const Roster& roster,
+                                    const world::Layout& layout) {
+  std::optional<Fault> found;
+  world::for_each_channel(world::commanded, [&](auto i) {
+    constexpr const auto& field = field_of<command_fields, world::commanded, i>();
+    if (found) return;
+    found = check_count(command, roster.commanded[i], std::get<i>(world::commanded),
+                        (command.*field.packed)());
+  });
+  world::for_each_channel(world::commanded, [&](auto i) {
+    constexpr const auto& field = field_of<command_fields, world::commanded, i>();
+    if (found) return;
+    found = check_values(command, roster, layout, roster.commanded[i],
+                         std::get<i>(world::commanded), (command.*field.packed)());
+  });
+  return found;
+}
+
+void apply_channels(const v1::Command& command, const Roster& roster, world::Commands& commands) {
+  world::for_each_channel(world::commanded, [&](auto i) {
+    constexpr const auto& field = field_of<command_fields, world::commanded, i>();
+    apply(command, roster, roster.commanded[i], (command.*field.packed)(), commands.*field.values);
+  });
 }
 
 }  // namespace ziggurat::wire

@@ -1,0 +1,120 @@
+"""Sensors that read a fixed number of values each, and what a robot has of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import List, NamedTuple, Optional, Sequence
+
+from .. import protocol_pb2 as v1
+from ..exchange import Exchange, Readings
+from ..named import Named
+from .device import Device, Quaternion, Vector
+
+__all__ = ["Battery", "ContactSensor", "Imu", "Pose", "ProximitySensor", "Sensors"]
+
+
+class Pose(NamedTuple):
+    """Of the robot's origin in the world."""
+
+    position: Vector  # [m]
+    orientation: Quaternion
+
+
+class Battery(NamedTuple):
+    available_charge: float  # share of the full charge, 0 … 1
+    time_left: float  # [s], may be infinite
+
+
+@dataclass(frozen=True)
+class ProximitySensor:
+    """The position of a sensor. Its reading is at the same index of Robot.proximity."""
+
+    anchor: str  # id of a link, or "origin"
+    position: Vector  # start of the ray in the anchor's frame [m]
+    direction: Vector  # in the anchor's frame, of length 1
+    range: float  # [m]
+    angle: Optional[float] = None  # of the ray about +z from +x [rad]; only foot-bots
+
+
+class Imu(Device):
+    """An accelerometer and a gyroscope. Readings are in its frame, means over the last tick; 0 before
+    the first."""
+
+    __slots__ = ("anchor", "position", "orientation", "_place")
+
+    def __init__(self, exchange: Exchange, given: v1.ImuDescription):
+        super().__init__(exchange, given.id)
+        self.anchor: str = given.anchor  # id of a link, or "origin"
+        self.position: Vector = tuple(given.position)  # in the anchor's frame [m]
+        self.orientation: Quaternion = tuple(given.orientation)  # in the anchor's frame
+        self._place = 6 * exchange.place("imus")
+
+    def _read(self, first: int) -> Vector:
+        first += self._place
+        return tuple(self._exchange.seen.imus[first:first + 3]) or (0.0, 0.0, 0.0)
+
+    @property
+    def acceleration(self) -> Vector:
+        """As an accelerometer feels it [m/s²]: up at rest, 0 in free fall."""
+        return self._read(0)
+
+    @property
+    def angular_velocity(self) -> Vector:
+        """Relative to the world [rad/s]."""
+        return self._read(3)
+
+
+class ContactSensor(Device):
+    """Feels what touches a link. Readings are means over the last tick; 0 before the first."""
+
+    __slots__ = ("anchor", "_place")
+
+    def __init__(self, exchange: Exchange, given: v1.ContactSensorDescription):
+        super().__init__(exchange, given.id)
+        self.anchor: str = given.anchor  # id of the link, or "origin" for the root link
+        self._place = 5 * exchange.place("contact_sensors")
+
+    def _read(self, first: int, last: int) -> Sequence[float]:
+        readings = self._exchange.seen.contact_sensors
+        return readings[self._place + first:self._place + last] or [0.0] * (last - first)
+
+    @property
+    def touches(self) -> bool:
+        return self._read(0, 1)[0] != 0
+
+    @property
+    def force(self) -> Vector:
+        """The sum of the forces of all contacts on the link, in its frame [N]."""
+        return tuple(self._read(1, 4))
+
+    @property
+    def strength(self) -> float:
+        """The sum of the absolute values of these forces [N]."""
+        return self._read(4, 5)[0]
+
+
+class Sensors:
+    """Those of a robot that the scene's controller enables."""
+
+    pose = Readings("positioning", 7, lambda values: Pose(tuple(values[:3]), tuple(values[3:])),
+                    lambda given: given.positioning)
+    battery = Readings("batteries", 2, Battery._make, lambda given: given.battery)
+
+    def __init__(self, exchange: Exchange, given: v1.RobotDescription):
+        self._exchange = exchange
+        self._places = {readings: readings.place(exchange, given)
+                        for readings in vars(Sensors).values() if isinstance(readings, Readings)}
+        self.proximity_sensors: List[ProximitySensor] = [
+            ProximitySensor(sensor.anchor, tuple(sensor.position), tuple(sensor.direction),
+                            sensor.range, sensor.angle if sensor.HasField("angle") else None)
+            for sensor in given.proximity_sensors]
+        self.imus: Named[Imu] = Named([Imu(exchange, imu) for imu in given.imus], "IMU")
+        self.contact_sensors: Named[ContactSensor] = Named(
+            [ContactSensor(exchange, sensor) for sensor in given.contact_sensors], "contact sensor")
+        self._proximity = [exchange.place("proximity") for _ in self.proximity_sensors]
+
+    @property
+    def proximity(self) -> Sequence[float]:
+        """One reading per proximity sensor: 0 (nothing) … 1 (contact)."""
+        readings = self._exchange.seen.proximity
+        return [readings[place] if readings else 0.0 for place in self._proximity]

@@ -1,0 +1,28 @@
+#pragma once
+// Devices on the wire: their descriptions in Welcome, and the channels of Observation and Command.
+// The messages of radios, range and bearing and cameras have files of their own.
+
+#include <cstddef>
+#include <optional>
+
+#include "wire/messages.h"
+#include "wire/roster.h"
+#include "world/state.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat::wire {
+
+/// @param robot  into the layout's robots
+void describe(const Run& run, std::size_t robot, v1::RobotDescription& description);
+
+/// Writes what a session's robots sense.
+void add_channels(const Roster& roster, const world::Observations& from, v1::Observation& to);
+
+/// Lengths and values, if the command's robots are right.
+std::optional<Fault> check_channels(const v1::Command& command, const Roster& roster,
+                                    const world::Layout& layout);
+
+/// Writes checked values. Those of robots that left are skipped.
+void apply_channels(const v1::Command& command, const Roster& roster, world::Commands& commands);
+
+}  // namespace ziggurat::wire

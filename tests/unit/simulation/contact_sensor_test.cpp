@@ -1,0 +1,139 @@
+// What a contact sensor reads, against closed forms.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "small_scene.h"
+
+namespace ziggurat::simulation::contact_sensors {
+namespace {
+
+using testing::robot;
+using testing::SmallScene;
+
+constexpr double g = 9.8;  // [m/s^2]
+constexpr const char* ground = R"(<floor/><gravity g="9.8"/>)";
+constexpr const char* base =
+    R"(<contact_sensors implementation="default"><contact_sensor id="skin" anchor="base"/>)"
+    R"(</contact_sensors>)";
+
+const world::ContactReading& reading(const Simulation& simulation, std::size_t sensor = 0) {
+  return simulation.observations().contact_sensors.at(sensor);
+}
+
+void run(Simulation& simulation, int ticks) {
+  for (int i = 0; i < ticks; ++i) simulation.step();
+}
+
+TEST(ContactSensor, AtRestFeelsItsWeight) {
+  Simulation world = SmallScene{"", base, robot("r", "0,0,0", ""), ground}.run();
+  EXPECT_EQ(reading(world).touches, 0) << "before the first tick";
+  run(world, 10);  // robot() weighs 1 kg
+  EXPECT_EQ(reading(world).touches, 1);
+  EXPECT_NEAR(reading(world).force[0], 0, 1e-3);
+  EXPECT_NEAR(reading(world).force[1], 0, 1e-3);
+  EXPECT_NEAR(reading(world).force[2], g, 1e-2);
+  EXPECT_NEAR(reading(world).strength, g, 1e-2);
+}
+
+TEST(ContactSensor, InTheAirFeelsNothing) {
+  Simulation world = SmallScene{"", base, robot("r", "0,0,3", ""), ground}.run();
+  run(world, 3);
+  EXPECT_EQ(reading(world).touches, 0);
+  EXPECT_EQ(reading(world).strength, 0);
+}
+
+TEST(ContactSensor, OnceInTheAirAgainFeelsNothing) {
+  Simulation world = SmallScene{"", base, robot("r", "0,0,0", ""), ground}.run();
+  run(world, 3);
+  world.move(0, {{0, 0, 5}, math::Quaternion::Identity()});
+  run(world, 2);
+  EXPECT_EQ(reading(world).touches, 0);
+  EXPECT_EQ(reading(world).strength, 0);
+}
+
+TEST(ContactSensor, WhileItLandsItsForceIsWhatChangesItsMomentum) {
+  Simulation world = SmallScene{"", base, robot("r", "0,0,0.3", ""), ground}.run();
+  constexpr double tick = 0.1, mass = 1;
+  double before = 0, impulse = 0;
+  for (int i = 0; i < 10; ++i) {
+    world.step();
+    const double now = world.state().links[0].velocity.z();
+    // m dv = (F - m g) dt, tick by tick
+    EXPECT_NEAR(reading(world).force[2] * tick, mass * (now - before + g * tick), 1e-6) << i;
+    before = now;
+    impulse += reading(world).force[2] * tick;
+  }
+  EXPECT_GT(impulse, std::sqrt(2 * g * 0.25)) << "it landed";
+}
+
+TEST(ContactSensor, BetweenTwoOthersFeelsMoreStrengthThanForce) {
+  // 1 kg on top of it: 9.8 N down from above, 19.6 N up from below.
+  Simulation world = SmallScene{"", base,
+                                robot("r", "0,0,0", "") +
+                                    R"(<box id="load" size=".1,.1,.1" mass="1" movable="true">)"
+                                    R"(<body position="0,0,0.1"/></box>)",
+                                ground}
+                         .run();
+  run(world, 10);
+  EXPECT_NEAR(reading(world).force[2], g, 0.05);
+  EXPECT_NEAR(reading(world).strength, 3 * g, 0.15);
+}
+
+TEST(ContactSensor, ReadsInTheFrameOfItsLink) {
+  // Lies on its side: its x axis points up.
+  Simulation world = SmallScene{"", base, robot("r", "-0.05,0,0.05", "", "0,-90,0"), ground}.run();
+  run(world, 10);
+  EXPECT_NEAR(std::abs(reading(world).force[0]), g, 0.05);
+  EXPECT_NEAR(reading(world).force[2], 0, 0.05);
+}
+
+TEST(ContactSensor, TwoOnOneLinkReadTheSame) {
+  const std::string two =
+      R"(<contact_sensors implementation="default"><contact_sensor id="a" anchor="base"/>)"
+      R"(<contact_sensor id="b" anchor="origin"/></contact_sensors>)";
+  Simulation world = SmallScene{"", two, robot("r", "0,0,0", ""), ground}.run();
+  run(world, 3);
+  EXPECT_EQ(reading(world, 1).touches, 1);
+  EXPECT_EQ(reading(world, 1).force, reading(world, 0).force);
+}
+
+TEST(ContactSensor, OfALinkThatNothingTouches) {
+  const std::string arms = R"(<prototype id="r"><body position="0,0,0"/><links ref="base">
+      <link id="base" geometry="box" size=".1,.1,.1" mass="1"/>
+      <link id="arm" geometry="box" size=".05,.05,.05" mass="0.1"/></links>
+      <joints><joint id="hinge" type="revolute" axis="0,0,1">
+      <parent link="base" position="0,0,0.15" orientation="0,0,0"/>
+      <child link="arm" position="0,0,0" orientation="0,0,0"/></joint></joints>
+      <controller config="c"/></prototype>)";
+  const std::string sensors =
+      R"(<contact_sensors implementation="default"><contact_sensor id="a" anchor="arm"/>)"
+      R"(<contact_sensor id="b" anchor="base"/></contact_sensors>)";
+  Simulation world = SmallScene{"", sensors, arms, ground}.run();
+  run(world, 10);
+  EXPECT_EQ(reading(world, 0).touches, 0);
+  EXPECT_EQ(reading(world, 1).touches, 1);
+  EXPECT_NEAR(reading(world, 1).force[2], 1.1 * g, 0.05);
+}
+
+TEST(ContactSensor, OfARobotThatComesAndGoes) {
+  SmallScene small{"", base, robot("r", "0,0,0", ""), ground};
+  const scene::Scene scene = small.read();
+  Simulation world(scene, {1, {}});
+  run(world, 2);
+  scene::Entity second = scene.entities[0];
+  second.id = "s";
+  second.pose.position = {1, 0, 0};
+  world.spawn(scene, second);
+  run(world, 5);
+  EXPECT_EQ(reading(world, 1).touches, 1);
+  world.remove(0);
+  run(world, 2);
+  EXPECT_NEAR(reading(world, 1).force[2], g, 0.05);
+}
+
+}  // namespace
+}  // namespace ziggurat::simulation::contact_sensors
