@@ -13,7 +13,7 @@ namespace {
 
 using scene::DeadlineAction;
 
-[[noreturn]] void refuse(const std::string& value, std::string_view why) {
+[[noreturn]] void refuse_deadline(const std::string& value, std::string_view why) {
   throw text::UsageError(fmt::format(
       "--deadline is '{}': {}; write for example wait, hold:50, zero:50:10, drop:200 or "
       "CONTROLLER=stop:1000",
@@ -22,7 +22,8 @@ using scene::DeadlineAction;
 
 std::uint32_t to_count(const std::string& value, const std::string& text) {
   const auto number = text::to_integer("--deadline " + value, text);
-  if (number > std::numeric_limits<std::uint32_t>::max()) refuse(value, text + " is too large");
+  if (number > std::numeric_limits<std::uint32_t>::max())
+    refuse_deadline(value, text + " is too large");
   return static_cast<std::uint32_t>(number);
 }
 
@@ -39,22 +40,23 @@ std::string next_part(std::string& text) {
 DeadlineOption to_deadline(const std::string& value) {
   DeadlineOption option;
   const auto equals = value.rfind('=');  // ids may contain one
-  if (equals == 0) refuse(value, "there is no controller before the =");
+  if (equals == 0) refuse_deadline(value, "there is no controller before the =");
   if (equals != std::string::npos) option.controller = value.substr(0, equals);
   std::string rest = equals == std::string::npos ? value : value.substr(equals + 1);
   const bool has_budget = std::ranges::count(rest, ':') > 1;
-  if (std::ranges::count(rest, ':') > 2) refuse(value, "it has more than three parts");
+  if (std::ranges::count(rest, ':') > 2) refuse_deadline(value, "it has more than three parts");
   const std::string name = next_part(rest);
   const auto action = scene::deadline_action(name);
-  if (!action) refuse(value, fmt::format("there is no action '{}'", name));
+  if (!action) refuse_deadline(value, fmt::format("there is no action '{}'", name));
   option.policy.action = *action;
   if (*action == DeadlineAction::wait) {
-    if (!rest.empty()) refuse(value, "wait takes no milliseconds");
+    if (!rest.empty()) refuse_deadline(value, "wait takes no milliseconds");
     return option;
   }
-  if (rest.empty()) refuse(value, fmt::format("{} needs a deadline in ms", name));
+  if (rest.empty()) refuse_deadline(value, fmt::format("{} needs a deadline in ms", name));
   option.policy.wall_deadline_ms = to_count(value, next_part(rest));
-  if (option.policy.wall_deadline_ms == 0) refuse(value, "the deadline must be at least 1 ms");
+  if (option.policy.wall_deadline_ms == 0)
+    refuse_deadline(value, "the deadline must be at least 1 ms");
   if (has_budget) option.policy.miss_budget = to_count(value, rest);
   return option;
 }

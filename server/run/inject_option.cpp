@@ -19,7 +19,7 @@ using network::Disturbance;
 
 constexpr double longest_s = 10;  // longest delay of a message
 
-[[noreturn]] void refuse(const std::string& value, const std::string& why) {
+[[noreturn]] void refuse_injection(const std::string& value, const std::string& why) {
   throw text::UsageError(
       fmt::format("--inject is '{}': {}; write for example latency=5ms,jitter=2ms,loss=1% or "
                   "CONTROLLER=commands:loss=5%",
@@ -36,7 +36,7 @@ Quantity to_quantity(const std::string& value, const std::string& text) {
   const auto [end, error] =
       std::from_chars(text.data(), text.data() + text.size(), quantity.number);
   if (error != std::errc() || !(quantity.number >= 0) || !std::isfinite(quantity.number)) {
-    refuse(value, fmt::format("'{}' must begin with a number from 0 on", text));
+    refuse_injection(value, fmt::format("'{}' must begin with a number from 0 on", text));
   }
   quantity.unit.assign(end, text.data() + text.size());
   return quantity;
@@ -45,16 +45,16 @@ Quantity to_quantity(const std::string& value, const std::string& text) {
 std::chrono::nanoseconds to_time(const std::string& value, const std::string& text) {
   const Quantity quantity = to_quantity(value, text);
   const auto unit = text::seconds_in(quantity.unit);
-  if (!unit) refuse(value, fmt::format("'{}' must be a time in us, ms or s", text));
+  if (!unit) refuse_injection(value, fmt::format("'{}' must be a time in us, ms or s", text));
   const double seconds = quantity.number * *unit;
-  if (seconds > longest_s) refuse(value, fmt::format("{} is more than 10 s", text));
+  if (seconds > longest_s) refuse_injection(value, fmt::format("{} is more than 10 s", text));
   return std::chrono::nanoseconds(std::llround(seconds * 1e9));
 }
 
 double to_share(const std::string& value, const std::string& text) {
   const Quantity quantity = to_quantity(value, text);
   if (quantity.unit != "%" || quantity.number > 100) {
-    refuse(value, fmt::format("'{}' must be a share from 0% to 100%", text));
+    refuse_injection(value, fmt::format("'{}' must be a share from 0% to 100%", text));
   }
   return quantity.number / 100;
 }
@@ -67,7 +67,7 @@ constexpr std::array<std::pair<std::string_view, Direction>, 2> directions{
 /// character.
 std::pair<std::string_view, std::string> take_last(const std::string& value, std::string& text) {
   const auto equals = text.rfind('=');
-  if (equals == std::string::npos) refuse(value, fmt::format("'{}' has no value", text));
+  if (equals == std::string::npos) refuse_injection(value, fmt::format("'{}' has no value", text));
   const std::string amount = text.substr(equals + 1);
   text.resize(equals);
   for (const std::string_view name : names) {
@@ -79,8 +79,8 @@ std::pair<std::string_view, std::string> take_last(const std::string& value, std
     return {name, amount};
   }
   const auto begin = text.find_last_of(",:=");
-  refuse(value, fmt::format("'{}' is unknown; known are latency, jitter and loss",
-                            begin == std::string::npos ? text : text.substr(begin + 1)));
+  refuse_injection(value, fmt::format("'{}' is unknown; known are latency, jitter and loss",
+                                      begin == std::string::npos ? text : text.substr(begin + 1)));
 }
 
 /// Reads the part before the values: `[CONTROLLER=][DIRECTION:]`.
@@ -93,10 +93,11 @@ void read_subject(const std::string& value, std::string text, InjectOption& opti
   }
   if (text.empty()) return;
   if (text.back() != '=') {
-    refuse(value, fmt::format("'{}' must be observations:, commands: or CONTROLLER=", text));
+    refuse_injection(value,
+                     fmt::format("'{}' must be observations:, commands: or CONTROLLER=", text));
   }
   text.pop_back();
-  if (text.empty()) refuse(value, "there is no controller before the =");
+  if (text.empty()) refuse_injection(value, "there is no controller before the =");
   option.controller = std::move(text);
 }
 
@@ -114,7 +115,8 @@ InjectOption to_injection(const std::string& value) {
   for (;;) {
     const auto [name, amount] = take_last(value, rest);
     const auto index = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
-    if (std::exchange(is_given[index], true)) refuse(value, fmt::format("{} is given twice", name));
+    if (std::exchange(is_given[index], true))
+      refuse_injection(value, fmt::format("{} is given twice", name));
     if (name == "latency") option.disturbance.latency = to_time(value, amount);
     if (name == "jitter") option.disturbance.jitter = to_time(value, amount);
     if (name == "loss") option.disturbance.loss = to_share(value, amount);
@@ -123,7 +125,7 @@ InjectOption to_injection(const std::string& value) {
   }
   read_subject(value, std::move(rest), option);
   if (option.disturbance.jitter > option.disturbance.latency) {
-    refuse(value, "the jitter must not be more than the latency");
+    refuse_injection(value, "the jitter must not be more than the latency");
   }
   return option;
 }

@@ -14,7 +14,7 @@ namespace ziggurat::network {
 
 using wire::ErrorCode;
 using wire::make_fault;
-using Kind = wire::Inbox::Kind;
+using InboxKind = wire::Inbox::Kind;
 
 namespace {
 
@@ -64,18 +64,18 @@ bool may_send(Barrier& barrier, const std::string& id, Connection& connection, S
 }
 
 /// The message in `barrier.inbox`, of a session.
-void handle(Barrier& barrier, Connection& connection, Session& session, Kind kind,
+void handle(Barrier& barrier, Connection& connection, Session& session, InboxKind kind,
             world::Commands* commands) {
-  if (kind == Kind::leave) return handle_leave(barrier, session);
-  if (kind == Kind::heartbeat) return handle_heartbeat(barrier, session);
+  if (kind == InboxKind::leave) return handle_leave(barrier, session);
+  if (kind == InboxKind::heartbeat) return handle_heartbeat(barrier, session);
   const bool is_waiting = session.state == SessionState::hello;
-  if (is_waiting || kind == Kind::hello) {
+  if (is_waiting || kind == InboxKind::hello) {
     return answer_fault(barrier, session.connection, &session,
                         make_fault(ErrorCode::out_of_state, {},
                                    is_waiting ? "The world is loading, and the Hello waits for it."
                                               : "This session has had its Hello already."));
   }
-  if (kind == Kind::request) return handle_request(barrier, session);
+  if (kind == InboxKind::request) return handle_request(barrier, session);
   const bool is_expected = handle_command(barrier, session, commands);
   if (is_expected) Connections::refund(connection);
 }
@@ -104,13 +104,13 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
         barrier, id, session,
         is_json ? "this session talks JSON" : "this session does not talk JSON");
   }
-  const Kind kind = barrier.inbox.parse(received.bytes);
-  if (kind == Kind::malformed) {
+  const InboxKind kind = barrier.inbox.parse(received.bytes);
+  if (kind == InboxKind::malformed) {
     return answer_malformed(barrier, id, session, barrier.inbox.complaint());
   }
   if (session != nullptr) {
     handle(barrier, connection, *session, kind, commands);
-  } else if (kind == Kind::hello) {
+  } else if (kind == InboxKind::hello) {
     handle_hello(barrier, id, received.roles, received.bytes);
   } else {
     answer_fault(
