@@ -20,7 +20,6 @@ set(physics server/physics/welding.cpp)
 stand_alone(ziggurat_scene ${scene})
 stand_alone(ziggurat_magnetism ${magnetism})
 stand_alone(ziggurat_wire server/wire/command_driving.cpp)
-stand_alone(ziggurat_network server/network/barrier_supervision.cpp server/network/reception.cpp)
 stand_alone(ziggurat_physics ${physics})
 stand_alone(ziggurat_run server/run/inject_option.cpp)
 stand_alone(ziggurat_reports server/reports/plot.cpp)
@@ -37,6 +36,7 @@ stand_alone(test_simulation
 stand_alone(test_wire tests/unit/wire/driving_test.cpp)
 stand_alone(test_network
   tests/unit/network/curve_test.cpp tests/unit/network/delays_test.cpp
-  tests/unit/network/end_to_end_test.cpp tests/unit/network/reception_test.cpp)
+  tests/unit/network/end_to_end_test.cpp tests/unit/network/loading_test.cpp
+  tests/unit/network/disturbed_link_test.cpp)
 stand_alone(test_recording tests/unit/recording/readings_test.cpp)
 stand_alone(test_client tests/unit/clients/session_cameras_test.cpp)

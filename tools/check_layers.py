@@ -29,7 +29,7 @@ MODULES = {
     "simulation": ["scene", "world", "physics", "media", "devices", "math"],
     "wire": ["scene", "world", "protocol"],
     "recording": ["world", "protocol", "math"],
-    "network": ["scene", "world", "wire", "math"],
+    "network": ["scene", "world", "wire", "protocol", "math"],
     "reports": ["text", "scene", "wire", "network", "math"],
     "processes": ["scene", "world", "recording"],
     "supervision": ["reports", "processes", "network", "simulation", "wire", "scene", "math"],

@@ -59,6 +59,7 @@ struct Ours::State {
   std::vector<scene::Controller> controllers;
   network::Server server;
   world::Observations observations;
+  std::vector<std::string> tag_payloads;  // none
   world::Commands commands;
   Processes processes;
 };
@@ -86,7 +87,7 @@ void Ours::tick() {
   State& state = *state_;
   ++state.observations.tick;
   state.observations.time_ns += 100'000'000;
-  state.server.publish(state.observations, {});
+  state.server.publish(state.observations, state.tag_payloads);
   if (state.server.collect(state.commands, {std::chrono::seconds(20), {}}) !=
       network::Outcome::complete) {
     throw std::runtime_error("a tick took longer than 20 s");

@@ -1,5 +1,5 @@
 #pragma once
-// Messages that are held back or lost on purpose, as on a network that is not there.
+// Delays and losses of messages that are injected on purpose, as if by a slow network.
 
 #include <algorithm>
 #include <chrono>
@@ -13,7 +13,7 @@
 
 namespace ziggurat::network {
 
-/// What is done to messages of one kind; wall time.
+/// What is done to messages in one direction; wall time.
 struct Disturbance {
   std::chrono::nanoseconds latency{0};  ///< each is held back for so long,
   std::chrono::nanoseconds jitter{0};   ///< more or less by up to this; at most `latency`
@@ -40,19 +40,19 @@ struct Lost {
 
 enum class Direction { observations, commands };
 
-/// What becomes of one message.
-struct Fate {
+/// What is done to one message.
+struct Effect {
   std::chrono::nanoseconds delay{0};
   bool is_lost = false;
 };
 
-/// Depends on nothing but the arguments: whoever answers first, a message of a tick has one fate.
+/// Depends on nothing but the arguments: the order in which clients answer changes nothing.
 /// Delays are uniform in latency - jitter … latency + jitter.
 /// @param path  names the connection: controller and robot
-Fate draw_fate(const Disturbance& disturbance, std::uint64_t seed, std::string_view path,
-               Direction direction, std::uint64_t tick);
+Effect draw_effect(const Disturbance& disturbance, std::uint64_t seed, std::string_view path,
+                   Direction direction, std::uint64_t tick);
 
-/// Messages under way in one direction: none overtakes another.
+/// Messages under way in one direction. None overtakes another.
 template <class Message>
 class DelayLine {
  public:
@@ -60,7 +60,7 @@ class DelayLine {
 
   bool empty() const { return held_.empty(); }
   std::size_t size() const { return held_.size(); }
-  /// When the first of them is there; never, if there is none.
+  /// When the first of them arrives; Time::max() if there is none.
   Time due() const { return held_.empty() ? Time::max() : held_.front().first; }
 
   /// Puts a message behind the others.
@@ -68,14 +68,14 @@ class DelayLine {
     if (!held_.empty()) due = std::max(due, held_.back().first);
     held_.emplace_back(due, std::move(message));
   }
-  /// Takes the first message, if it is there by now.
+  /// Takes the first message, if it has arrived by now.
   std::optional<Message> pop(Time now) {
     if (held_.empty() || held_.front().first > now) return std::nullopt;
     std::optional<Message> message(std::move(held_.front().second));
     held_.pop_front();
     return message;
   }
-  /// All of them are there.
+  /// All of them arrive now.
   void hurry(Time now) {
     for (auto& [due, message] : held_) due = std::min(due, now);
   }

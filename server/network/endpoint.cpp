@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t max_ipc_path = sizeof(sockaddr_un::sun_path) - 1;
 
-/// Whether somebody accepts connections there.
+/// Whether another server accepts connections there.
 bool is_listening(const std::string& path) {
   const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (socket < 0) return false;

@@ -16,7 +16,7 @@ Gatekeeper::Gatekeeper(zmq::context_t& context, std::span<const ClientKey> clien
   }
   socket_.set(zmq::sockopt::linger, 0);
   socket_.bind("inproc://zeromq.zap.01");
-  // Signals are for whoever started us: the new thread gets none.
+  // Signals are for the main thread: the new one gets none.
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);

@@ -11,8 +11,8 @@
 
 namespace ziggurat::network {
 
-/// Must stand before a socket of the context is bound: without it ZeroMQ lets everybody in. A
-/// message of a connection that was let in has the client's index in the list as its `User-Id`.
+/// Must stand before a socket of the context is bound: without it ZeroMQ accepts every client. A
+/// message of an accepted connection has the client's index in the list as its `User-Id`.
 class Gatekeeper {
  public:
   Gatekeeper(zmq::context_t& context, std::span<const ClientKey> clients);

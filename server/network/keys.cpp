@@ -127,7 +127,7 @@ std::vector<ClientKey> parse_client_keys(const std::string& text, const std::str
     }
   }
   if (!faults.empty()) throw KeyError(faults);
-  if (clients.empty()) throw KeyError(path + ": has no keys, so that nobody could connect");
+  if (clients.empty()) throw KeyError(path + ": has no keys, so that no client could connect");
   return clients;
 }
 

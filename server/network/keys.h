@@ -42,7 +42,7 @@ struct Curve {
   std::vector<ClientKey> clients;
 };
 
-/// A secret key from a file that nobody else can read. @throws KeyError
+/// A secret key from a file that no other user can read. @throws KeyError
 std::string read_secret_key(const std::string& path);
 
 /// Lines `KEY ROLE[,ROLE…] [NAME]`; `#` begins a comment. All faults of the file in one message.

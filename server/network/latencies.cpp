@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 namespace ziggurat::network {
 namespace {
@@ -12,18 +14,35 @@ std::size_t bin_of(double seconds) {
   return std::min(static_cast<std::size_t>(bin), Latencies::bins - 1);
 }
 
-/// The share of the values, sorted up to there, that are not above the result.
-double nth(std::vector<float>& values, double share) {
-  const double place = std::ceil(share * static_cast<double>(values.size())) - 1;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(std::max(place, 0.0));
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
+/// The smallest value that at least this share of all is not above.
+double nth(std::span<const float> ascending, double share) {
+  const double place = std::ceil(share * static_cast<double>(ascending.size())) - 1;
+  return static_cast<double>(ascending[static_cast<std::size_t>(std::max(place, 0.0))]);
+}
+
+/// Puts a value in place of another, and those between one place on.
+void replace(std::span<float> ascending, float old, float fresh) {
+  const auto from = std::ranges::lower_bound(ascending, old);
+  const auto to = std::ranges::lower_bound(ascending, fresh);
+  if (from < to) {
+    *std::move(from + 1, to, from) = fresh;
+  } else {
+    std::move_backward(to, from, from + 1);
+    *to = fresh;
+  }
 }
 
 }  // namespace
 
 void Latencies::add(double seconds, std::uint64_t tick) {
-  recent_[count_ % remembered] = static_cast<float>(seconds);
+  const auto value = static_cast<float>(seconds);
+  float& oldest = recent_[count_ % remembered];
+  const bool is_full = count_ >= remembered;
+  const std::size_t size = is_full ? remembered : static_cast<std::size_t>(count_) + 1;
+  // Until it is full, the place behind the others is the one that is replaced.
+  if (!is_full) sorted_[size - 1] = std::numeric_limits<float>::infinity();
+  replace({sorted_.data(), size}, is_full ? oldest : sorted_[size - 1], value);
+  oldest = value;
   ++count_;
   ++histogram_[bin_of(seconds)];
   Worst fresh{seconds, tick};
@@ -34,19 +53,17 @@ void Latencies::add(double seconds, std::uint64_t tick) {
 
 wire::Latency Latencies::recent() const {
   if (count_ == 0) return {};
-  const auto size = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(count_, remembered));
-  std::vector<float> values(recent_.begin(), recent_.begin() + size);
-  const double p50 = nth(values, 0.5);
-  const double p99 = nth(values, 0.99);
-  return {p50, p99, static_cast<double>(*std::ranges::max_element(values))};
+  const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(count_, remembered));
+  const std::span<const float> ascending(sorted_.data(), size);
+  return {nth(ascending, 0.5), nth(ascending, 0.99), static_cast<double>(ascending.back())};
 }
 
 double Latencies::percentile(double share) const {
-  const auto due = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_)));
+  const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_)));
   std::uint64_t seen = 0;
   for (std::size_t bin = 0; bin < bins; ++bin) {
     seen += histogram_[bin];
-    if (seen >= due && seen > 0) {
+    if (seen >= wanted && seen > 0) {
       return bin + 1 == bins ? max() : std::min(begin_of(bin + 1), max());
     }
   }

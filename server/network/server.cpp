@@ -1,117 +1,159 @@
 #include "network/server.h"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
 
-#include "network/barrier.h"
-#include "network/reception.h"
+#include "network/barrier/admission.h"
+#include "network/barrier/departure.h"
+#include "network/barrier/dispatch.h"
+#include "network/barrier/exchange.h"
+#include "network/barrier/overview.h"
+#include "network/barrier/population.h"
+#include "network/barrier/timing.h"
+#include "network/disturbed_link.h"
 #include "network/socket.h"
 
 namespace ziggurat::network {
 namespace {
 
+using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 // Between looks at descriptors and the time, so that no flood keeps us from either.
 constexpr int messages_at_once = 1000;
 
+std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::Run& run) {
+  std::vector<DisturbedLink::Target> targets;
+  for (std::size_t c = 0; c < run.controllers.size(); ++c) {
+    const bool is_named = c < config.injections.size();
+    targets.push_back({run.controllers[c].id, is_named ? config.injections[c] : Injection{}});
+  }
+  return targets;
+}
+
 }  // namespace
 
 struct Server::State {
-  State(const Config& config, const wire::Run& run, std::unique_ptr<Socket> listening)
-      : socket(std::move(listening)),
+  explicit State(const Config& config)
+      : socket(config),
         barrier(
-            config, run,
-            [this](const std::string& peer, const auto& message) {
-              return socket->send(peer, message);
+            config,
+            [this](const std::string& connection, const wire::Outbox& message) {
+              return link ? link->send(connection, message, barrier.now)
+                          : socket.send(connection, message);
             },
             Clock::now()) {}
 
   template <class Done>
   Outcome wait_until(Done done, const Wait& wait, world::Commands* commands);
   template <class Done>
-  bool receive(Done done, world::Commands* commands);
+  bool take_messages(Done done, world::Commands* commands);
+  void advance();
+  Time next_event() const;
 
-  std::unique_ptr<Socket> socket;
-  std::vector<Reception::Visitor> visitors;  // whose Hello is still to be handled
+  Socket socket;
+  std::optional<DisturbedLink> link;
   Barrier barrier;
-  Socket::Received received;
+  bool is_opened = false;  // and clients that wait for the world are still to be answered
+  Received received;
 };
 
-Server::Server(const Config& config, const wire::Run& run)
-    : state_(std::make_unique<State>(config, run, std::make_unique<Socket>(config))) {}
+Server::Server(const Config& config) : state_(std::make_unique<State>(config)) {}
 
-Server::Server(const Config& config, const wire::Run& run, Reception& reception) {
-  auto [socket, visitors] = reception.hand_over();
-  if (!config.private_endpoint.empty()) socket->add_private(config);
-  state_ = std::make_unique<State>(config, run, std::move(socket));
-  state_->visitors = std::move(visitors);
-}
+Server::Server(const Config& config, const wire::Run& run) : Server(config) { open(run, config); }
 
-Server::~Server() = default;
+Server::~Server() { refuse_waiting(state_->barrier); }
 
-/// Takes messages as they are there until `done` or there is none. True if done.
+/// Takes messages that have arrived until `done` or there is none. True if done.
 template <class Done>
-bool Server::State::receive(Done done, world::Commands* commands) {
-  for (const auto& visitor : std::exchange(visitors, {})) {
-    barrier.receive(visitor.peer, visitor.hello, commands, visitor.roles);
+bool Server::State::take_messages(Done done, world::Commands* commands) {
+  if (std::exchange(is_opened, false)) admit_waiting(barrier);
+  while (const auto held = link ? link->next(barrier.now) : std::nullopt) {
+    receive(barrier, *held, commands);
   }
-  barrier.receive_due(commands);
-  for (int i = 0; i < messages_at_once && socket->receive(received); ++i) {
-    if (received.is_single_frame) {
-      barrier.receive(received.peer, received.bytes, commands, received.roles);
-    } else {
-      barrier.receive_malformed(received.peer);
-    }
+  for (int i = 0; i < messages_at_once && socket.receive(received); ++i) {
+    if (!link || link->arrives(received, barrier.now)) receive(barrier, received, commands);
     if (done()) return true;
   }
   return done();
 }
 
+void Server::State::advance() {
+  const Time now = Clock::now();
+  if (link) link->release(now);
+  network::advance(barrier, now);
+}
+
+Time Server::State::next_event() const {
+  const Time next = network::next_event(barrier);
+  return link ? std::min(next, link->next_event()) : next;
+}
+
 template <class Done>
 Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* commands) {
   const bool is_bounded = wait.timeout.count() >= 0;
-  const auto end = Clock::now() + (is_bounded ? wait.timeout : milliseconds{0});
+  const Time end = is_bounded ? Clock::now() + wait.timeout : never;
   for (;;) {
-    // What has arrived is not late, however long we were kept from looking.
-    barrier.tell_time(Clock::now());
-    if (receive(done, commands)) return Outcome::complete;
-    barrier.advance(Clock::now());
+    // What has arrived is not late, however long the server was kept from looking.
+    barrier.now = Clock::now();
+    if (take_messages(done, commands)) return Outcome::complete;
+    advance();
     if (done()) return Outcome::complete;
-    if (barrier.has_news()) return Outcome::woken;
-    const auto wake = is_bounded ? std::min(end, barrier.due()) : barrier.due();
-    const auto rest = std::chrono::ceil<milliseconds>(wake - Clock::now());
-    const auto ready = socket->poll({std::max(rest, milliseconds{0}), wait.descriptors});
+    if (barrier.calls.has_news()) return Outcome::woken;
+    const auto rest = std::chrono::ceil<milliseconds>(std::min(end, next_event()) - Clock::now());
+    const auto ready = socket.poll(std::max(rest, milliseconds{0}), wait.descriptors);
     if (ready == Socket::Ready::woken) return Outcome::woken;
-    if (is_bounded && Clock::now() >= end) {
-      barrier.tell_time(Clock::now());
-      return receive(done, commands) ? Outcome::complete : Outcome::timed_out;
+    if (Clock::now() >= end) {
+      barrier.now = Clock::now();
+      return take_messages(done, commands) ? Outcome::complete : Outcome::timed_out;
     }
   }
 }
 
-const std::vector<std::string>& Server::endpoints() const { return state_->socket->endpoints(); }
+const std::vector<std::string>& Server::endpoints() const { return state_->socket.endpoints(); }
+
+Outcome Server::attend(const Progress& progress, const Wait& wait) {
+  state_->barrier.progress = progress;
+  return state_->wait_until([] { return false; }, wait, nullptr);
+}
+
+void Server::open(const wire::Run& run, const Config& config) {
+  State& state = *state_;
+  if (!config.private_endpoint.empty()) state.socket.add_private(config);
+  if (std::ranges::any_of(config.injections, &Injection::any)) {
+    state.link.emplace(targets_of(config, run), run.seed, 2 * config.max_message_bytes,
+                       [&state](const std::string& connection, std::string_view bytes) {
+                         return state.socket.send(connection, bytes);
+                       });
+  }
+  state.barrier.now = Clock::now();
+  network::open(state.barrier, run, config.deadlines);
+  state.is_opened = true;
+}
 
 Outcome Server::gather(const Wait& wait) {
-  return state_->wait_until([this] { return state_->barrier.gathered(); }, wait, nullptr);
+  return state_->wait_until([this] { return state_->barrier.seats.all_taken(); }, wait, nullptr);
 }
 
 void Server::publish(const world::Observations& observations,
-                     std::span<const std::string> tag_payloads) {
-  state_->barrier.advance(Clock::now());
-  state_->barrier.publish(observations, tag_payloads);
+                     const std::vector<std::string>& tag_payloads) {
+  state_->advance();
+  network::publish(state_->barrier, observations, tag_payloads);
 }
 
 Outcome Server::collect(world::Commands& commands, const Wait& wait) {
   const auto outcome =
-      state_->wait_until([this] { return state_->barrier.complete(); }, wait, &commands);
-  if (outcome == Outcome::complete) state_->barrier.zero_missing(commands);
+      state_->wait_until([this] { return state_->barrier.gate.is_complete(); }, wait, &commands);
+  if (outcome == Outcome::complete) zero_missing(state_->barrier, commands);
   return outcome;
 }
 
-void Server::finish(const wire::End& end) { state_->barrier.finish(end); }
+void Server::finish(const wire::End& end) { network::finish(state_->barrier, end); }
 
 Outcome Server::drain(const Wait& wait) {
-  return state_->wait_until([this] { return state_->barrier.drained(); }, wait, nullptr);
+  return state_->wait_until([this] { return state_->barrier.sessions.size() == 0; }, wait, nullptr);
 }
 
 Outcome Server::linger(world::Commands& commands, const Wait& wait) {
@@ -120,47 +162,59 @@ Outcome Server::linger(world::Commands& commands, const Wait& wait) {
 
 void Server::add_robots(std::span<const std::string> scripts,
                         const world::Observations& observations,
-                        std::span<const std::string> tag_payloads) {
-  state_->barrier.advance(Clock::now());
-  state_->barrier.add_robots(scripts, observations, tag_payloads);
+                        const std::vector<std::string>& tag_payloads) {
+  state_->advance();
+  network::add_robots(state_->barrier, scripts, {&observations, &tag_payloads});
 }
 
 void Server::remove_robots(std::span<const std::size_t> robots, const std::string& why) {
-  state_->barrier.remove_robots(robots, why);
+  network::remove_robots(state_->barrier, robots, why);
 }
 
-void Server::pause() { state_->barrier.pause(); }
+void Server::pause() { network::pause(state_->barrier); }
 
 void Server::resume() {
-  state_->barrier.advance(Clock::now());
-  state_->barrier.resume();
+  state_->advance();
+  network::resume(state_->barrier);
 }
 
-bool Server::paused() const { return state_->barrier.standing(); }
-
-std::vector<std::uint64_t> Server::missed_ticks() const { return state_->barrier.missed_ticks(); }
+bool Server::paused() const { return state_->barrier.gate.is_standing(); }
 
 void Server::reset(std::uint64_t seed) {
-  state_->barrier.advance(Clock::now());
-  state_->barrier.reset(seed);
+  state_->advance();
+  if (state_->link) state_->link->set_seed(seed);
+  network::reset(state_->barrier, seed);
 }
 
-std::vector<Call> Server::take_calls() { return state_->barrier.take_calls(); }
+std::vector<Call> Server::take_calls() { return state_->barrier.calls.take(); }
 
-bool Server::can_hear(const Call& call) const { return state_->barrier.can_hear(call); }
+bool Server::can_hear(const Call& call) const { return network::can_hear(state_->barrier, call); }
 
 void Server::answer(const Call& call, const std::function<void(wire::Outbox&)>& write) {
-  state_->barrier.answer(call, write);
+  network::answer(state_->barrier, call, write);
 }
 
-void Server::fill(wire::Status& status) const { state_->barrier.fill(status); }
+void Server::fill(wire::Status& status) const {
+  network::fill(state_->barrier, Clock::now(), status);
+}
 
-const std::vector<Latencies>& Server::latencies() const { return state_->barrier.latencies(); }
+std::vector<RobotStatus> Server::status() const { return robot_status(state_->barrier); }
 
-const std::vector<Lost>& Server::lost_messages() const { return state_->barrier.lost_messages(); }
+std::vector<Performance> Server::performance() const {
+  const Barrier& barrier = state_->barrier;
+  std::vector<Performance> result;
+  for (std::size_t c = 0; c < barrier.latencies.size(); ++c) {
+    const Lost lost = state_->link ? state_->link->lost_messages()[c] : Lost{};
+    result.push_back({barrier.latencies[c], barrier.deadlines.missed_ticks()[c], lost});
+  }
+  return result;
+}
 
-std::vector<RobotStatus> Server::status() const { return state_->barrier.status(); }
-
-Report Server::take_report() { return state_->barrier.take_report(); }
+Report Server::take_report() {
+  Report report = state_->barrier.journal.take();
+  if (state_->link)
+    std::ranges::move(state_->link->take_notices(), std::back_inserter(report.notices));
+  return report;
+}
 
 }  // namespace ziggurat::network

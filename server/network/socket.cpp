@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <charconv>
 
+#include "network/endpoint.h"
+
 namespace ziggurat::network {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr int linger_ms = 1000;            // what is under way at the end may t
 constexpr int receive_queue = 8;           // messages of a peer that wait here; it waits beyond
 constexpr int waiting_connections = 4096;  // until they are accepted; beyond the queue's end the
                                            // kernel lets them try again, after seconds
-constexpr int handshake_ms = 10000;   // half-open connections hold a descriptor no longer than this
+constexpr int handshake_ms = 10000;        // half-open connections hold a descriptor no longer
 constexpr int keepalive_idle_s = 30;  // tcp: answered by the peer's kernel, so that a controller
                                       // held in a debugger stays, and a vanished machine does not
 
@@ -48,7 +50,6 @@ Socket::Socket(const Config& config) : context_(config.io_threads) {
     }
     const bool allows_any = config.insecure || config.curve;
     for (const std::string& endpoint : config.endpoints) bind(routers_[0], endpoint, allows_any);
-    if (!config.private_endpoint.empty()) add_private(config);
   } catch (...) {
     close();
     throw;
@@ -99,15 +100,23 @@ void Socket::bind(zmq::socket_t& router, const std::string& endpoint, bool allow
   endpoints_.push_back(router.get(zmq::sockopt::last_endpoint));
 }
 
-Delivery Socket::send(const std::string& peer, const wire::Outbox& message) {
-  zmq::socket_t& router = routers_[static_cast<std::size_t>(peer[0])];
+Delivery Socket::send(const std::string& connection, const wire::Outbox& message) {
   zmq::message_t frame(message.size());
   message.write(static_cast<std::uint8_t*>(frame.data()));
+  return send_frame(connection, frame);
+}
+
+Delivery Socket::send(const std::string& connection, std::string_view bytes) {
+  zmq::message_t frame(bytes);
+  return send_frame(connection, frame);
+}
+
+Delivery Socket::send_frame(const std::string& connection, zmq::message_t& frame) {
+  zmq::socket_t& router = routers_[static_cast<std::size_t>(connection[0])];
   try {
     const auto flags = zmq::send_flags::sndmore | zmq::send_flags::dontwait;
-    if (!router.send(zmq::const_buffer(peer.data() + 1, peer.size() - 1), flags)) {
-      return Delivery::congested;
-    }
+    const zmq::const_buffer id(connection.data() + 1, connection.size() - 1);
+    if (!router.send(id, flags)) return Delivery::congested;
     return router.send(frame, zmq::send_flags::dontwait) ? Delivery::sent : Delivery::congested;
   } catch (const zmq::error_t& error) {
     if (error.num() == EHOSTUNREACH) return Delivery::unreachable;
@@ -127,8 +136,8 @@ bool Socket::receive(Received& received) {
 bool Socket::receive(char index, Received& received) {
   zmq::socket_t& router = routers_[static_cast<std::size_t>(index)];
   if (!router.recv(frame_, zmq::recv_flags::dontwait)) return false;
-  received.peer.assign(1, index);
-  received.peer.append(static_cast<const char*>(frame_.data()), frame_.size());
+  received.connection.assign(1, index);
+  received.connection.append(static_cast<const char*>(frame_.data()), frame_.size());
   int frames = 0;
   while (frame_.more()) {
     (void)router.recv(frame_, zmq::recv_flags::none);
@@ -150,12 +159,13 @@ Roles Socket::roles_of_sender() {
   return is_number && index < clients_.size() ? clients_[index].roles : Roles{};
 }
 
-Socket::Ready Socket::poll(const Wait& wait) {
+Socket::Ready Socket::poll(std::chrono::milliseconds timeout, std::span<const int> descriptors) {
   items_.clear();
   for (auto& router : routers_) items_.push_back({router.handle(), 0, ZMQ_POLLIN, 0});
-  for (const int descriptor : wait.descriptors)
+  for (const int descriptor : descriptors) {
     items_.push_back({nullptr, descriptor, ZMQ_POLLIN, 0});
-  const int count = zmq_poll(items_.data(), static_cast<int>(items_.size()), wait.timeout.count());
+  }
+  const int count = zmq_poll(items_.data(), static_cast<int>(items_.size()), timeout.count());
   if (count < 0 && zmq_errno() != EINTR) throw zmq::error_t();
   if (count < 0) return Ready::woken;
   for (std::size_t i = routers_.size(); i < items_.size(); ++i) {

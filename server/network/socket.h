@@ -2,15 +2,18 @@
 // The server's end of all connections: a ROUTER bound to every endpoint, and one for the private
 // endpoint, because a ROUTER protects all of its endpoints or none.
 
+#include <chrono>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 #include <zmq.hpp>
 
-#include "network/barrier.h"
+#include "network/config.h"
 #include "network/gatekeeper.h"
-#include "network/server.h"
+#include "network/link.h"
+#include "wire/outbox.h"
 
 namespace ziggurat::network {
 
@@ -25,33 +28,30 @@ class Socket {
 
   const std::vector<std::string>& endpoints() const { return endpoints_; }
 
-  Delivery send(const std::string& peer, const wire::Outbox& message);
+  // Neither waits.
+  Delivery send(const std::string& connection, const wire::Outbox& message);
+  Delivery send(const std::string& connection, std::string_view bytes);
 
   /// A message that arrived, if any. Valid until the next call.
-  struct Received {
-    std::string peer;
-    std::string_view bytes;
-    bool is_single_frame = true;
-    Roles roles = all_roles;  ///< that the connection may have
-  };
   bool receive(Received& received);
 
-  /// Waits for a message, a readable descriptor, a signal, or the end of the time.
   enum class Ready { message, woken, timed_out };
-  Ready poll(const Wait& wait);
+  /// Waits for a message, a readable descriptor, a signal, or the end of the time.
+  Ready poll(std::chrono::milliseconds timeout, std::span<const int> descriptors);
 
  private:
   void close();
   zmq::socket_t make_router(const Config& config);
   void bind(zmq::socket_t& router, const std::string& endpoint, bool allows_any);
+  Delivery send_frame(const std::string& connection, zmq::message_t& frame);
   bool receive(char router, Received& received);
   Roles roles_of_sender();
 
   zmq::context_t context_;
   std::vector<ClientKey> clients_;
   std::optional<Gatekeeper> gatekeeper_;
-  std::vector<zmq::socket_t> routers_;  // the first byte of a peer's name is its router's index
-  std::size_t next_ = 0;                // router that is asked first, by turns
+  std::vector<zmq::socket_t> routers_;  // the first byte of a connection's id is its router's index
+  std::size_t next_ = 0;                // router that is asked first, in turn
   std::vector<std::string> endpoints_;
   zmq::message_t frame_;
   std::vector<zmq::pollitem_t> items_;

@@ -32,9 +32,10 @@ void Run::complete_summary() {
   summary_.seed = world_.seed;  // a reset may have changed it
   summary_.hash = simulation.hash();
   summary_.vanished = watch_.vanished();
-  const auto missed = server_.missed_ticks();
-  for (std::size_t c = 0; c < missed.size(); ++c) {
-    if (missed[c] > 0) summary_.missed.push_back({world_.scene.controllers[c].id, missed[c]});
+  const auto performance = server_.performance();
+  for (std::size_t c = 0; c < performance.size(); ++c) {
+    const std::uint64_t missed = performance[c].missed_ticks;
+    if (missed > 0) summary_.missed.push_back({world_.scene.controllers[c].id, missed});
   }
 }
 
@@ -44,12 +45,12 @@ bool Run::report_hil() {
                          !options_.report_card.empty();
   if (!is_wanted) return true;
   reports::ReportCard card{{}, summary_.ticks, summary_.late_ticks, options_.gate};
-  const auto missed = server_.missed_ticks();
-  for (std::size_t c = 0; c < world_.scene.controllers.size(); ++c) {
-    const auto& latencies = server_.latencies()[c];
-    if (latencies.count() == 0 && missed[c] == 0) continue;  // controls no robot
-    card.controllers.push_back({world_.scene.controllers[c].id, latencies, missed[c],
-                                config_.injections[c], server_.lost_messages()[c]});
+  const auto performance = server_.performance();
+  for (std::size_t c = 0; c < performance.size(); ++c) {
+    const auto& [latencies, missed, lost] = performance[c];
+    if (latencies.count() == 0 && missed == 0) continue;  // controls no robot
+    card.controllers.push_back(
+        {world_.scene.controllers[c].id, latencies, missed, config_.injections[c], lost});
   }
   if (!options_.report_card.empty()) {
     const bool is_picture = options_.report_card.ends_with(".svg");

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <chrono>
 #include <utility>
 
 #include "processes/scripts.h"
+#include "run/background.h"
 #include "run/loading.h"
 #include "run/setup.h"
 #include "run/version.h"
@@ -21,12 +24,13 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       console_({options.quiet, options.json}),
       path_(existing_scene(options, console_)),
       config_(network_config(options, service == Service::serve)),
-      reception_(config_, {signals.descriptor(), end_while_loading}),
-      world_(load_world()),
+      listening_(std::make_unique<network::Server>(config_)),
+      server_(*listening_),
+      loaded_(load_world()),
+      world_(*loaded_),
       plan_(make_plan()),
       with_controllers_(!options.without_controllers && !(options.pictures && plan_.ticks == 0)),
       scripts_(script_paths(world_.scene, world_.simulation.layout(), path_)),
-      server_(complete_config(), description(), reception_),
       recorders_(options, world_),
       controllers_(start_controllers()),
       supervision_(supervision_settings(), world_, server_, controllers_, console_),
@@ -37,13 +41,29 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
   summary_.robots = world_.simulation.layout().robots.size();
 }
 
-supervision::World Run::load_world() {
-  if (service_ == Service::serve) announce(options_, reception_.endpoints(), console_);
-  reception_.say(0, "The scene is being read.");
+/// Reads the scene and builds the world, on a thread of its own.
+/// @param tell  how far that is
+supervision::World Run::read_world(const Tell& tell) {
+  tell(0, "The scene is being read.");
   scene::OpenScene opened = load_scene(path_, options_, console_);
-  reception_.say(0.5, "The world is being built.");
+  tell(0.5, "The world is being built.");
   const std::uint64_t seed = choose_seed(options_, opened.scene);
   return {path_, std::move(opened), seed, options_.clock};
+}
+
+/// Answers clients while another thread loads the world, which alone uses the console meanwhile.
+std::unique_ptr<supervision::World> Run::load_world() {
+  if (service_ == Service::serve) announce(options_, server_.endpoints(), console_);
+  Background<supervision::World> loading([this](const Tell& tell) { return read_world(tell); });
+  const std::array descriptors{signals_.descriptor(), loading.descriptor()};
+  for (;;) {
+    const auto news = loading.news();
+    if (news.is_done) return loading.take();
+    server_.attend({news.progress, news.message}, {std::chrono::milliseconds{-1}, descriptors});
+    if (signals_.take().interruptions == 0) continue;
+    listening_.reset();  // tells clients that wait
+    end_while_loading();
+  }
 }
 
 Plan Run::make_plan() const {
@@ -88,6 +108,7 @@ std::vector<std::size_t> Run::robots_without_controller() const {
 }
 
 processes::Controllers Run::start_controllers() {
+  server_.open(description(), complete_config());
   server_.remove_robots(robots_without_controller());
   if (service_ == Service::serve || !with_controllers_) return {};
   return {world_.scene,

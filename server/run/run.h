@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "network/reception.h"
 #include "network/server.h"
 #include "processes/controllers.h"
 #include "processes/private_folder.h"
@@ -51,9 +51,11 @@ class Run {
  private:
   using Ending = reports::Ending;
   using Wait = std::function<std::optional<Ending>()>;
+  using Tell = std::function<void(double progress, std::string message)>;
 
   // Setting up.
-  supervision::World load_world();
+  supervision::World read_world(const Tell& tell);
+  std::unique_ptr<supervision::World> load_world();
   Plan make_plan() const;
   network::Config complete_config();
   wire::Run description() const;
@@ -82,13 +84,14 @@ class Run {
   reports::Console console_;
   const std::string path_;  ///< of the scene file
   network::Config config_;
-  network::Reception reception_;  ///< answers clients while the world is loaded
-  supervision::World world_;
+  std::unique_ptr<network::Server> listening_;
+  network::Server& server_;
+  const std::unique_ptr<supervision::World> loaded_;
+  supervision::World& world_;
   const Plan plan_;
   const bool with_controllers_;
   const std::vector<std::string> scripts_;  ///< per robot of the scene; empty = none
   const processes::PrivateFolder folder_;
-  network::Server server_;
   Recorders recorders_;
   processes::Controllers controllers_;
   supervision::Supervision supervision_;

@@ -95,6 +95,8 @@ void Outbox::encode(Encoding encoding) {
   }
 }
 
+const v1::ServerMessage& Outbox::message() const { return message_->message; }
+
 std::size_t Outbox::size() const {
   return message_->text.empty() ? message_->size : message_->text.size();
 }

@@ -13,6 +13,10 @@
 #include "wire/roster.h"
 #include "world/state.h"
 
+namespace ziggurat::v1 {
+class ServerMessage;
+}
+
 namespace ziggurat::wire {
 
 /// A protobuf message has less than 2 GiB. Radios and cameras of many robots in one session could
@@ -59,6 +63,7 @@ class Outbox {
   /// The form that size() and write() give the message in hand; binary unless asked for.
   void encode(Encoding encoding);
 
+  const v1::ServerMessage& message() const;  ///< the message in hand
   std::size_t size() const;            ///< of the message in hand [bytes]
   void write(std::uint8_t* to) const;  ///< writes size() bytes
 

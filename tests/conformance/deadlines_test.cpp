@@ -14,17 +14,17 @@ using Membership = RobotStatus::Membership;
 TEST(Deadline, HoldKeepsWhatWasCommanded) {
   Pair pair(with_deadline(DeadlineAction::hold, 50));
   pair.peers.pass(milliseconds{49});
-  EXPECT_FALSE(pair.peers.barrier.complete());
+  EXPECT_FALSE(pair.peers.is_complete());
   pair.peers.pass(milliseconds{1});
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_TRUE(pair.peers.is_complete());
   EXPECT_EQ(pair.target(), 3);
-  EXPECT_EQ(pair.peers.barrier.missed_ticks(), (std::vector<std::uint64_t>{1, 0}));
+  EXPECT_EQ(pair.peers.barrier.deadlines.missed_ticks(), (std::vector<std::uint64_t>{1, 0}));
 }
 
 TEST(Deadline, ZeroStopsTheRobotUntilItIsCommandedAnew) {
   Pair pair(with_deadline(DeadlineAction::zero, 50));
   pair.peers.pass(milliseconds{50});
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_TRUE(pair.peers.is_complete());
   EXPECT_EQ(pair.target(), 0);
   EXPECT_EQ(pair.peers.commands.joint_targets[1], 7);
   pair.tick(6);
@@ -36,9 +36,9 @@ TEST(Deadline, ZeroStopsTheRobotUntilItIsCommandedAnew) {
 TEST(Deadline, DropTakesTheRobotsOutForGood) {
   Pair pair(with_deadline(DeadlineAction::drop, 50));
   pair.peers.pass(milliseconds{50});
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_TRUE(pair.peers.is_complete());
   EXPECT_EQ(pair.target(), 0);
-  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::gone);
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::gone);
   EXPECT_EQ(pair.peers.told("p").error().code(), v1::Error::DEADLINE_MISSED);
   pair.peers.publish(6);
   EXPECT_TRUE(pair.peers.inboxes["p"].empty()) << "L3";
@@ -49,20 +49,20 @@ TEST(Deadline, DropHoldsTheBudgetFirst) {
   pair.miss_and_go_on(6);
   pair.miss_and_go_on(7);
   EXPECT_EQ(pair.target(), 3);
-  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::held);
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::held);
   pair.peers.pass(milliseconds{50});
-  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::gone);
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::gone);
 }
 
-TEST(Deadline, DropIsReportedWhateverNoiseStrangersMake) {
+TEST(Deadline, DropIsReportedWhateverNoiseOtherPeersMake) {
   Pair pair(with_deadline(DeadlineAction::drop, 50));
-  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("stranger", "\xff");
+  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("unknown", "\xff");
   pair.peers.pass(milliseconds{50});
-  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("stranger", "\xff");
-  const auto dropped = pair.peers.barrier.take_report().dropped;
+  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("unknown", "\xff");
+  const auto dropped = pair.peers.take_report().dropped;
   ASSERT_EQ(dropped.size(), 1U);
   EXPECT_NE(dropped[0].find("robot0"), std::string::npos);
-  EXPECT_TRUE(pair.peers.barrier.take_report().dropped.empty());
+  EXPECT_TRUE(pair.peers.take_report().dropped.empty());
 }
 
 TEST(Deadline, HoldDropsBeyondTheBudget) {
@@ -70,19 +70,19 @@ TEST(Deadline, HoldDropsBeyondTheBudget) {
     Pair pair(with_deadline(action, 50, 2));
     pair.miss_and_go_on(6);
     pair.miss_and_go_on(7);
-    EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::held);
+    EXPECT_EQ(pair.peers.status()[0].membership, Membership::held);
     pair.peers.pass(milliseconds{50});
-    EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::gone);
+    EXPECT_EQ(pair.peers.status()[0].membership, Membership::gone);
   }
 }
 
 TEST(Deadline, StopEndsTheRunWithASentence) {
   Pair pair(with_deadline(DeadlineAction::stop, 50, 1));
   pair.miss_and_go_on(6);
-  EXPECT_TRUE(pair.peers.barrier.take_report().stopped.empty());
+  EXPECT_TRUE(pair.peers.take_report().stopped.empty());
   pair.peers.pass(milliseconds{50});
-  EXPECT_FALSE(pair.peers.barrier.complete());
-  const auto stopped = pair.peers.barrier.take_report().stopped;
+  EXPECT_FALSE(pair.peers.is_complete());
+  const auto stopped = pair.peers.take_report().stopped;
   EXPECT_NE(stopped.find("'lua'"), std::string::npos) << stopped;
   EXPECT_NE(stopped.find("robot0"), std::string::npos);
   EXPECT_NE(stopped.find("tick 6"), std::string::npos);
@@ -102,10 +102,10 @@ TEST(Deadline, W1_TheLongestOfASessionCounts) {
   peers.say("p", Peers::command(0, {3, 4}));
   peers.publish(1);
   peers.pass(milliseconds{59});
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.pass(milliseconds{1});
-  EXPECT_TRUE(peers.barrier.complete());
-  peers.barrier.zero_missing(peers.commands);
+  EXPECT_TRUE(peers.is_complete());
+  zero_missing(peers.barrier, peers.commands);
   EXPECT_EQ(peers.commands.joint_targets, (std::vector<double>{0, 4}));
 }
 
@@ -117,10 +117,10 @@ TEST(Deadline, W1_ASessionWithARobotThatWaitsNeverMisses) {
   peers.join("p", "*");
   peers.publish(0);
   peers.pass(milliseconds{900'000});
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.say("p", Peers::leave({1}));  // the one that waits
   peers.pass(milliseconds{1});
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
 TEST(Deadline, W1_ASessionWhoseRobotsHaveAllLeftIsNotLateForThat) {
@@ -129,12 +129,12 @@ TEST(Deadline, W1_ASessionWhoseRobotsHaveAllLeftIsNotLateForThat) {
     Pair pair(with_deadline(action, 50));
     pair.peers.say("p", Peers::leave({0}));
     pair.peers.pass(milliseconds{49});
-    EXPECT_FALSE(pair.peers.barrier.complete()) << "L2: it still owes its Command";
+    EXPECT_FALSE(pair.peers.is_complete()) << "L2: it still owes its Command";
     EXPECT_TRUE(pair.peers.inboxes["p"].empty());
     pair.peers.pass(milliseconds{1});
-    EXPECT_EQ(pair.peers.barrier.complete(), !waits);
+    EXPECT_EQ(pair.peers.is_complete(), !waits);
     if (waits) pair.peers.say("p", Peers::command(5));
-    EXPECT_TRUE(pair.peers.barrier.complete());
+    EXPECT_TRUE(pair.peers.is_complete());
   }
 }
 
@@ -142,21 +142,21 @@ TEST(Deadline, W2_ADeadConnectionIsUnderTheSamePolicy) {
   Pair pair(with_deadline(DeadlineAction::hold, 50));
   pair.peers.unreachable.insert("p");
   pair.peers.pass(milliseconds{50});  // it is told of its miss, and so found dead
-  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::free);
-  EXPECT_TRUE(pair.peers.barrier.complete()) << "a tick is missed once";
-  EXPECT_EQ(pair.peers.barrier.missed_ticks()[0], 1U);
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::free);
+  EXPECT_TRUE(pair.peers.is_complete()) << "a tick is missed once";
+  EXPECT_EQ(pair.peers.barrier.deadlines.missed_ticks()[0], 1U);
   pair.peers.publish(6);
   pair.peers.say("q", Peers::command(6));
   pair.peers.pass(milliseconds{0});
-  EXPECT_TRUE(pair.peers.barrier.complete()) << "nobody waits for it any more";
+  EXPECT_TRUE(pair.peers.is_complete()) << "no tick waits for it any more";
   EXPECT_EQ(pair.target(), 3);
-  // Somebody comes: the tick in hand waits again, and the robot obeys.
+  // A session takes it: the tick in hand waits again, and the robot obeys.
   pair.peers.publish(7);
   pair.peers.say("q", Peers::command(7));
   pair.peers.join("heir", "robot0");
-  EXPECT_FALSE(pair.peers.barrier.complete());
+  EXPECT_FALSE(pair.peers.is_complete());
   pair.peers.say("heir", Peers::command(7, {9}));
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_TRUE(pair.peers.is_complete());
   EXPECT_EQ(pair.target(), 9);
 }
 
@@ -168,24 +168,24 @@ TEST(Deadline, W2_ATickThatWasMissedIsNotAwaitedOnceMoreWhenTheConnectionGoes) {
   pair.peers.pass(milliseconds{50});
   pair.peers.unreachable.insert("p");
   pair.peers.pass(milliseconds{100'000});  // a heartbeat finds it dead while q is waited for
-  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::free);
-  EXPECT_FALSE(pair.peers.barrier.status()[0].awaited);
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::free);
+  EXPECT_FALSE(pair.peers.status()[0].awaited);
   pair.peers.pass(milliseconds{50});
-  EXPECT_TRUE(pair.peers.barrier.take_report().stopped.empty()) << "one miss is within the budget";
+  EXPECT_TRUE(pair.peers.take_report().stopped.empty()) << "one miss is within the budget";
   pair.peers.say("q", Peers::command(6));
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_TRUE(pair.peers.is_complete());
   pair.peers.publish(7);
   pair.peers.pass(milliseconds{0});
-  EXPECT_FALSE(pair.peers.barrier.take_report().stopped.empty()) << "and two are not";
+  EXPECT_FALSE(pair.peers.take_report().stopped.empty()) << "and two are not";
 }
 
-TEST(Deadline, W3_TheBeginningWaitsForEver) {
+TEST(Deadline, W3_TheBeginningWaitsForever) {
   const SmallRun small(2);
   Peers peers(small, with_deadline(DeadlineAction::drop, 50));
   peers.join("p", "robot0");
   peers.pass(milliseconds{10'000});
-  EXPECT_FALSE(peers.barrier.gathered());
-  EXPECT_EQ(peers.barrier.status()[1].membership, Membership::free);
+  EXPECT_FALSE(peers.is_gathered());
+  EXPECT_EQ(peers.status()[1].membership, Membership::free);
 }
 
 TEST(Deadline, W4_AnAnswerSetsTheBudgetBack) {
@@ -195,8 +195,8 @@ TEST(Deadline, W4_AnAnswerSetsTheBudgetBack) {
   pair.peers.publish(7);
   pair.peers.say("q", Peers::command(7));
   pair.peers.pass(milliseconds{50});
-  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::held);
-  EXPECT_EQ(pair.peers.barrier.missed_ticks()[0], 2U);
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::held);
+  EXPECT_EQ(pair.peers.barrier.deadlines.missed_ticks()[0], 2U);
 }
 
 TEST(Deadline, W5_TheSessionIsToldAndGetsWhatFollows) {
@@ -221,7 +221,7 @@ TEST(Deadline, W6_LateCommandsAreStaleAndNoOffence) {
     ASSERT_EQ(error.severity(), v1::Error::DISCARD);
   }
   EXPECT_EQ(pair.target(), 3);
-  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::held);
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::held);
 }
 
 TEST(Deadline, W6_AlsoWhileTheTickIsInHand) {
@@ -230,7 +230,7 @@ TEST(Deadline, W6_AlsoWhileTheTickIsInHand) {
   Pair pair(config);
   pair.peers.publish(6);
   pair.peers.pass(milliseconds{50});
-  EXPECT_FALSE(pair.peers.barrier.complete()) << "q waits for ever";
+  EXPECT_FALSE(pair.peers.is_complete()) << "q waits forever";
   pair.peers.inboxes.clear();
   pair.peers.say("p", Peers::command(6, {99}));
   EXPECT_EQ(pair.peers.told("p").error().code(), v1::Error::STALE_TICK);
@@ -241,15 +241,15 @@ TEST(Deadline, W8_AFullQueueIsAMissOrALoss) {
   held.peers.say("p", Peers::command(5));
   held.peers.congested.insert("p");
   held.peers.publish(6);
-  EXPECT_EQ(held.peers.barrier.status()[0].membership, Membership::held);
+  EXPECT_EQ(held.peers.status()[0].membership, Membership::held);
   held.peers.say("q", Peers::command(6));
   held.peers.pass(milliseconds{50});
-  EXPECT_TRUE(held.peers.barrier.complete());
+  EXPECT_TRUE(held.peers.is_complete());
   Pair waited{Config{}};
   waited.peers.say("p", Peers::command(5));
   waited.peers.congested.insert("p");
   waited.peers.publish(6);
-  EXPECT_EQ(waited.peers.barrier.status()[0].membership, Membership::free);
+  EXPECT_EQ(waited.peers.status()[0].membership, Membership::free);
 }
 
 TEST(Deadline, H8_AWishIsGrantedUnlessThePolicyIsFixed) {

@@ -66,7 +66,7 @@ TEST_F(Radios, D1_NumbersCountTheRadiosOfTheSession) {
   auto other = Peers::command(5);
   send(other, 0, "y");
   peers.say("q", other);
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(senders(), (std::vector<std::size_t>{0, 1}));
 }
 
@@ -127,7 +127,7 @@ TEST_F(Radios, D3_MessagesComeInTheOrderOfTheWorld) {
   hear(0, "");
   hear(1, "for q");
   hear(2, "last");
-  peers.barrier.publish(seen, {});
+  peers.publish(seen);
   const auto messages = peers.told("p").observation().radio_messages();
   ASSERT_EQ(messages.size(), 3);
   EXPECT_EQ(messages[0].payload(), "first");
@@ -142,12 +142,12 @@ TEST_F(Radios, D5_ASessionThatWouldHearTooMuchIsLost) {
   seen.radio_messages.add(0, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   const auto entry = seen.radio_messages.entries.front();
   seen.radio_messages.entries.assign(1025, entry);
-  peers.barrier.publish(seen, {});
+  peers.publish(seen);
   const auto error = peers.told("p").error();
   EXPECT_EQ(error.code(), v1::Error::TOO_LARGE);
   EXPECT_EQ(error.severity(), v1::Error::FATAL);
   EXPECT_EQ(peers.told("q").observation().tick(), 6U);
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
 }
 
 /// Two robots with wheels and turret, and a camera each that sees tags and takes pictures of
@@ -217,7 +217,7 @@ TEST_F(DrivingAndCameras, D6_TwoSpeedsPerRobotThatDrives) {
     EXPECT_EQ(error.field(), "wheel_velocities");
   }
   peers.say("p", drive({0.5, -0.5}));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.wheels[0].right, -0.5);
   EXPECT_EQ(peers.commands.wheels[1].right, 0);
 }
@@ -243,7 +243,7 @@ TEST_F(DrivingAndCameras, D7_TurretsTakeTheModesThereAre) {
   EXPECT_EQ(faulted(message).field(), "turret_speeds");
   message.mutable_command()->mutable_turret_speeds()->RemoveLast();
   peers.say("p", message);
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.turrets[0].mode, world::TurretMode::speed);
 }
 
@@ -274,13 +274,13 @@ TEST_F(DrivingAndCameras, D5_PicturesAndPayloadsCount) {
   EXPECT_EQ(error.severity(), v1::Error::FATAL);
 }
 
-TEST_F(DrivingAndCameras, L1_WhoLeavesStands) {
+TEST_F(DrivingAndCameras, L1_ARobotThatLeavesStands) {
   peers.commands.turrets[0].speed = 3;
   peers.say("p", drive({0.5, 0.5}));
   peers.publish(sight(6));
   peers.say("p", Peers::leave({0}));
   peers.say("p", Peers::command(6));
-  peers.barrier.zero_missing(peers.commands);
+  zero_missing(peers.barrier, peers.commands);
   EXPECT_EQ(peers.commands.wheels[0].left, 0);
   EXPECT_EQ(peers.commands.turrets[0].speed, 0);
 }

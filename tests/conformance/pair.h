@@ -5,7 +5,7 @@
 
 namespace ziggurat::network {
 
-/// All controllers have this policy, and nobody may change it.
+/// All controllers have this policy, and no Hello may change it.
 inline Config with_deadline(scene::DeadlineAction action, std::uint32_t ms,
                             std::uint32_t budget = 0) {
   Config config;
@@ -40,13 +40,13 @@ struct Pair {
     peers.say("q", Peers::command(number));
   }
   double target() {
-    peers.barrier.zero_missing(peers.commands);
+    zero_missing(peers.barrier, peers.commands);
     return peers.commands.joint_targets[0];
   }
   /// "p" is silent at the tick in hand, and a new one begins for both.
   void miss_and_go_on(std::uint64_t next) {
     peers.pass(std::chrono::milliseconds{50});
-    EXPECT_TRUE(peers.barrier.complete()) << next;
+    EXPECT_TRUE(peers.is_complete()) << next;
     peers.publish(next);
     peers.say("q", Peers::command(next));
   }

@@ -29,18 +29,18 @@ class Population : public ::testing::Test {
     small.add_robot();
     peers.commands.joint_targets.resize(small.layout().joint_actuators.size());
     const std::string script = "/scenes/spawned.lua";
-    peers.barrier.add_robots({&script, 1}, small.observations(published), {});
+    peers.add_robots(script, small.observations(published));
   }
-  void remove(std::size_t robot) { peers.barrier.remove_robots({&robot, 1}, "It was removed."); }
+  void remove(std::size_t robot) { remove_robots(peers.barrier, {&robot, 1}, "It was removed."); }
   /// The scene has two robots.
   void reset() {
     world::Layout& layout = small.layout();
     layout.robots.resize(2);
     layout.joint_sensors.resize(2);
     layout.joint_actuators.resize(2);
-    peers.barrier.reset(42);
+    network::reset(peers.barrier, 42);
   }
-  /// Somebody comes while a tick is in hand, and is told of it, too.
+  /// A client that joins while a tick is in hand is told of it, too.
   v1::Welcome join(const std::string& peer, const std::string& robots) {
     peers.say(peer, Peers::hello(robots));
     const auto told = all_told(peer);
@@ -58,17 +58,17 @@ class Population : public ::testing::Test {
 TEST_F(Population, V9_IsNotWaitedForAtTheTickInHandButAtTheNext) {
   spawn();
   peers.say("p", Peers::command(5, {1, 2}));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   publish(6);
   peers.say("p", Peers::command(6));
-  EXPECT_FALSE(peers.barrier.complete()) << "nobody drives robot2";
+  EXPECT_FALSE(peers.is_complete()) << "no session has robot2";
   EXPECT_EQ(join("q", "robot2").robots_size(), 1);
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.say("q", Peers::command(6));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
-TEST_F(Population, V9_WhoTakesItGetsTheTickInHandAndIsWaitedFor) {
+TEST_F(Population, V9_ASessionThatTakesItGetsTheTickInHandAndIsWaitedFor) {
   spawn();
   peers.say("q", Peers::hello("robot2"));
   const auto told = all_told("q");
@@ -80,9 +80,9 @@ TEST_F(Population, V9_WhoTakesItGetsTheTickInHandAndIsWaitedFor) {
   ASSERT_EQ(told[1].observation().joint_readings_size(), 1);
   EXPECT_EQ(told[1].observation().joint_readings(0), 502);
   peers.say("p", Peers::command(5, {1, 2}));
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.say("q", Peers::command(5, {3}));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.joint_targets, (std::vector<double>{1, 2, 3}));
 }
 
@@ -99,12 +99,12 @@ TEST_F(Population, V9_BeforeTheFirstTickItIsWaitedForToo) {
   SmallRun fresh(1);
   Peers others(fresh);
   others.join("p", "*");
-  ASSERT_TRUE(others.barrier.gathered());
+  ASSERT_TRUE(others.is_gathered());
   fresh.add_robot();
-  others.barrier.add_robots({}, {}, {});
-  EXPECT_FALSE(others.barrier.gathered());
+  others.add_robots({}, {});
+  EXPECT_FALSE(others.is_gathered());
   EXPECT_EQ(others.join("q", "robot1").robots(0).id(), "robot1");
-  EXPECT_TRUE(others.barrier.gathered());
+  EXPECT_TRUE(others.is_gathered());
 }
 
 class PopulationHeld : public Population {
@@ -123,9 +123,9 @@ TEST_F(PopulationHeld, V9_ItsDeadlineRunsFromThenOn) {
   peers.say("p", Peers::command(5));
   publish(6);
   peers.say("p", Peers::command(6));
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.pass(milliseconds{50});
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
 TEST_F(Population, V13_ASessionIsToldAndGoesOnWithTheOthers) {
@@ -135,9 +135,9 @@ TEST_F(Population, V13_ASessionIsToldAndGoesOnWithTheOthers) {
   EXPECT_EQ(error.severity(), v1::Error::WARNING);
   EXPECT_EQ(error.robot(), "robot0");
   EXPECT_EQ(error.tick(), 5u);
-  EXPECT_FALSE(peers.barrier.complete()) << "it owes for robot1";
+  EXPECT_FALSE(peers.is_complete()) << "it owes for robot1";
   peers.say("p", Peers::command(5, {1, 2}));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.joint_targets, (std::vector<double>{0, 2}));
   publish(6);
   EXPECT_EQ(peers.told("p").observation().joint_readings_size(), 2) << "positions stay";
@@ -146,7 +146,7 @@ TEST_F(Population, V13_ASessionIsToldAndGoesOnWithTheOthers) {
 TEST_F(Population, V13_ItsCommandsBecomeZero) {
   peers.say("p", Peers::command(5, {1, 2}));
   remove(1);
-  peers.barrier.zero_missing(peers.commands);
+  zero_missing(peers.barrier, peers.commands);
   EXPECT_EQ(peers.commands.joint_targets, (std::vector<double>{1, 0}));
 }
 
@@ -155,23 +155,23 @@ TEST_F(Population, V13_ASessionWithoutRobotsIsOverAndMaySayGoodbye) {
   peers.inboxes.clear();
   remove(1);
   EXPECT_EQ(peers.told("p").end().reason(), v1::End::FINISHED);
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   publish(6);
   EXPECT_TRUE(peers.inboxes["p"].empty());
   auto goodbye = Peers::leave();
   goodbye.mutable_leave()->add_log()->set_text("that was all");
   peers.say("p", goodbye);
-  EXPECT_EQ(peers.barrier.take_report().log.at(0).text, "that was all");
-  EXPECT_EQ(peers.barrier.known().sessions, 0u);
+  EXPECT_EQ(peers.take_report().log.at(0).text, "that was all");
+  EXPECT_EQ(peers.barrier.sessions.size(), 0u);
 }
 
 TEST_F(Population, V13_IsToldTheEndOnce) {
   remove(0);
   remove(1);
   peers.inboxes.clear();
-  peers.barrier.finish({wire::EndReason::finished, "", 5});
+  finish(peers.barrier, {wire::EndReason::finished, "", 5});
   EXPECT_TRUE(peers.inboxes["p"].empty());
-  EXPECT_FALSE(peers.barrier.drained());
+  EXPECT_NE(peers.barrier.sessions.size(), 0U);
 }
 
 TEST_F(Population, V13_ItIsGoneForGood) {
@@ -180,21 +180,21 @@ TEST_F(Population, V13_ItIsGoneForGood) {
   EXPECT_EQ(peers.told("q").refusal().error().code(), v1::Error::NOT_YOURS);
 }
 
-TEST_F(Population, V13_OneThatNobodyHasIsNotWaitedFor) {
+TEST_F(Population, V13_AFreeOneIsNotWaitedFor) {
   spawn();
   remove(2);
   peers.say("p", Peers::command(5));
   publish(6);
   peers.say("p", Peers::command(6));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
-TEST_F(Population, V13_APausedWorldStandsOnceNobodyElseOwes) {
-  peers.barrier.pause();
-  EXPECT_FALSE(peers.barrier.standing());
+TEST_F(Population, V13_APausedWorldStandsOnceNoOtherSessionOwes) {
+  pause(peers.barrier);
+  EXPECT_FALSE(peers.barrier.gate.is_standing());
   remove(0);
   remove(1);
-  EXPECT_TRUE(peers.barrier.standing());
+  EXPECT_TRUE(peers.barrier.gate.is_standing());
 }
 
 TEST_F(Population, V14_ARobotThatWasSpawnedIsUnknownAfterAReset) {
@@ -205,10 +205,10 @@ TEST_F(Population, V14_ARobotThatWasSpawnedIsUnknownAfterAReset) {
   EXPECT_TRUE(peers.told("p").has_reset());
   publish(0);
   peers.say("p", Peers::command(0));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   peers.say("r", Peers::hello("robot2"));
   EXPECT_EQ(peers.told("r").refusal().error().code(), v1::Error::UNKNOWN_ROBOT);
-  EXPECT_EQ(peers.barrier.status().size(), 2u);
+  EXPECT_EQ(peers.status().size(), 2u);
 }
 
 TEST_F(Population, V14_ASessionOfSuchARobotMayStillSayGoodbye) {
@@ -223,8 +223,8 @@ TEST_F(Population, V14_ASessionOfSuchARobotMayStillSayGoodbye) {
   EXPECT_TRUE(peers.inboxes["q"].empty());
   peers.say("q", goodbye);
   EXPECT_TRUE(peers.inboxes["q"].empty());
-  EXPECT_TRUE(peers.barrier.take_report().log.empty());
-  EXPECT_EQ(peers.barrier.known().sessions, 1u);
+  EXPECT_TRUE(peers.take_report().log.empty());
+  EXPECT_EQ(peers.barrier.sessions.size(), 1u);
 }
 
 TEST(PopulationOf, V14_SessionsThatHaveSomeEndAndTheirOtherRobotsAreFree) {
@@ -234,17 +234,17 @@ TEST(PopulationOf, V14_SessionsThatHaveSomeEndAndTheirOtherRobotsAreFree) {
   others.publish(1);
   three.add_robot();
   others.commands.joint_targets.resize(3);
-  others.barrier.add_robots({}, three.observations(1), {});
+  others.add_robots({}, three.observations(1));
   auto hello = Peers::hello("*");
   hello.mutable_hello()->set_takeover(true);
   others.say("q", hello);
   others.inboxes.clear();
   three.layout().robots.resize(2);
-  others.barrier.reset(42);
+  reset(others.barrier, 42);
   EXPECT_EQ(others.told("q").end().reason(), v1::End::FINISHED);
-  EXPECT_FALSE(others.barrier.gathered());
+  EXPECT_FALSE(others.is_gathered());
   EXPECT_EQ(others.join("r", "*").robots_size(), 2);
-  EXPECT_TRUE(others.barrier.gathered());
+  EXPECT_TRUE(others.is_gathered());
 }
 
 TEST_F(Population, V14_LostSessionsOfSuchRobotsAreForgotten) {
@@ -254,7 +254,7 @@ TEST_F(Population, V14_LostSessionsOfSuchRobotsAreForgotten) {
   peers.probe();
   reset();
   publish(0);
-  EXPECT_EQ(peers.barrier.known().sessions, 1u);
+  EXPECT_EQ(peers.barrier.sessions.size(), 1u);
   auto hello = Peers::hello("*");
   hello.mutable_hello()->set_session_token(token);
   peers.say("r", hello);
@@ -270,10 +270,10 @@ TEST_F(Population, V14_AThousandTimesLeavesNothingBehind) {
     publish(0);
     peers.say(peer, Peers::leave());
   }
-  EXPECT_EQ(peers.barrier.known().sessions, 1u);
-  EXPECT_EQ(peers.barrier.status().size(), 2u);
+  EXPECT_EQ(peers.barrier.sessions.size(), 1u);
+  EXPECT_EQ(peers.status().size(), 2u);
   peers.say("p", Peers::command(0));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ v1::Error faulted(Peers& peers, const v1::ClientMessage& message) {
   EXPECT_EQ(told.error().severity(), v1::Error::DISCARD);
   EXPECT_FALSE(told.error().message().empty());
   EXPECT_EQ(peers.commands.joint_targets, commands) << "a discarded message had effect";
-  EXPECT_TRUE(peers.barrier.take_report().log.empty());
+  EXPECT_TRUE(peers.take_report().log.empty());
   return told.error();
 }
 
@@ -51,7 +51,7 @@ struct Stepping : ::testing::Test {
 
 // ---- transport ----------------------------------------------------------------------------------
 
-TEST(Transport, T2_GarbageIsMalformedAndDisturbsNobody) {
+TEST(Transport, T2_GarbageIsMalformedAndDisturbsNoSession) {
   const SmallRun small(1);
   Peers peers(small);
   peers.join("p", "*");
@@ -59,14 +59,14 @@ TEST(Transport, T2_GarbageIsMalformedAndDisturbsNobody) {
   peers.inboxes.clear();
   for (const std::string& bytes : {std::string("hello"), std::string(1000, '\xff'), std::string(),
                                    std::string("\x12\x7f", 2), std::string("\x12\xff\xff", 3)}) {
-    peers.say_bytes("stranger", bytes);
-    const auto error = peers.told("stranger").error();
+    peers.say_bytes("unknown", bytes);
+    const auto error = peers.told("unknown").error();
     EXPECT_EQ(error.code(), v1::Error::MALFORMED);
     EXPECT_EQ(error.severity(), v1::Error::FATAL);
   }
   EXPECT_TRUE(peers.told("p").message_case() == v1::ServerMessage::MESSAGE_NOT_SET);
   peers.say("p", Peers::command(0));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
 TEST(Transport, T4_TooLarge) {
@@ -90,7 +90,7 @@ TEST(Transport, T5_UnknownFieldsAreIgnored) {
   peers.publish(0);
   // Field 15 of Command, which this version does not have, inside ClientMessage.command.
   peers.say_bytes("p", std::string("\x12\x02\x78\x01", 4));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
 // ---- beginning ----------------------------------------------------------------------------------
@@ -145,9 +145,9 @@ TEST(Hello, H4_CriteriaAreJoinedByAnd) {
   hello.mutable_hello()->set_controller("external");
   peers.say("q", hello);
   EXPECT_EQ(peers.told("q").welcome().robots_size(), 3);
-  EXPECT_FALSE(peers.barrier.gathered());
+  EXPECT_FALSE(peers.is_gathered());
   peers.join("s", "robot4");
-  EXPECT_TRUE(peers.barrier.gathered());
+  EXPECT_TRUE(peers.is_gathered());
 }
 
 TEST(Hello, H4_AllOrNothing) {
@@ -155,7 +155,7 @@ TEST(Hello, H4_AllOrNothing) {
   Peers peers(small);
   peers.join("q", "robot1");
   EXPECT_EQ(refused(peers, Peers::hello("*")).code(), v1::Error::ROBOT_TAKEN);
-  EXPECT_EQ(peers.barrier.status()[0].membership, RobotStatus::Membership::free);
+  EXPECT_EQ(peers.status()[0].membership, RobotStatus::Membership::free);
 }
 
 TEST(Hello, H5_UnknownNames) {
@@ -178,7 +178,7 @@ TEST(Hello, H6_TheHolderIsNamedAndNotDisturbed) {
   EXPECT_EQ(refusal.error().robot(), "robot0");
   EXPECT_TRUE(refusal.error().retryable());
   EXPECT_EQ(refusal.holder(), "tester");
-  EXPECT_EQ(peers.barrier.status()[0].holder, "tester");
+  EXPECT_EQ(peers.status()[0].holder, "tester");
 }
 
 TEST(Hello, H7_RobotsThatLeftStayGone) {
@@ -214,7 +214,7 @@ TEST(Hello, H9_WelcomeDescribesRunAndRobots) {
   EXPECT_EQ(welcome.robots(1).script(), "");
 }
 
-TEST(Hello, H11_WhoComesLateGetsTheTickThatTheOthersAreAt) {
+TEST(Hello, H11_ALateSessionGetsTheTickThatTheOthersAreAt) {
   const SmallRun small(2);
   Peers peers(small);
   peers.join("q", "*");
@@ -259,13 +259,13 @@ TEST_F(Stepping, S2_ReadingsArePackedInWelcomesOrder) {
 }
 
 TEST_F(Stepping, S3_OnlyTheCommandReleasesTheTick) {
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.say("p", Peers::heartbeat(1));
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.say("p", Peers::leave({1}));
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.say("p", Peers::command(5));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
 TEST_F(Stepping, S5_TargetsStayUntilChanged) {
@@ -337,12 +337,12 @@ TEST_F(Stepping, S10_ABadCommandHasNoEffectAndARightOneMayFollow) {
   line.set_robot(3);  // the only fault, in the last field
   line.set_text("x");
   EXPECT_EQ(faulted(peers, command).code(), v1::Error::UNKNOWN_ROBOT);
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   line.set_robot(2);
   peers.say("p", command);
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.joint_targets, (std::vector<double>{1, 2, 0, 3}));
-  const auto log = peers.barrier.take_report().log;
+  const auto log = peers.take_report().log;
   ASSERT_EQ(log.size(), 1U);
   EXPECT_EQ(log[0].robot, 3U);
 }
@@ -363,7 +363,7 @@ TEST_F(Stepping, S11_LinesComeInSceneOrder) {
   answer("p", {2, 0, 2, 1});
   answer("q", {0});
   std::string text;
-  for (const auto& line : peers.barrier.take_report().log) {
+  for (const auto& line : peers.take_report().log) {
     text += std::to_string(line.robot) + ":" + line.text + " ";
   }
   EXPECT_EQ(text, "0:1 1:3 2:0 3:0 3:2 ");
@@ -380,7 +380,7 @@ TEST_F(Stepping, M4_BadMessagesWithoutEndAreTheEnd) {
   const auto error = peers.told("p").error();
   EXPECT_EQ(error.code(), v1::Error::TOO_MANY);
   EXPECT_EQ(error.severity(), v1::Error::FATAL);
-  EXPECT_EQ(peers.barrier.status()[0].membership, RobotStatus::Membership::free);
+  EXPECT_EQ(peers.status()[0].membership, RobotStatus::Membership::free);
 }
 
 TEST_F(Stepping, M4_AGoodMessageStartsTheCountAnew) {
@@ -388,20 +388,20 @@ TEST_F(Stepping, M4_AGoodMessageStartsTheCountAnew) {
   peers.say("p", Peers::command(5));
   peers.publish(6);
   for (int i = 0; i < 90; ++i) peers.say("p", Peers::command(77));
-  EXPECT_EQ(peers.barrier.status()[0].membership, RobotStatus::Membership::held);
+  EXPECT_EQ(peers.status()[0].membership, RobotStatus::Membership::held);
 }
 
 TEST(Strangers, LeaveNothingBehind) {
   const SmallRun small(1);
   Peers peers(small);
   for (int i = 0; i < 2'000; ++i) {
-    const std::string peer = "stranger" + std::to_string(i);
+    const std::string peer = "unknown" + std::to_string(i);
     peers.say_bytes(peer, "garbage");
     peers.say(peer, Peers::hello("nobody"));
     peers.inboxes.clear();
   }
-  EXPECT_TRUE(peers.barrier.drained());  // not one session
-  EXPECT_LE(peers.barrier.take_report().notices.size(), 100U);
+  EXPECT_EQ(peers.barrier.sessions.size(), 0U);  // not one session
+  EXPECT_LE(peers.take_report().notices.size(), 100U);
 }
 
 TEST(Strangers, WhatTheyCallThemselvesStaysOneShortLine) {
@@ -410,7 +410,7 @@ TEST(Strangers, WhatTheyCallThemselvesStaysOneShortLine) {
   auto hello = Peers::hello("nobody\n" + std::string(100'000, 'x'));
   hello.mutable_hello()->set_client_name("\x1b[31m\nevil" + std::string(100'000, 'y'));
   peers.say("p", hello);
-  const auto notices = peers.barrier.take_report().notices;
+  const auto notices = peers.take_report().notices;
   ASSERT_EQ(notices.size(), 1U);
   EXPECT_LT(notices[0].size(), 1001U);
   EXPECT_EQ(notices[0].find_first_of("\n\x1b"), std::string::npos);
@@ -424,7 +424,7 @@ TEST_F(Stepping, L1_CommandsOfRobotsThatLeftBecomeZero) {
   peers.say("q", Peers::command(6, {3}));
   peers.say("p", Peers::leave({0, 2}));
   peers.say("p", Peers::command(6));
-  peers.barrier.zero_missing(peers.commands);
+  zero_missing(peers.barrier, peers.commands);
   EXPECT_EQ(peers.commands.joint_targets, (std::vector<double>{0, 2, 3, 0}));
 }
 
@@ -434,40 +434,40 @@ TEST_F(Stepping, L1_FailuresAreReportedOnce) {
   peers.say("p", leave);
   peers.say("p", leave);
   EXPECT_EQ(peers.told("p").error().code(), v1::Error::NOT_YOURS);
-  const auto failures = peers.barrier.take_report().failures;
+  const auto failures = peers.take_report().failures;
   ASSERT_EQ(failures.size(), 1U);
   EXPECT_EQ(failures[0].robot, 1U);
   EXPECT_EQ(failures[0].message, "x.lua:3: oh");
   EXPECT_EQ(failures[0].tick, 5U);
 }
 
-TEST_F(Stepping, L1_AReasonIsDue) {
+TEST_F(Stepping, L1_AReasonMustBeGiven) {
   auto leave = Peers::leave({1}, v1::Leave::REASON_UNSPECIFIED);
   EXPECT_EQ(faulted(peers, leave).code(), v1::Error::BAD_VALUE);
-  EXPECT_EQ(peers.barrier.status()[1].membership, RobotStatus::Membership::held);
+  EXPECT_EQ(peers.status()[1].membership, RobotStatus::Membership::held);
 }
 
-TEST_F(Stepping, L1_ABadPositionTakesNobodyOut) {
+TEST_F(Stepping, L1_ABadPositionTakesNoRobotOut) {
   EXPECT_EQ(faulted(peers, Peers::leave({0, 1, 9})).code(), v1::Error::UNKNOWN_ROBOT);
-  EXPECT_EQ(peers.barrier.status()[0].membership, RobotStatus::Membership::held);
+  EXPECT_EQ(peers.status()[0].membership, RobotStatus::Membership::held);
 }
 
 TEST_F(Stepping, L2_AWholeSessionLeavesAndReleasesTheTick) {
   peers.say("p", Peers::leave({}, v1::Leave::FAILED));
-  EXPECT_TRUE(peers.barrier.complete());
-  EXPECT_EQ(peers.barrier.take_report().failures.size(), 3U);
-  EXPECT_EQ(peers.barrier.status()[2].membership, RobotStatus::Membership::held);
+  EXPECT_TRUE(peers.is_complete());
+  EXPECT_EQ(peers.take_report().failures.size(), 3U);
+  EXPECT_EQ(peers.status()[2].membership, RobotStatus::Membership::held);
 }
 
 TEST_F(Stepping, L3_ASessionWithoutRobotsIsToldTheEnd) {
   peers.say("p", Peers::leave({0, 1, 2}));
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.say("p", Peers::command(5));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   peers.inboxes.clear();
   peers.publish(6);
   EXPECT_TRUE(peers.inboxes["p"].empty());
-  peers.barrier.finish({wire::EndReason::failed, "all is lost", 6});
+  finish(peers.barrier, {wire::EndReason::failed, "all is lost", 6});
   const auto end = peers.told("p").end();
   EXPECT_EQ(end.reason(), v1::End::FAILED);
   EXPECT_EQ(end.message(), "all is lost");
@@ -487,9 +487,9 @@ TEST_F(Stepping, L4_ALostSessionResumesAtTheSameTick) {
   ASSERT_EQ(fresh.inboxes["new"].size(), 2U);
   EXPECT_EQ(fresh.inboxes["new"][0].welcome().session_token(), welcome.session_token());
   EXPECT_EQ(fresh.inboxes["new"][1].observation().tick(), 3U);
-  EXPECT_FALSE(fresh.barrier.complete());
+  EXPECT_FALSE(fresh.is_complete());
   fresh.say("new", Peers::command(3, {1, 2}));
-  EXPECT_TRUE(fresh.barrier.complete());
+  EXPECT_TRUE(fresh.is_complete());
   hello.mutable_hello()->set_session_token("guess");
   EXPECT_EQ(refused(fresh, hello).code(), v1::Error::NO_SUCH_SESSION);
 }
@@ -498,11 +498,11 @@ TEST_F(Stepping, L4_TheBarrierWaitsForLostRobots) {
   peers.unreachable.insert("p");
   peers.publish(6);
   peers.say("q", Peers::command(6));
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   const std::vector<std::size_t> lost{0, 1, 3};
-  peers.barrier.remove_robots(lost);
-  EXPECT_TRUE(peers.barrier.complete());
-  EXPECT_EQ(peers.barrier.take_report().notices.size(), 1U);
+  remove_robots(peers.barrier, lost, {});
+  EXPECT_TRUE(peers.is_complete());
+  EXPECT_EQ(peers.take_report().notices.size(), 1U);
 }
 
 TEST_F(Stepping, L4_AHelloFindsADeadHolderOut) {
@@ -524,18 +524,18 @@ TEST_F(Stepping, L4_AnOldTokenIsWorthlessOnceOthersHaveTheRobots) {
 }
 
 TEST_F(Stepping, L5_LastWordsComeWithTheLeave) {
-  peers.barrier.finish({});
+  finish(peers.barrier, {});
   auto leave = Peers::leave();
   leave.mutable_leave()->add_log()->set_text("destroyed");
   peers.say("p", leave);
-  ASSERT_EQ(peers.barrier.take_report().log.size(), 1U);
-  EXPECT_FALSE(peers.barrier.drained());
+  ASSERT_EQ(peers.take_report().log.size(), 1U);
+  EXPECT_NE(peers.barrier.sessions.size(), 0U);
   peers.say("q", Peers::leave());
-  EXPECT_TRUE(peers.barrier.drained());
+  EXPECT_EQ(peers.barrier.sessions.size(), 0U);
 }
 
 TEST_F(Stepping, L5_NoSessionBeginsAfterTheEnd) {
-  peers.barrier.finish({});
+  finish(peers.barrier, {});
   peers.say("late", Peers::hello("*"));
   EXPECT_EQ(peers.told("late").refusal().error().code(), v1::Error::OUT_OF_STATE);
 }

@@ -30,28 +30,28 @@ v1::ClientMessage takeover(const std::string& robots) {
 
 TEST(Pause, P1_TakesEffectWhenTheTickIsAnswered) {
   Pair pair{Config{}};
-  pair.peers.barrier.pause();
+  pause(pair.peers.barrier);
   EXPECT_TRUE(pair.peers.inboxes.empty());
-  EXPECT_FALSE(pair.peers.barrier.standing());
+  EXPECT_FALSE(pair.peers.barrier.gate.is_standing());
   pair.peers.say("p", Peers::command(5, {1}));
-  EXPECT_FALSE(pair.peers.barrier.complete());
-  EXPECT_TRUE(pair.peers.barrier.standing());
+  EXPECT_FALSE(pair.peers.is_complete());
+  EXPECT_TRUE(pair.peers.barrier.gate.is_standing());
   EXPECT_EQ(pair.peers.commands.joint_targets[0], 1);
   for (const auto* peer : {"p", "q"}) {
     const auto told = pair.peers.told(peer);
     ASSERT_TRUE(told.has_paused());
     EXPECT_EQ(told.paused().tick(), 5U);
   }
-  pair.peers.barrier.resume();
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  resume(pair.peers.barrier);
+  EXPECT_TRUE(pair.peers.is_complete());
   pair.tick(6);
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_TRUE(pair.peers.is_complete());
 }
 
-TEST(Pause, P2_WhoComesMeanwhileIsToldAfterItsAnswer) {
+TEST(Pause, P2_ASessionThatBeginsMeanwhileIsToldAfterItsAnswer) {
   Pair pair{Config{}};
   pair.peers.say("p", Peers::command(5));
-  pair.peers.barrier.pause();
+  pause(pair.peers.barrier);
   pair.peers.say("p", Peers::leave({}));
   pair.peers.unreachable.insert("q");
   pair.peers.probe();
@@ -64,17 +64,17 @@ TEST(Pause, P2_WhoComesMeanwhileIsToldAfterItsAnswer) {
   pair.peers.say("late", Peers::command(5, {8}));
   EXPECT_EQ(pair.peers.told("late").paused().tick(), 5U);
   EXPECT_EQ(pair.peers.commands.joint_targets[1], 8);
-  pair.peers.barrier.resume();
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  resume(pair.peers.barrier);
+  EXPECT_TRUE(pair.peers.is_complete());
 }
 
-TEST(Pause, P2_BeforeTheFirstTickNobodyIsTold) {
+TEST(Pause, P2_BeforeTheFirstTickNoSessionIsTold) {
   const SmallRun small(1);
   Peers peers(small);
-  peers.barrier.pause();
+  pause(peers.barrier);
   peers.join("p", "*");
   EXPECT_TRUE(peers.inboxes["p"].empty());
-  EXPECT_TRUE(peers.barrier.gathered());
+  EXPECT_TRUE(peers.is_gathered());
   peers.publish(0);
   peers.inboxes.clear();
   peers.say("p", Peers::command(0));
@@ -85,21 +85,21 @@ TEST(Pause, P3_NoDeadlineRunsAndHeartbeatsGoOn) {
   Config config = with_deadline(DeadlineAction::drop, 50);
   config.heartbeat = milliseconds{1000};
   Pair pair(config);
-  pair.peers.barrier.pause();
+  pause(pair.peers.barrier);
   pair.peers.say("p", Peers::command(5));
   pair.peers.unreachable.insert("q");
-  pair.peers.probe();  // robot1 is nobody's
+  pair.peers.probe();  // robot1 is free
   pair.peers.inboxes.clear();
   for (int i = 0; i < 20; ++i) pair.peers.pass(milliseconds{1000});
   EXPECT_EQ(pair.peers.inboxes["p"].size(), 20U);
   EXPECT_TRUE(pair.peers.inboxes["p"].front().has_heartbeat());
-  EXPECT_EQ(pair.peers.barrier.status()[1].membership, Membership::free);
-  pair.peers.barrier.resume();
+  EXPECT_EQ(pair.peers.status()[1].membership, Membership::free);
+  resume(pair.peers.barrier);
   pair.peers.pass(milliseconds{49});
-  EXPECT_FALSE(pair.peers.barrier.complete()) << "it has its whole deadline from here";
+  EXPECT_FALSE(pair.peers.is_complete()) << "it has its whole deadline from here";
   pair.peers.pass(milliseconds{1});
-  EXPECT_EQ(pair.peers.barrier.status()[1].membership, Membership::gone);
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_EQ(pair.peers.status()[1].membership, Membership::gone);
+  EXPECT_TRUE(pair.peers.is_complete());
 }
 
 // ---- heartbeats and rates -----------------------------------------------------------------------
@@ -125,7 +125,7 @@ TEST(Heartbeat, M6_WhateverTheSessionWaitsFor) {
   EXPECT_EQ(beats(), 10) << "others are slow";
 }
 
-TEST(Heartbeat, M6_WhoComputesForANightFindsFewOfThem) {
+TEST(Heartbeat, M6_AClientThatComputesForANightFindsFewOfThem) {
   const SmallRun small(1);
   Peers peers(small);
   peers.join("p", "*");
@@ -158,7 +158,7 @@ TEST(Rate, M7_AFloodIsToldOnceAndThrownOut) {
   ASSERT_GE(told.size(), 1900U);
   EXPECT_EQ(told.back().error().code(), v1::Error::TOO_MANY);
   EXPECT_EQ(told.back().error().severity(), v1::Error::FATAL);
-  EXPECT_EQ(pair.peers.barrier.status()[0].membership, Membership::free);
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::free);
   pair.peers.inboxes.clear();
   pair.peers.say("p", Peers::hello("robot0"));
   EXPECT_TRUE(pair.peers.inboxes["p"].empty()) << "not answered while it floods";
@@ -168,22 +168,22 @@ TEST(Rate, M7_AFloodIsToldOnceAndThrownOut) {
   EXPECT_TRUE(pair.peers.inboxes["p"].front().has_welcome());
 }
 
-TEST(Rate, M7_AnswersThatAreDueAreFree) {
+TEST(Rate, M7_ExpectedAnswersAreFree) {
   Pair pair{Config{}};
   pair.peers.say("p", Peers::command(5));
   for (std::uint64_t tick = 6; tick < 20'000; ++tick) {
     pair.tick(tick);
     pair.peers.inboxes.clear();
-    ASSERT_TRUE(pair.peers.barrier.complete());
+    ASSERT_TRUE(pair.peers.is_complete());
   }
 }
 
-TEST(Rate, M7_StrangersToo) {
+TEST(Rate, M7_PeersWithoutASessionToo) {
   const SmallRun small(1);
   Peers peers(small);
-  for (int i = 0; i < 5000; ++i) peers.say_bytes("stranger", "garbage");
-  EXPECT_LE(peers.inboxes["stranger"].size(), 2001U);
-  EXPECT_TRUE(peers.join("p", "*").robots_size() == 1) << "nobody else is concerned";
+  for (int i = 0; i < 5000; ++i) peers.say_bytes("unknown", "garbage");
+  EXPECT_LE(peers.inboxes["unknown"].size(), 2001U);
+  EXPECT_TRUE(peers.join("p", "*").robots_size() == 1) << "others are not affected";
 }
 
 // ---- leases, takeover, resuming -----------------------------------------------------------------
@@ -222,21 +222,21 @@ TEST_F(Lease, L7_KeepsTheRobotsForTheToken) {
   EXPECT_EQ(peers.inboxes["back"][0].welcome().session_token(), token);
   EXPECT_EQ(peers.inboxes["back"][0].welcome().wall_lease_ms(), 10'000U);
   EXPECT_EQ(peers.inboxes["back"][1].observation().tick(), 3U);
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.say("back", Peers::command(3, {4}));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.joint_targets[0], 4);
 }
 
 TEST_F(Lease, L7_EndsWithTime) {
   peers.pass(milliseconds{10'000});
   EXPECT_EQ(peers.join("new", "robot0").robots_size() + 0, 0) << "Observation follows Welcome";
-  EXPECT_EQ(peers.barrier.status()[0].membership, Membership::held);
+  EXPECT_EQ(peers.status()[0].membership, Membership::held);
   peers.say("back", with_token(token));
   EXPECT_EQ(peers.told("back").refusal().error().code(), v1::Error::NO_SUCH_SESSION);
 }
 
-TEST_F(Lease, L7_TheTokenIsGoodAfterItAsLongAsNobodyCame) {
+TEST_F(Lease, L7_TheTokenStaysValidUntilAnotherSessionHasTheRobots) {
   peers.pass(milliseconds{100'000});
   peers.inboxes.clear();
   peers.say("back", with_token(token));
@@ -261,12 +261,12 @@ TEST(Resume, L9_AnAnswerOfBeforeIsReplacedNotRepeated) {
   auto command = Peers::command(3, {5});
   command.mutable_command()->add_radio_messages()->set_payload("once");
   peers.say("old", command);
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   peers.unreachable.insert("old");
   peers.probe();
   peers.say("back", with_token(token));
   peers.say("back", command);
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.radio_messages.entries.size(), 1U);
   peers.inboxes.clear();
   peers.say("back", command);
@@ -284,7 +284,7 @@ TEST(Takeover, H13_TheHolderIsToldAndClosed) {
   EXPECT_EQ(peers.told("p").displaced().by(), "usurper");
   EXPECT_EQ(peers.told("q").displaced().by(), "usurper");
   ASSERT_EQ(peers.inboxes["new"].size(), 2U);
-  const auto status = peers.barrier.status();
+  const auto status = peers.status();
   EXPECT_EQ(status[0].membership, Membership::free);
   EXPECT_EQ(status[1].holder, "usurper");
   EXPECT_EQ(status[2].holder, "usurper");
@@ -294,12 +294,12 @@ TEST(Takeover, H13_TheHolderIsToldAndClosed) {
   EXPECT_EQ(peers.commands.joint_targets[0], 0);
   peers.say("new", Peers::command(2));
   peers.join("heir", "robot[03]");
-  EXPECT_FALSE(peers.barrier.complete());
+  EXPECT_FALSE(peers.is_complete());
   peers.say("heir", Peers::command(2));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
-TEST(Takeover, H13_ARefusedOneDisplacesNobody) {
+TEST(Takeover, H13_ARefusedOneDisplacesNoSession) {
   const SmallRun small(2);
   Config config;
   config.deadlines = {{{}, true}};
@@ -320,7 +320,7 @@ TEST(Takeover, H13_ARefusedOneDisplacesNobody) {
   peers.say("new", hello);
   EXPECT_EQ(peers.told("new").refusal().error().code(), v1::Error::NOT_YOURS);
   EXPECT_TRUE(peers.inboxes["p"].empty());
-  EXPECT_EQ(peers.barrier.status()[0].holder, "tester");
+  EXPECT_EQ(peers.status()[0].holder, "tester");
 }
 
 TEST(Takeover, L8_OfAConnectedSessionByItsToken) {
@@ -338,9 +338,9 @@ TEST(Takeover, L8_OfAConnectedSessionByItsToken) {
     peers.inboxes.clear();
     peers.say("old", Peers::command(1, {9}));
     EXPECT_EQ(peers.told("old").error().code(), v1::Error::OUT_OF_STATE);
-    EXPECT_FALSE(peers.barrier.complete());
+    EXPECT_FALSE(peers.is_complete());
     peers.say("new", Peers::command(1));
-    EXPECT_TRUE(peers.barrier.complete());
+    EXPECT_TRUE(peers.is_complete());
   }
 }
 
@@ -356,9 +356,9 @@ TEST(Takeover, L8_TheOldConnectionNeedNotBeKnownToBeGone) {
     ASSERT_EQ(peers.inboxes[peer].size(), 2U);
     EXPECT_EQ(peers.inboxes[peer][1].observation().tick(), 1U);
   }
-  EXPECT_EQ(peers.barrier.known().sessions, 1U);
+  EXPECT_EQ(peers.barrier.sessions.size(), 1U);
   peers.say("99", Peers::command(1));
-  EXPECT_TRUE(peers.barrier.complete());
+  EXPECT_TRUE(peers.is_complete());
 }
 
 TEST(Takeover, L8_ARefusedTokenDisplacesNoConnection) {
@@ -386,9 +386,9 @@ TEST(Takeover, L10_ADisplacedTokenIsGoodForNothing) {
   EXPECT_EQ(peers.told("old").refusal().error().code(), v1::Error::NO_SUCH_SESSION);
 }
 
-TEST(Reset, L6_WhoComesBeforeTick0GetsNoTickOfTheWorldThatWas) {
+TEST(Reset, L6_ASessionBeforeTick0GetsNoTickOfTheFormerWorld) {
   Pair pair({});
-  pair.peers.barrier.reset(7);
+  reset(pair.peers.barrier, 7);
   pair.peers.say("r", takeover("robot0"));
   EXPECT_TRUE(pair.peers.told("r").has_welcome());  // and nothing else
   EXPECT_EQ(pair.peers.inboxes["p"].back().message_case(), v1::ServerMessage::kDisplaced);
@@ -396,7 +396,7 @@ TEST(Reset, L6_WhoComesBeforeTick0GetsNoTickOfTheWorldThatWas) {
   EXPECT_EQ(pair.peers.told("r").observation().tick(), 0U);
   pair.peers.say("r", Peers::command(0, {1}));
   pair.peers.say("q", Peers::command(0));
-  EXPECT_TRUE(pair.peers.barrier.complete());
+  EXPECT_TRUE(pair.peers.is_complete());
 }
 
 TEST(Sessions, ThousandsComeAndGo) {
@@ -414,8 +414,8 @@ TEST(Sessions, ThousandsComeAndGo) {
     peers.probe();
     peers.inboxes.clear();
   }
-  EXPECT_LE(peers.barrier.known().sessions, 3U);
-  EXPECT_LE(peers.barrier.known().peers, 8U);
+  EXPECT_LE(peers.barrier.sessions.size(), 3U);
+  EXPECT_LE(peers.barrier.connections.size(), 8U);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
-// Any sequence of messages, losses, pauses, resets and time: what the barrier says of itself stays
-// consistent, no session gets what is not for it, nothing grows without bound, and once every
-// deadline is over the tick is, too. Each byte of the input is a step or says more of one.
+// Any sequence of messages, losses, pauses, resets and time, from before the world is loaded to the
+// end: what the barrier says of itself stays consistent, no session gets what is not for it,
+// nothing grows without bound, and a tick is complete once every deadline has passed. Each byte of
+// the input is a step or a detail of one.
 
 #include <algorithm>
 #include <array>
@@ -13,29 +14,38 @@
 
 namespace ziggurat::fuzz {
 
+/// The world is loaded.
+void Play::open() {
+  phase_ = Phase::gathering;
+  network::open(barrier_, small_.run(), config_.deadlines);
+  admit_waiting(barrier_);
+}
+
 void Play::pass() {
   static constexpr std::array<int, 8> times{1, 20, 99, 101, 500, 1000, 5000, 61'000};
   const int time = times[input_.below(times.size())];
-  barrier_.advance(now_ += milliseconds{time});
+  advance(barrier_, now_ += milliseconds{time});
   has_looked_ = true;
-  require(barrier_.due() > now_);  // or the server would never sleep
+  require(next_event(barrier_) > now_);  // or the server would never sleep
 }
 
-/// What the server's owner does when nothing is left to wait for.
+/// What the program does when nothing is left to wait for.
 void Play::move_on() {
-  barrier_.advance(now_);
-  if (phase_ == Phase::collecting && barrier_.complete()) {
-    barrier_.zero_missing(commands_);
+  advance(barrier_, now_);
+  if (phase_ == Phase::loading) return open();
+  if (phase_ == Phase::collecting && barrier_.gate.is_complete()) {
+    zero_missing(barrier_, commands_);
     phase_ = Phase::between;
     if (input_.below(2) == 1) return;  // paced: it lingers
   }
   if (phase_ == Phase::between) {
     ++tick_;
-  } else if (phase_ != Phase::gathering || !barrier_.gathered()) {
+  } else if (phase_ != Phase::gathering || !barrier_.seats.all_taken()) {
     return;
   }
   phase_ = Phase::collecting;
-  barrier_.publish(small_.observations(tick_), {});
+  observations_ = small_.observations(tick_);
+  publish(barrier_, observations_, payloads_);
 }
 
 void Play::change_connection() {
@@ -43,7 +53,7 @@ void Play::change_connection() {
   Told& told = told_.at(ids_[seat]);
   switch (input_.below(4)) {
     case 0:
-      told.delivery = Delivery::unreachable;  // for good: whoever comes back has another id
+      told.delivery = Delivery::unreachable;  // for good: a client that comes back has another id
       break;
     case 1:
       if (told.delivery == Delivery::unreachable) connect(seat);
@@ -57,31 +67,32 @@ void Play::change_connection() {
 }
 
 void Play::supervise() {
+  if (phase_ == Phase::loading) return;
   switch (input_.below(7)) {
     case 0:
       is_paused_ = true;
-      return barrier_.pause();
+      return pause(barrier_);
     case 1:
-      barrier_.advance(now_);
+      advance(barrier_, now_);
       is_paused_ = false;
-      return barrier_.resume();
+      return resume(barrier_);
     case 2:
       if (phase_ != Phase::collecting) return;
-      barrier_.reset(7);
+      reset(barrier_, 7);
       phase_ = Phase::gathering;
       tick_ = 0;
       return;
     case 3: {
       const std::vector<std::size_t> gone{input_.below(robots)};
-      return barrier_.remove_robots(gone);
+      return remove_robots(barrier_, gone, {});
     }
     case 4:
-      for (const Call& call : barrier_.take_calls()) {
-        barrier_.answer(call, [&](wire::Outbox& out) { out.response(call.request.id, tick_); });
+      for (const Call& call : barrier_.calls.take()) {
+        answer(barrier_, call, [&](wire::Outbox& out) { out.response(call.request.id, tick_); });
       }
       return;
     case 5: {
-      const Report report = barrier_.take_report();
+      const Report report = barrier_.journal.take();
       is_stopped_ |= !report.stopped.empty();
       require(report.notices.size() <= 100);
       for (const wire::LogLine& line : report.log) require(line.robot < robots);
@@ -90,7 +101,7 @@ void Play::supervise() {
     default:
       if (phase_ == Phase::over || input_.below(8) != 0) return;
       phase_ = Phase::over;
-      return barrier_.finish({wire::EndReason::finished, {}, tick_});
+      return finish(barrier_, {wire::EndReason::finished, {}, tick_});
   }
 }
 
@@ -137,11 +148,12 @@ void Play::check_robots(const wire::Status& status) const {
   require(std::ranges::all_of(places, [](int place) { return place == 1; }));
 }
 
-/// Unless somebody is waited for that is not due yet, the tick is over.
+/// Unless a robot is waited for whose deadline has not passed, the tick is complete.
 void Play::check_deadlines(const wire::Status& status) {
-  if (!has_looked_ || phase_ != Phase::collecting || is_paused_ || barrier_.complete()) return;
+  if (!has_looked_ || phase_ != Phase::collecting || is_paused_ || barrier_.gate.is_complete())
+    return;
   for (const wire::SessionStatus& session : status.sessions) {
-    // Its robots have left; what it owes is due as it was for them.
+    // Its robots have left; what it owes keeps the deadline that it had for them.
     if (session.state == wire::SessionStatus::State::owing && session.robots.empty()) return;
   }
   const auto is_not_due = [&](const RobotStatus& robot) {
@@ -149,14 +161,18 @@ void Play::check_deadlines(const wire::Status& status) {
     return robot.awaited && (robot.deadline.action == scene::DeadlineAction::wait ||
                              now_ < robot.awaited_since + deadline);
   };
-  if (std::ranges::any_of(barrier_.status(), is_not_due)) return;
-  is_stopped_ |= !barrier_.take_report().stopped.empty();
+  if (std::ranges::any_of(robot_status(barrier_), is_not_due)) return;
+  is_stopped_ |= !barrier_.journal.take().stopped.empty();
   require(is_stopped_);
 }
 
 void Play::check() {
+  if (phase_ == Phase::loading) {
+    require(barrier_.sessions.size() <= most_sessions && !barrier_.gate.tick());
+    return;
+  }
   wire::Status status;
-  barrier_.fill(status);
+  fill(barrier_, now_, status);
   check_robots(status);
   check_deadlines(status);
 
@@ -168,23 +184,22 @@ void Play::check() {
     if (session.state == State::lost) require(!session.robots.empty());
     owes |= session.state == State::owing;
   }
-  const Barrier::Known known = barrier_.known();
-  require(known.sessions == status.sessions.size());
-  require(connected <= most_sessions && known.sessions - connected <= robots);
-  require(known.peers <= 2 * most_sessions + 1);
-  require(barrier_.drained() == status.sessions.empty());
+  const std::size_t known = barrier_.sessions.size();
+  require(known == status.sessions.size());
+  require(connected <= most_sessions && known - connected <= robots);
+  require(barrier_.connections.size() <= 2 * most_sessions + 1);
 
   bool is_free = false, is_awaited = false;
-  for (const RobotStatus& robot : barrier_.status()) {
+  for (const RobotStatus& robot : robot_status(barrier_)) {
     using Membership = RobotStatus::Membership;
     is_free |= robot.membership == Membership::free;
     if (robot.membership == Membership::gone) continue;
     is_awaited |= robot.awaited;
     require(robot.membership != Membership::held || !robot.holder.empty());
   }
-  require(barrier_.gathered() == !is_free);
-  if (barrier_.complete()) require(!is_paused_ && !owes && !is_awaited);
-  if (barrier_.standing()) require(is_paused_);
+  require(barrier_.seats.all_taken() == !is_free);
+  if (barrier_.gate.is_complete()) require(!is_paused_ && !owes && !is_awaited);
+  if (barrier_.gate.is_standing()) require(is_paused_);
   for (const double target : commands_.joint_targets) require(target == 0 || target == 1);
 }
 

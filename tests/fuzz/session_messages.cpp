@@ -1,4 +1,4 @@
-// What peers hear, which is checked, and what they say.
+// What peers are sent, which is checked, and what they send.
 
 #include <string>
 
@@ -28,8 +28,9 @@ Delivery Play::hear(const std::string& peer, const wire::Outbox& outbox) {
   require(heard_.ParseFromArray(bytes_.data(), static_cast<int>(bytes_.size())));
   switch (heard_.message_case()) {
     case v1::ServerMessage::kWelcome:
+      require(phase_ != Phase::loading);
       told.welcomed = true;
-      told.draining = told.has_tick = told.may_be_lost = false;
+      told.waiting = told.draining = told.has_tick = told.may_be_lost = false;
       told.token = heard_.welcome().session_token();
       told.robots = static_cast<std::uint64_t>(heard_.welcome().robots_size());
       break;
@@ -42,7 +43,7 @@ Delivery Play::hear(const std::string& peer, const wire::Outbox& outbox) {
       break;
     case v1::ServerMessage::kRefusal:
       require(!told.welcomed || told.may_be_lost || told.draining);  // of which none may be left
-      told.welcomed = false;
+      told.welcomed = told.waiting = false;
       break;
     case v1::ServerMessage::kError:
       if (heard_.error().severity() == v1::Error::FATAL) told.welcomed = false;
@@ -58,6 +59,10 @@ Delivery Play::hear(const std::string& peer, const wire::Outbox& outbox) {
     case v1::ServerMessage::kResponse:
       require(told.welcomed);
       break;
+    case v1::ServerMessage::kLoading:
+      require(!told.welcomed && heard_.loading().progress() <= 1);
+      told.waiting = true;
+      break;
     case v1::ServerMessage::kHeartbeat:
       break;
     default:
@@ -67,8 +72,13 @@ Delivery Play::hear(const std::string& peer, const wire::Outbox& outbox) {
 }
 
 void Play::say(const std::string& peer, const v1::ClientMessage& message) {
-  const bool takes = phase_ == Phase::collecting;
-  barrier_.receive(peer, message.SerializeAsString(), takes ? &commands_ : nullptr);
+  receive(peer, message.SerializeAsString());
+}
+
+void Play::receive(const std::string& peer, std::string_view bytes, bool is_single_frame) {
+  const bool is_collecting = phase_ == Phase::collecting;
+  network::receive(barrier_, {peer, bytes, is_single_frame, all_roles},
+                   is_collecting ? &commands_ : nullptr);
 }
 
 void Play::say_hello() {
@@ -123,7 +133,7 @@ void Play::say_leave() {
     if (bits >> (i + 1) & 1) leave.add_robots(i);
   }
   say(from, message);
-  // It was thrown out for its many messages, or has left.
+  // It was closed for its many messages, or has left.
   if (leave.robots().empty()) told_.at(from).welcomed = false;
 }
 
@@ -140,17 +150,16 @@ void Play::say_anything() {
   const std::string& from = peer();
   std::string bytes(input_.below(16), '\0');
   for (char& byte : bytes) byte = static_cast<char>(input_.byte());
-  if (bytes.empty()) return barrier_.receive_malformed(from);
-  barrier_.receive(from, bytes, phase_ == Phase::collecting ? &commands_ : nullptr);
-  if (!barrier_.can_hear({from, {}})) told_.at(from).welcomed = false;
+  receive(from, bytes, !bytes.empty());
+  if (!can_hear(barrier_, {from, {}})) told_.at(from).welcomed = told_.at(from).waiting = false;
 }
 
-/// Everybody answers what it has been told last.
+/// Every peer answers the last observation that it was sent.
 void Play::answer_all() {
   v1::ClientMessage message;
   for (const auto& [id, told] : told_) {
     if (!told.welcomed || !told.has_tick || phase_ != Phase::collecting) continue;
-    if (barrier_.complete()) return;
+    if (barrier_.gate.is_complete()) return;
     message.mutable_command()->set_tick(told.tick);
     say(id, message);
   }

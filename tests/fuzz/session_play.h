@@ -9,7 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "network/barrier.h"
+#include "network/barrier/admission.h"
+#include "network/barrier/departure.h"
+#include "network/barrier/dispatch.h"
+#include "network/barrier/exchange.h"
+#include "network/barrier/overview.h"
+#include "network/barrier/population.h"
+#include "network/barrier/timing.h"
 #include "network/small_run.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -22,7 +28,6 @@ constexpr std::size_t robots = 4;
 constexpr std::size_t seats = 5;  // peers at a time
 constexpr std::size_t most_sessions = 3;
 
-/// Ends the program, with the line that asked, unless the condition holds.
 struct Input {
   const std::uint8_t* data;
   std::size_t size;
@@ -38,6 +43,7 @@ struct Input {
 /// What a connection has been told.
 struct Told {
   bool welcomed = false;  ///< and nothing since that ends a session
+  bool waiting = false;   ///< was told that the world is loading
   bool draining = false;  ///< was told the end
   bool has_tick = false;
   std::uint64_t tick = 0;
@@ -71,8 +77,9 @@ class Play {
       : small_(small),
         input_(input),
         commands_(small.commands()),
+        config_(make_config(input_)),
         barrier_(
-            make_config(input_), small.run(),
+            config_,
             [this](const std::string& peer, const wire::Outbox& message) {
               return hear(peer, message);
             },
@@ -80,7 +87,9 @@ class Play {
     for (std::size_t i = 0; i < seats; ++i) connect(i);
   }
 
+  /// An even first byte begins while the world is loading.
   void run() {
+    if (input_.byte() % 2 == 1) open();
     while (!input_.empty()) {
       step();
       check();
@@ -88,7 +97,7 @@ class Play {
   }
 
  private:
-  enum class Phase { gathering, collecting, between, over };
+  enum class Phase { loading, gathering, collecting, between, over };
 
   void connect(std::size_t seat) {
     ids_[seat] = {static_cast<char>('a' + seat), static_cast<char>(++connections_ % 256),
@@ -100,12 +109,14 @@ class Play {
   Delivery hear(const std::string& peer, const wire::Outbox& outbox);
   void hear_tick(Told& told, const v1::Observation& observation) const;
   void say(const std::string& peer, const v1::ClientMessage& message);
+  void receive(const std::string& peer, std::string_view bytes, bool is_single_frame = true);
   void say_hello();
   void say_command(const std::string& peer);
   void say_leave();
   void say_request();
   void say_anything();
   void answer_all();
+  void open();
   void pass();
   void move_on();
   void change_connection();
@@ -120,14 +131,17 @@ class Play {
   std::array<std::string, seats> ids_;
   std::map<std::string, Told> told_;
   unsigned connections_ = 0;
-  Clock::time_point now_{};
+  Time now_{};
   world::Commands commands_;
-  Phase phase_ = Phase::gathering;
+  Phase phase_ = Phase::loading;
   std::uint64_t tick_ = 0;  // published
   bool is_paused_ = false, is_stopped_ = false;
   bool has_looked_ = false;  // at deadlines, and nothing has happened since
   v1::ServerMessage heard_;
   std::vector<std::uint8_t> bytes_;
+  world::Observations observations_;  // of the published tick
+  const std::vector<std::string> payloads_;
+  Config config_;
   Barrier barrier_;
 };
 

@@ -100,7 +100,7 @@ struct Protected : Keys {
     config.curve = {read_secret_key(path("server.secret")), {}};
     config.curve->clients.push_back({write_key_pair(path("friend")), {true, false, false}, ""});
     config.curve->clients.push_back({write_key_pair(path("viewer")), {false, false, true}, ""});
-    write_key_pair(path("stranger"));
+    write_key_pair(path("unlisted"));
   }
   Options options(const Server& server, const std::string& key, std::size_t endpoint = 1) const {
     Options options;
@@ -112,7 +112,7 @@ struct Protected : Keys {
     options.connect_timeout = milliseconds{700};
     return options;
   }
-  /// Serves whoever comes, for as long as a client takes.
+  /// Serves clients for as long as `client` takes.
   void meanwhile(Server& server, auto client) const {
     bool is_done = false;
     int ends[2];
@@ -155,7 +155,8 @@ TEST_F(Protected, KeysOnTheListGetIn) {
   world::Commands commands = small.commands();
   ASSERT_EQ(server.gather(patience), Outcome::complete);
   for (std::uint64_t tick = 0; tick < 20; ++tick) {
-    server.publish(small.observations(tick), {});
+    const world::Observations seen = small.observations(tick);
+    server.publish(seen, no_tags);
     ASSERT_EQ(server.collect(commands, patience), Outcome::complete);
   }
   EXPECT_EQ(commands.joint_targets, (std::vector<double>{1, 1}));
@@ -168,10 +169,10 @@ TEST_F(Protected, OthersGetNoAnswerToAnything) {
   const SmallRun small(1);
   Server server(config, small.run());
   meanwhile(server, [&] {
-    EXPECT_THROW(Session(options(server, "stranger")), ConnectionError) << "not on the list";
+    EXPECT_THROW(Session(options(server, "unlisted")), ConnectionError) << "not on the list";
     EXPECT_THROW(Session(options(server, "")), ConnectionError) << "no key at all";
     Options wrong = options(server, "friend");
-    wrong.server_key = public_key_of(read_secret_key(path("stranger.secret")));
+    wrong.server_key = public_key_of(read_secret_key(path("unlisted.secret")));
     EXPECT_THROW(Session{wrong}, ConnectionError) << "another server's key";
   });
   EXPECT_TRUE(server.take_report().notices.empty());

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 namespace ziggurat::network {
 namespace {
 
@@ -32,6 +36,28 @@ TEST(Latencies, OnlyTheLastThousandAreRecent) {
   EXPECT_FLOAT_EQ(static_cast<float>(times.recent().max), 1e-3F);
   EXPECT_EQ(times.max(), 9);
   EXPECT_EQ(times.count(), Latencies::remembered + 1);
+}
+
+TEST(Latencies, PercentilesOfTheLastThousandAreExact) {
+  Latencies times;
+  std::vector<float> all;
+  std::uint64_t state = 1;
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    const double seconds = static_cast<double>(state >> 52) * 1e-4;  // of 4096 values: many twice
+    times.add(seconds, i);
+    all.push_back(static_cast<float>(seconds));
+    if (i % 97 != 0) continue;
+    const auto size = std::min<std::ptrdiff_t>(std::ssize(all), Latencies::remembered);
+    std::vector<float> last(all.end() - size, all.end());
+    std::ranges::sort(last);
+    const auto place = [&](double share) {
+      return last[static_cast<std::size_t>(std::ceil(share * static_cast<double>(size))) - 1];
+    };
+    ASSERT_EQ(static_cast<float>(times.recent().p50), place(0.5)) << i;
+    ASSERT_EQ(static_cast<float>(times.recent().p99), place(0.99)) << i;
+    ASSERT_EQ(static_cast<float>(times.recent().max), last.back()) << i;
+  }
 }
 
 TEST(Latencies, TheWorstAreKeptWithTheirTicks) {

@@ -1,13 +1,21 @@
 #pragma once
-// Peers of a barrier without sockets: what they say, and what they are told.
+// Peers of a barrier without sockets: what they send, and what they are told.
 
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "network/barrier.h"
+#include "network/barrier/admission.h"
+#include "network/barrier/departure.h"
+#include "network/barrier/dispatch.h"
+#include "network/barrier/exchange.h"
+#include "network/barrier/overview.h"
+#include "network/barrier/population.h"
+#include "network/barrier/timing.h"
+#include "network/disturbed_link.h"
 #include "network/small_run.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -36,35 +44,52 @@ inline v1::ServerMessage message_of(const std::string& bytes) {
 
 class Peers {
  public:
-  explicit Peers(const SmallRun& small, const Config& config = {})
+  /// @param is_loading  the world is not there yet: open() comes later
+  explicit Peers(const SmallRun& small, const Config& config = {}, bool is_loading = false)
       : small_(small),
+        config_(config),
         commands(small.commands()),
         barrier(
-            config, small.run(),
+            config,
             [this](const std::string& peer, const wire::Outbox& message) {
-              if (unreachable.contains(peer)) return Delivery::unreachable;
-              if (congested.contains(peer)) return Delivery::congested;
+              if (link) return link->send(peer, message, barrier.now);
               std::string bytes(message.size(), '\0');
               message.write(reinterpret_cast<std::uint8_t*>(bytes.data()));
-              inboxes[peer].push_back(message_of(bytes));
-              if (bytes.starts_with('{') != json) told_otherwise.insert(peer);
-              return Delivery::sent;
+              return deliver(peer, bytes);
             },
-            now) {}
+            now) {
+    if (!config.injections.empty()) disturb();
+    if (!is_loading) open();
+  }
+
+  /// The world is loaded.
+  void open() {
+    network::open(barrier, small_.run(), config_.deadlines);
+    admit_waiting(barrier);
+  }
 
   /// Wall time goes on.
   void pass(std::chrono::milliseconds time) {
-    barrier.advance(now += time);
-    barrier.receive_due(&commands);
+    now += time;
+    if (link) link->release(now);
+    advance(barrier, now);
+    while (const auto held = link ? link->next(now) : std::nullopt) {
+      receive(barrier, *held, &commands);
+    }
   }
-  /// Time enough for a heartbeat, which finds out whose connection is gone.
+  Time next_event() const {
+    const Time next = network::next_event(barrier);
+    return link ? std::min(next, link->next_event()) : next;
+  }
+  /// Time enough for a heartbeat, which finds out that a connection is gone.
   void probe() { pass(std::chrono::milliseconds{1000}); }
 
   void say(const std::string& peer, const v1::ClientMessage& message) {
-    barrier.receive(peer, bytes_of(message, json), &commands);
+    say_bytes(peer, bytes_of(message, json));
   }
   void say_bytes(const std::string& peer, const std::string& bytes) {
-    barrier.receive(peer, bytes, &commands);
+    const Received received{peer, bytes, true, all_roles};
+    if (!link || link->arrives(received, now)) receive(barrier, received, &commands);
   }
 
   /// The one message that the peer was told since it was last asked; empty if none or several.
@@ -114,19 +139,51 @@ class Peers {
   }
   void publish(std::uint64_t tick) { publish(small_.observations(tick)); }
   void publish(const world::Observations& seen, const std::vector<std::string>& tag_payloads = {}) {
-    barrier.publish(seen, tag_payloads);
+    observations = seen;
+    payloads = tag_payloads;
+    network::publish(barrier, observations, payloads);
   }
+  /// Robots have come at the tick that was published last.
+  void add_robots(const std::string& script, const world::Observations& seen) {
+    observations = seen;
+    network::add_robots(barrier, {&script, 1}, {&observations, &payloads});
+  }
+  bool is_complete() const { return barrier.gate.is_complete(); }
+  bool is_gathered() const { return barrier.seats.all_taken(); }
+  std::vector<RobotStatus> status() const { return robot_status(barrier); }
+  Report take_report() { return barrier.journal.take(); }
 
  private:
+  Delivery deliver(const std::string& peer, std::string_view bytes) {
+    if (unreachable.contains(peer)) return Delivery::unreachable;
+    if (congested.contains(peer)) return Delivery::congested;
+    inboxes[peer].push_back(message_of(std::string(bytes)));
+    if (bytes.starts_with('{') != json) told_otherwise.insert(peer);
+    return Delivery::sent;
+  }
+  void disturb() {
+    const wire::Run run = small_.run();
+    std::vector<DisturbedLink::Target> targets;
+    for (std::size_t c = 0; c < run.controllers.size(); ++c) {
+      targets.push_back({run.controllers[c].id, config_.injections.at(c)});
+    }
+    link.emplace(std::move(targets), run.seed, 2 * config_.max_message_bytes,
+                 [this](const auto& peer, auto bytes) { return deliver(peer, bytes); });
+  }
+
   const SmallRun& small_;
+  Config config_;
 
  public:
   bool json = talks_json();              ///< what say() talks
   std::set<std::string> told_otherwise;  ///< peers that were told something in the other form
   std::map<std::string, std::vector<v1::ServerMessage>> inboxes;
   std::set<std::string> unreachable, congested;
-  Clock::time_point now;
+  Time now;
   world::Commands commands;
+  world::Observations observations;  ///< of the published tick
+  std::vector<std::string> payloads;
+  std::optional<DisturbedLink> link;
   Barrier barrier;
 };
 

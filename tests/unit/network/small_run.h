@@ -11,6 +11,9 @@
 
 namespace ziggurat::network {
 
+/// The tag payloads of a run without tags.
+inline const std::vector<std::string> no_tags;
+
 /// robot0 … robot<n-1>, each with joint "hinge", sensed by position and driven by velocity. Even
 /// ones belong to the controller "lua", odd ones to "external".
 class SmallRun {

@@ -78,7 +78,8 @@ class RunnerTest : public ScriptTest {
   void serve() {
     ASSERT_EQ(server_.gather(patience), Outcome::complete);
     for (std::uint64_t tick = 0; tick <= 4; ++tick) {
-      server_.publish(small_.observations(tick), {});
+      const world::Observations seen = small_.observations(tick);
+      server_.publish(seen, network::no_tags);
       ++published_;
       ASSERT_EQ(server_.collect(commands_, patience), Outcome::complete);
       reports_.push_back(server_.take_report());

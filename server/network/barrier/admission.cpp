@@ -1,0 +1,216 @@
+#include "network/barrier/admission.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "network/barrier/departure.h"
+#include "network/barrier/exchange.h"
+#include "network/barrier/granting.h"
+#include "network/barrier/talk.h"
+#include "network/barrier/timing.h"
+#include "wire/fault.h"
+
+namespace ziggurat::network {
+
+using wire::ErrorCode;
+
+namespace {
+
+constexpr std::size_t max_label = 64;  // bytes of a client's name, and of its version
+constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20;  // of all Hellos that wait
+
+/// What a client calls itself, fit for a line on a terminal.
+std::string label_of(const wire::Hello& hello) {
+  std::string text = hello.client_name.substr(0, max_label);
+  if (text.empty()) text = "unnamed client";
+  if (!hello.client_version.empty()) text += " " + hello.client_version.substr(0, max_label);
+  return printable(text);
+}
+
+std::string new_token() {
+  std::random_device source;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", source());
+  return token;
+}
+
+using Granted = std::variant<Session*, wire::Refusal>;
+
+/// A session of a supervisor or observer.
+Granted begin_without_robots(Barrier& barrier, const wire::Hello& hello) {
+  const bool asks = !hello.robots.empty() || !hello.controller.empty() || hello.lua_only ||
+                    !hello.session_token.empty();
+  if (asks) {
+    return make_refusal(ErrorCode::bad_value, "robots",
+                        "A supervisor or observer asks for no robots and resumes no session.");
+  }
+  return &barrier.sessions.add();
+}
+
+/// A new session with all robots that the Hello asks for.
+Granted begin_with_robots(Barrier& barrier, const wire::Hello& hello) {
+  auto granted = grant_robots(barrier, hello);
+  if (auto* refusal = std::get_if<wire::Refusal>(&granted)) return std::move(*refusal);
+  const auto& robots = std::get<std::vector<std::size_t>>(granted);
+  Session& session = barrier.sessions.add();
+  session.token = new_token();
+  session.roster = wire::make_roster(barrier.run->layout, robots);
+  for (const std::size_t robot : robots) {
+    if (Session* holder = barrier.sessions.find(barrier.seats[robot].holder)) {
+      displace(barrier, *holder, label_of(hello));
+    }
+    if (Session* claimant = barrier.sessions.find(barrier.seats[robot].claimant)) {
+      erase(barrier, *claimant);
+    }
+    barrier.seats.take(robot, session.id);
+    barrier.deadlines.clear_zero(robot);
+  }
+  return &session;
+}
+
+/// The session that has the Hello's token. Its older connection, if it still has one, is displaced.
+Granted resume_session(Barrier& barrier, const wire::Hello& hello) {
+  Session* session = barrier.sessions.with_token(hello.session_token);
+  if (session == nullptr) {
+    return make_refusal(ErrorCode::no_such_session, "session_token",
+                        "No session of this run has that token, or none any more.");
+  }
+  std::vector<std::size_t> robots;
+  for (std::size_t i = 0; i < session->roster.robots.size(); ++i) {
+    if (!session->roster.gone[i]) robots.push_back(session->roster.robots[i]);
+  }
+  if (auto refusal = check_policy(barrier, hello, robots)) return std::move(*refusal);
+  if (session->state != SessionState::lost) {
+    barrier.outbox.displaced(label_of(hello), "The session was taken up over another connection.");
+    send(barrier, *session);
+    lose(barrier, *session, "it was taken up over another connection");
+  }
+  for (const std::size_t robot : robots) {
+    barrier.seats.take(robot, session->id);
+    barrier.deadlines.clear_zero(robot);
+  }
+  return session;
+}
+
+Granted begin(Barrier& barrier, const wire::Hello& hello, const Roles& roles) {
+  if (auto refusal = check_hello(barrier, hello, roles)) return std::move(*refusal);
+  if (hello.role != wire::Role::controller) return begin_without_robots(barrier, hello);
+  return hello.session_token.empty() ? begin_with_robots(barrier, hello)
+                                     : resume_session(barrier, hello);
+}
+
+/// Binds the session to its connection.
+void bind(Barrier& barrier, Session& session, const std::string& connection) {
+  session.connection = connection;
+  session.contact = {barrier.now, barrier.now, 0, 0};
+  barrier.connections.bind(connection, session.id);
+}
+
+/// A wish holds until another session has the robot; without one, a new session has that of the
+/// robot's controller.
+void set_policies(Barrier& barrier, const Session& session, const wire::Hello& hello) {
+  if (!hello.deadline && !hello.session_token.empty()) return;
+  for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
+    if (session.roster.gone[i]) continue;
+    barrier.deadlines.set_policy(session.roster.robots[i], hello.deadline);
+  }
+}
+
+bool welcome(Barrier& barrier, Session& session) {
+  wire::Welcome welcome;
+  welcome.token = session.token;
+  welcome.minor = session.minor;
+  welcome.role = session.role;
+  welcome.wall_lease_ms = static_cast<std::uint32_t>(barrier.config.lease.count());
+  welcome.wall_heartbeat_ms = static_cast<std::uint32_t>(barrier.config.heartbeat.count());
+  for (const std::size_t robot : session.roster.robots) {
+    welcome.deadlines.push_back(barrier.deadlines.policy(robot));
+  }
+  barrier.outbox.welcome(*barrier.run, session.roster, welcome);
+  return send(barrier, session) == Delivery::sent;
+}
+
+void refuse(Barrier& barrier, const std::string& connection, const wire::Hello& hello,
+            wire::Refusal refusal) {
+  refusal.fault.severity = wire::Severity::fatal;
+  refusal.fault.tick = tick_of(barrier);
+  refusal.client_version = hello.version;
+  barrier.outbox.refusal(refusal);
+  send(barrier, connection);
+  barrier.journal.note(fmt::format("{} was refused with {}: {}", label_of(hello),
+                                   to_string(refusal.fault.code), refusal.fault.message));
+}
+
+void admit(Barrier& barrier, const std::string& connection, const Roles& roles) {
+  const wire::Hello hello = barrier.inbox.hello();
+  auto granted = begin(barrier, hello, roles);
+  if (auto* refusal = std::get_if<wire::Refusal>(&granted)) {
+    return refuse(barrier, connection, hello, std::move(*refusal));
+  }
+  Session& session = *std::get<Session*>(granted);
+  bind(barrier, session, connection);
+  session.role = hello.role;
+  session.client = label_of(hello);
+  session.minor = std::min(hello.version.minor, wire::version.minor);
+  session.state = SessionState::ready;
+  set_policies(barrier, session, hello);
+  update_patience(barrier, session);
+  const bool is_welcomed = welcome(barrier, session);
+  const bool has_tick = barrier.gate.tick() && !session.roster.empty();
+  const bool is_there = is_welcomed && (!has_tick || observe(barrier, session));
+  session.turn.is_repeated = true;
+  if (!is_there) lose(barrier, session, "its connection is gone");
+}
+
+Delivery tell_loading(Barrier& barrier, Session& session) {
+  barrier.outbox.loading(barrier.progress.share, barrier.progress.message);
+  return send(barrier, session);
+}
+
+/// Keeps the Hello in hand until the world is loaded.
+void keep_waiting(Barrier& barrier, const std::string& connection, const Roles& roles,
+                  std::string_view bytes) {
+  const wire::Hello hello = barrier.inbox.hello();
+  const bool is_full = barrier.sessions.connected() >= barrier.config.max_sessions ||
+                       barrier.sessions.waiting_bytes() + bytes.size() > max_waiting_bytes;
+  if (is_full) {
+    auto refusal = make_refusal(ErrorCode::too_many, {}, "Too many wait for the world already.");
+    refusal.fault.retryable = true;
+    return refuse(barrier, connection, hello, std::move(refusal));
+  }
+  Session& session = barrier.sessions.add();
+  bind(barrier, session, connection);
+  session.state = SessionState::hello;
+  session.application = {std::string(bytes), roles};
+  tell_loading(barrier, session);
+}
+
+}  // namespace
+
+void handle_hello(Barrier& barrier, const std::string& connection, const Roles& roles,
+                  std::string_view bytes) {
+  if (!barrier.run) return keep_waiting(barrier, connection, roles, bytes);
+  admit(barrier, connection, roles);
+}
+
+void admit_waiting(Barrier& barrier) {
+  std::vector<std::pair<std::string, Application>> waiting;
+  barrier.sessions.for_each([&](Session& session) {
+    // Those whose connection is gone get no session, and no lease.
+    if (tell_loading(barrier, session) != Delivery::unreachable) {
+      waiting.emplace_back(session.connection, std::move(session.application));
+    }
+    erase(barrier, session);
+  });
+  for (const auto& [connection, application] : waiting) {
+    barrier.inbox.parse(application.hello);
+    admit(barrier, connection, application.roles);
+  }
+}
+
+}  // namespace ziggurat::network

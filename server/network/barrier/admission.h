@@ -1,0 +1,22 @@
+#pragma once
+// How sessions begin (docs/protocol.md, section 2).
+
+#include <string>
+
+#include "network/barrier/barrier.h"
+#include "network/keys.h"
+
+namespace ziggurat::network {
+
+/// Handles the Hello in `barrier.inbox`, of a connection without a session: Welcome or Refusal.
+/// While the world is loading it waits.
+/// @param roles  that the connection may have
+/// @param bytes  the whole message
+void handle_hello(Barrier& barrier, const std::string& connection, const Roles& roles,
+                  std::string_view bytes);
+
+/// The world is loaded: handles those that wait as if they had just arrived, in the order of
+/// arrival.
+void admit_waiting(Barrier& barrier);
+
+}  // namespace ziggurat::network

@@ -1,0 +1,69 @@
+#pragma once
+// The lock-step barrier without sockets and clocks: messages of peers and the time in, messages to
+// peers out. It is a set of parts, each of which stands alone. The rules of docs/protocol.md are
+// functions that act on them together: dispatch.h (which message is handled in which state),
+// admission.h, exchange.h, departure.h, population.h, timing.h.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/barrier/calls.h"
+#include "network/barrier/connections.h"
+#include "network/barrier/deadlines.h"
+#include "network/barrier/journal.h"
+#include "network/barrier/seats.h"
+#include "network/barrier/sessions.h"
+#include "network/barrier/tick_gate.h"
+#include "network/config.h"
+#include "network/latencies.h"
+#include "network/link.h"
+#include "network/report.h"
+#include "wire/inbox.h"
+#include "wire/messages.h"
+#include "wire/outbox.h"
+#include "world/state.h"
+
+namespace ziggurat::network {
+
+/// What robots sense at the tick in hand. Seen, not owned: stays as it is until the next tick.
+struct Senses {
+  const world::Observations* observations = nullptr;
+  const std::vector<std::string>* tag_payloads = nullptr;  ///< for each of Layout::tags
+};
+
+/// When timing.h has something to do next.
+struct Timers {
+  Time deadline = never;
+  Time heartbeat;
+};
+
+struct Barrier {
+  Barrier(const Config& config, Send send, Time now);
+  Barrier(const Barrier&) = delete;
+  Barrier& operator=(const Barrier&) = delete;
+
+  Config config;
+  Send send;
+  Time now;                      // set before anything is done
+  std::optional<wire::Run> run;  // none while the world is loading
+  Progress progress;             // likewise
+
+  Connections connections;
+  Sessions sessions;
+  Seats seats;
+  Deadlines deadlines;
+  TickGate gate{seats};
+  Calls calls;
+  Journal journal;
+  std::vector<Latencies> latencies;  // per controller of the scene: from observation to command
+
+  Senses senses;
+  Timers timers;
+  std::uint64_t heartbeats = 0;  // sent so far
+  wire::Inbox inbox;             // the message that is being received
+  wire::Outbox outbox;           // messages other than observations
+};
+
+}  // namespace ziggurat::network

@@ -1,0 +1,55 @@
+#pragma once
+// Connections, as far as they have been heard of: the session of each, and how much it may send.
+
+#include <cstddef>
+#include <string>
+#include <unordered_map>
+
+#include "network/allowance.h"
+#include "network/barrier/session.h"
+#include "wire/messages.h"
+
+namespace ziggurat::network {
+
+struct Connection {
+  SessionId session = SessionId::none;
+  /// Of its messages, both ways: the session's, or of the last message without a session.
+  wire::Encoding encoding = wire::Encoding::binary;
+  Allowance allowance;
+  bool is_warned = false;  ///< it was told that it sends too much
+};
+
+class Connections {
+ public:
+  /// @param limit  how many are remembered beside those with a session
+  Connections(const Rate& rate, std::size_t limit) : rate_(rate), limit_(limit) {}
+
+  /// The connection that a message came from, a new one if it was not known. If there are too many,
+  /// those without a session are forgotten, first those that have been quiet.
+  Connection& receive_from(const std::string& id, Time now);
+  /// Null if it is not known.
+  const Connection* find(const std::string& id) const;
+
+  enum class Verdict {
+    accepted,
+    refused,           ///< it sends too much
+    refused_and_told,  ///< likewise, and it has been told before
+  };
+  /// Whether it may send one more message.
+  Verdict spend(Connection& connection, Time now);
+  /// The last message does not count.
+  static void refund(Connection& connection) { connection.allowance.give_back(); }
+
+  void bind(const std::string& id, SessionId session);
+  void unbind(const std::string& id);
+  SessionId session_of(const std::string& id) const;
+
+  std::size_t size() const { return connections_.size(); }
+
+ private:
+  Rate rate_;
+  std::size_t limit_;
+  std::unordered_map<std::string, Connection> connections_;  // walked only to forget some
+};
+
+}  // namespace ziggurat::network

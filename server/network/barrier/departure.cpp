@@ -1,0 +1,146 @@
+#include "network/barrier/departure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "network/barrier/talk.h"
+#include "network/barrier/timing.h"
+#include "wire/fault.h"
+
+namespace ziggurat::network {
+
+namespace {
+
+/// Frees a robot that the session holds.
+/// @param may_resume  the session may have the robot back
+void release(Barrier& barrier, const Session& holder, std::size_t robot, bool may_resume) {
+  const bool is_skipped = barrier.gate.has_missed(holder.turn);  // waited for once, not twice
+  const Time since = is_skipped ? holder.turn.owes_since : barrier.now;
+  barrier.seats.release(robot, may_resume ? holder.id : SessionId::none, since, is_skipped);
+  if (!is_skipped) expect_answer(barrier, robot);
+}
+
+void release_all(Barrier& barrier, const Session& holder, bool may_resume) {
+  for (const std::size_t robot : holder.roster.robots) {
+    if (barrier.seats[robot].holder == holder.id) release(barrier, holder, robot, may_resume);
+  }
+}
+
+}  // namespace
+
+void handle_leave(Barrier& barrier, Session& session) {
+  const bool has_no_robots_left =
+      session.state == SessionState::draining && session.roster.robots.empty();
+  const bool is_waiting = session.state == SessionState::hello;
+  if (has_no_robots_left || is_waiting) return erase(barrier, session);
+  if (auto fault = barrier.inbox.check(session.roster, barrier.run->layout)) {
+    return answer_fault(barrier, session.connection, &session, std::move(*fault));
+  }
+  session.contact.faults = 0;
+  barrier.inbox.append_log(session.roster, barrier.journal.log());
+  const wire::Leave leave = barrier.inbox.leave();
+  const bool is_whole = leave.robots.empty();
+  std::vector<std::size_t> positions(leave.robots.begin(), leave.robots.end());
+  for (std::size_t i = 0; is_whole && i < session.roster.robots.size(); ++i) positions.push_back(i);
+  for (const std::size_t position : positions) {
+    if (session.roster.gone[position]) continue;
+    const std::size_t robot = session.roster.robots[position];
+    const bool is_failure = leave.reason == wire::LeaveReason::failed;
+    if (is_failure && session.state != SessionState::draining) {
+      barrier.journal.fail(robot, leave.message, session.turn.tick);
+    }
+    remove_robot(barrier, robot);
+  }
+  if (is_whole) erase(barrier, session);
+}
+
+void lose(Barrier& barrier, Session& session, std::string_view why) {
+  if (session.state == SessionState::lost) return;
+  if (session.state != SessionState::draining && session.state != SessionState::hello) {
+    barrier.journal.note(
+        fmt::format("{} ({}) is lost: {}", session.client, robots_of(barrier, session), why));
+  }
+  const bool may_resume = session.state != SessionState::draining && !session.roster.empty();
+  if (!may_resume) return erase(barrier, session);
+  barrier.gate.settle(session.turn);
+  barrier.connections.unbind(session.connection);
+  barrier.calls.forget(session.connection);
+  session.state = SessionState::lost;
+  session.lease_end = barrier.now + barrier.config.lease;
+  release_all(barrier, session, true);
+}
+
+void displace(Barrier& barrier, Session& session, const std::string& by) {
+  const std::string robots = robots_of(barrier, session);
+  barrier.outbox.displaced(by, fmt::format("{} has taken over {}.", by, robots));
+  send(barrier, session);
+  barrier.journal.note(fmt::format("{} ({}) was displaced by {}", session.client, robots, by));
+  erase(barrier, session);
+}
+
+void erase(Barrier& barrier, Session& session) {
+  barrier.gate.settle(session.turn);
+  if (session.state != SessionState::lost) {
+    barrier.connections.unbind(session.connection);
+    barrier.calls.forget(session.connection);
+  }
+  release_all(barrier, session, false);
+  for (const std::size_t robot : session.roster.robots) {
+    if (barrier.seats[robot].claimant == session.id) barrier.seats.drop_claim(robot);
+  }
+  barrier.sessions.erase(session.id);
+}
+
+bool end(Barrier& barrier, Session& session, std::string why) {
+  barrier.gate.settle(session.turn);
+  session.state = SessionState::draining;
+  barrier.outbox.end({wire::EndReason::finished, std::move(why), tick_of(barrier)});
+  return send(barrier, session) == Delivery::sent;
+}
+
+void finish(Barrier& barrier, const wire::End& end) {
+  barrier.gate.hold(TickGate::Hold::finished);
+  barrier.sessions.for_each([&](Session& session) {
+    if (session.state == SessionState::draining) return;  // it is told already
+    if (session.state == SessionState::lost) return erase(barrier, session);
+    barrier.gate.settle(session.turn);
+    barrier.outbox.end(end);
+    const bool is_told = send(barrier, session) == Delivery::sent;
+    const bool may_answer = session.role == wire::Role::controller;  // with its last log lines
+    if (!is_told || !may_answer) return erase(barrier, session);
+    session.state = SessionState::draining;
+  });
+}
+
+void refuse_waiting(Barrier& barrier) {
+  wire::Refusal refusal{wire::make_fault(wire::ErrorCode::out_of_state, {},
+                                         "There is no world: it could not be loaded."),
+                        {},
+                        {}};
+  refusal.fault.severity = wire::Severity::fatal;
+  barrier.sessions.for_each([&](Session& session) {
+    if (session.state != SessionState::hello) return;
+    barrier.outbox.refusal(refusal);
+    send(barrier, session);
+    erase(barrier, session);
+  });
+}
+
+void remove_robot(Barrier& barrier, std::size_t robot) {
+  const Seats::Seat seat = barrier.seats[robot];
+  if (seat.has_left) return;
+  barrier.seats.leave(robot);
+  const bool is_held = seat.holder != SessionId::none;
+  Session* session = barrier.sessions.find(is_held ? seat.holder : seat.claimant);
+  if (session == nullptr) return;
+  const auto& robots = session->roster.robots;
+  const auto found = std::lower_bound(robots.begin(), robots.end(), robot);
+  session->roster.leave(static_cast<std::size_t>(found - robots.begin()));
+  const bool is_over = session->state == SessionState::lost && session->roster.empty();
+  if (is_over) return erase(barrier, *session);
+  update_patience(barrier, *session);
+}
+
+}  // namespace ziggurat::network

@@ -1,0 +1,34 @@
+#pragma once
+// How sessions end and robots leave (docs/protocol.md, section 5).
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "network/barrier/barrier.h"
+#include "wire/messages.h"
+
+namespace ziggurat::network {
+
+/// Handles the Leave in `barrier.inbox`.
+void handle_leave(Barrier& barrier, Session& session);
+
+/// The session's connection is gone, or closed: its robots are free, and it may resume.
+void lose(Barrier& barrier, Session& session, std::string_view why);
+/// The session is over, because another client takes over its robots.
+/// @param by  the other client
+void displace(Barrier& barrier, Session& session, const std::string& by);
+/// The session is over, and forgotten.
+void erase(Barrier& barrier, Session& session);
+
+/// Tells the session that it gets no more ticks: it is DRAINING. False if it can't be told.
+bool end(Barrier& barrier, Session& session, std::string why);
+/// The run is over: every session is told.
+void finish(Barrier& barrier, const wire::End& end);
+/// There is no world: those whose Hello waits for it are refused.
+void refuse_waiting(Barrier& barrier);
+
+/// Takes a robot out of the barrier for good.
+void remove_robot(Barrier& barrier, std::size_t robot);
+
+}  // namespace ziggurat::network

@@ -1,0 +1,137 @@
+#include "network/barrier/dispatch.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "network/barrier/admission.h"
+#include "network/barrier/departure.h"
+#include "network/barrier/exchange.h"
+#include "network/barrier/talk.h"
+#include "wire/fault.h"
+
+namespace ziggurat::network {
+
+using wire::ErrorCode;
+using wire::make_fault;
+using Kind = wire::Inbox::Kind;
+
+namespace {
+
+void handle_heartbeat(Barrier& barrier, const Session& session) {
+  barrier.outbox.heartbeat(barrier.inbox.heartbeat());
+  // If the connection is gone, the next observation or heartbeat of ours finds out.
+  send(barrier, session.connection);
+}
+
+void handle_request(Barrier& barrier, Session& session) {
+  const std::uint64_t id = barrier.inbox.request_id();
+  wire::Request request = barrier.inbox.request();
+  auto fault = check_request(request, session.role);
+  if (!fault) fault = barrier.calls.add(session.connection, std::move(request));
+  if (fault) return answer_fault(barrier, session.connection, &session, std::move(*fault), id);
+  session.contact.faults = 0;
+}
+
+/// Why a message can't be looked into, if it can't.
+std::optional<wire::Fault> check_size(const Config& config, std::size_t bytes) {
+  if (bytes <= config.max_message_bytes) return std::nullopt;
+  return make_fault(
+      ErrorCode::too_large, {},
+      fmt::format("The message has {} bytes; {} are allowed.", bytes, config.max_message_bytes));
+}
+
+/// Whether the connection may send one more message; if not, it is told once.
+bool may_send(Barrier& barrier, const std::string& id, Connection& connection, Session* session) {
+  const auto verdict = barrier.connections.spend(connection, barrier.now);
+  if (verdict == Connections::Verdict::accepted) return true;
+  if (verdict == Connections::Verdict::refused_and_told) return false;
+  auto fault = make_fault(ErrorCode::too_many, {},
+                          fmt::format("More than {} messages a second, besides those that answer "
+                                      "an Observation.",
+                                      barrier.config.rate.per_second));
+  fault.severity = wire::Severity::fatal;
+  fault.tick = tick_of(barrier);
+  barrier.outbox.error(fault);
+  send(barrier, id);
+  if (session != nullptr) {
+    lose(barrier, *session, "it was closed because it sends too many messages");
+  } else {
+    barrier.journal.note(
+        "A peer without a session sends too many messages and is not answered any more.");
+  }
+  return false;
+}
+
+/// The message in `barrier.inbox`, of a session.
+void handle(Barrier& barrier, Connection& connection, Session& session, Kind kind,
+            world::Commands* commands) {
+  if (kind == Kind::leave) return handle_leave(barrier, session);
+  if (kind == Kind::heartbeat) return handle_heartbeat(barrier, session);
+  const bool is_waiting = session.state == SessionState::hello;
+  if (is_waiting || kind == Kind::hello) {
+    return answer_fault(barrier, session.connection, &session,
+                        make_fault(ErrorCode::out_of_state, {},
+                                   is_waiting ? "The world is loading, and the Hello waits for it."
+                                              : "This session has had its Hello already."));
+  }
+  if (kind == Kind::request) return handle_request(barrier, session);
+  const bool is_expected = handle_command(barrier, session, commands);
+  if (is_expected) Connections::refund(connection);
+}
+
+}  // namespace
+
+void receive(Barrier& barrier, const Received& received, world::Commands* commands) {
+  const std::string& id = received.connection;
+  Connection& connection = barrier.connections.receive_from(id, barrier.now);
+  Session* session = barrier.sessions.find(connection.session);
+  if (session != nullptr) {
+    session->contact.last_received = barrier.now;
+    session->contact.heartbeats = 0;
+  }
+  const auto encoding =
+      received.is_single_frame ? wire::encoding_of(received.bytes) : wire::Encoding::binary;
+  if (session == nullptr) connection.encoding = encoding;
+  if (!may_send(barrier, id, connection, session)) return;
+  if (!received.is_single_frame) return answer_malformed(barrier, id, session, {});
+  if (auto fault = check_size(barrier.config, received.bytes.size())) {
+    return answer_fault(barrier, id, session, std::move(*fault));
+  }
+  if (encoding != connection.encoding) {
+    const bool is_json = connection.encoding == wire::Encoding::json;
+    return answer_malformed(
+        barrier, id, session,
+        is_json ? "this session talks JSON" : "this session does not talk JSON");
+  }
+  const Kind kind = barrier.inbox.parse(received.bytes);
+  if (kind == Kind::malformed) {
+    return answer_malformed(barrier, id, session, barrier.inbox.complaint());
+  }
+  if (session != nullptr) {
+    handle(barrier, connection, *session, kind, commands);
+  } else if (kind == Kind::hello) {
+    handle_hello(barrier, id, received.roles, received.bytes);
+  } else {
+    answer_fault(
+        barrier, id, nullptr,
+        make_fault(ErrorCode::out_of_state, {}, "The first message of a session must be Hello."));
+  }
+  stand_if_paused(barrier);
+}
+
+bool can_hear(const Barrier& barrier, const Call& call) {
+  return barrier.connections.session_of(call.peer) != SessionId::none;
+}
+
+void answer(Barrier& barrier, const Call& call, const std::function<void(wire::Outbox&)>& write) {
+  Session* session = barrier.sessions.find(barrier.connections.session_of(call.peer));
+  if (session == nullptr) return;
+  barrier.calls.answered(call.peer);
+  write(barrier.outbox);
+  if (send(barrier, *session) == Delivery::unreachable) {
+    lose(barrier, *session, "its connection is gone");
+  }
+}
+
+}  // namespace ziggurat::network

@@ -1,0 +1,172 @@
+#include "network/barrier/exchange.h"
+
+#include <optional>
+
+#include "network/barrier/departure.h"
+#include "network/barrier/talk.h"
+#include "network/barrier/timing.h"
+#include "wire/fault.h"
+#include "wire/zero.h"
+
+namespace ziggurat::network {
+
+using wire::ErrorCode;
+using wire::make_fault;
+
+namespace {
+
+void tell_too_large(Barrier& barrier, Session& session) {
+  auto fault = make_fault(ErrorCode::too_large, {},
+                          "The robots of this session heard and saw more at this tick than a "
+                          "message can hold; share them among more sessions.");
+  fault.severity = wire::Severity::fatal;
+  fault.tick = tick_of(barrier);
+  barrier.outbox.error(fault);
+  send(barrier, session);
+}
+
+/// What is wrong with the Command in `barrier.inbox`, if anything.
+std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& session,
+                                         bool is_collecting) {
+  if (session.state == SessionState::ready) {
+    return make_fault(ErrorCode::out_of_state, {},
+                      "A Command answers an Observation; none was sent yet.");
+  }
+  if (auto fault = check_tick(session.turn, barrier.inbox.command_tick())) return fault;
+  if (!is_collecting) {
+    return make_fault(ErrorCode::out_of_state, {}, "No tick is being collected.");
+  }
+  return barrier.inbox.check(session.roster, barrier.run->layout);
+}
+
+void add_latency(Barrier& barrier, Session& session) {
+  const Turn& turn = session.turn;
+  const double taken_s = std::chrono::duration<double>(barrier.now - turn.owes_since).count();
+  session.latencies.add(taken_s, turn.tick);
+  std::optional<std::size_t> last;  // robots of a controller usually stand together
+  for (const std::size_t robot : session.roster.robots) {
+    const std::size_t controller = barrier.run->layout.robots[robot].controller;
+    if (last == controller) continue;
+    barrier.latencies[controller].add(taken_s, turn.tick);
+    last = controller;
+  }
+}
+
+/// A Command that came after the End: its values have no effect, its log lines count.
+void keep_log(Barrier& barrier, const Session& session) {
+  if (barrier.inbox.check(session.roster, barrier.run->layout)) return;
+  barrier.inbox.append_log(session.roster, barrier.journal.log());
+}
+
+/// Answers a Command that can't be taken.
+void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
+  const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
+  if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
+  --session.turn.late_commands;  // it was told of its miss already: no bad message
+  fault.tick = tick_of(barrier);
+  barrier.outbox.error(fault);
+  send(barrier, session);
+}
+
+}  // namespace
+
+void publish(Barrier& barrier, const world::Observations& observations,
+             const std::vector<std::string>& tag_payloads) {
+  barrier.senses = {&observations, &tag_payloads};
+  barrier.gate.begin(observations.tick);
+  barrier.timers.deadline = never;
+  barrier.seats.begin_tick();
+  if (!barrier.seats.all_taken()) check_soon(barrier);
+  barrier.sessions.for_each([&](Session& session) {
+    if (session.state == SessionState::lost || session.roster.empty()) return;
+    session.turn.is_repeated = false;
+    if (observe(barrier, session)) return;
+    lose(barrier, session, "its connection is gone, or it does not read");
+  });
+}
+
+bool observe(Barrier& barrier, Session& session) {
+  const Connection* connection = barrier.connections.find(session.connection);
+  const bool is_json = connection->encoding == wire::Encoding::json;
+  const std::size_t limit =
+      is_json ? wire::max_json_observation_bytes : wire::max_observation_bytes;
+  const auto& [observations, tag_payloads] = barrier.senses;
+  if (!session.observation.observation(session.roster, *observations, *tag_payloads, limit)) {
+    tell_too_large(barrier, session);
+    return false;
+  }
+  session.state = SessionState::stepping;
+  barrier.gate.await(session.turn, barrier.now);
+  expect_answer(barrier, session);
+  session.contact.last_sent = barrier.now;
+  session.observation.encode(connection->encoding);
+  const Delivery delivery = barrier.send(session.connection, session.observation);
+  const bool may_miss = delivery == Delivery::congested && session.turn.patience;
+  return delivery == Delivery::sent || may_miss;
+}
+
+bool handle_command(Barrier& barrier, Session& session, world::Commands* commands) {
+  if (session.state == SessionState::draining) {
+    keep_log(barrier, session);
+    return false;
+  }
+  if (auto fault = check_command(barrier, session, commands != nullptr)) {
+    answer_bad_command(barrier, session, std::move(*fault));
+    return false;
+  }
+  session.contact.faults = 0;
+  session.turn.late_commands = 0;
+  if (session.turn.patience) {
+    for (const std::size_t robot : session.roster.robots) barrier.deadlines.forgive(robot);
+  }
+  if (session.turn.is_repeated) {
+    wire::forget_radio_messages(session.roster, commands->radio_messages);
+  }
+  barrier.inbox.apply(session.roster, *commands);
+  barrier.inbox.append_log(session.roster, barrier.journal.log());
+  barrier.gate.settle(session.turn);
+  add_latency(barrier, session);
+  return true;
+}
+
+void zero_missing(Barrier& barrier, world::Commands& commands) {
+  for (std::size_t robot = 0; robot < barrier.seats.size(); ++robot) {
+    if (!barrier.seats[robot].has_left && !barrier.deadlines.is_zeroed(robot)) continue;
+    wire::zero(barrier.run->layout, robot, commands);
+    barrier.deadlines.clear_zero(robot);
+  }
+}
+
+void pause(Barrier& barrier) {
+  barrier.gate.hold(TickGate::Hold::paused);
+  stand_if_paused(barrier);
+}
+
+void stand_if_paused(Barrier& barrier) {
+  TickGate& gate = barrier.gate;
+  const bool is_paused = gate.is_held(TickGate::Hold::paused) && gate.tick() &&
+                         !gate.is_held(TickGate::Hold::finished);
+  if (!is_paused || !(gate.is_standing() || gate.is_answered())) return;
+  if (!gate.is_standing()) barrier.calls.notify();
+  gate.set_standing(true);
+  barrier.sessions.for_each([&](Session& session) {
+    const bool has_answered = session.state == SessionState::stepping && !session.turn.owes;
+    if (!has_answered || session.roster.empty()) return;
+    session.state = SessionState::paused;
+    barrier.outbox.paused(tick_of(barrier));
+    if (send(barrier, session) == Delivery::unreachable) {
+      lose(barrier, session, "its connection is gone");
+    }
+  });
+}
+
+void resume(Barrier& barrier) {
+  barrier.gate.release(TickGate::Hold::paused);
+  if (!barrier.gate.is_standing()) return;
+  barrier.gate.set_standing(false);
+  barrier.seats.restart(barrier.now);
+  barrier.sessions.for_each([&](Session& session) { session.turn.owes_since = barrier.now; });
+  check_soon(barrier);
+}
+
+}  // namespace ziggurat::network

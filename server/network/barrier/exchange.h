@@ -1,0 +1,36 @@
+#pragma once
+// The tick path: observations out, commands in, and pauses between ticks (docs/protocol.md,
+// section 3).
+
+#include <string>
+#include <vector>
+
+#include "network/barrier/barrier.h"
+#include "world/state.h"
+
+namespace ziggurat::network {
+
+/// A tick begins: every session that has robots is sent what they sense. Both stay as they are
+/// until the next tick, or reset().
+/// @param tag_payloads  for each of Layout::tags
+void publish(Barrier& barrier, const world::Observations& observations,
+             const std::vector<std::string>& tag_payloads);
+/// Sends a session what its robots sense at the tick in hand. False if it can't be reached.
+bool observe(Barrier& barrier, Session& session);
+
+/// Handles the Command in `barrier.inbox`. True if it is the expected answer.
+/// @param commands  where its values go; null: no tick is being collected
+bool handle_command(Barrier& barrier, Session& session, world::Commands* commands);
+
+/// The tick is complete: zeroes the targets of robots that have left, or whose deadline policy says
+/// so.
+void zero_missing(Barrier& barrier, world::Commands& commands);
+
+/// No tick is complete from now on. Once the one in hand is answered, sessions are told.
+void pause(Barrier& barrier);
+/// If the world is paused and its tick answered, those who have answered are told so.
+void stand_if_paused(Barrier& barrier);
+/// The world is not paused any more. Deadlines begin anew.
+void resume(Barrier& barrier);
+
+}  // namespace ziggurat::network

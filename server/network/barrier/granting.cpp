@@ -1,0 +1,141 @@
+#include "network/barrier/granting.h"
+
+#include <fmt/format.h>
+
+#include "network/barrier/departure.h"
+#include "network/barrier/talk.h"
+#include "network/selection.h"
+#include "wire/fault.h"
+
+namespace ziggurat::network {
+
+using wire::ErrorCode;
+
+namespace {
+
+/// Asks the connection itself: a session without one is lost from then on.
+bool is_reachable(Barrier& barrier, Session& session) {
+  barrier.outbox.heartbeat(++barrier.heartbeats);
+  if (send(barrier, session) != Delivery::unreachable) return true;
+  lose(barrier, session, "its connection is gone");
+  return false;
+}
+
+wire::Refusal refuse_robot(const std::string& id, ErrorCode code, std::string message) {
+  auto refusal = make_refusal(code, "robots", std::move(message));
+  refusal.fault.robot = id;
+  return refusal;
+}
+
+wire::Refusal refuse_taken(const std::string& id, const Session& by, std::string message) {
+  auto refusal = refuse_robot(id, ErrorCode::robot_taken, std::move(message));
+  refusal.fault.retryable = true;
+  refusal.holder = by.client;
+  return refusal;
+}
+
+/// Why a robot can't be taken, if it can't.
+std::optional<wire::Refusal> check_robot(Barrier& barrier, std::size_t robot, bool is_takeover) {
+  const std::string& id = barrier.run->layout.robots[robot].id;
+  if (barrier.seats[robot].has_left) {
+    return refuse_robot(id, ErrorCode::not_yours,
+                        fmt::format("Robot '{}' has left the run for good.", id));
+  }
+  if (is_takeover) return std::nullopt;
+  Session* holder = barrier.sessions.find(barrier.seats[robot].holder);
+  if (holder != nullptr && is_reachable(barrier, *holder)) {
+    return refuse_taken(id, *holder,
+                        fmt::format("Robot '{}' is driven by {}.", id, holder->client));
+  }
+  const Session* claimant = barrier.sessions.find(barrier.seats[robot].claimant);
+  if (claimant == nullptr || barrier.now >= claimant->lease_end) return std::nullopt;
+  const std::chrono::duration<double> rest = claimant->lease_end - barrier.now;
+  return refuse_taken(id, *claimant,
+                      fmt::format("Robot '{}' is kept for {}, which is lost, for {:.1f} s more.",
+                                  id, claimant->client, rest.count()));
+}
+
+}  // namespace
+
+wire::Refusal make_refusal(ErrorCode code, std::string field, std::string message) {
+  return {wire::make_fault(code, std::move(field), std::move(message)), {}, {}};
+}
+
+std::optional<wire::Refusal> check_hello(const Barrier& barrier, const wire::Hello& hello,
+                                         const Roles& roles) {
+  if (hello.version.major != wire::version.major) {
+    return make_refusal(
+        ErrorCode::version_mismatch, "version",
+        fmt::format("The client speaks version {}.{} of the protocol, the server {}.{}.",
+                    hello.version.major, hello.version.minor, wire::version.major,
+                    wire::version.minor));
+  }
+  const bool is_role = hello.role == wire::Role::controller ||
+                       hello.role == wire::Role::supervisor || hello.role == wire::Role::observer;
+  if (!is_role) return make_refusal(ErrorCode::bad_value, "role", "A Hello must name its role.");
+  if (!roles.allow(hello.role)) {
+    return make_refusal(ErrorCode::forbidden, "role",
+                        "The key of this connection has another role.");
+  }
+  if (barrier.gate.is_held(TickGate::Hold::finished)) {
+    return make_refusal(ErrorCode::out_of_state, {}, "The run is over.");
+  }
+  const std::size_t connected = barrier.sessions.connected();
+  if (connected >= barrier.config.max_sessions) {
+    auto refusal =
+        make_refusal(ErrorCode::too_many, {},
+                     fmt::format("The server has {} sessions and takes no more.", connected));
+    refusal.fault.retryable = true;
+    return refusal;
+  }
+  return std::nullopt;
+}
+
+std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::Hello& hello,
+                                          std::span<const std::size_t> robots) {
+  if (!hello.deadline) return std::nullopt;
+  const auto& wish = *hello.deadline;
+  if (wish.action < scene::DeadlineAction::wait || wish.action > scene::DeadlineAction::stop) {
+    return make_refusal(ErrorCode::bad_value, "deadline_policy.action",
+                        "The deadline policy has no action that this protocol knows.");
+  }
+  if (wish.action != scene::DeadlineAction::wait && wish.wall_deadline_ms == 0) {
+    return make_refusal(ErrorCode::bad_value, "deadline_policy.wall_deadline_ms",
+                        "A deadline policy other than WAIT must have a deadline of at least 1 ms.");
+  }
+  for (const std::size_t robot : robots) {
+    const auto fixed = barrier.deadlines.fixed_against(robot, wish);
+    if (!fixed) continue;
+    const auto& layout = barrier.run->layout.robots[robot];
+    auto refusal =
+        make_refusal(ErrorCode::forbidden, "deadline_policy",
+                     fmt::format("The deadline policy of controller '{}' is fixed: {}.",
+                                 barrier.run->controllers[layout.controller].id, to_text(*fixed)));
+    refusal.fault.robot = layout.id;
+    return refusal;
+  }
+  return std::nullopt;
+}
+
+std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barrier,
+                                                                   const wire::Hello& hello) {
+  auto selection = select_robots(hello, *barrier.run);
+  if (auto* fault = std::get_if<wire::Fault>(&selection)) {
+    return wire::Refusal{std::move(*fault), {}, {}};
+  }
+  std::vector<std::size_t> robots;
+  for (const Selected& selected : std::get<std::vector<Selected>>(selection)) {
+    const bool has_left = barrier.seats[selected.robot].has_left;
+    if (!has_left || selected.by_id) robots.push_back(selected.robot);
+  }
+  if (robots.empty()) {
+    return make_refusal(ErrorCode::not_yours, "robots", "All robots asked for have left the run.");
+  }
+  if (auto refusal = check_policy(barrier, hello, robots)) return std::move(*refusal);
+  for (const std::size_t robot : robots) {
+    if (auto refusal = check_robot(barrier, robot, hello.takeover)) return std::move(*refusal);
+  }
+  return robots;
+}
+
+}  // namespace ziggurat::network

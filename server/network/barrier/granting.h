@@ -1,0 +1,32 @@
+#pragma once
+// What a Hello may have, and why not.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "network/barrier/barrier.h"
+#include "network/keys.h"
+
+namespace ziggurat::network {
+
+wire::Refusal make_refusal(wire::ErrorCode code, std::string field, std::string message);
+
+// Why the Hello is refused, if it is; in the order of rule H15.
+
+/// Because of its version or role, or for lack of room.
+std::optional<wire::Refusal> check_hello(const Barrier& barrier, const wire::Hello& hello,
+                                         const Roles& roles);
+/// Because of the deadline policy that it asks for.
+/// @param robots  that it is to hold for
+std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::Hello& hello,
+                                          std::span<const std::size_t> robots);
+/// The robots of a new session: all that the Hello asks for. Connections of their sessions are
+/// probed, and those that are gone are lost from then on.
+std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barrier,
+                                                                   const wire::Hello& hello);
+
+}  // namespace ziggurat::network

@@ -1,0 +1,50 @@
+#include "network/barrier/journal.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ziggurat::network {
+namespace {
+
+constexpr std::size_t max_notices = 100;
+constexpr std::size_t max_notice = 1000;    // bytes
+constexpr std::size_t max_failure = 16384;  // bytes of a failure's message
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string result(text);
+  for (char& character : result) {
+    const auto byte = static_cast<unsigned char>(character);
+    if (byte < 0x20 || byte == 0x7F) character = '?';
+  }
+  return result;
+}
+
+void Journal::note(std::string_view text) {
+  if (report_.notices.size() == max_notices) report_.notices.erase(report_.notices.begin());
+  report_.notices.push_back(printable(text.substr(0, max_notice)));
+}
+
+void Journal::fail(std::size_t robot, std::string_view message, std::uint64_t tick) {
+  report_.failures.push_back({robot, std::string(message.substr(0, max_failure)), tick});
+}
+
+void Journal::stop(std::string text) {
+  if (report_.stopped.empty()) report_.stopped = std::move(text);
+}
+
+void Journal::shrink(std::size_t count) {
+  const auto is_behind = [&](const auto& entry) { return entry.robot >= count; };
+  std::erase_if(report_.log, is_behind);
+  std::erase_if(report_.failures, is_behind);
+}
+
+Report Journal::take() {
+  const auto by_robot = [](const auto& a, const auto& b) { return a.robot < b.robot; };
+  std::stable_sort(report_.log.begin(), report_.log.end(), by_robot);
+  std::stable_sort(report_.failures.begin(), report_.failures.end(), by_robot);
+  return std::exchange(report_, {});
+}
+
+}  // namespace ziggurat::network

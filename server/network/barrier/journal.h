@@ -1,0 +1,41 @@
+#pragma once
+// What the program that runs the server will be told of peers and robots.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "network/report.h"
+#include "wire/messages.h"
+
+namespace ziggurat::network {
+
+/// The text with control characters replaced, so that a line stays a line on any terminal.
+std::string printable(std::string_view text);
+
+class Journal {
+ public:
+  /// A sentence on a peer. Long ones are cut, and the oldest dropped if there are too many.
+  void note(std::string_view text);
+  /// A robot's controller has failed.
+  /// @param tick  of the observation that it failed on
+  void fail(std::size_t robot, std::string_view message, std::uint64_t tick);
+  /// A deadline took a robot out of the barrier.
+  void drop(std::string text) { report_.dropped.push_back(std::move(text)); }
+  /// A deadline stops the run. The first sentence counts.
+  void stop(std::string text);
+  /// Where lines that controllers log are appended.
+  std::vector<wire::LogLine>& log() { return report_.log; }
+  /// Forgets what robots behind the first `count` logged and how they failed.
+  void shrink(std::size_t count);
+
+  /// All of it since the last time.
+  Report take();
+
+ private:
+  Report report_;
+};
+
+}  // namespace ziggurat::network

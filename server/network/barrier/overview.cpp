@@ -1,0 +1,92 @@
+#include "network/barrier/overview.h"
+
+namespace ziggurat::network {
+
+namespace {
+
+using State = wire::SessionStatus::State;
+
+double seconds(Time::duration time) { return std::chrono::duration<double>(time).count(); }
+
+State state_of(const Session& session) {
+  switch (session.state) {
+    case SessionState::hello:
+    case SessionState::ready:
+      return State::ready;
+    case SessionState::stepping:
+      return session.turn.owes ? State::owing : State::answered;
+    case SessionState::paused:
+      return State::paused;
+    case SessionState::draining:
+      return State::draining;
+    case SessionState::lost:
+      return State::lost;
+  }
+  return State::unspecified;
+}
+
+wire::SessionStatus status_of(const Barrier& barrier, const Session& session, Time now) {
+  wire::SessionStatus status;
+  status.client = session.client;
+  status.role = session.role;
+  status.state = state_of(session);
+  status.tick = session.turn.tick;
+  const auto& robots = session.roster.robots;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (session.roster.gone[i]) continue;
+    status.robots.push_back(barrier.run->layout.robots[robots[i]].id);
+    status.deadline = barrier.deadlines.policy(robots[i]);
+  }
+  if (session.turn.owes) status.wall_waiting_s = seconds(now - session.turn.owes_since);
+  if (session.state == SessionState::lost && !robots.empty()) {
+    status.wall_waiting_s = seconds(now - barrier.seats[robots.front()].free_since);
+  }
+  status.wall_last_message_s = seconds(now - session.contact.last_received);
+  status.latency = session.latencies.recent();
+  status.misses = session.misses;
+  return status;
+}
+
+}  // namespace
+
+std::vector<RobotStatus> robot_status(const Barrier& barrier) {
+  std::vector<RobotStatus> result(barrier.seats.size());
+  for (std::size_t robot = 0; robot < result.size(); ++robot) {
+    const Seats::Seat& seat = barrier.seats[robot];
+    RobotStatus& status = result[robot];
+    status.deadline = barrier.deadlines.policy(robot);
+    status.was_held = seat.was_held;
+    if (seat.has_left) {
+      status.membership = RobotStatus::Membership::gone;
+    } else if (const Session* holder = barrier.sessions.find(seat.holder)) {
+      status.membership = RobotStatus::Membership::held;
+      status.holder = holder->client;
+      status.awaited = holder->turn.owes;
+      status.awaited_since = holder->turn.owes_since;
+      status.last_message = holder->contact.last_received;
+    } else {
+      const Session* claimant = barrier.sessions.find(seat.claimant);
+      if (claimant != nullptr) status.holder = claimant->client;
+      status.awaited = !seat.is_skipped;
+      status.awaited_since = seat.free_since;
+    }
+  }
+  return result;
+}
+
+void fill(const Barrier& barrier, Time now, wire::Status& status) {
+  barrier.sessions.for_each(
+      [&](const Session& session) { status.sessions.push_back(status_of(barrier, session, now)); });
+  for (std::size_t robot = 0; robot < barrier.seats.size(); ++robot) {
+    const Seats::Seat& seat = barrier.seats[robot];
+    const std::string& id = barrier.run->layout.robots[robot].id;
+    const bool is_free = seat.holder == SessionId::none && seat.claimant == SessionId::none;
+    if (seat.has_left) {
+      status.gone_robots.push_back(id);
+    } else if (is_free) {
+      status.free_robots.push_back(id);
+    }
+  }
+}
+
+}  // namespace ziggurat::network

@@ -1,0 +1,18 @@
+#pragma once
+// What the barrier knows of robots and sessions, for people and programs that ask.
+
+#include <vector>
+
+#include "network/barrier/barrier.h"
+#include "network/report.h"
+#include "wire/request.h"
+
+namespace ziggurat::network {
+
+/// Per robot of the layout.
+std::vector<RobotStatus> robot_status(const Barrier& barrier);
+/// Adds the sessions, and robots that are free or have left.
+/// @param now  ages are measured up to then
+void fill(const Barrier& barrier, Time now, wire::Status& status);
+
+}  // namespace ziggurat::network

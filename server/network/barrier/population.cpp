@@ -1,0 +1,120 @@
+#include "network/barrier/population.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "network/barrier/admission.h"
+#include "network/barrier/departure.h"
+#include "network/barrier/exchange.h"
+#include "network/barrier/talk.h"
+#include "wire/fault.h"
+
+namespace ziggurat::network {
+
+namespace {
+
+/// Tells a session that one of its robots was taken out of the world.
+void tell_removed(Barrier& barrier, Session& session, std::size_t robot, const std::string& why) {
+  if (session.state == SessionState::draining) return;
+  if (session.roster.empty()) {
+    if (!end(barrier, session, why)) lose(barrier, session, "its connection is gone");
+    return;
+  }
+  auto fault =
+      wire::make_fault(wire::ErrorCode::not_yours, {}, why, barrier.run->layout.robots[robot].id);
+  fault.severity = wire::Severity::warning;
+  fault.tick = tick_of(barrier);
+  barrier.outbox.error(fault);
+  if (send(barrier, session) == Delivery::unreachable) {
+    lose(barrier, session, "its connection is gone");
+  }
+}
+
+/// Ends a session with robots that are about to be forgotten. Its client may still send a Leave.
+void end_without_robots(Barrier& barrier, Session& session) {
+  const bool is_told =
+      session.state == SessionState::draining ||
+      (session.state != SessionState::lost &&
+       end(barrier, session,
+           "The world was reset, and has not all robots of this session any more."));
+  if (!is_told) return erase(barrier, session);
+  for (const std::size_t robot : session.roster.robots) {
+    if (barrier.seats[robot].holder != session.id) continue;
+    barrier.seats.release(robot, SessionId::none, barrier.now, false);
+  }
+  session.roster = {};
+}
+
+/// Forgets robots that the layout has no more.
+void forget_robots(Barrier& barrier) {
+  const std::size_t count = barrier.run->layout.robots.size();
+  if (barrier.seats.size() <= count) return;
+  barrier.sessions.for_each([&](Session& session) {
+    const auto& robots = session.roster.robots;  // ascending
+    if (!robots.empty() && robots.back() >= count) end_without_robots(barrier, session);
+  });
+  for (std::size_t robot = count; robot < barrier.seats.size(); ++robot)
+    remove_robot(barrier, robot);
+  barrier.seats.shrink(count);
+  barrier.deadlines.shrink(count);
+  barrier.journal.shrink(count);
+  auto& scripts = barrier.run->scripts;
+  scripts.resize(std::min(scripts.size(), count));
+}
+
+}  // namespace
+
+void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines) {
+  barrier.run.emplace(run);
+  barrier.run->max_message_bytes = barrier.config.max_message_bytes;
+  barrier.progress = {1, "The world is loaded."};
+  barrier.deadlines = Deadlines(deadlines, run.controllers.size());
+  barrier.latencies.resize(run.controllers.size());
+  add_robots(barrier, run.scripts, {});
+}
+
+void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Senses& senses) {
+  // A session that takes them at this tick is told what they sense.
+  if (barrier.gate.tick()) barrier.senses = senses;
+  const auto& robots = barrier.run->layout.robots;
+  auto& known = barrier.run->scripts;
+  known.resize(barrier.seats.size());
+  known.insert(known.end(), scripts.begin(), scripts.end());
+  for (std::size_t robot = barrier.seats.size(); robot < robots.size(); ++robot) {
+    barrier.seats.add(barrier.now, barrier.gate.tick().has_value());
+    barrier.deadlines.add(robots[robot].controller);
+  }
+}
+
+void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const std::string& why) {
+  for (const std::size_t robot : robots) {
+    const SessionId holder = barrier.seats[robot].holder;
+    remove_robot(barrier, robot);
+    Session* session = barrier.sessions.find(holder);
+    if (session == nullptr) continue;
+    if (session->roster.empty()) barrier.gate.settle(session->turn);
+    if (!why.empty()) tell_removed(barrier, *session, robot, why);
+  }
+  stand_if_paused(barrier);
+}
+
+void reset(Barrier& barrier, std::uint64_t seed) {
+  barrier.run->seed = seed;
+  forget_robots(barrier);
+  barrier.gate.clear();  // a session that begins now gets no tick of the former world
+  barrier.senses = {};
+  barrier.deadlines.reset();
+  barrier.sessions.for_each([&](Session& session) {
+    barrier.gate.settle(session.turn);
+    const bool has_ticks =
+        session.state == SessionState::stepping || session.state == SessionState::paused;
+    if (!has_ticks || session.roster.empty()) return;
+    session.turn.late_commands = 0;
+    barrier.outbox.reset(seed);
+    if (send(barrier, session) == Delivery::unreachable) {
+      lose(barrier, session, "its connection is gone");
+    }
+  });
+}
+
+}  // namespace ziggurat::network

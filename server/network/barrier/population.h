@@ -1,0 +1,29 @@
+#pragma once
+// Robots come and go, all together or some of them (docs/protocol.md, V6, V9, V13 and V14).
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "network/barrier/barrier.h"
+
+namespace ziggurat::network {
+
+/// The world is loaded, with the robots of the run's layout. Clients that wait for it are answered.
+/// @param run        what it refers to must outlive the barrier
+/// @param deadlines  per controller of the scene; missing: wait
+void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines);
+/// Robots have come: those of the layout that were not known. The tick in hand does not wait for
+/// them.
+/// @param scripts  of them, as Run::scripts
+/// @param senses   of the tick in hand, theirs included
+void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Senses& senses);
+/// These robots have left the world.
+/// @param why  a sentence for their sessions; empty: they are not told
+void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const std::string& why);
+/// The world has begun anew, without tick. Robots that the layout has no more are forgotten.
+void reset(Barrier& barrier, std::uint64_t seed);
+
+}  // namespace ziggurat::network

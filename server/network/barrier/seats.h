@@ -1,0 +1,56 @@
+#pragma once
+// Who sits where: which session has which robot.
+
+#include <cstddef>
+#include <vector>
+
+#include "network/barrier/session.h"
+
+namespace ziggurat::network {
+
+class Seats {
+ public:
+  struct Seat {
+    SessionId holder = SessionId::none;    ///< drives the robot; none: the robot is free
+    SessionId claimant = SessionId::none;  ///< free: the lost session that may resume
+    bool has_left = false;                 ///< the barrier, for good
+    bool was_held = false;                 ///< by any session, ever
+    bool is_skipped = false;               ///< free, and the tick in hand goes on without it
+    Time free_since;                       ///< free: since when
+  };
+
+  /// One more robot, which is free.
+  void add(Time now, bool is_skipped);
+  /// Forgets robots behind the first `count`, which must have left.
+  void shrink(std::size_t count) { seats_.resize(count); }
+
+  const Seat& operator[](std::size_t robot) const { return seats_[robot]; }
+  std::size_t size() const { return seats_.size(); }
+
+  /// @param robot  free, and has not left
+  void take(std::size_t robot, SessionId session);
+  /// @param robot     held
+  /// @param claimant  the lost session that may resume; none: no session
+  /// @param since     when it became free, as far as its deadline is concerned
+  /// @param is_skipped  its session has missed the tick in hand already
+  void release(std::size_t robot, SessionId claimant, Time since, bool is_skipped);
+  void drop_claim(std::size_t robot) { seats_[robot].claimant = SessionId::none; }
+  /// Takes the robot out of the barrier for good. No effect if it has left.
+  void leave(std::size_t robot);
+  /// The tick in hand goes on without the robot, which is free.
+  void skip(std::size_t robot);
+  /// A tick begins, and waits for all free robots again.
+  void begin_tick();
+  /// All free robots are free from now on, as far as their deadlines are concerned.
+  void restart(Time now);
+
+  bool all_taken() const { return free_ == 0; }          ///< each is held or has left
+  bool is_awaited() const { return free_ != skipped_; }  ///< the tick waits for a free robot
+
+ private:
+  std::vector<Seat> seats_;  // per robot of the layout
+  std::size_t free_ = 0;     // robots without holder that have not left
+  std::size_t skipped_ = 0;  // those of them that the tick does not wait for
+};
+
+}  // namespace ziggurat::network

@@ -1,0 +1,62 @@
+#pragma once
+// What the server knows of one client.
+
+#include <cstdint>
+#include <string>
+
+#include "network/barrier/turn.h"
+#include "network/latencies.h"
+#include "network/link.h"
+#include "wire/messages.h"
+#include "wire/outbox.h"
+#include "wire/roster.h"
+
+namespace ziggurat::network {
+
+/// Names a session; no number is used twice. They ascend in the order in which sessions begin.
+enum class SessionId : std::uint64_t { none = 0 };
+
+/// States of the protocol's state machine (docs/protocol.md) that last. NEW and CLOSED have no
+/// session.
+enum class SessionState {
+  hello,     ///< its Hello waits until the world is loaded
+  ready,     ///< welcomed; no tick yet
+  stepping,  ///< gets observations
+  paused,    ///< was told that no tick comes for now
+  draining,  ///< was told the end
+  lost,      ///< its connection is gone; its robots are free
+};
+
+/// What is known of its connection.
+struct Contact {
+  Time last_received;       ///< when a message came from it
+  Time last_sent;           ///< when one was sent to it
+  unsigned heartbeats = 0;  ///< sent to it since it was last heard of
+  unsigned faults = 0;      ///< bad messages since the last good one
+};
+
+/// A Hello that waits for the world.
+struct Application {
+  std::string hello;  ///< the whole message
+  Roles roles;        ///< that its connection may have
+};
+
+struct Session {
+  SessionId id = SessionId::none;
+  SessionState state = SessionState::ready;
+  std::string connection;  ///< its routing id; lost: of the last one
+  wire::Role role = wire::Role::controller;
+  std::string client;       ///< name and version, for messages
+  std::string token;        ///< to resume with
+  std::uint32_t minor = 0;  ///< of the protocol, as agreed
+  wire::Roster roster;      ///< of other roles: empty
+  Turn turn;
+  Contact contact;
+  Latencies latencies;       ///< from observation to command
+  std::uint64_t misses = 0;  ///< deadlines
+  Time lease_end;            ///< lost: until then no other session gets its robots
+  wire::Outbox observation;  ///< long-lived, for the tick path
+  Application application;   ///< in HELLO
+};
+
+}  // namespace ziggurat::network

@@ -1,0 +1,78 @@
+#include "network/barrier/talk.h"
+
+#include <fmt/format.h>
+
+#include "network/barrier/departure.h"
+#include "wire/fault.h"
+
+namespace ziggurat::network {
+
+using wire::ErrorCode;
+
+namespace {
+
+constexpr std::size_t robots_named = 3;  // in messages that could name hundreds
+
+}  // namespace
+
+Delivery send(Barrier& barrier, const std::string& connection) {
+  const Connection* known = barrier.connections.find(connection);
+  barrier.outbox.encode(known == nullptr ? wire::Encoding::binary : known->encoding);
+  return barrier.send(connection, barrier.outbox);
+}
+
+Delivery send(Barrier& barrier, Session& session) {
+  session.contact.last_sent = barrier.now;
+  return send(barrier, session.connection);
+}
+
+void answer_fault(Barrier& barrier, const std::string& connection, Session* session,
+                  wire::Fault fault, std::optional<std::uint64_t> request) {
+  fault.tick = tick_of(barrier);
+  const bool is_last = session != nullptr && ++session->contact.faults > barrier.config.max_faults;
+  if (is_last) {
+    fault.code = ErrorCode::too_many;
+    fault.message = fmt::format("{} bad messages in a row; the last one: {}",
+                                session->contact.faults, fault.message);
+  }
+  if (session == nullptr || is_last) fault.severity = wire::Severity::fatal;
+  if (request && !is_last) {
+    barrier.outbox.response(*request, fault);
+  } else {
+    barrier.outbox.error(fault);
+  }
+  const Delivery delivery = send(barrier, connection);
+  const std::string client = session == nullptr        ? "A peer without a session"
+                             : session->client.empty() ? "A client that waits for the world"
+                                                       : session->client;
+  barrier.journal.note(
+      fmt::format("{} was answered {}: {}", client, to_string(fault.code), fault.message));
+  if (session == nullptr) return;
+  if (is_last) return lose(barrier, *session, "it was closed for its bad messages");
+  if (delivery == Delivery::unreachable) lose(barrier, *session, "its connection is gone");
+}
+
+void answer_malformed(Barrier& barrier, const std::string& connection, Session* session,
+                      std::string_view why) {
+  answer_fault(
+      barrier, connection, session,
+      wire::make_fault(ErrorCode::malformed, {},
+                       fmt::format("Not a ClientMessage of ziggurat.v1: {}.",
+                                   why.empty() ? "one ZeroMQ frame holds one message" : why)));
+}
+
+std::uint64_t tick_of(const Barrier& barrier) { return barrier.gate.tick().value_or(0); }
+
+std::string robots_of(const Barrier& barrier, const Session& session) {
+  std::string text;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
+    if (session.roster.gone[i] || ++count > robots_named) continue;
+    const std::size_t robot = session.roster.robots[i];
+    text += (text.empty() ? "" : ", ") + barrier.run->layout.robots[robot].id;
+  }
+  if (count > robots_named) text += fmt::format(" and {} more", count - robots_named);
+  return text.empty() ? "no robots" : text;
+}
+
+}  // namespace ziggurat::network

@@ -1,0 +1,31 @@
+#pragma once
+// How the server talks to one peer: in its form, and what it answers to bad messages.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "network/barrier/barrier.h"
+
+namespace ziggurat::network {
+
+// Each sends the message in `barrier.outbox`, in the form that the peer talks.
+Delivery send(Barrier& barrier, const std::string& connection);
+Delivery send(Barrier& barrier, Session& session);
+
+/// Answers a bad message. A session that sends nothing else is closed.
+/// @param session  of the connection; null: none
+/// @param request  the number of the request that the message was, if it was one
+void answer_fault(Barrier& barrier, const std::string& connection, Session* session,
+                  wire::Fault fault, std::optional<std::uint64_t> request = {});
+/// @param why  what makes the message none of the protocol
+void answer_malformed(Barrier& barrier, const std::string& connection, Session* session,
+                      std::string_view why);
+
+/// The tick in hand; 0 before the first.
+std::uint64_t tick_of(const Barrier& barrier);
+/// Some of a session's robots, for messages: "r0, r1, r2 and 7 more".
+std::string robots_of(const Barrier& barrier, const Session& session);
+
+}  // namespace ziggurat::network

@@ -1,0 +1,57 @@
+#include "network/barrier/tick_gate.h"
+
+#include <fmt/format.h>
+
+#include "wire/fault.h"
+
+namespace ziggurat::network {
+
+using wire::ErrorCode;
+using wire::make_fault;
+
+void TickGate::begin(std::uint64_t tick) {
+  tick_ = tick;
+  is_standing_ = false;
+}
+
+void TickGate::await(Turn& turn, Time now) {
+  if (!turn.owes) ++owing_;
+  turn.tick = *tick_;
+  turn.owes = true;
+  turn.has_missed = false;
+  turn.owes_since = now;
+}
+
+void TickGate::settle(Turn& turn) {
+  if (!turn.owes) return;
+  turn.owes = false;
+  --owing_;
+}
+
+void TickGate::miss(Turn& turn) {
+  settle(turn);
+  turn.has_missed = true;
+  ++turn.late_commands;
+}
+
+std::optional<wire::Fault> check_tick(const Turn& turn, std::uint64_t tick) {
+  if (tick > turn.tick) {
+    return make_fault(
+        ErrorCode::future_tick, "tick",
+        fmt::format("The Command is for tick {}; the world is at {}.", tick, turn.tick));
+  }
+  if (tick < turn.tick) {
+    return make_fault(
+        ErrorCode::stale_tick, "tick",
+        fmt::format("The Command is for tick {}; the world is at {} already.", tick, turn.tick));
+  }
+  if (turn.owes) return std::nullopt;
+  if (turn.has_missed) {
+    return make_fault(ErrorCode::stale_tick, "tick",
+                      fmt::format("Tick {} goes on without this Command.", tick));
+  }
+  return make_fault(ErrorCode::duplicate_tick, "tick",
+                    fmt::format("Tick {} was answered already; the first answer counts.", tick));
+}
+
+}  // namespace ziggurat::network

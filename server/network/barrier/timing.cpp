@@ -1,0 +1,188 @@
+#include "network/barrier/timing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "network/barrier/departure.h"
+#include "network/barrier/exchange.h"
+#include "network/barrier/talk.h"
+#include "wire/fault.h"
+
+namespace ziggurat::network {
+
+using scene::DeadlineAction;
+using std::chrono::milliseconds;
+
+namespace {
+
+// A session that owes an answer is taken to compute and not to read, perhaps for a night in a
+// debugger: its queue must not fill with heartbeats.
+constexpr unsigned most_heartbeats = 60;
+constexpr milliseconds rare_heartbeat{60'000};
+
+void drop(Barrier& barrier, std::size_t robot) {
+  const auto& layout = barrier.run->layout.robots[robot];
+  barrier.journal.drop(fmt::format(
+      "robot {} (controller '{}') is dropped at tick {}: {} missed in a row, {}", layout.id,
+      barrier.run->controllers[layout.controller].id, tick_of(barrier),
+      barrier.deadlines.misses_in_row(robot), to_text(barrier.deadlines.policy(robot))));
+  remove_robot(barrier, robot);
+}
+
+void stop(Barrier& barrier, std::size_t robot) {
+  barrier.gate.hold(TickGate::Hold::stopped);
+  const auto& layout = barrier.run->layout.robots[robot];
+  barrier.journal.stop(fmt::format(
+      "controller '{}' of robot {} did not answer at tick {}: its deadline policy {} stops the run",
+      barrier.run->controllers[layout.controller].id, layout.id, tick_of(barrier),
+      to_text(barrier.deadlines.policy(robot))));
+}
+
+/// The tick goes on without an answer for the robot.
+void miss(Barrier& barrier, std::size_t robot) {
+  switch (barrier.deadlines.miss(robot, tick_of(barrier))) {
+    case Consequence::none:
+    case Consequence::zero:
+      return;
+    case Consequence::drop:
+      return drop(barrier, robot);
+    case Consequence::stop:
+      return stop(barrier, robot);
+  }
+}
+
+/// The tick goes on without the session's answer.
+void miss(Barrier& barrier, Session& session) {
+  barrier.gate.miss(session.turn);
+  ++session.misses;
+  const auto& robots = session.roster.robots;
+  const bool is_news = std::ranges::any_of(
+      robots, [&](std::size_t robot) { return barrier.deadlines.misses_in_row(robot) == 0; });
+  const auto deadline_ms = session.turn.patience->count();
+  if (is_news) {
+    barrier.journal.note(fmt::format("{} ({}) missed its deadline of {} ms at tick {}",
+                                     session.client, robots_of(barrier, session), deadline_ms,
+                                     session.turn.tick));
+  }
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (!session.roster.gone[i]) miss(barrier, robots[i]);
+  }
+  auto fault = wire::make_fault(
+      wire::ErrorCode::deadline_missed, {},
+      fmt::format("Tick {} went on without an answer after {} ms.{}", session.turn.tick,
+                  deadline_ms, session.roster.empty() ? " The robots have left the barrier." : ""));
+  fault.severity = wire::Severity::warning;
+  fault.tick = session.turn.tick;
+  barrier.outbox.error(fault);
+  if (send(barrier, session) == Delivery::unreachable) {
+    lose(barrier, session, "its connection is gone");
+  }
+}
+
+void wake_at(Barrier& barrier, Time time) {
+  barrier.timers.deadline = std::min(barrier.timers.deadline, time);
+}
+
+void check_sessions(Barrier& barrier) {
+  barrier.sessions.for_each([&](Session& session) {
+    if (!session.turn.owes || !session.turn.patience) return;
+    const Time deadline = session.turn.owes_since + *session.turn.patience;
+    if (deadline > barrier.now) return wake_at(barrier, deadline);
+    miss(barrier, session);
+  });
+}
+
+void check_free_robots(Barrier& barrier) {
+  for (std::size_t robot = 0; robot < barrier.seats.size() && barrier.seats.is_awaited(); ++robot) {
+    const Seats::Seat& seat = barrier.seats[robot];
+    if (seat.holder != SessionId::none || seat.has_left || seat.is_skipped) continue;
+    const scene::DeadlinePolicy& policy = barrier.deadlines.policy(robot);
+    if (policy.action == DeadlineAction::wait) continue;
+    const Time deadline = seat.free_since + milliseconds(policy.wall_deadline_ms);
+    if (deadline > barrier.now) {
+      wake_at(barrier, deadline);
+    } else {
+      barrier.seats.skip(robot);
+      miss(barrier, robot);
+    }
+  }
+}
+
+void check_deadlines(Barrier& barrier) {
+  barrier.timers.deadline = never;
+  const TickGate& gate = barrier.gate;
+  const bool is_running = gate.tick() && !gate.is_standing() &&
+                          !gate.is_held(TickGate::Hold::finished) &&
+                          !gate.is_held(TickGate::Hold::stopped);
+  if (!is_running) return;
+  check_sessions(barrier);
+  check_free_robots(barrier);
+  stand_if_paused(barrier);
+}
+
+void send_heartbeats(Barrier& barrier) {
+  const milliseconds usual = barrier.config.heartbeat;
+  barrier.timers.heartbeat = barrier.now + usual;
+  barrier.sessions.for_each([&](Session& session) {
+    if (session.state == SessionState::lost) return;
+    const bool is_rare = session.turn.owes && session.contact.heartbeats >= most_heartbeats;
+    const milliseconds interval = is_rare ? std::max(rare_heartbeat, usual) : usual;
+    Delivery delivery = Delivery::sent;
+    if (session.contact.last_sent + interval <= barrier.now) {
+      if (session.state == SessionState::hello) {
+        barrier.outbox.loading(barrier.progress.share, barrier.progress.message);
+      } else {
+        barrier.outbox.heartbeat(++barrier.heartbeats);
+      }
+      ++session.contact.heartbeats;
+      delivery = send(barrier, session);
+    }
+    barrier.timers.heartbeat =
+        std::min(barrier.timers.heartbeat, session.contact.last_sent + interval);
+    if (delivery == Delivery::unreachable) lose(barrier, session, "its connection is gone");
+  });
+}
+
+}  // namespace
+
+void advance(Barrier& barrier, Time now) {
+  barrier.now = now;
+  if (barrier.now >= barrier.timers.deadline) check_deadlines(barrier);
+  if (barrier.now >= barrier.timers.heartbeat) send_heartbeats(barrier);
+}
+
+Time next_event(const Barrier& barrier) {
+  return std::min(barrier.timers.deadline, barrier.timers.heartbeat);
+}
+
+void check_soon(Barrier& barrier) { barrier.timers.deadline = barrier.now; }
+
+void expect_answer(Barrier& barrier, std::size_t robot) {
+  const scene::DeadlinePolicy& policy = barrier.deadlines.policy(robot);
+  if (policy.action == DeadlineAction::wait) return;
+  wake_at(barrier, barrier.now + milliseconds(policy.wall_deadline_ms));
+}
+
+void expect_answer(Barrier& barrier, const Session& session) {
+  if (session.turn.patience) wake_at(barrier, session.turn.owes_since + *session.turn.patience);
+}
+
+void update_patience(Barrier& barrier, Session& session) {
+  // With its last robot gone, what it still owes keeps its deadline.
+  if (session.roster.empty()) return;
+  milliseconds longest{0};
+  for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
+    if (session.roster.gone[i]) continue;
+    const auto& policy = barrier.deadlines.policy(session.roster.robots[i]);
+    if (policy.action == DeadlineAction::wait) {
+      session.turn.patience.reset();
+      return;
+    }
+    longest = std::max(longest, milliseconds(policy.wall_deadline_ms));
+  }
+  session.turn.patience = longest;
+  if (session.turn.owes) expect_answer(barrier, session);
+}
+
+}  // namespace ziggurat::network

@@ -1,0 +1,26 @@
+#pragma once
+// What happens when wall time passes: missed deadlines (docs/protocol.md, section 3.2), heartbeats
+// and, while the world is loading, news of that.
+
+#include <cstddef>
+
+#include "network/barrier/barrier.h"
+
+namespace ziggurat::network {
+
+/// Wall time goes on: deadlines pass and heartbeats are sent.
+void advance(Barrier& barrier, Time now);
+/// When advance() has something to do next.
+Time next_event(const Barrier& barrier);
+
+/// Checks deadlines at the next advance().
+void check_soon(Barrier& barrier);
+/// A free robot is waited for from now on, until its deadline.
+void expect_answer(Barrier& barrier, std::size_t robot);
+/// The same for a session that has just been sent its observation.
+void expect_answer(Barrier& barrier, const Session& session);
+/// Robots or policies of the session have changed, and with them its deadline: the longest of its
+/// robots, as it answers for all at once.
+void update_patience(Barrier& barrier, Session& session);
+
+}  // namespace ziggurat::network

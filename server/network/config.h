@@ -1,0 +1,42 @@
+#pragma once
+// What a server is told when it is started.
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/allowance.h"
+#include "network/delays.h"
+#include "network/keys.h"
+#include "scene/deadline.h"
+
+namespace ziggurat::network {
+
+struct Config {
+  std::vector<std::string> endpoints;  ///< all at once; tcp port `*` or 0 = any free one
+  std::optional<Curve> curve;          ///< protects the endpoints, but not the private one
+  bool insecure = false;               ///< without that: allow addresses that are not loopback
+  std::size_t max_message_bytes = std::size_t{64} << 20;  ///< of a client's message
+  std::size_t max_sessions = 4096;                        ///< with a connection
+  unsigned max_faults = 100;  ///< bad messages in a row before a session is closed
+  Rate rate;                  ///< of a connection's messages, besides expected answers
+  std::chrono::milliseconds heartbeat{1000};  ///< of wall time that a session hears nothing; > 0
+  std::chrono::milliseconds lease{0};         ///< how long robots of a lost session are kept for it
+  int io_threads = 1;
+
+  // What depends on the scene: counts from Server::open() on.
+
+  /// One that only this user's processes can reach, without protection; empty: none.
+  std::string private_endpoint;
+  /// For when a controller does not answer in time.
+  struct Deadline {
+    scene::DeadlinePolicy policy;
+    bool is_fixed = false;  ///< no Hello may ask for another
+  };
+  std::vector<Deadline> deadlines;    ///< per controller of the scene; missing: wait
+  std::vector<Injection> injections;  ///< per controller of the scene; missing: none
+};
+
+}  // namespace ziggurat::network

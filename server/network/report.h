@@ -1,0 +1,73 @@
+#pragma once
+// What the program that runs a server is told of peers and robots.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "network/delays.h"
+#include "network/latencies.h"
+#include "network/link.h"
+#include "scene/deadline.h"
+#include "wire/messages.h"
+#include "wire/request.h"
+
+namespace ziggurat::network {
+
+/// Which session a robot has, and whether the tick waits for it.
+struct RobotStatus {
+  enum class Membership {
+    free,  ///< without session: the barrier waits until one takes it
+    held,  ///< by a session
+    gone,  ///< left the barrier for good; its commands are zero
+  };
+  Membership membership = Membership::free;
+  std::string holder;    ///< held: name and version of the client; free: of the lost session that
+                         ///< may resume
+  bool awaited = false;  ///< the tick waits for it
+  Time awaited_since;    ///< if awaited
+  Time last_message;     ///< of its session, if held
+  scene::DeadlinePolicy deadline;  ///< what happens if it is not answered for in time
+  bool was_held = false;           ///< a session has had it
+};
+
+/// How well the robots of a controller were answered for.
+struct Performance {
+  Latencies latencies;             ///< wall time from observation to command
+  std::uint64_t missed_ticks = 0;  ///< at which one of them or more missed a deadline
+  Lost lost;                       ///< messages lost on purpose
+};
+
+/// How far the world is loaded.
+struct Progress {
+  double share = 0;  ///< 0 to 1
+  std::string message;
+};
+
+/// A robot whose controller reported its own failure.
+struct Failure {
+  std::size_t robot = 0;  ///< into Layout::robots
+  std::string message;
+  std::uint64_t tick = 0;  ///< of the observation that it failed on
+};
+
+/// What happened since the last report.
+struct Report {
+  std::vector<wire::LogLine> log;    ///< robots in scene order, then as given: independent of which
+                                     ///< process runs where and which answers first
+  std::vector<Failure> failures;     ///< in scene order
+  std::string stopped;               ///< the sentence on the deadline that stops the run, if any
+  std::vector<std::string> dropped;  ///< sentences on robots that a deadline took out: one for each
+                                     ///< robot at most, so that no peer's noise can hide them
+  std::vector<std::string> notices;  ///< sentences on peers: lost, garbage, refused; in order of
+                                     ///< arrival, the oldest dropped beyond 100
+};
+
+/// A request of a supervisor or observer that waits for its answer.
+struct Call {
+  std::string peer;  ///< its connection
+  wire::Request request;
+};
+
+}  // namespace ziggurat::network

@@ -1,0 +1,95 @@
+#include "network/barrier/tick_gate.h"
+
+#include <gtest/gtest.h>
+
+namespace ziggurat::network {
+namespace {
+
+using Hold = TickGate::Hold;
+
+/// Two sessions owe an answer to tick 7.
+struct Gate : ::testing::Test {
+  Gate() {
+    gate.begin(7);
+    gate.await(first, now);
+    gate.await(second, now);
+  }
+  Time now{};
+  Seats seats;
+  TickGate gate{seats};
+  Turn first, second;
+};
+
+TEST_F(Gate, OpensWhenAllHaveAnswered) {
+  EXPECT_FALSE(gate.is_complete());
+  gate.settle(first);
+  gate.settle(first);  // no second time
+  EXPECT_FALSE(gate.is_complete());
+  gate.settle(second);
+  EXPECT_TRUE(gate.is_complete());
+}
+
+TEST_F(Gate, AMissIsAsGoodAsAnAnswer) {
+  gate.settle(first);
+  gate.miss(second);
+  EXPECT_TRUE(gate.is_complete());
+  EXPECT_TRUE(gate.has_missed(second));
+  EXPECT_FALSE(gate.has_missed(first));
+  EXPECT_EQ(second.late_commands, 1U);
+  gate.begin(8);
+  EXPECT_FALSE(gate.has_missed(second)) << "that was another tick";
+}
+
+TEST_F(Gate, AwaitingTwiceOwesOnce) {
+  gate.await(first, now);
+  gate.settle(first);
+  gate.settle(second);
+  EXPECT_TRUE(gate.is_complete());
+}
+
+TEST_F(Gate, WaitsForFreeRobots) {
+  gate.settle(first);
+  gate.settle(second);
+  seats.add(now, false);
+  EXPECT_FALSE(gate.is_complete());
+  seats.skip(0);
+  EXPECT_TRUE(gate.is_complete());
+}
+
+TEST_F(Gate, StaysClosedWhilePausedOrStopped) {
+  gate.settle(first);
+  gate.settle(second);
+  for (const Hold hold : {Hold::paused, Hold::stopped}) {
+    gate.hold(hold);
+    EXPECT_FALSE(gate.is_complete());
+    EXPECT_TRUE(gate.is_answered());
+    gate.release(hold);
+    EXPECT_TRUE(gate.is_complete());
+  }
+}
+
+TEST_F(Gate, ATickEndsThatTheWorldStands) {
+  gate.set_standing(true);
+  gate.begin(8);
+  EXPECT_FALSE(gate.is_standing());
+  gate.clear();
+  EXPECT_FALSE(gate.tick());
+}
+
+TEST_F(Gate, ACommandIsForTheTickThatIsOwed) {
+  const auto code = [&](std::uint64_t tick) {
+    const auto fault = check_tick(first, tick);
+    return fault ? fault->code : wire::ErrorCode::unspecified;
+  };
+  EXPECT_EQ(code(6), wire::ErrorCode::stale_tick);
+  EXPECT_EQ(code(7), wire::ErrorCode::unspecified);
+  EXPECT_EQ(code(8), wire::ErrorCode::future_tick);
+  gate.settle(first);
+  EXPECT_EQ(code(7), wire::ErrorCode::duplicate_tick);
+  gate.await(first, now);
+  gate.miss(first);
+  EXPECT_EQ(code(7), wire::ErrorCode::stale_tick);
+}
+
+}  // namespace
+}  // namespace ziggurat::network

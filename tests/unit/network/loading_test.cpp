@@ -1,0 +1,149 @@
+// Clients that come before the world is there, on real sockets.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <optional>
+#include <zmq.hpp>
+
+#include "network/server.h"
+#include "network/small_run.h"
+#include "ziggurat/v1/json.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat::network {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Wait patience{milliseconds{20'000}, {}};
+
+Config local_config(milliseconds heartbeat = milliseconds{100'000}) {
+  Config config;
+  config.endpoints = {"tcp://127.0.0.1:*"};
+  config.heartbeat = heartbeat;
+  return config;
+}
+
+v1::ClientMessage hello(const std::string& robots) {
+  v1::ClientMessage message;
+  message.mutable_hello()->mutable_version()->set_major(1);
+  message.mutable_hello()->set_role(v1::ROLE_CONTROLLER);
+  message.mutable_hello()->add_robots(robots);
+  return message;
+}
+
+class Peer {
+ public:
+  explicit Peer(const std::vector<std::string>& endpoints) : dealer_(context_, ZMQ_DEALER) {
+    dealer_.set(zmq::sockopt::linger, 0);
+    dealer_.set(zmq::sockopt::rcvtimeo, 5000);
+    dealer_.connect(endpoints.front());
+  }
+  void say(const v1::ClientMessage& message, bool json = false) {
+    say(json ? v1::to_json(message) : message.SerializeAsString());
+  }
+  void say(const std::string& bytes) { dealer_.send(zmq::buffer(bytes)); }
+  /// Empty after 5 s.
+  v1::ServerMessage hear() {
+    zmq::message_t frame;
+    v1::ServerMessage message;
+    if (!dealer_.recv(frame)) return message;
+    last = frame.to_string();
+    EXPECT_TRUE(last.starts_with('{') ? v1::from_json(last, message).empty()
+                                      : message.ParseFromString(last));
+    return message;
+  }
+  std::string last;
+
+ private:
+  zmq::context_t context_;
+  zmq::socket_t dealer_;
+};
+
+/// Lets the server answer what arrives, for a moment.
+void attend(Server& server, const Progress& progress = {}) {
+  server.attend(progress, {milliseconds{100}, {}});
+}
+
+TEST(Loading, H12_LoadingAtOnceAndWelcomeWithoutAnotherHello) {
+  const SmallRun small(1);
+  Server server(local_config());
+  Peer peer(server.endpoints());
+  peer.say(hello("*"));
+  attend(server, {0.5, "half of it is there"});
+  const auto loading = peer.hear();
+  EXPECT_EQ(loading.loading().progress(), 0.5);
+  EXPECT_EQ(loading.loading().message(), "half of it is there");
+  server.open(small.run(), local_config());
+  EXPECT_EQ(server.gather(patience), Outcome::complete);
+  EXPECT_EQ(peer.hear().loading().progress(), 1);
+  EXPECT_EQ(peer.hear().welcome().robots_size(), 1);
+}
+
+TEST(Loading, H12_AgainAboutEverySecond) {
+  Server server(local_config(milliseconds{20}));
+  Peer peer(server.endpoints());
+  peer.say(hello("*"));
+  server.attend({0.25, "first"}, {milliseconds{100}, {}});
+  server.attend({0.75, "second"}, {milliseconds{200}, {}});
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(peer.hear().has_loading());
+}
+
+TEST(Loading, H12_IfThereIsNoWorldInTheEnd) {
+  std::optional<Server> server(local_config());
+  Peer peer(server->endpoints());
+  peer.say(hello("*"));
+  attend(*server);
+  EXPECT_TRUE(peer.hear().has_loading());
+  server.reset();
+  const auto refusal = peer.hear().refusal();
+  EXPECT_EQ(refusal.error().code(), v1::Error::OUT_OF_STATE);
+  EXPECT_EQ(refusal.error().severity(), v1::Error::FATAL);
+}
+
+TEST(Loading, ADescriptorEndsTheWait) {
+  int pipe[2];
+  ASSERT_EQ(::pipe(pipe), 0);
+  Server server(local_config());
+  ASSERT_EQ(::write(pipe[1], "x", 1), 1);
+  const std::array descriptors{pipe[0]};
+  EXPECT_EQ(server.attend({}, {milliseconds{5000}, descriptors}), Outcome::woken);
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+}
+
+TEST(Loading, AClientThatWentAwayGetsNoSession) {
+  const SmallRun small(1);
+  Config config = local_config(milliseconds{20});
+  config.lease = milliseconds{60'000};
+  Server server(config);
+  {
+    Peer peer(server.endpoints());
+    peer.say(hello("*"));
+    attend(server);
+    EXPECT_TRUE(peer.hear().has_loading());
+  }
+  Peer heir(server.endpoints());
+  heir.say(hello("*"));
+  attend(server);
+  EXPECT_TRUE(heir.hear().has_loading());
+  server.open(small.run(), config);
+  EXPECT_EQ(server.gather(patience), Outcome::complete);
+}
+
+TEST(Loading, ThePrivateEndpointComesWithTheWorldAndFirst) {
+  const SmallRun small(1);
+  Config config = local_config();
+  Server server(config);
+  const std::string endpoint = server.endpoints().at(0);
+  config.private_endpoint = "ipc:///tmp/ziggurat-loading-" + std::to_string(::getpid());
+  server.open(small.run(), config);
+  ASSERT_EQ(server.endpoints().size(), 2U);
+  EXPECT_EQ(server.endpoints()[0], config.private_endpoint);
+  EXPECT_EQ(server.endpoints()[1], endpoint);
+}
+
+}  // namespace
+}  // namespace ziggurat::network
