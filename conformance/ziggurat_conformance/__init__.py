@@ -1,4 +1,4 @@
-"""Proves servers and clients of the Ziggurat controller protocol right, or says where they are not.
+"""Proves servers and clients of the Ziggurat controller protocol right, or shows where they are not.
 
 Written from docs/protocol.md and protocol.proto alone: it shares no code with our server or clients.
 """

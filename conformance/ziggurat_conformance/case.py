@@ -1,4 +1,4 @@
-"""What a case is, and how one goes out."""
+"""What a case is, and its outcome."""
 
 import enum
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ class Verdict(enum.Enum):
     PASS = "pass"
     FAIL = "fail"
     NON_STRICT = "non-strict"  # a SHOULD is not kept
-    UNIMPLEMENTED = "unimplemented"  # the peer says so itself
+    UNIMPLEMENTED = "unimplemented"  # the peer answers so
     KNOWN_FAILING = "known-failing"  # listed as such, and it does fail
     NOT_RUN = "not run"
 
@@ -64,8 +64,8 @@ class NonStrict(Exception):
 
 
 class Unimplemented(Exception):
-    """The peer says that it does not serve this."""
+    """The peer answers that it does not serve this."""
 
 
 class NotRun(Exception):
-    """The case can't be played here; the text says what it takes."""
+    """The case can't be played here; the text names what is needed."""

@@ -1,5 +1,5 @@
 """Legal but unpleasant behaviour, drawn from a seed: resend, hang up and resume, share robots anew,
-answer in any order. The world must tick on, and whoever behaves must not notice."""
+answer in any order. The world must tick on, and well-behaved sessions must not notice."""
 
 import random
 import time
@@ -8,7 +8,7 @@ from typing import Callable
 from . import wire
 from .case import Case, Failed, Level, Outcome, Verdict
 from .client_steps import ClientStage, Tell
-from .say import answer, hear_error, heartbeat, join
+from .messages import answer, hear_error, heartbeat, join
 from .steps import Hang, Hear, Stage, Token
 
 ROBOTS = ("arm0", "arm1", "arm2", "arm3")
@@ -59,9 +59,9 @@ class _Crowd:
         everybody = ["good", *self._bad]
         self._stage.play(tuple(Hear(name, "observation") for name in everybody))
         found = {self._stage.peer(name).tick for name in everybody}
-        due = {self._tick + 1} if self._tick is not None else found
-        if found != due or len(found) != 1:
-            raise Failed(f"sessions are at ticks {sorted(found)}; all should be at {sorted(due)}")
+        expected = {self._tick + 1} if self._tick is not None else found
+        if found != expected or len(found) != 1:
+            raise Failed(f"sessions are at ticks {sorted(found)}; all should be at {sorted(expected)}")
         self._tick = found.pop()
         self._draw.shuffle(everybody)
         act = self._draw.choice((self._resend, self._resume, self._move, self._beat, self._err, None,
@@ -83,14 +83,14 @@ class _Crowd:
                 self._bad[name] = tuple(group)
 
     def _resend(self, names: list) -> list:
-        """Somebody answers three times. Others still owe, so that the tick is not over."""
+        """A session answers three times. Others still owe, so that the tick is not complete."""
         name = next(n for n in names if n != names[-1])
         self._stage.play((answer(name), answer(name), hear_error(name, "DUPLICATE_TICK"),
                           answer(name), hear_error(name, "DUPLICATE_TICK")))
         return [n for n in names if n != name]
 
     def _resume(self, names: list) -> list:
-        """Somebody hangs up and comes back with its token: the same tick is due again."""
+        """A session closes its connection and resumes with its token, at the same tick."""
         name = self._draw.choice([n for n in names if n != "good"])
         self._count += 1
         fresh = f"bad{self._count}"
@@ -100,7 +100,7 @@ class _Crowd:
         return [fresh if n == name else n for n in names]
 
     def _move(self, names: list) -> list:
-        """All but the good one hang up; others take their robots."""
+        """All but the good one close; others take their robots."""
         for name in list(self._bad):
             self._stage.play((Hang(name),))
         self._bad.clear()
@@ -116,14 +116,14 @@ class _Crowd:
         return names
 
     def _err(self, names: list) -> list:
-        """Somebody answers for a later tick first."""
+        """A session answers for a later tick first."""
         name = self._draw.choice([n for n in names if n != "good"])
         self._stage.play((answer(name, self._tick + 5), hear_error(name, "FUTURE_TICK")))
         return names
 
 
 def play_client(command: list, seed: int, ticks: int, patience: float, on_outcome: Callable) -> list:
-    """A server that pauses, resets, beats, says what nobody knows, and takes its time."""
+    """A server that pauses, resets, sends heartbeats and unknown messages, and takes its time."""
     from .cases import client as words
 
     draw = random.Random(seed)

@@ -15,13 +15,13 @@ from .server_scene import SCENE
 _EXAMPLES = """\
 examples:
   ziggurat-conformance server -- ziggurat serve '{scene}' --endpoint '{endpoint}'
-      starts and restarts the server and plays all cases; the words in braces are filled in
+      starts and restarts the server and plays all cases; the words in braces are replaced
   ziggurat-conformance server --variant 'lease=ziggurat serve {scene} --endpoint {endpoint} --lease 2' \\
                               -- ziggurat serve '{scene}' --endpoint '{endpoint}'
       also plays the cases that need a server with a lease; curve=… for one with keys, whose files are
       {curve_secret} and {curve_clients}
   ziggurat-conformance server tcp://127.0.0.1:5770
-      plays what can be played against a server that runs; it must have our scene (--scene says where)
+      plays what can be played against a server that runs; it must run the kit's scene (--scene prints its path)
   ziggurat-conformance client -- ./my_controller
       plays a server: ZIGGURAT_ENDPOINT and ZIGGURAT_CONTROLLER are in the controller's environment
   ziggurat-conformance server --level core -- …
@@ -39,7 +39,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="ziggurat-conformance", epilog=_EXAMPLES,
         description="Proves a server or a client of the Ziggurat controller protocol right.",
         formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scene", action="store_true", help="print the path of our scene, and stop")
+    parser.add_argument("--scene", action="store_true", help="print the path of the kit's scene, and stop")
     modes = parser.add_subparsers(dest="mode", metavar="server|client")
     server = modes.add_parser("server", help="play controllers against a server",
                               epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -52,15 +52,15 @@ def _parser() -> argparse.ArgumentParser:
     client.add_argument("target", nargs="*", metavar="-- COMMAND")
     for mode in (server, client):
         mode.add_argument("--only", action="append", default=[], metavar="GLOB",
-                          help="only cases whose id fits; may be repeated")
+                          help="only cases whose id matches; may be repeated")
         mode.add_argument("--level", choices=[level.value.lower() for level in Level],
                           help="only cases of this level")
         mode.add_argument("--form", choices=("binary", "json"), help="only cases in this form")
         mode.add_argument("--list", action="store_true", help="list the cases, and stop")
         mode.add_argument("--known-failing", type=Path, metavar="FILE",
-                          help="ids of cases that must fail, one per line; # begins a remark")
+                          help="ids of cases that must fail, one per line; # begins a comment")
         mode.add_argument("--patience", type=float, default=3.0, metavar="SECONDS",
-                          help="how long to wait for what is due (default: 3)")
+                          help="how long to wait for an expected message (default: 3)")
         mode.add_argument("--chaos", type=int, metavar="SEED",
                           help="legal but unpleasant behaviour instead of cases, drawn from this seed")
         mode.add_argument("--ticks", type=int, default=500, help="length of chaos (default: 500)")
@@ -83,7 +83,7 @@ def _variants(texts: list) -> dict:
         if not separator:
             raise _Mistake(f"--variant {text!r}: write NAME=COMMAND")
         if name not in known:
-            raise _Mistake(f"--variant {text!r}: no case asks for {name!r}; {', '.join(known)} would do")
+            raise _Mistake(f"--variant {text!r}: no case asks for {name!r}; the variants are {', '.join(known)}")
         variants[name] = command
     return variants
 
@@ -103,7 +103,7 @@ def _chosen(cases: list, options) -> list:
     chosen = list(server_mode.chosen(cases, options.only, options.form, options.level))
     if not chosen:
         raise _Mistake("no case is chosen; --list lists them all" if not options.only else
-                       f"no case fits --only {' '.join(options.only)}; --list lists them all")
+                       f"no case matches --only {' '.join(options.only)}; --list lists them all")
     return chosen
 
 
@@ -113,7 +113,7 @@ def _left_out(options, outcomes: list) -> collections.Counter:
     if options.mode == "server":
         for case in SERVER_CASES:
             there[case.level] += len(case.forms)
-    else:  # the controller says which form it talks
+    else:  # the controller chooses the form
         there.update(case.level for case in client_mode.CASES)
     there.subtract(outcome.level for outcome in outcomes)
     return there
@@ -165,7 +165,7 @@ def main(arguments=None) -> int:
         _print_list(options)
         return 0
     if not options.target:
-        parser.error(f"{options.mode}: say what to test: a URL or -- COMMAND (see --help)")
+        parser.error(f"{options.mode}: nothing to test; give a URL or -- COMMAND (see --help)")
     terminal = report.Terminal(options.verbose)
     start = time.monotonic()
     try:

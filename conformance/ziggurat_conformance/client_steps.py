@@ -129,11 +129,11 @@ class ClientStage:
         is_first = self.routing_id is None  # the program may take a while to start
         message = self._receive(max(self.patience, _START) if is_first else self.patience)
         if message is None:
-            complaint = f"the client said nothing; {step.kind} is due{self._gone()}"
+            complaint = f"the client said nothing; expected {step.kind}{self._gone()}"
             if is_first:
                 complaint += f": nothing came to {self.endpoint}, its ZIGGURAT_ENDPOINT"
         elif wire.kind_of(message) != step.kind:
-            complaint = f"the client said {wire.text_of(message, 300)}; {step.kind} is due"
+            complaint = f"the client said {wire.text_of(message, 300)}; expected {step.kind}"
         else:
             told = getattr(message, step.kind)
             if step.kind == "hello":
@@ -147,7 +147,7 @@ class ClientStage:
     def quiet(self, step: Quiet) -> None:
         message = self._receive(step.seconds)
         if message is not None:
-            _judge(f"the client said {wire.text_of(message, 300)}; nothing is due", step.should)
+            _judge(f"the client said {wire.text_of(message, 300)}; expected nothing", step.should)
 
     def ends(self, step: Ends) -> None:
         deadline = time.monotonic() + self.patience
@@ -157,8 +157,8 @@ class ClientStage:
         if code is None:
             _judge(f"the program still runs after {self.patience:g} s", step.should)
         elif step.good is not None and step.good != (code == 0):
-            due = "0" if step.good else "another than 0"
-            _judge(f"the program ended with exit code {code}; {due} is due", step.should)
+            expected = "0" if step.good else "another than 0"
+            _judge(f"the program ended with exit code {code}; expected {expected}", step.should)
 
     def wait(self, step: Wait) -> None:
         time.sleep(step.seconds)
@@ -182,7 +182,7 @@ class ClientStage:
         frames = self._socket.recv_multipart()
         self.routing_id = frames[0]
         if len(frames) != 2:
-            raise Failed(f"the client sent {len(frames) - 1} frames; one is due (T2)")
+            raise Failed(f"the client sent {len(frames) - 1} frames; expected one (T2)")
         self.form = wire.JSON if frames[1][:1] == b"{" else wire.BINARY
         try:
             message = wire.decode(protocol.ClientMessage, frames[1], self.form)
@@ -220,17 +220,17 @@ def command_faults(robots: list, command: protocol.Command) -> list:
     spoken_for = [robots[position] for position in command.robots] or robots
     for name, devices in _PER_ROBOT.items():
         values = getattr(command, name)
-        due = sum(len(getattr(robot, devices)) for robot in spoken_for)
-        if len(values) not in (0, due):
-            faults.append(f"{name} has {len(values)} values; none or {due} are due (S6)")
+        expected = sum(len(getattr(robot, devices)) for robot in spoken_for)
+        if len(values) not in (0, expected):
+            faults.append(f"{name} has {len(values)} values; expected none or {expected} (S6)")
     driven = sum(robot.wheels.drives for robot in spoken_for)
     turrets = sum(robot.turret.drives for robot in spoken_for)
-    for name, due in (("wheel_velocities", 2 * driven), ("turret_modes", turrets),
+    for name, expected in (("wheel_velocities", 2 * driven), ("turret_modes", turrets),
                       ("turret_rotations", turrets), ("turret_speeds", turrets)):
-        if len(getattr(command, name)) not in (0, due):
+        if len(getattr(command, name)) not in (0, expected):
             faults.append(f"{name} is not as long as its robots' devices (S6, D6, D7)")
     if any(mode not in (1, 2, 3) for mode in command.turret_modes):
-        faults.append("a turret mode that there is not (D7)")
+        faults.append("a turret mode that does not exist (D7)")
     for name in ("joint_targets", "magnet_currents", "wheel_velocities", "turret_rotations",
                  "turret_speeds"):
         if any(value != value or abs(value) == float("inf") for value in getattr(command, name)):

@@ -17,7 +17,7 @@ ROLES = {
     "observer": "observer",
     "both": "controller,observer",
 }
-STRANGER = "stranger"  # its key is not on the list
+UNLISTED = "unknown"  # its key is not on the list
 PLAIN = "plain"  # it has none
 MISLED = "misled"  # it has a listed one, and expects another server
 
@@ -30,7 +30,7 @@ class Keys:
     _peers: dict = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self._peers = {name: zmq.curve_keypair() for name in (*ROLES, STRANGER)}
+        self._peers = {name: zmq.curve_keypair() for name in (*ROLES, UNLISTED)}
         self._folder: Optional[tempfile.TemporaryDirectory] = None
 
     def of(self, peer: str) -> Optional[tuple]:

@@ -45,11 +45,11 @@ class Peer:
             )
         self.socket.connect(endpoint)
 
-    def say(self, message: protocol.ClientMessage) -> None:
+    def send(self, message: protocol.ClientMessage) -> None:
         self.transcript.add(self.name, "──▶", wire.text_of(message))
         self.socket.send(wire.encode(message, self.form))
 
-    def say_frames(self, frames: tuple[bytes, ...]) -> None:
+    def send_frames(self, frames: tuple[bytes, ...]) -> None:
         shown = ", ".join(f"{len(f)} bytes {f[:24]!r}{'…' if len(f) > 24 else ''}" for f in frames)
         self.transcript.add(self.name, "──▶", f"frames: {shown}")
         self.socket.send_multipart(frames)
@@ -76,7 +76,7 @@ class Peer:
     def _receive(self) -> protocol.ServerMessage:
         frames = self.socket.recv_multipart()
         if len(frames) != 1:
-            raise ValueError(f"the server sent {len(frames)} frames; one is due (T2)")
+            raise ValueError(f"the server sent {len(frames)} frames; expected one (T2)")
         message = wire.decode(protocol.ServerMessage, frames[0], self.form)
         self.transcript.add(self.name, "◀──", wire.text_of(message))
         return message

@@ -8,11 +8,11 @@ from typing import Callable, Iterator, Optional
 from . import wire
 from .case import Case, Failed, Level, NonStrict, NotRun, Outcome, Unimplemented, Verdict
 from .keys import VARIANT, Keys
-from .say import hello
+from .messages import hello
 from .peer import Peer, Transcript
 from .server_process import ServerProcess, check_listens
 from .server_scene import CROWDED, MAIN, path_of
-from .steps import Hear, Join, Say, Stage
+from .steps import Hear, Join, Send, Stage
 from .wire import protocol
 
 _MOST_VAIN_STARTS = 3
@@ -78,7 +78,7 @@ def _await_world(endpoint: str, keys: Optional[tuple]) -> None:
     """Until a Hello, which is refused, is answered otherwise than by Loading: a server may listen
     before its world is there. One that is mute is what the cases are for."""
     probe = Peer("probe", endpoint, "binary", Transcript(), keys)
-    probe.say(wire.from_dict(protocol.ClientMessage, {"hello": {"version": {"major": 0}}}))
+    probe.send(wire.from_dict(protocol.ClientMessage, {"hello": {"version": {"major": 0}}}))
     message = probe.hear(1.0)
     while message is not None and wire.kind_of(message) == "loading":
         message = probe.hear(10.0)
@@ -86,7 +86,7 @@ def _await_world(endpoint: str, keys: Optional[tuple]) -> None:
 
 
 class RunningServer:
-    """A server that somebody else started, at an endpoint."""
+    """A server that was started elsewhere, at an endpoint."""
 
     def __init__(self, endpoint: str):
         check_listens(endpoint)
@@ -107,7 +107,7 @@ class RunningServer:
         with Stage(self.endpoint, wire.BINARY, _MENDING) as stage:
             try:
                 stage.play((Join("mender", hello(role="ROLE_SUPERVISOR")),
-                            Say("mender", {"request": {"id": 1, "resume": {}}}),
+                            Send("mender", {"request": {"id": 1, "resume": {}}}),
                             Hear("mender", "response")))
             except (Failed, Unimplemented):
                 pass  # the next case will tell

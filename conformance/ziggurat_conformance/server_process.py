@@ -75,7 +75,7 @@ class ServerProcess:
 
 
 def check_listens(endpoint: str) -> None:
-    """Raises RuntimeError with a sentence unless somebody does."""
+    """Raises RuntimeError with a sentence unless a server does."""
     kind, _, address = endpoint.partition("://")
     try:
         if kind == "tcp":
@@ -90,7 +90,7 @@ def check_listens(endpoint: str) -> None:
         raise RuntimeError(f"{endpoint!r} is no endpoint; tcp://127.0.0.1:5770 or ipc:///tmp/arena "
                            "would do") from None
     except OSError as error:
-        raise RuntimeError(f"nobody listens at {endpoint}: {error.strerror or error}") from None
+        raise RuntimeError(f"no server listens at {endpoint}: {error.strerror or error}") from None
 
 
 def _filled(word: str, values: dict) -> str:

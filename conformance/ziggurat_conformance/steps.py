@@ -50,7 +50,7 @@ class Zeros:
 
 
 @dataclass(frozen=True)
-class Say:
+class Send:
     peer: str
     message: dict  # of ClientMessage
 
@@ -65,7 +65,7 @@ class Frames:
 
 @dataclass(frozen=True)
 class Hear:
-    """The next message is of this kind and as the pattern says."""
+    """The next message is of this kind and matches the pattern."""
 
     peer: str
     kind: str
@@ -92,7 +92,7 @@ class Silence:
 
 @dataclass(frozen=True)
 class Hang:
-    """The connection is closed without a word."""
+    """The connection is closed without a Leave."""
 
     peer: str
 
@@ -118,7 +118,7 @@ class Join:
 
 @dataclass(frozen=True)
 class Check:
-    """What patterns can't say; returns what is wrong, or an empty text."""
+    """What patterns can't express; returns what is wrong, or an empty text."""
 
     title: str
     check: Callable
@@ -146,7 +146,7 @@ class Stage:
             peer.socket.close()
 
     def peer(self, name: str) -> Peer:
-        """The peer of that name, connected at its first use. "json" and "binary" speak as they say."""
+        """The peer of that name, connected at its first use. "json" and "binary" use that form."""
         if name not in self.peers:
             keys = self.keys.of(name) if self.keys else None
             form = name if name in wire.FORMS else self.form
@@ -162,19 +162,19 @@ class Stage:
 
     # ---- one function for each kind of step ----
 
-    def say(self, step: Say) -> None:
+    def send(self, step: Send) -> None:
         peer = self.peer(step.peer)
         fields = _resolved(self, peer, step.message)
-        peer.say(wire.from_dict(protocol.ClientMessage, fields))
+        peer.send(wire.from_dict(protocol.ClientMessage, fields))
 
     def frames(self, step: Frames) -> None:
-        self.peer(step.peer).say_frames(step.frames)
+        self.peer(step.peer).send_frames(step.frames)
 
     def hear(self, step: Hear) -> None:
         peer = self.peer(step.peer)
-        due = _resolved(self, peer, step.pattern)  # before: Tick() is that of the last observation
+        pattern = _resolved(self, peer, step.pattern)  # before: Tick() is that of the last observation
         message = _heard(peer, step.within or self.patience, step.kind == "heartbeat")
-        complaint = _complaint(step, due, message)
+        complaint = _complaint(step, pattern, message)
         if complaint and step.should:
             raise NonStrict(complaint)
         if complaint:
@@ -194,7 +194,7 @@ class Stage:
     def silence(self, step: Silence) -> None:
         message = _heard(self.peer(step.peer), step.seconds, False)
         if message is not None:
-            raise Failed(f"{step.peer} was told {wire.kind_of(message)}; nothing is due")
+            raise Failed(f"{step.peer} was told {wire.kind_of(message)}; expected nothing")
 
     def hang(self, step: Hang) -> None:
         self.peer(step.peer).close()
@@ -211,7 +211,7 @@ class Stage:
         deadline = time.monotonic() + self.patience
         peer = self.peer(step.peer)
         while True:
-            self.say(Say(step.peer, {"hello": step.hello}))
+            self.send(Send(step.peer, {"hello": step.hello}))
             message = _heard(peer, self.patience, False)
             while message is not None and wire.kind_of(message) == "loading":
                 message = _heard(peer, self.patience, False)
@@ -235,7 +235,7 @@ class Stage:
 
 
 _players: dict = {
-    Say: Stage.say,
+    Send: Stage.send,
     Frames: Stage.frames,
     Hear: Stage.hear,
     Skip: Stage.skip,
@@ -255,20 +255,20 @@ def _heard(peer: Peer, patience: float, heartbeats: bool):
         raise Failed(f"{peer.name} was told {error}") from None
 
 
-def _complaint(step: Hear, due: dict, message) -> str:
+def _complaint(step: Hear, pattern: dict, message) -> str:
     """What is wrong with a message that was heard; empty if nothing."""
     if message is None:
-        return f"{step.peer} heard nothing; {step.kind} is due"
+        return f"{step.peer} heard nothing; expected {step.kind}"
     kind = wire.kind_of(message)
     told = getattr(message, kind) if kind else message
     error = told.error if kind in ("refusal", "response") else told if kind == "error" else None
     if error is not None and error.code == protocol.Error.UNIMPLEMENTED:
-        expected = due.get("error", due).get("code")
+        expected = pattern.get("error", pattern).get("code")
         if expected != "UNIMPLEMENTED":
             raise Unimplemented(error.message)
     if kind != step.kind:
-        return f"{step.peer} was told {wire.text_of(message, 300)}; {step.kind} is due"
-    return "; ".join(wire.mismatches(due, told, kind))
+        return f"{step.peer} was told {wire.text_of(message, 300)}; expected {step.kind}"
+    return "; ".join(wire.mismatches(pattern, told, kind))
 
 
 def _resolved(stage: Stage, peer: Peer, value: Any) -> Any:

@@ -94,7 +94,7 @@ class OneOf:
 
 
 def mismatches(pattern: Any, value: Any, path: str = "") -> Iterator[str]:
-    """Sentences on where a value is not as the pattern says. A dict speaks of the fields it names."""
+    """Sentences on where a value does not match the pattern. A dict is about the fields it names."""
     if isinstance(pattern, dict):
         for name, inner in pattern.items():
             field = value.DESCRIPTOR.fields_by_name[name]
@@ -104,24 +104,24 @@ def mismatches(pattern: Any, value: Any, path: str = "") -> Iterator[str]:
             yield from mismatches(inner, found, f"{path}.{name}" if path else name)
     elif isinstance(pattern, Some):
         if not value:
-            yield f"{path} is empty; something is due"
+            yield f"{path} is empty; expected a value"
     elif isinstance(pattern, Count):
         if len(value) != pattern.length:
-            yield f"{path} has {len(value)} elements; {pattern.length} are due"
+            yield f"{path} has {len(value)} elements; expected {pattern.length}"
     elif isinstance(pattern, AtLeast):
         if not value >= pattern.least:
-            yield f"{path} is {value!r}; at least {pattern.least} is due"
+            yield f"{path} is {value!r}; expected at least {pattern.least}"
     elif isinstance(pattern, OneOf):
         if value not in pattern.values:
-            yield f"{path} is {value!r}; one of {', '.join(map(repr, pattern.values))} is due"
+            yield f"{path} is {value!r}; expected one of {', '.join(map(repr, pattern.values))}"
     elif isinstance(pattern, (list, tuple)):
         if len(pattern) != len(value):
-            yield f"{path} has {len(value)} elements; {len(pattern)} are due"
+            yield f"{path} has {len(value)} elements; expected {len(pattern)}"
         else:
             for i, (inner, found) in enumerate(zip(pattern, value)):
                 yield from mismatches(inner, found, f"{path}[{i}]")
     elif pattern != value:
-        yield f"{path} is {value!r}; {pattern!r} is due"
+        yield f"{path} is {value!r}; expected {pattern!r}"
 
 
 def _name(field: Any, number: int) -> Any:

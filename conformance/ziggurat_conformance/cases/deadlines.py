@@ -1,7 +1,7 @@
 """Section 3.2: what happens when a controller does not answer in time."""
 
 from ..case import Case, Level
-from ..say import answer, hear_error, hear_refusal, hello, join, observe, say_hello
+from ..messages import answer, hear_error, hear_refusal, hello, join, observe, send_hello
 from ..steps import Check, Hang, Hear, Join, Silence, Tick, Zeros
 from ..wire import Count
 
@@ -27,7 +27,7 @@ def _turned(by: float, peer: str = "y"):
 
     def check(stage) -> str:
         before, after = stage.memory["joint"], stage.peer(peer).observation.joint_readings[0]
-        return "" if abs(after - before - by) < 0.01 else f"it turned by {after - before}; {by} is due"
+        return "" if abs(after - before - by) < 0.01 else f"it turned by {after - before}; expected {by}"
 
     return Check("joint", check)
 
@@ -52,14 +52,14 @@ def _granted(action: str) -> Case:
 CASES = [
     *[_granted(action) for action in ("HOLD", "ZERO", "DROP", "STOP")],
     Case("H8.no-deadline", "Another action than WAIT needs a deadline",
-         (say_hello("p", "*", deadline_policy={"action": "HOLD"}), hear_refusal("p", "BAD_VALUE")),
+         (send_hello("p", "*", deadline_policy={"action": "HOLD"}), hear_refusal("p", "BAD_VALUE")),
          Level.HIL),
     Case("H8.unknown-action", "An action that is not there is BAD_VALUE",
-         (say_hello("p", "*", deadline_policy={"action": 77, "wall_deadline_ms": 5}),
+         (send_hello("p", "*", deadline_policy={"action": 77, "wall_deadline_ms": 5}),
           hear_refusal("p", "BAD_VALUE")), Level.HIL),
     Case("H14.waits", "Without a wish the scene's policy is told: WAIT here",
          (Join("p", hello("*"), {"deadline_policy": {"action": "WAIT"}, "role": "ROLE_CONTROLLER"}),)),
-    Case("W1.in-time", "Whoever answers in time hears nothing of deadlines",
+    Case("W1.in-time", "A client that answers in time is told nothing of deadlines",
          (_late("HOLD"), *[s for _ in range(5) for s in
                            (answer("x"), answer("y"), *observe("x", "y"))]), Level.HIL),
     Case("W1.hold", "Under HOLD the world goes on without the late one",
@@ -80,7 +80,7 @@ CASES = [
           answer("x"), answer("y"), *observe("x", "y"), _turned(0.0, "x")), Level.HIL),
     Case("W1.drop", "Under DROP the late one's robots leave for good",
          (_late("DROP"), answer("y"), *observe("y"), _missed("x"), answer("y"), *observe("y"),
-          say_hello("z", "arm0"), hear_refusal("z", "NOT_YOURS")), Level.HIL, fresh=True),
+          send_hello("z", "arm0"), hear_refusal("z", "NOT_YOURS")), Level.HIL, fresh=True),
     Case("W1.stop", "Under STOP the run ends",
          (_late("STOP"), answer("y"), Hear("y", "end", {"reason": "FAILED"})), Level.HIL, fresh=True),
     Case("W1.others-wait", "Who has no deadline is waited for",
@@ -92,12 +92,12 @@ CASES = [
          (_late("HOLD"), answer("y"), Hang("x"), *observe("y"), join("z", "arm0"),
           Hear("z", "observation", {"tick": Tick(of="y")}), answer("y"), answer("z"),
           *observe("y", "z")), Level.HIL),
-    Case("W3.beginning", "The beginning waits for ever",
+    Case("W3.beginning", "The beginning waits forever",
          (join("x", "arm0", deadline_policy=policy("DROP", 20)), Silence("x", 0.2),
           join("y", "arm1", "arm2", "arm3"), *observe("x", "y")), Level.HIL, fresh=True),
     Case("W4.budget", "Beyond the budget HOLD drops the robots",
          (_late("HOLD", 2), *[s for _ in range(3) for s in (answer("y"), *observe("y"))], answer("y"),
-          Hear("y", "observation", within=MS / 1000 * 0.8), say_hello("z", "arm0"),
+          Hear("y", "observation", within=MS / 1000 * 0.8), send_hello("z", "arm0"),
           hear_refusal("z", "NOT_YOURS")), Level.HIL, fresh=True),
     Case("W4.in-a-row", "The budget counts misses in a row",
          (_late("HOLD", 1), *[s for _ in range(4) for s in
@@ -109,7 +109,7 @@ CASES = [
     Case("W6.late-answer", "An answer that comes late is STALE_TICK",
          (_late("HOLD"), answer("y"), *observe("y"), answer("x"), _missed("x"), *observe("x"),
           hear_error("x", "STALE_TICK"), answer("x"), answer("y"), *observe("x", "y")), Level.HIL),
-    Case("W8.does-not-read", "One that does not read holds nobody up",
+    Case("W8.does-not-read", "A client that does not read delays no other",
          (_late("HOLD"), *[s for _ in range(10) for s in (answer("y"), *observe("y"))]), Level.HIL),
     Case("W9.radio-of-the-late", "The late one's messages are not sent",
          (_late("HOLD"), answer("y"), Hear("y", "observation", {"radio_messages": Count(0)})),

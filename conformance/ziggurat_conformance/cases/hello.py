@@ -1,7 +1,7 @@
 """Section 2: beginning a session."""
 
 from ..case import Case
-from ..say import ALL, TWO, answer, hear_error, hear_refusal, hello, join, leave, observe, say_hello
+from ..messages import ALL, TWO, answer, hear_error, hear_refusal, hello, join, leave, observe, send_hello
 from ..server_scene import CROWDED
 from ..steps import Check, Hang, Hear, Join, Silence, Skip
 from ..wire import Count, OneOf, Some
@@ -30,7 +30,7 @@ def _robots_are(*ids: str) -> dict:
 
 
 def _refused(name: str, code: str, title: str, retryable: bool = False, robots=("*",), **fields):
-    return Case(f"{name}", title, (say_hello("p", *robots, **fields), hear_refusal("p", code, retryable)))
+    return Case(f"{name}", title, (send_hello("p", *robots, **fields), hear_refusal("p", code, retryable)))
 
 
 CASES = [
@@ -44,7 +44,7 @@ CASES = [
              version={"major": 0, "minor": 9}),
     _refused("H2.no-version", "VERSION_MISMATCH", "A Hello without version is refused", version=None),
     Case("H2.both-versions", "The refusal names both versions",
-         (say_hello("p", "*", version={"major": 7, "minor": 3}),
+         (send_hello("p", "*", version={"major": 7, "minor": 3}),
           Hear("p", "refusal", {"server_version": {"major": 1},
                                 "client_version": {"major": 7, "minor": 3}}))),
     Case("H2.minor-above", "A later minor version is welcome",
@@ -69,9 +69,9 @@ CASES = [
     Case("H4.lua-only", "lua_only passes other controllers over",
          (Join("p", hello("*", lua_only=True), _robots_are("arm3")),)),
     Case("H4.all-or-nothing", "A session has all robots or does not come about",
-         (join("p", "arm1"), say_hello("q", "*"), hear_refusal("q", "ROBOT_TAKEN", True),
+         (join("p", "arm1"), send_hello("q", "*"), hear_refusal("q", "ROBOT_TAKEN", True),
           join("q", "arm0"))),
-    _refused("H5.unknown-id", "UNKNOWN_ROBOT", "An id that is not there", robots=("nobody",)),
+    _refused("H5.unknown-id", "UNKNOWN_ROBOT", "An id that the scene does not have", robots=("nobody",)),
     _refused("H5.unknown-among", "UNKNOWN_ROBOT", "One of several ids is not there",
              robots=("arm0", "nobody")),
     _refused("H5.no-match", "UNKNOWN_ROBOT", "A glob that nothing fits", robots=("leg*",)),
@@ -81,18 +81,18 @@ CASES = [
              robots=(), controller="nobody"),
     _refused("H5.bad-glob", "UNKNOWN_ROBOT", "A glob that is not closed", robots=("arm[0",)),
     Case("H6.taken-twice", "Two sessions never hold one robot; the holder is named",
-         (join("p", "arm0", client_name="first"), say_hello("q", "arm0"),
+         (join("p", "arm0", client_name="first"), send_hello("q", "arm0"),
           Hear("q", "refusal", {"error": {"code": "ROBOT_TAKEN", "robot": "arm0", "retryable": True},
                                 "holder": Some()}))),
     Case("H6.holder-undisturbed", "The holder hears nothing of it",
-         (ALL, say_hello("q", "arm0"), hear_refusal("q", "ROBOT_TAKEN", True), Silence("p"),
+         (ALL, send_hello("q", "arm0"), hear_refusal("q", "ROBOT_TAKEN", True), Silence("p"),
           answer("p"), observe("p"))),
     Case("H7.left-by-id", "A robot that left can't be had by id",
-         (TWO, leave("p", 0), say_hello("x", "arm0"), hear_refusal("x", "NOT_YOURS")), fresh=True),
+         (TWO, leave("p", 0), send_hello("x", "arm0"), hear_refusal("x", "NOT_YOURS")), fresh=True),
     Case("H7.left-by-glob", "A glob passes over robots that left",
          (join("p", "arm0"), join("q", "arm1", "arm2", "arm3"), observe("p", "q"), leave("p"),
           Hang("q"), Join("x", hello("*"), _robots_are("arm1", "arm2", "arm3"))), fresh=True),
-    Case("H8.wait", "To wait for ever is always granted",
+    Case("H8.wait", "To wait forever is always granted",
          (Join("p", hello("*", deadline_policy={"action": "WAIT"}), {"robots": Count(4)}),)),
     Case("H9.run", "Welcome describes the run",
          (Join("p", hello("*"), {"tick_ns": 100000000, "ticks_per_second": 10, "seed": 7,
@@ -112,29 +112,29 @@ CASES = [
           Check("tokens", lambda stage: "" if stage.peer("p").welcome.session_token
                 != stage.peer("q").welcome.session_token else "two sessions have one token"))),
     Case("H10.again", "After a Refusal another Hello may come over the same connection",
-         (say_hello("p", "nobody"), hear_refusal("p", "UNKNOWN_ROBOT"), join("p", "*"), observe("p"))),
+         (send_hello("p", "nobody"), hear_refusal("p", "UNKNOWN_ROBOT"), join("p", "*"), observe("p"))),
     Case("H10.many", "Ten refusals, then a welcome",
          (*[step for _ in range(10) for step in
-            (say_hello("p", "nobody"), hear_refusal("p", "UNKNOWN_ROBOT"))], join("p", "arm0"))),
+            (send_hello("p", "nobody"), hear_refusal("p", "UNKNOWN_ROBOT"))], join("p", "arm0"))),
     Case("T9.early", "Who comes while the world is loading is told so at once",
-         (say_hello("p", "*"), Hear("p", "loading", should=True)), fresh=True, scene=CROWDED),
+         (send_hello("p", "*"), Hear("p", "loading", should=True)), fresh=True, scene=CROWDED),
     Case("H12.welcome", "When the world is there, the Hello is handled without another one",
-         (say_hello("p", "*"), Skip("p", "welcome"), observe("p"), answer("p"), observe("p")),
+         (send_hello("p", "*"), Skip("p", "welcome"), observe("p"), answer("p"), observe("p")),
          fresh=True, scene=CROWDED),
     Case("H12.leave", "A Leave takes the Hello back",
-         (say_hello("p", "*"), Hear("p", "loading", should=True), leave("p"),
-          say_hello("q", "*"), Skip("q", "welcome"), observe("q")), fresh=True, scene=CROWDED),
+         (send_hello("p", "*"), Hear("p", "loading", should=True), leave("p"),
+          send_hello("q", "*"), Skip("q", "welcome"), observe("q")), fresh=True, scene=CROWDED),
     Case("H11.late", "Who comes late gets the tick that the others are at",
          (TWO, answer("q"), Hang("p"), join("x", "arm0", "arm1"), Hear("x", "observation"),
           Check("tick", lambda stage: "" if stage.peer("x").tick == stage.peer("q").tick
                 else f"it got tick {stage.peer('x').tick}, the others are at {stage.peer('q').tick}"),
           answer("x"), observe("x", "q"))),
     Case("H4.too-many-patterns", "A Hello with ten thousand patterns is refused",
-         (say_hello("p", *[f"*{n}" for n in range(10000)]),
+         (send_hello("p", *[f"*{n}" for n in range(10000)]),
           Hear("p", "refusal", {"error": {"code": OneOf(("TOO_MANY", "UNKNOWN_ROBOT")),
                                           "severity": "FATAL"}}))),
     Case("H4.slow-glob", "A glob made to be slow is answered in time",
-         (say_hello("p", "*a" * 15 + "b"), Hear("p", "refusal", {"error": {"severity": "FATAL"}},
+         (send_hello("p", "*a" * 15 + "b"), Hear("p", "refusal", {"error": {"severity": "FATAL"}},
                                                 within=1.0))),
     Case("H1.long-names", "A client with a name of 100 000 bytes is treated as any other",
          (join("p", "arm0", client_name="x" * 100000, client_version="y" * 100000),)),

@@ -4,7 +4,7 @@ rover2 only measures."""
 import math
 
 from ..case import Case
-from ..say import answer, hear_error, hello, join, leave, observe
+from ..messages import answer, hear_error, hello, join, leave, observe
 from ..steps import Check, Join
 
 SCENE = "rovers"
@@ -22,16 +22,16 @@ def _stands(peer: str = "p", robots: int = _DRIVERS) -> list:
                    turret_rotations=[0.0] * robots, turret_speeds=[0.0] * robots), *observe(peer)]
 
 
-def _speeds(*due: float) -> Check:
+def _speeds(*expected: float) -> Check:
     """Velocities of left and right wheels, robot by robot."""
 
     def check(stage) -> str:
         told = list(stage.peer("p").observation.wheels)
-        if len(told) != 4 * len(due) // 2:
-            return f"wheels has {len(told)} values; {4 * len(due) // 2} are due"
-        found = [told[4 * (i // 2) + i % 2] for i in range(len(due))]
-        wrong = any(abs(a - b) > 1e-9 for a, b in zip(found, due))
-        return f"the wheels' speeds are {found}; {list(due)} are due" if wrong else ""
+        if len(told) != 4 * len(expected) // 2:
+            return f"wheels has {len(told)} values; expected {4 * len(expected) // 2}"
+        found = [told[4 * (i // 2) + i % 2] for i in range(len(expected))]
+        wrong = any(abs(a - b) > 1e-9 for a, b in zip(found, expected))
+        return f"the wheels' speeds are {found}; expected {list(expected)}" if wrong else ""
 
     return Check("wheels", check)
 
@@ -47,27 +47,27 @@ def _remember(stage) -> str:
     stage.memory["turrets"] = list(stage.peer("p").observation.turret_rotations)
     count = len(stage.peer("p").welcome.robots)
     found = len(stage.memory["turrets"])
-    return "" if found == count else f"turret_rotations has {found} values; {count} are due"
+    return "" if found == count else f"turret_rotations has {found} values; expected {count}"
 
 
-def _turned(*due: float) -> Check:
+def _turned(*expected: float) -> Check:
     """By how much the turrets turned since _remember."""
 
     def check(stage) -> str:
         pairs = zip(stage.memory["turrets"], stage.peer("p").observation.turret_rotations)
         found = [math.remainder(b - a, math.tau) for a, b in pairs]
-        wrong = len(found) != len(due) or any(abs(a - b) > 1e-6 for a, b in zip(found, due))
-        return f"the turrets turned by {found}; {list(due)} are due" if wrong else ""
+        wrong = len(found) != len(expected) or any(abs(a - b) > 1e-6 for a, b in zip(found, expected))
+        return f"the turrets turned by {found}; expected {list(expected)}" if wrong else ""
 
     return Check("turrets", check)
 
 
-def _point_to(*due: float) -> Check:
+def _point_to(*expected: float) -> Check:
     def check(stage) -> str:
         found = list(stage.peer("p").observation.turret_rotations)
-        wrong = len(found) != len(due) or any(
-            abs(math.remainder(a - b, math.tau)) > 0.05 for a, b in zip(found, due))
-        return f"the turrets point to {found}; {list(due)} are due" if wrong else ""
+        wrong = len(found) != len(expected) or any(
+            abs(math.remainder(a - b, math.tau)) > 0.05 for a, b in zip(found, expected))
+        return f"the turrets point to {found}; expected {list(expected)}" if wrong else ""
 
     return Check("turrets", check)
 
@@ -75,7 +75,7 @@ def _point_to(*due: float) -> Check:
 def _images(size: int) -> Check:
     def check(stage) -> str:
         found = [len(image) for image in stage.peer("p").observation.camera_images]
-        return "" if found == [size] else f"camera_images are of {found} bytes; [{size}] are due"
+        return "" if found == [size] else f"camera_images are of {found} bytes; expected [{size}]"
 
     return Check("pictures", check)
 
@@ -107,7 +107,7 @@ CASES = [
     _case("D6.asked-order", "Values are in the order of `robots`", ALL, _stands(),
           answer("p", robots=[1, 0], wheel_velocities=[0.1, 0.2, 0.3, 0.4]), observe("p"),
           _speeds(0.3, 0.4, 0.1, 0.2, 0, 0), _stands()),
-    _case("D6.described", "Welcome says who drives and who measures",
+    _case("D6.described", "Welcome names the robots that drive and those that measure",
           Join("p", hello("*"), {"robots": [
               {"wheels": {"drives": True, "measures": True}, "turret": {"drives": True, "measures": True}},
               {"wheels": {"drives": True, "measures": True}, "turret": {"drives": True, "measures": True}},
@@ -125,7 +125,7 @@ CASES = [
            [bad, *_ZEROS[field][1:]])
       for field in ("wheel_velocities", "turret_rotations", "turret_speeds")
       for name, bad in (("nan", math.nan), ("infinity", math.inf))],
-    *[_bad("D7", f"mode-{mode}", "A mode that there is not", "turret_modes", ["TURRET_SPEED", mode])
+    *[_bad("D7", f"mode-{mode}", "A mode that does not exist", "turret_modes", ["TURRET_SPEED", mode])
       for mode in (0, 4, 77)],
     _bad("D7", "of-a-passenger", "A mode for a robot that only measures", "turret_modes",
          ["TURRET_SPEED"], robots=[2]),

@@ -1,9 +1,9 @@
-"""Section 8: keys. The names of peers say which key they have: keys.py."""
+"""Section 8: keys. The name of a peer chooses its key: keys.py."""
 
 from ..case import Case, Level
-from ..keys import MISLED, PLAIN, STRANGER, VARIANT
-from ..say import answer, hear_refusal, hello, join, observe, say_hello
-from ..steps import Frames, Hang, Hear, Join, Say, Silence, Token
+from ..keys import MISLED, PLAIN, UNLISTED, VARIANT
+from ..messages import answer, hear_refusal, hello, join, observe, send_hello
+from ..steps import Frames, Hang, Hear, Join, Send, Silence, Token
 
 _UNANSWERED = 0.5  # [s] in which a server that answers at all would
 
@@ -16,8 +16,8 @@ def _comes(peer: str, role: str) -> Join:
     return Join(peer, hello(role=role), {"role": role})
 
 
-def _says_hello(peer: str, role: str) -> Say:
-    return say_hello(peer, role=role)
+def _says_hello(peer: str, role: str) -> Send:
+    return send_hello(peer, role=role)
 
 
 # A listed controller goes on with all robots, whatever others try.
@@ -25,9 +25,9 @@ _GOES_ON = [answer("controller"), observe("controller")]
 
 
 def _unanswered(id: str, title: str, peer: str) -> Case:
-    """Neither its Hello nor anything else is answered, and nobody else notices."""
+    """Neither its Hello nor anything else is answered, and other sessions go on."""
     return _secure(id, title, join("controller", "*"), *observe("controller"),
-                   say_hello(peer, "*", takeover=True), Frames(peer, (b"\xff\xff",)),
+                   send_hello(peer, "*", takeover=True), Frames(peer, (b"\xff\xff",)),
                    Silence(peer, _UNANSWERED), _GOES_ON)
 
 
@@ -37,7 +37,7 @@ CASES = [
     _unanswered("K1.plain", "A connection without encryption gets no answer", PLAIN),
     _unanswered("K1.another-server", "A client that expects another server's key gets no answer",
                 MISLED),
-    _unanswered("K2.unlisted", "A key that is not on the list gets no answer", STRANGER),
+    _unanswered("K2.unlisted", "A key that is not on the list gets no answer", UNLISTED),
     _secure("K2.roles", "Each role of a key is granted: supervisor, observer",
             _comes("supervisor", "ROLE_SUPERVISOR"), _comes("observer", "ROLE_OBSERVER")),
     _secure("K2.several-roles", "A key with several roles may have each, on a connection of its own",
@@ -53,11 +53,11 @@ CASES = [
       for wish in ("supervisor", "observer")],
     *[_secure(f"K3.{key}-drives", f"A key for {key}s drives no robots, and takes none over",
               join("controller", "*"), *observe("controller"),
-              say_hello(key, "*", takeover=True), hear_refusal(key, "FORBIDDEN"), _GOES_ON)
+              send_hello(key, "*", takeover=True), hear_refusal(key, "FORBIDDEN"), _GOES_ON)
       for key in ("supervisor", "observer")],
     _secure("K3.token", "Nor does it take up a session whose token it has learnt",
             join("controller", "*"), *observe("controller"), Hang("controller"),
-            say_hello("observer", "*", session_token=Token("controller")),
+            send_hello("observer", "*", session_token=Token("controller")),
             hear_refusal("observer", "FORBIDDEN"),
             Join("both", hello("*", session_token=Token("controller"))),
             Hear("both", "observation")),

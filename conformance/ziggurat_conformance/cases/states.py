@@ -1,8 +1,8 @@
-"""Section 4: who may say what, and when. One case for each field of the table."""
+"""Section 4: which message is taken in which state. One case for each cell of the table."""
 
 from ..case import Case, Level
-from ..say import TWO, answer, hear_error, heartbeat, join, leave, observe, say_hello
-from ..steps import Check, Hang, Hear, Interrupt, Say, Silence, Skip
+from ..messages import TWO, answer, hear_error, heartbeat, join, leave, observe, send_hello
+from ..steps import Check, Hang, Hear, Interrupt, Send, Silence, Skip
 
 # How a session "x" comes into each state. arm1, arm2 and arm3 are with "y".
 _OTHERS = join("y", "arm1", "arm2", "arm3")
@@ -17,7 +17,7 @@ _STATES = {
 }
 
 _SAID = {
-    "Hello": say_hello("x", "arm0"),
+    "Hello": send_hello("x", "arm0"),
     "Command": answer("x"),
     "Leave": leave("x"),
     "Heartbeat": heartbeat("x", 9),
@@ -33,14 +33,14 @@ _DUE = {
 }
 
 
-def _heard(state: str, due: str):
-    if due == "taken":
+def _heard(state: str, expected: str):
+    if expected == "taken":
         return Silence("x", 0.1)
-    if due == "heartbeat":
+    if expected == "heartbeat":
         return Hear("x", "heartbeat", {"sequence": 9})
-    if due in ("welcome", "refusal"):
-        return Hear("x", due)
-    return hear_error("x", due, "FATAL" if state in ("NEW", "CLOSED") else "DISCARD")
+    if expected in ("welcome", "refusal"):
+        return Hear("x", expected)
+    return hear_error("x", expected, "FATAL" if state in ("NEW", "CLOSED") else "DISCARD")
 
 
 def _name(state: str, message: str) -> str:
@@ -48,12 +48,12 @@ def _name(state: str, message: str) -> str:
 
 
 _table = [
-    Case(_name(state, message), f"{message} in {state}: {due}",
-         (join("x", "arm0"),) if due == "welcome" else
-         (*_STATES[state], _SAID[message], _heard(state, due)),
+    Case(_name(state, message), f"{message} in {state}: {expected}",
+         (join("x", "arm0"),) if expected == "welcome" else
+         (*_STATES[state], _SAID[message], _heard(state, expected)),
          fresh=message == "Leave" or state in ("READY", "DRAINING", "CLOSED"))
     for state, row in _DUE.items()
-    for message, due in zip(_SAID, row)
+    for message, expected in zip(_SAID, row)
 ]
 
 def _beats(stage) -> str:
@@ -82,14 +82,14 @@ CASES = [
     Case("M5.answered", "The server answers each Heartbeat with its sequence",
          (join("p", "*"), *observe("p"), heartbeat("p", 0), Hear("p", "heartbeat", {"sequence": 0}),
           heartbeat("p", 2**64 - 1), Hear("p", "heartbeat", {"sequence": 2**64 - 1}))),
-    Case("M6.heartbeats", "The server is not silent for longer than it says",
+    Case("M6.heartbeats", "The server is not silent for longer than its Welcome promises",
          (join("p", "*"), *observe("p"), answer("p"), *observe("p"), Check("beat", _beats))),
     Case("M7.flood", "Who floods is thrown out, and the others are served",
          (join("p", "arm0"), join("q", "arm1", "arm2", "arm3"), *observe("p", "q"),
           *[heartbeat("p", n) for n in range(20000)], Skip("p", "error"), Hang("p"), join("x", "arm0"),
           *observe("x"), answer("x"), answer("q"), *observe("x", "q")), Level.SECURE),
     Case("M8.request", "A Request of a controller is FORBIDDEN",
-         (join("p", "*"), *observe("p"), Say("p", {"request": {"id": 5, "pause": {}}}),
+         (join("p", "*"), *observe("p"), Send("p", {"request": {"id": 5, "pause": {}}}),
           Hear("p", "response", {"id": 5, "error": {"code": "FORBIDDEN"}}), answer("p"),
           *observe("p")), Level.SECURE),
     Case("M5.in-between", "Heartbeats may come between a session's other messages",

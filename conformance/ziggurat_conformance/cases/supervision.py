@@ -4,9 +4,9 @@ import math
 import re
 
 from ..case import Case, Level
-from ..say import ALL, answer, hear_refusal, hello, join, observe, say_hello
+from ..messages import ALL, answer, hear_refusal, hello, join, observe, send_hello
 from ..server_scene import SCENE
-from ..steps import Check, Hear, Join, Say, Silence, Skip, Tick
+from ..steps import Check, Hear, Join, Send, Silence, Skip, Tick
 from ..wire import Count, OneOf, Some
 
 
@@ -14,8 +14,8 @@ def _comes(peer: str = "s", role: str = "ROLE_SUPERVISOR") -> Join:
     return Join(peer, hello(**{"role": role, "client_name": "supervisor"}), {"robots": Count(0)})
 
 
-def ask(peer: str, id: int, **request) -> Say:
-    return Say(peer, {"request": {"id": id, **request}})
+def ask(peer: str, id: int, **request) -> Send:
+    return Send(peer, {"request": {"id": id, **request}})
 
 
 def told(peer: str, id: int, **pattern) -> Hear:
@@ -46,7 +46,7 @@ def _holds_up(stage) -> str:
     status = stage.memory["status"]
     owing = [s for s in status.sessions if s.state == 2]
     if len(owing) != 1:
-        return f"{len(owing)} sessions are OWING; one is due"
+        return f"{len(owing)} sessions are OWING; expected one"
     return "" if list(owing[0].robots) == [f"arm{i}" for i in range(4)] else "it names other robots"
 
 
@@ -80,7 +80,7 @@ def _moved(stage) -> str:
     stage.play((ask("s", 8, read={"entities": ["arm0"]}),))
     entity = stage.peer("s").hear(stage.patience).response.states.entities[0]
     found = [round(v, 9) for v in entity.position]
-    return "" if found == [1.0, 1.0, 0.0] else f"arm0 is at {found}; 1, 1, 0 is due"
+    return "" if found == [1.0, 1.0, 0.0] else f"arm0 is at {found}; expected 1, 1, 0"
 
 
 def _v(name: str, title: str, *steps, level: Level = Level.RECONNECT, **more) -> Case:
@@ -107,7 +107,7 @@ CASES = [
     _v("V1.supervisor", "A supervisor is welcome and has no robots", _comes()),
     _v("V1.observer", "An observer is welcome and has no robots", _comes("o", "ROLE_OBSERVER")),
     _v("V1.robots", "A supervisor may not ask for robots",
-       say_hello("s", "arm0", role="ROLE_SUPERVISOR"), hear_refusal("s", "BAD_VALUE")),
+       send_hello("s", "arm0", role="ROLE_SUPERVISOR"), hear_refusal("s", "BAD_VALUE")),
     _v("V1.not-in-the-barrier", "The world does not wait for supervisors",
        *ALL, _comes(), answer("p"), *observe("p"), Silence("s")),
     _v("V1.many", "Several supervisors and observers may be there",
@@ -218,12 +218,12 @@ CASES = [
        *_removed(2, "arm1"), Hear("p", "error", {"code": "NOT_YOURS", "severity": "WARNING",
                                                  "robot": "arm1"}),
        *_resumed(), answer("p"), Hear("p", "observation", {"joint_readings": Count(4)}), fresh=True),
-    _v("V13.last", "A session whose last robot is removed is over; nobody waits for it",
+    _v("V13.last", "A session whose last robot is removed is over; no tick waits for it",
        join("p", "arm0"), join("q", "arm1", "arm2", "arm3"), *observe("p", "q"), _comes(),
        *_removed(1, "arm0"), Hear("p", "end", {"reason": "FINISHED"}), answer("q"), *observe("q"),
        fresh=True),
     _v("V13.gone", "A robot that was removed has left", *_paused(), *_removed(2, "arm1"),
-       say_hello("q", "arm1"), hear_refusal("q", "NOT_YOURS"), Skip("p", "error"), *_resumed(),
+       send_hello("q", "arm1"), hear_refusal("q", "NOT_YOURS"), Skip("p", "error"), *_resumed(),
        fresh=True),
     _v("V14.gone", "After a reset, what was spawned is gone", *_paused(), *_spawned(2, _BOX),
        ask("s", 3, reset={}), Skip("p", "reset"), *observe("p"), told("s", 3),
@@ -234,7 +234,7 @@ CASES = [
     _v("V14.session", "A session with a robot that was spawned ends with a reset", *_paused(),
        *_spawned(2, _arm("arm9")), join("q", "arm9"), *observe("q"), ask("s", 3, reset={}),
        Hear("q", "end", {"reason": "FINISHED"}), Hear("p", "reset"), *observe("p"), told("s", 3),
-       say_hello("r", "arm9"), hear_refusal("r", "UNKNOWN_ROBOT"), fresh=True),
+       send_hello("r", "arm9"), hear_refusal("r", "UNKNOWN_ROBOT"), fresh=True),
     _v("V13.unknown", "Removing what is not there is UNKNOWN_ENTITY", *_paused(),
        ask("s", 2, remove={"entity": "nobody"}), failed("s", 2, "UNKNOWN_ENTITY"), *_resumed()),
     _v("V10.shutdown", "Shutdown is answered, and the run ends", *ALL, _comes(),
@@ -243,13 +243,13 @@ CASES = [
          *ALL, _comes(), ask("s", 1, **{name: {"name": "x"}}),
          Hear("s", "response", {"id": 1, "error": {"code": "UNIMPLEMENTED"}}))
       for name in ("snapshot", "restore")],
-    _v("V12.who", "The status says whom the world waits for", *ALL, _comes(),
+    _v("V12.who", "The status names the session that the world waits for", *ALL, _comes(),
        Check("status", _ask_status), Check("owing", _holds_up), answer("p"), *observe("p")),
-    _v("V12.phase", "The status says that the world runs, or is paused", *ALL, _comes(),
+    _v("V12.phase", "The status tells whether the world runs or is paused", *ALL, _comes(),
        ask("s", 1, status={}), told("s", 1, status={"phase": "RUNNING", "seed": 7}), answer("p"),
        *observe("p"), *_pausing(2), answer("p"), told("s", 2), ask("s", 3, status={}),
        told("s", 3, status={"phase": "PAUSED"}), ask("s", 4, resume={}), told("s", 4)),
-    _v("V12.free", "The status names robots that nobody holds", join("p", "arm1"), _comes(),
+    _v("V12.free", "The status names free robots", join("p", "arm1"), _comes(),
        ask("s", 1, status={}), told("s", 1, status={"phase": OneOf(("GATHERING", "RUNNING")),
                                                     "free_robots": ["arm0", "arm2", "arm3"]}),
        fresh=True),

@@ -3,7 +3,7 @@
 import math
 
 from ..case import Case
-from ..say import ALL, TWO, answer, hear_error, heartbeat, join, leave, observe
+from ..messages import ALL, TWO, answer, hear_error, heartbeat, join, leave, observe
 from ..steps import Check, Hear, Silence, Tick, Zeros
 from ..wire import Count
 
@@ -13,11 +13,11 @@ def _values(name: str, lists: str, per: int = 1, title: str = ""):
 
     def check(stage) -> str:
         peer = stage.peer("p")
-        due = per * sum(
+        expected = per * sum(
             len(getattr(robot, lists)) if hasattr(getattr(robot, lists), "__len__")
             else int(bool(getattr(robot, lists))) for robot in peer.welcome.robots)
         found = len(getattr(peer.observation, name))
-        return "" if found == due else f"{name} has {found} values; {due} are due"
+        return "" if found == expected else f"{name} has {found} values; expected {expected}"
 
     return Case(f"S2.{name.replace('_', '-')}", title or f"{name} hold the values of all robots",
                 (ALL, Check(name, check), answer("p"), observe("p"), Check(name, check)))
@@ -65,10 +65,10 @@ def _message(radio: int, payload: bytes = b"x") -> dict:
 
 
 def _heard_in_order(stage) -> str:
-    """arm0 says a and b, arm1 says c; who sends at a tick does not hear."""
+    """arm0 sends a and b, arm1 sends c; a radio that sends at a tick receives nothing."""
     heard = [(m.radio, m.payload) for m in stage.peer("p").observation.radio_messages]
-    due = [(radio, payload) for radio in (2, 3) for payload in (b"a", b"b", b"c")]
-    return "" if heard == due else f"heard {heard}; due is {due}"
+    expected = [(radio, payload) for radio in (2, 3) for payload in (b"a", b"b", b"c")]
+    return "" if heard == expected else f"heard {heard}; expected {expected}"
 
 
 def _sights_add_up(stage) -> str:
@@ -80,20 +80,20 @@ def _sights_add_up(stage) -> str:
                    "tag": {"payloads": 1, "centers": 2, "corners": 8}}
     for kind, values in per_reading.items():
         counts = getattr(seen, f"{kind}_counts")
-        due = sum(getattr(camera, f"detects_{kind}s") for camera in cameras)
-        if len(counts) != due:
-            return f"{kind}_counts has {len(counts)} values; {due} are due"
+        expected = sum(getattr(camera, f"detects_{kind}s") for camera in cameras)
+        if len(counts) != expected:
+            return f"{kind}_counts has {len(counts)} values; expected {expected}"
         for name, per in values.items():
             found = len(getattr(seen, f"{kind}_{name}"))
             if found != per * sum(counts):
-                return f"{kind}_{name} has {found} values; {per * sum(counts)} are due"
+                return f"{kind}_{name} has {found} values; expected {per * sum(counts)}"
     return "" if sum(seen.led_counts) else "no camera sees a lamp"
 
 
 def _time_is_the_tick(stage) -> str:
     observation = stage.peer("p").observation
-    due = observation.tick * 100_000_000
-    return "" if observation.time_ns == due else f"time_ns is {observation.time_ns}; {due} is due"
+    expected = observation.tick * 100_000_000
+    return "" if observation.time_ns == expected else f"time_ns is {observation.time_ns}; expected {expected}"
 
 
 def _joints_turn(stage) -> str:
@@ -103,7 +103,7 @@ def _joints_turn(stage) -> str:
     stage.play((Hear("p", "observation"),))
     after = stage.peer("p").observation.joint_readings
     turned = [b - a for a, b in zip(before, after)]
-    return "" if all(abs(t - 0.1) < 0.01 for t in turned) else f"joints turned by {turned}; 0.1 is due"
+    return "" if all(abs(t - 0.1) < 0.01 for t in turned) else f"joints turned by {turned}; expected 0.1"
 
 
 CASES = [

@@ -1,7 +1,7 @@
 """Section 1: transport."""
 
 from ..case import Case
-from ..say import ALL, answer, hear_error, heartbeat, hello, join, observe
+from ..messages import ALL, answer, hear_error, heartbeat, hello, join, observe
 from ..steps import Frames, Hear, Join
 from ..wire import AtLeast
 
@@ -16,12 +16,12 @@ _STRANGE = {
     "nul": b"\x00" * 64,
 }
 
-# A stranger's garbage is answered, and the session beside it goes on.
+# Garbage of a peer without a session is answered, and the session beside it goes on.
 _garbage = [
     Case(
         f"T2.garbage-{name}",
-        f"Garbage ({name}) of a stranger is MALFORMED and disturbs nobody",
-        (ALL, Frames("stranger", (data,)), hear_error("stranger", "MALFORMED", "FATAL"), answer("p"),
+        f"Garbage ({name}) of a peer without a session is MALFORMED and disturbs no session",
+        (ALL, Frames("other", (data,)), hear_error("other", "MALFORMED", "FATAL"), answer("p"),
          observe("p")),
         forms=("binary",),
     )
@@ -55,7 +55,7 @@ CASES = [
     Case("T3.order", "What is said in one go is answered in that order",
          (ALL, *[heartbeat("p", n) for n in range(1, 30)],
           *[Hear("p", "heartbeat", {"sequence": n}) for n in range(1, 30)])),
-    Case("T4.limit-is-told", "Welcome says how long messages may be",
+    Case("T4.limit-is-told", "Welcome has the longest size of a message",
          (Join("p", hello("*"), {"max_message_bytes": AtLeast(2**20)}),)),
     Case("T5.unknown-field", "Unknown fields are ignored",
          (ALL, Frames("p", (b"\x22\x05\x08\x05" + _UNKNOWN_FIELD,)),
@@ -66,14 +66,14 @@ CASES = [
           Hear("p", "heartbeat", {"sequence": 5})),
          forms=("json",)),
     Case("T5.not-utf8", "Text that is not UTF-8 is MALFORMED",
-         (ALL, Frames("stranger", (b"\x0a\x05\x1a\x03a\xff\xfe",)),
-          hear_error("stranger", "MALFORMED", "FATAL")),
+         (ALL, Frames("other", (b"\x0a\x05\x1a\x03a\xff\xfe",)),
+          hear_error("other", "MALFORMED", "FATAL")),
          forms=("binary",)),
     Case("T6.json-session", "A session that begins with { goes on in JSON",
          (ALL, answer("p"), observe("p")), forms=("json",)),
-    Case("T6.json-garbage", "Bad JSON of a stranger is MALFORMED",
-         (ALL, Frames("stranger", (b'{"hello": {"robots": [',)),
-          hear_error("stranger", "MALFORMED", "FATAL"), answer("p"), observe("p")),
+    Case("T6.json-garbage", "Bad JSON of a peer without a session is MALFORMED",
+         (ALL, Frames("other", (b'{"hello": {"robots": [',)),
+          hear_error("other", "MALFORMED", "FATAL"), answer("p"), observe("p")),
          forms=("json",)),
     Case("T6.json-bad-type", "JSON with a value of the wrong type is MALFORMED",
          (ALL, Frames("p", (b'{"command": {"tick": "soon"}}',)), hear_error("p", "MALFORMED"),

@@ -1,4 +1,4 @@
-"""What the kit says to a stranger who gets the command line, or the program under test, wrong."""
+"""What the kit prints about mistakes on the command line and in the program under test."""
 
 import collections
 import contextlib
@@ -50,20 +50,20 @@ class Mistakes(unittest.TestCase):
         self.expect(r"nothing listens at tcp://\S+, which takes the place of \{endpoint\} .*after 10 s; "
                     r"the server said nothing", "server", "--", "sleep", "1000")
 
-    def test_an_endpoint_where_nobody_listens(self):
-        self.expect("nobody listens at tcp://127.0.0.1:1: Connection refused", "server",
+    def test_an_endpoint_without_server(self):
+        self.expect("no server listens at tcp://127.0.0.1:1: Connection refused", "server",
                     "tcp://127.0.0.1:1")
-        self.expect("nobody listens at ipc:///nowhere/at/all", "server", "ipc:///nowhere/at/all")
+        self.expect("no server listens at ipc:///nowhere/at/all", "server", "ipc:///nowhere/at/all")
         self.expect("'tcp://somewhere' is no endpoint", "server", "tcp://somewhere")
         self.expect("'udp://127.0.0.1:5' is no endpoint", "server", "udp://127.0.0.1:5")
 
     def test_cases_variants_and_lists_that_are_not_there(self):
-        self.expect("no case fits --only nonsense", "server", "--only", "nonsense", "--", *TINY)
+        self.expect("no case matches --only nonsense", "server", "--only", "nonsense", "--", *TINY)
         self.expect("no case asks for 'leas'; curve, lease", "server", "--variant", "leas=x", "--", *TINY)
         self.expect("--variant 'lease': write NAME=COMMAND", "server", "--variant", "lease", "--", *TINY)
         self.expect("--known-failing nowhere: No such file", "server", "--known-failing", "nowhere", "--",
                     *TINY)
-        self.expect("say what to test", "server")
+        self.expect("nothing to test", "server")
 
 
 class Help(unittest.TestCase):
@@ -121,7 +121,7 @@ class Reports(unittest.TestCase):
         self.assertRegex(out, r"Core +not reached: \d fail, \d+ not chosen\n")
         page = (self.folder / "r.html").read_text()
         self.assertIn("<h2>S9.stale: A Command for an earlier tick is STALE_TICK</h2>", page)
-        self.assertRegex(page, "<p>.* error is due</p><pre>")
+        self.assertRegex(page, "<p>.* expected error</p><pre>")
         suite = ElementTree.parse(self.folder / "r.xml").getroot()
         self.assertEqual(suite.get("failures"), str(len(suite.findall("testcase/failure"))))
         self.assertLess(max(map(len, out.splitlines())), 250)
@@ -131,7 +131,7 @@ class Reports(unittest.TestCase):
         code, out, report = self.play("--only", "S9.*")
         self.assertEqual(1, code, out)
         [stale] = [case for case in report["cases"] if case["id"] == "S9.stale"]
-        self.assertRegex(stale["reason"], "error is due; the server had ended, and had said:\ngoodbye")
+        self.assertRegex(stale["reason"], "expected error; the server had ended, and had said:\ngoodbye")
         self.assertTrue(any(case["verdict"] == "pass" for case in report["cases"]), "it is started anew")
 
 

@@ -15,7 +15,7 @@ REASONS = {
     "T10": "how the kit starts every client",
     "T8": "a matter of the server's command line",
     "P3": "advice to clients",
-    "K4": "says what the absence of keys means",
+    "K4": "is about the absence of keys",
     "D5": "it would take more than 1 GiB of messages at a tick",
 }
 

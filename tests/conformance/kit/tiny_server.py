@@ -34,7 +34,7 @@ class Session:
 class Server:
     def __init__(self, endpoint, bug, keys=()):
         self.roles = {}  # by public key
-        self.allowed = None  # roles of whoever is spoken to
+        self.allowed = None  # roles of the peer that is being answered
         self.bug, self.tick, self.begun = bug, 0, False
         self.angle, self.speed = [0.0] * 4, [0.0] * 4
         self.sent, self.heard = [], []  # (robot, payload)
@@ -104,7 +104,7 @@ class Server:
             except Fault as fault:
                 fault.error.severity = E.FATAL
                 fault.error.retryable = fault.error.code == E.ROBOT_TAKEN
-                self.tell(peer, refusal=protocol.Refusal(error=fault.error, holder="somebody"))
+                self.tell(peer, refusal=protocol.Refusal(error=fault.error, holder="another client"))
         elif kind == "heartbeat":
             self.tell(peer, heartbeat=message)
             if self.bug == "heartbeat-releases" and session.owes:
@@ -230,7 +230,7 @@ class Server:
         held = {robot for s in living for robot in s.robots}
         if any(s.owes for s in living) or len(held) < 4:
             return
-        for peer in list(self.sessions):  # whoever is gone is waited for
+        for peer in list(self.sessions):  # a peer that is gone is waited for
             if not self.tell(peer, heartbeat=protocol.Heartbeat()):
                 return
         self.tick += 2 if self.bug == "skips-ticks" else 1

@@ -1,6 +1,6 @@
-"""The words that cases use: messages as dicts, and steps that come often."""
+"""Messages as dicts, and steps that cases use often."""
 
-from .steps import Hear, Join, Say, Tick
+from .steps import Hear, Join, Send, Tick
 
 VERSION = {"major": 1, "minor": 0}
 
@@ -18,8 +18,8 @@ def hello(*robots: str, **fields) -> dict:
     return {name: value for name, value in greeting.items() if value is not None}
 
 
-def say_hello(peer: str, *robots: str, **fields) -> Say:
-    return Say(peer, {"hello": hello(*robots, **fields)})
+def send_hello(peer: str, *robots: str, **fields) -> Send:
+    return Send(peer, {"hello": hello(*robots, **fields)})
 
 
 def join(peer: str, *robots: str, **fields) -> Join:
@@ -30,17 +30,17 @@ def command(tick=Tick(), **fields) -> dict:
     return {"command": {"tick": tick, **fields}}
 
 
-def answer(peer: str, tick=Tick(), **fields) -> Say:
+def answer(peer: str, tick=Tick(), **fields) -> Send:
     """The command for the peer's last observation."""
-    return Say(peer, command(tick, **fields))
+    return Send(peer, command(tick, **fields))
 
 
-def leave(peer: str, *positions: int, reason: str = "DONE", **fields) -> Say:
-    return Say(peer, {"leave": {"robots": list(positions), "reason": reason, **fields}})
+def leave(peer: str, *positions: int, reason: str = "DONE", **fields) -> Send:
+    return Send(peer, {"leave": {"robots": list(positions), "reason": reason, **fields}})
 
 
-def heartbeat(peer: str, sequence: int) -> Say:
-    return Say(peer, {"heartbeat": {"sequence": sequence}})
+def heartbeat(peer: str, sequence: int) -> Send:
+    return Send(peer, {"heartbeat": {"sequence": sequence}})
 
 
 def hear_error(peer: str, code: str, severity: str = "DISCARD", **pattern) -> Hear:
@@ -56,7 +56,7 @@ def observe(*peers: str) -> list:
     return [Hear(peer, "observation") for peer in peers]
 
 
-# The scene has four arms; these are the sessions that most cases begin with. Whoever comes to a world
-# that has begun gets its tick at once, so all observations are there when the last has joined.
+# The scene has four arms; these are the sessions that most cases begin with. A session that
+# joins a running world gets its tick at once, so all observations are there when the last has joined.
 TWO = [join("p", "arm0", "arm1"), join("q", "arm2", "arm3"), *observe("p", "q")]
 ALL = [join("p", "*"), *observe("p")]
