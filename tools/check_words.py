@@ -15,7 +15,7 @@ import sys
 
 # pattern -> what to write instead. Patterns match whole words; case counts where they have capitals.
 WORDS = {
-    r"[Nn]obody": "no client, no session, no one; better: make the thing itself the subject",
+    r"(?<!\")[Nn]obody": "no client, no session, no one; better: make the thing itself the subject",
     r"[Ss]omebody( else)?('s)?": "a client, a peer, a user, another program",
     r"[Ww]ho(m?)ever": "the client that …, each peer that …",
     r"for ever": "forever, without end",

@@ -78,7 +78,7 @@ class Tree {
   // What follows from v as well, by move().
   std::vector<Motion> motion;  ///< of each link, about O
 
-  // Room to work in.
+  // Memory to work in.
   std::vector<Inertia> inertia;  ///< of each link with all that it carries, about O
   std::vector<Wrench> wrench;
   std::vector<Motion> acceleration;

@@ -69,7 +69,7 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t room,
     return addition;
   }
   Reading reading(report, around, parts_->options);
-  reading.room = room_for(room);
+  reading.budget = budget_for(room);
   reading.defaults = parts_->defaults;
   reading.has_engine = parts_->has_engine;
   reading.models = parts_->models;
@@ -83,7 +83,7 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t room,
     // The last fault says so.
   }
   addition.problems = report.problems();
-  addition.size = room - reading.room.bytes;
+  addition.size = room - reading.budget.bytes;
   return addition;
 }
 

@@ -259,8 +259,8 @@ void read_list(Reading& reading, Element& controllers, bool included) {
 
 }  // namespace
 
-void report_lacks(Reading& reading, std::vector<Lack>& lacks) {
-  for (Lack& lack : lacks) reading.report.fault(lack.where, std::move(lack.text));
+void report_lacks(Reading& reading, std::vector<PendingFault>& lacks) {
+  for (PendingFault& lack : lacks) reading.report.fault(lack.where, std::move(lack.text));
   lacks.clear();
 }
 

@@ -142,34 +142,34 @@ void report_unknown_attribute(const Document& document, std::string_view element
 
 }  // namespace
 
-Room room_for(std::size_t max_size) {
+ReadBudget budget_for(std::size_t max_size) {
   return {max_size, 2 * std::max<std::size_t>(1'000'000, max_size / smallest_average_element)};
 }
 
-Document::Document(std::string text, std::size_t file, bool lenient, Room& room, Report& report)
+Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget, Report& report)
     : source_(std::move(text)), file_(file), lenient_(lenient), report_(report) {
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < source_.size(); ++i) {
     if (source_[i] == '\n') line_starts_.push_back(i + 1);
   }
-  if (check_text(room)) parse();
+  if (check_text(budget)) parse();
 }
 
-bool Document::check_text(Room& room) {
-  room.bytes -= source_.size();
+bool Document::check_text(ReadBudget& budget) {
+  budget.bytes -= source_.size();
   if (trimmed(source_).empty()) {
     report_.fault({file_, 0, 0}, "the file is empty; a scene begins with <argos-configuration>");
     return false;
   }
   const auto tags = static_cast<std::size_t>(std::count(source_.begin(), source_.end(), '<'));
-  if (tags > room.tags) {
+  if (tags > budget.tags) {
     report_.fault({file_, 0, 0},
                   fmt::format("the file has more than {} elements; split the scene, or raise "
                               "--max-scene-size",
-                              room.tags / 2));
+                              budget.tags / 2));
     return false;
   }
-  room.tags -= tags;
+  budget.tags -= tags;
   if (const std::size_t nul = source_.find('\0'); nul != std::string::npos) {
     report_.fault(at(nul), "this is binary data, not a scene; write an XML file in UTF-8");
     return false;

@@ -25,21 +25,21 @@
 namespace ziggurat::scene {
 
 /// What a scene and its includes may still take.
-struct Room {
+struct ReadBudget {
   std::size_t bytes;
   std::size_t tags;  ///< opening and closing ones
 };
 
-/// The room of a scene of at most so many bytes.
-Room room_for(std::size_t max_size);
+/// The budget of a scene of at most so many bytes.
+ReadBudget budget_for(std::size_t max_size);
 
 /// One parsed file.
 class Document {
  public:
   /// Parses; what is wrong with the text itself (not UTF-8, malformed, …) is a fault.
   /// @param file  its index in Scene::files
-  /// @param room  at least the text's size; the text is taken from it
-  Document(std::string text, std::size_t file, bool lenient, Room& room, Report& report);
+  /// @param budget  at least the text's size; the text is taken from it
+  Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget, Report& report);
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
@@ -57,7 +57,7 @@ class Document {
 
  private:
   void parse();
-  bool check_text(Room& room);
+  bool check_text(ReadBudget& budget);
   void check_doctype();
   Location at(std::size_t offset) const;
 

@@ -50,14 +50,14 @@ struct Includes {
       return;
     }
     const fs::path path = (fs::path(names.back()).parent_path() / written).lexically_normal();
-    auto opened = reading.options.open(path, reading.room.bytes);
+    auto opened = reading.options.open(path, reading.budget.bytes);
     if (const std::string* why = std::get_if<std::string>(&opened)) {
       element.fault_at("file", fmt::format("names {}, which {}", in_quotes(path.string()), *why));
       return;
     }
     File& file = std::get<File>(opened);
-    if (file.text.size() > reading.room.bytes) {
-      element.fault_at("file", too_large(reading.room.bytes));
+    if (file.text.size() > reading.budget.bytes) {
+      element.fault_at("file", too_large(reading.budget.bytes));
     } else if (may_stand(element, file.identity)) {
       add(std::move(file), path.string());
     }

@@ -69,11 +69,11 @@ std::optional<std::size_t> find_model(const Reading& reading, const Element& ele
   return std::nullopt;
 }
 
-/// Takes the model's size from the room of the scene, as if it were written out; a fault, once, if
+/// Takes the model's size from the budget of the scene, as if it were written out; a fault, once, if
 /// that is too small.
 bool take_room(Reading& reading, const Element& element, std::size_t size) {
-  if (size <= reading.room.bytes) {
-    reading.room.bytes -= size;
+  if (size <= reading.budget.bytes) {
+    reading.budget.bytes -= size;
     return true;
   }
   if (reading.blamed.insert(Location{}).second) {  // the whole scene is to blame
@@ -82,7 +82,7 @@ bool take_room(Reading& reading, const Element& element, std::size_t size) {
                     "than {} bytes; use fewer, or raise --max-scene-size",
                     reading.options.max_size));
   }
-  reading.room.bytes = 0;
+  reading.budget.bytes = 0;
   return false;
 }
 

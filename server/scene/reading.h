@@ -38,7 +38,7 @@ struct AnchorUse {
 };
 
 /// Something that the scene lacks for a model or a controller: a fault once that is used.
-struct Lack {
+struct PendingFault {
   Location where;
   std::string text;
 };
@@ -49,13 +49,13 @@ struct ControllerUse {
   std::vector<DeviceUse> devices;
   std::vector<AnchorUse> anchors;
   unsigned faults = 0;  ///< found with entities so far
-  std::vector<Lack> lacks;
+  std::vector<PendingFault> lacks;
 };
 
 /// `<controller>` of an entity or a model, not yet looked up.
 struct ControllerChoice {
   std::string id;
-  Lack unknown;  ///< what to say if there is none of that id
+  PendingFault unknown;  ///< what to say if there is none of that id
   std::optional<std::vector<std::pair<std::string, std::string>>> params;  ///< of <params> in it
   Location params_where;
 };
@@ -65,7 +65,7 @@ struct Model {
   Entity entity;  ///< without id, pose and controller
   std::unordered_map<std::string, std::size_t> anchors;
   std::optional<ControllerChoice> controller;
-  std::vector<Lack> lacks;
+  std::vector<PendingFault> lacks;
   std::size_t size = 0;  ///< as written [bytes]
 };
 
@@ -74,14 +74,14 @@ struct Reading {
       : report(report_of_all),
         scene(scene_read),
         options(chosen),
-        room(room_for(chosen.max_size)) {}
+        budget(budget_for(chosen.max_size)) {}
 
   Report& report;
   Scene& scene;
   const ReadOptions& options;
-  Room room;
+  ReadBudget budget;
   std::deque<Document> documents;      ///< of Scene::files, same order
-  std::vector<Lack>* lacks = nullptr;  ///< where faults that the scene can mend go; null: reported
+  std::vector<PendingFault>* lacks = nullptr;  ///< where faults that the scene can mend go; null: reported
   std::vector<Model> models;           ///< of Scene::models, same order
   std::unordered_map<std::string, std::size_t> model_ids;  ///< id -> index
   BodyDefaults defaults;
@@ -96,7 +96,7 @@ struct Reading {
 
   Document& add_document(std::string text, const std::string& name) {
     scene.files.push_back(name);
-    return documents.emplace_back(std::move(text), scene.files.size() - 1, options.lenient, room,
+    return documents.emplace_back(std::move(text), scene.files.size() - 1, options.lenient, budget,
                                   report);
   }
 };
@@ -165,7 +165,7 @@ std::string apply_model(Reading& reading, Element& element, const std::string& n
                         std::optional<ControllerChoice>& controller);
 
 /// Reports what the scene lacks, once.
-void report_lacks(Reading& reading, std::vector<Lack>& lacks);
+void report_lacks(Reading& reading, std::vector<PendingFault>& lacks);
 
 /// Reads a <foot-bot> or <e-puck> into an entity that knows its kind.
 void read_robot(Reading& reading, Element& element, Entity& entity);

@@ -65,13 +65,13 @@ std::vector<math::Vector3> read_vertices(Reading& reading, Element& hull) {
   }
   const std::filesystem::path path =
       std::filesystem::path(file_of(reading.scene, hull.where())).parent_path() / written;
-  auto opened = reading.options.open(path, std::min(most_mesh_bytes, reading.room.bytes));
+  auto opened = reading.options.open(path, std::min(most_mesh_bytes, reading.budget.bytes));
   if (const std::string* why = std::get_if<std::string>(&opened)) {
     hull.fault_at("file", fmt::format("names {}, which {}", in_quotes(path.string()), *why));
     return {};
   }
   const std::string& bytes = std::get<File>(opened).text;
-  reading.room.bytes -= std::min(bytes.size(), reading.room.bytes);
+  reading.budget.bytes -= std::min(bytes.size(), reading.budget.bytes);
   auto points = read_mesh(written, bytes);
   if (const std::string* why = std::get_if<std::string>(&points)) {
     hull.fault_at("file", *why);

@@ -56,9 +56,9 @@ TEST(Deadline, DropHoldsTheBudgetFirst) {
 
 TEST(Deadline, DropIsReportedWhateverNoiseOtherPeersMake) {
   Pair pair(with_deadline(DeadlineAction::drop, 50));
-  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("unknown", "\xff");
+  for (int i = 0; i < 500; ++i) pair.peers.send_bytes("unknown", "\xff");
   pair.peers.pass(milliseconds{50});
-  for (int i = 0; i < 500; ++i) pair.peers.say_bytes("unknown", "\xff");
+  for (int i = 0; i < 500; ++i) pair.peers.send_bytes("unknown", "\xff");
   const auto dropped = pair.peers.take_report().dropped;
   ASSERT_EQ(dropped.size(), 1U);
   EXPECT_NE(dropped[0].find("robot0"), std::string::npos);

@@ -72,7 +72,7 @@ TEST_F(Loading, H12_RefusedIfThereIsNoWorldInTheEnd) {
 }
 
 TEST_F(Loading, T9_BadMessagesInHelloAreDiscardedAndTheHelloWaits) {
-  peers.say_bytes("p", "garbage");
+  peers.send_bytes("p", "garbage");
   EXPECT_EQ(peers.told("p").error().severity(), v1::Error::FATAL) << "in NEW";
   peers.say("p", Peers::hello("*"));
   peers.inboxes.clear();
@@ -82,7 +82,7 @@ TEST_F(Loading, T9_BadMessagesInHelloAreDiscardedAndTheHelloWaits) {
     EXPECT_EQ(error.code(), v1::Error::OUT_OF_STATE);
     EXPECT_EQ(error.severity(), v1::Error::DISCARD);
   }
-  peers.say_bytes("p", peers.json ? "{garbage" : "garbage");
+  peers.send_bytes("p", peers.json ? "{garbage" : "garbage");
   EXPECT_EQ(peers.told("p").error().code(), v1::Error::MALFORMED);
   peers.say("p", Peers::heartbeat(7));
   EXPECT_EQ(peers.told("p").heartbeat().sequence(), 7U);

@@ -106,7 +106,7 @@ void replay(const char* suffix) {
     SCOPED_TRACE(path.stem());
     const std::string bytes = content(with(path, suffix));
     if (path.stem().string().find("client_") != std::string::npos) {
-      peers.say_bytes("old", bytes);
+      peers.send_bytes("old", bytes);
       continue;
     }
     v1::ServerMessage old = message_of(bytes);

@@ -59,7 +59,7 @@ TEST(Transport, T2_GarbageIsMalformedAndDisturbsNoSession) {
   peers.inboxes.clear();
   for (const std::string& bytes : {std::string("hello"), std::string(1000, '\xff'), std::string(),
                                    std::string("\x12\x7f", 2), std::string("\x12\xff\xff", 3)}) {
-    peers.say_bytes("unknown", bytes);
+    peers.send_bytes("unknown", bytes);
     const auto error = peers.told("unknown").error();
     EXPECT_EQ(error.code(), v1::Error::MALFORMED);
     EXPECT_EQ(error.severity(), v1::Error::FATAL);
@@ -89,7 +89,7 @@ TEST(Transport, T5_UnknownFieldsAreIgnored) {
   peers.join("p", "*");
   peers.publish(0);
   // Field 15 of Command, which this version does not have, inside ClientMessage.command.
-  peers.say_bytes("p", std::string("\x12\x02\x78\x01", 4));
+  peers.send_bytes("p", std::string("\x12\x02\x78\x01", 4));
   EXPECT_TRUE(peers.is_complete());
 }
 
@@ -391,12 +391,12 @@ TEST_F(Stepping, M4_AGoodMessageStartsTheCountAnew) {
   EXPECT_EQ(peers.status()[0].membership, RobotStatus::Membership::held);
 }
 
-TEST(Strangers, LeaveNothingBehind) {
+TEST(PeersWithoutSession, LeaveNothingBehind) {
   const SmallRun small(1);
   Peers peers(small);
   for (int i = 0; i < 2'000; ++i) {
     const std::string peer = "unknown" + std::to_string(i);
-    peers.say_bytes(peer, "garbage");
+    peers.send_bytes(peer, "garbage");
     peers.say(peer, Peers::hello("nobody"));
     peers.inboxes.clear();
   }
@@ -404,7 +404,7 @@ TEST(Strangers, LeaveNothingBehind) {
   EXPECT_LE(peers.take_report().notices.size(), 100U);
 }
 
-TEST(Strangers, WhatTheyCallThemselvesStaysOneShortLine) {
+TEST(PeersWithoutSession, TheirNamesStayOneShortLine) {
   const SmallRun small(1);
   Peers peers(small);
   auto hello = Peers::hello("nobody\n" + std::string(100'000, 'x'));

@@ -181,7 +181,7 @@ TEST(Rate, M7_ExpectedAnswersAreFree) {
 TEST(Rate, M7_PeersWithoutASessionToo) {
   const SmallRun small(1);
   Peers peers(small);
-  for (int i = 0; i < 5000; ++i) peers.say_bytes("unknown", "garbage");
+  for (int i = 0; i < 5000; ++i) peers.send_bytes("unknown", "garbage");
   EXPECT_LE(peers.inboxes["unknown"].size(), 2001U);
   EXPECT_TRUE(peers.join("p", "*").robots_size() == 1) << "others are not affected";
 }

@@ -111,16 +111,16 @@ void Play::step() {
     case 0:
     case 1:
     case 2:
-      return say_hello();
+      return send_hello();
     case 3:
     case 4:
-      return say_command(peer());
+      return send_command(peer());
     case 5:
-      return say_leave();
+      return send_leave();
     case 6:
-      return say_request();
+      return send_request();
     case 7:
-      return say_anything();
+      return send_anything();
     case 8:
     case 9:
       return answer_all();

@@ -81,7 +81,7 @@ void Play::receive(const std::string& peer, std::string_view bytes, bool is_sing
                    is_collecting ? &commands_ : nullptr);
 }
 
-void Play::say_hello() {
+void Play::send_hello() {
   static const std::array<const char*, 6> wanted{"*",         "robot0", "robot1",
                                                  "robot[23]", "",       "robot9"};
   const std::string& from = peer();
@@ -105,7 +105,7 @@ void Play::say_hello() {
   say(from, message);
 }
 
-void Play::say_command(const std::string& from) {
+void Play::send_command(const std::string& from) {
   const Told& told = told_.at(from);
   const std::uint8_t bits = input_.byte();
   v1::ClientMessage message;
@@ -123,7 +123,7 @@ void Play::say_command(const std::string& from) {
   say(from, message);
 }
 
-void Play::say_leave() {
+void Play::send_leave() {
   const std::string& from = peer();
   const std::uint8_t bits = input_.byte();
   v1::ClientMessage message;
@@ -137,7 +137,7 @@ void Play::say_leave() {
   if (leave.robots().empty()) told_.at(from).welcomed = false;
 }
 
-void Play::say_request() {
+void Play::send_request() {
   const std::string& from = peer();
   v1::ClientMessage message;
   v1::Request& request = *message.mutable_request();
@@ -146,7 +146,7 @@ void Play::say_request() {
   say(from, message);
 }
 
-void Play::say_anything() {
+void Play::send_anything() {
   const std::string& from = peer();
   std::string bytes(input_.below(16), '\0');
   for (char& byte : bytes) byte = static_cast<char>(input_.byte());

@@ -110,11 +110,11 @@ class Play {
   void hear_tick(Told& told, const v1::Observation& observation) const;
   void say(const std::string& peer, const v1::ClientMessage& message);
   void receive(const std::string& peer, std::string_view bytes, bool is_single_frame = true);
-  void say_hello();
-  void say_command(const std::string& peer);
-  void say_leave();
-  void say_request();
-  void say_anything();
+  void send_hello();
+  void send_command(const std::string& peer);
+  void send_leave();
+  void send_request();
+  void send_anything();
   void answer_all();
   void open();
   void pass();

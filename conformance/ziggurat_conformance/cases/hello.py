@@ -68,7 +68,7 @@ CASES = [
          (Join("p", hello("arm[1-3]", controller="steady"), _robots_are("arm1")),)),
     Case("H4.lua-only", "lua_only passes other controllers over",
          (Join("p", hello("*", lua_only=True), _robots_are("arm3")),)),
-    Case("H4.all-or-nothing", "A session has all robots or does not come about",
+    Case("H4.all-or-nothing", "A session has all robots that it asks for, or there is none",
          (join("p", "arm1"), send_hello("q", "*"), hear_refusal("q", "ROBOT_TAKEN", True),
           join("q", "arm0"))),
     _refused("H5.unknown-id", "UNKNOWN_ROBOT", "An id that the scene does not have", robots=("nobody",)),

@@ -89,7 +89,7 @@ TEST_F(Keys, EveryFaultOfTheListIsNamedWithItsLine) {
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
   }
   EXPECT_EQ(text.find(":1:"), std::string::npos);
-  EXPECT_NE(complaint([&] { read_client_keys(write("none", "# nobody\n")); }), "");
+  EXPECT_NE(complaint([&] { read_client_keys(write("none", "# no key\n")); }), "");
 }
 
 struct Protected : Keys {

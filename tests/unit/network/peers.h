@@ -85,9 +85,9 @@ class Peers {
   void probe() { pass(std::chrono::milliseconds{1000}); }
 
   void say(const std::string& peer, const v1::ClientMessage& message) {
-    say_bytes(peer, bytes_of(message, json));
+    send_bytes(peer, bytes_of(message, json));
   }
-  void say_bytes(const std::string& peer, const std::string& bytes) {
+  void send_bytes(const std::string& peer, const std::string& bytes) {
     const Received received{peer, bytes, true, all_roles};
     if (!link || link->arrives(received, now)) receive(barrier, received, &commands);
   }

@@ -236,9 +236,9 @@ class Keys(unittest.TestCase):
                 with self.assertRaises(ziggurat.Refused) as caught:
                     ziggurat.supervise(server.endpoint, curve=curve)
                 self.assertEqual(caught.exception.code, "FORBIDDEN")
-            stranger = ziggurat.Curve(server_key.decode(),
+            unlisted = ziggurat.Curve(server_key.decode(),
                                       *(key.decode() for key in zmq.curve_keypair()))
-            for keys in (stranger, None):
+            for keys in (unlisted, None):
                 with self.assertRaises(ziggurat.ConnectionLost):
                     ziggurat.connect(server.endpoint, curve=keys, connect_timeout=0.5)
 
