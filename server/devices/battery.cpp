@@ -11,6 +11,8 @@ namespace {
 
 class Batteries final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Batteries>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     const bool enabled = carrier.enabled.battery && carrier.entity.devices.battery;

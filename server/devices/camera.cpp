@@ -61,6 +61,8 @@ world::CameraLayout camera_layout(const Carrier& carrier, const scene::Camera& f
 
 class Cameras final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Cameras>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     robot.cameras.begin = layout.cameras.size();

@@ -12,6 +12,8 @@ namespace {
 
 class ContactSensors final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<ContactSensors>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     const std::size_t links = layout.entities[carrier.index].links.begin;

@@ -29,6 +29,10 @@ Devices::Devices() {
   for (const auto make : kinds) kinds_.push_back(make());
 }
 
+Devices::Devices(const Devices& other) {
+  for (const auto& kind : other.kinds_) kinds_.push_back(kind->clone());
+}
+
 void Devices::lay_out(const Carrier& carrier, world::RobotLayout& robot,
                       world::Layout& layout) const {
   for (const auto& kind : kinds_) kind->lay_out(carrier, robot, layout);

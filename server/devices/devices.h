@@ -13,6 +13,9 @@ class Devices {
  public:
   /// Without devices: they come with lay_out() and add().
   Devices();
+  Devices(const Devices& other);
+  Devices(Devices&&) noexcept = default;
+  Devices& operator=(Devices&&) noexcept = default;
 
   // Each calls the function of the same name of all kinds.
   void lay_out(const Carrier& carrier, world::RobotLayout& robot, world::Layout& layout) const;

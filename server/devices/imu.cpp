@@ -32,6 +32,8 @@ std::array<double, 3> array_of(const math::Vector3& vector) {
 
 class Imus final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Imus>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     robot.imus = append(carrier.enabled.imus, layout.imus, [&](const scene::Imu& imu) {

@@ -17,6 +17,8 @@ std::size_t find_joint(const scene::Entity& entity, const std::string& id) {
 
 class Joints final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Joints>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     using scene::JointMode;

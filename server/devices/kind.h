@@ -13,6 +13,9 @@ class Kind {
  public:
   virtual ~Kind() = default;
 
+  /// A copy to go back to if devices can't be added.
+  virtual std::unique_ptr<Kind> clone() const = 0;
+
   /// Appends the devices that an entity carries to their list. Left out is what has no effect
   /// because no controller enables it, unless others perceive it.
   /// @param robot  gets the range of what its controller enables

@@ -3,7 +3,7 @@
 #include "devices/picture.h"
 
 #include <cstddef>
-#include <optional>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -23,6 +23,8 @@ namespace {
 
 class Pictures final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Pictures>(*this); }
+
   /// Without a camera that takes pictures, nothing is made, and nothing of OpenGL is loaded.
   void add(const Setting& setting) override {
     for (const world::RobotLayout& robot : setting.new_robots()) {
@@ -31,9 +33,13 @@ class Pictures final : public Kind {
       }
     }
     if (renderer_) {
-      for (const scene::Entity& entity : setting.entities) renderer_->add(entity);
+      for (std::size_t i = 0; i < setting.entities.size(); ++i) {
+        const world::EntityLayout& entity = setting.layout.entities[setting.first_entity + i];
+        renderer_->add(setting.entities[i], entity.links.begin);
+      }
     } else if (!cameras_.empty()) {
-      renderer_.emplace(setting.scene, setting.all_entities(), setting.layout);
+      renderer_ = std::make_shared<render::Renderer>(setting.scene, setting.all_entities(),
+                                                     setting.layout);
     }
   }
 
@@ -63,7 +69,7 @@ class Pictures final : public Kind {
 
  private:
   std::vector<std::size_t> cameras_;  // into Layout::cameras, ascending
-  std::optional<render::Renderer> renderer_;
+  std::shared_ptr<render::Renderer> renderer_;  // of copies, too: it draws what the layout has
   render::Picture picture_;
 };
 

@@ -18,6 +18,8 @@ math::Vector3 draw(const scene::NoiseRange& noise, math::RandomStream& random) {
 
 class Positioning final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Positioning>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     robot.positioning =

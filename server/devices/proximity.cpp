@@ -32,6 +32,8 @@ double footbot_proximity_reading(double distance) {
 
 class Proximity final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Proximity>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     robot.proximity.begin = layout.proximity.size();

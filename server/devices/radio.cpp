@@ -11,6 +11,8 @@ namespace {
 
 class Radios final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Radios>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     robot.radios.begin = layout.radios.size();

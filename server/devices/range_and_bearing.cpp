@@ -14,6 +14,8 @@ namespace {
 
 class RangeAndBearing final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<RangeAndBearing>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     auto& list = layout.range_and_bearing;

@@ -15,6 +15,8 @@ constexpr double derivative_gain = 0.2;
 
 class Turrets final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Turrets>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     const scene::TurretUse use = carrier.enabled.turret.value_or(scene::TurretUse{});

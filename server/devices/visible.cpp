@@ -26,6 +26,8 @@ void start_all(const std::vector<Device>& devices, std::vector<Value>& commanded
 
 class Visible final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Visible>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     const scene::Devices& carried = carrier.entity.devices;

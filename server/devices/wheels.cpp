@@ -19,6 +19,8 @@ double draw(math::RandomStream& random, const scene::NoiseRange& noise) {
 
 class Wheels final : public Kind {
  public:
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Wheels>(*this); }
+
   void lay_out(const Carrier& carrier, world::RobotLayout& robot,
                world::Layout& layout) const override {
     const auto& use = carrier.enabled.wheels;

@@ -26,9 +26,12 @@ class Core {
 
   /// Builds an entity where it stands and puts it in.
   /// @param number  its place in the order of adding
+  /// @throws std::bad_alloc; then nothing changes
   Body add(const scene::Entity& entity, std::size_t number);
   /// Takes a body out; what rested on it falls. Its joints stay, without a coordinate.
   void remove(Body& body);
+  /// Undoes the last add().
+  void take_back(Body& body);
   /// Puts a body to rest where `placed` says, joints as assembled; it remembers no contact.
   void move(Body& body);
 

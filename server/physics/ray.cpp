@@ -146,7 +146,7 @@ struct Rays::Parts {
 
   bool has_floor = false;
   std::size_t entities = 0;
-  std::size_t links = 0;
+  std::size_t links = 0, last_links = 0;  // of all, of the last entity
   std::vector<Solid> solids;
   btDbvt tree;
   mutable btAlignedObjectArray<const btDbvtNode*> stack;
@@ -181,7 +181,8 @@ void Rays::add(const scene::Entity& entity) {
     if (link.collides)
       p.solids.push_back({link.geometry, p.entities, p.links + i, {}, nullptr, false});
   }
-  p.links += entity.links.size();
+  p.last_links = entity.links.size();
+  p.links += p.last_links;
   p.entities += 1;
 }
 
@@ -193,6 +194,16 @@ void Rays::remove(std::size_t entity) {
     solid.leaf = nullptr;
     solid.removed = true;
   }
+}
+
+void Rays::take_back() {
+  Parts& p = *parts_;
+  p.entities -= 1;
+  while (!p.solids.empty() && p.solids.back().entity == p.entities) {
+    if (p.solids.back().leaf) p.tree.remove(p.solids.back().leaf);
+    p.solids.pop_back();
+  }
+  p.links -= p.last_links;
 }
 
 void Rays::update(const world::State& state) {

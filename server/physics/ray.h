@@ -38,6 +38,9 @@ class Rays {
   /// @param entity  in order of adding
   void remove(std::size_t entity);
 
+  /// Forgets the entity that was added last.
+  void take_back();
+
   /// Takes the poses of a tick. Must be called before casts.
   void update(const world::State& state);
 

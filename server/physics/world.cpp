@@ -59,13 +59,29 @@ World::~World() = default;
 
 void World::add(const scene::Entity& entity) {
   Parts& p = *parts_;
+  if (p.bodies.size() == p.bodies.capacity()) p.bodies.reserve(2 * p.bodies.size() + 1);
   p.bodies.push_back(p.core.add(entity, p.bodies.size()));
   Body& body = p.bodies.back();
   body.first_link = p.link_count;
   body.first_magnet = p.magnet_count;
   p.link_count += body.links.size();
   p.magnet_count += body.magnets.size();
-  p.plugins.add(body);
+  try {
+    p.plugins.add(body);
+  } catch (...) {
+    take_back();
+    throw;
+  }
+}
+
+void World::take_back() {
+  Parts& p = *parts_;
+  Body& body = p.bodies.back();
+  p.plugins.remove(body);
+  p.core.take_back(body);
+  p.link_count = body.first_link;
+  p.magnet_count = body.first_magnet;
+  p.bodies.pop_back();
 }
 
 void World::remove(std::size_t entity) {

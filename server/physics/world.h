@@ -23,7 +23,11 @@ class World {
 
   /// Adds an entity at its pose, now or while the world runs; its links take the next places of
   /// State::links.
+  /// @throws std::bad_alloc; then nothing changes
   void add(const scene::Entity& entity);
+
+  /// Undoes the last add(), if no step has followed.
+  void take_back();
 
   /// Takes an entity out: its bodies, joints and magnets are gone, and what rested on it falls. Its
   /// number and its places in State::links are not used again, and read() leaves them as they are.

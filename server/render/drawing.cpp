@@ -166,10 +166,12 @@ Draftsman::Draftsman(Model model, const world::Layout& layout)
   add_hulls(0);
 }
 
-void Draftsman::add(const scene::Entity& entity) {
-  const std::size_t first = model_.bodies.size();
+void Draftsman::add(const scene::Entity& entity, std::size_t first_link) {
+  const auto known = std::min(first_link, model_.bodies.size());
+  model_.bodies.erase(model_.bodies.begin() + static_cast<std::ptrdiff_t>(known),
+                      model_.bodies.end());
   render::add_bodies(entity, model_);
-  add_hulls(first);
+  add_hulls(known);
 }
 
 /// Gives the hulls among new bodies a mesh; those of a model share one.
@@ -243,7 +245,8 @@ void Draftsman::add_bodies(const world::State& state, const View& view, Drawing&
   Bounds visible, all;
   const Pose camera_from_world = math::inverse(view.camera);
   const math::Quaternion to_light = light_from_world();
-  for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+  const std::size_t count = std::min(model_.bodies.size(), layout_.links.size());
+  for (std::size_t i = 0; i < count; ++i) {
     if (state.is_absent(layout_.links[i].entity)) continue;
     const Body& body = model_.bodies[i];
     const Pose in_camera = camera_from_world * state.links[i].pose;

@@ -66,7 +66,8 @@ class Draftsman {
   const Meshes& meshes() const { return meshes_; }
   const Model& model() const { return model_; }
   /// A new entity; its links are the next of the layout.
-  void add(const scene::Entity& entity);
+  /// @param first_link  its place in the layout; what was added from there on is forgotten
+  void add(const scene::Entity& entity, std::size_t first_link);
   void draw(const world::State& state, const View& view, Drawing& drawing);
 
  private:

@@ -23,7 +23,9 @@ Renderer::Renderer(const scene::Scene& scene, const std::vector<scene::Entity>& 
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 
-void Renderer::add(const scene::Entity& entity) { parts_->draftsman.add(entity); }
+void Renderer::add(const scene::Entity& entity, std::size_t first_link) {
+  parts_->draftsman.add(entity, first_link);
+}
 
 void Renderer::prepare() {
   Parts& p = *parts_;

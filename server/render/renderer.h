@@ -24,7 +24,8 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
 
   /// A new entity; its links are the next of the layout.
-  void add(const scene::Entity& entity);
+  /// @param first_link  its place in the layout; what was added from there on is forgotten
+  void add(const scene::Entity& entity, std::size_t first_link);
 
   /// Loads and makes what pictures need, so that an error is known before the first picture.
   /// @throws RenderError

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "devices/devices.h"
 #include "media/devices_index.h"
@@ -29,7 +30,9 @@ double substep_length(const scene::Scene& scene, const Options& options) {
 struct Simulation::Parts {
   Parts(const scene::Scene& scene, const Options& options, world::Layout& layout);
 
+  /// All or nothing.
   void spawn(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
+  void grow(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
   void remove(std::size_t entity);
   devices::Tick tick() { return {layout, state, observations, commands, physics, rays, *index}; }
   void look_around();  // rays and index take the poses of the state
@@ -47,6 +50,51 @@ struct Simulation::Parts {
   std::optional<media::DevicesIndex> index;
   devices::Devices devices;
   std::vector<scene::Entity> entities;  // placed, then spawned: as in the layout
+  std::size_t in_physics = 0, in_rays = 0;  // entities
+};
+
+/// The world before an entity is added to it; puts it back unless told to keep the new one. Putting
+/// back moves and shrinks only, so that it can't fail.
+class Simulation::Growing {
+ public:
+  Growing(Parts& parts, world::Layout& layout)
+      : parts_(parts),
+        layout_now_(layout),
+        layout_(layout),
+        state_(parts.state),
+        observations_(parts.observations),
+        commands_(parts.commands),
+        devices_(parts.devices),
+        index_(std::move(parts.index)) {}
+  Growing(const Growing&) = delete;
+  Growing& operator=(const Growing&) = delete;
+  ~Growing() {
+    if (kept_) return;
+    const std::size_t count = layout_.entities.size();
+    layout_now_ = std::move(layout_);
+    parts_.state = std::move(state_);
+    parts_.observations = std::move(observations_);
+    parts_.commands = std::move(commands_);
+    parts_.devices = std::move(devices_);
+    parts_.index = std::move(index_);
+    if (parts_.entities.size() > count) parts_.entities.pop_back();
+    if (parts_.in_physics > count) parts_.physics.take_back();
+    if (parts_.in_rays > count) parts_.rays.take_back();
+    parts_.in_physics = parts_.in_rays = count;
+  }
+
+  void keep() { kept_ = true; }
+
+ private:
+  Parts& parts_;
+  world::Layout& layout_now_;
+  world::Layout layout_;
+  world::State state_;
+  world::Observations observations_;
+  world::Commands commands_;
+  devices::Devices devices_;
+  std::optional<media::DevicesIndex> index_;
+  bool kept_ = false;
 };
 
 Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& made)
@@ -63,6 +111,7 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
     physics.add(entity);
     rays.add(entity);
   }
+  in_physics = in_rays = entities.size();
   index.emplace(layout);
   devices.add({scene, entities, layout, seed, 1.0 / ticks_per_second, substep, physics, 0, 0,
                [&] { return entities; }});
@@ -79,11 +128,20 @@ void Simulation::Parts::look_around() {
 
 void Simulation::Parts::spawn(const scene::Scene& scene, const scene::Entity& entity,
                               world::Layout& grown) {
+  Growing before(*this, grown);
+  grow(scene, entity, grown);
+  before.keep();
+}
+
+void Simulation::Parts::grow(const scene::Scene& scene, const scene::Entity& entity,
+                             world::Layout& grown) {
   const std::size_t first_entity = grown.entities.size(), first_robot = grown.robots.size();
   append(scene, entity, devices, grown);
   entities.push_back(entity);
   physics.add(entity);
+  ++in_physics;
   rays.add(entity);
+  ++in_rays;
   index.emplace(layout);
   devices.add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, substep,
                physics, first_entity, first_robot, [&] { return entities; }});
@@ -110,7 +168,13 @@ Simulation::Simulation(const scene::Scene& scene, const Options& options)
 Simulation::~Simulation() = default;
 
 void Simulation::reset(const scene::Scene& scene, const Options& options) {
-  parts_ = std::make_unique<Parts>(scene, options, *layout_);
+  world::Layout before = *layout_;
+  try {
+    parts_ = std::make_unique<Parts>(scene, options, *layout_);
+  } catch (...) {
+    *layout_ = std::move(before);
+    throw;
+  }
 }
 
 void Simulation::move(std::size_t entity, const math::Pose& pose) {

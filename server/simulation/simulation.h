@@ -37,7 +37,7 @@ class Simulation {
   /// Destroys the world and builds it again as a new simulation of the same scene: removed entities
   /// are back, spawned ones are no longer in the layout. The layout stays where it is;
   /// states, observations and commands move.
-  /// @throws scene::SceneError if something can't be placed with this seed; then nothing changes
+  /// @throws as the constructor, if something can't be placed with this seed; then nothing changes
   void reset(const scene::Scene& scene, const Options& options);
 
   /// Puts an entity to rest at a pose of its origin, joints as assembled. What robots sense of it
@@ -49,7 +49,8 @@ class Simulation {
   /// the next tick. The observations of a new robot are those of tick 0.
   /// @param scene  the one that this was made from
   /// @param entity  its id must differ from those of all entities that are present
-  /// @throws scene::SceneError if it overlaps another entity; then nothing changes
+  /// @throws scene::SceneError if it overlaps another entity, render::RenderError if its camera needs
+  /// pictures and there can't be any, std::bad_alloc; then nothing changes
   void spawn(const scene::Scene& scene, const scene::Entity& entity);
 
   /// Takes an entity out. Its places stay in all arrays, as they are; so does its name.
@@ -70,6 +71,7 @@ class Simulation {
 
  private:
   struct Parts;
+  class Growing;
   std::unique_ptr<world::Layout> layout_;  // others keep references to it
   std::unique_ptr<Parts> parts_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <iterator>
 #include <stdexcept>
 #include <utility>
@@ -47,7 +48,7 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
     }
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
     world_.simulation.spawn(world_.scene, entity);
-  } catch (const scene::SceneError& error) {
+  } catch (const std::exception& error) {  // the world is as it was
     return fail(call, ErrorCode::bad_value, "spawn.xml",
                 std::string(error.what()).substr(0, longest_message));
   }

@@ -48,6 +48,32 @@ struct Ground {
   btRigidBody body;
 };
 
+/// Joints of a body with a coordinate, not yet in Bullet's world.
+std::vector<MovingJoint> make_joints(const scene::Entity& entity, const Body& body) {
+  std::vector<MovingJoint> made;
+  for (std::size_t i = 0; i < entity.joints.size(); ++i) {
+    const scene::Joint& joint = entity.joints[i];
+    if (!scene::has_coordinate(joint.type)) continue;
+    MovingJoint moving;
+    moving.entity = body.entity;
+    moving.index = i;
+    moving.multi = body.mechanism->multi.get();
+    moving.link = multi_index(body.links[joint.child].part);
+    if (joint.limit) {
+      moving.limit = std::make_unique<btMultiBodyJointLimitConstraint>(
+          moving.multi, moving.link, joint.limit->lower, joint.limit->upper);
+    }
+    made.push_back(std::move(moving));
+  }
+  return made;
+}
+
+/// Makes room for more, so that push_back() can't throw.
+template <class Item>
+void make_room(std::vector<Item>& items, std::size_t more) {
+  if (items.capacity() - items.size() < more) items.reserve(2 * items.size() + more);
+}
+
 }  // namespace
 
 struct Core::Parts {
@@ -64,8 +90,8 @@ struct Core::Parts {
     dynamics.setGravity(btVector3(0, 0, 0));
   }
 
-  void add_joints(const scene::Entity& entity, Body& body);
   void detach(MovingJoint& joint);
+  void detach(Body& body);
 
   scene::Physics settings;
 
@@ -93,25 +119,6 @@ void Core::add_floor(const scene::Surface& surface) {
   parts_->dynamics.addRigidBody(&parts_->ground->body);
 }
 
-void Core::Parts::add_joints(const scene::Entity& entity, Body& body) {
-  for (std::size_t i = 0; i < entity.joints.size(); ++i) {
-    const scene::Joint& joint = entity.joints[i];
-    if (!scene::has_coordinate(joint.type)) continue;
-    MovingJoint moving;
-    moving.entity = body.entity;
-    moving.index = i;
-    moving.multi = body.mechanism->multi.get();
-    moving.link = multi_index(body.links[joint.child].part);
-    if (joint.limit) {
-      moving.limit = std::make_unique<btMultiBodyJointLimitConstraint>(
-          moving.multi, moving.link, joint.limit->lower, joint.limit->upper);
-      dynamics.addMultiBodyConstraint(moving.limit.get());
-      moving.limit->finalizeMultiDof();
-    }
-    joints.push_back(std::move(moving));
-  }
-}
-
 /// Takes it out of Bullet's world.
 void Core::Parts::detach(MovingJoint& joint) {
   if (joint.limit) dynamics.removeMultiBodyConstraint(joint.limit.get());
@@ -121,6 +128,10 @@ void Core::Parts::detach(MovingJoint& joint) {
 Body Core::add(const scene::Entity& entity, std::size_t number) {
   Parts& p = *parts_;
   Body body = build(entity, p.settings, number);
+  std::vector<MovingJoint> joints = make_joints(entity, body);
+  make_room(p.joints, joints.size());
+  make_room(p.held, 1);
+  // From here on only Bullet allocates, which does not throw.
   Mechanism& mechanism = *body.mechanism;
   if (mechanism.rigid) p.dynamics.addRigidBody(mechanism.rigid.get());
   if (mechanism.hold) {
@@ -135,8 +146,28 @@ Body Core::add(const scene::Entity& entity, std::size_t number) {
         fixed ? btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter
               : btBroadphaseProxy::AllFilter);
   }
-  p.add_joints(entity, body);
+  for (MovingJoint& joint : joints) {
+    if (joint.limit) {
+      p.dynamics.addMultiBodyConstraint(joint.limit.get());
+      joint.limit->finalizeMultiDof();
+    }
+    p.joints.push_back(std::move(joint));
+  }
   return body;
+}
+
+/// The same, with its joints.
+void Core::Parts::detach(Body& body) {
+  std::erase(held, body.entity);
+  std::erase_if(motors, [&](std::size_t motor) { return joints[motor].entity == body.entity; });
+  for (MovingJoint& joint : joints) {
+    if (joint.entity == body.entity) detach(joint);
+  }
+  Mechanism& mechanism = *body.mechanism;
+  if (mechanism.hold) dynamics.removeConstraint(mechanism.hold.get());
+  for (auto& collider : mechanism.link_colliders) dynamics.removeCollisionObject(collider.get());
+  if (mechanism.multi) dynamics.removeMultiBody(mechanism.multi.get());
+  if (mechanism.rigid) dynamics.removeRigidBody(mechanism.rigid.get());
 }
 
 void Core::remove(Body& body) {
@@ -144,20 +175,21 @@ void Core::remove(Body& body) {
   Mechanism& mechanism = *body.mechanism;
   for (auto& collider : mechanism.link_colliders) wake_neighbours(*collider, p.dynamics);
   if (mechanism.rigid) wake_neighbours(*mechanism.rigid, p.dynamics);
-  std::erase(p.held, body.entity);
-  std::erase_if(p.motors, [&](std::size_t motor) { return p.joints[motor].entity == body.entity; });
+  p.detach(body);
   for (MovingJoint& joint : p.joints) {
     if (joint.entity != body.entity) continue;
-    p.detach(joint);
     const std::size_t index = joint.index;
     joint = {};
     joint.entity = body.entity;
     joint.index = index;
   }
-  if (mechanism.hold) p.dynamics.removeConstraint(mechanism.hold.get());
-  for (auto& collider : mechanism.link_colliders) p.dynamics.removeCollisionObject(collider.get());
-  if (mechanism.multi) p.dynamics.removeMultiBody(mechanism.multi.get());
-  if (mechanism.rigid) p.dynamics.removeRigidBody(mechanism.rigid.get());
+  body.mechanism.reset();
+}
+
+void Core::take_back(Body& body) {
+  Parts& p = *parts_;
+  p.detach(body);
+  std::erase_if(p.joints, [&](const MovingJoint& joint) { return joint.entity == body.entity; });
   body.mechanism.reset();
 }
 
@@ -193,9 +225,9 @@ void Core::add_motor(JointIndex index, scene::JointMode mode, double max_impulse
   if (mode == scene::JointMode::disabled) return;
   joint.motor.constraint =
       std::make_unique<btMultiBodyJointMotor>(joint.multi, joint.link, 0, 0, max_impulse);
+  parts_->motors.push_back(index.value);
   parts_->dynamics.addMultiBodyConstraint(joint.motor.constraint.get());
   joint.motor.constraint->finalizeMultiDof();
-  parts_->motors.push_back(index.value);
 }
 
 void Core::set_target(JointIndex joint, double target) {

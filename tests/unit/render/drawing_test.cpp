@@ -82,7 +82,7 @@ TEST(Drawing, SharesTheMeshOfAHullAndTakesNewOnes) {
   EXPECT_EQ(drawing.batches[0].mesh.indices, 3u * 12);
   const std::size_t before = draftsman.meshes().indices.size();
   world.add(pyramid(0.3), {{5, 0, 0}, math::Quaternion::Identity()});
-  draftsman.add(world.entities.back());
+  draftsman.add(world.entities.back(), 2);
   EXPECT_EQ(draftsman.meshes().indices.size(), before + 36);
   draftsman.draw(world.state, forward_view(), drawing);
   EXPECT_EQ(drawing.batches.size(), 2u);

@@ -47,7 +47,7 @@ Shape shape(const ReadResult& result) {
 }
 
 std::string first_fault(const ReadResult& result) {
-  const auto faults = said(result, Problem::Severity::fault);
+  const auto faults = texts_of(result, Problem::Severity::fault);
   return faults.empty() ? "" : faults[0];
 }
 
@@ -206,7 +206,7 @@ TEST(Shapes, WhatIsNoHullIsAFaultThatSaysWhy) {
   };
   for (const Row& row : rows) {
     std::string all;
-    for (const auto& fault : said(read_hull(row.hull, row.file), Problem::Severity::fault)) {
+    for (const auto& fault : texts_of(read_hull(row.hull, row.file), Problem::Severity::fault)) {
       all += fault + "\n";
     }
     EXPECT_NE(all.find(row.fault), std::string::npos) << row.hull.substr(0, 80) << "\n" << all;

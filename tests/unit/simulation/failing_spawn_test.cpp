@@ -1,0 +1,202 @@
+// A spawn that fails at any point leaves the world as it was: each allocation is made to fail once,
+// and the library of OpenGL to be missing.
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+#include <string_view>
+
+#include "render/opengl.h"
+#include "small_scene.h"
+
+namespace {
+
+bool counting = false, has_opengl = true;
+std::size_t allocations_left = 0;  ///< until one fails, while counting
+
+void* allocate(std::size_t size) {
+  if (counting && allocations_left-- == 0) {
+    counting = false;
+    throw std::bad_alloc();
+  }
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return allocate(size); }
+void* operator new[](std::size_t size) { return allocate(size); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+/// In place of the C library's: OpenGL is loaded by it.
+extern "C" void* dlopen(const char* name, int flags) noexcept {
+  const bool is_missing =
+      !has_opengl && name && std::string_view(name).starts_with("libOSMesa");
+  using Open = void* (*)(const char*, int);
+  static const auto open = reinterpret_cast<Open>(dlsym(RTLD_NEXT, "dlopen"));
+  return open(is_missing ? "libOSMesa-missing.so" : name, flags);
+}
+
+namespace ziggurat::simulation {
+namespace {
+
+using testing::robot;
+using testing::SmallScene;
+
+/// A robot with a joint, a radio, an LED, a tag and a magnet.
+std::string equipped(const std::string& id, const std::string& position) {
+  return "<prototype id=\"" + id + "\"><body position=\"" + position +
+         R"("/><links ref="base"><link id="base" geometry="box" size=".1,.1,.1" mass="1"/>)"
+         R"(<link id="arm" geometry="hull" mass="0.1"><hull><vertex position="0,0,0"/>)"
+         R"(<vertex position="0.05,0,0"/><vertex position="0,0.05,0"/>)"
+         R"(<vertex position="0,0,0.1"/></hull></link></links><joints>)"
+         R"(<joint id="hinge" type="revolute" axis="0,0,1" limit="-90:90">)"
+         R"(<parent link="base" position="0,0,0.11"/><child link="arm"/></joint></joints><devices>)"
+         R"(<radios medium="air"><radio anchor="base" position="0,0,0" range="1"/></radios>)"
+         R"(<leds medium="leds"><led anchor="base" offset="0,0,0.1" color="red"/></leds>)"
+         R"(<tags medium="tags"><tag anchor="base" position="0,0,0.1" orientation="0,0,0" )"
+         R"(observable_angle="90" side_length="0.05" payload="too long for a small string"/>)"
+         R"(</tags><magnets><magnet anchor="base" offset="0,0,0" passive_field="0,0,1"/></magnets>)"
+         R"(</devices><controller config="c"/></prototype>)";
+}
+
+const std::string bodies =
+    R"(<box id="low" size=".1,.1,.1" mass="1" movable="true"><body position="0.4,0,0"/></box>)"
+    R"(<box id="high" size=".1,.1,.1" mass="1" movable="true"><body position="0.4,0,0.1"/></box>)"
+    R"(<sphere id="ball" radius="0.05" mass="1" movable="true"><body position="0.8,0,0"/></sphere>)";
+
+const std::string engine = R"(<floor/><gravity g="9.8"/><magnetism/>)";
+
+const SmallScene robots{
+    R"(<joints implementation="default"><joint id="hinge" mode="position" max_impulse="1"/></joints>)"
+    R"(<radios implementation="default"/><leds implementation="default" medium="leds"/>)"
+    R"(<tags implementation="default"/>)",
+    R"(<joints implementation="default"><joint id="hinge" mode="position"/></joints>)"
+    R"(<radios implementation="default"/><positioning implementation="default"/>)",
+    equipped("first", "0,0,0") + bodies, engine};
+
+/// The controller's camera takes pictures, and nothing in the scene has one.
+const SmallScene cameras{
+    "",
+    R"(<cameras implementation="default"><camera id="eye" anchor="base" position="0,0,0.2" )"
+    R"(orientation="0,0,0" range="0.1:1" focal_length="100,100" resolution="64,48" )"
+    R"(principle_point="32,24" image="true"/></cameras>)",
+    bodies, engine};
+
+struct Numbers {
+  std::size_t entities, links, robots, radios, leds, tags, commanded_leds, positions;
+  std::uint64_t hash;
+  bool operator==(const Numbers&) const = default;
+};
+
+Numbers numbers(Simulation& simulation) {
+  const world::Layout& layout = simulation.layout();
+  return {layout.entities.size(),
+          layout.links.size(),
+          layout.robots.size(),
+          layout.radios.size(),
+          layout.leds.size(),
+          layout.tags.size(),
+          simulation.commands().led_colors.size(),
+          simulation.observations().positioning.size(),
+          simulation.hash()};
+}
+
+/// A world, and another that no failing spawn has touched.
+struct Twins {
+  explicit Twins(const SmallScene& small) : read(small.read_all()) {}
+
+  scene::Entity entity(const std::string& xml) const {
+    const scene::Addition addition = read.additions.read(
+        xml, read.scene, std::size_t{1} << 20, [](const std::string&) { return false; });
+    for (const auto& problem : addition.problems) ADD_FAILURE() << scene::to_string(problem);
+    return addition.entity;
+  }
+  void step(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      world.step();
+      untouched.step();
+      ASSERT_EQ(world.hash(), untouched.hash()) << "tick " << i;
+    }
+  }
+
+  scene::ReadResult read;
+  Simulation world{read.scene, {1, {}}};
+  Simulation untouched{read.scene, {1, {}}};
+};
+
+/// @param failing  the allocation that fails
+/// @returns whether the entity was spawned
+bool spawn(Simulation& world, const scene::Scene& scene, const scene::Entity& entity,
+           std::size_t failing) {
+  allocations_left = failing;
+  counting = true;
+  try {
+    world.spawn(scene, entity);
+    counting = false;
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+}
+
+TEST(FailingSpawn, OutOfMemoryAnywhereChangesNothing) {
+  Twins twins(robots);
+  const scene::Entity entity = twins.entity(equipped("second", "2,0,0"));
+  twins.step(3);
+  std::size_t stages = 0;
+  for (Numbers before = numbers(twins.world);
+       !spawn(twins.world, twins.read.scene, entity, stages); ++stages) {
+    ASSERT_EQ(numbers(twins.world), before) << "allocation " << stages;
+    ASSERT_LT(stages, 100'000u);
+    if (stages % 50 != 0) continue;
+    twins.step(1);
+    before = numbers(twins.world);
+  }
+  EXPECT_GT(stages, 100u);
+  twins.untouched.spawn(twins.read.scene, entity);
+  twins.step(20);
+}
+
+TEST(FailingSpawn, WithoutOpenGlSaysWhatToInstallAndChangesNothing) {
+  Twins twins(cameras);
+  twins.step(3);
+  const scene::Entity entity = twins.entity(equipped("eye", "2,0,0"));
+  const Numbers before = numbers(twins.world);
+  has_opengl = false;
+  try {
+    twins.world.spawn(twins.read.scene, entity);
+    FAIL() << "there is no OpenGL";
+  } catch (const render::RenderError& error) {
+    EXPECT_NE(std::string(error.what()).find("libosmesa6"), std::string::npos) << error.what();
+  }
+  has_opengl = true;
+  EXPECT_EQ(numbers(twins.world), before);
+  twins.step(5);
+  twins.world.spawn(twins.read.scene, entity);
+  twins.untouched.spawn(twins.read.scene, entity);
+  twins.step(2);
+}
+
+TEST(FailingReset, LeavesTheWorldAsItWas) {
+  Twins twins(robots);
+  twins.step(2);
+  const Numbers before = numbers(twins.world);
+  for (const std::size_t failing : {0u, 10u, 100u, 300u}) {
+    allocations_left = failing;
+    counting = true;
+    EXPECT_THROW(twins.world.reset(twins.read.scene, {7, {}}), std::bad_alloc);
+    counting = false;
+    ASSERT_EQ(numbers(twins.world), before) << failing;
+  }
+  twins.step(3);
+}
+
+}  // namespace
+}  // namespace ziggurat::simulation
