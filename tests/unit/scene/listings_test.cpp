@@ -247,9 +247,9 @@ TEST(Listings, Repeater) {
   EXPECT_EQ(devices.radio_medium, 3u);
   EXPECT_EQ(devices.leds.at(0).color, Color{});
   const ControllerDevices& enabled = result.scene.controllers.at(0).devices;
-  EXPECT_TRUE(enabled.radios_actuator && enabled.radios_sensor && enabled.radios_show_rays);
-  EXPECT_TRUE(enabled.leds_actuator);
-  EXPECT_EQ(enabled.leds_medium, 0u);
+  ASSERT_TRUE(enabled.radios && enabled.leds);
+  EXPECT_TRUE(enabled.radios->actuator && enabled.radios->sensor && enabled.radios->show_rays);
+  EXPECT_EQ(enabled.leds->medium, 0u);
 }
 
 TEST(Listings, FootBotControllerAndTarget) {
@@ -275,7 +275,8 @@ TEST(Listings, FootBotControllerAndTarget) {
   const Entity& foot_bot = result.scene.entities.at(1);
   EXPECT_EQ(foot_bot.links.at(*foot_bot.turret).id, cameras[1].anchor);
   const ControllerDevices& enabled = result.scene.controllers[0].devices;
-  EXPECT_TRUE(enabled.turret_actuator && enabled.wheels_actuator && enabled.wheels_sensor);
+  ASSERT_TRUE(enabled.turret && enabled.wheels);
+  EXPECT_TRUE(enabled.turret->actuator && enabled.wheels->actuator && enabled.wheels->sensor);
   const Devices& devices = result.scene.entities.at(0).devices;
   EXPECT_EQ(devices.directional_leds.at(0).id, "directional_led_0");
   EXPECT_EQ(devices.directional_leds.at(0).color, (Color{255, 0, 0}));

@@ -37,20 +37,28 @@ void run(Simulation& simulation, int ticks) {
   for (int i = 0; i < ticks; ++i) simulation.step();
 }
 
+/// A robot of one link without drag, of 0.1 m and 1 kg.
+std::string smooth(const std::string& body, const std::string& friction = "0.5") {
+  return R"(<prototype id="r"><body )" + body +
+         R"(/><links ref="base"><link id="base" geometry="box" size=".1,.1,.1" mass="1" friction=")" +
+         friction + R"(" linear_damping="0" angular_damping="0"/></links>)" +
+         R"(<controller config="c"/></prototype>)";
+}
+
 TEST(Imu, AtRestFeelsTheFloorPushUp) {
   Simulation world = SmallScene{"", imu(), robot("r", "0,0,0", ""), ground}.run();
   expect_near(reading(world).acceleration, {0, 0, g}, 1e-12);  // tick 0
-  run(world, 5);
-  expect_near(reading(world).acceleration, {0, 0, g}, 1e-6);
-  expect_near(reading(world).angular_velocity, {0, 0, 0}, 1e-6);
+  run(world, 20);                                              // asleep
+  expect_near(reading(world).acceleration, {0, 0, g}, 1e-9);
+  expect_near(reading(world).angular_velocity, {0, 0, 0}, 1e-9);
 }
 
 TEST(Imu, ReadsInItsOwnFrame) {
   // Turned by 90 degrees about y: x points down.
   Simulation world =
       SmallScene{"", imu(R"(orientation="0,90,0")"), robot("r", "0,0,0", ""), ground}.run();
-  run(world, 2);
-  expect_near(reading(world).acceleration, {-g, 0, 0}, 1e-6);
+  run(world, 20);
+  expect_near(reading(world).acceleration, {-g, 0, 0}, 1e-9);
 }
 
 TEST(Imu, WithoutGravityFeelsNothingAtRest) {
@@ -60,12 +68,29 @@ TEST(Imu, WithoutGravityFeelsNothingAtRest) {
 }
 
 TEST(Imu, InFreeFallFeelsNothing) {
-  Simulation world = SmallScene{"", imu(), robot("r", "0,0,3", ""), R"(<gravity g="9.8"/>)"}.run();
+  Simulation world = SmallScene{"", imu(), smooth(R"(position="0,0,5" orientation="30,40,50")"),
+                                R"(<gravity g="9.8"/>)"}
+                         .run();
   for (int i = 0; i < 4; ++i) {
     world.step();
     expect_near(reading(world).acceleration, {0, 0, 0}, 1e-9);
   }
   EXPECT_LT(world.state().links[0].velocity.z(), -3) << "it falls";
+}
+
+TEST(Imu, InFreeFallThroughAirFeelsItsDrag) {
+  // The default damping k = 0.04: a force of -m v (k + k |v|), v at the substep's beginning.
+  Simulation world = SmallScene{"", imu(), robot("r", "0,0,5", ""), R"(<gravity g="9.8"/>)"}.run();
+  const auto drag = [](double v) { return 0.04 * v * (1 + v); };
+  double v = 0;
+  for (int i = 0; i < 4; ++i) {
+    world.step();
+    const double first = drag(v);
+    v += (g - first) * 0.05;
+    const double second = drag(v);
+    v += (g - second) * 0.05;
+    expect_near(reading(world).acceleration, {0, 0, (first + second) / 2}, 1e-9);
+  }
 }
 
 /// A link that turns about z with an IMU 0.3 m from the axis, x outwards.
@@ -116,18 +141,15 @@ TEST(Imu, MeasuresAFastWheel) {  // more than half a turn in a tick
 
 /// A slope of 20 degrees that rises towards +x, and a robot that stands on it, as steep.
 SmallScene slope(const std::string& friction) {
-  const std::string steep = R"( orientation="0,-20,0"/>)";
-  const std::string surface = " friction=\"" + friction + "\">";
-  return {
-      "", imu(),
-      R"(<box id="slope" size="4,4,0.2" movable="false")" + surface + R"(<body position="0,0,1")" +
-          steep + "</box>" + R"(<prototype id="r")" + surface +
-          // The slope's top, 0.2 m above its origin along its normal.
-          "<body position=\"" + std::to_string(-0.2 * std::sin(std::numbers::pi / 9)) + ",0," +
-          std::to_string(1 + 0.2 * std::cos(std::numbers::pi / 9)) + "\"" + steep +
-          R"(<links ref="base"><link id="base" geometry="box" size=".2,.2,.05" mass="1"/></links>
-                 <controller config="c"/></prototype>)",
-      R"(<gravity g="9.8"/>)"};
+  constexpr double angle = std::numbers::pi / 9;
+  // The top of the slope is 0.2 m above its origin along its normal.
+  const std::string at =
+      std::to_string(-0.2 * std::sin(angle)) + ",0," + std::to_string(1 + 0.2 * std::cos(angle));
+  return {"", imu(),
+          R"(<box id="slope" size="4,4,0.2" movable="false" friction=")" + friction +
+              R"("><body position="0,0,1" orientation="0,-20,0"/></box>)" +
+              smooth("position=\"" + at + R"(" orientation="0,-20,0")", friction),
+          R"(<gravity g="9.8"/>)"};
 }
 
 TEST(Imu, AtRestOnASlopeReadsItsAngle) {
@@ -146,7 +168,8 @@ TEST(Imu, SlidingWithoutFrictionFeelsOnlyTheSlope) {
 }
 
 TEST(Imu, FeelsNothingOfBeingMovedByASupervisor) {
-  Simulation world = SmallScene{"", imu(), robot("r", "0,0,5", ""), R"(<gravity g="9.8"/>)"}.run();
+  Simulation world =
+      SmallScene{"", imu(), smooth(R"(position="0,0,5")"), R"(<gravity g="9.8"/>)"}.run();
   run(world, 3);
   world.move(0, {{1, 1, 6}, math::Quaternion::Identity()});
   run(world, 1);

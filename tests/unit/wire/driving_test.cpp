@@ -95,9 +95,9 @@ TEST_F(Driving, WrongLengths) {
 TEST_F(Driving, ValuesThatCannotBe) {
   drive({0, 0, 0, nan});
   expect_fault(ErrorCode::bad_value, "wheel_velocities", "c",
-               "The speed of a wheel of robot 'c' is nan; it must be finite.");
+               "The speed of a wheel of robot 'c' is 0, nan; it must be finite.");
   drive({0, -infinity, 0, 0});
-  expect_fault(ErrorCode::bad_value, "wheel_velocities", "a", "is -inf");
+  expect_fault(ErrorCode::bad_value, "wheel_velocities", "a", "is 0, -inf");
   for (const int mode : {0, 4, -1, 2'000'000'000}) {
     turn({v1::TURRET_SPEED, mode}, {}, {});
     expect_fault(ErrorCode::bad_value, "turret_modes", "c",
