@@ -238,7 +238,7 @@ class Radio(DeviceTest):
             """,
             "function init() end function step() log(#robot.radios.a.rx_data) end")
         outcome = self.run_scene("--ticks", 1, "--quiet", scene=scene)
-        self.assertRegex(outcome.lines[0], r"^\[0 t\] .*1048577 bytes; 1048576 are the most")
+        self.assertRegex(outcome.lines[0], r"^\[0 t\] .*1048577 bytes; at most 1048576 are allowed")
         self.assertEqual(outcome.lines[1], "[1 l] 1")
 
 

@@ -160,7 +160,7 @@ TEST(Controllers, KindsAndParams) {
   EXPECT_EQ(controllers[1].command, "./drive --fast");
   EXPECT_EQ(controllers[2].type, "footbot_diffusion_controller");
   EXPECT_EQ(count_containing(notices(result),
-                             "6:1: <footbot_diffusion_controller> is taken as an "
+                             "6:1: <footbot_diffusion_controller> is read as an "
                              "external controller"),
             1u);
   EXPECT_EQ(count_containing(notices(result), "library of"), 1u);

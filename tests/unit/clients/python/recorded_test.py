@@ -25,6 +25,8 @@ def messages():
 def is_subset(old, today):
     if isinstance(old, dict):
         return all(name in today and is_subset(old[name], today[name]) for name in old)
+    if isinstance(old, list):
+        return len(old) == len(today) and all(map(is_subset, old, today))
     return old == today
 
 
