@@ -31,19 +31,24 @@ const world::ContactReading& reading(const Simulation& simulation, std::size_t s
   return simulation.observations().contact_sensors.at(sensor);
 }
 
+/// The force on the first link, in the world: contacts leave a robot tilted by some 1e-4 rad.
+math::Vector3 force(const Simulation& simulation) {
+  const auto& [x, y, z] = reading(simulation).force;
+  return simulation.state().links[0].pose.orientation * math::Vector3(x, y, z);
+}
+
 void run(Simulation& simulation, int ticks) {
   for (int i = 0; i < ticks; ++i) simulation.step();
 }
 
-// Open: fails since the merge of 2026-11-22 (issue 12).
-TEST(ContactSensor, DISABLED_AtRestFeelsItsWeight) {
+TEST(ContactSensor, AtRestFeelsItsWeight) {
   Simulation world = SmallScene{"", base, robot("r", "0,0,0", ""), ground}.run();
   EXPECT_EQ(reading(world).touches, 0) << "before the first tick";
   run(world, 10);  // robot() weighs 1 kg
   EXPECT_EQ(reading(world).touches, 1);
-  EXPECT_NEAR(reading(world).force[0], 0, 1e-3);
-  EXPECT_NEAR(reading(world).force[1], 0, 1e-3);
-  EXPECT_NEAR(reading(world).force[2], g, 1e-2);
+  EXPECT_NEAR(force(world).x(), 0, 1e-3);
+  EXPECT_NEAR(force(world).y(), 0, 1e-3);
+  EXPECT_NEAR(force(world).z(), g, 1e-3);
   EXPECT_NEAR(reading(world).strength, g, 1e-2);
 }
 
@@ -63,18 +68,17 @@ TEST(ContactSensor, OnceInTheAirAgainFeelsNothing) {
   EXPECT_EQ(reading(world).strength, 0);
 }
 
-// Open: fails since the merge of 2026-11-22 (issue 12).
-TEST(ContactSensor, DISABLED_WhileItLandsItsForceIsWhatChangesItsMomentum) {
+TEST(ContactSensor, WhileItLandsItsForceIsWhatChangesItsMomentum) {
   Simulation world = SmallScene{"", base, smooth("0,0,0.3"), ground}.run();
   constexpr double tick = 0.1, mass = 1;
   double before = 0, impulse = 0;
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < 6; ++i) {  // it sleeps later: that takes what is left of its velocity
     world.step();
     const double now = world.state().links[0].velocity.z();
     // m dv = (F - m g) dt, tick by tick
-    EXPECT_NEAR(reading(world).force[2] * tick, mass * (now - before + g * tick), 1e-6) << i;
+    EXPECT_NEAR(force(world).z() * tick, mass * (now - before + g * tick), 1e-6) << i;
     before = now;
-    impulse += reading(world).force[2] * tick;
+    impulse += force(world).z() * tick;
   }
   EXPECT_GT(impulse, std::sqrt(2 * g * 0.25)) << "it landed";
 }
