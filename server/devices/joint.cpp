@@ -47,7 +47,8 @@ class Joints final : public Kind {
       }
       for (const scene::JointSensor& sensor : joints.sensors) {
         const std::size_t joint = find_joint(entity, sensor.joint);
-        if (sensor.mode == scene::JointMode::disabled || !scene::has_coordinate(entity.joints[joint].type)) {
+        if (sensor.mode == scene::JointMode::disabled ||
+            !scene::has_coordinate(entity.joints[joint].type)) {
           sensors_.push_back({{}, false, true});
         } else {
           sensors_.push_back({setting.physics.joint(robot.entity, joint),

@@ -38,8 +38,8 @@ class Pictures final : public Kind {
         renderer_->add(setting.entities[i], entity.links.begin);
       }
     } else if (!cameras_.empty()) {
-      renderer_ = std::make_shared<render::Renderer>(setting.scene, setting.all_entities(),
-                                                     setting.layout);
+      renderer_ =
+          std::make_shared<render::Renderer>(setting.scene, setting.all_entities(), setting.layout);
     }
   }
 
@@ -68,7 +68,7 @@ class Pictures final : public Kind {
   }
 
  private:
-  std::vector<std::size_t> cameras_;  // into Layout::cameras, ascending
+  std::vector<std::size_t> cameras_;            // into Layout::cameras, ascending
   std::shared_ptr<render::Renderer> renderer_;  // of copies, too: it draws what the layout has
   render::Picture picture_;
 };

@@ -34,8 +34,8 @@ class World {
   /// Afterwards only its joints may be read, which are at 0.
   void remove(std::size_t entity);
 
-  /// The first entity, in order of adding, that another would overlap at its pose, at the current poses.
-  /// The floor never counts; touching is not overlapping.
+  /// The first entity, in order of adding, that another would overlap at its pose, at the current
+  /// poses. The floor never counts; touching is not overlapping.
   std::optional<std::size_t> overlapped_by(const scene::Entity& entity) const;
 
   /// A revolute or prismatic joint of an entity added before.

@@ -69,8 +69,8 @@ struct Bounds {
 };
 
 math::Quaternion light_from_world() {
-  // The shortest rotation of towards_sun onto +z. (Eigen's FromTwoVectors handles opposite vectors by
-  // a singular value decomposition, which takes the compiler seven seconds.)
+  // The shortest rotation of towards_sun onto +z. (Eigen's FromTwoVectors handles opposite vectors
+  // by a singular value decomposition, which takes the compiler seven seconds.)
   const Vector3 axis = towards_sun.cross(Vector3::UnitZ());
   return math::Quaternion(1 + towards_sun.z(), axis.x(), axis.y(), axis.z()).normalized();
 }

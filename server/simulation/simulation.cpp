@@ -49,7 +49,7 @@ struct Simulation::Parts {
   world::Commands commands;
   std::optional<media::DevicesIndex> index;
   devices::Devices devices;
-  std::vector<scene::Entity> entities;  // placed, then spawned: as in the layout
+  std::vector<scene::Entity> entities;      // placed, then spawned: as in the layout
   std::size_t in_physics = 0, in_rays = 0;  // entities
 };
 
@@ -143,8 +143,8 @@ void Simulation::Parts::grow(const scene::Scene& scene, const scene::Entity& ent
   rays.add(entity);
   ++in_rays;
   index.emplace(layout);
-  devices.add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, substep,
-               physics, first_entity, first_robot, [&] { return entities; }});
+  devices.add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, substep, physics,
+               first_entity, first_robot, [&] { return entities; }});
   physics.read(state);
   look_around();
   devices::Tick first = tick();

@@ -55,9 +55,9 @@ std::size_t allocations_of(World& world, int substeps) {
 }
 
 scene::Entity arm() {
-  scene::Entity entity = prototype("arm", at(1, 0, 0), true,
-                                   {link("base", scene::Box{{0.2, 0.2, 0.1}}, 1),
-                                    link("arm", scene::Capsule{0.02, 0.2}, 0.1)});
+  scene::Entity entity = prototype(
+      "arm", at(1, 0, 0), true,
+      {link("base", scene::Box{{0.2, 0.2, 0.1}}, 1), link("arm", scene::Capsule{0.02, 0.2}, 0.1)});
   entity.joints.push_back(
       joint(scene::JointType::revolute, Vector3::UnitY(), at(0, 0, 0.11), at(0, 0, 0.02)));
   entity.links[0].damping = {0.1, 0.2};
@@ -65,9 +65,9 @@ scene::Entity arm() {
 }
 
 scene::Entity wheeled() {
-  scene::Entity entity = prototype("wheeled", at(-1, 0, 0), true,
-                                   {link("base", scene::Cylinder{0.1, 0.1}, 1),
-                                    link("turret", scene::Sphere{0}, 0)});
+  scene::Entity entity =
+      prototype("wheeled", at(-1, 0, 0), true,
+                {link("base", scene::Cylinder{0.1, 0.1}, 1), link("turret", scene::Sphere{0}, 0)});
   entity.kind = scene::EntityKind::foot_bot;
   entity.links[1].collides = false;
   entity.traction = scene::Traction{15, 150};
@@ -92,7 +92,8 @@ TEST_F(Allocations, AreCounted) {
 TEST_F(Allocations, OfBodiesAtRestAreNone) {
   World world(with_floor(9.8), 0.01);
   for (int i = 0; i < 3; ++i) {
-    world.add(single(scene::EntityKind::box, at(0, 0, 0.1 * i), true, scene::Box{{0.1, 0.1, 0.1}}, 1));
+    world.add(
+        single(scene::EntityKind::box, at(0, 0, 0.1 * i), true, scene::Box{{0.1, 0.1, 0.1}}, 1));
   }
   world.add(single(scene::EntityKind::sphere, at(0.3, 0, 0), true, scene::Sphere{0.05}, 1));
   EXPECT_EQ(allocations_of(world, 100), 0u);

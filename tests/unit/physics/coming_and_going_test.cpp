@@ -188,7 +188,8 @@ TEST(RemoveEntity, RemovesItsMagnetsAndKeepsCurrentsOfOthers) {
   const double before = position(world, 2).x();
   const double speed = state_of(world).links[2].velocity.x();
   for (int i = 0; i < 20; ++i) world.step();
-  EXPECT_NEAR(position(world, 2).x(), before + 0.02 * speed, 1e-9) << "no dipole attracts it any more";
+  EXPECT_NEAR(position(world, 2).x(), before + 0.02 * speed, 1e-9)
+      << "no dipole attracts it any more";
 }
 
 TEST(RemoveEntity, IsIgnoredByRays) {

@@ -1,13 +1,12 @@
 // How bodies of each shape rest, roll and turn.
 
-#include "physics/shape.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "bench_scene.h"
 #include "physics/placement.h"
+#include "physics/shape.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -77,9 +76,9 @@ TEST(Shape, ARampSlidesOnAFaceAndKeepsItsFrame) {
 
 TEST(Shape, AHullTurnsFreelyAboutItsCenterOfMass) {
   World world(with_gravity(0), 1e-3);
-  scene::Entity entity = prototype(
-      "two", at(0, 0, 0), true,
-      {link("ramp", ramp(0.4, 0.2, 0.16), 0.3), link("arm", scene::Sphere{0.01}, 1e-3)});
+  scene::Entity entity =
+      prototype("two", at(0, 0, 0), true,
+                {link("ramp", ramp(0.4, 0.2, 0.16), 0.3), link("arm", scene::Sphere{0.01}, 1e-3)});
   entity.joints.push_back(
       joint(scene::JointType::revolute, Vector3::UnitY(), at(0.4 / 3, 0.1, 0.16 / 3), {}));
   world.add(entity);
@@ -89,8 +88,9 @@ TEST(Shape, AHullTurnsFreelyAboutItsCenterOfMass) {
   // Whatever turns inside, the common centre of mass stays.
   const Vector3 ramp_center = state.links[0].pose * Vector3(0.4 / 3, 0.1, 0.16 / 3);
   const Vector3 arm_center = state.links[1].pose * Vector3(0, 0, 0.01);
-  const Vector3 before =
-      (0.3 * Vector3(0.4 / 3, 0.1, 0.16 / 3) + 1e-3 * (Vector3(0.4 / 3, 0.1, 0.16 / 3) + Vector3(0, 0, 0.01))) / 0.301;
+  const Vector3 before = (0.3 * Vector3(0.4 / 3, 0.1, 0.16 / 3) +
+                          1e-3 * (Vector3(0.4 / 3, 0.1, 0.16 / 3) + Vector3(0, 0, 0.01))) /
+                         0.301;
   EXPECT_NEAR(((0.3 * ramp_center + 1e-3 * arm_center) / 0.301 - before).norm(), 0, 1e-6);
   EXPECT_GT(state.links[1].angular_velocity.norm(), 1);
 }
@@ -100,12 +100,14 @@ double rolled(const scene::Geometry& shape, const Quaternion& lying, double radi
   const double angle = 10 * EIGEN_PI / 180;
   World world(with_gravity(9.8), 1e-3);
   const Quaternion tilt = about({0, 1, 0}, angle);
-  world.add(prototype("slope", {{0, 0, -0.1}, tilt}, false, {link("l", scene::Box{{4, 1, 0.1}}, 1)}));
+  world.add(
+      prototype("slope", {{0, 0, -0.1}, tilt}, false, {link("l", scene::Box{{4, 1, 0.1}}, 1)}));
   const Vector3 normal = tilt * Vector3::UnitZ(), downhill = tilt * Vector3::UnitX();
   const Vector3 center = Vector3(0, 0, -0.1) + normal * (0.1 + radius);
   const Quaternion orientation = tilt * lying;
-  scene::Entity body = prototype("body", {center - orientation * shape_frame(shape).position, orientation},
-                                 true, {link("l", shape, 0.2)});
+  scene::Entity body =
+      prototype("body", {center - orientation * shape_frame(shape).position, orientation}, true,
+                {link("l", shape, 0.2)});
   world.add(body);
   const world::State state = after(world, 500);
   return (state.links[1].pose * shape_frame(shape).position - center).dot(downhill);
@@ -114,7 +116,9 @@ double rolled(const scene::Geometry& shape, const Quaternion& lying, double radi
 TEST(Rolling, IsAsFastAsTheMomentOfInertiaSays) {
   const double g = 9.8 * std::sin(10 * EIGEN_PI / 180);
   const double r = 0.05;
-  const auto expected = [&](double inertia) { return 0.5 * 0.25 * g / (1 + inertia / (0.2 * r * r)); };
+  const auto expected = [&](double inertia) {
+    return 0.5 * 0.25 * g / (1 + inertia / (0.2 * r * r));
+  };
   const scene::Sphere ball{r};
   EXPECT_NEAR(rolled(ball, Quaternion::Identity(), r), expected(inertia(ball, 0.2).x()), 1e-3);
   const scene::Capsule capsule{r, 0.3};
@@ -124,7 +128,8 @@ TEST(Rolling, IsAsFastAsTheMomentOfInertiaSays) {
 
 TEST(Rest, ASphereEntityStopsAndSleeps) {
   World world(with_floor(9.8), 0.01);
-  scene::Entity ball = single(scene::EntityKind::sphere, at(0, 0, 0.02), true, scene::Sphere{0.02}, 0.1);
+  scene::Entity ball =
+      single(scene::EntityKind::sphere, at(0, 0, 0.02), true, scene::Sphere{0.02}, 0.1);
   world.add(ball);
   const world::State state = after(world, 400);
   EXPECT_NEAR(state.origins[0].position.z(), 0, 2e-5);
@@ -150,7 +155,8 @@ TEST(Rest, ShapesLieOnEachOther) {
     world.add(prototype("capsule", {Vector3(x, 0, 0.08) - lying * Vector3(0, 0, 0.15), lying}, true,
                         {link("l", capsule, 0.3)}));
   }
-  world.add(single(scene::EntityKind::box, at(0, 0, 0.11), true, scene::Box{{0.3, 0.2, 0.02}}, 0.5));
+  world.add(
+      single(scene::EntityKind::box, at(0, 0, 0.11), true, scene::Box{{0.3, 0.2, 0.02}}, 0.5));
   const world::State state = after(world, 300);
   EXPECT_NEAR(state.origins[0].position.z(), 0, 5e-5);
   for (const std::size_t i : {1, 2}) {
@@ -163,7 +169,8 @@ TEST(Placement, KnowsAllShapes) {
   Placement placement;
   placement.add(prototype("pill", at(0, 0, 0), true, {link("l", scene::Capsule{0.1, 0.4}, 1)}));
   const auto overlapped = [&](const scene::Geometry& shape, double x, double z) {
-    return !placement.overlapped_by(prototype("p", at(x, 0, z), true, {link("l", shape, 1)})).empty();
+    return !placement.overlapped_by(prototype("p", at(x, 0, z), true, {link("l", shape, 1)}))
+                .empty();
   };
   const scene::Hull cube = hull_of_box({0.1, 0.1, 0.1});
   EXPECT_TRUE(overlapped(cube, 0.149, 0.1));

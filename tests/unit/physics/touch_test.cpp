@@ -131,14 +131,15 @@ TEST(Touch, ASqueezedLinkFeelsBothSides) {
   world.take_touch(0, 0);
   for (int i = 0; i < 10; ++i) world.step();
   const LinkTouch touch = world.take_touch(0, 0);
-  EXPECT_NEAR(touch.impulse.z() / (10 * h), g, 0.05 * g);           // 4 g up, 3 g down
+  EXPECT_NEAR(touch.impulse.z() / (10 * h), g, 0.05 * g);  // 4 g up, 3 g down
   EXPECT_NEAR(touch.magnitude / (10 * h), 7 * g, 0.05 * 7 * g);
 }
 
 TEST(Touch, FrictionHoldsABoxOnASlope) {
   World world(with_gravity(g), h);
   const math::Quaternion tilt = about({0, 1, 0}, 0.1);
-  world.add(single(scene::EntityKind::box, {{0, 0, -0.1}, tilt}, false, scene::Box{{2, 1, 0.1}}, 0));
+  world.add(
+      single(scene::EntityKind::box, {{0, 0, -0.1}, tilt}, false, scene::Box{{2, 1, 0.1}}, 0));
   scene::Entity entity = box({Vector3(0, 0, -0.1) + tilt * Vector3(0, 0, 0.1), tilt});
   world.add(entity);
   world.watch_contacts(1, 0);

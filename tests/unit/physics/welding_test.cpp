@@ -57,7 +57,8 @@ const std::vector<Piece> crooked = {
     {{{0.05, -0.2, 0.1}, about({1, 0, 0}, 1.3)}, {0.1, 0.1, 0.1}, 0.3},
 };
 
-/// The pieces welded in a row. The first is on a joint of a fixed base, in whose frame all poses are.
+/// The pieces welded in a row. The first is on a joint of a fixed base, in whose frame all poses
+/// are.
 scene::Entity hung(const std::vector<Piece>& pieces, scene::JointType type, const Vector3& axis) {
   scene::Entity entity =
       prototype("hung", at(0, 0, 10), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1)});
@@ -231,7 +232,8 @@ TEST(Welded, StandWhereTheyWereMoved) {
 }
 
 TEST(Welded, TipOverIfTheirCentreOfMassIsBeyondTheFoot) {
-  // A 0.1 m foot of 1 kg with an arm of 0.5 kg, whose centre is `out` [m] in front of the foot's centre.
+  // A 0.1 m foot of 1 kg with an arm of 0.5 kg, whose centre is `out` [m] in front of the foot's
+  // centre.
   for (const double out : {0.14, 0.16}) {
     World world(with_floor(9.8), 0.005);
     scene::Entity entity = prototype("crane", at(0, 0, 0), true,

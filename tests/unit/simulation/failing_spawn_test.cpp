@@ -36,8 +36,7 @@ void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); 
 
 /// In place of the C library's: OpenGL is loaded by it.
 extern "C" void* dlopen(const char* name, int flags) noexcept {
-  const bool is_missing =
-      !has_opengl && name && std::string_view(name).starts_with("libOSMesa");
+  const bool is_missing = !has_opengl && name && std::string_view(name).starts_with("libOSMesa");
   using Open = void* (*)(const char*, int);
   static const auto open = reinterpret_cast<Open>(dlsym(RTLD_NEXT, "dlopen"));
   return open(is_missing ? "libOSMesa-missing.so" : name, flags);
@@ -113,8 +112,8 @@ struct Twins {
   explicit Twins(const SmallScene& small) : read(small.read_all()) {}
 
   scene::Entity entity(const std::string& xml) const {
-    const scene::Addition addition = read.additions.read(
-        xml, read.scene, std::size_t{1} << 20, [](const std::string&) { return false; });
+    const scene::Addition addition = read.additions.read(xml, read.scene, std::size_t{1} << 20,
+                                                         [](const std::string&) { return false; });
     for (const auto& problem : addition.problems) ADD_FAILURE() << scene::to_string(problem);
     return addition.entity;
   }
@@ -151,8 +150,8 @@ TEST(FailingSpawn, OutOfMemoryAnywhereChangesNothing) {
   const scene::Entity entity = twins.entity(equipped("second", "2,0,0"));
   twins.step(3);
   std::size_t stages = 0;
-  for (Numbers before = numbers(twins.world);
-       !spawn(twins.world, twins.read.scene, entity, stages); ++stages) {
+  for (Numbers before = numbers(twins.world); !spawn(twins.world, twins.read.scene, entity, stages);
+       ++stages) {
     ASSERT_EQ(numbers(twins.world), before) << "allocation " << stages;
     ASSERT_LT(stages, 100'000u);
     if (stages % 50 != 0) continue;
