@@ -245,8 +245,8 @@ void Draftsman::add_bodies(const world::State& state, const View& view, Drawing&
   Bounds visible, all;
   const Pose camera_from_world = math::inverse(view.camera);
   const math::Quaternion to_light = light_from_world();
-  const std::size_t count = std::min(model_.bodies.size(), layout_.links.size());
-  for (std::size_t i = 0; i < count; ++i) {
+  const std::size_t links = std::min(model_.bodies.size(), layout_.links.size());
+  for (std::size_t i = 0; i < links; ++i) {
     if (state.is_absent(layout_.links[i].entity)) continue;
     const Body& body = model_.bodies[i];
     const Pose in_camera = camera_from_world * state.links[i].pose;

@@ -48,7 +48,7 @@ namespace {
 using testing::robot;
 using testing::SmallScene;
 
-/// A robot with a joint, a radio, an LED, a tag and a magnet.
+/// A robot with a joint, a radio, an LED, a tag, a magnet and a ray along +y.
 std::string equipped(const std::string& id, const std::string& position) {
   return "<prototype id=\"" + id + "\"><body position=\"" + position +
          R"("/><links ref="base"><link id="base" geometry="box" size=".1,.1,.1" mass="1"/>)"
@@ -61,7 +61,8 @@ std::string equipped(const std::string& id, const std::string& position) {
          R"(<leds medium="leds"><led anchor="base" offset="0,0,0.1" color="red"/></leds>)"
          R"(<tags medium="tags"><tag anchor="base" position="0,0,0.1" orientation="0,0,0" )"
          R"(observable_angle="90" side_length="0.05" payload="too long for a small string"/>)"
-         R"(</tags><magnets><magnet anchor="base" offset="0,0,0" passive_field="0,0,1"/></magnets>)"
+         R"(</tags><proximity_sensors><sensor anchor="base" offset="0,0,0.05" direction="0,1,0" )"
+         R"(range="2"/></proximity_sensors><magnets><magnet anchor="base" offset="0,0,0" passive_field="0,0,1"/></magnets>)"
          R"(</devices><controller config="c"/></prototype>)";
 }
 
@@ -77,7 +78,8 @@ const SmallScene robots{
     R"(<radios implementation="default"/><leds implementation="default" medium="leds"/>)"
     R"(<tags implementation="default"/>)",
     R"(<joints implementation="default"><joint id="hinge" mode="position"/></joints>)"
-    R"(<radios implementation="default"/><positioning implementation="default"/>)",
+    R"(<radios implementation="default"/><positioning implementation="default"/>)"
+    R"(<proximity implementation="default"/>)",
     equipped("first", "0,0,0") + bodies, engine};
 
 /// The controller's camera takes pictures, and nothing in the scene has one.
@@ -147,7 +149,7 @@ bool spawn(Simulation& world, const scene::Scene& scene, const scene::Entity& en
 
 TEST(FailingSpawn, OutOfMemoryAnywhereChangesNothing) {
   Twins twins(robots);
-  const scene::Entity entity = twins.entity(equipped("second", "2,0,0"));
+  const scene::Entity entity = twins.entity(equipped("second", "0,1,0"));
   twins.step(3);
   std::size_t stages = 0;
   for (Numbers before = numbers(twins.world); !spawn(twins.world, twins.read.scene, entity, stages);
@@ -161,6 +163,7 @@ TEST(FailingSpawn, OutOfMemoryAnywhereChangesNothing) {
   EXPECT_GT(stages, 100u);
   twins.untouched.spawn(twins.read.scene, entity);
   twins.step(20);
+  EXPECT_GT(twins.world.observations().proximity.at(0), 0);  // the first robot's ray meets it
 }
 
 TEST(FailingSpawn, WithoutOpenGlSaysWhatToInstallAndChangesNothing) {
