@@ -1,26 +1,28 @@
 #include "network/barrier/connections.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace ziggurat::network {
 
 Connection& Connections::receive_from(const std::string& id, Time now) {
   if (const auto found = connections_.find(id); found != connections_.end()) return found->second;
-  const auto has_no_session = [](const Connection& each) {
-    return each.session == SessionId::none;
-  };
-  if (connections_.size() >= limit_) {
-    std::erase_if(connections_, [&](const auto& entry) {
-      return has_no_session(entry.second) && entry.second.allowance.is_full(rate_, now);
-    });
-  }
-  if (connections_.size() >= limit_) {
-    std::erase_if(connections_, [&](const auto& entry) { return has_no_session(entry.second); });
-  }
+  if (connections_.size() >= forget_at_) forget(now);
   return connections_
       .try_emplace(
           id, Connection{SessionId::none, wire::Encoding::binary, Allowance(rate_, now), false})
       .first->second;
+}
+
+void Connections::forget(Time now) {
+  const auto has_no_session = [](const auto& entry) {
+    return entry.second.session == SessionId::none;
+  };
+  std::erase_if(connections_, [&](const auto& entry) {
+    return has_no_session(entry) && entry.second.allowance.is_full(rate_, now);
+  });
+  if (connections_.size() >= limit_) std::erase_if(connections_, has_no_session);
+  forget_at_ = std::min(limit_, std::max(fewest_, 2 * connections_.size()));
 }
 
 const Connection* Connections::find(const std::string& id) const {

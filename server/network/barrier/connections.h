@@ -1,6 +1,7 @@
 #pragma once
 // Connections, as far as they have been heard of: the session of each, and how much it may send.
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <unordered_map>
@@ -21,11 +22,12 @@ struct Connection {
 
 class Connections {
  public:
-  /// @param limit  how many are remembered beside those with a session
+  /// @param limit  of connections, more than those with a session
   Connections(const Rate& rate, std::size_t limit) : rate_(rate), limit_(limit) {}
 
-  /// The connection that a message came from, a new one if it was not known. If there are too many,
-  /// those without a session are forgotten, first those that have been quiet.
+  /// The connection that a message came from, a new one if it was not known. Each time that their
+  /// number has doubled, those without a session that may send their full amount again are forgotten:
+  /// a new record says the same about them. At the limit, all without a session are.
   Connection& receive_from(const std::string& id, Time now);
   /// Null if it is not known.
   const Connection* find(const std::string& id) const;
@@ -47,8 +49,13 @@ class Connections {
   std::size_t size() const { return connections_.size(); }
 
  private:
+  void forget(Time now);
+
+  static constexpr std::size_t fewest_ = 64;  // not worth forgetting any
+
   Rate rate_;
   std::size_t limit_;
+  std::size_t forget_at_ = std::min(limit_, fewest_);  // connections
   std::unordered_map<std::string, Connection> connections_;  // walked only to forget some
 };
 
