@@ -7,9 +7,6 @@
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
-#include <type_traits>
-
-#include "physics/contact/features.h"
 #include "physics/contact/pairs.h"
 
 namespace ziggurat::physics::contact {
@@ -143,9 +140,9 @@ btScalar least(const Contacts& contacts) {
   return distance;
 }
 
-template <class A, class B>
-void convex(const A& shape_a, const B& shape_b, const Placement& at, Contacts& out) {
-  const Body a(&shape_a, at.a), b(&shape_b, at.b);
+}  // namespace
+
+void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contacts& out) {
   const btScalar prefer = btScalar(1e-3) * btMin(smallest(a), smallest(b));
 
   BestFace face;
@@ -160,40 +157,14 @@ void convex(const A& shape_a, const B& shape_b, const Placement& at, Contacts& o
     out.normal = face.of_a ? -face.outward : face.outward;
     clip_features(face, face.of_a ? a : b, face.of_a ? b : a, at.reach, out);
     // The ball at the end of a capsule may be nearest beyond the face's outline.
-    const bool enough = !std::is_same_v<A, Capsule> || least(out) < near.distance + 5 * prefer;
+    const bool enough =
+        !std::holds_alternative<const Capsule*>(a.shape) || least(out) < near.distance + 5 * prefer;
     if (out.count > 0 && enough) return;
     out.count = 0;
   }
   if (near.distance == -BT_LARGE_FLOAT) return;
   out.normal = near.b_to_a;
   if (!add_line(a, b, near, out)) out.add(near.on_b, near.distance);
-}
-
-}  // namespace
-
-void contact_points(const Cylinder& a, const Box& b, const Placement& at, Contacts& out) {
-  convex(a, b, at, out);
-}
-void contact_points(const Cylinder& a, const Cylinder& b, const Placement& at, Contacts& out) {
-  convex(a, b, at, out);
-}
-void contact_points(const Cylinder& a, const Hull& b, const Placement& at, Contacts& out) {
-  convex(a, b, at, out);
-}
-void contact_points(const Capsule& a, const Box& b, const Placement& at, Contacts& out) {
-  convex(a, b, at, out);
-}
-void contact_points(const Capsule& a, const Cylinder& b, const Placement& at, Contacts& out) {
-  convex(a, b, at, out);
-}
-void contact_points(const Capsule& a, const Hull& b, const Placement& at, Contacts& out) {
-  convex(a, b, at, out);
-}
-void contact_points(const Hull& a, const Box& b, const Placement& at, Contacts& out) {
-  convex(a, b, at, out);
-}
-void contact_points(const Hull& a, const Hull& b, const Placement& at, Contacts& out) {
-  convex(a, b, at, out);
 }
 
 }  // namespace ziggurat::physics::contact

@@ -5,7 +5,7 @@
 // All take the poses of the shapes' frames in the world and fill `out` with points no farther apart
 // than `reach`.
 
-#include "physics/contact/shapes.h"
+#include "physics/contact/features.h"
 
 namespace ziggurat::physics::contact {
 
@@ -32,15 +32,31 @@ void contact_points(const Capsule& a, const Capsule& b, const Placement& at, Con
 
 void contact_points(const Box& a, const Box& b, const Placement& at, Contacts& out);
 
-// By GJK and clipping of features:
-void contact_points(const Cylinder& a, const Box& b, const Placement& at, Contacts& out);
-void contact_points(const Cylinder& a, const Cylinder& b, const Placement& at, Contacts& out);
-void contact_points(const Cylinder& a, const Hull& b, const Placement& at, Contacts& out);
-void contact_points(const Capsule& a, const Box& b, const Placement& at, Contacts& out);
-void contact_points(const Capsule& a, const Cylinder& b, const Placement& at, Contacts& out);
-void contact_points(const Capsule& a, const Hull& b, const Placement& at, Contacts& out);
-void contact_points(const Hull& a, const Box& b, const Placement& at, Contacts& out);
-void contact_points(const Hull& a, const Hull& b, const Placement& at, Contacts& out);
+/// Shapes with flat faces or straight sides, which GJK and clipping of features treats. The rank of
+/// A is at most that of B.
+template <class Any>
+inline constexpr int clipping_rank = -1;
+template <>
+inline constexpr int clipping_rank<Capsule> = 0;
+template <>
+inline constexpr int clipping_rank<Cylinder> = 1;
+template <>
+inline constexpr int clipping_rank<Hull> = 2;
+template <>
+inline constexpr int clipping_rank<Box> = 3;
+
+void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contacts& out);
+
+/// A shape that may be B where A is the other.
+template <class B, class A>
+concept ClippedBy = clipping_rank<A>
+>= 0 && clipping_rank<A> <= clipping_rank<B>;
+
+/// Pairs of these that have no function of their own above.
+template <class A, ClippedBy<A> B>
+void contact_points(const A& a, const B& b, const Placement& at, Contacts& out) {
+  clipped_contacts({&a, at.a}, {&b, at.b}, at, out);
+}
 
 /// Two half-spaces never touch.
 inline void contact_points(const HalfSpace&, const HalfSpace&, const Placement&, Contacts&) {}
