@@ -3,12 +3,10 @@
 #include <algorithm>
 
 #include "magnetism/exact_field.h"
+#include "magnetism/row.h"
 
 namespace ziggurat::magnetism {
 namespace {
-
-Vector3 vector(const Row& row) { return {row.x, row.y, row.z}; }
-Row row(const Vector3& v) { return {v.x(), v.y(), v.z(), 0}; }
 
 /// The tolerance is shared between the levels' own errors and the step where they meet.
 constexpr double share = 0.8;

@@ -4,11 +4,10 @@
 #include <cassert>
 #include <cmath>
 
+#include "magnetism/row.h"
+
 namespace ziggurat::magnetism {
 namespace {
-
-Row row(const Vector3& v, double w) { return {v.x(), v.y(), v.z(), w}; }
-Vector3 vector(const Row& r) { return {r.x, r.y, r.z}; }
 
 /// Below this distance two magnets count as this far apart: spheres cannot come closer.
 double core_radius(const Magnet& magnet) {
