@@ -171,6 +171,12 @@ TEST(Text, TheNumberOfFaultsIsLimited) {
   EXPECT_EQ(count_containing(texts, "the rest of the file was not read"), 1u);
 }
 
+TEST(Text, AThousandRootsAreTooManyFaults) {
+  std::string text = "<a/>";
+  for (int i = 0; i < 2000; ++i) text += "<b/>";
+  EXPECT_EQ(faults(read_text(text, "t")).size(), 1001u);
+}
+
 TEST(Text, DepthAndNumberOfElementsAreLimited) {
   std::string deep;
   for (int i = 0; i < 200000; ++i) deep += "<a>";
