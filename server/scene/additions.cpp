@@ -4,24 +4,27 @@
 #include <array>
 
 #include "scene/document.h"
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
 
 constexpr const char* name_of_additions = "spawn";
 
-void read_addition(Reading& reading, std::string text,
+void read_addition(Draft& draft, std::string text,
                    const std::function<bool(const std::string&)>& is_taken, Entity& entity) {
-  Document& document = reading.add_document(std::move(text), name_of_additions);
+  Document& document = draft.add_document(std::move(text), name_of_additions);
   if (!document.root()) return;
   Element element(document, document.root());
   if (!entity_kind(element.name())) return element.unknown_in("spawn", entity_names());
-  entity = read_entity(reading, element, Placement::explicit_pose);
+  entity = read_entity(draft, element, Placement::explicit_pose);
   if (!entity.id.empty() && is_taken(entity.id)) {
     element.fault_at("id", "is the id of another entity; give each its own");
   }
-  if (!reading.has_engine) element.fault("needs an engine, and the scene has none");
+  if (!draft.has_engine)
+    element.fault(
+        "needs an engine, and the scene has none; write <dynamics3d id=\"…\"/> into its "
+        "<physics_engines>");
 }
 
 }  // namespace
@@ -37,11 +40,11 @@ struct Additions::Parts {
 };
 
 Additions::Additions() = default;
-Additions::Additions(Reading& reading)
-    : parts_(std::make_unique<Parts>(Parts{reading.options, reading.defaults, reading.has_engine,
-                                           std::move(reading.models), std::move(reading.model_ids),
-                                           std::move(reading.uses), std::move(reading.media),
-                                           std::move(reading.controllers)})) {}
+Additions::Additions(Draft& draft)
+    : parts_(std::make_unique<Parts>(Parts{draft.options, draft.defaults, draft.has_engine,
+                                           std::move(draft.models), std::move(draft.model_ids),
+                                           std::move(draft.uses), std::move(draft.media),
+                                           std::move(draft.controllers)})) {}
 Additions::~Additions() = default;
 Additions::Additions(Additions&&) noexcept = default;
 Additions& Additions::operator=(Additions&&) noexcept = default;
@@ -52,10 +55,10 @@ bool Addition::ok() const {
   });
 }
 
-Addition Additions::read(std::string text, const Scene& scene, std::size_t room,
+Addition Additions::read(std::string text, const Scene& scene, std::size_t max_size,
                          const std::function<bool(const std::string&)>& is_taken) const {
   Addition addition;
-  // A copy: what a reading finds wrong with models and controllers, it notes there as said.
+  // A copy, because models and controllers note which of their faults have been reported.
   Scene around;
   around.files = scene.files;
   around.controllers = scene.controllers;
@@ -63,27 +66,27 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t room,
   around.physics = scene.physics;
   around.media = scene.media;
   Report report(around.files);
-  if (text.size() > room) {
+  if (text.size() > max_size) {
     addition.problems = {
-        {Problem::Severity::fault, name_of_additions, {}, "the file " + too_large(room)}};
+        {Problem::Severity::fault, name_of_additions, {}, "the file " + too_large(max_size)}};
     return addition;
   }
-  Reading reading(report, around, parts_->options);
-  reading.budget = budget_for(room);
-  reading.defaults = parts_->defaults;
-  reading.has_engine = parts_->has_engine;
-  reading.models = parts_->models;
-  reading.model_ids = parts_->model_ids;
-  reading.uses = parts_->uses;
-  reading.media = parts_->media;
-  reading.controllers = parts_->controllers;
+  Draft draft(report, around, parts_->options);
+  draft.budget = budget_for(max_size);
+  draft.defaults = parts_->defaults;
+  draft.has_engine = parts_->has_engine;
+  draft.models = parts_->models;
+  draft.model_ids = parts_->model_ids;
+  draft.uses = parts_->uses;
+  draft.media = parts_->media;
+  draft.controllers = parts_->controllers;
   try {
-    read_addition(reading, std::move(text), is_taken, addition.entity);
+    read_addition(draft, std::move(text), is_taken, addition.entity);
   } catch (const TooManyFaults&) {
     // The last fault says so.
   }
   addition.problems = report.problems();
-  addition.size = room - reading.budget.bytes;
+  addition.size = max_size - draft.budget.bytes;
   return addition;
 }
 

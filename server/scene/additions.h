@@ -1,5 +1,5 @@
 #pragma once
-// What is added to a scene after it was read: one element at a time, as it may stand in <arena>.
+// Entities that are added to a scene after it was read: one element at a time, as in <arena>.
 
 #include <cstddef>
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace ziggurat::scene {
 
-struct Reading;
+struct Draft;
 
 /// An entity that was read by itself.
 struct Addition {
@@ -23,14 +23,14 @@ struct Addition {
   bool ok() const;                ///< no fault
 };
 
-/// What a scene knows for later elements beyond the plain data of Scene: its models, what its
-/// engine says for all bodies, what its controllers need.
+/// What is needed to read later elements, beyond the plain data of Scene: models, the engine's
+/// defaults for all bodies, what controllers need.
 class Additions {
  public:
-  /// Of no scene. All that can be done with it is to assign another.
+  /// Of no scene; only to be assigned another.
   Additions();
-  /// Takes what a reading has found out.
-  explicit Additions(Reading& reading);
+  /// Takes from a scene that has been read what later elements need.
+  explicit Additions(Draft& draft);
   ~Additions();
   Additions(Additions&&) noexcept;
   Additions& operator=(Additions&&) noexcept;
@@ -38,9 +38,9 @@ class Additions {
   /// Reads one <box>, <cylinder>, <sphere>, <prototype>, <foot-bot> or <e-puck>. Problems are those
   /// of a scene's, in a file called `spawn`.
   /// @param scene     the one that this came with
-  /// @param room      for the text with its model written out [bytes]
+  /// @param max_size  of the text with its model written out [bytes]
   /// @param is_taken  whether an id is that of another entity
-  Addition read(std::string text, const Scene& scene, std::size_t room,
+  Addition read(std::string text, const Scene& scene, std::size_t max_size,
                 const std::function<bool(const std::string&)>& is_taken) const;
 
  private:
@@ -48,13 +48,13 @@ class Additions {
   std::unique_ptr<Parts> parts_;
 };
 
-/// A scene, and what it knows for those who add to it.
+/// A scene, and what is needed to add elements to it.
 struct OpenScene {
   Scene scene;
   Additions additions;
 };
 
-/// The name of the file that a location in a scene, or in what was added to it, counts.
+/// The name of the file of a location, in a scene or in an element that was added to it.
 std::string file_of(const Scene& scene, const Location& where);
 
 }  // namespace ziggurat::scene

@@ -1,15 +1,15 @@
-// <arena>: its volume, then what stands in it, then what is distributed over it.
+// <arena>: its volume, its entities, then its distributions.
 
 #include <array>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
 
 /// The coloured floor that ground sensors see; the floor that bodies stand on is the engine's.
-void read_ground(Reading& reading, Element element) {
-  reading.report.no_effect_yet(element.where(), "ground colours (<floor> of the arena)");
+void read_ground(Draft& draft, Element element) {
+  draft.report.no_effect_yet(element.where(), "ground colours (<floor> of the arena)");
   const std::string id = element.required("id", identifier);
   const std::string source = element.required("source", Words{"image", "loop_functions"});
   if (source == "image") element.required("path", path);
@@ -17,30 +17,30 @@ void read_ground(Reading& reading, Element element) {
     element.fault_at("source", "is not supported; write source=\"image\" and a path");
   }
   element.optional("pixels_per_meter", positive);
-  if (!id.empty() && !reading.entity_ids.add(id)) {
+  if (!id.empty() && !draft.entity_ids.add(id)) {
     element.fault_at("id", "is the id of an earlier entity; give each its own");
   }
   element.done();
 }
 
-void add_entity(Reading& reading, Element& element) {
-  Entity entity = read_entity(reading, element, Placement::explicit_pose);
-  if (!entity.id.empty() && !reading.entity_ids.add(entity.id)) {
+void add_entity(Draft& draft, Element& element) {
+  Entity entity = read_entity(draft, element, Placement::explicit_pose);
+  if (!entity.id.empty() && !draft.entity_ids.add(entity.id)) {
     element.fault_at("id", "is the id of an earlier entity; give each its own");
   }
-  reading.scene.entities.push_back(std::move(entity));
+  draft.scene.entities.push_back(std::move(entity));
 }
 
-void read_placed(Reading& reading, Element& element) {
+void read_placed(Draft& draft, Element& element) {
   if (entity_kind(element.name())) {
-    add_entity(reading, element);
+    add_entity(draft, element);
   } else if (element.name() == "light") {
-    const std::string id = read_light(reading, element, Placement::explicit_pose);
-    if (!id.empty() && !reading.entity_ids.add(id)) {
+    const std::string id = read_light(draft, element, Placement::explicit_pose);
+    if (!id.empty() && !draft.entity_ids.add(id)) {
       element.fault_at("id", "is the id of an earlier entity; give each its own");
     }
   } else if (element.name() == "floor") {
-    read_ground(reading, element);
+    read_ground(draft, element);
   } else if (element.name() != "distribute") {
     element.unknown_in("arena", entity_names({"light", "floor", "distribute"}));
   }
@@ -48,19 +48,19 @@ void read_placed(Reading& reading, Element& element) {
 
 }  // namespace
 
-void read_arena(Reading& reading, Element& root) {
+void read_arena(Draft& draft, Element& root) {
   auto arena = root.required_child("arena");
   if (!arena) return;
-  reading.scene.arena.size = arena->required("size", size, math::Vector3::Ones());
-  reading.scene.arena.center = arena->optional("center", position, math::Vector3::Zero());
+  draft.scene.arena.size = arena->required("size", size, math::Vector3::Ones());
+  draft.scene.arena.center = arena->optional("center", position, math::Vector3::Zero());
   std::vector<Element> children = arena->children();
-  for (Element& element : children) read_placed(reading, element);
+  for (Element& element : children) read_placed(draft, element);
   for (Element& element : children) {
-    if (element.name() == "distribute") read_distribution(reading, element);
+    if (element.name() == "distribute") read_distribution(draft, element);
   }
   arena->done();
-  const Scene& scene = reading.scene;
-  if (!reading.has_engine && !(scene.entities.empty() && scene.distributions.empty())) {
+  const Scene& scene = draft.scene;
+  if (!draft.has_engine && !(scene.entities.empty() && scene.distributions.empty())) {
     arena->fault(
         "has entities, but <physics_engines> has no engine; write "
         "<dynamics3d id=\"…\"/> in it");

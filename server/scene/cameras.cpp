@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -17,10 +17,10 @@ constexpr std::array<Detector::Kind, 3> detector_kinds{
 
 constexpr unsigned most_picture_pixels = 4096;  // along a side
 
-std::optional<Detector> read_detector(Reading& reading, Element& element) {
+std::optional<Detector> read_detector(Draft& draft, Element& element) {
   for (std::size_t i = 0; i < detector_names.size(); ++i) {
     if (element.name() != detector_names[i]) continue;
-    const auto medium = read_medium(reading, element, detector_media[i]);
+    const auto medium = read_medium(draft, element, detector_media[i]);
     const bool rays = element.optional("show_rays", boolean, false);
     element.done();
     if (!medium) return std::nullopt;
@@ -41,7 +41,7 @@ math::Vector2 read_principal_point(Element& element) {
   return corrected.value_or(beta50.value_or(math::Vector2::Zero()));
 }
 
-Camera read_camera(Reading& reading, Element& element) {
+Camera read_camera(Draft& draft, Element& element) {
   Camera camera;
   camera.where = element.where();
   camera.id = element.required("id", identifier);
@@ -61,7 +61,7 @@ Camera read_camera(Reading& reading, Element& element) {
                                                most_picture_pixels));
   }
   for (Element& child : last_of_each_name(element)) {
-    if (const auto detector = read_detector(reading, child)) camera.detectors.push_back(*detector);
+    if (const auto detector = read_detector(draft, child)) camera.detectors.push_back(*detector);
   }
   element.done();
   return camera;
@@ -69,7 +69,7 @@ Camera read_camera(Reading& reading, Element& element) {
 
 }  // namespace
 
-std::vector<Camera> read_cameras(Reading& reading, Element& sensor, ControllerUse& use) {
+std::vector<Camera> read_cameras(Draft& draft, Element& sensor, ControllerUse& use) {
   constexpr std::string_view known[] = {"camera"};
   std::vector<Camera> cameras;
   Ids ids;
@@ -78,7 +78,7 @@ std::vector<Camera> read_cameras(Reading& reading, Element& sensor, ControllerUs
       element.unknown_in(sensor.name(), known);
       continue;
     }
-    cameras.push_back(read_camera(reading, element));
+    cameras.push_back(read_camera(draft, element));
     const std::string& id = cameras.back().id;
     use.anchors.push_back(
         {"camera " + in_quotes(id), cameras.back().anchor, element.where("anchor")});

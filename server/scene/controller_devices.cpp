@@ -4,7 +4,7 @@
 #include <numbers>
 #include <span>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -15,9 +15,9 @@ OneOf<JointMode> joint_modes() {
           {"disabled", JointMode::disabled}};
 }
 
-/// What reading one device needs.
+/// What is needed to read one device.
 struct Enabling {
-  Reading& reading;
+  Draft& draft;
   Element& element;
   ControllerDevices& devices;
   ControllerUse& use;
@@ -86,7 +86,7 @@ void enable_radios_actuator(const Enabling& e) { read_radios_use(e).actuator = t
 void enable_radios_sensor(const Enabling& e) { read_radios_use(e).sensor = true; }
 
 void enable_leds(const Enabling& e) {
-  e.devices.leds.emplace().medium = read_medium(e.reading, e.element, MediumKind::led);
+  e.devices.leds.emplace().medium = read_medium(e.draft, e.element, MediumKind::led);
 }
 
 void enable_directional_leds(const Enabling& e) {
@@ -104,7 +104,7 @@ void enable_magnets(const Enabling& e) { e.devices.magnets = true; }
 /// <proximity> or <footbot_proximity>: both make the same table of a robot.
 ProximityUse& enable_rays(const Enabling& e, std::string_view other) {
   if (e.devices.proximity) {
-    e.reading.report.notice(
+    e.draft.report.notice(
         e.element.where(),
         fmt::format("<{}> replaces <{}>: both make robot.proximity", e.element.name(), other));
   }
@@ -123,7 +123,7 @@ void enable_proximity(const Enabling& e) {
 void enable_cameras(const Enabling& e) {
   CamerasUse& use = e.devices.cameras.emplace();
   use.show_frustum = e.element.optional("show_frustum", boolean, false);
-  use.cameras = read_cameras(e.reading, e.element, e.use);
+  use.cameras = read_cameras(e.draft, e.element, e.use);
 }
 
 NoiseRange read_noise(Element& element, const char* name, double unit = 1) {
@@ -147,7 +147,7 @@ void enable_range_and_bearing_actuator(const Enabling& e) {
 void enable_range_and_bearing_sensor(const Enabling& e) {
   RangeAndBearingUse& use = use_of(e.devices.range_and_bearing);
   use.sensor = true;
-  use.medium = read_medium(e.reading, e.element, MediumKind::range_and_bearing);
+  use.medium = read_medium(e.draft, e.element, MediumKind::range_and_bearing);
   use.noise = e.element.optional("noise_std_dev", non_negative, 0.0);
   use.loss = e.element.optional("packet_drop_prob", probability, 0.0);
   use.show_rays = e.element.optional("show_rays", boolean, false);
@@ -199,7 +199,7 @@ void enable_contact_sensors(const Enabling& e) {
 
 // --- devices of robots on wheels ----------------------------------------------------------------
 
-/// What is said of the left and of the right wheel, or of both.
+/// Values of the left and the right wheel; a value for both is their default.
 template <class Read>
 std::array<double, 2> read_sides(Element& element, std::array<const char*, 3> names, Read read,
                                  double usual) {
@@ -242,7 +242,7 @@ void enable_plain(const Enabling& e) {
 }
 
 void enable_blob_camera(const Enabling& e) {
-  read_medium(e.reading, e.element, MediumKind::led);
+  read_medium(e.draft, e.element, MediumKind::led);
   e.element.optional("noise_std_dev", non_negative);
   e.element.optional("show_rays", boolean);
 }
@@ -292,16 +292,16 @@ constexpr std::array<DeviceRow, 20> sensor_rows{{
 
 void read_device(const Enabling& e, const DeviceRow& row) {
   e.element.required("implementation", Words{row.implementation});
-  if (!row.subject.empty()) e.reading.report.no_effect_yet(e.element.where(), row.subject);
+  if (!row.subject.empty()) e.draft.report.no_effect_yet(e.element.where(), row.subject);
   if (row.is_carried) e.use.devices.push_back({std::string(row.name), e.element.where()});
   row.enable(e);
   e.element.done();
 }
 
-void read_device_list(Reading& reading, Element& list, ControllerDevices& devices,
-                      ControllerUse& use, std::span<const DeviceRow> rows) {
+void read_device_list(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use,
+                      std::span<const DeviceRow> rows) {
   for (Element& element : last_of_each_name(list)) {
-    const Enabling enabling{reading, element, devices, use};
+    const Enabling enabling{draft, element, devices, use};
     bool known = false;
     for (const DeviceRow& row : rows) {
       if (row.name != element.name()) continue;
@@ -336,13 +336,12 @@ std::vector<Element> last_of_each_name(Element& list) {
   return result;
 }
 
-void read_actuators(Reading& reading, Element& list, ControllerDevices& devices,
-                    ControllerUse& use) {
-  read_device_list(reading, list, devices, use, actuator_rows);
+void read_actuators(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use) {
+  read_device_list(draft, list, devices, use, actuator_rows);
 }
 
-void read_sensors(Reading& reading, Element& list, ControllerDevices& devices, ControllerUse& use) {
-  read_device_list(reading, list, devices, use, sensor_rows);
+void read_sensors(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use) {
+  read_device_list(draft, list, devices, use, sensor_rows);
 }
 
 }  // namespace ziggurat::scene

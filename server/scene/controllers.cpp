@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -26,38 +26,39 @@ void read_params(Element params, Controller& controller) {
   params.done();
 }
 
-void note_type(Reading& reading, const Element& element) {
+void note_type(Draft& draft, const Element& element) {
   if (element.name() == "lua_controller" || element.name() == "external_controller") return;
   constexpr std::array<std::string_view, 2> own{"lua_controller", "external_controller"};
   const auto meant = nearest(element.name(), own);
-  reading.report.notice(
+  draft.report.notice(
       element.where(),
-      fmt::format("<{}> is read as an external controller: a client connects and controls its robots{}",
-                  element.name(), meant ? fmt::format("; or did you mean <{}>?", *meant) : ""));
+      fmt::format(
+          "<{}> is read as an external controller: a client connects and controls its robots{}",
+          element.name(), meant ? fmt::format("; or did you mean <{}>?", *meant) : ""));
 }
 
-void take_id(Reading& reading, const Element& element, const Controller& controller) {
+void take_id(Draft& draft, const Element& element, const Controller& controller) {
   if (controller.id.empty()) return;
   const auto [earlier, fresh] =
-      reading.controllers.emplace(controller.id, reading.scene.controllers.size());
+      draft.controllers.emplace(controller.id, draft.scene.controllers.size());
   if (fresh) return;
-  const Location where = reading.scene.controllers[earlier->second].where;
+  const Location where = draft.scene.controllers[earlier->second].where;
   const bool near = where.file == controller.where.file;
   element.fault_at("id", fmt::format("is the id of {}; give each its own",
                                      near ? "an earlier controller"
-                                          : "the controller at " + reading.report.place(where)));
+                                          : "the controller at " + draft.report.place(where)));
 }
 
-void read_controller(Reading& reading, Element& element, bool included,
+void read_controller(Draft& draft, Element& element, bool included,
                      const std::optional<DeadlinePolicy>& usual) {
   Controller controller;
   ControllerUse use;
-  if (included) reading.lacks = &use.lacks;
+  if (included) draft.missing_parts = &use.missing_parts;
   controller.where = element.where();
   controller.type = element.name();
   controller.lua = element.name() == "lua_controller";
   controller.id = element.required("id", identifier);
-  reading.report.subject = fmt::format("controller {}", in_quotes(controller.id));
+  draft.report.subject = fmt::format("controller {}", in_quotes(controller.id));
   element.without_effect("library", text, "no libraries are loaded into the server");
   if (controller.type == "external_controller") {
     controller.command = element.optional("command", text, "");
@@ -65,23 +66,23 @@ void read_controller(Reading& reading, Element& element, bool included,
   controller.deadline = read_deadline(element, usual);
   if (auto actuators = element.child("actuators")) {
     use.has_actuators = true;
-    read_actuators(reading, *actuators, controller.devices, use);
+    read_actuators(draft, *actuators, controller.devices, use);
   }
   if (auto sensors = element.child("sensors")) {
     use.has_sensors = true;
-    read_sensors(reading, *sensors, controller.devices, use);
+    read_sensors(draft, *sensors, controller.devices, use);
   }
   if (auto params = element.child("params")) {
     use.has_params = true;
     read_params(*params, controller);
   }
   element.done();
-  reading.lacks = nullptr;
-  reading.report.subject.clear();
-  note_type(reading, element);
-  take_id(reading, element, controller);
-  reading.scene.controllers.push_back(std::move(controller));
-  reading.uses.push_back(std::move(use));
+  draft.missing_parts = nullptr;
+  draft.report.subject.clear();
+  note_type(draft, element);
+  take_id(draft, element, controller);
+  draft.scene.controllers.push_back(std::move(controller));
+  draft.uses.push_back(std::move(use));
 }
 
 // --- what an entity must have -------------------------------------------------------------------
@@ -115,7 +116,7 @@ constexpr std::array<Component, 6> robot_components{{
     {"quadrotor_speed", [](const Entity&) { return false; }, ""},
 }};
 
-/// Whether a robot that comes as it is has a device that is in no table of components.
+/// Whether a built-in robot has a device that is not in the table `components`.
 bool comes_with(const Entity& entity, std::string_view device) {
   for (const Component& component : robot_components) {
     if (component.device == device) return component.is_carried(entity);
@@ -128,8 +129,8 @@ std::string_view kind_of(const Entity& entity) {
   return entity.kind == EntityKind::e_puck ? "e-puck" : "prototype";
 }
 
-/// What an entity lacks for a device, or nothing.
-std::optional<std::string> lacking(const Entity& entity, const DeviceUse& use) {
+/// What an entity needs for a device and does not have, or nothing.
+std::optional<std::string> missing_for(const Entity& entity, const DeviceUse& use) {
   const bool prototype = entity.kind == EntityKind::prototype;
   const auto component = std::ranges::find(components, use.name, &Component::device);
   if (component != components.end()) {
@@ -147,14 +148,14 @@ std::optional<std::string> lacking(const Entity& entity, const DeviceUse& use) {
 
 /// One device of a controller against one entity at a time.
 struct Check {
-  Reading& reading;
+  Draft& draft;
   const Entity& entity;
   ControllerUse& use;
 
   void blame(Location where, std::string text) const {
-    if (!reading.blamed.insert(where).second) return;
+    if (!draft.blamed.insert(where).second) return;
     ++use.faults;
-    reading.report.fault(where, std::move(text));
+    draft.report.fault(where, std::move(text));
   }
 
   void check_joint(const std::string& id, Location where, bool actuated,
@@ -175,9 +176,9 @@ struct Check {
                                "have an actuator",
                                in_quotes(id), kind_of(entity), in_quotes(entity.id), is));
     } else {
-      reading.report.notice(where, fmt::format("the sensor of joint {} always reads 0: the joint "
-                                               "is {}",
-                                               in_quotes(id), is));
+      draft.report.notice(where, fmt::format("the sensor of joint {} always reads 0: the joint "
+                                             "is {}",
+                                             in_quotes(id), is));
     }
   }
 
@@ -194,16 +195,16 @@ struct Check {
   void check_anchors() const {
     for (const AnchorUse& device : use.anchors) {
       const std::string& anchor = device.anchor;
-      if (anchor.empty() || anchor == "origin" || reading.anchors.contains(anchor)) continue;
+      if (anchor.empty() || anchor == "origin" || draft.anchors.contains(anchor)) continue;
       blame(device.where, fmt::format("anchor {} of {} does not exist in {} {}; {}",
                                       in_quotes(anchor), device.device, kind_of(entity),
-                                      in_quotes(entity.id), advice(anchor, anchor_names(reading))));
+                                      in_quotes(entity.id), advice(anchor, anchor_names(draft))));
     }
   }
 
   void check_components() const {
     for (const DeviceUse& device : use.devices) {
-      if (const auto what = lacking(entity, device)) {
+      if (const auto what = missing_for(entity, device)) {
         blame(device.where, fmt::format("{} are enabled for entity {}, which {}", device.name,
                                         in_quotes(entity.id), *what));
       }
@@ -212,46 +213,46 @@ struct Check {
 };
 
 /// Faults of a controller that only matter once an entity uses it.
-void check_sections(const Reading& reading, const Controller& controller, const Entity& entity,
+void check_sections(const Draft& draft, const Controller& controller, const Entity& entity,
                     ControllerUse& use) {
-  const auto lacks = [&](const char* name) {
-    reading.report.fault(controller.where,
-                         fmt::format("controller {} lacks the element <{}>; write <{}/> in it",
-                                     in_quotes(controller.id), name, name));
+  const auto report = [&](const char* name) {
+    draft.report.fault(controller.where,
+                       fmt::format("controller {} lacks the element <{}>; write <{}/> in it",
+                                   in_quotes(controller.id), name, name));
   };
-  if (!use.has_actuators) lacks("actuators");
-  if (!use.has_sensors) lacks("sensors");
-  use.has_actuators = use.has_sensors = true;  // said once
+  if (!use.has_actuators) report("actuators");
+  if (!use.has_sensors) report("sensors");
+  use.has_actuators = use.has_sensors = true;  // each is reported once
   if (!use.has_params && !entity.overrides_params && controller.lua) {
-    lacks("params");
+    report("params");
     use.has_params = true;
   }
 }
 
-void check_use(Reading& reading, const Entity& entity) {
-  const Controller& controller = reading.scene.controllers[*entity.controller];
-  ControllerUse& use = reading.uses[*entity.controller];
-  report_lacks(reading, use.lacks);
-  check_sections(reading, controller, entity, use);
+void check_use(Draft& draft, const Entity& entity) {
+  const Controller& controller = draft.scene.controllers[*entity.controller];
+  ControllerUse& use = draft.uses[*entity.controller];
+  report_missing(draft, use.missing_parts);
+  check_sections(draft, controller, entity, use);
   if (use.faults > most_faults_with_entities) return;
-  const Check check{reading, entity, use};
+  const Check check{draft, entity, use};
   check.check_joints(controller.devices);
   check.check_anchors();
   check.check_components();
 }
 
-void read_list(Reading& reading, Element& controllers, bool included) {
+void read_list(Draft& draft, Element& controllers, bool included) {
   const auto deadline = read_deadline(controllers, std::nullopt);
   for (Element& element : controllers.children()) {
     if (element.name().size() > longest_type) {
-      reading.report.fault(element.where(), fmt::format("{} is too long for a type of controller; "
-                                                        "write lua_controller",
-                                                        in_quotes(element.name())));
+      draft.report.fault(element.where(), fmt::format("{} is too long for a type of controller; "
+                                                      "write lua_controller",
+                                                      in_quotes(element.name())));
     } else if (const auto why = unsupported_element(element.name())) {
-      reading.report.fault(element.where(),
-                           fmt::format("<{}> is not supported; {}", element.name(), *why));
+      draft.report.fault(element.where(),
+                         fmt::format("<{}> is not supported; {}", element.name(), *why));
     } else {
-      read_controller(reading, element, included, deadline);
+      read_controller(draft, element, included, deadline);
     }
   }
   controllers.done();
@@ -259,19 +260,21 @@ void read_list(Reading& reading, Element& controllers, bool included) {
 
 }  // namespace
 
-void report_lacks(Reading& reading, std::vector<PendingFault>& lacks) {
-  for (PendingFault& lack : lacks) reading.report.fault(lack.where, std::move(lack.text));
-  lacks.clear();
-}
-
-void read_controllers(Reading& reading, Element& root, std::span<Element> included) {
-  if (auto controllers = root.required_child("controllers")) {
-    read_list(reading, *controllers, false);
+void report_missing(Draft& draft, std::vector<PendingFault>& missing_parts) {
+  for (PendingFault& fault : missing_parts) {
+    draft.report.fault(fault.where, std::move(fault.text));
   }
-  for (Element& controllers : included) read_list(reading, controllers, true);
+  missing_parts.clear();
 }
 
-std::optional<ControllerChoice> read_controller_choice(Reading& reading, Element& element) {
+void read_controllers(Draft& draft, Element& root, std::span<Element> included) {
+  if (auto controllers = root.required_child("controllers")) {
+    read_list(draft, *controllers, false);
+  }
+  for (Element& controllers : included) read_list(draft, controllers, true);
+}
+
+std::optional<ControllerChoice> read_controller_choice(Draft& draft, Element& element) {
   auto user = element.child("controller");
   if (!user) return std::nullopt;
   ControllerChoice choice;
@@ -284,9 +287,9 @@ std::optional<ControllerChoice> read_controller_choice(Reading& reading, Element
   }
   user->done();
   if (choice.id.empty()) return std::nullopt;
-  if (!reading.controllers.contains(choice.id)) {
+  if (!draft.controllers.contains(choice.id)) {
     std::vector<std::string> known;
-    for (const Controller& controller : reading.scene.controllers) known.push_back(controller.id);
+    for (const Controller& controller : draft.scene.controllers) known.push_back(controller.id);
     choice.unknown = {
         user->where("config"),
         user->sentence("config", known.empty()
@@ -296,19 +299,19 @@ std::optional<ControllerChoice> read_controller_choice(Reading& reading, Element
   return choice;
 }
 
-void give_controller(Reading& reading, const ControllerChoice& choice, Entity& entity) {
+void give_controller(Draft& draft, const ControllerChoice& choice, Entity& entity) {
   entity.overrides_params = choice.params.has_value();
   entity.params_where = choice.params_where;
   if (choice.params) entity.params = *choice.params;
-  const auto found = reading.controllers.find(choice.id);
-  if (found == reading.controllers.end()) {
-    if (reading.blamed.insert(choice.unknown.where).second) {
-      reading.report.fault(choice.unknown.where, choice.unknown.text);
+  const auto found = draft.controllers.find(choice.id);
+  if (found == draft.controllers.end()) {
+    if (draft.blamed.insert(choice.unknown.where).second) {
+      draft.report.fault(choice.unknown.where, choice.unknown.text);
     }
     return;
   }
   entity.controller = found->second;
-  check_use(reading, entity);
+  check_use(draft, entity);
 }
 
 }  // namespace ziggurat::scene

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -44,8 +44,8 @@ std::optional<DeadlinePolicy> read_deadline(Element& element,
   if (is_wait || !element.has("deadline")) {
     for (const char* attribute : {"deadline_ms", "miss_budget"}) {
       if (!element.has(attribute)) continue;
-      element.fault_at(attribute, is_wait ? "says nothing beside deadline=\"wait\", which has no "
-                                            "end; remove it, or write deadline=\"hold\""
+      element.fault_at(attribute, is_wait ? "has no effect beside deadline=\"wait\", which waits "
+                                            "forever; remove it, or write deadline=\"hold\""
                                           : "needs a deadline; write deadline=\"hold\" beside it, "
                                             "or zero, drop or stop");
     }

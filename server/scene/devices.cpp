@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -43,12 +43,12 @@ std::vector<Device> read_container(Element& container, std::string_view name, Re
   return devices;
 }
 
-void read_directional_leds(Reading& reading, Element& container, Entity& entity) {
+void read_directional_leds(Draft& draft, Element& container, Entity& entity) {
   Devices& devices = entity.devices;
-  devices.directional_led_medium = read_medium(reading, container, MediumKind::directional_led);
+  devices.directional_led_medium = read_medium(draft, container, MediumKind::directional_led);
   devices.directional_leds = read_container<DirectionalLed>(
-      container, "directional_led", [&reading](Element& element, std::string id) {
-        const Anchor anchor = read_anchor(reading, element);
+      container, "directional_led", [&draft](Element& element, std::string id) {
+        const Anchor anchor = read_anchor(draft, element);
         const math::Pose pose{element.required("position", position),
                               element.required("orientation", orientation)};
         const double angle_seen = element.required("observable_angle", half_angle);
@@ -57,11 +57,11 @@ void read_directional_leds(Reading& reading, Element& container, Entity& entity)
       });
 }
 
-void read_tags(Reading& reading, Element& container, Entity& entity) {
-  entity.devices.tag_medium = read_medium(reading, container, MediumKind::tag);
+void read_tags(Draft& draft, Element& container, Entity& entity) {
+  entity.devices.tag_medium = read_medium(draft, container, MediumKind::tag);
   entity.devices
-      .tags = read_container<Tag>(container, "tag", [&reading](Element& element, std::string id) {
-    const Anchor anchor = read_anchor(reading, element);
+      .tags = read_container<Tag>(container, "tag", [&draft](Element& element, std::string id) {
+    const Anchor anchor = read_anchor(draft, element);
     const math::Pose pose{element.required("position", position),
                           element.required("orientation", orientation)};
     const double angle_seen = element.required("observable_angle", half_angle);
@@ -71,11 +71,11 @@ void read_tags(Reading& reading, Element& container, Entity& entity) {
   });
 }
 
-void read_radios(Reading& reading, Element& container, Entity& entity) {
-  entity.devices.radio_medium = read_medium(reading, container, MediumKind::radio);
+void read_radios(Draft& draft, Element& container, Entity& entity) {
+  entity.devices.radio_medium = read_medium(draft, container, MediumKind::radio);
   entity.devices.radios =
-      read_container<Radio>(container, "radio", [&reading](Element& element, std::string id) {
-        const Anchor anchor = read_anchor(reading, element);
+      read_container<Radio>(container, "radio", [&draft](Element& element, std::string id) {
+        const Anchor anchor = read_anchor(draft, element);
         element.without_effect("orientation", orientation, "radios reach equally far all around");
         element.without_effect("duplex_mode", text,
                                "a radio that sends in a tick receives nothing in it");
@@ -99,10 +99,10 @@ MagnetShape read_magnet_shape(Element& element) {
 }
 
 /// The strength of a magnet is written in the dialect's unit or in SI, not in both.
-Magnet read_magnet(Reading& reading, Element& element, std::string id) {
+Magnet read_magnet(Draft& draft, Element& element, std::string id) {
   Magnet magnet;
   magnet.id = std::move(id);
-  magnet.anchor = read_anchor(reading, element);
+  magnet.anchor = read_anchor(draft, element);
   magnet.offset = element.required("offset", position);
   if (element.has("shape")) magnet.shape = read_magnet_shape(element);
   if (element.has("moment")) {
@@ -127,10 +127,10 @@ Magnet read_magnet(Reading& reading, Element& element, std::string id) {
   return magnet;
 }
 
-void read_magnets(Reading& reading, Element& container, Entity& entity) {
+void read_magnets(Draft& draft, Element& container, Entity& entity) {
   entity.devices.magnets =
-      read_container<Magnet>(container, "magnet", [&reading](Element& element, std::string id) {
-        return read_magnet(reading, element, std::move(id));
+      read_container<Magnet>(container, "magnet", [&draft](Element& element, std::string id) {
+        return read_magnet(draft, element, std::move(id));
       });
 }
 
@@ -154,9 +154,9 @@ bool may_add(std::size_t sensors, const Element& element, const Entity& entity) 
   return false;
 }
 
-void read_proximity_sensor(Reading& reading, Element& element, const Perception& usual,
+void read_proximity_sensor(Draft& draft, Element& element, const Perception& usual,
                            Entity& entity) {
-  const Anchor anchor = read_anchor(reading, element);
+  const Anchor anchor = read_anchor(draft, element);
   const math::Vector3 offset = element.required("offset", position);
   const math::Vector3 along = element.required("direction", direction, math::Vector3::UnitX());
   const double reach = element.required("range", length, 1.0);
@@ -190,9 +190,9 @@ T required_or(Element& element, const char* name, Read read, const std::optional
   return element.required(name, read, fallback);
 }
 
-void read_ring(Reading& reading, Element& ring, const RingDefaults& usual,
+void read_ring(Draft& draft, Element& ring, const RingDefaults& usual,
                const Perception& usual_perception, Entity& entity) {
-  const Anchor anchor = read_anchor(reading, ring);
+  const Anchor anchor = read_anchor(draft, ring);
   const math::Vector3 center =
       ring.optional("center", position, usual.center.value_or(math::Vector3::Zero()));
   const double start = ring.optional("start_angle", angle, usual.start_angle.value_or(0.0));
@@ -216,7 +216,7 @@ void read_ring(Reading& reading, Element& ring, const RingDefaults& usual,
   }
 }
 
-void read_proximity_sensors(Reading& reading, Element& container, Entity& entity) {
+void read_proximity_sensors(Draft& draft, Element& container, Entity& entity) {
   constexpr std::array<std::string_view, 2> known{"sensor", "ring"};
   const RingDefaults usual = read_ring_defaults(container);
   const Perception perception = read_perception(container, {});
@@ -224,9 +224,9 @@ void read_proximity_sensors(Reading& reading, Element& container, Entity& entity
   if (children.empty()) container.fault("has no sensor; write <sensor …> or <ring …> in it");
   for (Element& child : children) {
     if (child.name() == "sensor") {
-      read_proximity_sensor(reading, child, perception, entity);
+      read_proximity_sensor(draft, child, perception, entity);
     } else if (child.name() == "ring") {
-      read_ring(reading, child, usual, perception, entity);
+      read_ring(draft, child, usual, perception, entity);
     } else {
       child.unknown_in(container.name(), known);
     }
@@ -234,10 +234,10 @@ void read_proximity_sensors(Reading& reading, Element& container, Entity& entity
   container.done();
 }
 
-void read_range_and_bearing(Reading& reading, Element& element, Entity& entity) {
+void read_range_and_bearing(Draft& draft, Element& element, Entity& entity) {
   entity.devices.range_and_bearing_medium =
-      read_medium(reading, element, MediumKind::range_and_bearing);
-  const Anchor anchor = read_anchor(reading, element);
+      read_medium(draft, element, MediumKind::range_and_bearing);
+  const Anchor anchor = read_anchor(draft, element);
   const math::Pose pose = read_pose(element);
   const double reach = element.optional("range", positive, 3.0);
   const unsigned bytes = element.optional("data_size", Whole{0, most_data_bytes}, 10u);
@@ -245,13 +245,13 @@ void read_range_and_bearing(Reading& reading, Element& element, Entity& entity) 
   entity.devices.range_and_bearing = RangeAndBearing{anchor, pose, reach, bytes, element.where()};
 }
 
-void read_battery_container(Reading&, Element& element, Entity& entity) {
+void read_battery_container(Draft&, Element& element, Entity& entity) {
   entity.devices.battery = read_battery(element);
 }
 
 struct Container {
   std::string_view name;
-  void (*read)(Reading&, Element&, Entity&);
+  void (*read)(Draft&, Element&, Entity&);
 };
 
 constexpr std::array<Container, 8> containers{{
@@ -265,9 +265,9 @@ constexpr std::array<Container, 8> containers{{
     {"battery", read_battery_container},
 }};
 
-void read_device_container(Reading& reading, Element& element, Entity& entity) {
+void read_device_container(Draft& draft, Element& element, Entity& entity) {
   for (const Container& container : containers) {
-    if (container.name == element.name()) return container.read(reading, element, entity);
+    if (container.name == element.name()) return container.read(draft, element, entity);
   }
   std::array<std::string_view, containers.size()> known;
   for (std::size_t i = 0; i < known.size(); ++i) known[i] = containers[i].name;
@@ -276,29 +276,29 @@ void read_device_container(Reading& reading, Element& element, Entity& entity) {
 
 }  // namespace
 
-Anchor read_anchor(Reading& reading, Element& element) {
+Anchor read_anchor(Draft& draft, Element& element) {
   const std::string id = element.required("anchor", identifier);
   if (id.empty() || id == "origin") return {};
-  const auto found = reading.anchors.find(id);
-  if (found != reading.anchors.end()) return {static_cast<int>(found->second)};
-  element.fault_at("anchor", "names no anchor; " + advice(id, anchor_names(reading)));
+  const auto found = draft.anchors.find(id);
+  if (found != draft.anchors.end()) return {static_cast<int>(found->second)};
+  element.fault_at("anchor", "names no anchor; " + advice(id, anchor_names(draft)));
   return {};
 }
 
-std::vector<std::string> anchor_names(const Reading& reading) {
+std::vector<std::string> anchor_names(const Draft& draft) {
   // Of links with the same id only the first is an anchor: their numbers may have gaps.
   std::map<std::size_t, std::string> by_link;
-  for (const auto& [id, link] : reading.anchors) by_link.emplace(link, id);
+  for (const auto& [id, link] : draft.anchors) by_link.emplace(link, id);
   std::vector<std::string> names{"origin"};
   for (auto& [link, id] : by_link) names.push_back(std::move(id));
   return names;
 }
 
-void read_leds(Reading& reading, Element& container, Entity& entity) {
-  entity.devices.led_medium = read_medium(reading, container, MediumKind::led);
+void read_leds(Draft& draft, Element& container, Entity& entity) {
+  entity.devices.led_medium = read_medium(draft, container, MediumKind::led);
   entity.devices.leds =
-      read_container<Led>(container, "led", [&reading](Element& element, std::string id) {
-        const Anchor anchor = read_anchor(reading, element);
+      read_container<Led>(container, "led", [&draft](Element& element, std::string id) {
+        const Anchor anchor = read_anchor(draft, element);
         const math::Vector3 offset = element.required("offset", position);
         return Led{std::move(id), anchor, offset, element.required("color", color), {}};
       });
@@ -332,7 +332,7 @@ Battery read_battery(Element& element) {
   return battery;
 }
 
-void read_devices(Reading& reading, Element& element, Entity& entity) {
+void read_devices(Draft& draft, Element& element, Entity& entity) {
   auto devices = element.child("devices");
   if (!devices) return;
   Ids seen;
@@ -341,7 +341,7 @@ void read_devices(Reading& reading, Element& element, Entity& entity) {
       container.fault("is the second of its kind; write all devices of a kind into one element");
       continue;
     }
-    read_device_container(reading, container, entity);
+    read_device_container(draft, container, entity);
   }
   devices->done();
 }

@@ -3,7 +3,7 @@
 #include <array>
 #include <limits>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -55,7 +55,7 @@ Generator read_generator(Element element, Triple triple) {
 }
 
 /// Whether a grid has a cell for each of `quantity` entities.
-bool has_room(const Generator& generator, unsigned quantity) {
+bool has_enough_cells(const Generator& generator, unsigned quantity) {
   if (generator.method != DistributionMethod::grid) return true;
   std::uint64_t total = 1;
   for (const unsigned n : generator.layout) {
@@ -79,7 +79,7 @@ void read_quantities(Element& entity, Distribution& out) {
   }
   for (const auto& [generator, name] :
        {std::pair(&out.position, "position"), std::pair(&out.orientation, "orientation")}) {
-    if (has_room(*generator, out.quantity)) continue;
+    if (has_enough_cells(*generator, out.quantity)) continue;
     const auto& [x, y, z] = generator->layout;
     entity.fault_at("quantity", fmt::format("is more than the {}x{}x{} cells of its {} grid; "
                                             "enlarge layout or write less",
@@ -88,11 +88,11 @@ void read_quantities(Element& entity, Distribution& out) {
 }
 
 /// Takes the ids of all copies; a taken one is a fault, once.
-void take_ids(Reading& reading, Element& pattern, const std::string& id, const Distribution& out) {
+void take_ids(Draft& draft, Element& pattern, const std::string& id, const Distribution& out) {
   if (id.empty()) return;
   for (unsigned i = 0; i < out.quantity; ++i) {
     const std::string copy = id + std::to_string(out.base_num + i);
-    if (reading.entity_ids.add(copy)) continue;
+    if (draft.entity_ids.add(copy)) continue;
     pattern.fault_at("id", fmt::format("makes a copy called {}, which is the id of another entity; "
                                        "choose another id or base_num",
                                        in_quotes(copy)));
@@ -100,14 +100,14 @@ void take_ids(Reading& reading, Element& pattern, const std::string& id, const D
   }
 }
 
-void read_pattern(Reading& reading, Element& pattern, Distribution& out) {
+void read_pattern(Draft& draft, Element& pattern, Distribution& out) {
   if (entity_kind(pattern.name())) {
-    out.entity = read_entity(reading, pattern, Placement::distributed);
-    take_ids(reading, pattern, out.entity.id, out);
-    reading.scene.distributions.push_back(std::move(out));
+    out.entity = read_entity(draft, pattern, Placement::distributed);
+    take_ids(draft, pattern, out.entity.id, out);
+    draft.scene.distributions.push_back(std::move(out));
   } else if (pattern.name() == "light") {
-    const std::string id = read_light(reading, pattern, Placement::distributed);
-    take_ids(reading, pattern, id, out);
+    const std::string id = read_light(draft, pattern, Placement::distributed);
+    take_ids(draft, pattern, id, out);
   } else {
     pattern.unknown_in("entity", entity_names({"light"}));
   }
@@ -121,7 +121,7 @@ std::uint64_t copies_so_far(const Scene& scene) {
 
 }  // namespace
 
-void read_distribution(Reading& reading, Element& element) {
+void read_distribution(Draft& draft, Element& element) {
   Distribution out;
   out.where = element.where();
   if (auto child = element.required_child("position")) {
@@ -141,15 +141,15 @@ void read_distribution(Reading& reading, Element& element) {
     return;
   }
   if (patterns.size() > 1) {
-    reading.report.notice(patterns[1].where(),
-                          "only the first entity of a <distribute> has an effect");
+    draft.report.notice(patterns[1].where(),
+                        "only the first entity of a <distribute> has an effect");
   }
-  if (copies_so_far(reading.scene) + out.quantity > most_copies) {
+  if (copies_so_far(draft.scene) + out.quantity > most_copies) {
     entity->fault_at("quantity", fmt::format("makes more than {} distributed entities; write less",
                                              most_copies));
     return;
   }
-  read_pattern(reading, patterns.front(), out);
+  read_pattern(draft, patterns.front(), out);
 }
 
 }  // namespace ziggurat::scene

@@ -38,7 +38,7 @@ std::size_t first_bad_utf8(std::string_view text) {
   return std::string_view::npos;
 }
 
-/// What to say about the parser's complaint.
+/// The fault for an error of the parser.
 std::string complaint(const pugi::xml_parse_result& result, bool at_end) {
   if (at_end) return "the file ends too early; close every element that was opened";
   switch (result.status) {
@@ -146,7 +146,8 @@ ReadBudget budget_for(std::size_t max_size) {
   return {max_size, 2 * std::max<std::size_t>(1'000'000, max_size / smallest_average_element)};
 }
 
-Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget, Report& report)
+Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget,
+                   Report& report)
     : source_(std::move(text)), file_(file), lenient_(lenient), report_(report) {
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < source_.size(); ++i) {

@@ -83,7 +83,7 @@ T blank() {
   }
 }
 
-/// One element being read. Ask for what it may hold, then call done().
+/// One element being read. Read its attributes and children, then call done().
 class Element {
  public:
   Element(Document& document, pugi::xml_node node) : document_(&document), node_(node) {}
@@ -100,7 +100,7 @@ class Element {
     return std::ranges::find(asked_attributes_, attribute) != asked_attributes_.end();
   }
 
-  /// What a reader of values gives.
+  /// What a reader of values returns.
   template <class Read>
   using ValueOf = std::variant_alternative_t<0, std::invoke_result_t<Read, std::string_view>>;
 
@@ -131,7 +131,7 @@ class Element {
     return optional(attribute, read).value_or(std::move(fallback));
   }
 
-  /// Checks an attribute that does nothing here, and says so.
+  /// Checks an attribute that has no effect here, and reports that.
   template <class Read>
   void without_effect(const char* attribute, Read read, std::string_view why) {
     if (!has(attribute)) return;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -14,20 +14,20 @@ constexpr unsigned most_solver_iterations = 10'000;
 constexpr double usual_gravity = 10.0;  // [m/s^2], the dialect's default of `g`
 constexpr std::array<std::string_view, 3> engine_names{"dynamics3d", "dynamics2d", "pointmass3d"};
 
-void read_floor(Reading& reading, Element floor) {
-  Floor& out = reading.scene.physics.floor.emplace();
+void read_floor(Draft& draft, Element floor) {
+  Floor& out = draft.scene.physics.floor.emplace();
   out.height = floor.optional("height", non_negative, 0.0);
-  out.surface = read_surface(reading, floor, Surface{});
+  out.surface = read_surface(draft, floor, Surface{});
   floor.done();
 }
 
-void read_gravity(Reading& reading, Element gravity) {
-  reading.scene.physics.gravity = gravity.optional("g", number, usual_gravity);
+void read_gravity(Draft& draft, Element gravity) {
+  draft.scene.physics.gravity = gravity.optional("g", number, usual_gravity);
   gravity.done();
 }
 
-void read_magnetism(Reading& reading, Element magnetism) {
-  Magnetism& out = reading.scene.physics.magnetism.emplace();
+void read_magnetism(Draft& draft, Element magnetism) {
+  Magnetism& out = draft.scene.physics.magnetism.emplace();
   out.force_constant = magnetism.optional("force_constant", non_negative, out.force_constant);
   out.max_distance = magnetism.optional("max_distance", positive);
   out.adaptive =
@@ -43,21 +43,21 @@ void read_magnetism(Reading& reading, Element magnetism) {
   magnetism.done();
 }
 
-void read_dynamics3d(Reading& reading, Element& engine) {
-  Physics& physics = reading.scene.physics;
+void read_dynamics3d(Draft& draft, Element& engine) {
+  Physics& physics = draft.scene.physics;
   physics.clock =
       engine.optional("clock", OneOf<Clock>{{"nominal", Clock::nominal}, {"beta50", Clock::beta50}},
                       Clock::nominal);
   physics.max_substep = engine.optional("max_substep", duration);
   physics.solver_iterations =
       engine.optional("solver_iterations", Whole{1, most_solver_iterations});
-  reading.defaults.friction = engine.optional("friction", non_negative);
-  reading.defaults.rolling_friction = engine.optional("rolling_friction", non_negative);
-  reading.defaults.linear_damping = engine.optional("linear_damping", non_negative);
-  reading.defaults.angular_damping = engine.optional("angular_damping", non_negative);
-  if (auto floor = engine.child("floor")) read_floor(reading, *floor);
-  if (auto gravity = engine.child("gravity")) read_gravity(reading, *gravity);
-  if (auto magnetism = engine.child("magnetism")) read_magnetism(reading, *magnetism);
+  draft.defaults.friction = engine.optional("friction", non_negative);
+  draft.defaults.rolling_friction = engine.optional("rolling_friction", non_negative);
+  draft.defaults.linear_damping = engine.optional("linear_damping", non_negative);
+  draft.defaults.angular_damping = engine.optional("angular_damping", non_negative);
+  if (auto floor = engine.child("floor")) read_floor(draft, *floor);
+  if (auto gravity = engine.child("gravity")) read_gravity(draft, *gravity);
+  if (auto magnetism = engine.child("magnetism")) read_magnetism(draft, *magnetism);
   engine.done();
 }
 
@@ -73,55 +73,55 @@ void read_ground(Element friction, Plane& plane) {
   friction.done();
 }
 
-void note_one_world(Reading& reading, const Element& engine) {
-  reading.report.notice(
+void note_one_world(Draft& draft, const Element& engine) {
+  draft.report.notice(
       engine.where(),
       fmt::format("<{}> runs in the same 3D world as everything else", engine.name()));
 }
 
-void read_dynamics2d(Reading& reading, Element& engine) {
-  note_one_world(reading, engine);
+void read_dynamics2d(Draft& draft, Element& engine) {
+  note_one_world(draft, engine);
   Plane plane;
   plane.elevation = engine.optional("elevation", number, 0.0);
   if (auto friction = engine.child("friction")) read_ground(*friction, plane);
   engine.child_without_effect("spatial_hash", "bodies are found by their place anyway");
   engine.child_without_effect("boundaries", "the world is one and unbounded");
   engine.done();
-  reading.scene.physics.planes.push_back(plane);
+  draft.scene.physics.planes.push_back(plane);
 }
 
-void read_pointmass3d(Reading& reading, Element& engine) {
-  note_one_world(reading, engine);
+void read_pointmass3d(Draft& draft, Element& engine) {
+  note_one_world(draft, engine);
   engine.child_without_effect("boundaries", "the world is one and unbounded");
   engine.done();
 }
 
-void read_engine(Reading& reading, Element& engine) {
-  if (engine.name() == "dynamics3d") return read_dynamics3d(reading, engine);
-  if (engine.name() == "dynamics2d") return read_dynamics2d(reading, engine);
-  read_pointmass3d(reading, engine);
+void read_engine(Draft& draft, Element& engine) {
+  if (engine.name() == "dynamics3d") return read_dynamics3d(draft, engine);
+  if (engine.name() == "dynamics2d") return read_dynamics2d(draft, engine);
+  read_pointmass3d(draft, engine);
 }
 
 }  // namespace
 
-Surface read_surface(Reading& reading, Element& element, const Surface& usual) {
-  return {element.optional("friction", non_negative,
-                           reading.defaults.friction.value_or(usual.friction)),
-          element.optional("rolling_friction", non_negative,
-                           reading.defaults.rolling_friction.value_or(usual.rolling_friction))};
+Surface read_surface(Draft& draft, Element& element, const Surface& usual) {
+  return {
+      element.optional("friction", non_negative, draft.defaults.friction.value_or(usual.friction)),
+      element.optional("rolling_friction", non_negative,
+                       draft.defaults.rolling_friction.value_or(usual.rolling_friction))};
 }
 
-Damping read_damping(Reading& reading, Element& element, const Damping& usual) {
+Damping read_damping(Draft& draft, Element& element, const Damping& usual) {
   return {element.optional("linear_damping", non_negative,
-                           reading.defaults.linear_damping.value_or(usual.linear)),
+                           draft.defaults.linear_damping.value_or(usual.linear)),
           element.optional("angular_damping", non_negative,
-                           reading.defaults.angular_damping.value_or(usual.angular))};
+                           draft.defaults.angular_damping.value_or(usual.angular))};
 }
 
-void read_engines(Reading& reading, Element& root) {
+void read_engines(Draft& draft, Element& root) {
   auto engines = root.required_child("physics_engines");
   if (!engines) return;
-  Physics& physics = reading.scene.physics;
+  Physics& physics = draft.scene.physics;
   Ids ids;
   bool has_dynamics3d = false;
   for (Element& engine : engines->children()) {
@@ -139,14 +139,14 @@ void read_engines(Reading& reading, Element& root) {
       engine.fault("is the second of its kind; there is one world, so write one <dynamics3d>");
       continue;
     }
-    if (three || !reading.has_engine) {
+    if (three || !draft.has_engine) {
       physics.id = id;
       physics.iterations = iterations;
       physics.where = engine.where();
     }
-    reading.has_engine = true;
+    draft.has_engine = true;
     has_dynamics3d |= three;
-    read_engine(reading, engine);
+    read_engine(draft, engine);
   }
   physics.flat = !physics.planes.empty() && !has_dynamics3d;
   engines->done();

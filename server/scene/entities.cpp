@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -20,10 +20,10 @@ constexpr std::array<std::pair<std::string_view, EntityKind>, 6> kinds{{
     {"e-puck", EntityKind::e_puck},
 }};
 
-Link read_single_link(Reading& reading, Element& element, Entity& entity) {
+Link read_single_link(Draft& draft, Element& element, Entity& entity) {
   Link link;
   link.where = element.where();
-  link.geometry = read_shape(reading, element, to_string(entity.kind));
+  link.geometry = read_shape(draft, element, to_string(entity.kind));
   entity.movable = element.required("movable", boolean, true);
   if (entity.movable) {
     link.mass = element.required("mass", mass, 1.0);
@@ -31,21 +31,21 @@ Link read_single_link(Reading& reading, Element& element, Entity& entity) {
   } else {
     element.without_effect("mass", number, "the body does not move");
   }
-  link.surface = read_surface(reading, element, single_body_surface);
-  link.damping = read_damping(reading, element, single_body_damping);
+  link.surface = read_surface(draft, element, single_body_surface);
+  link.damping = read_damping(draft, element, single_body_damping);
   return link;
 }
 
-void read_single_body(Reading& reading, Element& element, Entity& entity) {
-  entity.links.push_back(read_single_link(reading, element, entity));
-  if (auto leds = element.child("leds")) read_leds(reading, *leds, entity);
+void read_single_body(Draft& draft, Element& element, Entity& entity) {
+  entity.links.push_back(read_single_link(draft, element, entity));
+  if (auto leds = element.child("leds")) read_leds(draft, *leds, entity);
 }
 
-void read_prototype(Reading& reading, Element& element, Entity& entity) {
+void read_prototype(Draft& draft, Element& element, Entity& entity) {
   entity.movable = element.optional("movable", boolean, true);
-  const bool rooted = read_links(reading, element, entity);
-  read_joints(reading, element, entity, rooted);
-  read_devices(reading, element, entity);
+  const bool rooted = read_links(draft, element, entity);
+  read_joints(draft, element, entity, rooted);
+  read_devices(draft, element, entity);
 }
 
 bool needs_controller(EntityKind kind) {
@@ -98,54 +98,54 @@ math::Pose read_body(Element& element, Placement placement) {
   return placement == Placement::distributed ? math::Pose{} : pose;
 }
 
-void read_body_and_devices(Reading& reading, Element& element, Entity& entity) {
-  reading.anchors.clear();
+void read_body_and_devices(Draft& draft, Element& element, Entity& entity) {
+  draft.anchors.clear();
   switch (entity.kind) {
     case EntityKind::box:
     case EntityKind::cylinder:
     case EntityKind::sphere:
-      read_single_body(reading, element, entity);
+      read_single_body(draft, element, entity);
       break;
     case EntityKind::prototype:
-      read_prototype(reading, element, entity);
+      read_prototype(draft, element, entity);
       break;
     case EntityKind::foot_bot:
     case EntityKind::e_puck:
-      read_robot(reading, element, entity);
+      read_robot(draft, element, entity);
       break;
   }
 }
 
-Entity read_entity(Reading& reading, Element& element, Placement placement) {
+Entity read_entity(Draft& draft, Element& element, Placement placement) {
   Entity entity;
   entity.where = element.where();
   entity.kind = entity_kind(element.name()).value();
   entity.id = element.required("id", identifier);
   const auto model = element.optional("model", identifier);
-  reading.report.subject = fmt::format("{} {}", element.name(), in_quotes(entity.id));
-  if (model) reading.report.subject += fmt::format(" of model {}", in_quotes(*model));
+  draft.report.subject = fmt::format("{} {}", element.name(), in_quotes(entity.id));
+  if (model) draft.report.subject += fmt::format(" of model {}", in_quotes(*model));
   std::optional<ControllerChoice> controller;
   std::string elsewhere;
   if (element.has("model")) {
-    elsewhere = apply_model(reading, element, model.value_or(""), entity, controller);
+    elsewhere = apply_model(draft, element, model.value_or(""), entity, controller);
   } else {
-    read_body_and_devices(reading, element, entity);
+    read_body_and_devices(draft, element, entity);
   }
   entity.pose = read_body(element, placement);
   if (may_have_controller(entity.kind)) {
-    if (auto own = read_controller_choice(reading, element)) controller = std::move(own);
+    if (auto own = read_controller_choice(draft, element)) controller = std::move(own);
     if (needs_controller(entity.kind) && !controller) element.required_child("controller");
-    if (controller) give_controller(reading, *controller, entity);
+    if (controller) give_controller(draft, *controller, entity);
   }
   element.done(elsewhere);
-  reading.report.subject.clear();
+  draft.report.subject.clear();
   return entity;
 }
 
-std::string read_light(Reading& reading, Element& element, Placement placement) {
-  reading.report.no_effect_yet(element.where(), "lights");
+std::string read_light(Draft& draft, Element& element, Placement placement) {
+  draft.report.no_effect_yet(element.where(), "lights");
   const std::string id = element.required("id", identifier);
-  reading.report.subject = fmt::format("light {}", in_quotes(id));
+  draft.report.subject = fmt::format("light {}", in_quotes(id));
   if (placement == Placement::explicit_pose) {
     element.required("position", position);
   } else {
@@ -154,9 +154,9 @@ std::string read_light(Reading& reading, Element& element, Placement placement) 
   element.optional("orientation", orientation);
   element.required("color", color);
   element.required("intensity", non_negative);
-  read_medium(reading, element, MediumKind::led);
+  read_medium(draft, element, MediumKind::led);
   element.done();
-  reading.report.subject.clear();
+  draft.report.subject.clear();
   return id;
 }
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -24,7 +24,7 @@ std::string join(const std::vector<std::string>& names, std::size_t first) {
 
 /// Follows includes from file to file.
 struct Includes {
-  Reading& reading;
+  Draft& draft;
   Parts parts;
   std::vector<std::string> open;   ///< identities of the files from the scene to the current one
   std::vector<std::string> names;  ///< theirs, as messages call them
@@ -37,8 +37,8 @@ struct Includes {
     if (!included) return;
     if (auto controllers = root.child("controllers")) parts.controllers.push_back(*controllers);
     root.done(
-        "a file that is included has <include>, <models> and <controllers>; the rest is for "
-        "the scene to say");
+        "a file that is included may have <include>, <models> and <controllers>; write "
+        "everything else into the scene");
   }
 
   void include(Element& element) {
@@ -50,14 +50,14 @@ struct Includes {
       return;
     }
     const fs::path path = (fs::path(names.back()).parent_path() / written).lexically_normal();
-    auto opened = reading.options.open(path, reading.budget.bytes);
+    auto opened = draft.options.open(path, draft.budget.bytes);
     if (const std::string* why = std::get_if<std::string>(&opened)) {
       element.fault_at("file", fmt::format("names {}, which {}", in_quotes(path.string()), *why));
       return;
     }
     File& file = std::get<File>(opened);
-    if (file.text.size() > reading.budget.bytes) {
-      element.fault_at("file", too_large(reading.budget.bytes));
+    if (file.text.size() > draft.budget.bytes) {
+      element.fault_at("file", too_large(draft.budget.bytes));
     } else if (may_stand(element, file.identity)) {
       add(std::move(file), path.string());
     }
@@ -81,7 +81,7 @@ struct Includes {
   }
 
   void add(File file, const std::string& name) {
-    Document& document = reading.add_document(std::move(file.text), name);
+    Document& document = draft.add_document(std::move(file.text), name);
     open.push_back(std::move(file.identity));
     names.push_back(name);
     if (document.root()) {
@@ -119,8 +119,8 @@ std::variant<File, std::string> open_file(const fs::path& path, std::size_t max_
   return File{fs::canonical(path, error).string(), std::move(text)};
 }
 
-Parts read_includes(Reading& reading, Element& root, const std::string& identity) {
-  Includes includes{reading, {}, {identity}, {reading.scene.files[0]}, {identity}};
+Parts read_includes(Draft& draft, Element& root, const std::string& identity) {
+  Includes includes{draft, {}, {identity}, {draft.scene.files[0]}, {identity}};
   includes.read_root(root, false);
   return std::move(includes.parts);
 }

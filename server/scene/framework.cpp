@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -42,11 +42,11 @@ void read_profiling(Element profiling) {
 
 }  // namespace
 
-void read_framework(Reading& reading, Element& root) {
+void read_framework(Draft& draft, Element& root) {
   auto framework = root.required_child("framework");
   if (!framework) return;
   if (auto experiment = framework->required_child("experiment")) {
-    read_experiment(*experiment, reading.scene.experiment);
+    read_experiment(*experiment, draft.scene.experiment);
   }
   if (auto system = framework->child("system")) read_system(*system);
   if (auto profiling = framework->child("profiling")) read_profiling(*profiling);

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <queue>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -13,7 +13,7 @@ constexpr Surface link_surface{0.5, 0.0};
 constexpr Damping link_damping{0.04, 0.04};
 
 /// @param distinct  made false if the link's name can't be told from another's
-Link read_link(Reading& reading, Element& element, Ids& ids, bool& distinct) {
+Link read_link(Draft& draft, Element& element, Ids& ids, bool& distinct) {
   Link link;
   link.where = element.where();
   const bool named = element.has("id");
@@ -26,33 +26,33 @@ Link read_link(Reading& reading, Element& element, Ids& ids, bool& distinct) {
     distinct = false;
     element.fault_at("id", "is the id of an earlier link; give each its own");
   }
-  link.geometry = read_geometry(reading, element);
+  link.geometry = read_geometry(draft, element);
   link.mass = element.required("mass", mass, 1.0);
   link.offset = read_pose(element);
-  link.surface = read_surface(reading, element, link_surface);
-  link.damping = read_damping(reading, element, link_damping);
+  link.surface = read_surface(draft, element, link_surface);
+  link.damping = read_damping(draft, element, link_damping);
   element.done();
   return link;
 }
 
 std::optional<std::size_t> read_link_name(Element& element, const char* attribute,
-                                          const Reading& reading) {
+                                          const Draft& draft) {
   const std::string id = element.required(attribute, identifier);
   if (id.empty()) return std::nullopt;
-  const auto found = reading.anchors.find(id);
-  if (found != reading.anchors.end()) return found->second;
-  std::vector<std::string> links = anchor_names(reading);
+  const auto found = draft.anchors.find(id);
+  if (found != draft.anchors.end()) return found->second;
+  std::vector<std::string> links = anchor_names(draft);
   links.erase(links.begin());
   element.fault_at(attribute, "names no link; " + advice(id, links));
   return std::nullopt;
 }
 
 /// `<parent>` or `<child>` of a joint; false after a fault.
-bool read_side(const Reading& reading, Element& joint, const char* name, std::size_t& link,
+bool read_side(const Draft& draft, Element& joint, const char* name, std::size_t& link,
                math::Pose& frame) {
   auto side = joint.required_child(name);
   if (!side) return false;
-  const auto found = read_link_name(*side, "link", reading);
+  const auto found = read_link_name(*side, "link", draft);
   frame = read_pose(*side);
   side->done();
   if (found) link = *found;
@@ -74,7 +74,7 @@ void read_axis_and_limit(Element& element, Joint& joint) {
 }
 
 /// A joint, or nothing if it connects no two links.
-std::optional<Joint> read_joint(const Reading& reading, Element& element, Ids& ids) {
+std::optional<Joint> read_joint(const Draft& draft, Element& element, Ids& ids) {
   Joint joint;
   joint.where = element.where();
   const bool named = element.has("id");
@@ -96,8 +96,8 @@ std::optional<Joint> read_joint(const Reading& reading, Element& element, Ids& i
   }
   element.without_effect("disable_collision", boolean,
                          "links of one prototype never collide with each other");
-  const bool parent = read_side(reading, element, "parent", joint.parent, joint.parent_frame);
-  const bool child = read_side(reading, element, "child", joint.child, joint.child_frame);
+  const bool parent = read_side(draft, element, "parent", joint.parent, joint.parent_frame);
+  const bool child = read_side(draft, element, "child", joint.child, joint.child_frame);
   element.done();
   if (!parent || !child) return std::nullopt;
   return joint;
@@ -187,7 +187,7 @@ void order_joints(Report& report, Entity& entity) {
   if (sound && ordered.size() + 1 == entity.links.size()) entity.joints = std::move(ordered);
 }
 
-bool read_links(Reading& reading, Element& element, Entity& entity) {
+bool read_links(Draft& draft, Element& element, Entity& entity) {
   auto links = element.required_child("links");
   if (!links) return false;
   constexpr std::string_view known[] = {"link"};
@@ -195,29 +195,29 @@ bool read_links(Reading& reading, Element& element, Entity& entity) {
   bool distinct = true;
   for (Element& link : links->children()) {
     if (link.name() == "link") {
-      entity.links.push_back(read_link(reading, link, ids, distinct));
+      entity.links.push_back(read_link(draft, link, ids, distinct));
     } else {
       link.unknown_in("links", known);
     }
   }
   if (entity.links.empty()) links->fault("has no link; write at least one <link …>");
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
-    reading.anchors.emplace(entity.links[i].id, i);
+    draft.anchors.emplace(entity.links[i].id, i);
   }
-  const auto reference = read_link_name(*links, "ref", reading);
+  const auto reference = read_link_name(*links, "ref", draft);
   links->done();
   if (reference) entity.reference_link = *reference;
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     const bool welded = !entity.movable && i == entity.reference_link;
     if (entity.links[i].mass > 0 || welded) continue;
-    reading.report.fault(
+    draft.report.fault(
         entity.links[i].where,
         fmt::format("mass of link {} is 0; write more than 0 kg", in_quotes(entity.links[i].id)));
   }
   return reference.has_value() && distinct;
 }
 
-void read_joints(Reading& reading, Element& element, Entity& entity, bool rooted) {
+void read_joints(Draft& draft, Element& element, Entity& entity, bool rooted) {
   bool complete = rooted;
   if (auto joints = element.child("joints")) {
     constexpr std::string_view known[] = {"joint"};
@@ -225,7 +225,7 @@ void read_joints(Reading& reading, Element& element, Entity& entity, bool rooted
     for (Element& joint : joints->children()) {
       if (joint.name() != "joint") {
         joint.unknown_in("joints", known);
-      } else if (auto read = read_joint(reading, joint, ids)) {
+      } else if (auto read = read_joint(draft, joint, ids)) {
         entity.joints.push_back(std::move(*read));
       } else {
         complete = false;
@@ -233,7 +233,7 @@ void read_joints(Reading& reading, Element& element, Entity& entity, bool rooted
     }
     joints->done();
   }
-  if (complete) order_joints(reading.report, entity);
+  if (complete) order_joints(draft.report, entity);
 }
 
 }  // namespace ziggurat::scene

@@ -1,5 +1,5 @@
 #pragma once
-// Where in which file something was said.
+// A place in one of the files of a scene.
 
 #include <compare>
 #include <cstddef>

@@ -1,8 +1,8 @@
-// <media>: what devices are seen and heard in.
+// <media>: which devices can perceive each other.
 
 #include <array>
 
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -17,7 +17,7 @@ std::optional<MediumKind> kind_of(std::string_view name) {
   return std::nullopt;
 }
 
-void read_medium_element(Reading& reading, Element& element, MediumKind kind) {
+void read_medium_element(Draft& draft, Element& element, MediumKind kind) {
   Medium medium{element.required("id", identifier), kind, true, element.where()};
   element.optional("index", Words{"grid"});
   element.without_effect("grid_size", cells, "media need no grid, and devices may leave the arena");
@@ -26,23 +26,23 @@ void read_medium_element(Reading& reading, Element& element, MediumKind kind) {
   }
   element.done();
   if (medium.id.empty()) return;
-  if (!reading.media.emplace(medium.id, reading.scene.media.size()).second) {
+  if (!draft.media.emplace(medium.id, draft.scene.media.size()).second) {
     element.fault_at("id", "is the id of an earlier medium; give each its own");
     return;
   }
-  reading.scene.media.push_back(std::move(medium));
+  draft.scene.media.push_back(std::move(medium));
 }
 
 }  // namespace
 
 std::string_view to_string(MediumKind kind) { return medium_names[static_cast<std::size_t>(kind)]; }
 
-void read_media(Reading& reading, Element& root) {
+void read_media(Draft& draft, Element& root) {
   auto media = root.required_child("media");
   if (!media) return;
   for (Element& element : media->children()) {
     if (const auto kind = kind_of(element.name())) {
-      read_medium_element(reading, element, *kind);
+      read_medium_element(draft, element, *kind);
     } else {
       element.unknown_in(media->name(), medium_names);
     }
@@ -50,29 +50,30 @@ void read_media(Reading& reading, Element& root) {
   media->done();
 }
 
-std::optional<std::size_t> read_medium(Reading& reading, Element& element, MediumKind kind) {
+std::optional<std::size_t> read_medium(Draft& draft, Element& element, MediumKind kind) {
   const std::string id = element.required("medium", identifier);
   if (id.empty()) return std::nullopt;
-  const auto found = reading.media.find(id);
-  const auto lack = [&](std::string_view text) {
-    if (!reading.lacks) return element.fault_at("medium", text);
-    reading.lacks->push_back({element.where("medium"), element.sentence("medium", text)});
+  const auto found = draft.media.find(id);
+  const auto fault = [&](std::string_view text) {
+    if (!draft.missing_parts) return element.fault_at("medium", text);
+    draft.missing_parts->push_back({element.where("medium"), element.sentence("medium", text)});
   };
-  if (found == reading.media.end()) {
+  if (found == draft.media.end()) {
     std::vector<std::string> candidates;
-    for (const Medium& medium : reading.scene.media) {
+    for (const Medium& medium : draft.scene.media) {
       if (medium.kind == kind) candidates.push_back(medium.id);
     }
-    lack(candidates.empty() || reading.lacks
-             ? fmt::format("names no medium{}; write <{} id={}/> in <media>",
-                           reading.lacks ? " of the scene" : "", to_string(kind), in_quotes(id))
-             : "names no medium; " + advice(id, candidates));
+    fault(candidates.empty() || draft.missing_parts
+              ? fmt::format("names no medium{}; write <{} id={}/> in <media>",
+                            draft.missing_parts ? " of the scene" : "", to_string(kind),
+                            in_quotes(id))
+              : "names no medium; " + advice(id, candidates));
     return std::nullopt;
   }
-  const MediumKind is = reading.scene.media[found->second].kind;
+  const MediumKind is = draft.scene.media[found->second].kind;
   if (is != kind) {
-    lack(fmt::format("names a medium of type {}; name a {} medium", to_string(is),
-                     to_string(kind)));
+    fault(
+        fmt::format("names a medium of type {}; name a {} medium", to_string(is), to_string(kind)));
     return std::nullopt;
   }
   return found->second;

@@ -10,11 +10,11 @@
 
 namespace ziggurat::scene {
 
-/// The candidate that was probably meant, if one is near enough; the first of equals.
+/// The candidate that was probably meant, if one is near enough; the first of equally near ones.
 std::optional<std::string_view> nearest(std::string_view name,
                                         std::span<const std::string_view> candidates);
 
-/// `did you mean 'x'?`, else `it may be: a, b, c`, else `remove it`.
+/// `did you mean "x"?`, otherwise `known here: a, b, c`, otherwise `remove it`.
 std::string advice(std::string_view name, std::span<const std::string_view> candidates);
 std::string advice(std::string_view name, const std::vector<std::string>& candidates);
 

@@ -1,5 +1,5 @@
 #pragma once
-// One thing said about a scene file.
+// A fault or a notice about a scene file.
 
 #include <string>
 

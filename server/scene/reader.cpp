@@ -6,22 +6,22 @@
 #include <utility>
 
 #include "scene/document.h"
-#include "scene/reading.h"
+#include "scene/draft.h"
 
 namespace ziggurat::scene {
 namespace {
 
-void read_scene(Reading& reading, File file, const std::string& name) {
-  Document& document = reading.add_document(std::move(file.text), name);
+void read_scene(Draft& draft, File file, const std::string& name) {
+  Document& document = draft.add_document(std::move(file.text), name);
   if (!document.root()) return;
   Element root(document, document.root());
-  Parts parts = read_includes(reading, root, file.identity);
-  read_framework(reading, root);
-  read_engines(reading, root);
-  read_media(reading, root);
-  read_controllers(reading, root, parts.controllers);
-  for (Element& models : parts.models) read_models(reading, models);
-  read_arena(reading, root);
+  Parts parts = read_includes(draft, root, file.identity);
+  read_framework(draft, root);
+  read_engines(draft, root);
+  read_media(draft, root);
+  read_controllers(draft, root, parts.controllers);
+  for (Element& models : parts.models) read_models(draft, models);
+  read_arena(draft, root);
   root.child_without_effect("visualization", "use the web viewer");
   root.done();
 }
@@ -29,14 +29,14 @@ void read_scene(Reading& reading, File file, const std::string& name) {
 ReadResult read(File file, const std::string& name, const ReadOptions& options) {
   ReadResult result;
   Report report(result.scene.files);
-  Reading reading(report, result.scene, options);
+  Draft draft(report, result.scene, options);
   try {
-    read_scene(reading, std::move(file), name);
+    read_scene(draft, std::move(file), name);
   } catch (const TooManyFaults&) {
     // The last fault says so.
   }
   result.problems = report.problems();
-  result.additions = Additions(reading);
+  result.additions = Additions(draft);
   return result;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Everything said about a scene and the files that it includes, on the way.
+// All faults and notices about a scene and its included files, while they are read.
 
 #include <cstddef>
 #include <string>
@@ -11,7 +11,8 @@
 
 namespace ziggurat::scene {
 
-/// Thrown when so many faults were found that reading on makes no sense; ends a reading early.
+/// Thrown when so many faults were found that it makes no sense to continue; ends the reading
+/// early.
 struct TooManyFaults {};
 
 class Report {
@@ -34,7 +35,7 @@ class Report {
   /// All problems so far: by file, and in document order within each.
   std::vector<Problem> problems() const;
 
-  /// Named in messages while it stands, for example `prototype "vehicle"`.
+  /// Named in messages while it is set, for example `prototype "vehicle"`.
   std::string subject;
 
  private:

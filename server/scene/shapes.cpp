@@ -4,28 +4,28 @@
 #include <array>
 #include <filesystem>
 
+#include "scene/draft.h"
 #include "scene/mesh_file.h"
-#include "scene/reading.h"
 
 namespace ziggurat::scene {
 namespace {
 
-Box read_box(Reading&, Element& element) {
+Box read_box(Draft&, Element& element) {
   return {element.required("size", size, math::Vector3::Ones())};
 }
 
-Cylinder read_cylinder(Reading&, Element& element) {
+Cylinder read_cylinder(Draft&, Element& element) {
   const double radius = element.required("radius", length, 1.0);
   return {radius, element.required("height", length, 1.0)};
 }
 
-Sphere read_sphere(Reading&, Element& element) { return {element.required("radius", length, 1.0)}; }
+Sphere read_sphere(Draft&, Element& element) { return {element.required("radius", length, 1.0)}; }
 
-Capsule read_capsule(Reading&, Element& element) {
+Capsule read_capsule(Draft&, Element& element) {
   const double radius = element.required("radius", length, 1.0);
   const double height = element.required("height", length, 2 * radius);
   if (height < 2 * radius) {
-    element.fault_at("height", fmt::format("is less than both half-balls; height is from end to "
+    element.fault_at("height", fmt::format("is less than twice the radius; height is from end to "
                                            "end, so write at least {}",
                                            2 * radius));
   }
@@ -53,7 +53,7 @@ bool stays_inside(const std::filesystem::path& path) {
 }
 
 /// The vertices in a file, times `scale`.
-std::vector<math::Vector3> read_vertices(Reading& reading, Element& hull) {
+std::vector<math::Vector3> read_vertices(Draft& draft, Element& hull) {
   const std::filesystem::path written = hull.required("file", path);
   const double scale = hull.optional("scale", positive, 1.0);
   if (written.empty()) return {};
@@ -64,14 +64,14 @@ std::vector<math::Vector3> read_vertices(Reading& reading, Element& hull) {
     return {};
   }
   const std::filesystem::path path =
-      std::filesystem::path(file_of(reading.scene, hull.where())).parent_path() / written;
-  auto opened = reading.options.open(path, std::min(most_mesh_bytes, reading.budget.bytes));
+      std::filesystem::path(file_of(draft.scene, hull.where())).parent_path() / written;
+  auto opened = draft.options.open(path, std::min(most_mesh_bytes, draft.budget.bytes));
   if (const std::string* why = std::get_if<std::string>(&opened)) {
     hull.fault_at("file", fmt::format("names {}, which {}", in_quotes(path.string()), *why));
     return {};
   }
   const std::string& bytes = std::get<File>(opened).text;
-  reading.budget.bytes -= std::min(bytes.size(), reading.budget.bytes);
+  draft.budget.bytes -= std::min(bytes.size(), draft.budget.bytes);
   auto points = read_mesh(written, bytes);
   if (const std::string* why = std::get_if<std::string>(&points)) {
     hull.fault_at("file", *why);
@@ -88,13 +88,13 @@ Hull unit_hull() {
   return std::get<Hull>(make_hull(points));
 }
 
-Hull read_hull(Reading& reading, Element& element) {
+Hull read_hull(Draft& draft, Element& element) {
   auto child = element.required_child("hull");
   if (!child) return unit_hull();
   const bool from_file = child->has("file");
-  const auto points = from_file ? read_vertices(reading, *child) : listed_vertices(*child);
+  const auto points = from_file ? read_vertices(draft, *child) : listed_vertices(*child);
   child->done(from_file ? "its vertices are those of the file" : "");
-  if (from_file && points.empty()) return unit_hull();  // told already
+  if (from_file && points.empty()) return unit_hull();  // reported already
   auto hull = make_hull(points);
   if (const std::string* why = std::get_if<std::string>(&hull)) {
     child->fault(*why);
@@ -106,12 +106,12 @@ Hull read_hull(Reading& reading, Element& element) {
 /// A shape as attributes name it.
 struct Named {
   std::string_view name;
-  Geometry (*read)(Reading&, Element&);
+  Geometry (*read)(Draft&, Element&);
 };
 
 template <auto read>
-Geometry as_geometry(Reading& reading, Element& element) {
-  return read(reading, element);
+Geometry as_geometry(Draft& draft, Element& element) {
+  return read(draft, element);
 }
 
 constexpr std::array<Named, std::variant_size_v<Geometry>> shapes{{
@@ -124,12 +124,12 @@ constexpr std::array<Named, std::variant_size_v<Geometry>> shapes{{
 
 }  // namespace
 
-Geometry read_shape(Reading& reading, Element& element, std::string_view name) {
+Geometry read_shape(Draft& draft, Element& element, std::string_view name) {
   const auto shape = std::ranges::find(shapes, name, &Named::name);
-  return shape->read(reading, element);
+  return shape->read(draft, element);
 }
 
-Geometry read_geometry(Reading& reading, Element& link) {
+Geometry read_geometry(Draft& draft, Element& link) {
   std::vector<std::string_view> names;
   for (const Named& shape : shapes) names.push_back(shape.name);
   if (!link.has("geometry")) link.missing("geometry");
@@ -139,7 +139,7 @@ Geometry read_geometry(Reading& reading, Element& link) {
     link.child("hull");
     return Box{math::Vector3::Ones()};
   }
-  const Geometry geometry = read_shape(reading, link, *name);
+  const Geometry geometry = read_shape(draft, link, *name);
   constexpr std::string_view why = "the geometry has no such extent";
   if (!link.was_asked("size")) link.without_effect("size", vector3, why);
   for (const char* extent : {"radius", "height"}) {

@@ -17,7 +17,6 @@ constexpr double shortest_length = 1e-6, longest_length = 1e6;
 constexpr double shortest_duration = 1e-6;
 constexpr double lightest_mass = 1e-9, heaviest_mass = 1e9;
 
-
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0;;) {

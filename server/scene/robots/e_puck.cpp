@@ -51,10 +51,8 @@ void equip(Entity& entity) {
     entity.devices.proximity_sensors.push_back(
         outward_sensor(bearing, proximity_height, body_radius, proximity_range));
   }
-  const math::Pose antenna{math::Vector3(0, 0, range_and_bearing_height),
-                           math::Quaternion::Identity()};
-  entity.devices.range_and_bearing =
-      RangeAndBearing{{}, antenna, range_and_bearing_range, range_and_bearing_bytes, {}};
+  entity.devices.range_and_bearing = level_range_and_bearing(
+      range_and_bearing_height, range_and_bearing_range, range_and_bearing_bytes);
 }
 
 }  // namespace ziggurat::scene::e_puck

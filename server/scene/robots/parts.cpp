@@ -39,4 +39,9 @@ ProximitySensor outward_sensor(double bearing, double height, double radius, dou
   return sensor;
 }
 
+RangeAndBearing level_range_and_bearing(double height, double range, unsigned data_size) {
+  const math::Pose antenna{math::Vector3(0, 0, height), math::Quaternion::Identity()};
+  return {{}, antenna, range, data_size, {}};
+}
+
 }  // namespace ziggurat::scene

@@ -28,4 +28,8 @@ Link frame(std::string id, const math::Pose& offset);
 /// @param bearing  about +z from +x [rad];  @param height, radius, range  [m]
 ProximitySensor outward_sensor(double bearing, double height, double radius, double range);
 
+/// A range-and-bearing device on the body's axis, level.
+/// @param height, range  [m];  @param data_size  [bytes]
+RangeAndBearing level_range_and_bearing(double height, double range, unsigned data_size);
+
 }  // namespace ziggurat::scene

@@ -143,8 +143,10 @@ TEST(AdditionsOf, ASceneWithoutEngineAreRefused) {
   const Addition addition =
       scene.additions.read(box, scene.scene, ample, [](const std::string&) { return false; });
   ASSERT_FALSE(addition.ok());
-  EXPECT_EQ(to_string(addition.problems[0]),
-            "spawn:1:1: <box> needs an engine, and the scene has none");
+  EXPECT_EQ(
+      to_string(addition.problems[0]),
+      "spawn:1:1: <box> needs an engine, and the scene has none; write <dynamics3d id=\"…\"/> into "
+      "its <physics_engines>");
 }
 
 }  // namespace

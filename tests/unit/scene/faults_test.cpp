@@ -193,7 +193,7 @@ constexpr Row controller_rows[] = {
      R"(deadline_ms="9" of <controllers> needs a deadline)"},
     {"Deadline_wait_with_time", Part::controllers,
      R"(<controllers deadline="wait" deadline_ms="9"/>)",
-     R"(deadline_ms="9" of <controllers> says nothing beside deadline="wait")"},
+     R"(deadline_ms="9" of <controllers> has no effect beside deadline="wait")"},
 };
 INSTANTIATE_TEST_SUITE_P(Controllers, Fault, testing::ValuesIn(controller_rows),
                          [](const auto& row) { return std::string(row.param.name); });

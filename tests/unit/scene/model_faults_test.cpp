@@ -55,8 +55,9 @@ constexpr Row rows[] = {
      "parts/block.argos:6:1; write <prototype model=\"block\" …>"},
     {"Links", "<prototype id=\"a\" model=\"block\"><body/>\n<links ref=\"l\"/></prototype>",
      include_block,
-     "test.argos:6:1: <links> can't stand in this <prototype>: the model says it, at "
-     "parts/block.argos:6:1; an entity of it says id, model, movable, <body> and <controller> (in "
+     "test.argos:6:1: <links> can't stand in this <prototype>: the model has it, at "
+     "parts/block.argos:6:1; with a model write only id, model, movable, <body> and <controller> "
+     "(in "
      "prototype \"a\" of model \"block\")"},
     {"Devices", "<prototype id=\"a\" model=\"block\"><body/><devices/></prototype>", include_block,
      "test.argos:5:40: <devices> can't stand in this <prototype>"},
@@ -92,7 +93,8 @@ constexpr Row rows[] = {
      "deep15:1:19: file=\"deep16\" of <include> is nested too deep; includes may lead over 16 "
      "files"},
     {"Arena", "", "<include file=\"arena\"/>",
-     "arena:2:1: <arena> can't stand in this <m>: a file that is included has <include>, <models>"},
+     "arena:2:1: <arena> can't stand in this <m>: a file that is included may have <include>, "
+     "<models>"},
     {"Malformed", "", "<include file=\"bad\"/>", "bad:2:6: malformed XML"},
     {"Empty", "", "<include file=\"empty\"/>", "empty: the file is empty"},
     {"InTheArena", "<include file=\"parts/block.argos\"/>", "",

@@ -103,7 +103,7 @@ TEST(Shapes, ACapsuleHasTheHeightFromEndToEnd) {
   EXPECT_EQ(reach(capsule, -Vector3::UnitZ()), 0);
   EXPECT_NEAR(reach(capsule, Vector3::UnitX()), 0.1, 1e-15);
   EXPECT_NE(first_fault(read_link(R"(geometry="capsule" radius="0.1" height="0.15"/>)"))
-                .find(R"(height="0.15" of <link> is less than both half-balls)"),
+                .find(R"(height="0.15" of <link> is less than twice the radius)"),
             std::string::npos);
 }
 

@@ -1,7 +1,6 @@
 // <foot-bot> and <e-puck>: what a scene may say of a robot that comes as it is.
 
-#include "scene/reading.h"
-
+#include "scene/draft.h"
 #include "scene/robots/robots.h"
 
 namespace ziggurat::scene {
@@ -39,20 +38,20 @@ void check_blob_cameras(Element& element, EntityKind kind) {
 
 }  // namespace
 
-void read_robot(Reading& reading, Element& element, Entity& entity) {
+void read_robot(Draft& draft, Element& element, Entity& entity) {
   entity.kind == EntityKind::foot_bot ? foot_bot::equip(entity) : e_puck::equip(entity);
   entity.movable = element.optional("movable", boolean, true);
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     entity.links[i].where = element.where();
-    reading.anchors.emplace(entity.links[i].id, i);
+    draft.anchors.emplace(entity.links[i].id, i);
   }
   Devices& devices = entity.devices;
   RangeAndBearing& antenna = *devices.range_and_bearing;
   antenna.range = element.optional("rab_range", positive, antenna.range);
   antenna.data_size =
       element.optional("rab_data_size", Whole{0, most_data_bytes}, antenna.data_size);
-  devices.range_and_bearing_medium = first_medium(reading.scene, MediumKind::range_and_bearing);
-  devices.led_medium = first_medium(reading.scene, MediumKind::led);
+  devices.range_and_bearing_medium = first_medium(draft.scene, MediumKind::range_and_bearing);
+  devices.led_medium = first_medium(draft.scene, MediumKind::led);
   check_blob_cameras(element, entity.kind);
   if (auto battery = element.child("battery")) devices.battery = read_battery(*battery);
   if (auto engine = element.child("dynamics2d")) read_steering_limits(*engine, *entity.traction);

@@ -1,6 +1,6 @@
 #pragma once
-// The parts of a scene file, each read by its own function into its own struct, and what they
-// need from each other on the way. Read in this order: includes, framework, physics engines (their
+// A scene while it is read: its parts, each read by its own function into its own struct, and what
+// these need from each other. Read in this order: includes, framework, physics engines (their
 // defaults reach into the arena), media, controllers, models, arena.
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace ziggurat::scene {
 
-/// What <dynamics3d> says for all bodies; where it says nothing, each kind of body has its own.
+/// Values of <dynamics3d> for all bodies; without one, each kind of body has its own default.
 struct BodyDefaults {
   std::optional<double> friction, rolling_friction, linear_damping, angular_damping;
 };
@@ -37,7 +37,8 @@ struct AnchorUse {
   Location where;
 };
 
-/// Something that the scene lacks for a model or a controller: a fault once that is used.
+/// Something that a model or a controller needs and the scene does not have: a fault once an entity
+/// uses the model or controller.
 struct PendingFault {
   Location where;
   std::string text;
@@ -49,13 +50,13 @@ struct ControllerUse {
   std::vector<DeviceUse> devices;
   std::vector<AnchorUse> anchors;
   unsigned faults = 0;  ///< found with entities so far
-  std::vector<PendingFault> lacks;
+  std::vector<PendingFault> missing_parts;
 };
 
 /// `<controller>` of an entity or a model, not yet looked up.
 struct ControllerChoice {
   std::string id;
-  PendingFault unknown;  ///< what to say if there is none of that id
+  PendingFault unknown;  ///< the fault if the scene has no such id
   std::optional<std::vector<std::pair<std::string, std::string>>> params;  ///< of <params> in it
   Location params_where;
 };
@@ -65,12 +66,13 @@ struct Model {
   Entity entity;  ///< without id, pose and controller
   std::unordered_map<std::string, std::size_t> anchors;
   std::optional<ControllerChoice> controller;
-  std::vector<PendingFault> lacks;
+  std::vector<PendingFault> missing_parts;
   std::size_t size = 0;  ///< as written [bytes]
 };
 
-struct Reading {
-  Reading(Report& report_of_all, Scene& scene_read, const ReadOptions& chosen)
+/// A scene while it is read.
+struct Draft {
+  Draft(Report& report_of_all, Scene& scene_read, const ReadOptions& chosen)
       : report(report_of_all),
         scene(scene_read),
         options(chosen),
@@ -80,9 +82,10 @@ struct Reading {
   Scene& scene;
   const ReadOptions& options;
   ReadBudget budget;
-  std::deque<Document> documents;      ///< of Scene::files, same order
-  std::vector<PendingFault>* lacks = nullptr;  ///< where faults that the scene can mend go; null: reported
-  std::vector<Model> models;           ///< of Scene::models, same order
+  std::deque<Document> documents;  ///< of Scene::files, same order
+  std::vector<PendingFault>* missing_parts =
+      nullptr;                ///< collects what the scene must provide; null: reported at once
+  std::vector<Model> models;  ///< of Scene::models, same order
   std::unordered_map<std::string, std::size_t> model_ids;  ///< id -> index
   BodyDefaults defaults;
   bool has_engine = false;
@@ -101,7 +104,7 @@ struct Reading {
   }
 };
 
-/// What included files and the scene say for the scene, in the order of the includes.
+/// Parts of the scene from its included files and from itself, in the order of the includes.
 struct Parts {
   std::vector<Element> models;       ///< each <models>
   std::vector<Element> controllers;  ///< each <controllers> of an included file
@@ -109,39 +112,38 @@ struct Parts {
 
 /// Reads all files that a file includes.
 /// @param identity  of the scene's own file
-Parts read_includes(Reading& reading, Element& root, const std::string& identity);
+Parts read_includes(Draft& draft, Element& root, const std::string& identity);
 
 /// Why a file is refused: `is larger than …`.
 std::string too_large(std::size_t max_size);
 
-void read_framework(Reading& reading, Element& root);
-void read_engines(Reading& reading, Element& root);
-void read_media(Reading& reading, Element& root);
-void read_controllers(Reading& reading, Element& root, std::span<Element> included);
-void read_models(Reading& reading, Element& list);
-void read_arena(Reading& reading, Element& root);
+void read_framework(Draft& draft, Element& root);
+void read_engines(Draft& draft, Element& root);
+void read_media(Draft& draft, Element& root);
+void read_controllers(Draft& draft, Element& root, std::span<Element> included);
+void read_models(Draft& draft, Element& list);
+void read_arena(Draft& draft, Element& root);
 
 // --- controllers --------------------------------------------------------------------------------
 
 /// Reads <actuators> and <sensors>.
-void read_actuators(Reading& reading, Element& list, ControllerDevices& devices,
-                    ControllerUse& use);
-void read_sensors(Reading& reading, Element& list, ControllerDevices& devices, ControllerUse& use);
-std::vector<Camera> read_cameras(Reading& reading, Element& sensor, ControllerUse& use);
+void read_actuators(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use);
+void read_sensors(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use);
+std::vector<Camera> read_cameras(Draft& draft, Element& sensor, ControllerUse& use);
 
-/// The last child of each name, in the order of those; earlier ones of the name are a notice.
+/// The last child of each name, in order of the names; earlier ones are reported as notices.
 std::vector<Element> last_of_each_name(Element& list);
 
-/// Reads what happens when a controller is late. Attributes of an element belong together: one that
-/// says `deadline` takes nothing from `usual`, one that does not takes it whole.
+/// Reads what happens when a controller is late. An element with `deadline` replaces all of
+/// `usual`, one without it keeps all of it.
 std::optional<DeadlinePolicy> read_deadline(Element& element,
                                             const std::optional<DeadlinePolicy>& usual);
 
 /// Reads `<controller>` of an entity or a model.
-std::optional<ControllerChoice> read_controller_choice(Reading& reading, Element& element);
+std::optional<ControllerChoice> read_controller_choice(Draft& draft, Element& element);
 
 /// Gives an entity its controller and checks that it has what the controller needs.
-void give_controller(Reading& reading, const ControllerChoice& choice, Entity& entity);
+void give_controller(Draft& draft, const ControllerChoice& choice, Entity& entity);
 
 // --- entities -----------------------------------------------------------------------------------
 
@@ -149,31 +151,32 @@ void give_controller(Reading& reading, const ControllerChoice& choice, Entity& e
 enum class Placement { explicit_pose, distributed };
 
 /// Reads <box>, <cylinder>, <sphere>, <prototype>, <foot-bot> or <e-puck>.
-Entity read_entity(Reading& reading, Element& element, Placement placement);
+Entity read_entity(Draft& draft, Element& element, Placement placement);
 std::optional<EntityKind> entity_kind(std::string_view name);
 /// The names of all kinds of entities, and others behind them.
 std::vector<std::string_view> entity_names(std::initializer_list<std::string_view> others = {});
 std::string_view to_string(EntityKind kind);
 bool may_have_controller(EntityKind kind);
 
-/// Reads what a model and an entity without one say alike: all but id, pose and controller.
-void read_body_and_devices(Reading& reading, Element& element, Entity& entity);
+/// Reads what a model and an entity without a model have in common: all but id, pose and
+/// controller.
+void read_body_and_devices(Draft& draft, Element& element, Entity& entity);
 
-/// Makes the entity one of the model of that name, with the controller that the model says.
+/// Makes the entity one of the model of that name, with the controller of the model.
 /// @returns where to write what can't stand on the entity itself
-std::string apply_model(Reading& reading, Element& element, const std::string& name, Entity& entity,
+std::string apply_model(Draft& draft, Element& element, const std::string& name, Entity& entity,
                         std::optional<ControllerChoice>& controller);
 
-/// Reports what the scene lacks, once.
-void report_lacks(Reading& reading, std::vector<PendingFault>& lacks);
+/// Reports the missing parts, once.
+void report_missing(Draft& draft, std::vector<PendingFault>& missing_parts);
 
-/// Reads a <foot-bot> or <e-puck> into an entity that knows its kind.
-void read_robot(Reading& reading, Element& element, Entity& entity);
+/// Reads a <foot-bot> or <e-puck> into an entity whose kind is set.
+void read_robot(Draft& draft, Element& element, Entity& entity);
 
 /// Reads <light>, whose effects are still to come; returns its id.
-std::string read_light(Reading& reading, Element& element, Placement placement);
+std::string read_light(Draft& draft, Element& element, Placement placement);
 
-void read_distribution(Reading& reading, Element& element);
+void read_distribution(Draft& draft, Element& element);
 
 /// `<body>` of an entity: its pose.
 math::Pose read_body(Element& element, Placement placement);
@@ -182,47 +185,47 @@ math::Pose read_body(Element& element, Placement placement);
 math::Pose read_pose(Element& element);
 
 /// Reads <links>; false if links can't be told apart or no reference link is known.
-bool read_links(Reading& reading, Element& element, Entity& entity);
+bool read_links(Draft& draft, Element& element, Entity& entity);
 
 /// Reads <joints> and, if the tree is `rooted`, orders them from the root outwards.
-void read_joints(Reading& reading, Element& element, Entity& entity, bool rooted);
+void read_joints(Draft& draft, Element& element, Entity& entity, bool rooted);
 
 /// Checks that joints make a tree with the reference link at its root, and orders them.
 void order_joints(Report& report, Entity& entity);
 
 /// Reads <devices> of a prototype.
-void read_devices(Reading& reading, Element& element, Entity& entity);
+void read_devices(Draft& draft, Element& element, Entity& entity);
 
 /// Reads <battery>.
 Battery read_battery(Element& element);
 
 /// Reads <leds> of a single body or prototype.
-void read_leds(Reading& reading, Element& container, Entity& entity);
+void read_leds(Draft& draft, Element& container, Entity& entity);
 
 // --- shared values ------------------------------------------------------------------------------
 
 /// Reads `geometry` of a link with its extents.
-Geometry read_geometry(Reading& reading, Element& link);
+Geometry read_geometry(Draft& draft, Element& link);
 
 /// Reads the extents of a shape.
-/// @param name  as `geometry` would say it; one that is known
-Geometry read_shape(Reading& reading, Element& element, std::string_view name);
+/// @param name  a known value of `geometry`
+Geometry read_shape(Draft& draft, Element& element, std::string_view name);
 
 /// `friction` and `rolling_friction`.
-Surface read_surface(Reading& reading, Element& element, const Surface& usual);
+Surface read_surface(Draft& draft, Element& element, const Surface& usual);
 
 /// `linear_damping` and `angular_damping`.
-Damping read_damping(Reading& reading, Element& element, const Damping& usual);
+Damping read_damping(Draft& draft, Element& element, const Damping& usual);
 
 /// The medium that an attribute `medium` names; a missing, unknown or wrong one is a fault, or in
-/// a model or an included controller something that the scene lacks.
-std::optional<std::size_t> read_medium(Reading& reading, Element& element, MediumKind kind);
+/// a model or an included controller a missing part.
+std::optional<std::size_t> read_medium(Draft& draft, Element& element, MediumKind kind);
 
 /// The anchor that an attribute `anchor` names; an unknown one is a fault.
-Anchor read_anchor(Reading& reading, Element& element);
+Anchor read_anchor(Draft& draft, Element& element);
 
 /// `origin`, then the links of the entity being read.
-std::vector<std::string> anchor_names(const Reading& reading);
+std::vector<std::string> anchor_names(const Draft& draft);
 
 /// The dialect's name of a kind of medium.
 std::string_view to_string(MediumKind kind);
