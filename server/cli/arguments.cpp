@@ -18,9 +18,8 @@ namespace po = boost::program_options;
 std::string unknown(const std::string& name, const po::options_description& known) {
   std::vector<std::string> names;
   for (const auto& option : known.options()) names.push_back("--" + option->long_name());
-  const auto suggestion = text::closest(name, names);
-  return fmt::format("unknown option '{}'{}", name,
-                     suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?");
+  return fmt::format("unknown option '{}'; {}", name,
+                     text::advice(name, names, "--help lists the options"));
 }
 
 // An option with an optional value takes the next word only if it is a number. Boost would take any

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -39,10 +40,6 @@ struct Call {
   po::variables_map values;
 };
 
-[[noreturn]] void misused(std::string_view usage) {
-  throw text::UsageError(fmt::format("write: ziggurat ctl URL {}", usage));
-}
-
 void print_result(const Call& call, std::string_view done, std::uint64_t tick) {
   if (call.values.count("json") > 0) {
     call.console.result(fmt::format(R"({{"tick":{}}})", tick));
@@ -61,7 +58,6 @@ void pause(const Call& call) { print_result(call, "paused", call.server.pause())
 void resume(const Call& call) { print_result(call, "resumed", call.server.resume()); }
 
 void step(const Call& call) {
-  if (call.words.size() > 1) misused("step [TICKS]");
   const std::uint64_t ticks = call.words.empty() ? 1 : text::to_integer("step", call.words[0]);
   print_result(call, "paused", call.server.step(ticks));
 }
@@ -84,23 +80,23 @@ std::string contents_of(const std::string& path) {
 }
 
 void spawn(const Call& call) {
-  if (call.words.size() != 1) misused("spawn FILE|-   (one element, as in <arena>)");
   print_result(call, "spawned", call.server.spawn(contents_of(call.words[0])));
 }
 
-void remove(const Call& call) {
-  if (call.words.size() != 1) misused("remove ENTITY");
-  print_result(call, "removed", call.server.remove(call.words[0]));
-}
+void remove(const Call& call) { print_result(call, "removed", call.server.remove(call.words[0])); }
 
 void move(const Call& call) {
-  if (call.words.size() != 2 && call.words.size() != 3) misused("move ENTITY x,y,z [z,y,x]");
   const auto numbers = [](std::string_view what, const std::string& text) {
     std::array<double, 3> values{};
     std::istringstream fields(text);
     std::string field;
     for (double& value : values) {
-      if (!std::getline(fields, field, ',')) misused("move ENTITY x,y,z [z,y,x]");
+      if (!std::getline(fields, field, ',')) {
+        throw text::UsageError(
+            fmt::format("{} is '{}'; it must be three numbers with commas between "
+                        "them",
+                        what, text));
+      }
       value = text::to_number(what, field);
     }
     return values;
@@ -135,22 +131,27 @@ void shutdown(const Call& call) { call.server.shutdown(); }
 
 struct Verb {
   std::string_view name;
+  std::string_view words;   ///< after the name, for messages
+  std::size_t least, most;  ///< how many
   std::string_view summary;
   void (*execute)(const Call&);
 };
 
+constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
+
 constexpr Verb verbs[] = {
-    {"status", "the controllers that the world waits for, and how long", print_status},
-    {"pause", "stop between two ticks; returns when the world has stopped", pause},
-    {"resume", "continue", resume},
-    {"step", "[TICKS]  advance a paused world, by 1 tick if TICKS is missing", step},
-    {"reset", "[--seed N]  build the world again; controllers are told", reset},
-    {"spawn", "FILE|-  add an entity: one element, as in <arena>", spawn},
-    {"remove", "ENTITY  remove it from the world", remove},
-    {"move", "ENTITY x,y,z [z,y,x]  put it at rest there [m], with this orientation [degrees]",
-     move},
-    {"read", "[ID|GLOB]...  poses of entities: x y z, and the quaternion w x y z", read},
-    {"shutdown", "end the run, as Ctrl-C does", shutdown},
+    {"status", "", 0, 0, "the controllers that the world waits for, and how long", print_status},
+    {"pause", "", 0, 0, "stop between two ticks; returns when the world has stopped", pause},
+    {"resume", "", 0, 0, "continue", resume},
+    {"step", "[TICKS]", 0, 1, "advance a paused world, by 1 tick if TICKS is missing", step},
+    {"reset", "[--seed N]", 0, 0, "build the world again; controllers are told", reset},
+    {"spawn", "FILE|-", 1, 1, "add an entity: one element, as in <arena>", spawn},
+    {"remove", "ENTITY", 1, 1, "remove it from the world", remove},
+    {"move", "ENTITY x,y,z [z,y,x]", 2, 3,
+     "put it at rest there [m], with this orientation [degrees]", move},
+    {"read", "[ID|GLOB]...", 0, any_number, "poses of entities: x y z, and the quaternion w x y z",
+     read},
+    {"shutdown", "", 0, 0, "end the run, as Ctrl-C does", shutdown},
 };
 
 const Verb& verb_named(const std::string& name) {
@@ -159,10 +160,8 @@ const Verb& verb_named(const std::string& name) {
     if (verb.name == name) return verb;
     names.emplace_back(verb.name);
   }
-  const auto suggestion = text::closest(name, names);
   throw text::UsageError(fmt::format("ctl: there is no request '{}'; {}", name,
-                                     suggestion.empty() ? "'ziggurat help ctl' lists them"
-                                                        : "did you mean '" + suggestion + "'?"));
+                                     text::advice(name, names, "'ziggurat help ctl' lists them")));
 }
 
 }  // namespace
@@ -175,7 +174,10 @@ Controls a run of `ziggurat run --endpoint URL` or `ziggurat serve` from another
 carried out between two ticks; the command returns when its request is done.
 
 )";
-  for (const Verb& verb : verbs) text << fmt::format("  {:<10} {}\n", verb.name, verb.summary);
+  for (const Verb& verb : verbs) {
+    text << fmt::format("  {:<9} {}{}{}\n", verb.name, verb.words, verb.words.empty() ? "" : "  ",
+                        verb.summary);
+  }
   text << R"(
   ziggurat ctl tcp://127.0.0.1:5770 pause
   ziggurat ctl tcp://127.0.0.1:5770 step 10
@@ -191,12 +193,22 @@ Exit codes: 0 the request was done; 1 it was not.
 
 int execute_ctl(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, ctl_options());
-  if (parsed.positional.size() < 2) misused("REQUEST   ('ziggurat help ctl' lists the requests)");
+  if (parsed.positional.size() < 2) {
+    throw text::UsageError(
+        "write: ziggurat ctl URL REQUEST   ('ziggurat help ctl' lists the requests)");
+  }
   const Verb& verb = verb_named(parsed.positional[1]);
+  const std::vector<std::string> words(parsed.positional.begin() + 2, parsed.positional.end());
+  if (words.size() < verb.least || words.size() > verb.most) {
+    throw text::UsageError(fmt::format("write: ziggurat ctl URL {}{}{}", verb.name,
+                                       verb.words.empty() ? "" : " ", verb.words));
+  }
+  if (parsed.values.count("seed") > 0 && verb.name != "reset") {
+    throw text::UsageError(fmt::format("--seed is for reset; remove it from {}", verb.name));
+  }
   reports::Console console;
   Supervisor server(supervisor_options(parsed.positional[0], parsed.values, false, "ziggurat ctl"));
-  verb.execute(
-      {server, console, {parsed.positional.begin() + 2, parsed.positional.end()}, parsed.values});
+  verb.execute({server, console, words, parsed.values});
   console.flush();
   return reports::exit_code::finished;
 }

@@ -33,10 +33,8 @@ const Command& command_named(const std::string& name) {
   if (found != std::end(table)) return *found;
   std::vector<std::string> names;
   for (const auto& command : table) names.emplace_back(command.name);
-  const auto suggestion = text::closest(name, names);
-  throw text::UsageError(fmt::format(
-      "there is no command '{}'; {}", name,
-      suggestion.empty() ? "'ziggurat help' lists them" : "did you mean '" + suggestion + "'?"));
+  throw text::UsageError(fmt::format("there is no command '{}'; {}", name,
+                                     text::advice(name, names, "'ziggurat help' lists them")));
 }
 
 }  // namespace ziggurat::cli

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "processes/scripts.h"
-#include "text/names.h"
+#include "run/by_controller.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -18,16 +18,7 @@ namespace {
 // ziggurat-lua in a debugger.
 void override_controllers(const Options& options, scene::Scene& scene) {
   for (const auto& [id, command] : options.controllers) {
-    const auto found = std::ranges::find(scene.controllers, id, &scene::Controller::id);
-    if (found == scene.controllers.end()) {
-      std::vector<std::string> ids;
-      for (const auto& controller : scene.controllers) ids.push_back(controller.id);
-      const auto suggestion = text::closest(id, ids);
-      throw text::UsageError(
-          fmt::format("--controller: the scene has no controller '{}'{}", id,
-                      suggestion.empty() ? "" : "; did you mean '" + suggestion + "'?"));
-    }
-    found->command = command;
+    scene.controllers[controller_named("--controller", id, scene)].command = command;
   }
 }
 
@@ -68,18 +59,23 @@ std::uint64_t choose_seed(const Options& options, const scene::Scene& scene) {
   return seed;
 }
 
+std::uint64_t tick_at(double time, const scene::Experiment& experiment) {
+  // 0.29 s at 100 ticks/s are 29 ticks, though the product is 28.999999999999996.
+  const double ticks = std::floor(time * experiment.ticks_per_second * (1 + 1e-12));
+  return ticks < 0x1p63 ? static_cast<std::uint64_t>(ticks) : std::uint64_t{1} << 63;
+}
+
 std::optional<std::uint64_t> tick_count(const Options& options, const scene::Scene& scene) {
   if (options.ticks) return options.ticks;
   const double length = options.duration.value_or(scene.experiment.length);
   if (length <= 0) return std::nullopt;
-  // 0.29 s at 100 ticks/s are 29 ticks, though the product is 28.999999999999996.
-  const double ticks = std::floor(length * scene.experiment.ticks_per_second * (1 + 1e-12));
-  if (ticks < 1) {
+  const std::uint64_t ticks = tick_at(length, scene.experiment);
+  if (ticks == 0) {
     throw text::UsageError(fmt::format(
         "the length of {} s is shorter than one tick of 1/{} s; write at least one tick", length,
         scene.experiment.ticks_per_second));
   }
-  return ticks < 0x1p63 ? static_cast<std::uint64_t>(ticks) : std::uint64_t{1} << 63;
+  return ticks;
 }
 
 std::vector<std::string> script_paths(const scene::Scene& scene, const world::Layout& layout,

@@ -20,6 +20,9 @@ scene::OpenScene load_scene(const std::string& path, const Options& options,
 /// The seed of the options, otherwise of the scene; drawn from the system if that is 0.
 std::uint64_t choose_seed(const Options& options, const scene::Scene& scene);
 
+/// The tick that contains a simulated time [s].
+std::uint64_t tick_at(double time, const scene::Experiment& experiment);
+
 /// How many ticks the run has; nothing = until it is stopped.
 /// @throws text::UsageError if it is shorter than one tick
 std::optional<std::uint64_t> tick_count(const Options& options, const scene::Scene& scene);

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include "recording/png.h"
+#include "run/loading.h"
 
 namespace ziggurat::run {
 namespace {
@@ -35,12 +35,6 @@ std::optional<Placeholder> find_placeholder(std::string_view text) {
 }
 
 }  // namespace
-
-std::uint64_t tick_at(double time, const scene::Experiment& experiment) {
-  // 0.29 s at 100 ticks/s are 29 ticks, though the product is 28.999999999999996.
-  const double ticks = std::floor(time * experiment.ticks_per_second * (1 + 1e-12));
-  return ticks < 0x1p63 ? static_cast<std::uint64_t>(ticks) : std::uint64_t{1} << 63;
-}
 
 std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& experiment) {
   return tick_at(*std::ranges::max_element(options.times), experiment);

@@ -21,9 +21,6 @@ struct PictureOptions {
   std::string out;               ///< path; of several pictures, their pattern
 };
 
-/// The tick that contains a simulated time [s].
-std::uint64_t tick_at(double time, const scene::Experiment& experiment);
-
 /// The tick of the last picture.
 std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& experiment);
 

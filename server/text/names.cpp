@@ -27,7 +27,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string closest(std::string_view word, std::span<const std::string> candidates) {
   const std::string* best = nullptr;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const auto& candidate : candidates) {
     const bool begins = word.size() > 3 && candidate.starts_with(word);
     const std::size_t away = begins ? 1 : edit_distance(word, candidate);
@@ -37,6 +37,12 @@ std::string closest(std::string_view word, std::span<const std::string> candidat
     }
   }
   return best ? *best : std::string();
+}
+
+std::string advice(std::string_view word, std::span<const std::string> candidates,
+                   std::string_view otherwise) {
+  const std::string meant = closest(word, candidates);
+  return meant.empty() ? std::string(otherwise) : "did you mean '" + meant + "'?";
 }
 
 }  // namespace ziggurat::text

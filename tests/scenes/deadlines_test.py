@@ -127,7 +127,7 @@ class Deadlines(SceneTest):
 
     def test_a_controller_that_does_not_exist(self):
         outcome = self.run_scene("--deadline", "swong=hold:5", code=FAULT)
-        self.assert_is_sentence(outcome, "no controller 'swong'")
+        self.assert_is_sentence(outcome, "no controller 'swong'; did you mean 'swing'?")
 
 
 class Keys(SceneTest):

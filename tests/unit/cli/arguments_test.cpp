@@ -49,7 +49,7 @@ TEST(Arguments, OptionalValueIsTheNextWordOnlyIfThatIsANumber) {
 
 TEST(Arguments, UnknownOptionsGetASuggestionIfOneIsNear) {
   EXPECT_EQ(complaint({"--tikcs", "3"}), "unknown option '--tikcs'; did you mean '--ticks'?");
-  EXPECT_EQ(complaint({"--xyzzy"}), "unknown option '--xyzzy'");
+  EXPECT_EQ(complaint({"--xyzzy"}), "unknown option '--xyzzy'; --help lists the options");
   EXPECT_NE(complaint({"--tick", "3"}), "") << "abbreviations are not guessed";
 }
 

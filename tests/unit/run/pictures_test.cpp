@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "run/loading.h"
+
 namespace ziggurat::run {
 namespace {
 

@@ -23,5 +23,11 @@ TEST(Closest, IsTheCandidateThatWasProbablyMeant) {
   EXPECT_EQ(closest("--ticks", {}), "");
 }
 
+TEST(Advice, NamesTheCandidateOrSaysWhatElseToDo) {
+  const std::vector<std::string> names{"run", "serve"};
+  EXPECT_EQ(advice("serv", names, "see the list"), "did you mean 'serve'?");
+  EXPECT_EQ(advice("xyzzy", names, "see the list"), "see the list");
+}
+
 }  // namespace
 }  // namespace ziggurat::text
