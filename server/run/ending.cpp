@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "recording/hash_file.h"
-#include "recording/output_file.h"
 #include "reports/report_card.h"
 #include "run/run.h"
 #include "run/setup.h"
@@ -52,12 +51,7 @@ bool Run::report_hil() {
     card.controllers.push_back(
         {world_.scene.controllers[c].id, latencies, missed, config_.injections[c], lost});
   }
-  if (!options_.report_card.empty()) {
-    const bool is_picture = options_.report_card.ends_with(".svg");
-    recording::OutputFile file(options_.report_card);
-    file.buffer().append(is_picture ? to_svg(card) : to_json(card) + "\n");
-    file.close();
-  }
+  recorders_.write_report_card(card);
   console_.report(to_text(card));
   return passes(card);
 }

@@ -10,6 +10,8 @@ Recorders::Recorders(const Options& options, const supervision::World& world) {
   if (!options.hash_file.empty()) hashes_.emplace(options.hash_file);
   if (!options.readings.empty()) readings_.emplace(options.readings, layout);
   if (!options.summary.empty()) summary_.emplace(options.summary);
+  if (!options.report_card.empty()) report_card_.emplace(options.report_card);
+  report_card_is_picture_ = options.report_card.ends_with(".svg");
   if (!options.rays.empty()) rays_.emplace(options.rays, layout);
   if (options.pictures) {
     pictures_.emplace(*options.pictures, world.scene, world.simulation.entities(), layout);
@@ -55,6 +57,12 @@ void Recorders::write_summary(const reports::Summary& summary) {
   if (!summary_) return;
   summary_->buffer().append(to_json(summary) + "\n");
   summary_->close();
+}
+
+void Recorders::write_report_card(const reports::ReportCard& card) {
+  if (!report_card_) return;
+  report_card_->buffer().append(report_card_is_picture_ ? to_svg(card) : to_json(card) + "\n");
+  report_card_->close();
 }
 
 }  // namespace ziggurat::run

@@ -10,6 +10,7 @@
 #include "recording/rays.h"
 #include "recording/readings.h"
 #include "recording/trace.h"
+#include "reports/report_card.h"
 #include "reports/summary.h"
 #include "run/options.h"
 #include "run/pictures.h"
@@ -33,7 +34,7 @@ class Recorders {
   void exchange(const world::State& state, const world::Observations& observations,
                 const world::Commands& commands);
 
-  /// Completes every file except the summary, also if one of them fails.
+  /// Completes every file except the summary and the report card, also if one of them fails.
   /// @throws recording::WriteError
   void close();
 
@@ -43,12 +44,18 @@ class Recorders {
   /// @throws recording::WriteError
   void write_summary(const reports::Summary& summary);
 
+  /// As a picture if the file's name ends with .svg, otherwise as JSON.
+  /// @throws recording::WriteError
+  void write_report_card(const reports::ReportCard& card);
+
  private:
   std::optional<recording::Trace> trace_;
   std::optional<recording::HashFile> hashes_;
   std::optional<recording::Readings> readings_;
   std::optional<recording::Rays> rays_;
   std::optional<recording::OutputFile> summary_;
+  std::optional<recording::OutputFile> report_card_;
+  bool report_card_is_picture_ = false;
   std::optional<recording::Images> images_;
   std::optional<Pictures> pictures_;
 };

@@ -128,6 +128,7 @@ class BrokenArguments(SceneTest):
         outcome = self.ziggurat(*arguments)
         self.assertEqual(outcome.code, FAULT, outcome.out)
         self.assert_is_sentence(outcome, pattern)
+        return outcome
 
     def test_unknown_commands_options_and_values(self):
         self.refuses(r"no command 'rnu'; did you mean 'run'", "rnu", self.scene)
@@ -135,11 +136,19 @@ class BrokenArguments(SceneTest):
         self.refuses(r"--ticks.*'many'", "run", self.scene, "--ticks", "many")
         self.refuses(r"no scene is given", "run")
         self.refuses(r"'swong'.*did you mean 'swing'", "run", self.scene, "--controller", "swong=x")
+        self.refuses(r"no controller 'xyzzy'; it has: swing", "run", self.scene,
+                     "--deadline", "xyzzy=hold:5")
+        url = "tcp://127.0.0.1:1"  # not reached: the words are wrong
+        self.refuses(r"write: ziggurat ctl URL pause$", "ctl", url, "pause", "now")
+        self.refuses(r"write: ziggurat ctl URL step \[TICKS\]", "ctl", url, "step", "3", "4")
+        self.refuses(r"write: ziggurat ctl URL remove ENTITY", "ctl", url, "remove")
+        self.refuses(r"--seed is for reset", "ctl", url, "pause", "--seed", "3")
 
     def test_files_that_cannot_be_written(self):
-        for option in ("--trace", "--readings", "--hash-file", "--summary"):
-            self.refuses(r"/no/such/folder/x.*No such file", "run", self.scene, option,
-                         "/no/such/folder/x")
+        for option in ("--trace", "--readings", "--hash-file", "--summary", "--report-card"):
+            outcome = self.refuses(r"/no/such/folder/x.*No such file", "run", self.scene, option,
+                                   "/no/such/folder/x")
+            self.assertEqual(outcome.out, "", "no controller has been started")
 
     def test_full_disk(self):
         for option in ("--trace", "--readings", "--hash-file", "--summary"):
