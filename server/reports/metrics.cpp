@@ -80,6 +80,18 @@ void add_sessions(std::string& out, const wire::Status& status) {
   });
 }
 
+/// The address in an IPv6 host, which is written as [ADDRESS]; any other host as it is.
+std::string without_brackets(const std::string& host) {
+  const bool has_brackets = host.starts_with('[') && host.ends_with(']');
+  return has_brackets ? host.substr(1, host.size() - 2) : host;
+}
+
+/// The port that is bound, any free one for 0; -1 if it can't be.
+int bind_port(httplib::Server& server, const std::string& host, int port) {
+  if (port == 0) return server.bind_to_any_port(host.c_str());
+  return server.bind_to_port(host.c_str(), port) ? port : -1;
+}
+
 }  // namespace
 
 std::string to_prometheus(const wire::Status& status) {
@@ -135,9 +147,10 @@ MetricsPort::MetricsPort(const std::string& address, bool insecure)
   }
   const std::string host = address.substr(0, colon);
   const auto port = text::to_integer("--metrics", address.substr(colon + 1));
-  if (port > 65535)
+  if (port > 65535) {
     throw text::UsageError(
         fmt::format("--metrics: port {} is too large; ports are 0 to 65535", port));
+  }
   if (!insecure && host != "127.0.0.1" && host != "localhost" && host != "[::1]") {
     throw text::UsageError(fmt::format(
         "--metrics: other machines can reach {}; use 127.0.0.1, or add --insecure", host));
@@ -155,13 +168,13 @@ MetricsPort::MetricsPort(const std::string& address, bool insecure)
   s.server.Get("/", [](const httplib::Request&, httplib::Response& response) {
     response.set_content("Ziggurat: /metrics for Prometheus, /status for JSON\n", "text/plain");
   });
-  const int bound = port == 0 ? s.server.bind_to_any_port(host.c_str())
-                    : s.server.bind_to_port(host.c_str(), static_cast<int>(port))
-                        ? static_cast<int>(port)
-                        : -1;
-  if (bound < 0)
-    throw std::runtime_error(fmt::format(
-        "--metrics: {} is in use; choose another port, or 0 for any free one", address));
+  const int bound = bind_port(s.server, without_brackets(host), static_cast<int>(port));
+  if (bound < 0) {
+    throw std::runtime_error(
+        fmt::format("--metrics: {} can't be opened; the port must be free (0 takes any free one), "
+                    "and the host one of this machine",
+                    address));
+  }
   s.url = fmt::format("http://{}:{}", host, bound);
   s.thread = std::thread([&s] { s.server.listen_after_bind(); });
   // stop() has no effect on a server that does not run yet.
@@ -175,7 +188,7 @@ MetricsPort::~MetricsPort() {
 
 const std::string& MetricsPort::url() const { return state_->url; }
 
-bool MetricsPort::is_due() const { return Clock::now() - state_->published >= period; }
+bool MetricsPort::needs_update() const { return Clock::now() - state_->published >= period; }
 
 void MetricsPort::publish(const wire::Status& status) {
   state_->published = Clock::now();

@@ -17,13 +17,13 @@ class MetricsPort {
  public:
   /// @param address  host:port; port 0 is any free one
   /// @param insecure  whether the host may be other than loopback
-  /// @throws text::UsageError if the address is wrong, std::runtime_error if it is in use
+  /// @throws text::UsageError if the address is wrong, std::runtime_error if it can't be opened
   MetricsPort(const std::string& address, bool insecure);
   ~MetricsPort();
 
   const std::string& url() const;
   /// Whether the copy is old enough for a new one.
-  bool is_due() const;
+  bool needs_update() const;
   void publish(const wire::Status& status);
 
  private:

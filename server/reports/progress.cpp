@@ -9,7 +9,7 @@ constexpr std::chrono::milliseconds interval{200};
 
 }  // namespace
 
-bool Progress::is_due() const {
+bool Progress::needs_update() const {
   return console_.shows_progress() && clock::now() - shown_at_ >= interval;
 }
 

@@ -16,7 +16,7 @@ class Progress {
   Progress(Console& console, double tick_length) : console_(console), tick_length_(tick_length) {}
 
   /// Whether stderr is a terminal and the last line is old enough.
-  bool is_due() const;
+  bool needs_update() const;
 
   /// Rates are measured since the previous line.
   void show(std::uint64_t tick, std::string_view waiting_for);

@@ -23,7 +23,7 @@ double& total_of(Phase phase, reports::Summary& summary) {
 }  // namespace
 
 void PhaseTimer::end_phase(Phase phase, reports::Summary& summary) {
-  const double taken = lap();
+  const double taken = restart();
   total_of(phase, summary) += taken;
   tick_[static_cast<std::size_t>(phase)] += taken;
 }
@@ -36,7 +36,7 @@ void PhaseTimer::end_tick(supervision::Supervision& supervision, bool is_paced) 
   }
 }
 
-double PhaseTimer::lap() {
+double PhaseTimer::restart() {
   const auto now = clock::now();
   const double taken = std::chrono::duration<double>(now - last_).count();
   last_ = now;

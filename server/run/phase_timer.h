@@ -13,7 +13,7 @@ namespace ziggurat::run {
 class PhaseTimer {
  public:
   /// Adds the time since the last call to the start-up of the run.
-  void end_startup(reports::Summary& summary) { summary.startup_s += lap(); }
+  void end_startup(reports::Summary& summary) { summary.startup_s += restart(); }
 
   /// Adds the time since the last call to a phase of the tick and of the run.
   void end_phase(supervision::Phase phase, reports::Summary& summary);
@@ -24,7 +24,7 @@ class PhaseTimer {
 
  private:
   using clock = std::chrono::steady_clock;
-  double lap();  ///< [s] since the last call
+  double restart();  ///< [s] since the last call
 
   clock::time_point last_ = clock::now();
   std::array<double, supervision::phase_count> tick_{};  ///< by Phase [s]

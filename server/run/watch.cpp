@@ -60,7 +60,7 @@ std::optional<Ending> Watch::sleep_until(clock::time_point moment, world::Comman
     if (auto ending = supervisor_request()) return ending;
     const auto left = std::chrono::floor<milliseconds>(moment - clock::now());
     if (left.count() <= 0) break;
-    if (progress_.is_due()) progress_.show(tick_, "");
+    if (progress_.needs_update()) progress_.show(tick_, "");
     console_.flush();
     server_.linger(commands, {std::min(left, usual_wait), descriptors});
     take_report();
@@ -84,7 +84,7 @@ std::optional<Ending> Watch::until(const Step& step) {
     if (ending || complete) {
       peers_.print_log(tick_);
       printed_.clear();
-      if (progress_.is_due()) progress_.show(tick_, "");
+      if (progress_.needs_update()) progress_.show(tick_, "");
       return ending;
     }
     report_awaited();
@@ -93,7 +93,7 @@ std::optional<Ending> Watch::until(const Step& step) {
 
 void Watch::serve() {
   supervision_.serve();
-  if (metrics_ && metrics_->is_due()) metrics_->publish(supervision_.status());
+  if (metrics_ && metrics_->needs_update()) metrics_->publish(supervision_.status());
 }
 
 std::optional<Ending> Watch::interruption() {
@@ -193,7 +193,7 @@ std::string Watch::by_controller(const std::vector<std::size_t>& robots) const {
 void Watch::report_awaited() {
   const auto waited = clock::now() - waiting_since_;
   const auto robots = awaited_robots();
-  if (progress_.is_due()) {
+  if (progress_.needs_update()) {
     progress_.show(tick_, waited > noticeable ? by_controller(robots) : std::string());
   }
   const bool client_must_connect = std::ranges::any_of(

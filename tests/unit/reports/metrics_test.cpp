@@ -39,9 +39,9 @@ TEST(Metrics, ReadAsPrometheusAsks) {
 TEST(Metrics, AreServedOverHttp) {
   MetricsPort port("127.0.0.1:0", false);
   httplib::Client client(port.url());
-  EXPECT_TRUE(port.is_due());
+  EXPECT_TRUE(port.needs_update());
   port.publish(status());
-  EXPECT_FALSE(port.is_due());
+  EXPECT_FALSE(port.needs_update());
   const auto metrics = client.Get("/metrics");
   ASSERT_TRUE(metrics);
   EXPECT_EQ(metrics->body, to_prometheus(status()));
@@ -56,6 +56,18 @@ TEST(Metrics, StayOnThisMachineUnlessTold) {
   EXPECT_NO_THROW(MetricsPort("0.0.0.0:0", true));
   EXPECT_THROW(MetricsPort("9464", false), text::UsageError);
   EXPECT_THROW(MetricsPort("127.0.0.1:99999", false), text::UsageError);
+}
+
+TEST(Metrics, TakeAnAddressOfThisMachineWithAFreePort) {
+  const MetricsPort first("127.0.0.1:0", false);
+  EXPECT_THROW(MetricsPort(first.url().substr(7), false), std::runtime_error) << "taken";
+  EXPECT_THROW(MetricsPort("192.0.2.1:0", true), std::runtime_error) << "of no machine";
+}
+
+TEST(Metrics, TakeAnIpv6AddressInBrackets) {
+  httplib::Server server;
+  if (server.bind_to_any_port("::1") < 0) GTEST_SKIP() << "this machine has no IPv6 loopback";
+  EXPECT_NO_THROW(MetricsPort("[::1]:0", false));
 }
 
 }  // namespace
