@@ -73,8 +73,8 @@ void Supervision::add_controller(const scene::Entity& entity) {
   if (!is_lua) return;
   try {
     controllers_.start_spawned(robot[0], simulation.layout());
-  } catch (const std::runtime_error&) {
-    // The run then reports that it waits for a client to connect.
+  } catch (const std::runtime_error& error) {
+    console_.notice(error.what());  // the run then reports that it waits for a client to connect
   }
 }
 
