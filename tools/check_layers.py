@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares every #include in server/, clients/ and protocol/ with the table of who may know whom.
+"""Compares every #include in server/, clients/ and protocol/ with the table of allowed dependencies.
 
 usage: check_layers.py [ROOT]     ROOT is the top of the checkout (default: this file's)
 

@@ -13,14 +13,17 @@ import pathlib
 import re
 import sys
 
-# pattern -> what to write instead. Patterns match whole words; case counts where they have capitals.
+# pattern -> what to write instead. Patterns match whole words, also between the underscores of a name;
+# case counts where they have capitals.
 WORDS = {
     r"(?<!\")[Nn]obody": "no client, no session, no one; better: make the thing itself the subject",
-    r"[Ss]omebody( else)?('s)?": "a client, a peer, a user, another program",
     r"[Ww]ho(m?)ever": "the client that …, each peer that …",
+    r"([Aa]ny|[Ee]very)body|[Ee]veryone|[Ss]omeone": "any program, all peers, each client, a user",
+    r"[Hh]e|[Hh]im|[Hh]is": "the client, its …",
+    r"that there (is|are)": "the … of, the existing …",
     r"for ever": "forever, without end",
     r"of somebody else": "of another client",
-    r"([Ii]s|[Aa]re|[Ww]as|[Ww]ere) due": "must be, is expected",
+    r"([Ii]s|[Aa]re|[Ww]as|[Ww]ere)[ _]due": "must be, is expected",
     r"(comes?|came|coming) about": "happens, is created",
     r"[Ss]trangers?": "a peer without a session, an unknown peer",
     r"[Ff]urnish\w*": "fill, provide",
@@ -29,7 +32,7 @@ WORDS = {
     r"[Ss]urroundings": "settings, environment",
     r"Lack|Fate|Room|Laps": "a name that says what it holds: missing part, decision, budget, timings",
 }
-PATTERN = re.compile("|".join(rf"(?P<w{i}>(?<![\w-]){word}(?![\w-]))"
+PATTERN = re.compile("|".join(rf"(?P<w{i}>(?<![A-Za-z0-9-])(?:{word})(?![A-Za-z0-9-]))"
                               for i, word in enumerate(WORDS)))
 
 TOPS = ["README.md", "quickstart", "CMakeLists.txt", "bench", "clients", "cmake", "conformance",

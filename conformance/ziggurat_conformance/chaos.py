@@ -56,19 +56,19 @@ class _Crowd:
             self._one_tick()
 
     def _one_tick(self) -> None:
-        everybody = ["good", *self._bad]
-        self._stage.play(tuple(Hear(name, "observation") for name in everybody))
-        found = {self._stage.peer(name).tick for name in everybody}
+        names = ["good", *self._bad]
+        self._stage.play(tuple(Hear(name, "observation") for name in names))
+        found = {self._stage.peer(name).tick for name in names}
         expected = {self._tick + 1} if self._tick is not None else found
         if found != expected or len(found) != 1:
             raise Failed(f"sessions are at ticks {sorted(found)}; all should be at {sorted(expected)}")
         self._tick = found.pop()
-        self._draw.shuffle(everybody)
+        self._draw.shuffle(names)
         act = self._draw.choice((self._resend, self._resume, self._move, self._beat, self._err, None,
                                  None))
         if act is not None:
-            everybody = act(everybody)
-        self._stage.play(tuple(answer(name) for name in everybody))
+            names = act(names)
+        self._stage.play(tuple(answer(name) for name in names))
 
     def _share_anew(self) -> None:
         """All robots but arm0, among one, two or three sessions."""

@@ -32,7 +32,7 @@ po::options_description plot_options() {
   add("axis", po::value<std::string>()->value_name("x|y|z"),
       "direction from A to B in A's anchor frame (default: along A's moment)");
   add("turn", po::value<std::string>()->value_name("DEGREES"),
-      "turns B about an axis across that direction, so that there is a torque (default 0)");
+      "turns B about an axis across that direction, which gives a torque (default 0)");
   add("from", po::value<std::string>()->value_name("M"),
       "smallest distance of the centres [m] (default: just apart, or 5 mm for points)");
   add("to", po::value<std::string>()->value_name("M"),

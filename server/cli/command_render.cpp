@@ -108,7 +108,7 @@ runs with its controllers, exactly as with `ziggurat run`.
       physics alone
 
 The world's z axis points up in the picture. Links are coloured by their kind: fixed links are grey,
-movable boxes brown, movable cylinders teal, robots blue. Tags whose payload is an integer 0 to 586 have
+movable boxes brown, movable cylinders teal, spheres light grey, robots blue. Tags whose payload is an integer 0 to 586 have
 that pattern of AprilTag 36h11, others are white. LEDs are discs in their colour, dark ones are off; they
 are drawn at least three pixels wide. Squares on the floor have a side of 1, 2 or 5 times a power of
 ten in metres, ten or more to the arena's shorter side.

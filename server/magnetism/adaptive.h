@@ -20,7 +20,7 @@ enum class Level {
   charges,  ///< exact field over pole charges
 };
 
-/// A rule as the kernel wants it: its points padded to a multiple of four, then the centre, padded.
+/// A rule as the kernel needs it: its points padded to a multiple of four, then the centre, padded.
 struct PaddedRule {
   std::vector<double> x, y, z, weight;
   std::size_t shell;  ///< entries without the centre

@@ -21,7 +21,7 @@ class Neighbours {
   /// False where all pairs are cheaper to go through than a list would be; pairs() is then empty.
   bool listed() const { return listed_; }
 
-  /// Sorted and padded as Kernel::pairs wants it; valid until the next update.
+  /// Sorted and padded as Kernel::pairs needs it; valid until the next update.
   Pairs pairs() const { return {first_.data(), second_.data(), first_.size()}; }
 
   std::size_t rebuilds() const { return rebuilds_; }

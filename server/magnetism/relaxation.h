@@ -42,7 +42,7 @@ class Partners {
  public:
   /// @param free  the freely turning dipoles, ascending
   void list(const Pairs& pairs, const std::vector<std::uint32_t>& free, std::size_t dipoles);
-  /// Everyone acts on everyone.
+  /// Every dipole acts on every other one.
   void list_all(std::size_t dipoles);
 
   const std::uint32_t* begin(std::size_t dipole) const {

@@ -55,7 +55,7 @@ class Server {
   explicit Server(const Config& config);
   /// The same for a world that is there.
   Server(const Config& config, const wire::Run& run);
-  /// Clients that still wait for the world are told that there is none.
+  /// Clients that still wait for the world are told that it will not come.
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

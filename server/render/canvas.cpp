@@ -185,7 +185,7 @@ void Canvas::draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversa
 
   gl.depth_func(GL_ALWAYS);
   gl.disable(GL_CULL_FACE);
-  gl.use_program(surroundings_program_);
+  gl.use_program(background_program_);
   gl.bind_vertex_array(no_arrays_);
   gl.draw_arrays(GL_TRIANGLES, 0, 3);
 

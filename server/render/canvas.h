@@ -37,7 +37,7 @@ class Canvas {
   void check() const;
 
   Context context_;
-  GLuint body_program_ = 0, shadow_program_ = 0, surroundings_program_ = 0, mark_program_ = 0;
+  GLuint body_program_ = 0, shadow_program_ = 0, background_program_ = 0, mark_program_ = 0;
   GLuint body_arrays_ = 0, mark_arrays_ = 0, no_arrays_ = 0;
   GLuint mesh_buffers_[2]{};  // vertices and indices
   GLuint body_instances_ = 0, mark_instances_ = 0, frame_ = 0;

@@ -76,8 +76,7 @@ void Canvas::make_programs() {
   const OpenGl& gl = context_.gl();
   body_program_ = make_program(gl, shaders::body_vertex, shaders::body_fragment);
   shadow_program_ = make_program(gl, shaders::shadow_vertex, shaders::shadow_fragment);
-  surroundings_program_ =
-      make_program(gl, shaders::surroundings_vertex, shaders::surroundings_fragment);
+  background_program_ = make_program(gl, shaders::background_vertex, shaders::background_fragment);
   mark_program_ = make_program(gl, shaders::mark_vertex, shaders::mark_fragment);
 }
 

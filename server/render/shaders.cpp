@@ -104,7 +104,7 @@ const char* const shadow_fragment = R"(
 void main() {}
 )";
 
-const char* const surroundings_vertex = R"(
+const char* const background_vertex = R"(
 out vec2 at;
 
 void main() {
@@ -114,7 +114,7 @@ void main() {
 )";
 
 // Sky, and the floor as a plane without end that fades into the horizon.
-const char* const surroundings_fragment = R"(
+const char* const background_fragment = R"(
 in vec2 at;
 layout(location = 0) out vec4 pixel;
 

@@ -10,8 +10,8 @@ extern const char* const body_vertex;
 extern const char* const body_fragment;
 extern const char* const shadow_vertex;
 extern const char* const shadow_fragment;
-extern const char* const surroundings_vertex;
-extern const char* const surroundings_fragment;
+extern const char* const background_vertex;
+extern const char* const background_fragment;
 extern const char* const mark_vertex;
 extern const char* const mark_fragment;
 

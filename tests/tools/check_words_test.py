@@ -24,7 +24,10 @@ class CheckWords(unittest.TestCase):
         for path, text in [("docs/a.md", "The world waits for nobody.\n"),
                            ("server/a/b.cpp", "void say_hello();\n"),
                            ("server/a/b.h", "struct Lack {};\n"),
-                           ("clients/a.py", "# a number is due\n")]:
+                           ("clients/a.py", "# a number is due\n"),
+                           ("server/a/c.h", "bool is_due();\n"),
+                           ("server/a/d.h", "int surroundings_program_;\n"),
+                           ("docs/b.md", "as he sends it\n")]:
             with self.subTest(text):
                 code, out = self.run_on(path, "\n" + text)
                 self.assertEqual(code, 1, out)
@@ -32,7 +35,8 @@ class CheckWords(unittest.TestCase):
                 self.assertIn("write instead", out)
 
     def test_leaves_other_words_alone(self):
-        text = "Residue lacks room; the duel says hello_again, essay_length, the fate of a packet.\n"
+        text = ("Residue lacks room; the duel says hello_again, essay_length, the fate of a packet. "
+                "Lackluster, Grid::Rooms, and this one is the rest.\n")
         self.assertEqual(self.run_on("docs/a.md", text)[0], 0)
 
     def test_leaves_recorded_messages_alone(self):

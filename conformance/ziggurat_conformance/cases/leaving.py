@@ -83,7 +83,7 @@ CASES = [
           answer("y"), answer("q"), observe("y", "q")), Level.RECONNECT, variant="lease"),
     Case("L7.lease-is-told", "Welcome has the length of the lease",
          (Join("p", hello("*"), {"wall_lease_ms": Some()}),), Level.RECONNECT, variant="lease"),
-    Case("L7.lease-ends", "After the lease anybody may have them",
+    Case("L7.lease-ends", "After the lease any client may have the robots",
          (TWO, Hang("p"), join("x", "arm0", "arm1"), observe("x"), answer("x"), answer("q"),
           observe("x", "q")), Level.RECONNECT, variant="lease"),
     Case("L7.takeover", "Takeover ends a lease",

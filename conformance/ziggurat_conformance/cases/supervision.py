@@ -28,7 +28,7 @@ def failed(peer: str, id: int, code: str) -> Hear:
 
 
 def _pausing(id: int = 1) -> list:
-    """The wish has arrived before anybody answers: it is not answered while the tick is owed."""
+    """The request has arrived before any session answers: it is not answered while the tick is owed."""
     return [ask("s", id, pause={}), Silence("s", 0.1)]
 
 
