@@ -21,10 +21,11 @@ void read_addition(Draft& draft, std::string text,
   if (!entity.id.empty() && is_taken(entity.id)) {
     element.fault_at("id", "is the id of another entity; give each its own");
   }
-  if (!draft.has_engine)
+  if (!draft.has_engine) {
     element.fault(
         "needs an engine, and the scene has none; write <dynamics3d id=\"…\"/> into its "
         "<physics_engines>");
+  }
 }
 
 }  // namespace
