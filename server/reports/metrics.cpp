@@ -156,6 +156,11 @@ MetricsPort::MetricsPort(const std::string& address, bool insecure)
         "--metrics: other machines can reach {}; use 127.0.0.1, or add --insecure", host));
   }
   State& s = *state_;
+  // The library's own options would let two programs share a port.
+  s.server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
   s.server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
   s.server.set_read_timeout(most_seconds).set_write_timeout(most_seconds);
   s.server.set_keep_alive_max_count(most_waiting).set_payload_max_length(0);
