@@ -10,6 +10,7 @@
 #include "physics/ray.h"
 #include "physics/world.h"
 #include "scene/scene.h"
+#include "world/commands.h"
 #include "world/layout.h"
 #include "world/state.h"
 

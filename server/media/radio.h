@@ -8,6 +8,7 @@
 
 #include "media/devices_index.h"
 #include "world/layout.h"
+#include "world/radio_messages.h"
 #include "world/state.h"
 
 namespace ziggurat::media {

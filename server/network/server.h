@@ -31,7 +31,8 @@
 #include "wire/messages.h"
 #include "wire/outbox.h"
 #include "wire/request.h"
-#include "world/state.h"
+#include "world/commands.h"
+#include "world/devices.h"
 
 namespace ziggurat::network {
 

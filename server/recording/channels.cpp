@@ -33,7 +33,7 @@ const char* name_of(world::TurretMode mode) {
 
 const FieldDescriptor& field_of(const Message& message, std::string_view name) {
   const FieldDescriptor* field = message.GetDescriptor()->FindFieldByName(std::string(name));
-  assert(field && "a name in the tables of world/devices.h is not in recording.proto");
+  assert(field && "a name in the tables of world/ is not in recording.proto");
   return *field;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "world/commands.h"
 #include "world/layout.h"
 #include "world/state.h"
 #include "ziggurat/v1/recording.pb.h"

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "recording/output_file.h"
+#include "world/commands.h"
 #include "world/layout.h"
 #include "world/state.h"
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "world/commands.h"
 #include "world/layout.h"
 #include "world/state.h"
 

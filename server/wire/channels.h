@@ -17,7 +17,9 @@
 
 #include "wire/fault.h"
 #include "wire/roster.h"
+#include "world/commands.h"
 #include "world/devices.h"
+#include "world/layout.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {

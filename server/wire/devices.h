@@ -7,7 +7,8 @@
 
 #include "wire/messages.h"
 #include "wire/roster.h"
-#include "world/state.h"
+#include "world/commands.h"
+#include "world/layout.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {

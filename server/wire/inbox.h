@@ -11,7 +11,8 @@
 #include "wire/messages.h"
 #include "wire/request.h"
 #include "wire/roster.h"
-#include "world/state.h"
+#include "world/commands.h"
+#include "world/layout.h"
 
 namespace ziggurat::wire {
 

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "world/commands.h"
 #include "world/layout.h"
 
 namespace ziggurat::wire {
@@ -34,7 +35,7 @@ struct Roster {
   std::vector<std::size_t> robots;  ///< into Layout::robots, in scene order
   std::vector<bool> gone;           ///< per robot: left the barrier for good
   std::size_t gone_count = 0;
-  // By the row of a channel in the tables of world/devices.h; empty for fields handled by hand.
+  // By the row of a channel in the tables of world/; empty for fields handled by hand.
   std::array<Packing, std::tuple_size_v<decltype(world::sensed)>> sensed;
   std::array<Packing, std::tuple_size_v<decltype(world::commanded)>> commanded;
   Packing radios;

@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "wire/roster.h"
+#include "world/commands.h"
 #include "world/layout.h"
-#include "world/state.h"
 
 namespace ziggurat::wire {
 

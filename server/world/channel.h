@@ -35,6 +35,27 @@ using DevicesOf = Range (*)(const DeviceLists&, const DeviceRanges&);
 /// Id of the device at a place of that array.
 using IdOf = const std::string& (*)(const DeviceLists&, std::size_t);
 
+/// All devices of a kind that a robot has.
+template <Range DeviceRanges::*range>
+Range all(const DeviceLists&, const DeviceRanges& robot) {
+  return robot.*range;
+}
+
+/// The one device of a kind that a robot has, if its controller uses it so.
+template <Range DeviceRanges::*range, auto list, auto used>
+Range one_if(const DeviceLists& lists, const DeviceRanges& robot) {
+  const Range& found = robot.*range;
+  return {found.begin, found.count > 0 && (lists.*list)[found.begin].*used ? found.count : 0};
+}
+
+template <auto list>
+const std::string& id(const DeviceLists& lists, std::size_t device) {
+  return (lists.*list)[device].id;
+}
+
+using Ranges = DeviceRanges;
+using Lists = DeviceLists;
+
 /// When a field enters the hash, in the order of its table. New fields come last in the tables, so
 /// that the hashes of scenes without them stay.
 enum class Hashed { no, first, second };

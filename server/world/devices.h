@@ -1,22 +1,19 @@
 #pragma once
-// Each kind of device in the world: what does not change while the world runs (…Layout), what a
-// robot senses (Observations) and what it sets (Commands). All arrays are in scene order and
-// indexed by the lists of Layout. A field of Observations or Commands has its row in the table
-// below it.
+// Each kind of device in the world: what does not change while the world runs (…Layout), and what a
+// robot senses (Observations). All arrays are in scene order and indexed by the lists of Layout. A
+// field of Observations has its row in the table below it.
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "math/pose.h"
 #include "world/channel.h"
-#include "world/limits.h"
+#include "world/radio_messages.h"
 
 namespace ziggurat::world {
 
@@ -207,29 +204,6 @@ struct DeviceRanges {
 
 // --- what a robot senses ------------------------------------------------------------------------
 
-/// Messages of radios. Their bytes stand in one buffer, and may be shared by several messages.
-struct RadioMessages {
-  struct Entry {
-    std::size_t radio = 0;  ///< into Layout::radios
-    std::size_t begin = 0;  ///< into `bytes`
-    std::size_t size = 0;   ///< [bytes], may be 0
-  };
-  std::vector<Entry> entries;
-  std::vector<std::uint8_t> bytes;
-
-  std::span<const std::uint8_t> payload(const Entry& entry) const {
-    return std::span(bytes).subspan(entry.begin, entry.size);
-  }
-  void add(std::size_t radio, std::span<const std::uint8_t> payload) {
-    entries.push_back({radio, bytes.size(), payload.size()});
-    bytes.insert(bytes.end(), payload.begin(), payload.end());
-  }
-  void clear() {  ///< keeps the memory
-    entries.clear();
-    bytes.clear();
-  }
-};
-
 /// A packet that a range-and-bearing device received.
 struct RangeAndBearingPacket {
   std::size_t receiver = 0;       ///< into Layout::range_and_bearing
@@ -313,27 +287,6 @@ struct Observations {
   std::vector<Image> images;  ///< of cameras that take pictures
 };
 
-/// All devices of a kind that a robot has.
-template <Range DeviceRanges::*range>
-Range all(const DeviceLists&, const DeviceRanges& robot) {
-  return robot.*range;
-}
-
-/// The one device of a kind that a robot has, if its controller uses it so.
-template <Range DeviceRanges::*range, auto list, auto used>
-Range one_if(const DeviceLists& lists, const DeviceRanges& robot) {
-  const Range& found = robot.*range;
-  return {found.begin, found.count > 0 && (lists.*list)[found.begin].*used ? found.count : 0};
-}
-
-template <auto list>
-const std::string& id(const DeviceLists& lists, std::size_t device) {
-  return (lists.*list)[device].id;
-}
-
-using Ranges = DeviceRanges;
-using Lists = DeviceLists;
-
 // clang-format off
 inline constexpr std::tuple sensed{
     ByHand{&Observations::tick, Hashed::no},
@@ -361,96 +314,5 @@ inline constexpr std::tuple sensed{
 // clang-format on
 static_assert(lists_all_fields<Observations>(sensed),
               "list each field of Observations once in the table `sensed`");
-
-// --- what a robot sets --------------------------------------------------------------------------
-
-/// How a turret turns.
-enum class TurretMode : std::uint8_t { passive, position, speed };
-
-struct WheelsCommand {
-  double left = 0, right = 0;  ///< speed over the floor [m/s]
-};
-
-/// What all robots want. Values persist until changed; initially they are those of the scene.
-/// Values of entities that no robot may set stay.
-struct Commands {
-  std::vector<double> joint_targets;  ///< [m], [rad], [m/s] or [rad/s] by the actuator's mode
-  std::vector<Color> led_colors;      ///< at most 0xFFFFFF
-  std::vector<Color> directional_led_colors;  ///< at most 0xFFFFFF
-  std::vector<std::string> tag_payloads;      ///< any bytes, up to most_tag_payload_bytes
-  std::vector<double> magnet_currents;        ///< finite, any sign
-  std::vector<std::uint8_t> range_and_bearing_data;
-  std::vector<WheelsCommand> wheels;
-  std::vector<TurretMode> turret_modes;
-  std::vector<double> turret_rotations;  ///< relative to the robot, in mode position [rad]
-  std::vector<double> turret_speeds;     ///< relative to the robot, in mode speed [rad/s]
-  /// Sent at the start of the next tick, which empties it: entries of one radio in the order of
-  /// sending, those of different radios in any order. Only radios that send.
-  RadioMessages radio_messages;
-};
-
-/// The bytes that a robot broadcasts, if its controller has the actuator.
-inline Range broadcast_bytes(const DeviceLists& lists, const DeviceRanges& robot) {
-  if (robot.range_and_bearing.count == 0) return {};
-  const RangeAndBearingLayout& device = lists.range_and_bearing[robot.range_and_bearing.begin];
-  return {device.data.begin, device.sends ? device.data.count : 0};
-}
-
-// clang-format off
-inline constexpr Rule<double> finite{
-    [](const double& value) { return std::isfinite(value); }, "finite"};
-inline constexpr Rule<WheelsCommand> finite_wheels{
-    [](const WheelsCommand& v) { return std::isfinite(v.left) && std::isfinite(v.right); }, "finite"};
-inline constexpr Rule<Color> color{
-    [](const Color& value) { return value <= 0xFFFFFF; }, "0xRRGGBB"};
-inline constexpr Rule<std::string> payload{
-    [](const std::string& value) { return value.size() <= most_tag_payload_bytes; },
-    "at most 65536 bytes", true};
-static_assert(most_tag_payload_bytes == 65536);
-inline constexpr Rule<TurretMode> turret_mode{
-    [](const TurretMode& value) { return value <= TurretMode::speed; },
-    "TURRET_PASSIVE, TURRET_POSITION or TURRET_SPEED"};
-
-inline constexpr DevicesOf driven_wheels =
-    one_if<&Ranges::wheels, &Lists::wheels, &WheelsLayout::drives>;
-inline constexpr DevicesOf driven_turret =
-    one_if<&Ranges::turrets, &Lists::turrets, &TurretLayout::drives>;
-
-inline constexpr std::tuple commanded{
-    Commanded<double>{&Commands::joint_targets, "joint_targets", "joint_targets",
-        "target of joint", "joint actuators",
-        all<&Ranges::joint_actuators>, id<&Lists::joint_actuators>, finite, Released::zeroed},
-    Commanded<Color>{&Commands::led_colors, "led_colors", "led_colors",
-        "color of LED", "LEDs with an actuator",
-        all<&Ranges::leds>, id<&Lists::leds>, color, Released::kept},
-    Commanded<Color>{&Commands::directional_led_colors, "directional_led_colors",
-        "directional_led_colors", "color of directional LED", "directional LEDs with an actuator",
-        all<&Ranges::directional_leds>, id<&Lists::directional_leds>, color, Released::kept},
-    Commanded<std::string>{&Commands::tag_payloads, "tag_payloads", "tag_payloads",
-        "payload of tag", "tags with an actuator",
-        all<&Ranges::tags>, id<&Lists::tags>, payload, Released::kept},
-    Commanded<double>{&Commands::magnet_currents, "magnet_currents", "magnet_currents",
-        "current of magnet", "magnets with an actuator",
-        all<&Ranges::magnets>, id<&Lists::magnets>, finite, Released::zeroed},
-    Commanded<std::uint8_t>{&Commands::range_and_bearing_data, "range_and_bearing_data",
-        "range_and_bearing_data", "byte", "bytes of range-and-bearing data",
-        broadcast_bytes, nullptr, {nullptr, ""}, Released::zeroed},
-    Commanded<WheelsCommand>{&Commands::wheels, "wheel_velocities", "wheels",
-        "speed of a wheel", "pairs of wheels with an actuator",
-        driven_wheels, nullptr, finite_wheels, Released::zeroed},
-    Commanded<TurretMode>{&Commands::turret_modes, "turret_modes", "turret.mode",
-        "turret mode", "turrets with an actuator",
-        driven_turret, nullptr, turret_mode, Released::kept},
-    Commanded<double>{&Commands::turret_rotations, "turret_rotations", "turret.rotation",
-        "turret rotation", "turrets with an actuator",
-        driven_turret, nullptr, finite, Released::kept},
-    Commanded<double>{&Commands::turret_speeds, "turret_speeds", "turret.speed",
-        "turret speed", "turrets with an actuator",
-        driven_turret, nullptr, finite, Released::zeroed},
-    ByHand{&Commands::radio_messages, Hashed::no},
-};
-// clang-format on
-static_assert(lists_all_fields<Commands>(commanded),
-              "list each field of Commands once in the table `commanded`");
 
 }  // namespace ziggurat::world

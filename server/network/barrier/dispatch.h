@@ -3,7 +3,7 @@
 
 #include "network/barrier/barrier.h"
 #include "network/link.h"
-#include "world/state.h"
+#include "world/commands.h"
 
 namespace ziggurat::network {
 

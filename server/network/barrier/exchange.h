@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "network/barrier/barrier.h"
-#include "world/state.h"
+#include "world/commands.h"
+#include "world/devices.h"
 
 namespace ziggurat::network {
 

@@ -6,8 +6,8 @@
 
 #include "scene/scene.h"
 #include "wire/messages.h"
+#include "world/commands.h"
 #include "world/layout.h"
-#include "world/state.h"
 
 namespace ziggurat::network {
 

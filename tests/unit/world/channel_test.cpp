@@ -7,7 +7,8 @@
 #include <tuple>
 #include <vector>
 
-#include "world/state.h"
+#include "world/commands.h"
+#include "world/layout.h"
 
 namespace ziggurat::world {
 namespace {
