@@ -1,0 +1,48 @@
+#pragma once
+// What tests of several sections of docs/protocol.md use.
+
+#include <gtest/gtest.h>
+
+#include "network/peers.h"
+
+namespace ziggurat::network {
+
+/// What the Refusal says that "p" gets for a Hello.
+inline v1::Error refused(Peers& peers, const v1::ClientMessage& hello) {
+  peers.say("p", hello);
+  const v1::ServerMessage told = peers.told("p");
+  EXPECT_TRUE(told.has_refusal()) << told.ShortDebugString();
+  EXPECT_EQ(told.refusal().error().severity(), v1::Error::FATAL);
+  EXPECT_FALSE(told.refusal().error().message().empty());
+  return told.refusal().error();
+}
+
+/// What the Error says that "p" gets for a message, which has no other effect.
+inline v1::Error faulted(Peers& peers, const v1::ClientMessage& message) {
+  const auto commands = peers.commands.joint_targets;
+  peers.say("p", message);
+  const v1::ServerMessage told = peers.told("p");
+  EXPECT_TRUE(told.has_error()) << told.ShortDebugString();
+  EXPECT_EQ(told.error().severity(), v1::Error::DISCARD);
+  EXPECT_FALSE(told.error().message().empty());
+  EXPECT_EQ(peers.commands.joint_targets, commands) << "a discarded message had effect";
+  EXPECT_TRUE(peers.take_report().log.empty());
+  return told.error();
+}
+
+/// Four robots; "p" holds robot0, robot1 and robot3 and owes tick 5, "q" holds robot2 and has
+/// answered.
+struct Stepping : ::testing::Test {
+  Stepping() : small(4), peers(small) {
+    auto hello = Peers::hello("robot[013]");
+    peers.say("p", hello);
+    peers.join("q", "robot2");
+    peers.publish(5);
+    peers.say("q", Peers::command(5));
+    peers.inboxes.clear();
+  }
+  SmallRun small;
+  Peers peers;
+};
+
+}  // namespace ziggurat::network

@@ -1,0 +1,53 @@
+// The rules of section 1 of docs/protocol.md, transport. A test is named after its rule.
+
+#include <gtest/gtest.h>
+
+#include "rules.h"
+
+namespace ziggurat::network {
+namespace {
+
+TEST(Transport, T2_GarbageIsMalformedAndDisturbsNoSession) {
+  const SmallRun small(1);
+  Peers peers(small);
+  peers.join("p", "*");
+  peers.publish(0);
+  peers.inboxes.clear();
+  for (const std::string& bytes : {std::string("hello"), std::string(1000, '\xff'), std::string(),
+                                   std::string("\x12\x7f", 2), std::string("\x12\xff\xff", 3)}) {
+    peers.send_bytes("unknown", bytes);
+    const auto error = peers.told("unknown").error();
+    EXPECT_EQ(error.code(), v1::Error::MALFORMED);
+    EXPECT_EQ(error.severity(), v1::Error::FATAL);
+  }
+  EXPECT_TRUE(peers.told("p").message_case() == v1::ServerMessage::MESSAGE_NOT_SET);
+  peers.say("p", Peers::command(0));
+  EXPECT_TRUE(peers.is_complete());
+}
+
+TEST(Transport, T4_TooLarge) {
+  const SmallRun small(1);
+  Config config;
+  config.max_message_bytes = 1000;
+  Peers peers(small, config);
+  EXPECT_EQ(peers.join("p", "*").max_message_bytes(), 1000U);
+  peers.publish(0);
+  peers.inboxes.clear();
+  auto command = Peers::command(0);
+  command.mutable_command()->add_log()->set_text(std::string(1000, 'x'));
+  EXPECT_EQ(faulted(peers, command).code(), v1::Error::TOO_LARGE);
+}
+
+TEST(Transport, T5_UnknownFieldsAreIgnored) {
+  if (talks_json()) GTEST_SKIP() << "json_test.cpp has the twin";
+  const SmallRun small(1);
+  Peers peers(small);
+  peers.join("p", "*");
+  peers.publish(0);
+  // Field 15 of Command, which this version does not have, inside ClientMessage.command.
+  peers.send_bytes("p", std::string("\x12\x02\x78\x01", 4));
+  EXPECT_TRUE(peers.is_complete());
+}
+
+}  // namespace
+}  // namespace ziggurat::network
