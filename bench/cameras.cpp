@@ -11,15 +11,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "devices/camera.h"
+#include "devices/kind.h"
 #include "scene/reader.h"
 #include "simulation/layout.h"
 #include "simulation/place.h"
+
+namespace ziggurat::devices {
+std::unique_ptr<Kind> make_cameras();  // camera.cpp
+}
 
 namespace {
 
@@ -100,7 +105,7 @@ double median(std::vector<double>& values) {
   return values[values.size() / 2];
 }
 
-void count_rays(const world::Layout& shown, devices::Tick tick, devices::Cameras& cameras) {
+void count_rays(const world::Layout& shown, devices::Tick tick, devices::Kind& cameras) {
   devices::Tick counted{shown,        tick.state, tick.observations, tick.commands,
                         tick.physics, tick.rays,  tick.index};
   cameras.sense(counted);
@@ -130,7 +135,7 @@ double measure(int far_tags) {
   world::Observations observations;
   world::Commands commands;
   media::DevicesIndex index(layout);
-  devices::Cameras cameras({scene, entities, layout, 1, 0.2});
+  const std::unique_ptr<devices::Kind> cameras = devices::make_cameras();
   devices::Tick tick{layout, state, observations, commands, physics, rays, index};
   std::vector<double> updates, kept, builds, looks;
   for (int i = 0; i < 300; ++i) {
@@ -143,7 +148,7 @@ double measure(int far_tags) {
     const double updated = now();
     index.build(state);
     const double built = now();
-    cameras.sense(tick);
+    cameras->sense(tick);
     const double end = now();
     if (i < 4) continue;
     updates.push_back(updated - start);
@@ -159,7 +164,7 @@ double measure(int far_tags) {
   fmt::print("boxes of the rays {:.0f} µs (median over both)\n", median(updates));
   world::Layout shown = layout;
   for (auto& camera : shown.cameras) camera.tags->shows_rays = true;
-  count_rays(shown, tick, cameras);
+  count_rays(shown, tick, *cameras);
   return look;
 }
 
