@@ -1,6 +1,6 @@
 #pragma once
 // Simulated detectors: which LEDs, directional LEDs and tags a camera sees, and where in its image.
-// Pure functions of poses; whether something is in the way is asked of whom they are given.
+// Pure functions of poses; a function that the caller passes checks the line of sight.
 
 #include <cstddef>
 #include <functional>
@@ -31,7 +31,7 @@ struct View {
        std::size_t camera);
 
   const world::CameraLayout& lens() const { return layout.cameras[camera]; }
-  /// Where a point of W [m] is seen; what may be in between is not looked at.
+  /// Where a point of W [m] is seen; the line of sight is not checked.
   std::optional<math::Vector2> find(const math::Vector3& point) const {
     return in_view(lens(), from_world * point);
   }
@@ -46,8 +46,8 @@ struct View {
   Bounds bounds;                         ///< of the frustum
 };
 
-// Each appends what is seen, in scene order; nothing if the camera lacks the detector. Tests come
-// in the order off, faces, in view, line of sight; each that fails spares the next.
+// Each appends what is seen, in scene order; nothing if the camera has no such detector. The checks
+// are: switched on, faces the camera, in view, line of sight. The first that fails ends them.
 /// @param found  working memory
 
 void detect_leds(const View& view, const LineOfSight& clear, std::vector<std::size_t>& found,
@@ -55,7 +55,7 @@ void detect_leds(const View& view, const LineOfSight& clear, std::vector<std::si
 void detect_directional_leds(const View& view, const LineOfSight& clear,
                              std::vector<std::size_t>& found,
                              std::vector<world::LedReading>& readings);
-/// A tag is seen if all its corners are in view and in sight; it need not be its centre.
+/// A tag is seen if all its corners are in view and in sight; its centre is not checked.
 void detect_tags(const View& view, const LineOfSight& clear, std::vector<std::size_t>& found,
                  std::vector<world::TagReading>& readings);
 

@@ -11,7 +11,7 @@ Vector2 project(const world::CameraLayout& camera, const Vector3& point) {
 }
 
 std::optional<Vector2> in_view(const world::CameraLayout& camera, const Vector3& point) {
-  // Written so that what is not a number is never seen.
+  // Each comparison is false for a value that is not a number: such a point is never seen.
   if (!(point.z() >= camera.near - edge && point.z() <= camera.far + edge && point.z() > 0)) {
     return std::nullopt;
   }
@@ -45,7 +45,7 @@ Bounds bounds(const std::array<Vector3, 8>& corners) {
     box.low = box.low.cwiseMin(corner);
     box.high = box.high.cwiseMax(corner);
   }
-  // A margin for rounding, and for what counts as inside at the edges.
+  // A margin for rounding, and for `edge`.
   const double margin = 1e-6 + 1e-9 * (box.high - box.low).maxCoeff();
   box.low.array() -= margin;
   box.high.array() += margin;

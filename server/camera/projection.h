@@ -10,7 +10,7 @@
 
 namespace ziggurat::camera {
 
-/// What is closer than this to an edge of the image [px], of the range [m] or of an observable
+/// A point closer than this to an edge of the image [px], of the range [m] or of an observable
 /// angle [rad] counts as inside, so that the rounding of poses does not decide there.
 constexpr double edge = 1e-9;
 
@@ -19,8 +19,7 @@ constexpr double edge = 1e-9;
 math::Vector2 project(const world::CameraLayout& camera, const math::Vector3& point);
 
 /// The same if the camera can see it there: 0 <= u <= width, 0 <= v <= height and
-/// near <= z <= far, the edges belonging to it; otherwise nothing. What may be in between is not
-/// looked at.
+/// near <= z <= far, edges included; otherwise nothing. The line of sight is not checked.
 /// @param point  in the camera's frame [m], any
 std::optional<math::Vector2> in_view(const world::CameraLayout& camera, const math::Vector3& point);
 

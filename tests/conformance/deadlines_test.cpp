@@ -54,7 +54,7 @@ TEST(Deadline, DropHoldsTheBudgetFirst) {
   EXPECT_EQ(pair.peers.status()[0].membership, Membership::gone);
 }
 
-TEST(Deadline, DropIsReportedWhateverNoiseOtherPeersMake) {
+TEST(Deadline, DropIsReportedDespiteManyOtherNotices) {
   Pair pair(with_deadline(DeadlineAction::drop, 50));
   for (int i = 0; i < 500; ++i) pair.peers.send_bytes("unknown", "\xff");
   pair.peers.pass(milliseconds{50});
@@ -278,7 +278,7 @@ TEST(Deadline, H15_AWishThatIsNeverGrantedIsToldBeforeATakenRobot) {
   EXPECT_FALSE(error.retryable());
 }
 
-TEST(Deadline, H8_PoliciesThatMakeNoSense) {
+TEST(Deadline, H8_InvalidPolicies) {
   const SmallRun small(1);
   Peers peers(small);
   peers.say("p", wish("*", v1::DeadlinePolicy::HOLD, 0));

@@ -150,7 +150,7 @@ TEST_F(Population, V13_ItsCommandsBecomeZero) {
   EXPECT_EQ(peers.commands.joint_targets, (std::vector<double>{1, 0}));
 }
 
-TEST_F(Population, V13_ASessionWithoutRobotsIsOverAndMaySayGoodbye) {
+TEST_F(Population, V13_ASessionWithoutRobotsIsOverAndMaySendLeave) {
   remove(0);
   peers.inboxes.clear();
   remove(1);
@@ -211,7 +211,7 @@ TEST_F(Population, V14_ARobotThatWasSpawnedIsUnknownAfterAReset) {
   EXPECT_EQ(peers.status().size(), 2u);
 }
 
-TEST_F(Population, V14_ASessionOfSuchARobotMayStillSayGoodbye) {
+TEST_F(Population, V14_ASessionOfSuchARobotMayStillSendLeave) {
   spawn();
   join("q", "robot2");
   reset();

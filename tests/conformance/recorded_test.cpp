@@ -87,7 +87,7 @@ TEST(Recorded, EveryKindIsThere) {
   }
 }
 
-TEST(Recorded, TheServerReadsAllThatClientsEverSaid) {
+TEST(Recorded, TheServerReadsAllRecordedMessagesOfClients) {
   wire::Inbox inbox;
   for (const fs::path& path : recorded("client_")) {
     SCOPED_TRACE(path.stem());

@@ -156,12 +156,12 @@ void Play::check_deadlines(const wire::Status& status) {
     // Its robots have left; what it owes keeps the deadline that it had for them.
     if (session.state == wire::SessionStatus::State::owing && session.robots.empty()) return;
   }
-  const auto is_not_due = [&](const RobotStatus& robot) {
+  const auto may_still_answer = [&](const RobotStatus& robot) {
     const milliseconds deadline{robot.deadline.wall_deadline_ms};
     return robot.awaited && (robot.deadline.action == scene::DeadlineAction::wait ||
                              now_ < robot.awaited_since + deadline);
   };
-  if (std::ranges::any_of(robot_status(barrier_), is_not_due)) return;
+  if (std::ranges::any_of(robot_status(barrier_), may_still_answer)) return;
   is_stopped_ |= !barrier_.journal.take().stopped.empty();
   require(is_stopped_);
 }
