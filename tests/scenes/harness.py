@@ -113,9 +113,10 @@ class SceneTest(unittest.TestCase):
 
     # --- processes ------------------------------------------------------------------------------
 
-    def left_processes(self):
-        """Command lines of processes that name the test's folder and do not end within LIMIT."""
-        end = time.monotonic() + LIMIT
+    def left_processes(self, seconds=5):
+        """Command lines of processes that name the test's folder and do not end in that time. Whatever a
+        program started must end with it, and not by a timeout of its own."""
+        end = time.monotonic() + seconds
         while True:
             found = self.processes(str(self.folder))
             if not found or time.monotonic() > end:
