@@ -1,33 +1,15 @@
 // The client's tick path keeps its memory.
 
+#include "allocations/allocations.h"
+
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
 #include <string>
 
 #include "equipped_robots.h"
 #include "fake_server.h"
 #include "ziggurat/v1/protocol.pb.h"
 #include "ziggurat/ziggurat.h"
-
-namespace {
-// Of the test's own thread: the server's and ZeroMQ's are others.
-thread_local std::size_t allocations = 0;
-}  // namespace
-
-// Not inlined: GCC 12 would take malloc and free for a mismatched pair.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size == 0 ? 1 : size);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace ziggurat {
 namespace {
@@ -70,9 +52,9 @@ TEST(TickPath, SensingAndDrivingAllocateNothing) {
         turret->set_rotation_speed(1);
       }
     }
-    if (session.tick() == ticks / 2) before = allocations;
+    if (session.tick() == ticks / 2) before = testing::allocations();
     if (session.tick() > ticks / 2) {
-      EXPECT_EQ(allocations, before) << session.tick();
+      EXPECT_EQ(testing::allocations(), before) << session.tick();
     }
   }
   EXPECT_EQ(tags, 10 * ticks);

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "network/keys.h"
-#include "network/server.h"
+#include "network/local_server.h"
 #include "network/small_run.h"
 #include "ziggurat/ziggurat.h"
 
@@ -18,7 +18,6 @@ namespace ziggurat::network {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr Wait patience{milliseconds{20'000}, {}};
 
 struct Keys : ::testing::Test {
   Keys() {
@@ -147,7 +146,7 @@ TEST_F(Protected, KeysOnTheListGetIn) {
     Options from = options(server, key, endpoint);
     from.connect_timeout = milliseconds{20'000};
     from.robots = {robot};
-    Session session(from);
+    ziggurat::Session session(from);
     while (session.next()) session.robots()[0].joint("hinge").set_target(1);
   };
   clients.emplace_back(drive, "friend", 1, "robot0");
@@ -169,11 +168,12 @@ TEST_F(Protected, OthersGetNoAnswerToAnything) {
   const SmallRun small(1);
   Server server(config, small.run());
   meanwhile(server, [&] {
-    EXPECT_THROW(Session(options(server, "unlisted")), ConnectionError) << "not on the list";
-    EXPECT_THROW(Session(options(server, "")), ConnectionError) << "no key at all";
+    EXPECT_THROW(ziggurat::Session(options(server, "unlisted")), ConnectionError)
+        << "not on the list";
+    EXPECT_THROW(ziggurat::Session(options(server, "")), ConnectionError) << "no key at all";
     Options wrong = options(server, "friend");
     wrong.server_key = public_key_of(read_secret_key(path("unlisted.secret")));
-    EXPECT_THROW(Session{wrong}, ConnectionError) << "another server's key";
+    EXPECT_THROW(ziggurat::Session{wrong}, ConnectionError) << "another server's key";
   });
   EXPECT_TRUE(server.take_report().notices.empty());
 }
@@ -185,7 +185,7 @@ TEST_F(Protected, K3_ARoleThatTheKeyDoesNotHaveIsForbidden) {
     try {
       Options viewer = options(server, "viewer");
       viewer.connect_timeout = milliseconds{20'000};
-      Session session(viewer);
+      ziggurat::Session session(viewer);
       FAIL() << "a viewer drives";
     } catch (const ProtocolError& error) {
       EXPECT_EQ(error.details().code, "FORBIDDEN");
@@ -197,12 +197,12 @@ TEST_F(Protected, ClientsSayWhatIsWrongWithTheirKeys) {
   Options options;
   options.endpoint = "tcp://127.0.0.1:1";
   options.server_key = server_key;
-  EXPECT_THROW(Session{options}, std::invalid_argument);
+  EXPECT_THROW(ziggurat::Session{options}, std::invalid_argument);
   options.curve_secret = path("nowhere");
-  EXPECT_THROW(Session{options}, std::invalid_argument);
+  EXPECT_THROW(ziggurat::Session{options}, std::invalid_argument);
   options.curve_secret = path("friend.secret");
   options.server_key = "too short";
-  EXPECT_THROW(Session{options}, std::invalid_argument);
+  EXPECT_THROW(ziggurat::Session{options}, std::invalid_argument);
 }
 
 TEST_F(Protected, AnyAddressWillDo) {

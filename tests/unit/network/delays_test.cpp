@@ -25,7 +25,7 @@ TEST(Effect, DependsOnNothingButItsName) {
   EXPECT_NE(draw(1, "drive/r0", Direction::commands, 8), one);
 }
 
-TEST(Effect, DelaysAreUniformAndLossesAsManyAsSaid) {
+TEST(Effect, DelaysAreUniformAndLossesHaveTheirShare) {
   const Disturbance disturbance{5ms, 2ms, 0.25};
   constexpr int draws = 20'000;
   double sum = 0, squares = 0;

@@ -90,7 +90,7 @@ TEST(Delays, NothingOvertakesACommand) {
   EXPECT_EQ(peers.take_report().failures.size(), 1U);
 }
 
-TEST(Losses, AreMissesOfTheOneAndNotOfTheOther) {
+TEST(Losses, CountAsMissesOfTheDisturbedSessionOnly) {
   const SmallRun small(2);
   Peers peers(small, config_with({{}, {{}, {}, 1}}));
   peers.join("a", "robot0");
@@ -140,7 +140,7 @@ TEST(Losses, AreTheSameAgainInAnyOrderOfArrival) {
   EXPECT_EQ(ticks_missed("b"), missed);
 }
 
-TEST(Losses, DoNotMeetSessionsWithoutDeadline) {
+TEST(Losses, DoNotAffectSessionsWithoutDeadline) {
   const SmallRun small(2);
   Config config = config_with({{{}, {}, 1}, {{}, {}, 1}});
   config.deadlines[1].policy = {};  // so that a session with both is waited for, too
@@ -210,7 +210,7 @@ TEST(Delays, HoldNoMoreThanTwoOfTheLargestMessages) {
   EXPECT_TRUE(peers.is_complete());
 }
 
-TEST(Delays, DoNotMeetOtherControllers) {
+TEST(Delays, DoNotAffectOtherControllers) {
   const SmallRun small(2);
   Peers peers(small, config_with({}, {{1s, {}, 0}, {1s, {}, 0}}));
   peers.join("a", "robot0");

@@ -5,7 +5,7 @@
 
 #include <thread>
 
-#include "network/server.h"
+#include "network/local_server.h"
 #include "network/small_run.h"
 #include "ziggurat/ziggurat.h"
 
@@ -13,12 +13,6 @@ namespace ziggurat::network {
 namespace {
 
 using std::chrono::milliseconds;
-
-Config local_config() {
-  Config config;
-  config.endpoints = {"tcp://127.0.0.1:*"};
-  return config;
-}
 
 Options options_for(const Server& server, std::vector<std::string> robots) {
   Options options;
@@ -28,8 +22,6 @@ Options options_for(const Server& server, std::vector<std::string> robots) {
   options.wait_timeout = milliseconds{20'000};
   return options;
 }
-
-constexpr Wait patience{milliseconds{20'000}, {}};
 
 /// Ticks 0 … `last`, each reading of robot i being 100 * tick + i.
 void serve(Server& server, const SmallRun& small, std::uint64_t last, world::Commands& commands,
@@ -50,7 +42,7 @@ TEST(EndToEnd, AnswersReachTheWorldAndReadingsTheClients) {
   const SmallRun small(3);
   Server server(local_config(), small.run());
   const auto drive = [&](std::vector<std::string> robots) {
-    Session session(options_for(server, std::move(robots)));
+    ziggurat::Session session(options_for(server, std::move(robots)));
     std::uint64_t expected = 0;
     while (session.next()) {
       EXPECT_EQ(session.event(), expected == 0 ? Event::init : Event::step);
@@ -78,7 +70,7 @@ TEST(EndToEnd, LogLinesComeInSceneOrderInAnyOrderOfAnswers) {
   const SmallRun small(3);
   Server server(local_config(), small.run());
   const auto drive = [&](std::vector<std::string> robots, milliseconds pause) {
-    Session session(options_for(server, std::move(robots)));
+    ziggurat::Session session(options_for(server, std::move(robots)));
     while (session.next()) {
       std::this_thread::sleep_for(pause);
       for (Robot& robot : session.robots()) {
@@ -110,7 +102,7 @@ TEST(EndToEnd, AFailedRobotLeavesTheBarrierAndTheOthersGoOn) {
   const SmallRun small(2);
   Server server(local_config(), small.run());
   std::thread client([&] {
-    Session session(options_for(server, {"*"}));
+    ziggurat::Session session(options_for(server, {"*"}));
     while (session.next()) {
       for (Robot& robot : session.robots()) robot.joint("hinge").set_target(7);
       if (session.tick() == 2) {
@@ -138,7 +130,7 @@ TEST(EndToEnd, AnExceptionInTheLoopLeavesAsFailed) {
   Server server(local_config(), small.run());
   std::thread client([&] {
     try {
-      Session session(options_for(server, {"*"}));
+      ziggurat::Session session(options_for(server, {"*"}));
       while (session.next()) {
         session.robots()[0].joint("hinge").set_target(1);
         if (session.tick() == 1) throw std::runtime_error("oh");
@@ -159,13 +151,13 @@ TEST(EndToEnd, ALostRobotIsTakenAgainAtTheSameTick) {
   Server server(local_config(), small.run());
   world::Commands commands = small.commands();
   std::thread steady([&] {
-    Session session(options_for(server, {"robot0"}));
+    ziggurat::Session session(options_for(server, {"robot0"}));
     while (session.next()) {
     }
   });
   const int pid = ::fork();
   if (pid == 0) {  // dies with the tick in its hands
-    Session session(options_for(server, {"robot1"}));
+    ziggurat::Session session(options_for(server, {"robot1"}));
     session.next();
     ::_exit(0);
   }
@@ -177,7 +169,7 @@ TEST(EndToEnd, ALostRobotIsTakenAgainAtTheSameTick) {
   } while (server.status()[0].awaited);
   EXPECT_TRUE(server.status()[1].awaited);
   std::thread heir([&] {
-    Session session(options_for(server, {"robot1"}));
+    ziggurat::Session session(options_for(server, {"robot1"}));
     ASSERT_TRUE(session.next());
     EXPECT_EQ(session.tick(), 0U);
     session.robots()[0].joint("hinge").set_target(3);
@@ -200,11 +192,11 @@ TEST(EndToEnd, ASessionIsTakenUpByItsToken) {
   Server server(config, small.run());
   std::thread client([&] {
     auto options = options_for(server, {"*"});
-    auto first = std::make_unique<Session>(options);
+    auto first = std::make_unique<ziggurat::Session>(options);
     EXPECT_TRUE(first->next());
     EXPECT_TRUE(first->next());
     options.session_token = first->token();
-    Session second(options);  // although the connection of the first one is still there
+    ziggurat::Session second(options);  // although the connection of the first one is still there
     EXPECT_EQ(second.token(), first->token());
     EXPECT_TRUE(second.next());
     EXPECT_EQ(second.tick(), 1U) << "the same tick again";
@@ -226,7 +218,7 @@ TEST(EndToEnd, AWishForADeadlineIsGrantedAndMissesAreCounted) {
   std::thread client([&] {
     auto options = options_for(server, {"*"});
     options.deadline = {Deadline::Action::hold, milliseconds{20}, 0};
-    Session session(options);
+    ziggurat::Session session(options);
     while (session.next()) {
       if (session.tick() == 1) std::this_thread::sleep_for(milliseconds{200});
     }
@@ -261,7 +253,7 @@ TEST(EndToEnd, IpcAndTcpAtOnce) {
   const auto drive = [&](std::size_t endpoint) {
     Options options = options_for(server, {"robot" + std::to_string(endpoint)});
     options.endpoint = server.endpoints()[endpoint];
-    Session session(options);
+    ziggurat::Session session(options);
     while (session.next()) {
     }
   };
@@ -292,7 +284,7 @@ TEST(EndToEnd, AServerThatDiesIsNoticed) {
   Options options = options_for(*server, {"*"});
   options.wait_timeout.reset();
   std::thread client([&] {
-    Session session(options);
+    ziggurat::Session session(options);
     EXPECT_THROW(session.next(), ConnectionError);
     EXPECT_FALSE(session.next());
   });

@@ -39,7 +39,7 @@ TEST(Glob, AnUnclosedSetIsText) {
   EXPECT_FALSE(matches("r[0", "r0"));
 }
 
-TEST(Glob, MaliciousPatternsTakeNoLongTime) {
+TEST(Glob, MaliciousPatternsAreFast) {
   std::string pattern;
   for (int i = 0; i < 100; ++i) pattern += "*a";
   EXPECT_FALSE(matches(pattern + "b", std::string(1000, 'a')));

@@ -7,7 +7,7 @@
 #include <optional>
 #include <zmq.hpp>
 
-#include "network/server.h"
+#include "network/local_server.h"
 #include "network/small_run.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -17,11 +17,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr Wait patience{milliseconds{20'000}, {}};
+constexpr milliseconds out_of_the_way{100'000};
 
-Config local_config(milliseconds heartbeat = milliseconds{100'000}) {
-  Config config;
-  config.endpoints = {"tcp://127.0.0.1:*"};
+Config config_with_heartbeat(milliseconds heartbeat) {
+  Config config = local_config();
   config.heartbeat = heartbeat;
   return config;
 }
@@ -69,21 +68,21 @@ void attend(Server& server, const Progress& progress = {}) {
 
 TEST(Loading, H12_LoadingAtOnceAndWelcomeWithoutAnotherHello) {
   const SmallRun small(1);
-  Server server(local_config());
+  Server server(config_with_heartbeat(out_of_the_way));
   Peer peer(server.endpoints());
   peer.say(hello("*"));
   attend(server, {0.5, "half of it is there"});
   const auto loading = peer.hear();
   EXPECT_EQ(loading.loading().progress(), 0.5);
   EXPECT_EQ(loading.loading().message(), "half of it is there");
-  server.open(small.run(), local_config());
+  server.open(small.run(), config_with_heartbeat(out_of_the_way));
   EXPECT_EQ(server.gather(patience), Outcome::complete);
   EXPECT_EQ(peer.hear().loading().progress(), 1);
   EXPECT_EQ(peer.hear().welcome().robots_size(), 1);
 }
 
 TEST(Loading, H12_AgainAboutEverySecond) {
-  Server server(local_config(milliseconds{20}));
+  Server server(config_with_heartbeat(milliseconds{20}));
   Peer peer(server.endpoints());
   peer.say(hello("*"));
   server.attend({0.25, "first"}, {milliseconds{100}, {}});
@@ -92,7 +91,7 @@ TEST(Loading, H12_AgainAboutEverySecond) {
 }
 
 TEST(Loading, H12_IfThereIsNoWorldInTheEnd) {
-  std::optional<Server> server(local_config());
+  std::optional<Server> server(config_with_heartbeat(out_of_the_way));
   Peer peer(server->endpoints());
   peer.say(hello("*"));
   attend(*server);
@@ -106,7 +105,7 @@ TEST(Loading, H12_IfThereIsNoWorldInTheEnd) {
 TEST(Loading, ADescriptorEndsTheWait) {
   int pipe[2];
   ASSERT_EQ(::pipe(pipe), 0);
-  Server server(local_config());
+  Server server(config_with_heartbeat(out_of_the_way));
   ASSERT_EQ(::write(pipe[1], "x", 1), 1);
   const std::array descriptors{pipe[0]};
   EXPECT_EQ(server.attend({}, {milliseconds{5000}, descriptors}), Outcome::woken);
@@ -116,7 +115,7 @@ TEST(Loading, ADescriptorEndsTheWait) {
 
 TEST(Loading, AClientThatWentAwayGetsNoSession) {
   const SmallRun small(1);
-  Config config = local_config(milliseconds{20});
+  Config config = config_with_heartbeat(milliseconds{20});
   config.lease = milliseconds{60'000};
   Server server(config);
   {
@@ -135,7 +134,7 @@ TEST(Loading, AClientThatWentAwayGetsNoSession) {
 
 TEST(Loading, ThePrivateEndpointComesWithTheWorldAndFirst) {
   const SmallRun small(1);
-  Config config = local_config();
+  Config config = config_with_heartbeat(out_of_the_way);
   Server server(config);
   const std::string endpoint = server.endpoints().at(0);
   config.private_endpoint = "ipc:///tmp/ziggurat-loading-" + std::to_string(::getpid());

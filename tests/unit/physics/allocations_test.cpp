@@ -1,39 +1,25 @@
 // A substep in which nothing comes or goes allocates nothing.
 
+#include "allocations/allocations.h"
+
 #include <LinearMath/btAlignedAllocator.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstdlib>
-#include <new>
 
 #include "bench_scene.h"
 
 namespace {
 
-std::atomic<std::size_t> allocations = 0, of_bullet = 0;
-
-void* counted(std::size_t size) {
-  allocations += 1;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
+std::size_t of_bullet = 0;
 
 void* counted_for_bullet(std::size_t size, int alignment) {
-  allocations += 1;
-  of_bullet += 1;
+  ++of_bullet;
   const auto step = static_cast<std::size_t>(alignment);
   return std::aligned_alloc(step, (size + step - 1) / step * step);
 }
 
 }  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace ziggurat::physics {
 namespace {
@@ -41,17 +27,17 @@ namespace {
 using namespace testing;
 using math::Vector3;
 
-math::Pose at(double x, double y, double z) { return {{x, y, z}, math::Quaternion::Identity()}; }
+std::size_t allocations() { return ziggurat::testing::allocations() + of_bullet; }
 
 /// Allocations of so many substeps, after as many to settle.
 std::size_t allocations_of(World& world, int substeps) {
   world::State state;
   for (int i = 0; i < substeps; ++i) world.step();
   world.read(state);
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   for (int i = 0; i < substeps; ++i) world.step();
   world.read(state);
-  return allocations - before;
+  return allocations() - before;
 }
 
 scene::Entity arm() {
@@ -83,10 +69,10 @@ class Allocations : public ::testing::Test {
 };
 
 TEST_F(Allocations, AreCounted) {
-  const std::size_t before = allocations, bullet_before = of_bullet;
+  const std::size_t before = ziggurat::testing::allocations(), bullet_before = of_bullet;
   World world(with_floor(9.8), 0.01);
   EXPECT_GT(of_bullet, bullet_before);
-  EXPECT_GT(allocations - before, of_bullet - bullet_before);
+  EXPECT_GT(ziggurat::testing::allocations(), before);
 }
 
 TEST_F(Allocations, OfBodiesAtRestAreNone) {

@@ -13,6 +13,12 @@ inline math::Quaternion about(const math::Vector3& axis, double angle) {
   return math::Quaternion(Eigen::AngleAxisd(angle, axis.normalized()));
 }
 
+inline const scene::Box cube{{0.1, 0.1, 0.1}};
+
+inline math::Pose at(double x, double y, double z) {
+  return {{x, y, z}, math::Quaternion::Identity()};
+}
+
 inline scene::Physics with_gravity(double g) {
   scene::Physics physics;
   physics.gravity = g;

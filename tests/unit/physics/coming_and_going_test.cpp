@@ -14,8 +14,6 @@ using namespace testing;
 using math::Pose;
 using math::Vector3;
 
-const scene::Box cube{{0.1, 0.1, 0.1}};
-
 scene::Entity box_at(const Vector3& position, bool movable = true) {
   return single(scene::EntityKind::box, {position, math::Quaternion::Identity()}, movable, cube, 1);
 }

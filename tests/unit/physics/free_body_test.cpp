@@ -13,13 +13,13 @@ using namespace testing;
 using math::Pose;
 using math::Vector3;
 
-const scene::Box cube{{0.01, 0.01, 0.01}};
+const scene::Box small_cube{{0.01, 0.01, 0.01}};
 
 TEST(FreeFall, IsSemiImplicitEulerAtTheSubstep) {
   const double h = 0.01, g = 9.8;
   World world(with_gravity(g), h);
   const Pose start{{0.1, -0.2, 5}, about({1, 2, 3}, 0.7)};
-  world.add(single(scene::EntityKind::box, start, true, cube, 0.25));
+  world.add(single(scene::EntityKind::box, start, true, small_cube, 0.25));
   for (int n = 1; n <= 60; ++n) {
     world.step();
     const double z = start.position.z() - g * h * h * n * (n + 1) / 2;
@@ -43,8 +43,8 @@ TEST(FreeFall, OfAPrototypeIsDampedByTheDialectsLaw) {
 TEST(Damping, OfASingleBodyFollowsTheSameLaw) {
   // dv/dt = -k v (1 + v) from v0 solves v / (1 + v) = v0 / (1 + v0) exp(-k t).
   World world(with_gravity(9.8), 1e-3);
-  scene::Entity box =
-      single(scene::EntityKind::box, {{0, 0, 100}, math::Quaternion::Identity()}, true, cube, 1);
+  scene::Entity box = single(scene::EntityKind::box, {{0, 0, 100}, math::Quaternion::Identity()},
+                             true, small_cube, 1);
   box.links[0].damping = {0.5, 0.5};
   world.add(box);
   for (int i = 0; i < 20000; ++i) world.step();
@@ -55,8 +55,8 @@ TEST(Damping, OfASingleBodyFollowsTheSameLaw) {
 
 TEST(Rest, ABoxStandsOnTheFloor) {
   World world(with_floor(9.8), 0.01);
-  world.add(single(scene::EntityKind::box, {{0, 0, 0.02}, math::Quaternion::Identity()}, true, cube,
-                   0.25));
+  world.add(single(scene::EntityKind::box, {{0, 0, 0.02}, math::Quaternion::Identity()}, true,
+                   small_cube, 0.25));
   for (int i = 0; i < 200; ++i) world.step();
   const world::State state = state_of(world);
   EXPECT_NEAR(state.origins[0].position.z(), 0, 1e-5);
@@ -86,7 +86,7 @@ TEST(Rest, ATowerOfFiveBoxesStands) {
   World world(with_floor(9.8), 0.01);
   for (int i = 0; i < 5; ++i) {
     world.add(single(scene::EntityKind::box, {{0, 0, 0.01 * i}, math::Quaternion::Identity()}, true,
-                     cube, 0.25));
+                     small_cube, 0.25));
   }
   for (int i = 0; i < 1000; ++i) world.step();
   const world::State state = state_of(world);

@@ -13,10 +13,7 @@ using namespace testing;
 using math::Pose;
 using math::Vector3;
 
-const scene::Box cube{{0.1, 0.1, 0.1}};
 const Pose identity;
-
-Pose at(double x, double y, double z) { return {{x, y, z}, math::Quaternion::Identity()}; }
 
 /// A fixed base in the air and one child on a joint.
 scene::Entity pair(const scene::Joint& joint, const scene::Geometry& child, double mass) {

@@ -34,8 +34,6 @@ scene::Hull ramp(double a, double b, double c) {
   return hull({{0, 0, 0}, {a, 0, 0}, {0, b, 0}, {a, b, 0}, {0, 0, c}, {0, b, c}});
 }
 
-Pose at(double x, double y, double z) { return {{x, y, z}, Quaternion::Identity()}; }
-
 world::State after(World& world, int substeps) {
   for (int i = 0; i < substeps; ++i) world.step();
   return state_of(world);

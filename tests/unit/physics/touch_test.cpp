@@ -17,8 +17,6 @@ using math::Vector3;
 
 constexpr double g = 9.8, h = 0.01;
 
-math::Pose at(double x, double y, double z) { return {{x, y, z}, math::Quaternion::Identity()}; }
-
 scene::Entity box(const math::Pose& pose, double mass = 1) {
   return single(scene::EntityKind::box, pose, true, scene::Box{{0.1, 0.1, 0.1}}, mass);
 }

@@ -15,8 +15,6 @@ using math::Pose;
 using math::Quaternion;
 using math::Vector3;
 
-Pose at(double x, double y, double z) { return {{x, y, z}, Quaternion::Identity()}; }
-
 scene::Joint join(scene::JointType type, std::size_t parent, const Pose& parent_frame,
                   std::size_t child, const Pose& child_frame = {},
                   const Vector3& axis = Vector3::UnitZ()) {

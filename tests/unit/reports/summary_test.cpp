@@ -39,8 +39,8 @@ TEST(Summary, JsonHasTheRatesAndTheHashInFull) {
 }
 
 TEST(Summary, TextSurvivesARunOfNoTime) {
-  EXPECT_NE(to_text({}).find("0 ticks"), std::string::npos);
-  EXPECT_EQ(to_text({}).find("nan"), std::string::npos);
+  EXPECT_NE(to_text(Summary{}).find("0 ticks"), std::string::npos);
+  EXPECT_EQ(to_text(Summary{}).find("nan"), std::string::npos);
 }
 
 }  // namespace

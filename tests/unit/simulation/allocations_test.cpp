@@ -1,30 +1,13 @@
 // A steady tick of the simulation allocates nothing, whatever devices sense and do.
 
+#include "allocations/allocations.h"
+
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
 #include <string>
 #include <vector>
 
 #include "small_scene.h"
-
-namespace {
-std::size_t allocations = 0;
-}  // namespace
-
-// Not inlined: GCC 12 would take malloc and free for a mismatched pair.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size == 0 ? 1 : size);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace ziggurat::simulation {
 namespace {
@@ -78,11 +61,11 @@ std::size_t allocations_of_steady_ticks(const SmallScene& scene) {
     for (std::size_t i = 0; i < world.layout().radios.size(); i += 2) {
       commands.radio_messages.add(i, message);
     }
-    if (tick == 20) before = allocations;
+    if (tick == 20) before = ziggurat::testing::allocations();
     world.step();
   }
   EXPECT_GT(before, 0U) << "they are not counted";
-  return allocations - before;
+  return ziggurat::testing::allocations() - before;
 }
 
 TEST(Tick, OfRobotsWithAllDevicesAllocatesNothing) {

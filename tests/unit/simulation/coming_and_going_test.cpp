@@ -7,10 +7,10 @@
 namespace ziggurat::simulation {
 namespace {
 
+using testing::gravity;
 using testing::robot;
 using testing::SmallScene;
-
-const std::string gravity = R"(<gravity g="10"/>)";
+using testing::wheels;
 
 std::string box(const std::string& id, const std::string& position, bool movable = true) {
   return "<box id=\"" + id + R"(" size=".1,.1,.1" mass="1" movable=")" +
@@ -196,7 +196,7 @@ std::vector<std::size_t> hearers(Simulation& simulation, std::size_t sender) {
   return radios;
 }
 
-TEST(Spawn, RadiosHearEachOtherAsLongAsTheyAreThere) {
+TEST(Spawn, RadiosReachEachOtherWhilePresent) {
   World world({R"(<radios implementation="default"/>)", R"(<radios implementation="default"/>)",
                robot("r", "0,0,0", radio) + robot("q", "1,0,0", radio), ""});
   EXPECT_EQ(hearers(world.simulation, 0), (std::vector<std::size_t>{1}));
@@ -213,7 +213,7 @@ TEST(Spawn, RadiosHearEachOtherAsLongAsTheyAreThere) {
   EXPECT_TRUE(world.simulation.observations().radio_messages.entries.empty());
 }
 
-TEST(Spawn, RangeAndBearingReachesAsLongAsTheyAreThere) {
+TEST(Spawn, RangeAndBearingReachesWhilePresent) {
   const std::string device =
       R"(<range_and_bearing anchor="base" position="0,0,0.2" range="3" data_size="2" medium="rab"/>)";
   World world({R"(<range_and_bearing implementation="default"/>)",
@@ -251,8 +251,6 @@ TEST(Spawn, LeavesWhatOthersCommandForTheTickInHand) {
   world.step();
   EXPECT_EQ(world.simulation.state().led_colors, (std::vector<world::Color>{0x00FF00, 0x0000FF}));
 }
-
-const std::string wheels = R"(<differential_steering implementation="default"/>)";
 
 TEST(Spawn, AFootBotIsDrivenAndItsPlacesStayWhenItIsRemoved) {
   const auto foot_bot = [](const std::string& id, const std::string& at) {

@@ -8,55 +8,41 @@
 
 #include "small_scene.h"
 
-namespace ziggurat::simulation::contact_sensors {
+namespace ziggurat::simulation {
 namespace {
 
-using testing::robot;
-using testing::SmallScene;
+using namespace testing;
 
-constexpr double g = 9.8;  // [m/s^2]
-constexpr const char* ground = R"(<floor/><gravity g="9.8"/>)";
 constexpr const char* base =
     R"(<contact_sensors implementation="default"><contact_sensor id="skin" anchor="base"/>)"
     R"(</contact_sensors>)";
 
-/// A robot of one link of 0.1 m and 1 kg, without drag.
-std::string smooth(const std::string& position) {
-  return R"(<prototype id="r"><body position=")" + position +
-         R"("/><links ref="base"><link id="base" geometry="box" size=".1,.1,.1" mass="1")"
-         R"( linear_damping="0" angular_damping="0"/></links><controller config="c"/></prototype>)";
-}
-
-const world::ContactReading& reading(const Simulation& simulation, std::size_t sensor = 0) {
+const world::ContactReading& contact(const Simulation& simulation, std::size_t sensor = 0) {
   return simulation.observations().contact_sensors.at(sensor);
 }
 
 /// The force on the first link, in the world: contacts leave a robot tilted by some 1e-4 rad.
 math::Vector3 force(const Simulation& simulation) {
-  const auto& [x, y, z] = reading(simulation).force;
+  const auto& [x, y, z] = contact(simulation).force;
   return simulation.state().links[0].pose.orientation * math::Vector3(x, y, z);
-}
-
-void run(Simulation& simulation, int ticks) {
-  for (int i = 0; i < ticks; ++i) simulation.step();
 }
 
 TEST(ContactSensor, AtRestFeelsItsWeight) {
   Simulation world = SmallScene{"", base, robot("r", "0,0,0", ""), ground}.run();
-  EXPECT_EQ(reading(world).touches, 0) << "before the first tick";
+  EXPECT_EQ(contact(world).touches, 0) << "before the first tick";
   run(world, 10);  // robot() weighs 1 kg
-  EXPECT_EQ(reading(world).touches, 1);
+  EXPECT_EQ(contact(world).touches, 1);
   EXPECT_NEAR(force(world).x(), 0, 1e-3);
   EXPECT_NEAR(force(world).y(), 0, 1e-3);
   EXPECT_NEAR(force(world).z(), g, 1e-3);
-  EXPECT_NEAR(reading(world).strength, g, 1e-2);
+  EXPECT_NEAR(contact(world).strength, g, 1e-2);
 }
 
 TEST(ContactSensor, InTheAirFeelsNothing) {
   Simulation world = SmallScene{"", base, robot("r", "0,0,3", ""), ground}.run();
   run(world, 3);
-  EXPECT_EQ(reading(world).touches, 0);
-  EXPECT_EQ(reading(world).strength, 0);
+  EXPECT_EQ(contact(world).touches, 0);
+  EXPECT_EQ(contact(world).strength, 0);
 }
 
 TEST(ContactSensor, OnceInTheAirAgainFeelsNothing) {
@@ -64,12 +50,12 @@ TEST(ContactSensor, OnceInTheAirAgainFeelsNothing) {
   run(world, 3);
   world.move(0, {{0, 0, 5}, math::Quaternion::Identity()});
   run(world, 2);
-  EXPECT_EQ(reading(world).touches, 0);
-  EXPECT_EQ(reading(world).strength, 0);
+  EXPECT_EQ(contact(world).touches, 0);
+  EXPECT_EQ(contact(world).strength, 0);
 }
 
 TEST(ContactSensor, WhileItLandsItsForceIsWhatChangesItsMomentum) {
-  Simulation world = SmallScene{"", base, smooth("0,0,0.3"), ground}.run();
+  Simulation world = SmallScene{"", base, smooth_robot(R"(position="0,0,0.3")"), ground}.run();
   constexpr double tick = 0.1, mass = 1;
   double before = 0, impulse = 0;
   for (int i = 0; i < 6; ++i) {  // it sleeps later: that takes what is left of its velocity
@@ -92,16 +78,16 @@ TEST(ContactSensor, BetweenTwoOthersFeelsMoreStrengthThanForce) {
                                 ground}
                          .run();
   run(world, 10);
-  EXPECT_NEAR(reading(world).force[2], g, 0.05);
-  EXPECT_NEAR(reading(world).strength, 3 * g, 0.15);
+  EXPECT_NEAR(contact(world).force[2], g, 0.05);
+  EXPECT_NEAR(contact(world).strength, 3 * g, 0.15);
 }
 
 TEST(ContactSensor, ReadsInTheFrameOfItsLink) {
   // Lies on its side: its x axis points up.
   Simulation world = SmallScene{"", base, robot("r", "-0.05,0,0.05", "", "0,-90,0"), ground}.run();
   run(world, 10);
-  EXPECT_NEAR(std::abs(reading(world).force[0]), g, 0.05);
-  EXPECT_NEAR(reading(world).force[2], 0, 0.05);
+  EXPECT_NEAR(std::abs(contact(world).force[0]), g, 0.05);
+  EXPECT_NEAR(contact(world).force[2], 0, 0.05);
 }
 
 TEST(ContactSensor, TwoOnOneLinkReadTheSame) {
@@ -110,8 +96,8 @@ TEST(ContactSensor, TwoOnOneLinkReadTheSame) {
       R"(<contact_sensor id="b" anchor="origin"/></contact_sensors>)";
   Simulation world = SmallScene{"", two, robot("r", "0,0,0", ""), ground}.run();
   run(world, 3);
-  EXPECT_EQ(reading(world, 1).touches, 1);
-  EXPECT_EQ(reading(world, 1).force, reading(world, 0).force);
+  EXPECT_EQ(contact(world, 1).touches, 1);
+  EXPECT_EQ(contact(world, 1).force, contact(world, 0).force);
 }
 
 TEST(ContactSensor, OfALinkThatNothingTouches) {
@@ -127,9 +113,9 @@ TEST(ContactSensor, OfALinkThatNothingTouches) {
       R"(<contact_sensor id="b" anchor="base"/></contact_sensors>)";
   Simulation world = SmallScene{"", sensors, arms, ground}.run();
   run(world, 10);
-  EXPECT_EQ(reading(world, 0).touches, 0);
-  EXPECT_EQ(reading(world, 1).touches, 1);
-  EXPECT_NEAR(reading(world, 1).force[2], 1.1 * g, 0.05);
+  EXPECT_EQ(contact(world, 0).touches, 0);
+  EXPECT_EQ(contact(world, 1).touches, 1);
+  EXPECT_NEAR(contact(world, 1).force[2], 1.1 * g, 0.05);
 }
 
 TEST(ContactSensor, OfARobotThatComesAndGoes) {
@@ -142,11 +128,11 @@ TEST(ContactSensor, OfARobotThatComesAndGoes) {
   second.pose.position = {1, 0, 0};
   world.spawn(scene, second);
   run(world, 5);
-  EXPECT_EQ(reading(world, 1).touches, 1);
+  EXPECT_EQ(contact(world, 1).touches, 1);
   world.remove(0);
   run(world, 2);
-  EXPECT_NEAR(reading(world, 1).force[2], g, 0.05);
+  EXPECT_NEAR(contact(world, 1).force[2], g, 0.05);
 }
 
 }  // namespace
-}  // namespace ziggurat::simulation::contact_sensors
+}  // namespace ziggurat::simulation

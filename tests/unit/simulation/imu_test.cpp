@@ -10,14 +10,10 @@
 
 #include "small_scene.h"
 
-namespace ziggurat::simulation::imus {
+namespace ziggurat::simulation {
 namespace {
 
-using testing::robot;
-using testing::SmallScene;
-
-constexpr double g = 9.8;  // [m/s^2]
-constexpr const char* ground = R"(<floor/><gravity g="9.8"/>)";
+using namespace testing;
 
 std::string imu(const std::string& more = "", const std::string& anchor = "base") {
   return R"(<imus implementation="default"><imu id="imu" anchor=")" + anchor + "\" " + more +
@@ -29,7 +25,7 @@ void expect_near(const std::array<double, 3>& read, const math::Vector3& expecte
     EXPECT_NEAR(read[static_cast<std::size_t>(i)], expected[i], bound) << "axis " << i;
 }
 
-const world::ImuReading& reading(const Simulation& simulation) {
+const world::ImuReading& imu_reading(const Simulation& simulation) {
   return simulation.observations().imus.at(0);
 }
 
@@ -39,25 +35,13 @@ math::Vector3 push_of_ground(const Simulation& simulation) {
   return simulation.state().links[0].pose.orientation.conjugate() * math::Vector3(0, 0, g);
 }
 
-void run(Simulation& simulation, int ticks) {
-  for (int i = 0; i < ticks; ++i) simulation.step();
-}
-
-/// A robot of one link without drag, of 0.1 m and 1 kg.
-std::string smooth(const std::string& body, const std::string& friction = "0.5") {
-  return R"(<prototype id="r"><body )" + body +
-         R"(/><links ref="base"><link id="base" geometry="box" size=".1,.1,.1" mass="1" friction=")" +
-         friction + R"(" linear_damping="0" angular_damping="0"/></links>)" +
-         R"(<controller config="c"/></prototype>)";
-}
-
 TEST(Imu, AtRestFeelsTheFloorPushUp) {
   Simulation world = SmallScene{"", imu(), robot("r", "0,0,0", ""), ground}.run();
-  expect_near(reading(world).acceleration, {0, 0, g}, 1e-12);  // tick 0
-  run(world, 20);                                              // asleep
-  expect_near(reading(world).acceleration, push_of_ground(world), 1e-9);
-  EXPECT_NEAR(reading(world).acceleration[2], g, 1e-5);
-  expect_near(reading(world).angular_velocity, {0, 0, 0}, 1e-9);
+  expect_near(imu_reading(world).acceleration, {0, 0, g}, 1e-12);  // tick 0
+  run(world, 20);                                                  // asleep
+  expect_near(imu_reading(world).acceleration, push_of_ground(world), 1e-9);
+  EXPECT_NEAR(imu_reading(world).acceleration[2], g, 1e-5);
+  expect_near(imu_reading(world).angular_velocity, {0, 0, 0}, 1e-9);
 }
 
 TEST(Imu, ReadsInItsOwnFrame) {
@@ -66,23 +50,24 @@ TEST(Imu, ReadsInItsOwnFrame) {
       SmallScene{"", imu(R"(orientation="0,90,0")"), robot("r", "0,0,0", ""), ground}.run();
   run(world, 20);
   const math::Vector3 push = push_of_ground(world);
-  expect_near(reading(world).acceleration, {-push.z(), push.y(), push.x()}, 1e-9);
-  EXPECT_NEAR(reading(world).acceleration[0], -g, 1e-5);
+  expect_near(imu_reading(world).acceleration, {-push.z(), push.y(), push.x()}, 1e-9);
+  EXPECT_NEAR(imu_reading(world).acceleration[0], -g, 1e-5);
 }
 
 TEST(Imu, WithoutGravityFeelsNothingAtRest) {
   Simulation world = SmallScene{"", imu(), robot("r", "0,0,1", "")}.run();
   run(world, 2);
-  expect_near(reading(world).acceleration, {0, 0, 0}, 1e-12);
+  expect_near(imu_reading(world).acceleration, {0, 0, 0}, 1e-12);
 }
 
 TEST(Imu, InFreeFallFeelsNothing) {
-  Simulation world = SmallScene{"", imu(), smooth(R"(position="0,0,5" orientation="30,40,50")"),
-                                R"(<gravity g="9.8"/>)"}
-                         .run();
+  Simulation world =
+      SmallScene{"", imu(), smooth_robot(R"(position="0,0,5" orientation="30,40,50")"),
+                 R"(<gravity g="9.8"/>)"}
+          .run();
   for (int i = 0; i < 4; ++i) {
     world.step();
-    expect_near(reading(world).acceleration, {0, 0, 0}, 1e-9);
+    expect_near(imu_reading(world).acceleration, {0, 0, 0}, 1e-9);
   }
   EXPECT_LT(world.state().links[0].velocity.z(), -3) << "it falls";
 }
@@ -98,7 +83,7 @@ TEST(Imu, InFreeFallThroughAirFeelsItsDrag) {
     v += (g - first) * 0.05;
     const double second = drag(v);
     v += (g - second) * 0.05;
-    expect_near(reading(world).acceleration, {0, 0, (first + second) / 2}, 1e-9);
+    expect_near(imu_reading(world).acceleration, {0, 0, (first + second) / 2}, 1e-9);
   }
 }
 
@@ -125,8 +110,8 @@ TEST(Imu, OnATurningLinkIsPulledInwards) {
   // The difference of two velocities half a substep h of turning apart: sin(wh/2) / (wh/2) of it.
   constexpr double half = rate * 0.05 / 2;
   const double inwards = rate * rate * radius * std::sin(half) / half;
-  expect_near(reading(world).acceleration, {-inwards, 0, g}, 1e-3);
-  expect_near(reading(world).angular_velocity, {0, 0, rate}, 1e-3);
+  expect_near(imu_reading(world).acceleration, {-inwards, 0, g}, 1e-3);
+  expect_near(imu_reading(world).angular_velocity, {0, 0, rate}, 1e-3);
 }
 
 TEST(Imu, ThatSpeedsUpIsPushedAlong) {
@@ -134,7 +119,7 @@ TEST(Imu, ThatSpeedsUpIsPushedAlong) {
   world.commands().joint_targets.at(0) = 1;
   run(world, 1);
   // From 0 to 1 rad/s within the tick of 0.1 s, wherever in it: the mean of r dw/dt.
-  EXPECT_NEAR(reading(world).acceleration[1], 0.3 * 1 / 0.1, 0.02);
+  EXPECT_NEAR(imu_reading(world).acceleration[1], 0.3 * 1 / 0.1, 0.02);
 }
 
 TEST(Imu, MeasuresAFastWheel) {  // more than half a turn in a tick
@@ -143,8 +128,8 @@ TEST(Imu, MeasuresAFastWheel) {  // more than half a turn in a tick
   world.commands().joint_targets.at(0) = rate;
   run(world, 20);
   constexpr double half = rate * 0.05 / 2;
-  EXPECT_NEAR(reading(world).angular_velocity[2], rate, 0.01);
-  EXPECT_NEAR(reading(world).acceleration[0], -rate * rate * 0.3 * std::sin(half) / half,
+  EXPECT_NEAR(imu_reading(world).angular_velocity[2], rate, 0.01);
+  EXPECT_NEAR(imu_reading(world).acceleration[0], -rate * rate * 0.3 * std::sin(half) / half,
               rate * rate * 0.3 * 0.01);
 }
 
@@ -157,7 +142,7 @@ SmallScene slope(const std::string& friction) {
   return {"", imu(),
           R"(<box id="slope" size="4,4,0.2" movable="false" friction=")" + friction +
               R"("><body position="0,0,1" orientation="0,-20,0"/></box>)" +
-              smooth("position=\"" + at + R"(" orientation="0,-20,0")", friction),
+              smooth_robot("position=\"" + at + R"(" orientation="0,-20,0")", friction),
           R"(<gravity g="9.8"/>)"};
 }
 
@@ -166,30 +151,30 @@ TEST(Imu, AtRestOnASlopeReadsItsAngle) {
   run(world, 20);
   const double angle = std::numbers::pi / 9;
   // Up in the world, seen from a frame whose x points up the slope.
-  expect_near(reading(world).acceleration, {g * std::sin(angle), 0, g * std::cos(angle)}, 0.02);
+  expect_near(imu_reading(world).acceleration, {g * std::sin(angle), 0, g * std::cos(angle)}, 0.02);
 }
 
 TEST(Imu, SlidingWithoutFrictionFeelsOnlyTheSlope) {
   Simulation world = slope("0").run();
   run(world, 8);
-  expect_near(reading(world).acceleration, {0, 0, g * std::cos(std::numbers::pi / 9)}, 0.02);
+  expect_near(imu_reading(world).acceleration, {0, 0, g * std::cos(std::numbers::pi / 9)}, 0.02);
   EXPECT_LT(world.state().links[1].velocity.x(), -1) << "it slides";
 }
 
 TEST(Imu, FeelsNothingOfBeingMovedByASupervisor) {
   Simulation world =
-      SmallScene{"", imu(), smooth(R"(position="0,0,5")"), R"(<gravity g="9.8"/>)"}.run();
+      SmallScene{"", imu(), smooth_robot(R"(position="0,0,5")"), R"(<gravity g="9.8"/>)"}.run();
   run(world, 3);
   world.move(0, {{1, 1, 6}, math::Quaternion::Identity()});
   run(world, 1);
-  expect_near(reading(world).acceleration, {0, 0, 0}, 1e-9);
+  expect_near(imu_reading(world).acceleration, {0, 0, 0}, 1e-9);
 }
 
 std::vector<double> first_axis(Simulation& world, int ticks) {
   std::vector<double> values;
   for (int i = 0; i < ticks; ++i) {
     world.step();
-    values.push_back(reading(world).acceleration[0]);
+    values.push_back(imu_reading(world).acceleration[0]);
   }
   return values;
 }
@@ -208,7 +193,7 @@ TEST(Imu, NoiseHasTheDeviationOfTheSceneAndRepeatsWithTheSeed) {
   EXPECT_NEAR(deviation(values), 0.2, 0.2 * 4 / std::sqrt(2 * 2000.0));  // four deviations
   EXPECT_EQ(first_axis(same, 2000), values);
   EXPECT_NE(first_axis(other, 2000), values);
-  EXPECT_EQ(reading(world).angular_velocity, (std::array<double, 3>{}));
+  EXPECT_EQ(imu_reading(world).angular_velocity, (std::array<double, 3>{}));
 }
 
 TEST(Imu, BiasWalksWithTheRootOfTime) {
@@ -219,7 +204,7 @@ TEST(Imu, BiasWalksWithTheRootOfTime) {
   double last = 0;
   for (int i = 0; i < 2000; ++i) {
     world.step();
-    const double now = reading(world).angular_velocity[2];
+    const double now = imu_reading(world).angular_velocity[2];
     steps.push_back(now - last);
     last = now;
   }
@@ -236,4 +221,4 @@ TEST(Imu, OfOneRobotDrawsNothingFromAnother) {
 }
 
 }  // namespace
-}  // namespace ziggurat::simulation::imus
+}  // namespace ziggurat::simulation

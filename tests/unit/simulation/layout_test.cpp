@@ -20,7 +20,7 @@ world::Layout layout_of(const std::string& actuators, const std::string& sensors
   return make_layout(scene, scene.entities);
 }
 
-TEST(Layout, ListsLedsOfEverybodyAndThoseThatARobotSets) {
+TEST(Layout, ListsLedsOfAllEntitiesAndThoseThatARobotSets) {
   const std::string box = R"(<box id="b" size="1,1,1" movable="false"><body/><leds medium="leds">)"
                           R"(<led anchor="origin" offset="0,0,0" color="blue"/></leds></box>)";
   const auto layout = layout_of(R"(<leds implementation="default" medium="leds"/>)", "",

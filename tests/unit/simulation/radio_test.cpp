@@ -14,7 +14,7 @@ using Messages = std::vector<std::pair<std::size_t, std::string>>;  // radio, te
 constexpr const char* both = R"(<radios implementation="default"/>)";
 constexpr const char* showing = R"(<radios implementation="default" show_rays="true"/>)";
 
-std::string radio(const std::string& range = "1") {
+std::string with_radio(const std::string& range = "1") {
   return R"(<radios medium="air"><radio anchor="base" position="0,0,0" range=")" + range +
          R"("/></radios>)";
 }
@@ -36,8 +36,9 @@ Messages received(const Simulation& simulation) {
 
 SmallScene three_robots() {
   return {both, both,
-          testing::robot("a", "0,0,0", radio()) + testing::robot("b", "0.5,0,0", radio()) +
-              testing::robot("c", "1,0,0", radio("0.6")),
+          testing::robot("a", "0,0,0", with_radio()) +
+              testing::robot("b", "0.5,0,0", with_radio()) +
+              testing::robot("c", "1,0,0", with_radio("0.6")),
           ""};
 }
 
@@ -83,7 +84,7 @@ TEST(Radio, MeasuresWithThePosesOfTheLastTick) {
       R"(<child link="tip" position="-1,0,0"/></joint></joints><devices><radios medium="air">)"
       R"(<radio anchor="tip" position="0,0,0" range="0.12"/></radios></devices>)"
       R"(<controller config="mover"/></prototype>)";
-  SmallScene small{both, both, testing::robot("a", "1.12,0,0", radio()) + arm, ""};
+  SmallScene small{both, both, testing::robot("a", "1.12,0,0", with_radio()) + arm, ""};
   std::string text = small.str();
   const std::string end = "</controllers>";
   text.insert(

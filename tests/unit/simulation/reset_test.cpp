@@ -5,11 +5,11 @@
 namespace ziggurat::simulation {
 namespace {
 
+using testing::gravity;
 using testing::robot;
 using testing::SmallScene;
 
-const std::string gravity = R"(<gravity g="10"/>)";
-const std::string box =
+const std::string falling_box =
     R"(<box id="b" size=".1,.1,.1" movable="true" mass="1"><body position="0,0,5"/></box>)";
 const std::string pendulum =
     R"(<prototype id="p" movable="false"><body position="1,0,2"/><links ref="base">)"
@@ -18,8 +18,8 @@ const std::string pendulum =
     R"(<joint id="hinge" type="revolute" axis="0,1,0"><parent link="base" position="0,0,0"/>)"
     R"(<child link="arm" position="-.25,0,0"/></joint></joints></prototype>)";
 
-TEST(Reset, IsAsAFreshOne) {
-  const SmallScene small{"", "", box + pendulum + robot("r", "0,1,1", ""), gravity};
+TEST(Reset, IsLikeANewSimulation) {
+  const SmallScene small{"", "", falling_box + pendulum + robot("r", "0,1,1", ""), gravity};
   const scene::Scene scene = small.read();
   Simulation used(scene, {1, {}}), fresh(scene, {1, {}});
   const world::Layout* layout = &used.layout();
@@ -36,7 +36,7 @@ TEST(Reset, IsAsAFreshOne) {
 }
 
 TEST(Move, PutsABodyToRestFromWhereItFalls) {
-  Simulation simulation(SmallScene{"", "", box, gravity}.read(), {1, {}});
+  Simulation simulation(SmallScene{"", "", falling_box, gravity}.read(), {1, {}});
   for (int i = 0; i < 4; ++i) simulation.step();
   simulation.move(0, {math::Vector3(1, 2, 3), math::Quaternion::Identity()});
   EXPECT_EQ(simulation.state().links[0].pose.position, math::Vector3(1, 2, 3));

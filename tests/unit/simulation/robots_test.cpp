@@ -10,11 +10,11 @@
 namespace ziggurat::simulation {
 namespace {
 
+using testing::ground;
 using testing::SmallScene;
+using testing::wheels;
 using world::TurretMode;
 
-constexpr const char* wheels = R"(<differential_steering implementation="default"/>)";
-constexpr const char* ground = R"(<floor/><gravity g="9.8"/>)";
 constexpr double axle = 0.14;  // [m]
 
 std::string foot_bot(const std::string& pose = "", const std::string& more = "",
@@ -87,7 +87,7 @@ TEST(FootBot, ZeroSpeedBrakesIt) {
   EXPECT_LT(simulation.state().links[0].velocity.norm(), 1e-9);
 }
 
-std::string box(const std::string& x, const std::string& mass) {
+std::string box_ahead(const std::string& x, const std::string& mass) {
   return R"(<box id="box" size="0.2,0.2,0.1" movable="true" mass=")" + mass +
          R"("><body position=")" + x + R"(,0,0"/></box>)";
 }
@@ -95,7 +95,8 @@ std::string box(const std::string& x, const std::string& mass) {
 TEST(FootBot, PushesWithItsForceAndNotMore) {
   // Friction of the box with the floor: 0.25 * 9.8 N/kg * m; a foot-bot has 15 N.
   const auto pushed = [](const std::string& mass) {
-    Simulation simulation = SmallScene{wheels, "", foot_bot() + box("0.2", mass), ground}.run();
+    Simulation simulation =
+        SmallScene{wheels, "", foot_bot() + box_ahead("0.2", mass), ground}.run();
     drive(simulation, 0.1, 0.1);
     for (int i = 0; i < 50; ++i) simulation.step();
     EXPECT_NEAR(simulation.state().links[0].pose.position.z(), 0, 1e-3);
@@ -136,10 +137,9 @@ TEST(FootBot, FallsOntoTheFloorAndDrivesOn) {
 }
 
 TEST(FootBot, StaysWhereItIsIfItMayNotMove) {
-  Simulation simulation =
-      SmallScene{std::string(wheels) + R"(<footbot_turret implementation="default"/>)", "",
-                 foot_bot("", "", "movable=\"false\""), ground}
-          .run();
+  Simulation simulation = SmallScene{wheels + R"(<footbot_turret implementation="default"/>)", "",
+                                     foot_bot("", "", "movable=\"false\""), ground}
+                              .run();
   drive(simulation, 0.1, 0.1);
   turn(simulation, TurretMode::speed, 0.5);
   for (int i = 0; i < 10; ++i) simulation.step();
@@ -167,7 +167,7 @@ TEST(Plane, AloneBrakesWhatIsPushed) {
     SmallScene scene{wheels, "",
                      foot_bot("", R"(<dynamics2d><differential_steering max_force=")" + force +
                                       R"("/></dynamics2d>)") +
-                         box("0.185037", "1"),
+                         box_ahead("0.185037", "1"),
                      ""};
     std::string text = scene.str();
     text.replace(text.find(R"(<dynamics3d id="d" iterations="2"></dynamics3d>)"), 47,
@@ -190,8 +190,7 @@ constexpr const char* turret = R"(<footbot_turret implementation="default"/>)";
 constexpr const char* encoder = R"(<footbot_turret_encoder implementation="default"/>)";
 
 TEST(Turret, TurnsWithTheRobotUntilToldOtherwise) {
-  Simulation simulation =
-      SmallScene{std::string(wheels) + turret, encoder, foot_bot(), ground}.run();
+  Simulation simulation = SmallScene{wheels + turret, encoder, foot_bot(), ground}.run();
   drive(simulation, -0.01, 0.01);
   for (int i = 0; i < 20; ++i) simulation.step();
   EXPECT_NEAR(yaw(simulation.state().links[1].pose), 0.02 / axle * 2, 1e-9);
@@ -199,8 +198,7 @@ TEST(Turret, TurnsWithTheRobotUntilToldOtherwise) {
 }
 
 TEST(Turret, TurnsAtItsSpeedOnTopOfTheRobots) {
-  Simulation simulation =
-      SmallScene{std::string(wheels) + turret, encoder, foot_bot(), ground}.run();
+  Simulation simulation = SmallScene{wheels + turret, encoder, foot_bot(), ground}.run();
   drive(simulation, -0.01, 0.01);
   const double rate = 2 * std::numbers::pi / 30;  // 2 RPM
   turn(simulation, TurretMode::speed, rate);

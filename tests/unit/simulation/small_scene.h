@@ -10,6 +10,11 @@
 
 namespace ziggurat::simulation::testing {
 
+constexpr double g = 9.8;  // [m/s^2]
+inline const std::string gravity = R"(<gravity g="10"/>)";
+inline const std::string wheels = R"(<differential_steering implementation="default"/>)";
+constexpr const char* ground = R"(<floor/><gravity g="9.8"/>)";
+
 struct SmallScene {
   std::string actuators, sensors;  ///< of the controller `c`
   std::string arena;               ///< entities
@@ -45,6 +50,19 @@ inline std::string robot(const std::string& id, const std::string& position,
          orientation + R"("/><links ref="base"><link id="base" geometry="box" size=".1,.1,.1" )" +
          R"(mass="1"/></links><devices>)" + devices +
          R"(</devices><controller config="c"/></prototype>)";
+}
+
+/// A robot of one link of 0.1 m and 1 kg, without drag, driven by `c`.
+/// @param body  attributes of <body>
+inline std::string smooth_robot(const std::string& body, const std::string& friction = "0.5") {
+  return R"(<prototype id="r"><body )" + body +
+         R"(/><links ref="base"><link id="base" geometry="box" size=".1,.1,.1" mass="1" friction=")" +
+         friction + R"(" linear_damping="0" angular_damping="0"/></links>)" +
+         R"(<controller config="c"/></prototype>)";
+}
+
+inline void run(Simulation& simulation, int ticks) {
+  for (int i = 0; i < ticks; ++i) simulation.step();
 }
 
 }  // namespace ziggurat::simulation::testing

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,6 +17,8 @@
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 inline std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};

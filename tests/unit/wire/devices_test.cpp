@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <string>
 
 #include "wire/device_wire.h"
@@ -11,8 +10,6 @@
 
 namespace ziggurat::wire {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // ---- commands -----------------------------------------------------------------------------------
 
@@ -76,7 +73,7 @@ TEST_F(DeviceWire, RadioMessagesKeepTheirOrderAndTheirBytes) {
   EXPECT_EQ(sent(), (Sent{{1, "first"}, {2, all_bytes}, {1, ""}, {0, "x"}}));
 }
 
-TEST_F(DeviceWire, WhoIsGoneSendsAndSetsNothing) {
+TEST_F(DeviceWire, RobotsThatLeftSendAndSetNothing) {
   roster.leave(0);
   for (const std::uint32_t color : {1, 2, 3}) command->add_led_colors(color);
   send(0, "last words");
@@ -86,7 +83,7 @@ TEST_F(DeviceWire, WhoIsGoneSendsAndSetsNothing) {
   EXPECT_EQ(sent(), (Sent{{2, "hello"}}));
 }
 
-TEST_F(DeviceWire, WhoIsGoneKeepsItsColorsAndIsOtherwiseZero) {
+TEST_F(DeviceWire, RobotsThatLeftKeepTheirColorsAndAreOtherwiseZero) {
   commands.magnet_currents = {1, 2, 3, 4};
   commands.led_colors = {1, 2, 3, 4};
   commands.range_and_bearing_data.assign(12, 9);
@@ -115,7 +112,7 @@ TEST_F(DeviceWire, WrongLengths) {
   expect_fault(ErrorCode::bad_value, "led_colors", "", "(0 LEDs");
 }
 
-TEST_F(DeviceWire, ValuesThatCannotBe) {
+TEST_F(DeviceWire, InvalidValues) {
   command->add_led_colors(0);
   command->add_led_colors(0);
   command->add_led_colors(0x1000000);
@@ -133,7 +130,7 @@ TEST_F(DeviceWire, ValuesThatCannotBe) {
   expect_fault(ErrorCode::too_large, "tag_payloads", "c", "tag 'tag2' of robot 'c' is 65537 bytes");
 }
 
-TEST_F(DeviceWire, RadiosThatAreNotThere) {
+TEST_F(DeviceWire, UnknownRadios) {
   send(4, "x");
   expect_fault(ErrorCode::unknown_device, "radio_messages", "", "have 4 radios");
   send(1'000'000'000, "x");
@@ -235,7 +232,7 @@ TEST_F(DeviceWire, ReceiversKeepTheirPlacesAroundRobotsWithoutDevices) {
   EXPECT_EQ(observation.range_and_bearing(1).robot(), 2U);
 }
 
-TEST_F(DeviceWire, ASessionThatHearsTooMuchIsNotToldAnything) {
+TEST_F(DeviceWire, ASessionThatHearsTooMuchGetsNoMessage) {
   world::Observations seen = run.observations();
   seen.radio_messages.add(3, bytes_of(std::string(world::most_radio_message_bytes, 'x')));
   const auto entry = seen.radio_messages.entries[0];

@@ -8,7 +8,6 @@
 namespace ziggurat::wire {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Driving : DeviceWire {
@@ -52,7 +51,7 @@ TEST_F(Driving, ValuesOfSomeRobotsInTheOrderGiven) {
   EXPECT_EQ(commands.turret_rotations[1], 0) << "was not given";
 }
 
-TEST_F(Driving, WhoIsGoneSetsNothing) {
+TEST_F(Driving, RobotsThatLeftSetNothing) {
   roster.leave(0);
   drive({1, 2, 3, 4});
   turn({v1::TURRET_SPEED, v1::TURRET_SPEED}, {}, {});
@@ -62,7 +61,7 @@ TEST_F(Driving, WhoIsGoneSetsNothing) {
   EXPECT_EQ(commands.turret_modes[1], world::TurretMode::speed);
 }
 
-TEST_F(Driving, WhoIsGoneStands) {
+TEST_F(Driving, RobotsThatLeftStand) {
   commands.wheels = {{1, 2}, {3, 4}, {5, 6}};
   commands.turret_modes = {world::TurretMode::speed, world::TurretMode::speed};
   commands.turret_rotations = {1, 3};
@@ -92,7 +91,7 @@ TEST_F(Driving, WrongLengths) {
   expect_fault(ErrorCode::bad_value, "wheel_velocities", "", "(0 pairs");
 }
 
-TEST_F(Driving, ValuesThatCannotBe) {
+TEST_F(Driving, InvalidValues) {
   drive({0, 0, 0, nan});
   expect_fault(ErrorCode::bad_value, "wheel_velocities", "c",
                "The speed of a wheel of robot 'c' is 0, nan; it must be finite.");

@@ -55,7 +55,7 @@ TEST(Roster, NeighboursAreCopiedInOnePiece) {
   EXPECT_EQ(readings.count, 5U);
 }
 
-TEST(Roster, RobotsWithoutJointsAreNoObstacle) {
+TEST(Roster, RobotsWithoutJointsAreSkipped) {
   SmallRun small(3);
   small.layout().robots[1].joint_sensors = {0, 0};
   const std::vector<std::size_t> robots{0, 1, 2};
@@ -210,7 +210,7 @@ TEST(Inbox, JsonIsTheSameMessage) {
   EXPECT_EQ(inbox.complaint(), "") << "that was not JSON to begin with";
 }
 
-TEST(Inbox, TextThatIsNoUtf8IsMalformedWithoutAWord) {
+TEST(Inbox, InvalidUtf8IsMalformedAndNothingIsPrinted) {
   Inbox inbox;
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(inbox.parse("\x0a\x03\x22\x01\xff"), Inbox::Kind::malformed);
@@ -255,7 +255,7 @@ TEST(Outbox, TakesTheFormThatIsAskedFor) {
   EXPECT_EQ(bytes_of(outbox), R"({"heartbeat":{"sequence":"0"}})");
 }
 
-TEST(Outbox, ChargeThatLastsForEverIsAWordInJson) {
+TEST(Outbox, InfiniteTimeOfABatteryIsAStringInJson) {
   const EquippedRun run;
   const std::vector<std::size_t> robots{0, 1, 2};
   auto observations = run.observations();

@@ -11,6 +11,9 @@
 
 namespace ziggurat::physics::contact::testing {
 
+inline const Box cube{{0.005, 0.005, 0.005}};
+inline const Cylinder can{0.005, 0.005};
+
 /// A shape at a pose.
 struct Solid {
   Shape shape;

@@ -24,8 +24,8 @@ struct Pair {
 
 void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.name; }
 
-const Box cube{{0.005, 0.005, 0.005}}, slab{{0.05, 0.025, 0.01}};
-const Cylinder can{0.005, 0.005}, wheel{0.02, 0.0025}, rod{0.004, 0.03};
+const Box slab{{0.05, 0.025, 0.01}};
+const Cylinder wheel{0.02, 0.0025}, rod{0.004, 0.03};
 const Sphere ball{0.005}, football{0.03};
 const Capsule pill{0.005, 0.01}, peg{0.004, 0.004};
 

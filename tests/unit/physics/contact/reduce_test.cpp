@@ -10,8 +10,8 @@
 namespace ziggurat::physics::contact {
 namespace {
 
-const Box cube{{0.005, 0.005, 0.005}};
-const Cylinder can{0.005, 0.005};
+using testing::can;
+using testing::cube;
 
 btTransform at(btScalar x, btScalar y, btScalar z, const btVector3& axis = {0, 0, 1},
                btScalar angle = 0) {
