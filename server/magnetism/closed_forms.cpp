@@ -12,11 +12,14 @@ double logarithm_of_difference(double r, double u, double rest) {
   return difference > 0 ? std::log(difference) : 0;
 }
 
-Vector3 corner_term(double u, double v, double w) {
+double sign_of(double x) { return x > 0 ? 1 : (x < 0 ? -1 : 0); }
+
+/// @param touching  the angle's limit for w = 0 and u v > 0: pi / 2 from above, -pi / 2 from below
+Vector3 corner_term(double u, double v, double w, double touching) {
   const double r = std::sqrt(u * u + v * v + w * w);
   const double log_u = logarithm_of_difference(r, u, v * v + w * w);
   const double log_v = logarithm_of_difference(r, v, u * u + w * w);
-  const double angle = w != 0 && r > 0 ? std::atan(u * v / (r * w)) : 0;
+  const double angle = w != 0 ? std::atan(u * v / (r * w)) : touching * sign_of(u * v);
   return {(v * v - w * w) / 2 * log_u + u * v * log_v + v * w * angle + r * u / 2,
           (u * u - w * w) / 2 * log_v + u * v * log_u + u * w * angle + r * v / 2,
           -u * w * log_u - v * w * log_v + u * v * angle - r * w};
@@ -36,7 +39,7 @@ Vector3 parallel_box_force(const Vector3& first_size, const Vector3& second_size
       at[axis] = offset[axis] + second * second_size[axis] - first * first_size[axis];
       sign *= 4 * first * second;
     }
-    sum += sign * corner_term(at[0], at[1], at[2]);
+    sum += sign * corner_term(at[0], at[1], at[2], std::copysign(pi / 2, offset.z()));
   }
   return sum * (first_remanence * second_remanence / (4 * pi * vacuum_permeability));
 }

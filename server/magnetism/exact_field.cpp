@@ -159,6 +159,30 @@ Vector3 shape_field(const Shape& shape, const Vector3& moment, const Vector3& po
   return cylinder_field(std::get<Cylinder>(shape), magnetisation, point, tolerance);
 }
 
+Vector3 outside(const Shape& shape, const Vector3& point) {
+  constexpr double beyond = 1e-9;  // of the size
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    const Vector3 depth = (1 + beyond) * box->size / 2 - point.cwiseAbs();
+    int nearest = 0;
+    if (depth.minCoeff(&nearest) <= 0) return point;
+    Vector3 moved = point;
+    moved[nearest] += std::copysign(depth[nearest], point[nearest]);
+    return moved;
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    const double radius = std::sqrt(point.x() * point.x() + point.y() * point.y());
+    const double radial = (1 + beyond) * cylinder->radius - radius;
+    const double axial = (1 + beyond) * cylinder->height / 2 - std::fabs(point.z());
+    if (std::min(radial, axial) <= 0) return point;
+    if (axial <= radial) {
+      return {point.x(), point.y(), point.z() + std::copysign(axial, point.z())};
+    }
+    const double outwards = (radius + radial) / radius;
+    return {point.x() * outwards, point.y() * outwards, point.z()};
+  }
+  return point;
+}
+
 double distance_outside(const Shape& shape, const Vector3& point) {
   if (const auto* box = std::get_if<Box>(&shape)) {
     return (point.cwiseAbs() - box->size / 2).cwiseMax(0).norm();

@@ -26,6 +26,10 @@ Vector3 cylinder_field(const Cylinder& cylinder, const Vector3& magnetisation, c
 Vector3 shape_field(const Shape& shape, const Vector3& moment, const Vector3& point,
                     double tolerance);
 
+/// The point itself, or, if it is inside a box or a cylinder or on its surface, one just outside of
+/// the nearest face [m].
+Vector3 outside(const Shape& shape, const Vector3& point);
+
 /// Distance from a point to the surface; zero inside [m].
 double distance_outside(const Shape& shape, const Vector3& point);
 

@@ -199,6 +199,63 @@ TEST(Adaptive, CubesMatchAkounAndYonnetAtEveryGap) {
   }
 }
 
+/// Two alike boxes magnetised along z, one on top of the other or beside it, shifted by shares of
+/// their size, with a gap [m].
+struct Touching {
+  Vector3 size, offset;
+  Shape box{Box{size}};
+
+  PlacedShape placed(const Vector3& at) const {
+    return {&box, at, Eigen::Matrix3d::Identity(), moment_of_remanence(along_z, volume(box))};
+  }
+  Interaction computed(double tolerance) const {
+    return by_field({placed(offset), placed(Vector3::Zero())}, tolerance);
+  }
+  double error(double tolerance) const {
+    const Vector3 exact = parallel_box_force(size, size, offset, remanence, remanence);
+    return (computed(tolerance).force_on_first - exact).norm() / exact.norm();
+  }
+};
+
+TEST(Adaptive, ShiftedPlatesThatTouchStayWithinTheTolerance) {
+  const Vector3 sizes[] = {{0.02, 0.02, 0.001}, {0.02, 0.02, 0.0005}, {0.04, 0.005, 0.001},
+                           {0.01, 0.01, 0.01}};
+  const Vector3 shifts[] = {{0, 0, 0}, {0.25, 0, 0}, {0.5, 0.1, 0}, {0.33, 0.47, 0}, {0.9, 0.3, 0}};
+  for (const Vector3& size : sizes) {
+    for (const Vector3& shift : shifts) {
+      for (const double gap : {0.0, 1e-6, 1e-4, 3e-4}) {
+        const Vector3 above{shift.x() * size.x(), shift.y() * size.y(), size.z() + gap};
+        const Vector3 beside{size.x() + gap, shift.y() * size.y(), shift.x() * size.z()};
+        EXPECT_LE((Touching{size, above}.error(0.01)), 0.01) << shift.transpose() << ", " << gap;
+        EXPECT_LE((Touching{size, beside}.error(0.01)), 0.01) << shift.transpose() << ", " << gap;
+      }
+    }
+  }
+}
+
+TEST(Adaptive, TheForceHasNoJumpWhereBoxesBeginToOverlap) {
+  for (const Vector3& size : {Vector3(0.02, 0.02, 0.001), Vector3(0.01, 0.01, 0.01)}) {
+    const auto force = [&](double gap) {
+      return Touching{size, {0.3 * size.x(), 0, size.z() + gap}}.computed(0.01).force_on_first;
+    };
+    EXPECT_LE((force(-1e-6) - force(1e-6)).norm(), 0.02 * force(1e-6).norm());
+    EXPECT_LE((force(-1e-5) - force(1e-5)).norm(), 0.1 * force(1e-5).norm());
+  }
+}
+
+TEST(Adaptive, TheForceHasNoJumpWhereCylindersBeginToOverlap) {
+  const Shape disc = Cylinder{0.01, 0.002};
+  const auto force = [&](double gap) {
+    const Vector3 moment = moment_of_remanence(along_z, volume(disc));
+    const PlacedShape lower{&disc, Vector3::Zero(), Eigen::Matrix3d::Identity(), moment};
+    const PlacedShape upper{&disc, {0, 0, 0.002 + gap}, Eigen::Matrix3d::Identity(), moment};
+    return charge_pair(upper, lower, 4e-3).force_on_first.z();
+  };
+  const double exact = -coaxial_cylinder_force(0.01, 0.002, 0.002, 1e-5, remanence, remanence);
+  EXPECT_NEAR(force(1e-5), exact, 0.01 * std::fabs(exact));
+  EXPECT_NEAR(force(-1e-6), exact, 0.03 * std::fabs(exact));
+}
+
 TEST(Adaptive, CubesStayWithinTheTolerance) {
   const Shape cube = Box{Vector3::Constant(0.01)};
   expect_within(cube, cube, 0.01, along_z, "cube");
