@@ -21,7 +21,7 @@ MODULES = {
     "world": ["math"],
     "magnetism": ["math"],
     "dynamics": ["math"],
-    "physics": ["scene", "world", "magnetism", "math"],
+    "physics": ["scene", "world", "magnetism", "dynamics", "math"],
     "media": ["world", "math"],
     "camera": ["world", "media", "math"],
     "render": ["scene", "world", "math"],

@@ -19,33 +19,37 @@ Pose base_pose(const Body& body) {
   return root.placed * math::inverse(root.frame_in_part());
 }
 
-btTransform Body::transform(std::size_t part) const { return mechanism->transform(part); }
+btTransform Body::transform(std::size_t part) const {
+  return mechanism ? mechanism->transform(part) : articulation->transform(part);
+}
 
 btTransform Body::transform(const LinkBody& link) const {
-  return mechanism->transform(link.part) *
+  return transform(link.part) *
          btTransform(to_bullet(math::Quaternion(link.turn * link.in_part.orientation)),
                      to_bullet(link.in_part.position));
 }
 
 void Body::apply_force(std::size_t part, const btVector3& force) {
-  mechanism->apply_force(part, force);
+  mechanism ? mechanism->apply_force(part, force) : articulation->apply_force(part, force);
 }
 
 void Body::apply_torque(std::size_t part, const btVector3& torque) {
-  mechanism->apply_torque(part, torque);
+  mechanism ? mechanism->apply_torque(part, torque) : articulation->apply_torque(part, torque);
 }
 
-bool Body::sleeps() const { return mechanism->sleeps(); }
+bool Body::sleeps() const { return mechanism ? mechanism->sleeps() : articulation->sleeps(); }
 
-void Body::update_poses() { mechanism->update_poses(); }
+void Body::update_poses() {
+  if (mechanism) mechanism->update_poses();
+}
 
 void Body::motions(std::vector<Motion>& out) const {
   out.resize(parts.size());
-  mechanism->motions(out);
+  mechanism ? mechanism->motions(out) : articulation->motions(out);
 }
 
 Motion Body::motion(const LinkBody& link, std::span<const Motion> parts_motion) const {
-  const btMatrix3x3 basis = mechanism->transform(link.part).getBasis();
+  const btMatrix3x3 basis = transform(link.part).getBasis();
   Motion motion = parts_motion[link.part];
   motion.velocity += motion.angular_velocity.cross(basis * to_bullet(link.in_part.position));
   motion.angular_velocity += basis.getColumn(2) * link.spin;

@@ -1,6 +1,6 @@
 #pragma once
 // An entity as plug-ins see it: its links, and the parts that move as one. What moves the parts is
-// the core's (bullet/); here it is only asked where they are and pushed.
+// the core's (newton/ or bullet/); here it is only asked where they are and pushed.
 
 #include <LinearMath/btTransform.h>
 
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "math/pose.h"
+#include "physics/newton/articulation.h"
 #include "physics/values.h"
 #include "scene/scene.h"
 
@@ -45,11 +46,6 @@ struct LinkBody {
   int carrier = carries_itself;  ///< index into Body::links
 
   math::Pose frame_in_part() const;  ///< X_PL at the start
-};
-
-struct Motion {
-  btVector3 velocity{0, 0, 0};          ///< of the centre of mass, in the world [m/s]
-  btVector3 angular_velocity{0, 0, 0};  ///< in the world [rad/s]
 };
 
 /// A body on the ground whose velocity in the plane and turn rate the core holds to what is
@@ -100,7 +96,11 @@ struct Body {
   std::optional<Turret> turret;
   bool watched = false;  ///< contacts of one of its links are
 
-  std::unique_ptr<Mechanism> mechanism;
+  std::unique_ptr<Mechanism> mechanism;      ///< in the core that sweeps
+  std::optional<Articulation> articulation;  ///< in the core by Newton's method
+
+  /// Whether a core moves it.
+  bool present() const { return mechanism || articulation; }
 
   /// X_WP of a part.
   btTransform transform(std::size_t part) const;

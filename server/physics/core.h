@@ -1,12 +1,13 @@
 #pragma once
-// The mechanical core: joints, motors, contacts, and the equations of motion, on Bullet. World adds
-// bodies to it, plug-ins push them, and it moves them on by a substep. No Bullet class beyond a
-// vector leaves bullet/, so that this file is all that another core must offer.
+// The mechanical core: joints, motors, contacts, and the equations of motion. World adds bodies to
+// it, plug-ins push them, and it moves them on by a substep. There are two: on dynamics/ (newton/),
+// and on Bullet's multi-bodies (bullet/); the scene chooses one.
 
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "physics/bodies.h"
@@ -15,6 +16,9 @@
 #include "scene/scene.h"
 
 namespace ziggurat::physics {
+
+class NewtonCore;
+class SweepsCore;
 
 class Core {
  public:
@@ -53,9 +57,10 @@ class Core {
   /// What touched in the last substep, in ascending order.
   void contacts(std::vector<Contact>& out) const;
 
+  Convergence convergence() const;
+
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  std::variant<std::unique_ptr<SweepsCore>, std::unique_ptr<NewtonCore>> core_;
 };
 
 }  // namespace ziggurat::physics

@@ -23,7 +23,10 @@ Made make(Arguments&&... arguments) {
 /// The plug-ins, in the order in which they act. The first ones are chosen by their tag in
 /// <dynamics3d>, which scene/engines.cpp reads; a new plug-in is a line here.
 constexpr std::array choices{
-    +[](const scene::Physics& p) { return p.gravity ? make<Gravity>(*p.gravity) : nullptr; },
+    +[](const scene::Physics& p) {  // dynamics/ has gravity of its own
+      const bool pushed = p.gravity && p.solver == scene::Solver::sweeps;
+      return pushed ? make<Gravity>(*p.gravity) : nullptr;
+    },
     +[](const scene::Physics&) { return make<ViscousDamping>(); },
     +[](const scene::Physics& p) { return p.magnetism ? make<Magnets>(*p.magnetism) : nullptr; },
     +[](const scene::Physics&) { return make<Wheels>(); },

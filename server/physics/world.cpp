@@ -37,7 +37,7 @@ struct World::Parts {
         plugins(physics, core) {}
   ~Parts() {
     for (Body& body : bodies) {
-      if (body.mechanism) core.remove(body);
+      if (body.present()) core.remove(body);
     }
   }
 
@@ -197,6 +197,8 @@ void World::read(std::size_t entity, world::State& state) const {
   const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
   state.origins[entity] = stepped ? reference * body.origin_from_reference : body.placed;
 }
+
+Convergence World::convergence() const { return parts_->core.convergence(); }
 
 World::Stiffness World::stiffest_bond() const {
   const Parts& p = *parts_;

@@ -145,6 +145,7 @@ struct JointActuator {
   JointMode mode = JointMode::disabled;
   double max_impulse = 0;  ///< [N s] (prismatic) or [N m s] (revolute) per substep
   Location where;
+  std::optional<double> max_force;  ///< instead of max_impulse: [N] or [N m]
 };
 
 struct JointSensor {

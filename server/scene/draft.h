@@ -21,7 +21,8 @@ namespace ziggurat::scene {
 
 /// Values of <dynamics3d> for all bodies; without one, each kind of body has its own default.
 struct BodyDefaults {
-  std::optional<double> friction, rolling_friction, linear_damping, angular_damping;
+  std::optional<double> friction, rolling_friction, spinning_friction, restitution;
+  std::optional<double> linear_damping, angular_damping;
 };
 
 /// A device that a controller enables, and what an entity must have for it.
@@ -89,6 +90,7 @@ struct Draft {
   std::unordered_map<std::string, std::size_t> model_ids;  ///< id -> index
   BodyDefaults defaults;
   bool has_engine = false;
+  bool told_of_sweeps = false;  ///< that some attributes have no effect with solver="sweeps"
   std::vector<ControllerUse> uses;                           ///< of Scene::controllers, same order
   std::unordered_map<std::string, std::size_t> media;        ///< id -> index
   std::unordered_map<std::string, std::size_t> controllers;  ///< id -> index
@@ -211,7 +213,7 @@ Geometry read_geometry(Draft& draft, Element& link);
 /// @param name  a known value of `geometry`
 Geometry read_shape(Draft& draft, Element& element, std::string_view name);
 
-/// `friction` and `rolling_friction`.
+/// `friction`, `rolling_friction`, `spinning_friction` and `restitution`.
 Surface read_surface(Draft& draft, Element& element, const Surface& usual);
 
 /// `linear_damping` and `angular_damping`.

@@ -48,11 +48,16 @@ void read_dynamics3d(Draft& draft, Element& engine) {
   physics.clock =
       engine.optional("clock", OneOf<Clock>{{"nominal", Clock::nominal}, {"beta50", Clock::beta50}},
                       Clock::nominal);
+  physics.solver = engine.optional(
+      "solver", OneOf<Solver>{{"newton", Solver::newton}, {"sweeps", Solver::sweeps}},
+      Solver::sweeps);
   physics.max_substep = engine.optional("max_substep", duration);
   physics.solver_iterations =
       engine.optional("solver_iterations", Whole{1, most_solver_iterations});
   draft.defaults.friction = engine.optional("friction", non_negative);
   draft.defaults.rolling_friction = engine.optional("rolling_friction", non_negative);
+  draft.defaults.spinning_friction = engine.optional("spinning_friction", non_negative);
+  draft.defaults.restitution = engine.optional("restitution", non_negative);
   draft.defaults.linear_damping = engine.optional("linear_damping", non_negative);
   draft.defaults.angular_damping = engine.optional("angular_damping", non_negative);
   if (auto floor = engine.child("floor")) read_floor(draft, *floor);
@@ -105,17 +110,32 @@ void read_engine(Draft& draft, Element& engine) {
 }  // namespace
 
 Surface read_surface(Draft& draft, Element& element, const Surface& usual) {
-  return {
-      element.optional("friction", non_negative, draft.defaults.friction.value_or(usual.friction)),
+  const auto& d = draft.defaults;
+  Surface out{
+      element.optional("friction", non_negative, d.friction.value_or(usual.friction)),
       element.optional("rolling_friction", non_negative,
-                       draft.defaults.rolling_friction.value_or(usual.rolling_friction))};
+                       d.rolling_friction.value_or(usual.rolling_friction)),
+      element.optional("spinning_friction", non_negative,
+                       d.spinning_friction.value_or(usual.spinning_friction)),
+      element.optional("restitution", non_negative, d.restitution.value_or(usual.restitution))};
+  if (out.restitution > 1) element.fault_at("restitution", "is over 1; write a number from 0 to 1");
+  const bool ignored = out.spinning_friction > 0 || out.restitution > 0;
+  if (ignored && draft.scene.physics.solver == Solver::sweeps && !draft.told_of_sweeps) {
+    draft.told_of_sweeps = true;
+    draft.report.notice(element.where(),
+                          "spinning_friction and restitution have no effect with "
+                          "solver=\"sweeps\"; write solver=\"newton\" on <dynamics3d>");
+  }
+  return out;
 }
 
 Damping read_damping(Draft& draft, Element& element, const Damping& usual) {
-  return {element.optional("linear_damping", non_negative,
-                           draft.defaults.linear_damping.value_or(usual.linear)),
-          element.optional("angular_damping", non_negative,
-                           draft.defaults.angular_damping.value_or(usual.angular))};
+  const auto& d = draft.defaults;
+  return {
+      element.optional("linear_damping", non_negative, d.linear_damping.value_or(usual.linear)),
+      element.optional("angular_damping", non_negative, d.angular_damping.value_or(usual.angular)),
+      !element.has("linear_damping") && !d.linear_damping,
+      !element.has("angular_damping") && !d.angular_damping};
 }
 
 void read_engines(Draft& draft, Element& root) {

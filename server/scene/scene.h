@@ -30,6 +30,12 @@ enum class Clock {
             ///< of ARGoS 3.0.0-beta50, for scenes whose parameters were tuned under it
 };
 
+/// What moves bodies on.
+enum class Solver {
+  sweeps,  ///< Bullet's multi-bodies, and sweeps over rows of joints and contacts
+  newton,  ///< equations of motion of our own, contacts by Newton's method
+};
+
 struct Experiment {
   unsigned ticks_per_second = 10;  ///< >= 1
   double length = 0;               ///< [s] simulated; 0 = until stopped
@@ -39,16 +45,21 @@ struct Experiment {
 
 // --- bodies -----------------------------------------------------------------------------------
 
-/// How a surface rubs. Two surfaces in contact combine by product.
+/// How a surface rubs and bounces.
 struct Surface {
-  double friction = 0.5;          ///< Coulomb coefficient, dimensionless
-  double rolling_friction = 0.0;  ///< [m]: resisting torque per normal force
+  double friction = 0.5;           ///< Coulomb coefficient; two surfaces combine by product
+  double rolling_friction = 0.0;   ///< [m]: resisting torque per normal force; by sum
+  double spinning_friction = 0.0;  ///< [m]: the same against turning about the normal; by sum
+  double restitution = 0.0;        ///< speed after an impact over speed before, 0 to 1; by maximum
 };
 
 /// Viscous loss of a body: force -m v (k + k |v|), torque -I w (k + k |w|).
 struct Damping {
   double linear = 0.0;   ///< k for the velocity [1/s and 1/m]
   double angular = 0.0;  ///< k for the angular velocity [1/s and 1]
+  /// Whether each is only what the dialect takes where the file says nothing: without effect with
+  /// solver="newton" at the nominal clock.
+  bool usual_linear = false, usual_angular = false;
 };
 
 struct Link {
@@ -171,6 +182,7 @@ struct Physics {
   std::string id;
   unsigned iterations = 10;  ///< substeps per tick, >= 1
   Clock clock = Clock::nominal;
+  Solver solver = Solver::sweeps;
   std::optional<double> max_substep;          ///< [s]: longer substeps are split inside
   std::optional<unsigned> solver_iterations;  ///< constraint solver sweeps per substep
   std::optional<Floor> floor;

@@ -25,6 +25,13 @@ double substep_length(const scene::Scene& scene, const Options& options) {
   return slow ? tick / (iterations * iterations) : tick / iterations;
 }
 
+/// What the scene says of physics, with the clock that was chosen.
+scene::Physics physics_of(const scene::Scene& scene, const Options& options) {
+  scene::Physics physics = scene.physics;
+  physics.clock = options.clock.value_or(physics.clock);
+  return physics;
+}
+
 }  // namespace
 
 struct Simulation::Parts {
@@ -102,7 +109,7 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
       ticks_per_second(scene.experiment.ticks_per_second),
       substeps(scene.physics.iterations),
       substep(substep_length(scene, options)),
-      physics(scene.physics, substep),
+      physics(physics_of(scene, options), substep),
       rays(scene.physics),
       layout(made) {
   entities = place(scene, options.seed);

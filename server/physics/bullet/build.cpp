@@ -1,31 +1,14 @@
 // Builds an entity's bodies in Bullet.
 
-#include <algorithm>
-#include <cmath>
-
-#include "physics/assembly.h"
+#include "physics/build.h"
 #include "physics/bullet/mechanism.h"
 #include "physics/convert.h"
 #include "physics/shape.h"
-#include "physics/turning_magnets.h"
-#include "physics/welding.h"
 
 namespace ziggurat::physics {
 namespace {
 
 using math::Pose;
-
-LinkBody link_body(const scene::Link& link, bool moves, const Pose& placed) {
-  LinkBody body;
-  body.moves = moves;
-  body.mass = link.mass;
-  body.inertia = inertia(link.geometry, link.mass);
-  body.center = shape_frame(link.geometry);
-  body.half_extents = half_extents(link.geometry);
-  body.damping = link.damping;
-  body.placed = placed;
-  return body;
-}
 
 /// Gives a collision object its shape and surface.
 void add_shape(const Body& body, std::size_t number, const scene::Link& link,
@@ -49,42 +32,10 @@ void add_shape(const Body& body, std::size_t number, const scene::Link& link,
 constexpr double sleeping_velocity = 4e-3;         // [m/s]
 constexpr double sleeping_angular_velocity = 0.4;  // [rad/s]
 
-/// The plane that an entity stands on, if there is one.
-const scene::Plane* plane_of(const scene::Entity& entity, const scene::Physics& physics) {
-  constexpr double tolerance = 1e-6;  // [m]
-  for (const scene::Plane& plane : physics.planes) {
-    if (std::abs(entity.pose.position.z() - plane.elevation) < tolerance) return &plane;
-  }
-  return nullptr;
-}
-
-/// What holds a body to the ground, unless it is loose.
-std::optional<scene::Traction> traction_of(const scene::Entity& entity,
-                                           const scene::Physics& physics) {
-  if (!entity.movable || entity.traction) return entity.traction;
-  if (entity.kind == scene::EntityKind::prototype) return std::nullopt;
-  const scene::Plane* plane = physics.flat ? plane_of(entity, physics) : nullptr;
-  if (!plane) return std::nullopt;
-  return entity.kind == scene::EntityKind::box ? plane->box : plane->cylinder;
-}
-
-/// Frames without body move with the first link.
-void add_frames(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
-  const Pose into = math::inverse(placed[0] * body.links[0].center);
-  for (std::size_t i = 1; i < entity.links.size(); ++i) {
-    LinkBody frame = link_body(entity.links[i], true, placed[i]);
-    frame.in_part = into * placed[i];
-    body.links.push_back(frame);
-  }
-  if (entity.turret) body.turret = Turret{.link = *entity.turret};
-}
-
 /// A body with traction stays upright, and keeps its height on a plane.
 void hold_to_ground(Body& body, const scene::Entity& entity, const scene::Physics& physics) {
-  const auto traction = traction_of(entity, physics);
-  if (!traction) return;
+  if (!body.ground) return;
   Mechanism& mechanism = *body.mechanism;
-  body.ground = GroundMotion{.limits = *traction};
   mechanism.colliders[0]->rolls = true;
   if (!entity.movable) return;
   btRigidBody& rigid = *mechanism.rigid;
@@ -95,11 +46,10 @@ void hold_to_ground(Body& body, const scene::Entity& entity, const scene::Physic
   if (entity.axle_length) rigid.setActivationState(DISABLE_DEACTIVATION);
 }
 
-void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed,
-                 const scene::Physics& physics) {
+void build_rigid(Body& body, const scene::Entity& entity, const scene::Physics& physics) {
   const scene::Link& link = entity.links[0];
-  const LinkBody shape = link_body(link, entity.movable, placed[0]);
-  const btTransform transform = to_bullet(placed[0] * shape.center);
+  const LinkBody& shape = body.links[0];
+  const btTransform transform = to_bullet(shape.placed * shape.center);
   btRigidBody::btRigidBodyConstructionInfo info(
       entity.movable ? link.mass : 0, nullptr, nullptr,
       entity.movable ? to_bullet(shape.inertia) : btVector3(0, 0, 0));
@@ -108,9 +58,6 @@ void build_rigid(Body& body, const scene::Entity& entity, const std::vector<Pose
   btRigidBody& rigid = *body.mechanism->rigid;
   add_shape(body, 0, link, transform, rigid);
   rigid.setSleepingThresholds(sleeping_velocity, sleeping_angular_velocity);
-  body.parts.push_back({shape.moves, shape.mass, shape.inertia});
-  body.links.push_back(shape);
-  add_frames(body, entity, placed);
   hold_to_ground(body, entity, physics);
 }
 
@@ -201,14 +148,7 @@ void set_damping(Body& body, const scene::Entity& entity) {
   for (LinkBody& link : body.links) link.damping = {};
 }
 
-void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose>& assembled,
-                 const std::vector<Pose>& placed, bool magnetism) {
-  for (std::size_t i = 0; i < entity.links.size(); ++i) {
-    const bool moves = entity.movable || i != entity.reference_link;
-    body.links.push_back(link_body(entity.links[i], moves, placed[i]));
-  }
-  if (magnetism) carry_turning_magnets(body.links, entity, assembled);
-  body.parts = weld(body.links, entity, assembled);
+void build_multi(Body& body, const scene::Entity& entity) {
   const Part& base = body.parts[0];
   body.mechanism->multi =
       std::make_unique<btMultiBody>(static_cast<int>(body.parts.size()) - 1, base.mass,
@@ -231,31 +171,15 @@ void build_multi(Body& body, const scene::Entity& entity, const std::vector<Pose
   add_link_colliders(body, entity);
 }
 
-/// A prototype of one link costs less than half as a rigid body, and nothing while it sleeps.
-/// With magnets it stays a multi-body: stacks of magnets come to rest only in those.
-bool is_single_body(const scene::Entity& entity) {
-  if (scene::is_single(entity.kind)) return true;
-  return entity.kind == scene::EntityKind::prototype && entity.links.size() == 1 &&
-         entity.links[0].collides && entity.devices.magnets.empty();
-}
-
 }  // namespace
 
 Body build(const scene::Entity& entity, const scene::Physics& physics, std::size_t entity_number) {
-  Body body;
-  body.entity = entity_number;
+  Body body = make_body(entity, physics, entity_number);
   body.mechanism = std::make_unique<Mechanism>();
-  body.reference_link = entity.reference_link;
-  body.placed = entity.pose;
-  for (const scene::Magnet& magnet : entity.devices.magnets) body.magnets.push_back({magnet});
-  body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
-  const std::vector<Pose> assembled = assemble(entity);
-  std::vector<Pose> placed;
-  for (const Pose& pose : assembled) placed.push_back(entity.pose * pose);
-  if (is_single_body(entity) || entity.traction) {
-    build_rigid(body, entity, placed, physics);
+  if (is_single_part(entity)) {
+    build_rigid(body, entity, physics);
   } else {
-    build_multi(body, entity, assembled, placed, physics.magnetism.has_value());
+    build_multi(body, entity);
   }
   return body;
 }

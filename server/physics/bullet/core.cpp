@@ -1,4 +1,4 @@
-#include "physics/core.h"
+#include "physics/bullet/core.h"
 
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 
@@ -76,7 +76,7 @@ void make_room(std::vector<Item>& items, std::size_t more) {
 
 }  // namespace
 
-struct Core::Parts {
+struct SweepsCore::Parts {
   explicit Parts(const scene::Physics& physics)
       : settings(physics),
         configuration(contact::construction_info()),
@@ -108,24 +108,24 @@ struct Core::Parts {
   Dynamics dynamics;
 };
 
-Core::Core(const scene::Physics& physics) : parts_(std::make_unique<Parts>(physics)) {}
+SweepsCore::SweepsCore(const scene::Physics& physics) : parts_(std::make_unique<Parts>(physics)) {}
 
-Core::~Core() {
+SweepsCore::~SweepsCore() {
   if (parts_->ground) parts_->dynamics.removeRigidBody(&parts_->ground->body);
 }
 
-void Core::add_floor(const scene::Surface& surface) {
+void SweepsCore::add_floor(const scene::Surface& surface) {
   parts_->ground = std::make_unique<Ground>(surface);
   parts_->dynamics.addRigidBody(&parts_->ground->body);
 }
 
 /// Takes it out of Bullet's world.
-void Core::Parts::detach(MovingJoint& joint) {
+void SweepsCore::Parts::detach(MovingJoint& joint) {
   if (joint.limit) dynamics.removeMultiBodyConstraint(joint.limit.get());
   if (joint.motor.constraint) dynamics.removeMultiBodyConstraint(joint.motor.constraint.get());
 }
 
-Body Core::add(const scene::Entity& entity, std::size_t number) {
+Body SweepsCore::add(const scene::Entity& entity, std::size_t number) {
   Parts& p = *parts_;
   Body body = build(entity, p.settings, number);
   std::vector<MovingJoint> joints = make_joints(entity, body);
@@ -157,7 +157,7 @@ Body Core::add(const scene::Entity& entity, std::size_t number) {
 }
 
 /// The same, with its joints.
-void Core::Parts::detach(Body& body) {
+void SweepsCore::Parts::detach(Body& body) {
   std::erase(held, body.entity);
   std::erase_if(motors, [&](std::size_t motor) { return joints[motor].entity == body.entity; });
   for (MovingJoint& joint : joints) {
@@ -170,7 +170,7 @@ void Core::Parts::detach(Body& body) {
   if (mechanism.rigid) dynamics.removeRigidBody(mechanism.rigid.get());
 }
 
-void Core::remove(Body& body) {
+void SweepsCore::remove(Body& body) {
   Parts& p = *parts_;
   Mechanism& mechanism = *body.mechanism;
   for (auto& collider : mechanism.link_colliders) wake_neighbours(*collider, p.dynamics);
@@ -186,18 +186,18 @@ void Core::remove(Body& body) {
   body.mechanism.reset();
 }
 
-void Core::take_back(Body& body) {
+void SweepsCore::take_back(Body& body) {
   Parts& p = *parts_;
   p.detach(body);
   std::erase_if(p.joints, [&](const MovingJoint& joint) { return joint.entity == body.entity; });
   body.mechanism.reset();
 }
 
-void Core::move(Body& body) {
+void SweepsCore::move(Body& body) {
   physics::move(*body.mechanism, to_bullet(base_pose(body)), parts_->dynamics);
 }
 
-std::optional<std::size_t> Core::overlapped_by(std::span<const PlacedCollider> colliders) const {
+std::optional<std::size_t> SweepsCore::overlapped_by(std::span<const PlacedCollider> colliders) const {
   std::optional<std::size_t> first;
   const btCollisionObjectArray& objects = parts_->dynamics.getCollisionObjectArray();
   for (int i = 0; i < objects.size(); ++i) {
@@ -212,13 +212,13 @@ std::optional<std::size_t> Core::overlapped_by(std::span<const PlacedCollider> c
   return first;
 }
 
-JointIndex Core::joint(std::size_t entity, std::size_t joint) const {
+JointIndex SweepsCore::joint(std::size_t entity, std::size_t joint) const {
   std::size_t i = 0;
   while (parts_->joints[i].entity != entity || parts_->joints[i].index != joint) ++i;
   return {i};
 }
 
-void Core::add_motor(JointIndex index, scene::JointMode mode, double max_impulse) {
+void SweepsCore::add_motor(JointIndex index, scene::JointMode mode, double max_impulse) {
   MovingJoint& joint = parts_->joints[index.value];
   joint.motor.mode = mode;
   joint.motor.max_impulse = max_impulse;
@@ -230,21 +230,21 @@ void Core::add_motor(JointIndex index, scene::JointMode mode, double max_impulse
   joint.motor.constraint->finalizeMultiDof();
 }
 
-void Core::set_target(JointIndex joint, double target) {
+void SweepsCore::set_target(JointIndex joint, double target) {
   parts_->joints[joint.value].motor.target = target;
 }
 
-double Core::position(JointIndex index) const {
+double SweepsCore::position(JointIndex index) const {
   const MovingJoint& joint = parts_->joints[index.value];
   return joint.multi ? joint.multi->getJointPos(joint.link) : 0;
 }
 
-double Core::velocity(JointIndex index) const {
+double SweepsCore::velocity(JointIndex index) const {
   const MovingJoint& joint = parts_->joints[index.value];
   return joint.multi ? joint.multi->getJointVel(joint.link) : 0;
 }
 
-void Core::substep(std::span<Body> bodies, double length, int splits) {
+void SweepsCore::substep(std::span<Body> bodies, double length, int splits) {
   Parts& p = *parts_;
   for (const std::size_t motor : p.motors) {
     MovingJoint& joint = p.joints[motor];
@@ -256,6 +256,6 @@ void Core::substep(std::span<Body> bodies, double length, int splits) {
   p.dynamics.substep(length);
 }
 
-void Core::contacts(std::vector<Contact>& out) const { collect(parts_->dispatcher, out); }
+void SweepsCore::contacts(std::vector<Contact>& out) const { collect(parts_->dispatcher, out); }
 
 }  // namespace ziggurat::physics

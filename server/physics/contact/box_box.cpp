@@ -90,7 +90,7 @@ void cross_edges(const OrientedBox& a, const OrientedBox& b, const Separation& e
 }  // namespace
 
 void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Contacts& out) {
-  const auto& [pose_a, pose_b, reach] = at;
+  const auto& [pose_a, pose_b, reach, support] = at;
   const OrientedBox a(box_a, pose_a), b(box_b, pose_b);
   const btVector3 between = b.centre - a.centre;
   // Preferring A's faces, then B's, then edges keeps resting contacts from flickering.

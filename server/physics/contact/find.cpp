@@ -36,8 +36,55 @@ btScalar radius_of(const HalfSpace&) {
   return 0;
 }  // it is no ball: far_apart() treats it by itself
 
+}  // namespace
+
 btScalar bounding_radius(const Shape& shape) {
   return std::visit([](const auto& each) { return radius_of(each); }, shape);
+}
+
+namespace {
+
+// Whether a point of the shape's frame lies in it or within `slack`:
+bool inside(const Box& box, const btVector3& p, btScalar slack) {
+  return btFabs(p.x()) <= box.half.x() + slack && btFabs(p.y()) <= box.half.y() + slack &&
+         btFabs(p.z()) <= box.half.z() + slack;
+}
+bool inside(const Cylinder& cylinder, const btVector3& p, btScalar slack) {
+  const btScalar radius = cylinder.radius + slack;
+  return btFabs(p.z()) <= cylinder.half_height + slack &&
+         p.x() * p.x() + p.y() * p.y() <= radius * radius;
+}
+bool inside(const Sphere& sphere, const btVector3& p, btScalar slack) {
+  return p.length() <= sphere.radius + slack;
+}
+bool inside(const Capsule& capsule, const btVector3& p, btScalar slack) {
+  const btScalar z = std::clamp(p.z(), -capsule.half_length, capsule.half_length);
+  return (p - btVector3(0, 0, z)).length() <= capsule.radius + slack;
+}
+bool inside(const Hull& hull, const btVector3& p, btScalar slack) {
+  return std::ranges::all_of(hull.polyhedron->faces, [&](const Polyhedron::Face& face) {
+    return face.normal.dot(p) <= face.offset + slack;
+  });
+}
+bool inside(const HalfSpace&, const btVector3& p, btScalar slack) { return p.z() <= slack; }
+
+// How far the shape reaches along a unit direction of its frame [m]:
+btScalar reach_of(const Box& box, const btVector3& d) { return box.half.dot(d.absolute()); }
+btScalar reach_of(const Cylinder& cylinder, const btVector3& d) {
+  return cylinder.radius * btSqrt(d.x() * d.x() + d.y() * d.y()) +
+         cylinder.half_height * btFabs(d.z());
+}
+btScalar reach_of(const Sphere& sphere, const btVector3&) { return sphere.radius; }
+btScalar reach_of(const Capsule& capsule, const btVector3& d) {
+  return capsule.radius + capsule.half_length * btFabs(d.z());
+}
+btScalar reach_of(const Hull& hull, const btVector3& d) {
+  btScalar most = -BT_LARGE_FLOAT;
+  for (const btVector3& corner : hull.polyhedron->corners) most = btMax(most, corner.dot(d));
+  return most;
+}
+btScalar reach_of(const HalfSpace&, const btVector3& d) {
+  return d.z() > 1 - 1e-12 ? 0 : BT_LARGE_FLOAT;
 }
 
 /// Whether the bodies are too far apart for any contact; costs next to nothing.
@@ -64,7 +111,7 @@ void swap_sides(Contacts& contacts) {
 }
 
 Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
-              btScalar reach) {
+              btScalar reach, Support support) {
   Contacts out;
   if (far_apart(a, pose_a, b, pose_b, reach)) return out;
   std::visit(
@@ -72,14 +119,22 @@ Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const b
         using A = std::decay_t<decltype(first)>;
         using B = std::decay_t<decltype(second)>;
         if constexpr (Ordered<A, B>) {
-          contact_points(first, second, {pose_a, pose_b, reach}, out);
+          contact_points(first, second, {pose_a, pose_b, reach, support}, out);
         } else {
-          contact_points(second, first, {pose_b, pose_a, reach}, out);
+          contact_points(second, first, {pose_b, pose_a, reach, support}, out);
           swap_sides(out);
         }
       },
       a, b);
   return out;
+}
+
+bool holds(const Shape& shape, const btVector3& point, btScalar slack) {
+  return std::visit([&](const auto& each) { return inside(each, point, slack); }, shape);
+}
+
+btScalar reach_along(const Shape& shape, const btVector3& direction) {
+  return std::visit([&](const auto& each) { return reach_of(each, direction); }, shape);
 }
 
 void reduce(Contacts& contacts, const btTransform& frame) {

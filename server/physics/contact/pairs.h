@@ -14,6 +14,7 @@ struct Placement {
   const btTransform& a;  ///< pose of A
   const btTransform& b;  ///< pose of B
   btScalar reach;        ///< [m]
+  Support support = Support::lowest;
 };
 
 void contact_points(const Box& a, const HalfSpace& b, const Placement& at, Contacts& out);

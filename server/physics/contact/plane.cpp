@@ -25,22 +25,37 @@ constexpr btScalar flat_tilt = 0.02;
 /// From this cosine of the tilt on a cylinder stands on a cap; below, it lies on its side.
 constexpr btScalar standing = 0.7;
 
+/// The corners of the face that looks down most.
+void add_lower_face(const Box& box, const Placement& at, Contacts& out) {
+  const btVector3 up = at.a.getBasis().transpose() * out.normal;  // in the box
+  const int face = up.absolute().maxAxis();
+  const int u = (face + 1) % 3, v = (face + 2) % 3;
+  for (int corner = 0; corner < 4; ++corner) {
+    btVector3 point;
+    point[face] = up[face] > 0 ? -box.half[face] : box.half[face];
+    point[u] = corner & 1 ? box.half[u] : -box.half[u];
+    point[v] = corner & 2 ? box.half[v] : -box.half[v];
+    add(at.a * point, at.b, at.reach, out);
+  }
+}
+
 }  // namespace
 
 void contact_points(const Box& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach] = at;
+  const auto& [pose_a, plane, reach, support] = at;
   out.normal = plane.getBasis().getColumn(2);
   const btVector3& half = a.half;
+  if (support == Support::face) return add_lower_face(a, at, out);
   for (int corner = 0; corner < 8; ++corner) {
     add(pose_a * btVector3(corner & 1 ? half.x() : -half.x(), corner & 2 ? half.y() : -half.y(),
                            corner & 4 ? half.z() : -half.z()),
         plane, reach, out);
   }
-  keep_lowest(out, 4);
+  if (support == Support::lowest) keep_lowest(out, 4);
 }
 
 void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach] = at;
+  const auto& [pose_a, plane, reach, support] = at;
   out.normal = plane.getBasis().getColumn(2);
   // The lower cap is the one that faces the plane.
   const btVector3 axis = pose_a.getBasis().getColumn(2);
@@ -65,13 +80,13 @@ void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Co
 }
 
 void contact_points(const Sphere& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach] = at;
+  const auto& [pose_a, plane, reach, support] = at;
   out.normal = plane.getBasis().getColumn(2);
   add(pose_a.getOrigin() - out.normal * a.radius, plane, reach, out);
 }
 
 void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach] = at;
+  const auto& [pose_a, plane, reach, support] = at;
   out.normal = plane.getBasis().getColumn(2);
   const btVector3 to_end = pose_a.getBasis().getColumn(2) * a.half_length;
   const btVector3 lowest = pose_a.getOrigin() - out.normal * a.radius;
@@ -80,7 +95,7 @@ void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Con
 }
 
 void contact_points(const Hull& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach] = at;
+  const auto& [pose_a, plane, reach, support] = at;
   out.normal = plane.getBasis().getColumn(2);
   for (const btVector3& corner : a.polyhedron->corners) add(pose_a * corner, plane, reach, out);
 }

@@ -53,6 +53,9 @@ struct HalfSpace {};
 
 using Shape = std::variant<Box, Cylinder, Sphere, Capsule, Hull, HalfSpace>;
 
+/// Of the sphere about the shape's centre that holds it [m]; 0 of a half-space.
+btScalar bounding_radius(const Shape& shape);
+
 struct Point {
   btVector3 on_b;     ///< on the surface of B, in the world [m]
   btScalar distance;  ///< along the normal; negative = overlap [m]
@@ -70,10 +73,25 @@ struct Contacts {
   }
 };
 
+/// Which points of a box carry it on a half-space.
+enum class Support {
+  lowest,  ///< its four lowest corners, for solver="sweeps"
+  face,    ///< the corners of the face that looks down most: those that land when a plank falls flat
+  all      ///< all its corners, for what tumbles
+};
+
 /// Contacts of two bodies whose shape centres stand at the given world poses.
 /// @param reach  points farther apart than this are left out [m]
 Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
-              btScalar reach);
+              btScalar reach, Support support = Support::lowest);
+
+/// Whether a point lies in a shape or within `slack` of it.
+/// @param point  in the shape's frame [m];  @param slack  [m]
+bool holds(const Shape& shape, const btVector3& point, btScalar slack);
+
+/// How far a shape reaches from its centre along a unit direction of its frame [m]; without bound:
+/// BT_LARGE_FLOAT.
+btScalar reach_along(const Shape& shape, const btVector3& direction);
 
 /// Keeps at most four points that span the contact: the deepest, the farthest from it and the
 /// two that enclose the largest area; in a stable order: by angle in the given frame, that of a

@@ -78,10 +78,12 @@ TEST(Engines, DefaultsAndValues) {
   const ReadResult plain = text.read();
   EXPECT_EQ(plain.scene.physics.iterations, 10u);
   EXPECT_EQ(plain.scene.physics.clock, Clock::nominal);
+  EXPECT_EQ(plain.scene.physics.solver, Solver::sweeps);
   EXPECT_FALSE(plain.scene.physics.floor || plain.scene.physics.gravity);
   text.engines =
       R"(<physics_engines><dynamics3d id="d" iterations="25" clock="beta50" max_substep="0.001")"
-      R"( solver_iterations="50" friction="0.7"><gravity/><floor rolling_friction="0.1"/>)"
+      R"( solver="newton" solver_iterations="50" friction="0.7" restitution="0.2"><gravity/>)"
+      R"(<floor rolling_friction="0.1" spinning_friction="0.01"/>)"
       R"(</dynamics3d></physics_engines>)";
   const ReadResult result = text.read();
   ASSERT_TRUE(result.problems.empty()) << all_problems(result);
@@ -89,7 +91,10 @@ TEST(Engines, DefaultsAndValues) {
   EXPECT_EQ(physics.iterations, 25u);
   EXPECT_EQ(physics.clock, Clock::beta50);
   EXPECT_EQ(physics.max_substep, 0.001);
+  EXPECT_EQ(physics.solver, Solver::newton);
   EXPECT_EQ(physics.solver_iterations, 50u);
+  EXPECT_EQ(physics.floor->surface.restitution, 0.2);
+  EXPECT_EQ(physics.floor->surface.spinning_friction, 0.01);
   EXPECT_EQ(physics.gravity, 10.0);
   EXPECT_EQ(physics.floor->surface.friction, 0.7);
   EXPECT_EQ(physics.floor->surface.rolling_friction, 0.1);

@@ -1,0 +1,21 @@
+#pragma once
+// What an entity is made of, before a core moves it: its links, and the parts that move as one.
+
+#include "physics/bodies.h"
+#include "scene/scene.h"
+
+namespace ziggurat::physics {
+
+/// A box, a cylinder, a robot on wheels, or a prototype of one link without magnets is a single
+/// part. Otherwise links on fixed joints are parts of what carries them.
+bool is_single_part(const scene::Entity& entity);
+
+/// The plane that an entity stands on, if there is one.
+const scene::Plane* plane_of(const scene::Entity& entity, const scene::Physics& physics);
+
+/// An entity where it stands; no core moves it yet.
+/// @param physics  whether magnets act: then free spherical magnets are carried; what planes hold
+/// @param number   of the entity, into State::origins
+Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::size_t number);
+
+}  // namespace ziggurat::physics

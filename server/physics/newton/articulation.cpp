@@ -1,0 +1,34 @@
+#include "physics/newton/articulation.h"
+
+#include "dynamics/system.h"
+#include "physics/convert.h"
+
+namespace ziggurat::physics {
+
+dynamics::Tree& Articulation::tree() const { return system->trees[index]; }
+
+btTransform Articulation::transform(std::size_t part) const {
+  const Eigen::Matrix3d& m = tree().rotation[part];
+  return btTransform(btMatrix3x3(m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0),
+                                 m(2, 1), m(2, 2)),
+                     to_bullet(tree().position[part]));
+}
+
+void Articulation::apply_force(std::size_t part, const btVector3& force) const {
+  tree().external[part].force += from_bullet(force);
+}
+
+void Articulation::apply_torque(std::size_t part, const btVector3& torque) const {
+  tree().external[part].moment += from_bullet(torque);
+}
+
+void Articulation::motions(std::span<Motion> out) const {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const int link = static_cast<int>(i);
+    out[i] = {to_bullet(tree().velocity(link)), to_bullet(tree().angular_velocity(link))};
+  }
+}
+
+bool Articulation::sleeps() const { return false; }
+
+}  // namespace ziggurat::physics

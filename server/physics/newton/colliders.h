@@ -1,0 +1,86 @@
+#pragma once
+// What can touch: the shapes of all parts, where they are, and which of them come near each other
+// within a substep (Bullet's trees of boxes).
+
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dynamics/system.h"
+#include "physics/bodies.h"
+#include "physics/contact/shapes.h"
+#include "scene/scene.h"
+
+namespace ziggurat::physics {
+
+struct Collider {
+  static constexpr std::size_t floor = static_cast<std::size_t>(-1);
+  contact::Shape shape;
+  std::size_t entity = floor;  ///< its number, and that of its tree
+  std::size_t link = 0;        ///< into Body::links
+  std::size_t part = 0;        ///< into Body::parts
+  btTransform in_part = btTransform::getIdentity();  ///< X_PS
+  bool centred = true;                               ///< in_part is the identity
+  bool moves = false;
+  bool rolls = false;  ///< has wheels: does not rub on what is below or above it
+  scene::Surface surface;
+  double smallest = 1e30;  ///< half extent [m]
+  double radius = 0;  ///< of the sphere about the shape's centre that holds it [m]
+
+  // Of the coming substep:
+  btTransform pose = btTransform::getIdentity();  ///< X_WS
+  btVector3 velocity{0, 0, 0};                    ///< of the shape's centre [m/s]
+  btVector3 angular_velocity{0, 0, 0};            ///< [rad/s]
+  double reach = 0;                               ///< how far its surface may come [m]
+
+  std::unique_ptr<btCollisionShape> outline;  ///< for the box about it
+  btBroadphaseProxy* proxy = nullptr;         ///< none: the floor, or removed
+};
+
+/// Two colliders that may touch within the substep.
+struct Near {
+  std::size_t a = 0, b = 0;  ///< into Colliders::all
+  int* memory = nullptr;     ///< of the pair; 0 when it is new
+};
+
+class Colliders {
+ public:
+  Colliders();
+  ~Colliders();
+
+  std::vector<Collider> all;
+  std::optional<std::size_t> floor;  ///< into `all`
+
+  void add_floor(const scene::Surface& surface);
+  /// Those of a body whose tree is placed.
+  void add(const Body& body, const scene::Entity& entity, const dynamics::Tree& tree);
+  /// The last ones added are gone; others stay as places without a shape.
+  void remove(std::size_t entity);
+  /// Where a body was put, with all its pairs forgotten.
+  void moved(std::size_t entity, const dynamics::Tree& tree);
+
+  /// Takes the poses and motions of all trees that are awake.
+  void follow(const dynamics::System& system, double length);
+  /// X_WS of a collider now.
+  btTransform pose(const Collider& collider, const dynamics::System& system) const;
+  /// Pairs whose boxes overlap, of which at least one moves. The floor is in none.
+  void find_near(std::vector<Near>& out);
+
+ private:
+  struct Filter;
+  void place(Collider& collider, const dynamics::Tree& tree) const;
+  void keep_in_box(Collider& collider);
+  void insert(Collider& collider, std::size_t index);
+
+  std::unique_ptr<Filter> filter_;
+  btDbvtBroadphase broadphase_;
+};
+
+/// How far a surface may come within a substep without moving yet [m].
+double least_reach(double length);
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,307 @@
+#include "physics/newton/contacts.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "physics/convert.h"
+#include "physics/newton/passage.h"
+
+namespace ziggurat::physics {
+namespace {
+
+/// The other links of an entity that stands are a part of the world, too.
+dynamics::LinkIndex link_of(const Collider& collider) {
+  if (collider.entity == Collider::floor) return {};
+  return {static_cast<int>(collider.entity), static_cast<int>(collider.part)};
+}
+
+ContactSide side(const Collider& collider) {
+  if (collider.entity == Collider::floor) return {};
+  return {collider.entity, collider.link};
+}
+
+btVector3 velocity_at(const Collider& collider, const btVector3& point) {
+  return collider.velocity + collider.angular_velocity.cross(point - collider.pose.getOrigin());
+}
+
+/// Whether a contact is one of a wheeled body's lower or upper face.
+bool rolls_on(const Collider& collider, const btVector3& normal) {
+  constexpr btScalar face = btScalar(0.7);  // cosine of the steepest such contact
+  return collider.rolls && btFabs(collider.pose.getBasis().getColumn(2).dot(normal)) > face;
+}
+
+/// How two colliders come together in a substep.
+struct Approach {
+  double least = BT_LARGE_FLOAT;  ///< distance of all points [m]
+  double fastest = 0;             ///< speed at which points close [m/s]
+  bool may_touch = false;         ///< a point is close, or comes so
+};
+
+/// @param slack  what counts as close [m]
+Approach approach_of(const contact::Contacts& found, const Collider& a, const Collider& b,
+                     double length, double slack) {
+  Approach out;
+  for (int i = 0; i < found.count; ++i) {
+    const contact::Point& point = found.points[i];
+    const double speed =
+        found.normal.dot(velocity_at(b, point.on_b) - velocity_at(a, point.on_b));
+    out.least = std::min(out.least, double(point.distance));
+    out.fastest = std::max(out.fastest, speed);
+    out.may_touch |= point.distance <= slack + length * std::max(0.0, speed);
+  }
+  return out;
+}
+
+/// Whether a body may turn so far in a substep that another side of it lands: it turns, or an
+/// impact turns it.
+bool tumbles(const Collider& a, const Collider& b, const Approach& approach, double length) {
+  constexpr double far = 0.05;  // [rad]
+  const double turning = (a.angular_velocity - b.angular_velocity).length();
+  return length * (turning + approach.fastest / std::min(a.smallest, b.smallest)) > far;
+}
+
+}  // namespace
+
+/// The pair of a place that remembers it; a new one if it is new.
+int Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
+  if (place == 0) {
+    if (unused_.empty()) {
+      if (pairs_.empty()) pairs_.emplace_back();
+      unused_.push_back(static_cast<int>(pairs_.size()));
+      pairs_.emplace_back();
+    }
+    place = unused_.back();
+    unused_.pop_back();
+    pairs_[place] = {};
+    pairs_[place].a = a;
+    pairs_[place].b = b;
+    pairs_[place].live = true;
+    ++live_;
+  }
+  pairs_[place].seen = substep_;
+  return place;
+}
+
+std::span<dynamics::Contact> Contacts::find(double length) {
+  ++substep_;
+  contacts_.clear();
+  owner_.clear();
+  colliders_.find_near(near_);
+  std::size_t seen = 0;
+  for (const Near& near : near_) {
+    const int number = pair_of(near.a, near.b, *near.memory);
+    meet(pairs_[number], length);
+    ++seen;
+  }
+  if (colliders_.floor) {
+    floor_pairs_.resize(colliders_.all.size(), 0);
+    for (std::size_t i = 0; i < colliders_.all.size(); ++i) {
+      const Collider& collider = colliders_.all[i];
+      if (!collider.proxy || !collider.moves) continue;
+      if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
+      const int number = pair_of(i, *colliders_.floor, floor_pairs_[i]);
+      meet(pairs_[number], length);
+      ++seen;
+    }
+  }
+  if (seen < live_) drop_unseen();
+  drop_hidden();
+  return contacts_;
+}
+
+/// Whether the contacts of a body with `hidden` lie in a seam that its contacts with `seen` cover:
+/// `hidden` is nowhere above the surface of `seen`, which goes on where they touch. All belong to
+/// one body that moves, the others stand.
+bool Contacts::covers(const Pair& seen, const Pair& hidden) const {
+  constexpr btScalar flush = 1e-5, slack = 1e-4;  // [m]
+  const bool seen_first = !colliders_.all[seen.a].moves, hidden_first = !colliders_.all[hidden.a].moves;
+  const Collider& cover = colliders_.all[seen_first ? seen.a : seen.b];
+  const Collider& other = colliders_.all[hidden_first ? hidden.a : hidden.b];
+  const btVector3 up = to_bullet(seen_first ? math::Vector3(-seen.normal) : seen.normal);
+  const Remembered& on = seen.points[0];
+  const btScalar height = up.dot(cover.pose * (seen_first ? on.on_a : on.on_b));
+  const btVector3 in_other = other.pose.getBasis().transpose() * up;
+  const btScalar top = up.dot(other.pose.getOrigin()) + contact::reach_along(other.shape, in_other);
+  if (top > height + flush) return false;
+  for (int i = 0; i < hidden.count; ++i) {
+    const Remembered& point = hidden.points[i];
+    const btVector3 at = other.pose * (hidden_first ? point.on_a : point.on_b);
+    if (!contact::holds(cover.shape, cover.pose.invXform(at), slack)) return false;
+  }
+  return true;
+}
+
+/// Drops contacts with inner edges: those between bodies that stand flush beside each other.
+void Contacts::drop_hidden() {
+  standing_.clear();
+  for (std::size_t i = 0; i < owner_.size(); ++i) {
+    const Pair& pair = pairs_[owner_[i]];
+    if (pair.first != i) continue;
+    const bool a_moves = colliders_.all[pair.a].moves;
+    if (a_moves && colliders_.all[pair.b].moves) continue;
+    standing_.push_back({a_moves ? pair.a : pair.b, owner_[i]});
+  }
+  std::sort(standing_.begin(), standing_.end());
+  bool dropped = false;
+  for (std::size_t i = 0; i < standing_.size(); ++i) {
+    const auto [mover, number] = standing_[i];
+    Pair& pair = pairs_[number];
+    for (std::size_t j = i; j-- > 0 && standing_[j].first == mover && pair.count > 0;) {
+      Pair& other = pairs_[standing_[j].second];
+      if (other.count == 0) continue;
+      if (covers(other, pair)) {
+        pair.count = 0, dropped = true;
+      } else if (covers(pair, other)) {
+        other.count = 0, dropped = true;
+      }
+    }
+  }
+  if (!dropped) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < owner_.size(); ++i) {
+    Pair& pair = pairs_[owner_[i]];
+    const bool first = pair.first == i;
+    if (pair.count == 0) continue;
+    if (first) pair.first = kept;
+    contacts_[kept] = contacts_[i];
+    owner_[kept++] = owner_[i];
+  }
+  contacts_.resize(kept);
+  owner_.resize(kept);
+}
+
+void Contacts::drop(std::size_t number) {
+  Pair& pair = pairs_[number];
+  pair.live = false;
+  pair.count = 0;
+  --live_;
+  unused_.push_back(static_cast<int>(number));
+  if (colliders_.floor == pair.b && pair.a < floor_pairs_.size()) floor_pairs_[pair.a] = 0;
+}
+
+/// Pairs that came apart lose their memory.
+void Contacts::drop_unseen() {
+  for (std::size_t i = 1; i < pairs_.size(); ++i) {
+    if (pairs_[i].live && pairs_[i].seen != substep_) drop(i);
+  }
+}
+
+void Contacts::meet(Pair& pair, double length) {
+  const Collider& a = colliders_.all[pair.a];
+  const Collider& b = colliders_.all[pair.b];
+  const double slack = least_reach(length);
+  const double reach = a.reach + b.reach;
+  contact::Contacts found =
+      contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face);
+  const Approach approach = approach_of(found, a, b, length, slack);
+  const bool tumbling = approach.may_touch && tumbles(a, b, approach, length);
+  if (!approach.may_touch) {
+    found.count = 0;
+  } else if (approach.least > slack) {
+    found = first_meeting(a, b, length, slack / 2);
+  } else if (tumbling) {
+    found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
+  }
+  if (!tumbling || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
+  add(found, pair);
+}
+
+/// Appends the pair's contacts, each with the impulse of the point of the last substep that is
+/// nearest on either body.
+void Contacts::add(const contact::Contacts& found, Pair& pair) {
+  constexpr double same = 25e-6;  // 5 mm apart is another contact [m^2]
+  const Collider& a = colliders_.all[pair.a];
+  const Collider& b = colliders_.all[pair.b];
+  const std::array<Remembered, most_points> old = pair.points;
+  const int old_count = pair.count;
+  std::array<bool, most_points> taken{};
+  pair.count = found.count;
+  pair.normal = from_bullet(found.normal);
+  pair.first = contacts_.size();
+  const bool rolls = rolls_on(a, found.normal) || rolls_on(b, found.normal);
+  for (int i = 0; i < found.count; ++i) {
+    const contact::Point& point = found.points[i];
+    const btVector3 on_a = point.on_b + found.normal * point.distance;
+    Remembered& now = pair.points[i];
+    now.on_a = a.pose.invXform(on_a);
+    now.on_b = b.pose.invXform(point.on_b);
+    now.point = from_bullet(!b.moves ? on_a : !a.moves ? point.on_b : (point.on_b + on_a) / 2);
+    now.gap = point.distance;
+    now.impulse.setZero();
+    now.angular_impulse.setZero();
+    int nearest = -1;
+    double least = same;
+    for (int j = 0; j < old_count; ++j) {
+      const double away = std::min((old[j].on_a - now.on_a).length2(),
+                                   (old[j].on_b - now.on_b).length2());
+      if (!taken[j] && away < least) least = away, nearest = j;
+    }
+    if (nearest >= 0) {
+      taken[nearest] = true;
+      now.impulse = old[nearest].impulse;
+      now.angular_impulse = old[nearest].angular_impulse;
+    }
+    dynamics::Contact& contact = contacts_.emplace_back();
+    contact.a = link_of(a);
+    contact.b = link_of(b);
+    contact.point = now.point;
+    contact.normal = pair.normal;
+    contact.gap = now.gap;
+    contact.friction = rolls ? 0 : a.surface.friction * b.surface.friction;
+    // Only a point or a line of contact can roll; each carries its share of the normal force.
+    if (found.count <= 2) {
+      contact.rolling = a.surface.rolling_friction + b.surface.rolling_friction;
+      contact.spinning = a.surface.spinning_friction + b.surface.spinning_friction;
+    }
+    contact.restitution = std::max(a.surface.restitution, b.surface.restitution);
+    contact.impulse = now.impulse;
+    contact.angular_impulse = now.angular_impulse;
+    owner_.push_back(static_cast<int>(&pair - pairs_.data()));
+  }
+}
+
+void Contacts::remember() {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    Pair& pair = pairs_[owner_[i]];
+    Remembered& point = pair.points[i - pair.first];
+    point.impulse = contacts_[i].impulse;
+    point.angular_impulse = contacts_[i].angular_impulse;
+  }
+}
+
+void Contacts::forget(std::size_t entity) {
+  for (std::size_t i = 1; i < pairs_.size(); ++i) {
+    const Pair& pair = pairs_[i];
+    if (!pair.live) continue;
+    if (colliders_.all[pair.a].entity == entity || colliders_.all[pair.b].entity == entity) {
+      drop(i);
+    }
+  }
+}
+
+void Contacts::tell(std::vector<Contact>& out) const {
+  out.clear();
+  for (const Pair& pair : pairs_) {
+    math::Vector3 middle(0, 0, 0), sum(0, 0, 0);
+    int count = 0;
+    for (int i = 0; i < pair.count; ++i) {
+      const Remembered& point = pair.points[i];
+      if (point.impulse.dot(pair.normal) <= 0 && point.gap > 0) continue;
+      middle += point.point;
+      sum += point.impulse;
+      ++count;
+    }
+    if (count == 0) continue;
+    Contact contact{side(colliders_.all[pair.a]), side(colliders_.all[pair.b]), pair.normal,
+                    middle / count, sum};
+    if (contact.b < contact.a) {
+      std::swap(contact.a, contact.b);
+      contact.normal = -contact.normal;
+      contact.impulse = -contact.impulse;
+    }
+    out.push_back(contact);
+  }
+  std::ranges::sort(out, {}, [](const Contact& each) { return std::tie(each.a, each.b); });
+}
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,65 @@
+#pragma once
+// Contact points of a substep for dynamics/, and what is remembered of them.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "dynamics/constraint.h"
+#include "physics/newton/colliders.h"
+#include "physics/plugin.h"
+
+namespace ziggurat::physics {
+
+class Contacts {
+ public:
+  explicit Contacts(Colliders& colliders) : colliders_(colliders) {}
+
+  /// All contacts of the coming substep, with the impulses of the last one.
+  std::span<dynamics::Contact> find(double length);
+  /// Notes the impulses that dynamics/ has written to them.
+  void remember();
+  /// Forgets what touched an entity, before it is removed or moved.
+  void forget(std::size_t entity);
+
+  /// What touches, in ascending order.
+  void tell(std::vector<Contact>& out) const;
+
+ private:
+  static constexpr int most_points = 8;  // of a pair; 4 unless it tumbles
+  struct Remembered {
+    btVector3 on_a, on_b;  // in the colliders' frames [m]
+    math::Vector3 point{0, 0, 0}, impulse{0, 0, 0}, angular_impulse{0, 0, 0};
+    double gap = 0;
+  };
+  struct Pair {
+    std::size_t a = 0, b = 0;  // colliders
+    bool live = false;
+    unsigned seen = 0;  // the substep in which it was near last
+    math::Vector3 normal{0, 0, 1};
+    int count = 0;
+    std::array<Remembered, most_points> points;
+    std::size_t first = 0;  // of its contacts in the list
+  };
+
+  int pair_of(std::size_t a, std::size_t b, int& place);
+  void meet(Pair& pair, double length);
+  void add(const contact::Contacts& found, Pair& pair);
+  bool covers(const Pair& seen, const Pair& hidden) const;
+  void drop_hidden();
+  void drop(std::size_t number);
+  void drop_unseen();
+
+  Colliders& colliders_;
+  std::vector<Pair> pairs_;  // [0] is none
+  std::vector<int> unused_;
+  std::size_t live_ = 0;
+  unsigned substep_ = 0;
+  std::vector<Near> near_;
+  std::vector<int> floor_pairs_;  // of each collider
+  std::vector<dynamics::Contact> contacts_;
+  std::vector<int> owner_;  // pair of each contact
+  std::vector<std::pair<std::size_t, int>> standing_;  // a mover and its pair with what stands
+};
+
+}  // namespace ziggurat::physics

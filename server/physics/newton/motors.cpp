@@ -1,0 +1,68 @@
+#include "physics/newton/motors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/equations.h"
+#include "physics/convert.h"
+#include "physics/newton/tree.h"
+
+namespace ziggurat::physics {
+namespace {
+
+/// The fastest approach from which a motor of this strength can still stop at the target:
+/// with deceleration a in steps of h, the sum of the velocities left to go is the distance.
+double stoppable_velocity(double distance, double deceleration, double length) {
+  const double step = deceleration * length;  // [m/s] lost per substep
+  return step * (std::sqrt(0.25 + 2 * distance / (step * length)) - 0.5);
+}
+
+/// The velocity of a motor that seeks a position.
+double approach(double error, dynamics::Tree& tree, int dof, double length, double impulse) {
+  const double velocity = error / length;
+  if (impulse == 0 || error == 0) return velocity;
+  compute_mass(tree);
+  factor_mass(tree, length);
+  // Half the strength for braking leaves the other half for gravity and other loads.
+  const double deceleration = 0.5 * impulse * mobility(tree, dof) / length;
+  const double most = stoppable_velocity(std::abs(error), deceleration, length);
+  return std::clamp(velocity, -most, most);
+}
+
+}  // namespace
+
+dynamics::Servo servo_of(const CoordinateJoint& joint, dynamics::Tree& tree, double length,
+                         double impulse) {
+  dynamics::Servo servo;
+  servo.tree = static_cast<int>(joint.entity);
+  servo.dof = dof_of(tree, joint.part);
+  servo.speed = joint.target;
+  if (joint.mode == scene::JointMode::position) {
+    const double error = joint.target - tree.q[place_of(tree, joint.part)];
+    servo.speed = approach(error, tree, servo.dof, length, impulse);
+  }
+  servo.lower = -impulse;
+  servo.upper = impulse;
+  servo.impulse = joint.motor_impulse;
+  return servo;
+}
+
+std::array<dynamics::Servo, 3> servos_of(const Body& body, const std::array<double, 3>& impulses) {
+  const GroundMotion& ground = *body.ground;
+  std::array<dynamics::Servo, 3> servos;
+  for (int i = 0; i < 3; ++i) {
+    servos[i].tree = static_cast<int>(body.entity);
+    servos[i].upper =
+        (i < 2 ? ground.limits.max_force : ground.limits.max_torque) * ground.length;
+    servos[i].lower = -servos[i].upper;
+    servos[i].impulse = impulses[i];
+  }
+  servos[0].direction.linear = from_bullet(ground.along);
+  servos[0].speed = ground.speed;
+  servos[1].direction.linear = from_bullet(ground.across);
+  servos[2].direction.angular = {0, 0, 1};
+  servos[2].speed = ground.angular_velocity;
+  return servos;
+}
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,36 @@
+#pragma once
+// Joints with a coordinate: limits and motors; and what holds robots on wheels to their motion.
+
+#include <optional>
+
+#include "dynamics/system.h"
+#include "physics/bodies.h"
+#include "scene/scene.h"
+
+namespace ziggurat::physics {
+
+/// A revolute or prismatic joint.
+struct CoordinateJoint {
+  std::size_t entity = 0;
+  std::size_t index = 0;  ///< into Entity::joints
+  bool present = true;    ///< its entity was not removed
+  std::size_t part = 0;   ///< that it moves
+  std::optional<scene::JointLimit> limit;
+  scene::JointMode mode = scene::JointMode::disabled;  ///< of its motor; disabled: none
+  double max_impulse = 0;  ///< per substep of the scene [N s] or [N m s]
+  double target = 0;
+
+  double limit_impulse = 0, motor_impulse = 0;  ///< of the last substep [N s] or [N m s]
+};
+
+/// The servo of a motor for the coming substep.
+/// @param length     of the (internal) substep [s]
+/// @param impulse    its limit in that substep [N s] or [N m s]
+dynamics::Servo servo_of(const CoordinateJoint& joint, dynamics::Tree& tree, double length,
+                         double impulse);
+
+/// What holds a body to its GroundMotion: speeds along and across, turn rate about the vertical.
+/// @param impulses  of the last substep
+std::array<dynamics::Servo, 3> servos_of(const Body& body, const std::array<double, 3>& impulses);
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,71 @@
+#include "physics/newton/passage.h"
+
+#include <LinearMath/btTransformUtil.h>
+
+#include <algorithm>
+
+#include "dynamics/rotation.h"
+#include "physics/convert.h"
+
+namespace ziggurat::physics {
+namespace {
+
+/// Where a collider is after some time.
+btTransform pose_after(const Collider& collider, double time) {
+  if (!collider.moves) return collider.pose;
+  const math::Quaternion turn =
+      dynamics::exponential(from_bullet(collider.angular_velocity) * time);
+  return btTransform(btMatrix3x3(to_bullet(turn)) * collider.pose.getBasis(),
+                     collider.pose.getOrigin() + collider.velocity * time);
+}
+
+/// The fastest that two surfaces can approach each other along a normal from b to a [m/s].
+double fastest_approach(const Collider& a, const Collider& b, const btVector3& normal) {
+  return normal.dot(b.velocity - a.velocity) +
+         a.angular_velocity.cross(normal).length() * a.radius +
+         b.angular_velocity.cross(normal).length() * b.radius;
+}
+
+double least_distance(const contact::Contacts& found) {
+  double least = BT_LARGE_FLOAT;
+  for (int i = 0; i < found.count; ++i) least = std::min(least, double(found.points[i].distance));
+  return least;
+}
+
+/// Carries points that are found later back to where they are now.
+void carry_back(contact::Contacts& found, const Collider& a, const btTransform& then_a,
+                const Collider& b, const btTransform& then_b) {
+  for (int i = 0; i < found.count; ++i) {
+    contact::Point& point = found.points[i];
+    const btVector3 on_a = a.pose * then_a.invXform(point.on_b + found.normal * point.distance);
+    const btVector3 on_b = b.pose * then_b.invXform(point.on_b);
+    point.distance = found.normal.dot(on_a - on_b);
+    // Opposite the point of the body that moves.
+    point.on_b = a.moves ? on_a - found.normal * point.distance : on_b;
+  }
+}
+
+}  // namespace
+
+contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near) {
+  constexpr int most_steps = 32;
+  double time = 0;
+  for (int step = 0; step < most_steps; ++step) {
+    const btTransform pose_a = pose_after(a, time), pose_b = pose_after(b, time);
+    contact::Contacts found = contact::find(a.shape, pose_a, b.shape, pose_b, a.reach + b.reach,
+                                            contact::Support::all);
+    const double distance = least_distance(found);
+    if (found.count == 0) return found;  // out of reach
+    if (distance <= near) {
+      carry_back(found, a, pose_a, b, pose_b);
+      return found;
+    }
+    const double approach = fastest_approach(a, b, found.normal);
+    if (approach <= 0) break;
+    time += (distance - near / 2) / approach;
+    if (time >= length) break;
+  }
+  return {};
+}
+
+}  // namespace ziggurat::physics

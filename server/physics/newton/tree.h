@@ -1,0 +1,19 @@
+#pragma once
+// Entities as trees of dynamics/.
+
+#include "dynamics/tree.h"
+#include "physics/bodies.h"
+#include "scene/scene.h"
+
+namespace ziggurat::physics {
+
+/// The tree of an entity where it stands, at rest. Its links are the body's parts.
+/// @param body  without anything that moves it yet
+dynamics::Tree make_tree(const Body& body, const scene::Entity& entity,
+                         const scene::Physics& physics);
+
+/// The dof of a joint with a coordinate, and its place in the tree's q.
+int dof_of(const dynamics::Tree& tree, std::size_t part);
+int place_of(const dynamics::Tree& tree, std::size_t part);
+
+}  // namespace ziggurat::physics

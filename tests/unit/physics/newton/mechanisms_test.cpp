@@ -1,0 +1,145 @@
+// Pendulums, chains, limits and motors with solver="newton".
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "newton_scene.h"
+
+namespace ziggurat::physics {
+namespace {
+
+using namespace testing;
+
+/// Links hung on each other by revolute joints about y, assembled stretched out along x.
+scene::Entity chain(int count, double length, double mass, double last_mass) {
+  const scene::Box rod{{length, length / 10, length / 10}};
+  std::vector<scene::Link> links{link("base", scene::Box{{0.01, 0.01, 0.01}}, 1)};
+  for (int i = 0; i < count; ++i) {
+    links.push_back(link("l" + std::to_string(i), rod, i + 1 < count ? mass : last_mass));
+  }
+  scene::Entity entity = prototype("chain", at(0, 0, 50), false, links);
+  for (int i = 0; i < count; ++i) {
+    const double z = length / 20;  // a rod's frame is at the middle of its lower face
+    scene::Joint next = joint(scene::JointType::revolute, Vector3::UnitY(),
+                              i == 0 ? at(0, 0, 0) : at(length / 2, 0, z), at(-length / 2, 0, z));
+    next.id = "j" + std::to_string(i);
+    next.parent = i;
+    next.child = i + 1;
+    entity.joints.push_back(next);
+  }
+  return entity;
+}
+
+double worst_energy_error(int links, double seconds, double h) {
+  World world(newton(), h);
+  world.add(chain(links, 0.2, 0.3, 0.3));
+  const double start = world.energy();
+  const double swing = g * 0.3 * links * 0.2 * links / 2;  // what falls
+  double worst = 0;
+  for (int i = 0; i < seconds / h; ++i) {
+    world.step();
+    worst = std::max(worst, std::abs(world.energy() - start) / swing);
+  }
+  return worst;
+}
+
+TEST(NewtonChain, DoublePendulumKeepsItsEnergy) {
+  EXPECT_LT(worst_energy_error(2, 10, 0.01), 1e-3);
+}
+
+TEST(NewtonChain, OfTenKeepsItsEnergy) { EXPECT_LT(worst_energy_error(10, 2, 0.01), 1e-2); }
+
+TEST(NewtonChain, OfTwentyLightLinksCarriesAHundredKilograms) {
+  for (const double h : {0.01, 0.001}) {
+    World world(newton(), h);
+    scene::Entity entity = chain(20, 0.05, 0.01, 100);
+    world.add(entity);
+    double fastest = 0;
+    for (int i = 0; i < 0.9 / h; ++i) {
+      world.step();
+      const world::State state = state_of(world);
+      fastest = std::max(fastest, state.links.back().velocity.norm());
+    }
+    // A point at the end would reach sqrt(2 g l).
+    EXPECT_NEAR(fastest, std::sqrt(2 * g * 0.975), 0.05 * std::sqrt(2 * g * 0.975)) << h;
+  }
+}
+
+TEST(NewtonLimit, StopsAHeavyFall) {
+  for (const double mass : {1.0, 100.0, 1000.0}) {
+    World world(newton(), 0.01);
+    scene::Joint rail = joint(scene::JointType::prismatic, Vector3::UnitZ(), {}, {});
+    rail.limit = scene::JointLimit{-2, 1};
+    scene::Entity entity =
+        prototype("lift", at(0, 0, 5), false,
+                  {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1),
+                   link("load", scene::Box{{0.1, 0.1, 0.1}}, mass)});
+    entity.joints.push_back(rail);
+    world.add(entity);
+    const JointIndex index = world.joint(0, 0);
+    double lowest = 0, rebound = -2;
+    for (int i = 0; i < 200; ++i) {
+      world.step();
+      lowest = std::min(lowest, world.position(index));
+      if (i > 70) rebound = std::max(rebound, world.position(index));
+    }
+    EXPECT_GT(lowest, -2 - 1e-3) << mass;
+    EXPECT_LT(rebound, -2 + 1e-3) << mass;
+  }
+}
+
+TEST(NewtonFall, OfAPrototypeIsExact) {
+  for (const double h : {0.02, 0.01, 0.001}) {
+    World world(newton(), h);
+    scene::Entity entity = loose(at(0, 0, 100), scene::Box{{0.1, 0.1, 0.1}}, 1);
+    entity.links[0].damping = {0.04, 0.04, true, true};  // the dialect's default
+    world.add(entity);
+    run(world, 3, h);
+    EXPECT_NEAR(origin(world, 0).position.z(), 100 - g * 4.5, 1e-9) << h;
+  }
+}
+
+TEST(NewtonFall, IsDampedAsTheSceneSaysAndUnderTheSlowClock) {
+  scene::Entity entity = loose(at(0, 0, 100), scene::Box{{0.1, 0.1, 0.1}}, 1);
+  entity.links[0].damping = {0.04, 0.04, true, true};
+  scene::Physics slow = newton();
+  slow.clock = scene::Clock::beta50;
+  World first(slow, 0.001);
+  first.add(entity);
+  entity.links[0].damping = {0.04, 0.04};
+  World second(newton(), 0.001);
+  second.add(entity);
+  run(first, 3, 0.001);
+  run(second, 3, 0.001);
+  // dv/dt = g - k v (1 + v), by the midpoint rule in fine steps.
+  const double k = 0.04;
+  double v = 0, z = 100;
+  for (int i = 0; i < 30000; ++i) {
+    const double middle = v + 5e-5 * (g - k * v * (1 + v));
+    v += 1e-4 * (g - k * middle * (1 + middle));
+    z -= 1e-4 * middle;
+  }
+  EXPECT_NEAR(origin(first, 0).position.z(), z, 0.02);
+  EXPECT_EQ(origin(first, 0).position, origin(second, 0).position);
+}
+
+TEST(NewtonMotor, HoldsItsSpeedWithinItsImpulse) {
+  const double h = 0.01, mass = 2;
+  World world(newton(false, 0), h);
+  scene::Entity entity = prototype(
+      "slider", at(0, 0, 0), false,
+      {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1), link("load", scene::Box{{0.1, 0.1, 0.1}}, mass)});
+  entity.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitX(), {}, {}));
+  world.add(entity);
+  const JointIndex index = world.joint(0, 0);
+  world.add_motor(index, scene::JointMode::velocity, 0.02);
+  world.set_target(index, 0.5);
+  run(world, 0.3, h);
+  EXPECT_NEAR(world.velocity(index), 30 * 0.02 / mass, 1e-9);
+  run(world, 0.5, h);
+  EXPECT_NEAR(world.velocity(index), 0.5, 1e-9);
+}
+
+}  // namespace
+}  // namespace ziggurat::physics

@@ -1,0 +1,150 @@
+// Sliding, rolling and bouncing with solver="newton", against closed forms at many substeps.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "newton_scene.h"
+
+namespace ziggurat::physics {
+namespace {
+
+using namespace testing;
+
+class NewtonAt : public ::testing::TestWithParam<int> {
+ protected:
+  double h = 1.0 / GetParam();
+};
+INSTANTIATE_TEST_SUITE_P(Hertz, NewtonAt, ::testing::Values(50, 100, 200, 500, 1000, 2000));
+
+const scene::Box cube{{0.1, 0.1, 0.1}};
+
+TEST_P(NewtonAt, ABoxSlidesDownASlopeByTheFormula) {
+  const double angle = 0.35, mu = 0.3, seconds = 3;
+  const math::Quaternion tilt = about({0, 1, 0}, angle);
+  const Vector3 up = tilt * Vector3::UnitZ(), downhill = tilt * Vector3::UnitX();
+  World world(newton(), h);
+  world.add(standing({-0.5 * up, tilt}, scene::Box{{12, 2, 0.5}}, 1));
+  const Vector3 start = -4 * downhill;
+  world.add(loose({start, tilt}, cube, 0.1, mu));
+  run(world, seconds, h);
+  const Pose end = origin(world, 1);
+  const double a = g * (std::sin(angle) - mu * std::cos(angle));
+  const double way = (end.position - start).dot(downhill), expected = a * seconds * seconds / 2;
+  EXPECT_NEAR(way, expected, 0.001 * expected + 1.02 * a * seconds * h / 2);
+  EXPECT_LT(end.orientation.angularDistance(tilt), 1e-3);
+  EXPECT_LT(std::abs((end.position - start).dot(up)), 1e-4);
+}
+
+TEST_P(NewtonAt, ABoxInATroughRubsOnBothSides) {
+  // A trough of two faces at right angles, rolled by a third and inclined.
+  const double slope = 0.6, roll = EIGEN_PI / 6, mu = 0.2, seconds = 1;
+  const math::Quaternion tilt = about({0, 1, 0}, slope) * about({1, 0, 0}, roll);
+  const auto placed = [&](double x, double y, double z) { return Pose{tilt * Vector3(x, y, z), tilt}; };
+  World world(newton(), h);
+  world.add(standing(placed(0, 0, -0.5), scene::Box{{20, 4, 0.5}}, 1));
+  world.add(standing(placed(0, -1.05, 0), scene::Box{{20, 2, 1}}, 1));
+  world.add(loose(placed(-5, 0, 0), cube, 1, mu));
+  run(world, seconds, h);
+  const double pressed = (std::cos(roll) + std::sin(roll)) * std::cos(slope);
+  const double a = g * (std::sin(slope) - mu * pressed);
+  const double way = (tilt.conjugate() * origin(world, 2).position).x() + 5;
+  EXPECT_NEAR(way, a / 2, 0.005 * a / 2 + 1.02 * a * h / 2);
+}
+
+TEST_P(NewtonAt, ABallBouncesToTheSquareOfItsRestitution) {
+  World world(newton(true), h);
+  scene::Entity ball = loose(at(0, 0, 1), scene::Sphere{0.05}, 0.2);
+  ball.links[0].surface.restitution = 0.5;
+  world.add(ball);
+  run(world, std::sqrt(2 / g) + 0.05, h);  // behind the first impact
+  double highest = 0;
+  for (int i = 0; i < 0.6 / h; ++i) {
+    world.step();
+    highest = std::max(highest, origin(world, 0).position.z());
+  }
+  EXPECT_NEAR(highest, 0.25, 0.0025 + 2 * h);
+}
+
+TEST_P(NewtonAt, ABallRollsDownASlopeAsItsInertiaSays) {
+  const double angle = 0.2, seconds = 2;
+  const math::Quaternion tilt = about({0, 1, 0}, angle);
+  const Vector3 up = tilt * Vector3::UnitZ(), downhill = tilt * Vector3::UnitX();
+  World world(newton(), h);
+  world.add(standing({-0.5 * up, tilt}, scene::Box{{12, 2, 0.5}}, 1));
+  const Vector3 centre(0, 0, 0.05);  // of the ball over its frame
+  const Vector3 start = -4 * downhill + 0.05 * up - centre;
+  world.add(loose(at(start.x(), start.y(), start.z()), scene::Sphere{0.05}, 0.1, 0.6));
+  run(world, seconds, h);
+  const Pose end = origin(world, 1);
+  const double way = (end.position + end.orientation * centre - start - centre).dot(downhill);
+  const double a = 5.0 / 7 * g * std::sin(angle), expected = a * seconds * seconds / 2;
+  EXPECT_NEAR(way, expected, 0.001 * expected + 1.02 * a * seconds * h / 2);
+}
+
+TEST_P(NewtonAt, ATileFloorIsAsSmoothAsOne) {
+  // Down ten flush tiles without friction.
+  const double angle = 0.15, seconds = 2;
+  const math::Quaternion tilt = about({0, 1, 0}, angle);
+  const Vector3 up = tilt * Vector3::UnitZ(), downhill = tilt * Vector3::UnitX();
+  World world(newton(), h);
+  const Vector3 start = -2.43 * downhill;
+  world.add(loose({start, tilt}, cube, 0.1, 0));
+  for (int i = 0; i < 12; ++i) {
+    world.add(standing({(-2.75 + 0.5 * i) * downhill - 0.1 * up, tilt}, scene::Box{{0.5, 1, 0.1}}));
+  }
+  run(world, seconds, h);
+  const double a = g * std::sin(angle), expected = a * seconds * seconds / 2;
+  const double way = (origin(world, 0).position - start).dot(downhill);
+  EXPECT_NEAR(way, expected, 0.002 * expected + 1.02 * a * seconds * h / 2);
+}
+
+TEST_P(NewtonAt, ASlowCylinderRollsOverSeams) {
+  // 1 degree down: slow at the first seams.
+  const double angle = 0.0175, seconds = 3;
+  const math::Quaternion tilt = about({0, 1, 0}, angle);
+  const Vector3 up = tilt * Vector3::UnitZ(), downhill = tilt * Vector3::UnitX();
+  World world(newton(), h);
+  const scene::Cylinder roll{0.02, 0.05};
+  const math::Quaternion lying = tilt * about({1, 0, 0}, -EIGEN_PI / 2);  // z along y
+  const Vector3 start = 0.02 * up - lying * Vector3(0, 0, 0.025);
+  world.add(loose({start, lying}, roll, 0.1, 0.5));
+  for (int i = 0; i < 12; ++i) {
+    world.add(
+        standing({(-0.049 + 0.05 * i) * downhill - 0.1 * up, tilt}, scene::Box{{0.05, 1, 0.1}}, 1));
+  }
+  run(world, seconds, h);
+  const double a = g * std::sin(angle) / 1.5, expected = a * seconds * seconds / 2;
+  const Pose end = origin(world, 0);
+  const Vector3 moved = end * Vector3(0, 0, 0.025) - Pose{start, lying} * Vector3(0, 0, 0.025);
+  EXPECT_NEAR(moved.dot(downhill), expected, 0.01 * expected + 1.02 * a * seconds * h / 2);
+}
+
+TEST_P(NewtonAt, WhatFliesPastAnEdgeIsNotTouched) {
+  const double height = 1.5;
+  for (const bool round : {true, false}) {
+    World world(newton(), h);
+    world.add(standing(at(0.5 + 0.02 + 0.01, 0, -0.6), scene::Box{{1, 1, 0.6}}));
+    const scene::Geometry body =
+        round ? scene::Geometry(scene::Sphere{0.02}) : scene::Geometry(scene::Cylinder{0.02, 0.04});
+    world.add(loose(at(0, 0, height), body, 0.1));
+    run(world, 0.6, h);
+    const Vector3 end = origin(world, 1).position;
+    EXPECT_NEAR(end.z(), height - g * 0.18, 1e-9);
+    EXPECT_EQ(end.x(), 0);
+  }
+}
+
+TEST_P(NewtonAt, WhatComesAtThreeHundredMetresPerSecondIsStopped) {
+  if (h < 0.004) GTEST_SKIP() << "long";
+  World world(newton(), h);
+  world.add(standing(at(0, 0, -0.01), scene::Box{{1, 1, 0.01}}));
+  world.add(loose(at(0, 0, 4592), scene::Sphere{0.02}, 0.1));
+  world.add(loose(at(0.3, 0, 4592), cube, 0.1));
+  run(world, 32, h);
+  EXPECT_NEAR(origin(world, 1).position.z(), 0, 1e-3);
+  EXPECT_NEAR(origin(world, 2).position.z(), 0, 1e-3);
+}
+
+}  // namespace
+}  // namespace ziggurat::physics

@@ -1,0 +1,134 @@
+// What stands stays: towers, mass ratios, planks, card houses with solver="newton".
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "newton_scene.h"
+
+namespace ziggurat::physics {
+namespace {
+
+using namespace testing;
+
+/// How far the top moves in a minute at 100 Hz [m].
+double tower_drift(int count, const scene::Geometry& geometry, double height, double mass) {
+  World world(newton(true), 0.01);
+  for (int i = 0; i < count; ++i) world.add(loose(at(0, 0, i * height), geometry, mass));
+  run(world, 60, 0.01);
+  EXPECT_EQ(world.convergence().not_converged, 0u);
+  return (origin(world, count - 1).position - Vector3(0, 0, (count - 1) * height)).norm();
+}
+
+TEST(NewtonTower, OfTenCentimetreBoxesStands) {
+  EXPECT_LT(tower_drift(10, scene::Box{{0.01, 0.01, 0.01}}, 0.01, 0.001), 1e-4);
+}
+TEST(NewtonTower, OfTwentyCentimetreBoxesStands) {
+  EXPECT_LT(tower_drift(20, scene::Box{{0.01, 0.01, 0.01}}, 0.01, 0.001), 1e-4);
+}
+TEST(NewtonTower, OfTwentyLargeBoxesStands) {
+  EXPECT_LT(tower_drift(20, scene::Box{{0.05, 0.05, 0.05}}, 0.05, 0.1), 1e-4);
+}
+TEST(NewtonTower, OfTwentyCylindersStands) {
+  EXPECT_LT(tower_drift(20, scene::Cylinder{0.005, 0.01}, 0.01, 0.001), 1e-4);
+}
+
+TEST(NewtonStack, HeavyStandsOnLight) {
+  for (const double ratio : {100.0, 1000.0}) {
+    World world(newton(true), 0.01);
+    world.add(loose(at(0, 0, 0), scene::Box{{0.1, 0.1, 0.1}}, 1));
+    world.add(loose(at(0, 0, 0.1), scene::Box{{0.1, 0.1, 0.1}}, ratio));
+    run(world, 10, 0.01);
+    EXPECT_LT((origin(world, 1).position - Vector3(0, 0, 0.1)).norm(), 1e-4) << ratio;
+  }
+}
+
+TEST(NewtonPlanks, LieOnTheFloorWhereTheyFell) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  World world(newton(true), 0.01);
+  std::vector<Vector3> halves;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 size(0.02 + 0.2 * unit(random), 0.01 + 0.05 * unit(random),
+                       0.004 + 0.02 * unit(random));
+    const math::Quaternion turn =
+        math::Quaternion(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5,
+                         unit(random) - 0.5)
+            .normalized();
+    const Pose pose{{0.5 * (i % 15), 0.5 * (i / 15), 0.2 + 0.2 * unit(random)}, turn};
+    world.add(loose(pose, scene::Box{size}, 1000 * size.prod()));
+    halves.push_back(size / 2);
+  }
+  std::vector<double> sunk(halves.size(), 0);
+  for (int n = 0; n < 300; ++n) {
+    world.step();
+    const world::State state = state_of(world);
+    for (std::size_t i = 0; i < halves.size(); ++i) {
+      const Pose& pose = state.origins[i];
+      const Eigen::Matrix3d m = pose.orientation.toRotationMatrix();
+      const double centre = (pose * Vector3(0, 0, halves[i].z())).z();
+      const double lowest = centre - m.row(2).cwiseAbs().dot(halves[i]);
+      sunk[i] = std::max(sunk[i], -lowest);
+    }
+  }
+  std::ranges::sort(sunk);
+  EXPECT_LT(sunk[sunk.size() * 97 / 100], 5e-4);
+  EXPECT_LT(sunk.back(), 3e-3);
+}
+
+TEST(NewtonCards, AHouseOfThreeStoreysStands) {
+  const double length = 0.08, thick = 0.001, width = 0.06, lean = 0.3;
+  const scene::Box card{{width, thick, length}};
+  World world(newton(true), 0.01);
+  const double foot = length * std::sin(lean), high = length * std::cos(lean);
+  const double storey = high + thick * std::sin(lean) + thick;
+  int cards = 0;
+  const auto lean_to = [&](double y, double z, double angle) {
+    // A card's bottom edge at (y, z); its frame is at the middle of its lower face.
+    const math::Quaternion turn = about({1, 0, 0}, angle);
+    const double lift = thick / 2 * std::abs(std::sin(angle));
+    world.add(loose({{0, y, z + lift}, turn}, card, 0.002, 0.9));
+    ++cards;
+  };
+  for (int level = 0; level < 3; ++level) {
+    const int tents = 3 - level;
+    const double z = level * storey;
+    for (int t = 0; t < tents; ++t) {
+      const double y = (t - (tents - 1) / 2.0) * (2 * foot + 0.004);
+      const double half = foot + thick / 2 / std::cos(lean);
+      lean_to(y - half, z, -lean);
+      lean_to(y + half, z, lean);
+    }
+    if (level == 2) break;
+    world.add(loose(at(0, 0, z + storey - thick), scene::Box{{width, (tents - 1) * (2 * foot + 0.004) + foot, thick}},
+                    0.002 * tents, 0.9));
+    ++cards;
+  }
+  std::vector<Vector3> start;
+  for (int i = 0; i < cards; ++i) start.push_back(origin(world, i).position);
+  run(world, 60, 0.01);
+  for (int i = 0; i < cards; ++i) {
+    EXPECT_LT((origin(world, i).position - start[i]).norm(), 2e-3) << "card " << i;
+  }
+}
+
+TEST(NewtonPile, DoesNotDependOnWhatIsFarAway) {
+  const auto pile = [](bool other) {
+    World world(newton(true), 0.01);
+    for (int i = 0; i < 30; ++i) {
+      world.add(loose({{0.012 * (i % 3), 0.011 * (i / 3 % 3), 0.03 + 0.03 * (i / 9)},
+                       about({1, 2, 3}, 0.3 * i)},
+                      scene::Box{{0.02, 0.02, 0.02}}, 0.01));
+    }
+    if (other) world.add(loose(at(50, 0, 0.1), scene::Box{{0.1, 0.1, 0.1}}, 1));
+    run(world, 1.5, 0.01);
+    std::vector<Vector3> positions;
+    for (int i = 0; i < 30; ++i) positions.push_back(origin(world, i).position);
+    return positions;
+  };
+  EXPECT_EQ(pile(false), pile(true));
+}
+
+}  // namespace
+}  // namespace ziggurat::physics
