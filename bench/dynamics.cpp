@@ -2,14 +2,17 @@
 // detection: two-wheeled robots that drive, boxes at rest, towers.
 //
 // usage: bench_dynamics          prints microseconds of CPU time per substep
+//        bench_dynamics CUBES [SUBSTEPS [HZ [verbose]]]    a pile
 
-#include <ctime>
-
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <ctime>
 #include <vector>
 
 #include "dynamics/system.h"
+#include "pile.h"
 
 namespace {
 
@@ -22,7 +25,7 @@ double cpu_seconds() {
 }
 
 constexpr double radius = 0.03, width = 0.02, track = 0.12;  // of the wheels [m]
-constexpr double g = 9.81;
+using testing::g;
 
 Link solid(double mass, const Vector3& inertia) {
   Link link;
@@ -165,9 +168,58 @@ void bench_falling(int count) {
               1e6 * (cpu_seconds() - start) / 100 / count);
 }
 
+/// @param verbose  a line per substep
+void bench_pile(int count, int steps, double hz, bool verbose) {
+  testing::Touching world = testing::pile(count);
+  double total = 0, worst_time = 0, deepest = 0;
+  std::vector<double> misses;
+  std::size_t points = 0;
+  long iterations = 0, descents = 0, interior = 0, sweeps = 0;
+  for (int i = 0; i < steps; ++i) {
+    for (Tree& tree : world.system.trees) tree.gravity = Vector3(0, 0, -g);
+    world.find(1 / hz);
+    const double start = cpu_seconds();
+    const Report report = world.system.step(1 / hz, world.contacts);
+    const double time = cpu_seconds() - start;
+    total += time;
+    worst_time = std::max(worst_time, time);
+    misses.push_back(report.miss);
+    points = std::max(points, world.contacts.size());
+    iterations += report.most_iterations, descents += report.most_descents, interior += report.most_interior;
+    sweeps += report.most_sweeps;
+    for (const Contact& contact : world.contacts) deepest = std::max(deepest, -contact.gap);
+    if (verbose) {
+      std::printf("%4d: %5zu points, %2d iterations, %3d descents, %2d interior, %3d sweeps, miss %.1e, %.2f ms\n", i,
+                  world.contacts.size(), report.most_iterations, report.most_descents, report.most_interior,
+                  report.most_sweeps, report.miss, 1e3 * time);
+    }
+  }
+  double energy = 0, highest = 0;
+  for (const Tree& tree : world.system.trees) {
+    energy += kinetic_energy(tree);
+    highest = std::max(highest, tree.position[0].z());
+  }
+  const auto over = [&](double bound) {
+    return std::count_if(misses.begin(), misses.end(), [&](double m) { return m > bound; });
+  };
+  std::printf("%5d cubes in a bin, %d substeps at %g Hz, up to %zu points: %.2f ms, at most %.1f\n"
+              "      miss > 1e-4 m/s: %ld, > 1e-3: %ld, worst %.1e; per substep %.1f iterations, "
+              "%.1f descents, %.1f interior, %.1f sweeps\n"
+              "      overlap %.2f mm, energy left %.1e J, top %.3f m\n",
+              count, steps, hz, points, 1e3 * total / steps, 1e3 * worst_time, long(over(1e-4)),
+              long(over(1e-3)),
+              *std::max_element(misses.begin(), misses.end()), double(iterations) / steps,
+              double(descents) / steps, double(interior) / steps, double(sweeps) / steps, 1e3 * deepest, energy, highest);
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc > 1) {
+    bench_pile(std::atoi(argv[1]), argc > 2 ? std::atoi(argv[2]) : 150,
+               argc > 3 ? std::atof(argv[3]) : 100, argc > 4);
+    return 0;
+  }
   for (const int count : {1, 16, 256, 1024}) bench_robots(count);
   for (const int count : {1, 256}) bench_boxes(count, 1);
   bench_boxes(4, 10);

@@ -116,8 +116,7 @@ void linearise(const Block& block, const double* u, Linear& out) {
   for (int d = 0; d < count; ++d) linearise(block, all[d], y, out);
 }
 
-void soften(const Block& block, const double* u, double softness, bool coupled, double* impulse,
-            Linear* out) {
+void soften(const Block& block, const double* u, double softness, double* impulse, Linear* out) {
   const int rows = block.rows, active = active_rows(block);
   std::fill_n(impulse, rows, 0.0);
   if (out) {
@@ -143,7 +142,7 @@ void soften(const Block& block, const double* u, double softness, bool coupled, 
   const int count = discs(block, all);
   for (int d = 0; d < count; ++d) {
     const auto [first, size, ratio] = all[d];
-    const double bound = coupled ? ratio * impulse[0] : block.bound[d];
+    const double bound = ratio * impulse[0];
     double square = 0;
     for (int r = first; r < first + size; ++r) square += y[r] * y[r];
     const double length = std::sqrt(square);
@@ -151,7 +150,7 @@ void soften(const Block& block, const double* u, double softness, bool coupled, 
     const double share = slides ? bound / length : 1;
     for (int r = first; r < first + size; ++r) {
       impulse[r] = share * y[r];
-      if (slides && coupled && out) {
+      if (slides && out) {
         out->slope[r * rows] = ratio * y[r] / length * out->slope[0];
       }
       for (int c = first; c < first + size && share > 0; ++c) {
@@ -160,15 +159,6 @@ void soften(const Block& block, const double* u, double softness, bool coupled, 
         give_way(r, c, entry);
       }
     }
-  }
-}
-
-void anchor(Block& block, double share) {
-  block.anchor = block.impulse;
-  Disc all[3];
-  const int count = discs(block, all);
-  for (int d = 0; d < count; ++d) {
-    block.bound[d] += share * (all[d].ratio * std::max(0.0, block.impulse[0]) - block.bound[d]);
   }
 }
 

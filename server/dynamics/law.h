@@ -22,17 +22,9 @@ void linearise(const Block& block, const double* u, Linear& out);
 
 /// The softened law: y is taken about the block's anchor with `softness` times the mobility. Where
 /// anchor and impulse agree it is the contact law itself.
-/// @param coupled  false: friction's discs keep the radii of block.bound; then the impulses are the
-///                 gradient of a convex function of the speeds. true: the radii follow the normal
-///                 impulse
 /// @param impulse  out: of each row
-/// @param out      out: its linearisation, with a symmetric slope if not coupled; may be null
-void soften(const Block& block, const double* u, double softness, bool coupled, double* impulse,
-            Linear* out);
-
-/// Makes the present impulses the anchor of the softened law.
-/// @param share  of the way that friction's bounds go to what the normal impulse allows
-void anchor(Block& block, double share);
+/// @param out      out: its linearisation; may be null
+void soften(const Block& block, const double* u, double softness, double* impulse, Linear* out);
 
 /// By how much the block's impulses and speeds miss the law [m/s] or [rad/s].
 double miss(const Block& block, const double* u);

@@ -161,43 +161,42 @@ bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
   return false;
 }
 
-/// Softened problems one after the other, each anchored at what the one before gave, until their
-/// impulses stop changing and so obey the law itself.
-void Solver::soften_until_converged(Problem& problem, Outcome& outcome) {
-  double scale = 0;
-  for (Block& block : problem.blocks) anchor(block, 1);
-  for (int i = 0; i < options.most_anchors; ++i) {
-    worst_miss(problem, scale);
-    relax(problem, outcome, false, 1e-3 * scale);
-    if (i > 0) {  // at first friction's bounds are those of the last substep
-      snapshot_.take(problem);
-      if (!relax(problem, outcome, true, 1e-7 * scale)) snapshot_.give_back(problem);
-    }
-    outcome.miss = worst_miss(problem, scale);
-    const double enough =
-        i < options.few_anchors ? options.relative_tolerance : options.soft_tolerance;
-    outcome.converged = outcome.miss <= options.absolute_tolerance + enough * scale;
-    if (outcome.converged) return;
-    // Bounds that follow only half way do not swing to and fro.
-    for (Block& block : problem.blocks) anchor(block, i < 3 ? 1 : 0.5);
-  }
-}
-
-Outcome Solver::solve(Problem& problem) {
-  Outcome outcome;
+/// Shapes the matrix and keeps the state.
+void Solver::start(Problem& problem) {
   sizes_.clear();
   for (const Tree* tree : problem.trees) sizes_.push_back(tree->dofs);
   matrix_.shape(sizes_, problem.couplings);
   linear_.resize(problem.blocks.size());
+  start_.take(problem);
+}
+
+Outcome Solver::solve(Problem& problem) {
+  Outcome outcome;
+  start(problem);
   if (matrix_.work() > options.most_work) {
     sweep_until_converged(problem, outcome, options.most_sweeps);
     return outcome;
   }
-  snapshot_.take(problem);
-  if (iterate(problem, outcome, options.most_iterations)) return outcome;
-  snapshot_.give_back(problem);
-  soften_until_converged(problem, outcome);
+  if (matrix_.work() <= options.newton_work) {
+    if (iterate(problem, outcome, options.most_iterations)) return outcome;
+    start_.give_back(problem);
+  }
+  if (proximal(problem, outcome, options.most_descents)) return outcome;
+  start_.give_back(problem);
+  interior_points(problem, outcome);
+  if (proximal(problem, outcome, options.most_descents)) return outcome;
+  sweep_until_converged(problem, outcome, options.last_sweeps);
   return outcome;
+}
+
+void Solver::solve_displacement(Problem& problem) {
+  Outcome outcome;
+  start(problem);
+  if (matrix_.work() <= options.newton_work) {
+    if (iterate(problem, outcome, options.most_iterations)) return;
+    start_.give_back(problem);
+  }
+  sweep_until_converged(problem, outcome, options.displacement_sweeps);
 }
 
 }  // namespace ziggurat::dynamics

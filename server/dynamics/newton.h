@@ -1,10 +1,12 @@
 #pragma once
-// Solves the velocity problem of an island.
+// Solves the velocity problem of an island, by the first of these that converges:
 // - Newton's method on the contact law (semi-smooth, as in Alart and Curnier 1991; S. Hueeber and
-//   B. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), factored along the contact graph.
-// - Where it does not converge: softened problems, each anchored at the impulses of the one before
-//   (the method of multipliers, R. T. Rockafellar, Math. Oper. Res. 1, 1976).
-// - Where a factorisation costs too much: sweeps over the contacts.
+//   B. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), for small islands;
+// - Newton's method on the softened problem about the last impulses (the method of multipliers, R. T.
+//   Rockafellar, Math. Oper. Res. 1, 1976), for what rests;
+// - the interior point method, for what strikes;
+// - sweeps over the contacts, where a factorisation costs too much or nothing else converges.
+// All factor one matrix along the contact graph.
 
 #include "dynamics/block_matrix.h"
 #include "dynamics/law.h"
@@ -14,25 +16,48 @@ namespace ziggurat::dynamics {
 /// How an island was solved.
 struct Outcome {
   int iterations = 0;   ///< of Newton's method
-  int descents = 0;     ///< steps of softened problems, where Newton's method failed
+  int descents = 0;     ///< steps of the softened problem
+  int interior = 0;     ///< steps of the interior point method
   int sweeps = 0;       ///< over all contacts
   double miss = 0;      ///< worst violation of the contact law that is left [m/s] or [rad/s]
   bool converged = true;
 };
 
 struct SolverOptions {
+  double newton_work = 3e4;  ///< multiplications of a factorisation; more: not on the law itself
   int most_iterations = 16;  ///< of Newton's method on the law itself
-  int most_anchors = 20;     ///< softened problems
-  int few_anchors = 6;       ///< of them, before soft_tolerance is enough
-  int most_descents = 30;    ///< steps of each with given bounds of friction
-  int most_coupled = 8;      ///< steps of each with bounds that follow the normal impulses
-  double softness = 1e-3;    ///< impulses give way by this times the mobility
+  int most_descents = 8;     ///< steps of the softened problem
+  double softness = 1e-3;    ///< its impulses give way by this times the mobility
+  int most_interior = 25;    ///< steps of the interior point method
+  double most_work = 1.2e7;  ///< multiplications of a factorisation; more: sweeps
   int most_sweeps = 60;      ///< of large islands
+  int displacement_sweeps = 20;  ///< of a displacement that Newton's method does not find
+  int last_sweeps = 10;      ///< where the interior point method does not converge
   double relative_tolerance = 1e-7;  ///< of the largest speed or speed change in the island
   double soft_tolerance = 2e-5;      ///< of it, where Newton's method did not converge
   double absolute_tolerance = 1e-10; ///< [m/s] or [rad/s]
-  double most_work = 4e6;            ///< multiplications of a factorisation; more: sweeps
 };
+
+/// A block in the interior point method: impulse and speed in units in which a contact's cone is
+/// x_0 >= |(x_1, x_2)|, and what belongs to its present step.
+struct InteriorBlock {
+  Vector3 impulse{0, 0, 0}, speed{0, 0, 0}, anchor{0, 0, 0};
+  Vector3 unit{0, 0, 0};   ///< impulses of the block over those here
+  Vector3 give{0, 0, 0};   ///< speed over impulse
+  double lower = 0, upper = 0;        ///< of blocks that are not cones
+  double at_lower = 0, at_upper = 0;  ///< their speeds beyond the one sought; 0: without bound
+  Matrix3 scaling = Matrix3::Zero(), unscaling = Matrix3::Zero(), slope = Matrix3::Zero();
+  Vector3 point{0, 0, 0}, lift{0, 0, 0}, residual{0, 0, 0}, aim{0, 0, 0}, constant{0, 0, 0};
+  Vector3 change{0, 0, 0}, speed_change{0, 0, 0};
+  double lower_change = 0, upper_change = 0;
+};
+
+/// out += J^T impulse of a block.
+void add_impulse(const Problem& problem, const Block& block, const double* impulse,
+                 std::vector<double>& out);
+/// out := p + J^T g - M v, with the joints' damping in M.
+/// @return  the largest change of a coordinate's speed that is missing, about [m/s] or [rad/s]
+double imbalance(const Problem& problem, std::vector<double>& out);
 
 class Solver {
  public:
@@ -40,6 +65,8 @@ class Solver {
 
   /// Solves for problem.velocity and the blocks' impulses, from what they are.
   Outcome solve(Problem& problem);
+  /// The same for a displacement, which need not be exact where many bodies overlap.
+  void solve_displacement(Problem& problem);
 
  private:
   struct Snapshot {
@@ -49,12 +76,17 @@ class Solver {
     void give_back(Problem& problem) const;
   };
   void start_matrix(Problem& problem);
-  bool descend(Problem& problem, bool coupled, double& largest);
-  bool relax(Problem& problem, Outcome& outcome, bool coupled, double enough);
-  double line_search(Problem& problem, const std::vector<double>& direction);
   bool iterate(Problem& problem, Outcome& outcome, int most);
   bool step(Problem& problem);
-  void soften_until_converged(Problem& problem, Outcome& outcome);
+  void start(Problem& problem);
+  bool proximal(Problem& problem, Outcome& outcome, int most);
+  bool proximal_step(Problem& problem);
+  bool interior_points(Problem& problem, Outcome& outcome);
+  void enter(const Problem& problem, double margin);
+  double linearise_interior(Problem& problem);
+  double interior_direction(Problem& problem, double target, bool corrects);
+  double product_after(const Problem& problem, double way) const;
+  void advance_interior(Problem& problem, double way);
   void add_slope(const Problem& problem, const Block& block, const Linear& linear);
   void add_constant(Problem& problem, const Block& block, const Linear& linear);
   double worst_miss(const Problem& problem, double& scale) const;
@@ -70,9 +102,9 @@ class Solver {
   std::vector<int> sizes_;
   std::vector<double> sloped_;
   std::vector<double> kept_velocity_;
-  Snapshot snapshot_;
-  // Of descents.
-  std::vector<double> direction_, gradient_, speeds_, changes_;
+  Snapshot start_, snapshot_;
+  std::vector<double> direction_, residual_;
+  std::vector<InteriorBlock> interior_;
   // Of the sweeps.
   std::vector<double> response_;  // M^-1 J^T, as the Jacobian
   std::vector<double> diagonal_;  // per block and row: J M^-1 J^T

@@ -33,7 +33,6 @@ struct Block {
   std::array<double, most_rows> mobility{}; ///< about what a unit impulse changes of u
 
   std::array<double, most_rows> anchor{};  ///< of the softened law, see law.h [N s], [N m s]
-  std::array<double, 3> bound{};           ///< of friction's discs there [N s], [N m s]
 
   double gap = 0;         ///< of contacts and limits [m] or [rad]
   double restitution = 0; ///< of contacts that bounce

@@ -93,7 +93,8 @@ void Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most)
     }
     if (sweep % 5 != 4 && sweep + 1 < most) continue;
     outcome.miss = worst_miss(problem, scale);
-    outcome.converged = outcome.miss <= tolerance(scale);
+    outcome.converged =
+        outcome.miss <= options.absolute_tolerance + options.soft_tolerance * scale;
     if (outcome.converged) return;
   }
 }

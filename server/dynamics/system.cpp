@@ -187,6 +187,7 @@ void System::add(const Outcome& outcome) {
   report_.not_converged += !outcome.converged;
   report_.most_iterations = std::max(report_.most_iterations, outcome.iterations);
   report_.most_descents = std::max(report_.most_descents, outcome.descents);
+  report_.most_interior = std::max(report_.most_interior, outcome.interior);
   report_.most_sweeps = std::max(report_.most_sweeps, outcome.sweeps);
   report_.miss = std::max(report_.miss, outcome.miss);
 }
@@ -231,7 +232,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
         return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0);
       });
   if (problem_.turn_into_displacement()) {
-    solver_.solve(problem_);
+    solver_.solve_displacement(problem_);
     for (std::size_t i = 0; i < step_.size(); ++i) step_[i] += problem_.velocity[i];
   }
   for (std::size_t i = 0; i < problem_.trees.size(); ++i) {

@@ -16,6 +16,7 @@ struct Report {
   int not_converged = 0;   ///< of them
   int most_iterations = 0; ///< of Newton's method in an island
   int most_descents = 0;   ///< of the softened problem
+  int most_interior = 0;   ///< of the interior point method
   int most_sweeps = 0;     ///< over the contacts of an island
   double miss = 0;         ///< worst violation of the contact law [m/s] or [rad/s]
 };

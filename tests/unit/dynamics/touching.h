@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "box_contacts.h"
 #include "dynamics/system.h"
 #include "trees.h"
 
@@ -57,15 +58,24 @@ struct Touching {
       for (const Plane& plane : planes) touch_plane(i, plane, length);
     }
     for (int i = 0; i < static_cast<int>(half.size()); ++i) {
-      for (int j = i + 1; j < static_cast<int>(half.size()); ++j) touch_boxes(i, j, length);
+      for (int j = i + 1; j < static_cast<int>(half.size()); ++j) touch_pair(i, j, length);
     }
+    remember(old);
+  }
+
+  /// Impulses of the last substep for points of the same pair nearby.
+  void remember(const std::vector<Contact>& old) {
+    std::map<std::pair<int, int>, std::size_t> first;
+    for (std::size_t k = old.size(); k-- > 0;) first[{old[k].a.tree, old[k].b.tree}] = k;
     for (Contact& contact : contacts) {
+      const auto found = first.find({contact.a.tree, contact.b.tree});
+      if (found == first.end()) continue;
       double least = 25e-6;
-      for (const Contact& other : old) {
+      for (std::size_t k = found->second; k < old.size(); ++k) {
+        const Contact& other = old[k];
+        if (other.a.tree != contact.a.tree || other.b.tree != contact.b.tree) break;
         const double away = (other.point - contact.point).squaredNorm();
-        const bool same = other.a.tree == contact.a.tree && other.b.tree == contact.b.tree &&
-                          other.normal.dot(contact.normal) > 0.9;
-        if (same && away < least) {
+        if (other.normal.dot(contact.normal) > 0.9 && away < least) {
           least = away;
           contact.impulse = other.impulse;
         }
@@ -73,11 +83,16 @@ struct Touching {
     }
   }
 
-  double reach(int i, double length) const {
-    const Tree& t = system.trees[i];
-    const int link = last_link(i);
+  /// How far tree i may come towards j (-1: the world) within a substep.
+  double reach(int i, int j, double length) const {
+    const auto linear = [&](int k) -> Vector3 {
+      return k < 0 ? Vector3::Zero() : system.trees[k].velocity(last_link(k));
+    };
+    const auto turning = [&](int k) {
+      return k < 0 ? 0.0 : system.trees[k].angular_velocity(last_link(k)).norm() * half[k].norm();
+    };
     return 1e-3 + 15 * length * length +
-           1.3 * length * (t.velocity(link).norm() + t.angular_velocity(link).norm() * half[i].norm());
+           1.3 * length * ((linear(i) - linear(j)).norm() + turning(i) + turning(j));
   }
 
   Contact contact(int a, int b, const Vector3& point, const Vector3& normal, double gap, double mu) {
@@ -93,71 +108,37 @@ struct Touching {
   }
 
   void touch_plane(int i, const Plane& plane, double length) {
-    const Tree& t = system.trees[i];
-    const math::Pose pose{t.position[last_link(i)], Quaternion(t.rotation[last_link(i)])};
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vector3 local(corner & 1 ? half[i].x() : -half[i].x(),
-                          corner & 2 ? half[i].y() : -half[i].y(),
-                          corner & 4 ? half[i].z() : -half[i].z());
-      const Vector3 point = pose * local;
+    const OrientedBox box = shape(i);
+    const double near = reach(i, -1, length);
+    if (plane.normal.dot(box.centre - plane.point) > box.half.norm() + near) return;
+    points_.clear();
+    for (const Vector3& point : face_towards(box, -plane.normal)) {
       const double gap = plane.normal.dot(point - plane.point);
-      if (gap > reach(i, length)) continue;
-      contacts.push_back(
-          contact(i, -1, point - plane.normal * gap, plane.normal, gap, friction[i] * plane.friction));
+      if (gap < near) points_.push_back({point - plane.normal * gap, plane.normal, gap});
+    }
+    for (const BoxPoint& p : points_) {
+      contacts.push_back(contact(i, -1, p.point, p.normal, p.gap, friction[i] * plane.friction));
     }
   }
 
-  /// Box j on or beside box i: the face of i that looks most towards j carries it.
-  void touch_boxes(int i, int j, double length) {
-    const Tree &ti = system.trees[i], &tj = system.trees[j];
-    const Vector3 between = tj.position[0] - ti.position[0];
-    const double near = reach(i, length) + reach(j, length);
-    if (between.norm() > half[i].norm() + half[j].norm() + near) return;
-    const Matrix3 &ri = ti.rotation[0], &rj = tj.rotation[0];
-    const Vector3 local = ri.transpose() * between;
-    int axis = 0;
-    for (int k = 1; k < 3; ++k) {
-      const Vector3 e = half[i];
-      if (std::abs(local[k]) - e[k] > std::abs(local[axis]) - e[axis]) axis = k;
-    }
-    const Vector3 normal = ri.col(axis) * (local[axis] < 0 ? -1.0 : 1.0);
-    // The face of j that looks back most.
-    int facing = 0;
-    for (int k = 1; k < 3; ++k) {
-      if (std::abs(rj.col(k).dot(normal)) > std::abs(rj.col(facing).dot(normal))) facing = k;
-    }
-    const double side = rj.col(facing).dot(normal) > 0 ? -1 : 1;
-    const int u = (facing + 1) % 3, v = (facing + 2) % 3;
-    std::vector<Vector3> polygon;
-    for (const auto& [su, sv] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
-      polygon.push_back(tj.position[0] + rj.col(facing) * side * half[j][facing] +
-                        rj.col(u) * su * half[j][u] + rj.col(v) * sv * half[j][v]);
-    }
-    for (int k = 1; k <= 2; ++k) {
-      const int across = (axis + k) % 3;
-      for (const double sign : {-1.0, 1.0}) {
-        clip(polygon, ri.col(across) * sign, ti.position[0], half[i][across]);
-      }
-    }
-    for (const Vector3& point : polygon) {
-      const double gap = normal.dot(point - ti.position[0]) - half[i][axis];
-      if (gap < near) {
-        contacts.push_back(contact(j, i, point - normal * gap, normal, gap, friction[i] * friction[j]));
-      }
+  OrientedBox shape(int i) const {
+    const Tree& t = system.trees[i];
+    return {t.position[last_link(i)], t.rotation[last_link(i)], half[i]};
+  }
+
+  void touch_pair(int i, int j, double length) {
+    const double near = reach(i, j, length), radii = half[i].norm() + half[j].norm() + near;
+    const Vector3 between = tree(i).position[last_link(i)] - tree(j).position[last_link(j)];
+    if (between.squaredNorm() > radii * radii) return;
+    points_.clear();
+    touch_boxes(shape(j), shape(i), near, points_);
+    for (const BoxPoint& p : points_) {
+      contacts.push_back(contact(j, i, p.point, p.normal, p.gap, friction[i] * friction[j]));
     }
   }
 
-  static void clip(std::vector<Vector3>& polygon, const Vector3& out, const Vector3& centre,
-                   double distance) {
-    std::vector<Vector3> kept;
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-      const Vector3 &p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
-      const double dp = out.dot(p - centre) - distance, dq = out.dot(q - centre) - distance;
-      if (dp <= 0) kept.push_back(p);
-      if ((dp < 0) != (dq < 0) && dp != dq) kept.push_back(p + (q - p) * (dp / (dp - dq)));
-    }
-    polygon.swap(kept);
-  }
+ private:
+  std::vector<BoxPoint> points_;
 };
 
 inline math::Pose at(double x, double y, double z) {
