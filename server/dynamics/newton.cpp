@@ -170,8 +170,17 @@ void Solver::start(Problem& problem) {
   start_.take(problem);
 }
 
+/// Whether the velocities and impulses of the last substep still solve the problem.
+bool Solver::still_solved(const Problem& problem, Outcome& outcome) {
+  double scale = 0;
+  outcome.miss = worst_miss(problem, scale);
+  const double enough = options.absolute_tolerance + options.still_tolerance * scale;
+  return outcome.miss <= enough && imbalance(problem, residual_) <= enough;
+}
+
 Outcome Solver::solve(Problem& problem) {
   Outcome outcome;
+  if (still_solved(problem, outcome)) return outcome;
   start(problem);
   if (matrix_.work() > options.most_work) {
     sweep_until_converged(problem, outcome, options.most_sweeps);

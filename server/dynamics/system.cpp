@@ -67,18 +67,20 @@ bool System::before(const Item& a, const Item& b) const {
   return key(a) < key(b);
 }
 
-/// Sorts trees and what acts on them by island; islands by their first tree.
+/// Sorts trees that are awake and what acts on them by island; islands by their first tree.
 void System::gather(std::span<const Contact> contacts, std::span<const Servo> servos,
                     std::span<const Limit> limits) {
-  const int count = static_cast<int>(trees.size());
-  parent_.resize(count);
-  for (int i = 0; i < count; ++i) parent_[i] = i;
+  parent_.resize(trees.size());
+  island_.resize(trees.size());
+  place_.resize(trees.size());
+  for (const int i : awake_) parent_[i] = i;
   const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
+  const auto acts = [&](int tree) { return moves(tree) && !asleep(tree); };
   items_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     int a = contacts[i].a.tree, b = contacts[i].b.tree;
     if (!moves(a)) std::swap(a, b);
-    if (!moves(a)) continue;
+    if (!acts(a) || (moves(b) && asleep(b))) continue;
     if (moves(b)) {  // the lower index leads
       a = find(a), b = find(b);
       parent_[std::max(a, b)] = std::min(a, b);
@@ -86,29 +88,26 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
     items_.push_back({a, contact_item, static_cast<int>(i)});
   }
   for (std::size_t i = 0; i < servos.size(); ++i) {
-    if (moves(servos[i].tree)) items_.push_back({servos[i].tree, servo_item, static_cast<int>(i)});
+    if (acts(servos[i].tree)) items_.push_back({servos[i].tree, servo_item, static_cast<int>(i)});
   }
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    if (moves(limits[i].tree)) items_.push_back({limits[i].tree, limit_item, static_cast<int>(i)});
+    if (acts(limits[i].tree)) items_.push_back({limits[i].tree, limit_item, static_cast<int>(i)});
   }
-  island_.resize(count);
   int islands = 0;
-  for (int i = 0; i < count; ++i) {
+  for (const int i : awake_) {
     const int leader = find(i);
     island_[i] = leader == i ? islands++ : island_[leader];
   }
   first_tree_.assign(islands + 1, 0);
-  for (int i = 0; i < count; ++i) ++first_tree_[island_[i] + 1];
+  for (const int i : awake_) ++first_tree_[island_[i] + 1];
   for (int i = 0; i < islands; ++i) first_tree_[i + 1] += first_tree_[i];
-  tree_order_.resize(count);
-  place_.resize(count);
-  for (int i = 0; i < count; ++i) {
-    const int at = first_tree_[island_[i]]++;
-    tree_order_[at] = i;
-  }
+  tree_order_.resize(awake_.size());
+  for (const int i : awake_) tree_order_[first_tree_[island_[i]]++] = i;
   for (int i = islands; i > 0; --i) first_tree_[i] = first_tree_[i - 1];
   first_tree_[0] = 0;
-  for (int i = 0; i < count; ++i) place_[tree_order_[i]] = i - first_tree_[island_[tree_order_[i]]];
+  for (std::size_t i = 0; i < tree_order_.size(); ++i) {
+    place_[tree_order_[i]] = static_cast<int>(i) - first_tree_[island_[tree_order_[i]]];
+  }
   first_item_.assign(islands + 1, 0);
   for (Item& item : items_) {
     item.island = island_[item.island];
@@ -134,10 +133,13 @@ Report System::step(double length, std::span<Contact> contacts, std::span<Servo>
   servos_ = servos;
   limits_ = limits;
   report_ = {};
+  wake_what_changed();
   gather(contacts, servos, limits);
   for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
     const int first = first_tree_[i], last = first_tree_[i + 1];
-    if (!fly_island(first, last, first_item_[i], first_item_[i + 1])) {
+    if (fly_island(first, last, first_item_[i], first_item_[i + 1])) {
+      settle(first, last, false);
+    } else {
       solve_island(first, last, first_item_[i], first_item_[i + 1]);
     }
   }
@@ -219,6 +221,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
                                    [](const Block& b) { return b.impulse[0] != 0; });
   if (!touched) {  // what it flew past did not hold it
     for (Tree* tree : problem_.trees) fly(*tree, length_);
+    settle(first_tree, last_tree, false);
     return;
   }
   step_.resize(problem_.velocity.size());
@@ -230,6 +233,10 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const bool grounded = std::any_of(
       problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
         return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0);
+      });
+  const bool carried = std::any_of(
+      problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
+        return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0) && b.impulse[0] > 0;
       });
   if (problem_.turn_into_displacement()) {
     solver_.solve_displacement(problem_);
@@ -246,6 +253,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       displace_keeping_momentum(tree, by);
     }
   }
+  settle(first_tree, last_tree, carried);
 }
 
 /// Gives back to contacts, servos and limits what they gave, in world axes.

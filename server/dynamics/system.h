@@ -19,11 +19,35 @@ struct Report {
   int most_interior = 0;   ///< of the interior point method
   int most_sweeps = 0;     ///< over the contacts of an island
   double miss = 0;         ///< worst violation of the contact law [m/s] or [rad/s]
+  int awake = 0;           ///< trees that moved
+};
+
+/// What makes an island sleep. It must touch the world, and all its coordinates must stay this slow for
+/// this time: a body on a slope that starts to move is faster by then.
+struct RestOptions {
+  bool sleeps = true;
+  double speed = 5e-5;    ///< of what moves [m/s]
+  double turning = 5e-4;  ///< of what turns, and of joints [rad/s] or [m/s]
+  double time = 0.3;      ///< [s]
+  double force = 1e-3;    ///< change that wakes, over the weight and the force at the time of sleep
 };
 
 class System {
  public:
   std::vector<Tree> trees;
+  RestOptions rest;
+
+  /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and are
+  /// ignored, until something wakes its island: a contact with a tree that is awake and comes to
+  /// touch it, a change of its force, gravity, speed or servos, or wake().
+  bool asleep(int tree) const {
+    return static_cast<std::size_t>(tree) < sleepers_.size() && sleepers_[tree].next >= 0;
+  }
+  /// Wakes a tree and what sleeps with it: to be called when it was moved, or what it touches was
+  /// moved or removed.
+  void wake(int tree);
+  /// Must be called when trees were removed or changed places.
+  void wake_all();
 
   /// Advances all trees that are awake by one substep. Their external wrenches must be set.
   /// @param length    [s]
@@ -45,6 +69,11 @@ class System {
   };
   int find(int tree);
   bool before(const Item& a, const Item& b) const;
+  void wake_what_changed();
+  bool changed(int tree) const;
+  bool comes_to_touch(const Contact& contact) const;
+  void note_commands();
+  void settle(int first_tree, int last_tree, bool carried);
   void gather(std::span<const Contact> contacts, std::span<const Servo> servos,
               std::span<const Limit> limits);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
@@ -52,6 +81,17 @@ class System {
   void add(const Outcome& outcome);  // to the report
   void write_impulses();
 
+  /// What is known of a tree's sleep.
+  struct Sleeper {
+    int next = -1;             // in the ring of those that sleep with it; -1: awake
+    double quiet = 0;          // how long it has been at rest [s]
+    double command = 0;        // of its servos, see note_commands()
+    double command_asleep = 0;
+    double force_bound = 0;    // of changes [N], [N m] per radius of 1 m
+    Vector3 force{0, 0, 0}, moment{0, 0, 0}, gravity{0, 0, 0};  // when it fell asleep
+  };
+  std::vector<Sleeper> sleepers_;
+  std::vector<int> awake_;
   double length_ = 0;
   std::span<Contact> contacts_;
   std::span<Servo> servos_;

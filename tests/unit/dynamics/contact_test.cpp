@@ -25,6 +25,7 @@ Slide slide(double hz, double seconds, double slope, double mu, double start = 0
   world.gravity = Vector3(g * std::sin(slope), 0, -g * std::cos(slope));
   world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
   world.add_box({0.1, 0.1, 0.1}, 1, at(0, 0, 0.05), mu);
+  world.system.rest.sleeps = false;
   world.tree(0).v[3] = start;
   move(world.tree(0));
   Slide out;
@@ -92,6 +93,7 @@ TEST(Contact, ABoxSlidesAlongFloorAndWall) {
 void tower(int count, double side, double seconds, double hz, double ratio = 1) {
   Touching world;
   world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
+  world.system.rest.sleeps = false;
   double mass = 1000 * side * side * side;
   for (int i = 0; i < count; ++i) {
     world.add_box({side, side, side}, mass, at(0, 0, side * (i + 0.5)), 0.7);

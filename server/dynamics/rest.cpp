@@ -1,0 +1,140 @@
+// Islands that rest sleep: which do, and what wakes them.
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/system.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+/// Sums of what acts on all links.
+struct Load {
+  Vector3 force{0, 0, 0}, moment{0, 0, 0};
+};
+
+Load load(const Tree& tree) {
+  Load out;
+  for (const Wrench& wrench : tree.external) {
+    out.force += wrench.force;
+    out.moment += wrench.moment;
+  }
+  return out;
+}
+
+}  // namespace
+
+void System::wake(int tree) {
+  if (!asleep(tree)) return;
+  while (sleepers_[tree].next >= 0) {
+    const int next = sleepers_[tree].next;
+    sleepers_[tree].next = -1;
+    sleepers_[tree].quiet = 0;
+    tree = next;
+  }
+}
+
+void System::wake_all() { sleepers_.assign(trees.size(), Sleeper{}); }
+
+/// Whether what acts on a sleeper, or its speed, is no longer what it was.
+bool System::changed(int index) const {
+  const Tree& tree = trees[index];
+  const Sleeper& sleeper = sleepers_[index];
+  if (std::any_of(tree.v.begin(), tree.v.end(), [](double v) { return v != 0; })) return true;
+  const Load now = load(tree);
+  const double bound = sleeper.force_bound;
+  return sleeper.command != sleeper.command_asleep || tree.gravity != sleeper.gravity ||
+         (now.force - sleeper.force).squaredNorm() > bound * bound ||
+         (now.moment - sleeper.moment).squaredNorm() > bound * bound * 1e-4;
+}
+
+/// Whether the awake side of a contact may touch the sleeping one within the substep.
+bool System::comes_to_touch(const Contact& contact) const {
+  const auto speed = [&](const LinkIndex& side) -> Vector3 {
+    if (side.tree < 0 || asleep(side.tree)) return Vector3::Zero();
+    const Tree& tree = trees[side.tree];
+    const Motion& motion = tree.motion[side.link];
+    return motion.linear + motion.angular.cross(contact.point - tree.origin);
+  };
+  const double apart = contact.normal.dot(speed(contact.a) - speed(contact.b));
+  const int mover = contact.a.tree >= 0 && !asleep(contact.a.tree) ? contact.a.tree : contact.b.tree;
+  const double fall = mover >= 0 ? trees[mover].gravity.norm() * length_ : 0;
+  return contact.gap + length_ * (apart - 2 * fall) < 1e-5;
+}
+
+/// One number per tree that changes with the commands of its servos.
+void System::note_commands() {
+  for (const Servo& servo : servos_) {
+    if (servo.tree >= 0) sleepers_[servo.tree].command = 0;
+  }
+  for (const Servo& servo : servos_) {
+    if (servo.tree < 0) continue;
+    double& command = sleepers_[servo.tree].command;
+    command = 1.25 * command + servo.speed + 3 * servo.lower + 7 * servo.upper;
+  }
+}
+
+void System::wake_what_changed() {
+  if (sleepers_.size() > trees.size()) wake_all();
+  sleepers_.resize(trees.size());
+  note_commands();
+  const int count = static_cast<int>(trees.size());
+  for (int i = 0; i < count; ++i) {
+    if (asleep(i) && changed(i)) wake(i);
+  }
+  const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
+  for (bool again = true; again;) {  // who wakes may touch another
+    again = false;
+    for (const Contact& contact : contacts_) {
+      const int a = contact.a.tree, b = contact.b.tree;
+      if (!moves(a) || !moves(b) || asleep(a) == asleep(b) || !comes_to_touch(contact)) continue;
+      wake(a);
+      wake(b);
+      again = true;
+    }
+  }
+  awake_.clear();
+  for (int i = 0; i < count; ++i) {
+    if (!asleep(i)) awake_.push_back(i);
+  }
+  report_.awake = static_cast<int>(awake_.size());
+}
+
+/// Lets an island sleep that has been at rest for long enough.
+/// @param carried  whether the world carries it
+void System::settle(int first_tree, int last_tree, bool carried) {
+  if (!rest.sleeps) return;
+  bool quiet = carried;
+  for (int i = first_tree; i < last_tree && quiet; ++i) {
+    const Tree& tree = trees[tree_order_[i]];
+    for (int k = 0; k < tree.dofs; ++k) {
+      const bool linear = tree.axes[k].angular.isZero(0);
+      quiet = quiet && std::abs(tree.v[k]) <= (linear ? rest.speed : rest.turning);
+    }
+  }
+  double least = HUGE_VAL;
+  for (int i = first_tree; i < last_tree; ++i) {
+    Sleeper& sleeper = sleepers_[tree_order_[i]];
+    sleeper.quiet = quiet ? sleeper.quiet + length_ : 0;
+    least = std::min(least, sleeper.quiet);
+  }
+  if (!quiet || least < rest.time) return;
+  for (int i = first_tree; i < last_tree; ++i) {
+    const int index = tree_order_[i];
+    Tree& tree = trees[index];
+    Sleeper& sleeper = sleepers_[index];
+    std::fill(tree.v.begin(), tree.v.end(), 0.0);
+    move(tree);
+    const Load now = load(tree);
+    double mass = 0;
+    for (const Link& link : tree.links) mass += link.mass;
+    sleeper.next = i + 1 < last_tree ? tree_order_[i + 1] : tree_order_[first_tree];
+    sleeper.command_asleep = sleeper.command;
+    sleeper.force = now.force;
+    sleeper.moment = now.moment;
+    sleeper.gravity = tree.gravity;
+    sleeper.force_bound = rest.force * (mass * tree.gravity.norm() + now.force.norm());
+  }
+}
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,148 @@
+// Which islands sleep, and what wakes them.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "touching.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+using testing::at;
+using testing::g;
+using testing::Touching;
+
+Touching floor_with(int boxes, double side) {
+  Touching world;
+  world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
+  for (int i = 0; i < boxes; ++i) {
+    world.add_box(Vector3::Constant(side), 1, at(0, 0, side * (i + 0.5)), 0.7);
+  }
+  return world;
+}
+
+void run(Touching& world, double seconds, double hz) {
+  for (int i = 0; i < seconds * hz; ++i) world.step(1 / hz);
+}
+
+TEST(Rest, ABoxOnTheFloorSleepsAndWakesByAForce) {
+  Touching world = floor_with(1, 0.1);
+  run(world, 1, 100);
+  ASSERT_TRUE(world.system.asleep(0));
+  EXPECT_EQ(world.step(0.01).awake, 0);
+  world.tree(0).external[0].force = Vector3(0, 0, 1e-4 * g);  // less than a thousandth of its weight
+  EXPECT_EQ(world.step(0.01).awake, 0);
+  world.tree(0).external[0].force = Vector3(0, 0, 2 * g);
+  EXPECT_EQ(world.step(0.01).awake, 1);
+  EXPECT_NEAR(world.tree(0).v[5], g * 0.01, 1e-9);
+}
+
+TEST(Rest, ABoxInTheAirDoesNotSleep) {
+  for (const double hz : {100., 4000.}) {
+    Touching world;
+    world.gravity = Vector3(0, 0, -5e-3);
+    world.add_box(Vector3::Constant(0.1), 1, at(0, 0, 10), 0.7);
+    run(world, 2, hz);
+    EXPECT_NEAR(world.tree(0).v[5], -1e-2, 1e-9) << hz;
+  }
+}
+
+// 5/7 g sin(0.05 degrees) = 6.1 mm/s^2.
+TEST(Rest, ABallOnAGentleSlopeRolls) {
+  const double radius = 0.05, slope = 0.05 * M_PI / 180;
+  for (const double hz : {50., 100., 1000., 4000.}) {
+    System system;
+    Link link;
+    link.mass = 0.3;
+    link.inertia = Vector3::Constant(0.4 * link.mass * radius * radius);
+    system.trees.emplace_back(std::vector<Link>{link}, at(0, 0, radius));
+    system.trees[0].gravity = g * Vector3(std::sin(slope), 0, -std::cos(slope));
+    std::vector<Contact> contacts(1);
+    for (int i = 0; i < 2 * hz; ++i) {
+      const Vector3 centre = system.trees[0].position[0];
+      contacts[0].a.tree = 0;
+      contacts[0].point = Vector3(centre.x(), 0, 0);
+      contacts[0].gap = centre.z() - radius;
+      contacts[0].friction = 0.5;
+      system.step(1 / hz, contacts);
+    }
+    EXPECT_NEAR(system.trees[0].v[3], 2 * 5. / 7 * g * std::sin(slope), 1e-6) << hz;
+  }
+}
+
+TEST(Rest, ATowerWakesWhereItIsStruck) {
+  Touching world = floor_with(3, 0.05);
+  const int ball = world.add_box(Vector3::Constant(0.02), 0.1, at(1, 0, 0.14), 0.5);
+  world.gravity = Vector3(0, 0, -g);
+  run(world, 1, 100);
+  ASSERT_TRUE(world.system.asleep(0) && world.system.asleep(2));
+  world.system.wake(ball);
+  world.tree(ball).set_root(at(0.2, 0, 0.13));
+  world.tree(ball).v = {0, 0, 0, -2, 0, 0.4};  // strikes the topmost box at its middle
+  place(world.tree(ball));
+  move(world.tree(ball));
+  int asleep = 0;
+  while (world.system.asleep(2) && asleep < 100) ++asleep, world.step(0.01);
+  EXPECT_GE(asleep, 6);   // 0.2 m - half sides at 2 m/s take 8.25 substeps
+  EXPECT_LE(asleep, 9);
+  EXPECT_FALSE(world.system.asleep(0));
+  run(world, 0.1, 100);
+  EXPECT_LT(world.tree(2).position[0].x(), -1e-3);
+}
+
+TEST(Rest, AServoWakesByItsCommand) {
+  Touching world;
+  world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
+  std::vector<Link> links{testing::box_link({0.1, 0.1, 0.1}, 1)};
+  links.push_back(testing::hung(testing::box_link({0.1, 0.1, 0.1}, 1), 0, JointType::revolute,
+                                Vector3::UnitZ(), {0, 0, 0.1}, {0, 0, 0.1}));
+  System& system = world.system;
+  system.trees.emplace_back(links, at(0, 0, 0.05));
+  testing::weigh(system.trees[0]);
+  std::vector<Servo> servos(1);
+  servos[0].tree = 0, servos[0].dof = 6, servos[0].lower = -1, servos[0].upper = 1;
+  std::vector<Contact> contacts;
+  for (const double x : {-0.05, 0.05}) {
+    for (const double y : {-0.05, 0.05}) {
+      Contact contact;
+      contact.a.tree = 0;
+      contact.point = Vector3(x, y, 0);
+      contact.friction = 0.8;
+      contacts.push_back(contact);
+    }
+  }
+  for (int i = 0; i < 100; ++i) system.step(0.01, contacts, servos);
+  ASSERT_TRUE(system.asleep(0));
+  servos[0].speed = 0.5;
+  system.step(0.01, contacts, servos);
+  EXPECT_NEAR(system.trees[0].v[6], 0.5, 1e-6);
+}
+
+// Sleepers are left alone: the bits of what sleeps do not change.
+TEST(Rest, SleepersKeepTheirBits) {
+  Touching world = floor_with(5, 0.05);
+  run(world, 2, 100);
+  ASSERT_TRUE(world.system.asleep(4));
+  const std::vector<double> before = world.tree(4).q;
+  run(world, 2, 100);
+  EXPECT_EQ(world.tree(4).q, before);
+}
+
+// An island's bits depend on that island alone.
+TEST(Rest, AnotherIslandChangesNoBit) {
+  const auto fall = [](bool other) {
+    Touching world = floor_with(3, 0.05);
+    world.tree(2).v = {0.3, 0.2, 1, 0.1, 0.2, 0};
+    if (other) {
+      world.add_box(Vector3::Constant(0.1), 1, at(50, 0, 0.3), 0.7);
+      world.add_box(Vector3::Constant(0.1), 1, at(50, 0.03, 0.5), 0.7);
+    }
+    run(world, 1, 100);
+    return std::pair(world.tree(0).q, world.tree(2).q);
+  };
+  EXPECT_EQ(fall(false), fall(true));
+}
+
+}  // namespace
+}  // namespace ziggurat::dynamics
