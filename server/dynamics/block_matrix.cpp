@@ -37,7 +37,9 @@ void subtract_product(const double* a, const double* b, double* c, int n, int in
 /// A := L U in place, L with ones on its diagonal. The inverses of U's diagonal take its place.
 /// Sliding friction makes the matrix unsymmetric, so a pivot may be negative; it must only not be
 /// lost in rounding.
-bool factor_block(double* a, int n) {
+template <int N>
+bool factor_block(double* a, int size) {
+  const int n = N > 0 ? N : size;
   for (int k = 0; k < n; ++k) {
     const double pivot = a[k * n + k];
     if (!(std::abs(pivot) > least_pivot)) return false;
@@ -53,7 +55,9 @@ bool factor_block(double* a, int n) {
 }
 
 /// B := L^-1 B, of m columns.
-void solve_lower(const double* lu, int n, double* b, int m) {
+template <int N, int M>
+void solve_lower(const double* lu, int rows, double* b, int columns) {
+  const int n = N > 0 ? N : rows, m = M > 0 ? M : columns;
   for (int i = 1; i < n; ++i) {
     for (int k = 0; k < i; ++k) {
       const double factor = lu[i * n + k];
@@ -63,7 +67,9 @@ void solve_lower(const double* lu, int n, double* b, int m) {
 }
 
 /// B := B U^-1, of m rows.
-void solve_upper_right(const double* lu, int n, double* b, int m) {
+template <int N>
+void solve_upper_right(const double* lu, int columns, double* b, int m) {
+  const int n = N > 0 ? N : columns;
   for (int r = 0; r < m; ++r) {
     double* row = b + r * n;
     for (int k = 0; k < n; ++k) {
@@ -160,12 +166,17 @@ bool BlockMatrix::factor() {
   for (int step = 0; step < n; ++step) {
     const int k = order_[step], size = sizes_[k];
     double* pivot = block(k, k);
-    if (!factor_block(pivot, size)) return false;
+    if (!(size == 6 ? factor_block<6>(pivot, 6) : factor_block<0>(pivot, size))) return false;
     const int begin = first_later_[step], end = first_later_[step + 1];
     for (int e = begin; e < end; ++e) {
       const int i = later_[e];
-      solve_upper_right(pivot, size, block(i, k), sizes_[i]);
-      solve_lower(pivot, size, block(k, i), sizes_[i]);
+      if (size == 6 && sizes_[i] == 6) {
+        solve_upper_right<6>(pivot, 6, block(i, k), 6);
+        solve_lower<6, 6>(pivot, 6, block(k, i), 6);
+      } else {
+        solve_upper_right<0>(pivot, size, block(i, k), sizes_[i]);
+        solve_lower<0, 0>(pivot, size, block(k, i), sizes_[i]);
+      }
     }
     for (int e = begin; e < end; ++e) {
       for (int f = begin; f < end; ++f) {
@@ -182,7 +193,7 @@ void BlockMatrix::solve(double* x) const {
   for (int step = 0; step < n; ++step) {
     const int k = order_[step], size = sizes_[k];
     double* part = x + offsets_[k];
-    solve_lower(at(k, k), size, part, 1);
+    solve_lower<0, 1>(at(k, k), size, part, 1);
     for (int e = first_later_[step]; e < first_later_[step + 1]; ++e) {
       const int i = later_[e];
       subtract_product(at(i, k), part, x + offsets_[i], sizes_[i], size, 1);

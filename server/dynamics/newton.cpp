@@ -7,31 +7,64 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// out += x^T y for blocks of rows: x n x R and y m x R, R values per dof.
+/// sloped := slope times the columns, row by row.
+/// @param columns  R values per dof
 template <int R>
-void add_product(const double* x, int n, const double* y, int m, double* out) {
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < m; ++j) {
+void apply_slope(const double* slope, const double* columns, int dofs, double* sloped) {
+  for (int k = 0; k < dofs; ++k, columns += R) {
+    for (int r = 0; r < R; ++r) {
       double sum = 0;
-      for (int r = 0; r < R; ++r) sum += x[i * R + r] * y[j * R + r];
-      out[i * m + j] += sum;
+      for (int c = 0; c < R; ++c) sum += slope[r * R + c] * columns[c];
+      sloped[r * dofs + k] = sum;
     }
   }
 }
 
-void add_product(const double* x, int n, const double* y, int m, int rows, double* out) {
-  if (rows == 3) return add_product<3>(x, n, y, m, out);
-  if (rows == 1) return add_product<1>(x, n, y, m, out);
-  add_product<6>(x, n, y, m, out);
+/// out += columns^T sloped, n x m.
+template <int R>
+void add_product(const double* columns, int n, const double* sloped, int m, double* out) {
+  for (int i = 0; i < n; ++i, columns += R, out += m) {
+    for (int j = 0; j < m; ++j) {
+      double sum = out[j];
+      for (int r = 0; r < R; ++r) sum += columns[r] * sloped[r * m + j];
+      out[j] = sum;
+    }
+  }
 }
 
-/// out := slope times each dof's column.
-void apply_slope(const Linear& linear, const double* columns, int dofs, int rows, double* out) {
-  for (int k = 0; k < dofs; ++k) {
-    for (int r = 0; r < rows; ++r) {
-      double sum = 0;
-      for (int c = 0; c < rows; ++c) sum += linear.slope[r * rows + c] * columns[k * rows + c];
-      out[k * rows + r] = sum;
+/// The same for one body each: sizes that the compiler knows.
+template <int R>
+void add_body_product(const double* columns, const double* sloped, double* out) {
+  for (int i = 0; i < 6; ++i, columns += R, out += 6) {
+    double row[6];
+    for (int j = 0; j < 6; ++j) row[j] = out[j];
+    for (int r = 0; r < R; ++r) {
+      for (int j = 0; j < 6; ++j) row[j] += columns[r] * sloped[r * 6 + j];
+    }
+    for (int j = 0; j < 6; ++j) out[j] = row[j];
+  }
+}
+
+/// Adds J^T slope J of a block of R rows to the matrix.
+template <int R>
+void add_slope_of(const Problem& problem, const Block& block, const double* slope,
+                  std::vector<double>& sloped, BlockMatrix& matrix) {
+  const int sides[] = {block.a, block.b}, first[] = {block.ja, block.jb};
+  for (int s = 0; s < 2; ++s) {
+    if (sides[s] < 0) continue;
+    const int m = problem.trees[sides[s]]->dofs;
+    sloped.resize(static_cast<std::size_t>(m) * R);
+    apply_slope<R>(slope, problem.jacobian.data() + first[s], m, sloped.data());
+    for (int t = 0; t < 2; ++t) {
+      if (sides[t] < 0) continue;
+      const double* columns = problem.jacobian.data() + first[t];
+      const int n = problem.trees[sides[t]]->dofs;
+      double* out = matrix.block(sides[t], sides[s]);
+      if (n == 6 && m == 6) {
+        add_body_product<R>(columns, sloped.data(), out);
+      } else {
+        add_product<R>(columns, n, sloped.data(), m, out);
+      }
     }
   }
 }
@@ -41,19 +74,10 @@ void apply_slope(const Linear& linear, const double* columns, int dofs, int rows
 /// Adds J^T slope J to the matrix.
 void Solver::add_slope(const Problem& problem, const Block& block, const Linear& linear) {
   if (linear.zero) return;
-  const int sides[] = {block.a, block.b}, first[] = {block.ja, block.jb};
-  for (int s = 0; s < 2; ++s) {
-    if (sides[s] < 0) continue;
-    const int m = problem.trees[sides[s]]->dofs, rows = block.rows;
-    sloped_.resize(static_cast<std::size_t>(m) * rows);
-    apply_slope(linear, problem.jacobian.data() + first[s], m, rows, sloped_.data());
-    for (int t = 0; t < 2; ++t) {
-      if (sides[t] < 0) continue;
-      const double* others = problem.jacobian.data() + first[t];
-      add_product(others, problem.trees[sides[t]]->dofs, sloped_.data(), m, rows,
-                  matrix_.block(sides[t], sides[s]));
-    }
-  }
+  const double* slope = linear.slope.data();
+  if (block.rows == 3) return add_slope_of<3>(problem, block, slope, sloped_, matrix_);
+  if (block.rows == 1) return add_slope_of<1>(problem, block, slope, sloped_, matrix_);
+  add_slope_of<6>(problem, block, slope, sloped_, matrix_);
 }
 
 /// Adds J^T constant to the right-hand side, which is in v.

@@ -94,6 +94,7 @@ class Solver {
   double worst_miss(const Problem& problem, double& scale) const;
   void sweep_until_converged(Problem& problem, Outcome& outcome, int most);
   void prepare_sweeps(Problem& problem);
+  void sweep_contact(Problem& problem, Block& block, std::size_t index);
   void sweep_block(Problem& problem, Block& block, std::size_t index);
   double tolerance(double scale) const {
     return options.absolute_tolerance + options.relative_tolerance * scale;
@@ -110,6 +111,7 @@ class Solver {
   // Of the sweeps.
   std::vector<double> response_;  // M^-1 J^T, as the Jacobian
   std::vector<double> diagonal_;  // per block and row: J M^-1 J^T
+  std::vector<double> coupling_;  // per block: of both tangents with the normal
 };
 
 }  // namespace ziggurat::dynamics

@@ -13,6 +13,12 @@ namespace {
 void add_to(Problem& problem, int place, const double* columns, int rows, const double* impulse) {
   double* v = problem.velocity.data() + problem.offset[place];
   const int dofs = problem.trees[place]->dofs;
+  if (rows == 3) {
+    for (int k = 0; k < dofs; ++k, columns += 3) {
+      v[k] += columns[0] * impulse[0] + columns[1] * impulse[1] + columns[2] * impulse[2];
+    }
+    return;
+  }
   for (int k = 0; k < dofs; ++k) {
     double sum = 0;
     for (int r = 0; r < rows; ++r) sum += columns[k * rows + r] * impulse[r];
@@ -27,6 +33,7 @@ void Solver::prepare_sweeps(Problem& problem) {
   for (Tree* tree : problem.trees) factor_mass(*tree, problem.length);
   response_.resize(problem.jacobian.size());
   diagonal_.assign(problem.blocks.size() * Block::most_rows, 0);
+  coupling_.assign(problem.blocks.size() * 2, 0);
   problem.velocity = problem.momentum;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     solve_mass(*problem.trees[i], problem.velocity.data() + problem.offset[i]);
@@ -46,13 +53,47 @@ void Solver::prepare_sweeps(Problem& problem) {
           response_[at] = x[k];
           diagonal_[i * Block::most_rows + r] += x[k] * problem.jacobian[at];
         }
+        if (r > 0 || block.rows != 3) continue;
+        for (int k = 0; k < tree.dofs; ++k) {
+          coupling_[2 * i] += x[k] * problem.jacobian[first[s] + k * 3 + 1];
+          coupling_[2 * i + 1] += x[k] * problem.jacobian[first[s] + k * 3 + 2];
+        }
       }
       add_to(problem, sides[s], response_.data() + first[s], block.rows, block.impulse.data());
     }
   }
 }
 
+/// A contact with sliding friction: the normal impulse, then friction at the speed that it leaves.
+void Solver::sweep_contact(Problem& problem, Block& block, std::size_t index) {
+  const double* diagonal = diagonal_.data() + index * Block::most_rows;
+  double u[3];
+  problem.speeds(block, u);
+  const double normal = block.impulse[0] - (u[0] - block.seek[0]) / diagonal[0];
+  if (normal <= 0 && block.impulse[0] == 0) return;
+  double change[3] = {std::max(0.0, normal) - block.impulse[0], 0, 0};
+  block.impulse[0] += change[0];
+  double wanted[2], square = 0;
+  const double mobility = std::max(diagonal[1], diagonal[2]);  // both rows alike: along the slip
+  for (int r = 0; r < 2; ++r) {
+    const double slip = u[1 + r] + coupling_[2 * index + r] * change[0] - block.seek[1 + r];
+    wanted[r] = block.impulse[1 + r] - slip / mobility;
+    square += wanted[r] * wanted[r];
+  }
+  const double bound = block.friction * block.impulse[0];
+  const double factor = square > bound * bound ? bound / std::sqrt(square) : 1;
+  for (int r = 0; r < 2; ++r) {
+    change[1 + r] = factor * wanted[r] - block.impulse[1 + r];
+    block.impulse[1 + r] += change[1 + r];
+  }
+  if (block.a >= 0) add_to(problem, block.a, response_.data() + block.ja, 3, change);
+  if (block.b >= 0) add_to(problem, block.b, response_.data() + block.jb, 3, change);
+}
+
 void Solver::sweep_block(Problem& problem, Block& block, std::size_t index) {
+  if (block.law == Block::Law::contact && block.rows == 3) {
+    return sweep_contact(problem, block, index);
+  }
   const double* diagonal = diagonal_.data() + index * Block::most_rows;
   double u[Block::most_rows], change[Block::most_rows], wanted[Block::most_rows];
   // The normal first, then friction with what the normal has become.
