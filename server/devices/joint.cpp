@@ -43,7 +43,9 @@ class Joints final : public Kind {
       for (const scene::JointActuator& actuator : joints.actuators) {
         actuators_.push_back(
             setting.physics.joint(robot.entity, find_joint(entity, actuator.joint)));
-        setting.physics.add_motor(actuators_.back(), actuator.mode, actuator.max_impulse);
+        setting.physics.add_motor(
+            actuators_.back(), actuator.mode,
+            actuator.max_force ? *actuator.max_force * setting.substep : actuator.max_impulse);
       }
       for (const scene::JointSensor& sensor : joints.sensors) {
         const std::size_t joint = find_joint(entity, sensor.joint);

@@ -1,8 +1,6 @@
 #pragma once
 // Small values that World and its core give and take.
 
-#include <LinearMath/btVector3.h>
-
 #include <cstddef>
 
 #include "math/pose.h"
@@ -14,11 +12,6 @@ struct JointIndex {
   std::size_t value = 0;
 };
 
-struct Motion {
-  btVector3 velocity{0, 0, 0};          ///< of the centre of mass, in the world [m/s]
-  btVector3 angular_velocity{0, 0, 0};  ///< in the world [rad/s]
-};
-
 /// How a link was touched since it was asked last.
 struct LinkTouch {
   bool touched = false;                           ///< in a substep at least
@@ -27,11 +20,11 @@ struct LinkTouch {
                          ///< against each other, `impulse` is less
 };
 
-/// How well the solver did since the world began.
+/// How well solver="newton" did since the world began; of solver="sweeps" nothing is known.
 struct Convergence {
-  std::size_t islands = 0;         ///< solved, over all substeps
-  std::size_t not_converged = 0;   ///< of them
-  double worst = 0;                ///< violation of the laws of contacts and motors [m/s], [rad/s]
+  std::size_t islands = 0;        ///< solved, over all substeps
+  std::size_t not_converged = 0;  ///< of them
+  double worst = 0;               ///< violation of the laws of contacts and motors [m/s], [rad/s]
 };
 
 }  // namespace ziggurat::physics

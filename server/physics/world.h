@@ -93,7 +93,6 @@ class World {
   };
   Stiffness stiffest_bond() const;
 
-  /// How well the solver did; nothing is known of solver="sweeps".
   Convergence convergence() const;
 
   /// Kinetic plus gravitational energy of everything that moves [J].

@@ -53,6 +53,12 @@ std::string to_text(const Summary& summary) {
     text += fmt::format("  controller '{}' missed its deadline at {} tick{}\n", each.controller,
                         each.ticks, each.ticks == 1 ? "" : "s");
   }
+  if (const auto& solver = summary.solver; solver.not_converged > 0) {
+    text += fmt::format(
+        "  the solver did not converge in {} of {} islands; the worst residual is {:.2g} m/s or "
+        "rad/s\n",
+        solver.not_converged, solver.islands, solver.worst_residual);
+  }
   text += fmt::format("  seed {}, hash {}", summary.seed, math::to_hex(summary.hash));
   return text;
 }
@@ -69,7 +75,7 @@ std::string to_json(const Summary& summary) {
   for (const auto& each : summary.missed) {
     missed.push_back({{"controller", each.controller}, {"ticks", each.ticks}});
   }
-  const nlohmann::ordered_json json{
+  nlohmann::ordered_json json{
       {"scene", summary.scene},
       {"ending", to_string(summary.ending)},
       {"ticks", summary.ticks},
@@ -90,6 +96,11 @@ std::string to_json(const Summary& summary) {
       {"failures", failures},
       {"missed_deadlines", missed},
       {"vanished", summary.vanished}};
+  if (summary.solver.islands > 0) {
+    json["solver"] = {{"islands", summary.solver.islands},
+                      {"not_converged", summary.solver.not_converged},
+                      {"worst_residual", summary.solver.worst_residual}};
+  }
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

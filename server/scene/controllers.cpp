@@ -182,11 +182,25 @@ struct Check {
     }
   }
 
+  /// A force is for a prismatic joint, a torque for a revolute one.
+  void check_strength(const JointActuator& actuator, const Joint& joint) const {
+    const bool revolute = joint.type == JointType::revolute;
+    if (!actuator.max_force || !has_coordinate(joint.type) || actuator.is_torque == revolute) return;
+    blame(actuator.where,
+          fmt::format("joint {} of {} {} is {}; write {} instead of {}", in_quotes(joint.id),
+                      kind_of(entity), in_quotes(entity.id), revolute ? "revolute" : "prismatic",
+                      revolute ? "max_torque" : "max_force",
+                      revolute ? "max_force" : "max_torque"));
+  }
+
   void check_joints(const ControllerDevices& devices) const {
     std::unordered_map<std::string_view, const Joint*> joints;
     for (const Joint& joint : entity.joints) joints.emplace(joint.id, &joint);
     for (const JointActuator& a : devices.joints.actuators) {
       check_joint(a.joint, a.where, true, joints);
+      if (const auto found = joints.find(a.joint); found != joints.end()) {
+        check_strength(a, *found->second);
+      }
     }
     for (const JointSensor& s : devices.joints.sensors)
       check_joint(s.joint, s.where, false, joints);

@@ -242,6 +242,8 @@ std::vector<std::string> Simulation::notices() const {
       0.9 * bond.substep * bond.safe / bond.product)};
 }
 
+physics::Convergence Simulation::convergence() const { return parts_->physics.convergence(); }
+
 double Simulation::tick_length() const { return 1.0 / parts_->ticks_per_second; }
 double Simulation::physical_length() const { return parts_->substep * parts_->substeps; }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/values.h"
 #include "scene/scene.h"
 #include "world/commands.h"
 #include "world/layout.h"
@@ -66,6 +67,9 @@ class Simulation {
 
   /// What the author of the scene should know before the run: sentences, usually none.
   std::vector<std::string> notices() const;
+
+  /// How well the physics converged since the start or the last reset.
+  physics::Convergence convergence() const;
 
   double tick_length() const;      ///< simulated time per tick by the clock on the wall [s]
   double physical_length() const;  ///< physical time per tick: shorter under beta50 [s]

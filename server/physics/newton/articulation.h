@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "physics/values.h"
+#include "physics/motion.h"
 
 namespace ziggurat::dynamics {
 class System;

@@ -212,8 +212,9 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
   constexpr double same = 25e-6;  // 5 mm apart is another contact [m^2]
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
-  const std::array<Remembered, most_points> old = pair.points;
   const int old_count = pair.count;
+  auto& old = before_;
+  std::copy_n(pair.points.begin(), old_count, old.begin());
   std::array<bool, most_points> taken{};
   pair.count = found.count;
   pair.normal = from_bullet(found.normal);

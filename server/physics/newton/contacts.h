@@ -59,6 +59,7 @@ class Contacts {
   std::vector<int> floor_pairs_;  // of each collider
   std::vector<dynamics::Contact> contacts_;
   std::vector<int> owner_;  // pair of each contact
+  std::array<Remembered, most_points> before_;  // of the pair under way, a substep ago
   std::vector<std::pair<std::size_t, int>> standing_;  // a mover and its pair with what stands
 };
 

@@ -38,6 +38,19 @@ TEST(Summary, JsonHasTheRatesAndTheHashInFull) {
   EXPECT_EQ(to_json(summary).find('\n'), std::string::npos);
 }
 
+TEST(Summary, TellsWhereTheSolverDidNotConverge) {
+  Summary summary;
+  EXPECT_EQ(to_json(summary).find("solver"), std::string::npos);
+  summary.solver = {1000, 0, 1e-9};
+  EXPECT_EQ(to_text(summary).find("converge"), std::string::npos);
+  summary.solver = {1000, 3, 0.25};
+  const auto json = nlohmann::json::parse(to_json(summary));
+  EXPECT_EQ(json["solver"]["islands"], 1000);
+  EXPECT_EQ(json["solver"]["not_converged"], 3);
+  EXPECT_EQ(json["solver"]["worst_residual"], 0.25);
+  EXPECT_NE(to_text(summary).find("did not converge in 3 of 1000 islands"), std::string::npos);
+}
+
 TEST(Summary, TextSurvivesARunOfNoTime) {
   EXPECT_NE(to_text(Summary{}).find("0 ticks"), std::string::npos);
   EXPECT_EQ(to_text(Summary{}).find("nan"), std::string::npos);

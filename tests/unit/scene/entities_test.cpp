@@ -186,6 +186,32 @@ SceneText with_controller(const std::string& actuators, const std::string& senso
   return text;
 }
 
+TEST(Uses, MotorsHaveAForceOrATorque) {
+  const ReadResult good = with_controller(R"(<joints implementation="default">)"
+                                          R"(<joint id="j" mode="velocity" max_torque="2"/></joints>)",
+                                          "")
+                              .read();
+  ASSERT_TRUE(good.ok()) << all_problems(good);
+  const JointActuator& motor = good.scene.controllers[0].devices.joints.actuators[0];
+  EXPECT_EQ(motor.max_force, 2.0);
+  const double ticks = good.scene.experiment.ticks_per_second;
+  EXPECT_DOUBLE_EQ(motor.max_impulse, 2 / (ticks * good.scene.physics.iterations));
+  const auto found = faults(
+      with_controller(R"(<joints implementation="default">)"
+                      R"(<joint id="j" mode="velocity" max_force="2"/></joints>)",
+                      "")
+          .read());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find("is revolute; write max_torque instead of max_force"), std::string::npos);
+  const auto both = faults(
+      with_controller(R"(<joints implementation="default">)"
+                      R"(<joint id="j" mode="velocity" max_torque="2" max_impulse="1"/></joints>)",
+                      "")
+          .read());
+  ASSERT_EQ(both.size(), 1u);
+  EXPECT_NE(both[0].find("write one"), std::string::npos);
+}
+
 TEST(Uses, JointsMustExistAndMove) {
   const SceneText text =
       with_controller(R"(<joints implementation="default">)"
