@@ -12,7 +12,7 @@ namespace {
 using namespace testing;
 
 /// Links hung on each other by revolute joints about y, assembled stretched out along x.
-scene::Entity chain(int count, double length, double mass, double last_mass) {
+scene::Entity hanging_chain(int count, double length, double mass, double last_mass) {
   const scene::Box rod{{length, length / 10, length / 10}};
   std::vector<scene::Link> links{link("base", scene::Box{{0.01, 0.01, 0.01}}, 1)};
   for (int i = 0; i < count; ++i) {
@@ -33,9 +33,9 @@ scene::Entity chain(int count, double length, double mass, double last_mass) {
 
 double worst_energy_error(int links, double seconds, double h) {
   World world(newton(), h);
-  world.add(chain(links, 0.2, 0.3, 0.3));
+  world.add(hanging_chain(links, 0.2, 0.3, 0.3));
   const double start = world.energy();
-  const double swing = g * 0.3 * links * 0.2 * links / 2;  // what falls
+  const double swing = earth * 0.3 * links * 0.2 * links / 2;  // what falls
   double worst = 0;
   for (int i = 0; i < seconds / h; ++i) {
     world.step();
@@ -53,7 +53,7 @@ TEST(NewtonChain, OfTenKeepsItsEnergy) { EXPECT_LT(worst_energy_error(10, 2, 0.0
 TEST(NewtonChain, OfTwentyLightLinksCarriesAHundredKilograms) {
   for (const double h : {0.01, 0.001}) {
     World world(newton(), h);
-    scene::Entity entity = chain(20, 0.05, 0.01, 100);
+    scene::Entity entity = hanging_chain(20, 0.05, 0.01, 100);
     world.add(entity);
     double fastest = 0;
     for (int i = 0; i < 0.9 / h; ++i) {
@@ -62,7 +62,7 @@ TEST(NewtonChain, OfTwentyLightLinksCarriesAHundredKilograms) {
       fastest = std::max(fastest, state.links.back().velocity.norm());
     }
     // A point at the end would reach sqrt(2 g l).
-    EXPECT_NEAR(fastest, std::sqrt(2 * g * 0.975), 0.05 * std::sqrt(2 * g * 0.975)) << h;
+    EXPECT_NEAR(fastest, std::sqrt(2 * earth * 0.975), 0.05 * std::sqrt(2 * earth * 0.975)) << h;
   }
 }
 
@@ -96,7 +96,7 @@ TEST(NewtonFall, OfAPrototypeIsExact) {
     entity.links[0].damping = {0.04, 0.04, true, true};  // the dialect's default
     world.add(entity);
     run(world, 3, h);
-    EXPECT_NEAR(origin(world, 0).position.z(), 100 - g * 4.5, 1e-9) << h;
+    EXPECT_NEAR(origin(world, 0).position.z(), 100 - earth * 4.5, 1e-9) << h;
   }
 }
 
@@ -112,12 +112,12 @@ TEST(NewtonFall, IsDampedAsTheSceneSaysAndUnderTheSlowClock) {
   second.add(entity);
   run(first, 3, 0.001);
   run(second, 3, 0.001);
-  // dv/dt = g - k v (1 + v), by the midpoint rule in fine steps.
+  // dv/dt = earth - k v (1 + v), by the midpoint rule in fine steps.
   const double k = 0.04;
   double v = 0, z = 100;
   for (int i = 0; i < 30000; ++i) {
-    const double middle = v + 5e-5 * (g - k * v * (1 + v));
-    v += 1e-4 * (g - k * middle * (1 + middle));
+    const double middle = v + 5e-5 * (earth - k * v * (1 + v));
+    v += 1e-4 * (earth - k * middle * (1 + middle));
     z -= 1e-4 * middle;
   }
   EXPECT_NEAR(origin(first, 0).position.z(), z, 0.02);

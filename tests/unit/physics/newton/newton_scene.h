@@ -10,16 +10,14 @@ namespace ziggurat::physics::testing {
 using math::Pose;
 using math::Vector3;
 
-constexpr double g = 9.8;  // [m/s^2]
+constexpr double earth = 9.8;  // [m/s^2]
 
-inline scene::Physics newton(bool floor = false, double gravity = g) {
+inline scene::Physics newton(bool floor = false, double gravity = earth) {
   scene::Physics physics = with_gravity(gravity);
   physics.solver = scene::Solver::newton;
   if (floor) physics.floor = scene::Floor{};
   return physics;
 }
-
-inline Pose at(double x, double y, double z) { return {{x, y, z}, math::Quaternion::Identity()}; }
 
 inline scene::Entity with_friction(scene::Entity entity, double friction) {
   for (scene::Link& link : entity.links) link.surface = {friction, 0};

@@ -17,8 +17,6 @@ class NewtonAt : public ::testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Hertz, NewtonAt, ::testing::Values(50, 100, 200, 500, 1000, 2000));
 
-const scene::Box cube{{0.1, 0.1, 0.1}};
-
 TEST_P(NewtonAt, ABoxSlidesDownASlopeByTheFormula) {
   const double angle = 0.35, mu = 0.3, seconds = 3;
   const math::Quaternion tilt = about({0, 1, 0}, angle);
@@ -29,7 +27,7 @@ TEST_P(NewtonAt, ABoxSlidesDownASlopeByTheFormula) {
   world.add(loose({start, tilt}, cube, 0.1, mu));
   run(world, seconds, h);
   const Pose end = origin(world, 1);
-  const double a = g * (std::sin(angle) - mu * std::cos(angle));
+  const double a = earth * (std::sin(angle) - mu * std::cos(angle));
   const double way = (end.position - start).dot(downhill), expected = a * seconds * seconds / 2;
   EXPECT_NEAR(way, expected, 0.001 * expected + 1.02 * a * seconds * h / 2);
   EXPECT_LT(end.orientation.angularDistance(tilt), 1e-3);
@@ -47,7 +45,7 @@ TEST_P(NewtonAt, ABoxInATroughRubsOnBothSides) {
   world.add(loose(placed(-5, 0, 0), cube, 1, mu));
   run(world, seconds, h);
   const double pressed = (std::cos(roll) + std::sin(roll)) * std::cos(slope);
-  const double a = g * (std::sin(slope) - mu * pressed);
+  const double a = earth * (std::sin(slope) - mu * pressed);
   const double way = (tilt.conjugate() * origin(world, 2).position).x() + 5;
   EXPECT_NEAR(way, a / 2, 0.005 * a / 2 + 1.02 * a * h / 2);
 }
@@ -57,7 +55,7 @@ TEST_P(NewtonAt, ABallBouncesToTheSquareOfItsRestitution) {
   scene::Entity ball = loose(at(0, 0, 1), scene::Sphere{0.05}, 0.2);
   ball.links[0].surface.restitution = 0.5;
   world.add(ball);
-  run(world, std::sqrt(2 / g) + 0.05, h);  // behind the first impact
+  run(world, std::sqrt(2 / earth) + 0.05, h);  // behind the first impact
   double highest = 0;
   for (int i = 0; i < 0.6 / h; ++i) {
     world.step();
@@ -78,7 +76,7 @@ TEST_P(NewtonAt, ABallRollsDownASlopeAsItsInertiaSays) {
   run(world, seconds, h);
   const Pose end = origin(world, 1);
   const double way = (end.position + end.orientation * centre - start - centre).dot(downhill);
-  const double a = 5.0 / 7 * g * std::sin(angle), expected = a * seconds * seconds / 2;
+  const double a = 5.0 / 7 * earth * std::sin(angle), expected = a * seconds * seconds / 2;
   EXPECT_NEAR(way, expected, 0.001 * expected + 1.02 * a * seconds * h / 2);
 }
 
@@ -94,7 +92,7 @@ TEST_P(NewtonAt, ATileFloorIsAsSmoothAsOne) {
     world.add(standing({(-2.75 + 0.5 * i) * downhill - 0.1 * up, tilt}, scene::Box{{0.5, 1, 0.1}}));
   }
   run(world, seconds, h);
-  const double a = g * std::sin(angle), expected = a * seconds * seconds / 2;
+  const double a = earth * std::sin(angle), expected = a * seconds * seconds / 2;
   const double way = (origin(world, 0).position - start).dot(downhill);
   EXPECT_NEAR(way, expected, 0.002 * expected + 1.02 * a * seconds * h / 2);
 }
@@ -114,7 +112,7 @@ TEST_P(NewtonAt, ASlowCylinderRollsOverSeams) {
         standing({(-0.049 + 0.05 * i) * downhill - 0.1 * up, tilt}, scene::Box{{0.05, 1, 0.1}}, 1));
   }
   run(world, seconds, h);
-  const double a = g * std::sin(angle) / 1.5, expected = a * seconds * seconds / 2;
+  const double a = earth * std::sin(angle) / 1.5, expected = a * seconds * seconds / 2;
   const Pose end = origin(world, 0);
   const Vector3 moved = end * Vector3(0, 0, 0.025) - Pose{start, lying} * Vector3(0, 0, 0.025);
   EXPECT_NEAR(moved.dot(downhill), expected, 0.01 * expected + 1.02 * a * seconds * h / 2);
@@ -130,7 +128,7 @@ TEST_P(NewtonAt, WhatFliesPastAnEdgeIsNotTouched) {
     world.add(loose(at(0, 0, height), body, 0.1));
     run(world, 0.6, h);
     const Vector3 end = origin(world, 1).position;
-    EXPECT_NEAR(end.z(), height - g * 0.18, 1e-9);
+    EXPECT_NEAR(end.z(), height - earth * 0.18, 1e-9);
     EXPECT_EQ(end.x(), 0);
   }
 }
