@@ -29,6 +29,6 @@ void Articulation::motions(std::span<Motion> out) const {
   }
 }
 
-bool Articulation::sleeps() const { return false; }
+bool Articulation::sleeps() const { return system->asleep(static_cast<int>(index)); }
 
 }  // namespace ziggurat::physics

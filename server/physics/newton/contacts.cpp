@@ -270,13 +270,15 @@ void Contacts::remember() {
   }
 }
 
-void Contacts::forget(std::size_t entity) {
+void Contacts::forget(std::size_t entity, dynamics::System& system) {
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
     const Pair& pair = pairs_[i];
     if (!pair.live) continue;
-    if (colliders_.all[pair.a].entity == entity || colliders_.all[pair.b].entity == entity) {
-      drop(i);
-    }
+    const std::size_t a = colliders_.all[pair.a].entity, b = colliders_.all[pair.b].entity;
+    if (a != entity && b != entity) continue;
+    if (a != Collider::floor) system.wake(static_cast<int>(a));
+    if (b != Collider::floor) system.wake(static_cast<int>(b));
+    drop(i);
   }
 }
 

@@ -19,8 +19,8 @@ class Contacts {
   std::span<dynamics::Contact> find(double length);
   /// Notes the impulses that dynamics/ has written to them.
   void remember();
-  /// Forgets what touched an entity, before it is removed or moved.
-  void forget(std::size_t entity);
+  /// Forgets what touched an entity, before it is removed or moved; wakes what rested there.
+  void forget(std::size_t entity, dynamics::System& system);
 
   /// What touches, in ascending order.
   void tell(std::vector<Contact>& out) const;

@@ -66,7 +66,7 @@ Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
 }
 
 void NewtonCore::detach(std::size_t entity) {
-  contacts_.forget(entity);
+  contacts_.forget(entity, system_);
   colliders_.remove(entity);
   std::erase_if(held_, [&](const Held& held) { return held.entity == entity; });
 }
@@ -101,7 +101,8 @@ void NewtonCore::move(Body& body) {
   for (Held& held : held_) {
     if (held.entity == body.entity) held.impulses = {};
   }
-  contacts_.forget(body.entity);
+  contacts_.forget(body.entity, system_);
+  system_.wake(static_cast<int>(body.entity));
   colliders_.moved(body.entity, old);
 }
 
