@@ -21,7 +21,7 @@ class FakeServer {
  public:
   explicit FakeServer(std::function<void(FakeServer&)> script)
       : context_(zmq_ctx_new()), router_(zmq_socket(context_, ZMQ_ROUTER)) {
-    constexpr int patience_ms = 5000;
+    constexpr int patience_ms = 60'000;  // also on a busy machine
     constexpr int linger_ms = 500;
     zmq_setsockopt(router_, ZMQ_RCVTIMEO, &patience_ms, sizeof(patience_ms));
     zmq_setsockopt(router_, ZMQ_LINGER, &linger_ms, sizeof(linger_ms));

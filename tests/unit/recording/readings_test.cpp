@@ -42,6 +42,7 @@ void add_devices(world::Layout& layout) {
   layout.radios[1].id = "tx";
   layout.radios[1].sends = true;
   robot.leds = {0, 2};
+  layout.leds.resize(2);
   robot.magnets = {0, 1};
   layout.magnets.resize(1);
   layout.magnets[0].id = "coil";
