@@ -106,6 +106,7 @@ void Colliders::moved(std::size_t entity, const dynamics::Tree& tree) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     Collider& collider = all[i];
     if (collider.entity != entity || !collider.proxy) continue;
+    collider.rests = false;
     place(collider, tree);
     broadphase_.destroyProxy(collider.proxy, nullptr);
     insert(collider, i);
@@ -147,11 +148,15 @@ void Colliders::follow(const dynamics::System& system, double length) {
   for (Collider& collider : all) {
     if (!collider.proxy) continue;
     if (!collider.moves) {
+      collider.rests = true;
       if (collider.reach == least) continue;
       collider.reach = least;
       keep_in_box(collider);
       continue;
     }
+    const bool slept = collider.rests;
+    collider.rests = system.asleep(static_cast<int>(collider.entity));
+    if (slept && collider.rests) continue;
     place(collider, system.trees[collider.entity]);
     const double speed =
         collider.velocity.length() + collider.angular_velocity.length() * collider.radius;

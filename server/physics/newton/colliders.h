@@ -26,6 +26,7 @@ struct Collider {
   btTransform in_part = btTransform::getIdentity();  ///< X_PS
   bool centred = true;                               ///< in_part is the identity
   bool moves = false;
+  bool rests = false;  ///< as in the substep before: it stands, or sleeps
   bool rolls = false;  ///< has wheels: does not rub on what is below or above it
   scene::Surface surface;
   double smallest = 1e30;  ///< half extent [m]

@@ -189,6 +189,12 @@ void Contacts::drop_unseen() {
 void Contacts::meet(Pair& pair, double length) {
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
+  const bool rested = pair.rests;
+  pair.rests = a.rests && b.rests;
+  if (rested && pair.rests) {
+    pair.first = contacts_.size();
+    return emit(pair);
+  }
   const double slack = least_reach(length);
   const double reach = a.reach + b.reach;
   contact::Contacts found =
@@ -242,21 +248,29 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
       now.impulse = old[nearest].impulse;
       now.angular_impulse = old[nearest].angular_impulse;
     }
-    dynamics::Contact& contact = contacts_.emplace_back();
-    contact.a = link_of(a);
-    contact.b = link_of(b);
-    contact.point = now.point;
-    contact.normal = pair.normal;
-    contact.gap = now.gap;
-    contact.friction = rolls ? 0 : a.surface.friction * b.surface.friction;
-    // Only a point or a line of contact can roll; each carries its share of the normal force.
-    if (found.count <= 2) {
-      contact.rolling = a.surface.rolling_friction + b.surface.rolling_friction;
-      contact.spinning = a.surface.spinning_friction + b.surface.spinning_friction;
-    }
-    contact.restitution = std::max(a.surface.restitution, b.surface.restitution);
-    contact.impulse = now.impulse;
-    contact.angular_impulse = now.angular_impulse;
+  }
+  pair.law = {};
+  pair.law.a = link_of(a);
+  pair.law.b = link_of(b);
+  pair.law.normal = pair.normal;
+  pair.law.friction = rolls ? 0 : a.surface.friction * b.surface.friction;
+  // Only a point or a line of contact can roll; each carries its share of the normal force.
+  if (found.count <= 2) {
+    pair.law.rolling = a.surface.rolling_friction + b.surface.rolling_friction;
+    pair.law.spinning = a.surface.spinning_friction + b.surface.spinning_friction;
+  }
+  pair.law.restitution = std::max(a.surface.restitution, b.surface.restitution);
+  emit(pair);
+}
+
+/// Appends the contacts of a pair's points to the list.
+void Contacts::emit(const Pair& pair) {
+  for (int i = 0; i < pair.count; ++i) {
+    dynamics::Contact& contact = contacts_.emplace_back(pair.law);
+    contact.point = pair.points[i].point;
+    contact.gap = pair.points[i].gap;
+    contact.impulse = pair.points[i].impulse;
+    contact.angular_impulse = pair.points[i].angular_impulse;
     owner_.push_back(static_cast<int>(&pair - pairs_.data()));
   }
 }

@@ -36,6 +36,8 @@ class Contacts {
     std::size_t a = 0, b = 0;  // colliders
     bool live = false;
     unsigned seen = 0;  // the substep in which it was near last
+    bool rests = false;  // both sides did in the last substep
+    dynamics::Contact law;  // what all its contacts have in common
     math::Vector3 normal{0, 0, 1};
     int count = 0;
     std::array<Remembered, most_points> points;
@@ -45,6 +47,7 @@ class Contacts {
   int pair_of(std::size_t a, std::size_t b, int& place);
   void meet(Pair& pair, double length);
   void add(const contact::Contacts& found, Pair& pair);
+  void emit(const Pair& pair);
   bool covers(const Pair& seen, const Pair& hidden) const;
   void drop_hidden();
   void drop(std::size_t number);
