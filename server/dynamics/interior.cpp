@@ -94,6 +94,25 @@ void scale_cone(InteriorBlock& c) {
   c.slope = lifted.inverse();
 }
 
+/// What the change of a block's impulse starts from, where its product is to become `target`.
+/// @param corrects  whether the change before is taken into account
+void aim_at(const Block& block, double target, bool corrects, InteriorBlock& c) {
+  if (is_cone(block)) {
+    Vector3 wanted = -product(c.point, c.point);
+    wanted[0] += target;
+    if (corrects) {
+      wanted -= product(Vector3(c.unscaling * c.speed_change), Vector3(c.scaling * c.change));
+    }
+    c.aim = c.scaling * quotient(c.point, wanted);
+    c.constant = c.aim - c.residual;
+    c.constant[0] -= c.lift.dot(c.aim);
+    return;
+  }
+  c.constant[0] = -c.residual[0];
+  if (c.at_lower > 0) c.constant[0] += target / (c.impulse[0] - c.lower);
+  if (c.at_upper > 0) c.constant[0] -= target / (c.upper - c.impulse[0]);
+}
+
 }  // namespace
 
 /// Puts impulses and speeds inside their bounds.
@@ -190,20 +209,7 @@ double Solver::interior_direction(Problem& problem, double target, bool corrects
     const Block& block = problem.blocks[k];
     InteriorBlock& c = interior_[k];
     if (block.law == Block::Law::off) continue;
-    if (is_cone(block)) {
-      Vector3 wanted = -product(c.point, c.point);
-      wanted[0] += target;
-      if (corrects) {
-        wanted -= product(Vector3(c.unscaling * c.speed_change), Vector3(c.scaling * c.change));
-      }
-      c.aim = c.scaling * quotient(c.point, wanted);
-      c.constant = c.aim - c.residual;
-      c.constant[0] -= c.lift.dot(c.aim);
-    } else {
-      c.constant[0] = -c.residual[0];
-      if (c.at_lower > 0) c.constant[0] += target / (c.impulse[0] - c.lower);
-      if (c.at_upper > 0) c.constant[0] -= target / (c.upper - c.impulse[0]);
-    }
+    aim_at(block, target, corrects, c);
     double g[Block::most_rows] = {};
     for (int r = 0; r < solved_rows(block); ++r) {
       for (int s = 0; s < solved_rows(block); ++s) {

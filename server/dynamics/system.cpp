@@ -194,7 +194,8 @@ void System::add(const Outcome& outcome) {
   report_.miss = std::max(report_.miss, outcome.miss);
 }
 
-void System::solve_island(int first_tree, int last_tree, int first_item, int last_item) {
+/// The problem of the trees and items of one island.
+void System::gather_island(int first_tree, int last_tree, int first_item, int last_item) {
   problem_.clear();
   problem_.length = length_;
   for (int i = first_tree; i < last_tree; ++i) {
@@ -214,6 +215,10 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       problem_.add(limits_[index], place(limits_[index].tree), index);
     }
   }
+}
+
+void System::solve_island(int first_tree, int last_tree, int first_item, int last_item) {
+  gather_island(first_tree, last_tree, first_item, last_item);
   const Outcome outcome = solver_.solve(problem_);
   add(outcome);
   write_impulses();

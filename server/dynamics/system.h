@@ -76,6 +76,7 @@ class System {
   void settle(int first_tree, int last_tree, bool carried);
   void gather(std::span<const Contact> contacts, std::span<const Servo> servos,
               std::span<const Limit> limits);
+  void gather_island(int first_tree, int last_tree, int first_item, int last_item);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
   bool fly_island(int first_tree, int last_tree, int first_item, int last_item);
   void add(const Outcome& outcome);  // to the report

@@ -147,7 +147,7 @@ struct JointActuator {
   Location where;
   /// Instead of max_impulse: [N] (prismatic) or [N m] (revolute); max_impulse is then what that is
   /// per substep at the scene's own clock.
-  std::optional<double> max_force;
+  std::optional<double> max_force = {};
   bool is_torque = false;  ///< max_force was written as max_torque
 };
 

@@ -33,21 +33,6 @@ void configure(btContactSolverInfo& info, const scene::Physics& physics) {
   info.m_minimumSolverBatchSize = 1;  // each island ends its sweeps when it is done
 }
 
-/// The half-space z <= 0.
-struct Ground {
-  explicit Ground(const scene::Surface& surface)
-      : plane(btVector3(0, 0, 1), 0),
-        body(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &plane)) {
-    collider.shape = contact::HalfSpace{};
-    collider.friction = surface.friction;
-    collider.rolling_friction = surface.rolling_friction;
-    body.setUserPointer(&collider);
-  }
-  btStaticPlaneShape plane;
-  contact::Collider collider;
-  btRigidBody body;
-};
-
 /// Joints of a body with a coordinate, not yet in Bullet's world.
 std::vector<MovingJoint> make_joints(const scene::Entity& entity, const Body& body) {
   std::vector<MovingJoint> made;
@@ -75,6 +60,21 @@ void make_room(std::vector<Item>& items, std::size_t more) {
 }
 
 }  // namespace
+
+/// The half-space z <= 0.
+struct SweepsCore::Ground {
+  explicit Ground(const scene::Surface& surface)
+      : plane(btVector3(0, 0, 1), 0),
+        body(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &plane)) {
+    collider.shape = contact::HalfSpace{};
+    collider.friction = surface.friction;
+    collider.rolling_friction = surface.rolling_friction;
+    body.setUserPointer(&collider);
+  }
+  btStaticPlaneShape plane;
+  contact::Collider collider;
+  btRigidBody body;
+};
 
 struct SweepsCore::Parts {
   explicit Parts(const scene::Physics& physics)

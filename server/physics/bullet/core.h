@@ -37,6 +37,7 @@ class SweepsCore {
   Convergence convergence() const { return {}; }
 
  private:
+  struct Ground;
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

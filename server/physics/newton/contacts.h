@@ -28,7 +28,7 @@ class Contacts {
  private:
   static constexpr int most_points = 8;  // of a pair; 4 unless it tumbles
   struct Remembered {
-    btVector3 on_a, on_b;  // in the colliders' frames [m]
+    btVector3 on_a{0, 0, 0}, on_b{0, 0, 0};  // in the colliders' frames [m]
     math::Vector3 point{0, 0, 0}, impulse{0, 0, 0}, angular_impulse{0, 0, 0};
     double gap = 0;
   };
