@@ -18,7 +18,7 @@ constexpr const char* ground = R"(<floor/><gravity g="9.8"/>)";
 struct SmallScene {
   std::string actuators, sensors;  ///< of the controller `c`
   std::string arena;               ///< entities
-  std::string engine;              ///< in <dynamics3d>
+  std::string engine = {};         ///< in <dynamics3d>
 
   std::string str() const {
     return R"(<argos><framework><experiment ticks_per_second="10"/></framework><controllers>)"
