@@ -3,16 +3,15 @@
 
 namespace ziggurat::long_runs {
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define ZIGGURAT_SLOW_TESTS  // twenty times as slow
-#endif
+/// Whether clang's sanitizers make the program about twenty times as slow.
+#ifndef __has_feature
+constexpr bool is_slow = false;
+#elif __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool is_slow = true;
+#else
+constexpr bool is_slow = false;
 #endif
 
-#ifdef ZIGGURAT_SLOW_TESTS
-constexpr double a_minute = 2;  ///< simulated [s]
-#else
-constexpr double a_minute = 60;  ///< simulated [s]
-#endif
+constexpr double a_minute = is_slow ? 2 : 60;  ///< simulated [s]
 
 }  // namespace ziggurat::long_runs

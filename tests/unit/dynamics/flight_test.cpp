@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../long_runs.h"
 #include "trees.h"
 
 namespace ziggurat::dynamics {
@@ -127,6 +128,7 @@ TEST(Flight, PendulumsKeepTheirEnergy) {
 
 // A light chain with a load swings down like a pendulum of its length: v = sqrt(2 g l).
 TEST(Flight, ALightChainSwingsAHeavyLoad) {
+  if (long_runs::is_slow) GTEST_SKIP() << "minutes under a sanitizer";
   for (const double hz : {100.0, 1000.0}) {
     Tree tree = testing::chain(20, 0.05, 0.01, 100);
     testing::weigh(tree);

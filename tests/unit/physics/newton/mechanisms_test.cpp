@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "../../long_runs.h"
 #include "newton_scene.h"
 
 namespace ziggurat::physics {
@@ -51,6 +52,7 @@ TEST(NewtonChain, DoublePendulumKeepsItsEnergy) {
 TEST(NewtonChain, OfTenKeepsItsEnergy) { EXPECT_LT(worst_energy_error(10, 2, 0.01), 1e-2); }
 
 TEST(NewtonChain, OfTwentyLightLinksCarriesAHundredKilograms) {
+  if (long_runs::is_slow) GTEST_SKIP() << "minutes under a sanitizer";
   for (const double h : {0.01, 0.001}) {
     World world(newton(), h);
     scene::Entity entity = hanging_chain(20, 0.05, 0.01, 100);
