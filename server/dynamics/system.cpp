@@ -167,8 +167,7 @@ bool System::fly_island(int first_tree, int last_tree, int first_item, int last_
     }
     fly(tree, length_);
   }
-  const auto hit = [&](const Item& item) { return violated(item); };
-  if (std::none_of(item_order_.begin() + first_item, item_order_.begin() + last_item, hit)) {
+  if (std::none_of(item_order_.begin() + first_item, item_order_.begin() + last_item, violated)) {
     for (int i = first_item; i < last_item; ++i) limits_[item_order_[i].index].impulse = 0;
     return true;
   }

@@ -5,6 +5,7 @@
 
 #include <compare>
 #include <span>
+#include <vector>
 
 #include "physics/bodies.h"
 
@@ -27,6 +28,11 @@ struct Contact {
   math::Vector3 impulse = math::Vector3::Zero();  ///< on a, normal and friction, in W [N s]; where
                                                   ///< both sleep: of the last substep before
 };
+
+/// The same contact with its sides in ascending order.
+Contact in_order(Contact contact);
+/// Sorts contacts by their sides.
+void sort(std::vector<Contact>& contacts);
 
 /// Every function may do nothing. They are called in the order of a substep.
 class Plugin {

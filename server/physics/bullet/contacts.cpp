@@ -3,7 +3,6 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include <algorithm>
-#include <tuple>
 
 #include "physics/contact/algorithm.h"
 #include "physics/convert.h"
@@ -44,17 +43,11 @@ void collect(btDispatcher& dispatcher, std::vector<Contact>& out) {
       ++count;
     }
     if (count == 0) continue;
-    Contact contact{side(*manifold.getBody0()), side(*manifold.getBody1()),
-                    from_bullet(manifold.getContactPoint(0).m_normalWorldOnB),
-                    from_bullet(middle / count), from_bullet(sum)};
-    if (contact.b < contact.a) {
-      std::swap(contact.a, contact.b);
-      contact.normal = -contact.normal;
-      contact.impulse = -contact.impulse;
-    }
-    out.push_back(contact);
+    out.push_back(in_order({side(*manifold.getBody0()), side(*manifold.getBody1()),
+                            from_bullet(manifold.getContactPoint(0).m_normalWorldOnB),
+                            from_bullet(middle / count), from_bullet(sum)}));
   }
-  std::ranges::sort(out, {}, [](const Contact& each) { return std::tie(each.a, each.b); });
+  sort(out);
 }
 
 }  // namespace ziggurat::physics

@@ -2,17 +2,13 @@
 
 #include "dynamics/system.h"
 #include "physics/convert.h"
+#include "physics/newton/tree.h"
 
 namespace ziggurat::physics {
 
 dynamics::Tree& Articulation::tree() const { return system->trees[index]; }
 
-btTransform Articulation::transform(std::size_t part) const {
-  const Eigen::Matrix3d& m = tree().rotation[part];
-  return btTransform(btMatrix3x3(m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0),
-                                 m(2, 1), m(2, 2)),
-                     to_bullet(tree().position[part]));
-}
+btTransform Articulation::transform(std::size_t part) const { return transform_of(tree(), part); }
 
 void Articulation::apply_force(std::size_t part, const btVector3& force) const {
   tree().external[part].force += from_bullet(force);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dynamics/equations.h"
 #include "physics/convert.h"
@@ -18,11 +19,14 @@ double stoppable_velocity(double distance, double deceleration, double length) {
 }
 
 /// The velocity of a motor that seeks a position.
-double approach(double error, dynamics::Tree& tree, int dof, double length, double impulse) {
+double approach(double error, dynamics::Tree& tree, int dof, double length, double impulse,
+                bool& is_factored) {
   const double velocity = error / length;
   if (impulse == 0 || error == 0) return velocity;
-  compute_mass(tree);
-  factor_mass(tree, length);
+  if (!std::exchange(is_factored, true)) {
+    compute_mass(tree);
+    factor_mass(tree, length);
+  }
   // Half the strength for braking leaves the other half for gravity and other loads.
   const double deceleration = 0.5 * impulse * mobility(tree, dof) / length;
   const double most = stoppable_velocity(std::abs(error), deceleration, length);
@@ -32,14 +36,14 @@ double approach(double error, dynamics::Tree& tree, int dof, double length, doub
 }  // namespace
 
 dynamics::Servo servo_of(const CoordinateJoint& joint, dynamics::Tree& tree, double length,
-                         double impulse) {
+                         double impulse, bool& is_factored) {
   dynamics::Servo servo;
   servo.tree = static_cast<int>(joint.entity);
   servo.dof = dof_of(tree, joint.part);
   servo.speed = joint.target;
   if (joint.mode == scene::JointMode::position) {
     const double error = joint.target - tree.q[place_of(tree, joint.part)];
-    servo.speed = approach(error, tree, servo.dof, length, impulse);
+    servo.speed = approach(error, tree, servo.dof, length, impulse, is_factored);
   }
   servo.lower = -impulse;
   servo.upper = impulse;

@@ -26,8 +26,9 @@ struct CoordinateJoint {
 /// The servo of a motor for the coming substep.
 /// @param length     of the (internal) substep [s]
 /// @param impulse    its limit in that substep [N s] or [N m s]
+/// @param is_factored  whether the tree's mass is, as it is now; in and out
 dynamics::Servo servo_of(const CoordinateJoint& joint, dynamics::Tree& tree, double length,
-                         double impulse);
+                         double impulse, bool& is_factored);
 
 /// What holds a body to its GroundMotion: speeds along and across, turn rate about the vertical.
 /// @param impulses  of the last substep

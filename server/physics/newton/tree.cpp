@@ -1,6 +1,7 @@
 #include "physics/newton/tree.h"
 
 #include "physics/build.h"
+#include "physics/convert.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -49,6 +50,13 @@ dynamics::Tree make_tree(const Body& body, const scene::Entity& entity,
   dynamics::Tree tree(std::move(links), base_pose(body), freedoms_of(body, entity, physics));
   tree.gravity.z() = -physics.gravity.value_or(0);
   return tree;
+}
+
+btTransform transform_of(const dynamics::Tree& tree, std::size_t part) {
+  const Eigen::Matrix3d& m = tree.rotation[part];
+  return btTransform(btMatrix3x3(m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0),
+                                 m(2, 1), m(2, 2)),
+                     to_bullet(tree.position[part]));
 }
 
 int dof_of(const dynamics::Tree& tree, std::size_t part) { return tree.first_dof[part]; }

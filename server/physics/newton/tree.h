@@ -1,6 +1,8 @@
 #pragma once
 // Entities as trees of dynamics/.
 
+#include <LinearMath/btTransform.h>
+
 #include "dynamics/tree.h"
 #include "physics/bodies.h"
 #include "scene/scene.h"
@@ -11,6 +13,9 @@ namespace ziggurat::physics {
 /// @param body  without anything that moves it yet
 dynamics::Tree make_tree(const Body& body, const scene::Entity& entity,
                          const scene::Physics& physics);
+
+/// X_WP of a part.
+btTransform transform_of(const dynamics::Tree& tree, std::size_t part);
 
 /// The dof of a joint with a coordinate, and its place in the tree's q.
 int dof_of(const dynamics::Tree& tree, std::size_t part);
