@@ -102,6 +102,21 @@ void Tree::count() {
   }
 }
 
+void Tree::take_apart() noexcept {
+  links.resize(1);
+  links[0] = {};
+  links[0].joint = JointType::fixed;
+  dofs = 0;
+  parent_dof.clear();
+  damping.clear();
+  parent_side_.clear();
+  link_side_.clear();
+  count();
+  set_root({});
+  place(*this);
+  move(*this);
+}
+
 math::Pose Tree::pose(int link) const { return {position[link], Quaternion(rotation[link])}; }
 
 void Tree::set_root(const math::Pose& pose) {

@@ -90,6 +90,9 @@ class Tree {
   std::vector<double> before;   ///< q and v, kept while a flight is tried
   double flight_step = 0;      ///< the step that the integrator would take next [s]
 
+  /// Leaves one link that is fixed to the world: nothing that moves. Takes no memory.
+  void take_apart() noexcept;
+
   math::Pose pose(int link) const;           ///< X_WL, after place()
   void set_root(const math::Pose& pose);     ///< of a floating or fixed root
   Vector3 velocity(int link) const;          ///< of the centre of mass, after move() [m/s]

@@ -11,6 +11,7 @@
 #include "physics/bullet/move.h"
 #include "physics/bullet/solver.h"
 #include "physics/convert.h"
+#include "physics/make_room.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -51,12 +52,6 @@ std::vector<MovingJoint> make_joints(const scene::Entity& entity, const Body& bo
     made.push_back(std::move(moving));
   }
   return made;
-}
-
-/// Makes room for more, so that push_back() can't throw.
-template <class Item>
-void make_room(std::vector<Item>& items, std::size_t more) {
-  if (items.capacity() - items.size() < more) items.reserve(2 * items.size() + more);
 }
 
 }  // namespace

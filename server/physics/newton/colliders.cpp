@@ -5,20 +5,14 @@
 #include <algorithm>
 
 #include "physics/convert.h"
-#include "physics/newton/articulation.h"
+#include "physics/make_room.h"
+#include "physics/newton/tree.h"
 #include "physics/shape.h"
 
 namespace ziggurat::physics {
 namespace {
 
 constexpr btScalar box_slack = 1e-3;  // how much larger than needed a new box is made [m]
-
-btTransform transform(const dynamics::Tree& tree, std::size_t part) {
-  const Eigen::Matrix3d& m = tree.rotation[part];
-  return btTransform(btMatrix3x3(m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0),
-                                 m(2, 1), m(2, 2)),
-                     to_bullet(tree.position[part]));
-}
 
 bool inside(const btVector3& outer_low, const btVector3& outer_high, const btVector3& low,
             const btVector3& high) {
@@ -28,6 +22,28 @@ bool inside(const btVector3& outer_low, const btVector3& outer_high, const btVec
 
 std::size_t index_of(const btBroadphaseProxy& proxy) {
   return reinterpret_cast<std::size_t>(proxy.m_clientObject);
+}
+
+/// A link's collider, without a place. None if nothing touches the link by itself.
+std::optional<Collider> make_collider(const Body& body, const scene::Entity& entity,
+                                      std::size_t i) {
+  const scene::Link& link = entity.links[i];
+  const LinkBody& placed = body.links[i];
+  if (!link.collides || placed.carrier != LinkBody::carries_itself) return std::nullopt;
+  Collider collider;
+  collider.shape = contact_shape(link.geometry);
+  collider.entity = body.entity;
+  collider.link = i;
+  collider.part = placed.part;
+  collider.in_part = to_bullet(placed.in_part);
+  collider.centred = collider.in_part == btTransform::getIdentity();
+  collider.moves = body.parts[placed.part].moves;
+  collider.rolls = body.ground.has_value() && i == 0;
+  collider.surface = link.surface;
+  collider.outline = bullet_shape(link.geometry);
+  collider.smallest = placed.half_extents.minCoeff();
+  collider.radius = contact::bounding_radius(collider.shape);
+  return collider;
 }
 
 }  // namespace
@@ -63,23 +79,12 @@ void Colliders::add_floor(const scene::Surface& surface) {
 }
 
 void Colliders::add(const Body& body, const scene::Entity& entity, const dynamics::Tree& tree) {
+  std::vector<Collider> made;
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
-    const scene::Link& link = entity.links[i];
-    const LinkBody& placed = body.links[i];
-    if (!link.collides || placed.carrier != LinkBody::carries_itself) continue;
-    Collider collider;
-    collider.shape = contact_shape(link.geometry);
-    collider.entity = body.entity;
-    collider.link = i;
-    collider.part = placed.part;
-    collider.in_part = to_bullet(placed.in_part);
-    collider.centred = collider.in_part == btTransform::getIdentity();
-    collider.moves = body.parts[placed.part].moves;
-    collider.rolls = body.ground.has_value() && i == 0;
-    collider.surface = link.surface;
-    collider.outline = bullet_shape(link.geometry);
-    collider.smallest = placed.half_extents.minCoeff();
-    collider.radius = contact::bounding_radius(collider.shape);
+    if (auto collider = make_collider(body, entity, i)) made.push_back(std::move(*collider));
+  }
+  make_room(all, made.size());
+  for (Collider& collider : made) {  // only Bullet allocates, which does not throw
     place(collider, tree);
     all.push_back(std::move(collider));
     insert(all.back(), all.size() - 1);
@@ -114,7 +119,7 @@ void Colliders::moved(std::size_t entity, const dynamics::Tree& tree) {
 }
 
 void Colliders::place(Collider& collider, const dynamics::Tree& tree) const {
-  collider.pose = transform(tree, collider.part);
+  collider.pose = transform_of(tree, collider.part);
   if (!collider.centred) collider.pose *= collider.in_part;
   if (!collider.moves) return;
   const dynamics::Motion& motion = tree.motion[collider.part];
@@ -124,7 +129,7 @@ void Colliders::place(Collider& collider, const dynamics::Tree& tree) const {
 }
 
 btTransform Colliders::pose(const Collider& collider, const dynamics::System& system) const {
-  return transform(system.trees[collider.entity], collider.part) * collider.in_part;
+  return transform_of(system.trees[collider.entity], collider.part) * collider.in_part;
 }
 
 /// Bullet's boxes only grow: a body that fell fast would keep a large one, and a neighbour in

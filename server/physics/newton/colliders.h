@@ -58,6 +58,7 @@ class Colliders {
 
   void add_floor(const scene::Surface& surface);
   /// Those of a body whose tree is placed.
+  /// @throws std::bad_alloc; then nothing changes
   void add(const Body& body, const scene::Entity& entity, const dynamics::Tree& tree);
   /// The last ones added are gone; others stay as places without a shape.
   void remove(std::size_t entity);

@@ -1,7 +1,6 @@
 #include "physics/newton/contacts.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "physics/convert.h"
 #include "physics/newton/passage.h"
@@ -69,6 +68,7 @@ int Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
       if (pairs_.empty()) pairs_.emplace_back();
       unused_.push_back(static_cast<int>(pairs_.size()));
       pairs_.emplace_back();
+      unused_.reserve(pairs_.capacity());  // drop() takes no memory
     }
     place = unused_.back();
     unused_.pop_back();
@@ -309,16 +309,10 @@ void Contacts::tell(std::vector<Contact>& out) const {
       ++count;
     }
     if (count == 0) continue;
-    Contact contact{side(colliders_.all[pair.a]), side(colliders_.all[pair.b]), pair.normal,
-                    middle / count, sum};
-    if (contact.b < contact.a) {
-      std::swap(contact.a, contact.b);
-      contact.normal = -contact.normal;
-      contact.impulse = -contact.impulse;
-    }
-    out.push_back(contact);
+    out.push_back(in_order({side(colliders_.all[pair.a]), side(colliders_.all[pair.b]), pair.normal,
+                            middle / count, sum}));
   }
-  std::ranges::sort(out, {}, [](const Contact& each) { return std::tie(each.a, each.b); });
+  sort(out);
 }
 
 }  // namespace ziggurat::physics

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "physics/build.h"
+#include "physics/make_room.h"
 #include "physics/newton/tree.h"
 
 namespace ziggurat::physics {
@@ -30,19 +31,6 @@ std::vector<CoordinateJoint> make_joints(const scene::Entity& entity, const Body
     moving.limit = joint.limit;
   }
   return made;
-}
-
-/// A place without anything that moves.
-dynamics::Tree no_tree() {
-  std::vector<dynamics::Link> links(1);
-  links[0].joint = dynamics::JointType::fixed;
-  return dynamics::Tree(std::move(links), {});
-}
-
-/// Makes room for more, so that push_back() can't throw.
-template <class Item>
-void make_room(std::vector<Item>& items, std::size_t more) {
-  if (items.capacity() - items.size() < more) items.reserve(2 * items.size() + more);
 }
 
 }  // namespace
@@ -73,7 +61,7 @@ void NewtonCore::detach(std::size_t entity) {
 
 void NewtonCore::remove(Body& body) {
   detach(body.entity);
-  system_.trees[body.entity] = no_tree();
+  system_.trees[body.entity].take_apart();
   for (CoordinateJoint& joint : joints_) {
     if (joint.entity != body.entity) continue;
     joint.present = false;
@@ -92,7 +80,7 @@ void NewtonCore::take_back(Body& body) {
 
 void NewtonCore::move(Body& body) {
   dynamics::Tree& old = system_.trees[body.entity];
-  dynamics::Tree tree(std::move(old.links), base_pose(body), old.freedoms);
+  dynamics::Tree tree(old.links, base_pose(body), old.freedoms);
   tree.gravity = old.gravity;
   old = std::move(tree);
   for (CoordinateJoint& joint : joints_) {
@@ -147,10 +135,13 @@ double NewtonCore::velocity(JointIndex index) const {
 void NewtonCore::set_servos_and_limits(std::span<Body> bodies, double length, int splits) {
   servos_.clear();
   limits_.clear();
+  std::size_t entity = 0;  // joints of an entity stand together
+  bool is_factored = false;
   for (const CoordinateJoint& joint : joints_) {
     dynamics::Tree& tree = system_.trees[joint.entity];
+    if (std::exchange(entity, joint.entity) != joint.entity) is_factored = false;
     if (joint.mode != scene::JointMode::disabled) {
-      servos_.push_back(servo_of(joint, tree, length, joint.max_impulse / splits));
+      servos_.push_back(servo_of(joint, tree, length, joint.max_impulse / splits, is_factored));
     }
     if (joint.limit) {
       limits_.push_back({static_cast<int>(joint.entity), static_cast<int>(joint.part),
