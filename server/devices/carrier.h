@@ -14,6 +14,7 @@ struct Carrier {
   const scene::Entity& entity;
   std::size_t index;                        ///< into Layout::entities, where it stands already
   const scene::ControllerDevices& enabled;  ///< by its controller; nothing without one
+  double substep;                           ///< [s]
 
   /// @param id  of a link, or "origin"; the reader has checked that it exists
   scene::Anchor anchor(const std::string& id) const {

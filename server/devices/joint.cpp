@@ -15,6 +15,12 @@ std::size_t find_joint(const scene::Entity& entity, const std::string& id) {
   return joint;
 }
 
+/// What a motor may give in a substep [N s] or [N m s].
+/// @param substep  [s]
+double impulse_of(const scene::JointActuator& actuator, double substep) {
+  return actuator.max_force ? *actuator.max_force * substep : actuator.max_impulse;
+}
+
 class Joints final : public Kind {
  public:
   std::unique_ptr<Kind> clone() const override { return std::make_unique<Joints>(*this); }
@@ -28,10 +34,10 @@ class Joints final : public Kind {
                                       sensor.mode == JointMode::disabled};
     });
     robot.joint_actuators =
-        append(joints.actuators, layout.joint_actuators, [](const auto& actuator) {
+        append(joints.actuators, layout.joint_actuators, [&](const auto& actuator) {
           return world::JointActuatorLayout{actuator.joint, actuator.mode == JointMode::velocity,
                                             actuator.mode == JointMode::disabled,
-                                            actuator.max_impulse};
+                                            impulse_of(actuator, carrier.substep)};
         });
   }
 
@@ -43,9 +49,8 @@ class Joints final : public Kind {
       for (const scene::JointActuator& actuator : joints.actuators) {
         actuators_.push_back(
             setting.physics.joint(robot.entity, find_joint(entity, actuator.joint)));
-        setting.physics.add_motor(
-            actuators_.back(), actuator.mode,
-            actuator.max_force ? *actuator.max_force * setting.substep : actuator.max_impulse);
+        setting.physics.add_motor(actuators_.back(), actuator.mode,
+                                  impulse_of(actuator, setting.substep));
       }
       for (const scene::JointSensor& sensor : joints.sensors) {
         const std::size_t joint = find_joint(entity, sensor.joint);

@@ -52,15 +52,8 @@ void read_joint_list(Element& element, Read read) {
   }
 }
 
-/// A substep at the scene's own clock [s].
-double substep_length(const Scene& scene) {
-  const double iterations = scene.physics.iterations;
-  const double nominal = 1.0 / (scene.experiment.ticks_per_second * iterations);
-  return scene.physics.clock == Clock::beta50 ? nominal / iterations : nominal;
-}
-
 /// The strength of a motor: an impulse per substep, or a force.
-void read_strength(const Draft& draft, Element& joint, JointActuator& actuator) {
+void read_strength(Element& joint, JointActuator& actuator) {
   const auto force = joint.optional("max_force", non_negative);
   const auto torque = joint.optional("max_torque", non_negative);
   actuator.is_torque = torque.has_value();
@@ -72,13 +65,12 @@ void read_strength(const Draft& draft, Element& joint, JointActuator& actuator) 
   if (joint.optional("max_impulse", non_negative) || (force && torque)) {
     joint.fault("has more than one of max_force, max_torque and max_impulse; write one");
   }
-  actuator.max_impulse = *actuator.max_force * substep_length(draft.scene);
 }
 
 void enable_joint_actuators(const Enabling& e) {
   read_joint_list(e.element, [&](Element& joint, const std::string& id, JointMode mode) {
     JointActuator actuator{id, mode, 0, joint.where()};
-    read_strength(e.draft, joint, actuator);
+    read_strength(joint, actuator);
     if (!id.empty()) e.devices.joints.actuators.push_back(actuator);
   });
 }

@@ -145,8 +145,7 @@ struct JointActuator {
   JointMode mode = JointMode::disabled;
   double max_impulse = 0;  ///< [N s] (prismatic) or [N m s] (revolute) per substep
   Location where;
-  /// Instead of max_impulse: [N] (prismatic) or [N m] (revolute); max_impulse is then what that is
-  /// per substep at the scene's own clock.
+  /// Instead of max_impulse, whatever the substep: [N] (prismatic) or [N m] (revolute).
   std::optional<double> max_force = {};
   bool is_torque = false;  ///< max_force was written as max_torque
 };

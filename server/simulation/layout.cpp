@@ -3,7 +3,7 @@
 namespace ziggurat::simulation {
 
 void append(const scene::Scene& scene, const scene::Entity& entity, const devices::Devices& devices,
-            world::Layout& layout) {
+            double substep, world::Layout& layout) {
   const std::size_t index = layout.entities.size();
   const bool single = scene::is_single(entity.kind);
   layout.entities.push_back({entity.id, {layout.links.size(), entity.links.size()}, !single});
@@ -14,7 +14,8 @@ void append(const scene::Scene& scene, const scene::Entity& entity, const device
       entity.controller ? &scene.controllers[*entity.controller] : nullptr;
   const scene::ControllerDevices nothing;
   world::RobotLayout robot;
-  devices.lay_out({entity, index, controller ? controller->devices : nothing}, robot, layout);
+  devices.lay_out({entity, index, controller ? controller->devices : nothing, substep}, robot,
+                  layout);
   if (!controller) return;
   robot.id = entity.id;
   robot.entity = index;
@@ -23,10 +24,11 @@ void append(const scene::Scene& scene, const scene::Entity& entity, const device
   layout.robots.push_back(std::move(robot));
 }
 
-world::Layout make_layout(const scene::Scene& scene, const std::vector<scene::Entity>& entities) {
+world::Layout make_layout(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
+                          double substep) {
   world::Layout layout;
   const devices::Devices devices;
-  for (const scene::Entity& entity : entities) append(scene, entity, devices, layout);
+  for (const scene::Entity& entity : entities) append(scene, entity, devices, substep, layout);
   return layout;
 }
 

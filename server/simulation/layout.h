@@ -10,10 +10,13 @@
 namespace ziggurat::simulation {
 
 /// Appends an entity behind all others.
+/// @param substep  [s]
 void append(const scene::Scene& scene, const scene::Entity& entity, const devices::Devices& devices,
-            world::Layout& layout);
+            double substep, world::Layout& layout);
 
 /// @param entities  all of them, placed, in scene order
-world::Layout make_layout(const scene::Scene& scene, const std::vector<scene::Entity>& entities);
+/// @param substep   [s]
+world::Layout make_layout(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
+                          double substep);
 
 }  // namespace ziggurat::simulation

@@ -113,7 +113,7 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
       rays(scene.physics),
       layout(made) {
   entities = place(scene, options.seed);
-  made = make_layout(scene, entities);
+  made = make_layout(scene, entities, substep);
   for (const scene::Entity& entity : entities) {
     physics.add(entity);
     rays.add(entity);
@@ -143,7 +143,7 @@ void Simulation::Parts::spawn(const scene::Scene& scene, const scene::Entity& en
 void Simulation::Parts::grow(const scene::Scene& scene, const scene::Entity& entity,
                              world::Layout& grown) {
   const std::size_t first_entity = grown.entities.size(), first_robot = grown.robots.size();
-  append(scene, entity, devices, grown);
+  append(scene, entity, devices, substep, grown);
   entities.push_back(entity);
   physics.add(entity);
   ++in_physics;

@@ -41,7 +41,7 @@ struct JointActuatorLayout {
   std::string id;
   bool velocity = false;
   bool disabled = false;   ///< targets are accepted and have no effect
-  double max_impulse = 0;  ///< per substep as written in the scene [N s, N m s]
+  double max_impulse = 0;  ///< per substep [N s, N m s]: as written, or from the force
 };
 
 /// A radio of a robot whose controller enables radios.

@@ -59,7 +59,7 @@ struct BlockScene {
         R"(<box id="post" size="0.02,0.02,0.3" movable="false"><body position="0.2,-0.25,0"/></box>)" +
         simulation::testing::robot("r", "0,0,-5", "");
     scene = text.read();
-    layout = simulation::make_layout(scene, scene.entities);
+    layout = simulation::make_layout(scene, scene.entities, 0.01);
     for (const auto& entity : scene.entities) {
       state.origins.push_back(entity.pose);
       state.links.push_back({entity.pose});

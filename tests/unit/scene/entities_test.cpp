@@ -194,8 +194,6 @@ TEST(Uses, MotorsHaveAForceOrATorque) {
   ASSERT_TRUE(good.ok()) << all_problems(good);
   const JointActuator& motor = good.scene.controllers[0].devices.joints.actuators[0];
   EXPECT_EQ(motor.max_force, 2.0);
-  const double ticks = good.scene.experiment.ticks_per_second;
-  EXPECT_DOUBLE_EQ(motor.max_impulse, 2 / (ticks * good.scene.physics.iterations));
   const auto found = faults(
       with_controller(R"(<joints implementation="default">)"
                       R"(<joint id="j" mode="velocity" max_force="2"/></joints>)",

@@ -17,7 +17,7 @@ const std::string radios =
 world::Layout layout_of(const std::string& actuators, const std::string& sensors,
                         const std::string& arena) {
   const scene::Scene scene = testing::SmallScene{actuators, sensors, arena, ""}.read();
-  return make_layout(scene, scene.entities);
+  return make_layout(scene, scene.entities, 0.01);
 }
 
 TEST(Layout, ListsLedsOfAllEntitiesAndThoseThatARobotSets) {
@@ -53,6 +53,24 @@ TEST(Layout, SaysWhichRadiosSendAndReceive) {
   EXPECT_FALSE(mute.radios.at(0).sends);
   EXPECT_TRUE(mute.radios.at(0).receives);
   EXPECT_EQ(mute.radios.at(0).range, 2);
+}
+
+TEST(Layout, TheForceOfAMotorIsAnImpulsePerSubstepOfTheClock) {
+  const scene::Scene scene =
+      testing::SmallScene{
+          R"(<joints implementation="default"><joint id="j" mode="velocity" max_torque="3"/></joints>)",
+          "",
+          R"(<prototype id="p"><body/><controller config="c"/><links ref="a">)"
+          R"(<link id="a" geometry="box" size=".1,.1,.1" mass="1"/>)"
+          R"(<link id="b" geometry="box" size=".1,.1,.1" mass="1"/></links><joints>)"
+          R"(<joint id="j" type="revolute" axis="0,0,1"><parent link="a" position="0,0,.2"/>)"
+          R"(<child link="b"/></joint></joints></prototype>)"}
+          .read();
+  const auto impulse = [&](scene::Clock clock) {
+    return Simulation(scene, {1, clock}).layout().joint_actuators.at(0).max_impulse;
+  };
+  EXPECT_DOUBLE_EQ(impulse(scene::Clock::nominal), 3 * 0.05);  // 10 ticks/s, 2 substeps
+  EXPECT_DOUBLE_EQ(impulse(scene::Clock::beta50), 3 * 0.025);
 }
 
 }  // namespace
