@@ -13,7 +13,12 @@
 namespace ziggurat::network {
 namespace {
 
+constexpr std::string_view ipc = "ipc://";
+constexpr std::string_view tcp = "tcp://";
 constexpr std::size_t max_ipc_path = sizeof(sockaddr_un::sun_path) - 1;
+
+/// Not abstract, and not a temporary path, which ZeroMQ chooses and removes.
+bool is_file(std::string_view path) { return path[0] != '@' && path[0] != '*'; }
 
 /// Whether another server accepts connections there.
 bool is_listening(const std::string& path) {
@@ -30,13 +35,14 @@ bool is_listening(const std::string& path) {
 
 void check_ipc(const std::string& endpoint, const std::string& path) {
   if (path.empty()) {
-    throw EndpointError(fmt::format("{}: no path; ipc:///run/user/1000/arena would do", endpoint));
+    throw EndpointError(
+        fmt::format("{}: no path; write for example ipc:///run/user/1000/arena", endpoint));
   }
   if (path.size() > max_ipc_path) {
     throw EndpointError(fmt::format("{}: the path has {} bytes; {} are the system's limit",
                                     endpoint, path.size(), max_ipc_path));
   }
-  if (path[0] == '@' || path[0] == '*') return;  // abstract or temporary: nothing in the way
+  if (!is_file(path)) return;
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return;
   if (!S_ISSOCK(status.st_mode)) {
@@ -75,11 +81,11 @@ void check_tcp(const std::string& endpoint, std::string_view address, bool insec
       error == std::errc{} && end == port.data() + port.size() && number <= 65535;
   if (host.empty() || !(port == "*" || is_number)) {
     throw EndpointError(
-        fmt::format("{}: not a host and a port; tcp://127.0.0.1:7400 would do", endpoint));
+        fmt::format("{}: not a host and a port; write for example tcp://127.0.0.1:7400", endpoint));
   }
   if (!insecure && !is_loopback(host)) {
     throw EndpointError(
-        fmt::format("{}: not a loopback address: anyone who reaches it could drive the robots; use "
+        fmt::format("{}: not a loopback address: all who reach it could control the robots; use "
                     "tcp://127.0.0.1:{}, protect it with --curve-secret and --curve-clients, or "
                     "allow it with --insecure",
                     endpoint, port));
@@ -89,16 +95,20 @@ void check_tcp(const std::string& endpoint, std::string_view address, bool insec
 }  // namespace
 
 void check_endpoint(const std::string& endpoint, bool insecure) {
-  constexpr std::string_view ipc = "ipc://";
-  constexpr std::string_view tcp = "tcp://";
   if (endpoint.starts_with(ipc)) {
     check_ipc(endpoint, endpoint.substr(ipc.size()));
   } else if (endpoint.starts_with(tcp)) {
     check_tcp(endpoint, std::string_view(endpoint).substr(tcp.size()), insecure);
   } else {
     throw EndpointError(fmt::format(
-        "'{}': not an endpoint; ipc:///path or tcp://127.0.0.1:7400 would do", endpoint));
+        "'{}': not an endpoint; write for example ipc:///path or tcp://127.0.0.1:7400", endpoint));
   }
+}
+
+std::string file_of(const std::string& endpoint) {
+  if (!endpoint.starts_with(ipc)) return {};
+  const std::string path = endpoint.substr(ipc.size());
+  return is_file(path) ? path : std::string{};
 }
 
 }  // namespace ziggurat::network

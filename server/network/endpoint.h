@@ -18,4 +18,8 @@ class EndpointError : public std::runtime_error {
 /// @throws EndpointError
 void check_endpoint(const std::string& endpoint, bool insecure);
 
+/// The path of the socket's file, which ZeroMQ leaves behind; empty if there is none.
+/// @param endpoint  as configured; ZeroMQ removes the file of `ipc://*`
+std::string file_of(const std::string& endpoint);
+
 }  // namespace ziggurat::network

@@ -1,6 +1,7 @@
 #include "network/socket.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -60,6 +61,8 @@ Socket::~Socket() { close(); }
 
 /// Ends the gatekeeper, too.
 void Socket::close() {
+  // While it listens, no other server takes a path.
+  for (const std::string& file : files_) ::unlink(file.c_str());
   routers_.clear();
   if (gatekeeper_) context_.shutdown();
 }
@@ -98,6 +101,7 @@ void Socket::bind(zmq::socket_t& router, const std::string& endpoint, bool allow
     throw EndpointError(fmt::format("{}: can't listen: {}", endpoint, reason(error)));
   }
   endpoints_.push_back(router.get(zmq::sockopt::last_endpoint));
+  if (std::string file = file_of(endpoint); !file.empty()) files_.push_back(std::move(file));
 }
 
 Delivery Socket::send(const std::string& connection, const wire::Outbox& message) {

@@ -53,6 +53,7 @@ class Socket {
   std::vector<zmq::socket_t> routers_;  // the first byte of a connection's id is its router's index
   std::size_t next_ = 0;                // router that is asked first, in turn
   std::vector<std::string> endpoints_;
+  std::vector<std::string> files_;  // of ipc endpoints, to remove at the end
   zmq::message_t frame_;
   std::vector<zmq::pollitem_t> items_;
 };

@@ -125,8 +125,10 @@ Connection::Kind Supervisor::State::hear(const std::optional<std::chrono::millis
                                          const char* what) {
   const auto kind = connection.receive(timeout, options.is_interrupted);
   if (!kind) {
-    throw ConnectionError(std::string("interrupted or timed out: no ") + what + " from " +
-                          options.endpoint);
+    const bool interrupted = options.is_interrupted && options.is_interrupted();
+    throw ConnectionError(std::string("no ") + what + " from " + options.endpoint +
+                          (interrupted ? ": interrupted"
+                                       : " after " + std::to_string(timeout->count()) + " ms"));
   }
   if (*kind == Connection::Kind::kError) throw to_exception(connection.message().error());
   if (*kind == Connection::Kind::kEnd) {

@@ -35,8 +35,9 @@ Options session_options(const lua::ProgramOptions& from) {
 int run(const lua::ProgramOptions& options) {
   Session session(session_options(options));
   if (!options.quiet) {
-    std::fprintf(stderr, "ziggurat-lua: runs %zu robots at %s, seed %llu\n",
-                 session.robots().size(), options.endpoint.c_str(),
+    const std::size_t robots = session.robots().size();
+    std::fprintf(stderr, "ziggurat-lua: runs %zu %s at %s, seed %llu\n", robots,
+                 robots == 1 ? "robot" : "robots", options.endpoint.c_str(),
                  static_cast<unsigned long long>(session.seed()));
   }
   lua::Runner runner(session, options);

@@ -45,7 +45,7 @@ TEST(Endpoint, OtherAddressesNeedConsent) {
 TEST(Endpoint, Forms) {
   for (const char* endpoint : {"", "7400", "http://127.0.0.1:1", "tcp://127.0.0.1", "tcp://:1",
                                "tcp://127.0.0.1:x", "tcp://127.0.0.1:70000", "ipc://"}) {
-    EXPECT_TRUE(says(complaint(endpoint), "would do")) << endpoint;
+    EXPECT_TRUE(says(complaint(endpoint), "write for example")) << endpoint;
   }
 }
 
@@ -78,7 +78,9 @@ TEST_F(EndpointFiles, AnotherServersSocketIsNotTaken) {
   {
     const Server first(config, small.run());
     EXPECT_TRUE(says(complaint(config.endpoints[0]), "another server"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "arena"));
   }
+  EXPECT_FALSE(std::filesystem::exists(folder / "arena"));
   EXPECT_EQ(complaint(config.endpoints[0]), "");
 }
 
