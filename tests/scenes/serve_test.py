@@ -78,12 +78,12 @@ class Serve(SceneTest):
             return first, answer
 
     def slow_scene(self):
-        """The test's scene with 40 000 boxes more: placing them takes some seconds."""
+        """The test's scene with 15 000 boxes more: placing them takes a second or more."""
         text = self.scene.read_text()
         boxes = '''<distribute>
           <position method="uniform" min="-99,-99,9" max="99,99,9"/>
           <orientation method="constant" values="0,0,0"/>
-          <entity quantity="40000" max_trials="1000">
+          <entity quantity="15000" max_trials="1000">
             <box id="crate" size="0.5,0.5,0.1" movable="false"/>
           </entity>
         </distribute>'''
