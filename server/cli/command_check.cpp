@@ -65,6 +65,45 @@ void add_plain_tags(const scene::Scene& scene, std::vector<scene::Problem>& prob
   for (const auto& distribution : scene.distributions) add(distribution.entity);
 }
 
+// The joint that an actuator moves, in the first entity with its controller; none if there is none.
+const scene::Joint* joint_of(const scene::Scene& scene, std::size_t controller,
+                             const std::string& id) {
+  const auto find = [&](const scene::Entity& entity) -> const scene::Joint* {
+    if (entity.controller != controller) return nullptr;
+    const auto found = std::ranges::find(entity.joints, id, &scene::Joint::id);
+    return found == entity.joints.end() ? nullptr : &*found;
+  };
+  for (const auto& entity : scene.entities) {
+    if (const auto* joint = find(entity)) return joint;
+  }
+  for (const auto& distribution : scene.distributions) {
+    if (const auto* joint = find(distribution.entity)) return joint;
+  }
+  return nullptr;
+}
+
+// Notices on motors with an impulse per substep, where the scene has not the default number of
+// substeps.
+void add_impulses(const scene::Scene& scene, std::vector<scene::Problem>& problems) {
+  const unsigned iterations = scene.physics.iterations, usual = scene::Physics{}.iterations;
+  if (iterations == usual) return;
+  for (std::size_t c = 0; c < scene.controllers.size(); ++c) {
+    for (const auto& motor : scene.controllers[c].devices.joints.actuators) {
+      const auto* joint = joint_of(scene, c, motor.joint);
+      if (joint == nullptr || motor.max_impulse == 0) continue;
+      const bool turns = joint->type == scene::JointType::revolute;
+      const double per_substep = motor.max_impulse * scene.experiment.ticks_per_second;
+      problems.push_back(
+          {Severity::notice, scene.files[motor.where.file], motor.where,
+           fmt::format("max_impulse is per substep: joint {} has {:.6g} {} with iterations=\"{}\", "
+                       "and {:.6g} with {}; write {} instead, which stays when iterations change",
+                       scene::in_quotes(motor.joint), per_substep * iterations, turns ? "N m" : "N",
+                       iterations, per_substep * usual, usual,
+                       turns ? "max_torque" : "max_force")});
+    }
+  }
+}
+
 std::vector<ModelUse> uses_of_models(const scene::Scene& scene) {
   std::vector<ModelUse> uses;
   for (const auto& model : scene.models) uses.push_back({model.id});
@@ -95,6 +134,7 @@ Finding examine(const std::string& path, const run::Options& options) {
   add(processes::check_scripts(read.scene, path));
   if (finding.count(Severity::fault) > 0) return finding;
   add_plain_tags(read.scene, finding.problems);
+  add_impulses(read.scene, finding.problems);
   try {
     const simulation::Simulation simulation(read.scene,
                                             {run::choose_seed(options, read.scene), {}});

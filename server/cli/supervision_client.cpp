@@ -86,6 +86,11 @@ std::string to_text(const ServerStatus& status) {
   if (!status.gone_robots.empty()) {
     text += fmt::format("\n\nwithout controller from now on: {}", some_of(status.gone_robots));
   }
+  if (const auto& solver = status.solver; solver.islands > 0) {
+    text += fmt::format(
+        "\n\nsolver: {} islands, {} did not converge, the worst residual is {:.2g} m/s or rad/s",
+        solver.islands, solver.not_converged, solver.worst_residual);
+  }
   if (!status.budget.empty()) text += "\n\na tick's wall time:";
   for (const ServerStatus::Phase& phase : status.budget) {
     text +=

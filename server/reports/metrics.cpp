@@ -112,6 +112,14 @@ std::string to_prometheus(const wire::Status& status) {
         status.gone_robots.size());
   gauge("ziggurat_uptime_seconds", "Wall time since the start.", status.wall_uptime_s);
   add_sessions(out, status);
+  if (status.solver.islands > 0) {
+    gauge("ziggurat_solver_islands", "Islands of bodies that touch, solved since the world began.",
+          status.solver.islands);
+    gauge("ziggurat_solver_not_converged", "Islands for which the solver did not converge.",
+          status.solver.not_converged);
+    gauge("ziggurat_solver_worst_residual",
+          "Largest violation of the laws of contact [m/s or rad/s].", status.solver.worst_residual);
+  }
   head(out, "ziggurat_tick_phase_seconds", "gauge",
        "Where the wall time of a tick goes, over the last 1000 ticks.");
   for (const auto& phase : status.budget) {

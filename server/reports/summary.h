@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "wire/request.h"
+
 namespace ziggurat::reports {
 
 /// How the program ends.
@@ -42,13 +44,7 @@ struct Summary {
   std::uint64_t seed = 0;
   std::uint64_t hash = 0;
   std::size_t robots = 0;
-
-  /// Of solver="newton".
-  struct Solver {
-    std::uint64_t islands = 0;        ///< of bodies in contact, solved over all substeps
-    std::uint64_t not_converged = 0;  ///< of them
-    double worst_residual = 0;        ///< violation of the laws of contacts and motors [m/s], [rad/s]
-  } solver;
+  wire::SolverStatus solver;  ///< without islands: the solver does not tell
 
   struct Failure {
     std::string robot;

@@ -30,8 +30,7 @@ void Run::complete_summary() {
       summary_.physics_s + summary_.exchange_s + summary_.recording_s + summary_.pacing_s;
   summary_.seed = world_.seed;  // a reset may have changed it
   summary_.hash = simulation.hash();
-  const auto convergence = simulation.convergence();
-  summary_.solver = {convergence.islands, convergence.not_converged, convergence.worst};
+  summary_.solver = supervision::solver_status(simulation);
   summary_.vanished = watch_.vanished();
   const auto performance = server_.performance();
   for (std::size_t c = 0; c < performance.size(); ++c) {

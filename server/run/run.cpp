@@ -196,8 +196,21 @@ Ending Run::run_world() {
     if (is_last) return Ending::finished;
     simulation.step();
     timer_.end_phase(Phase::physics, summary_);
+    if (!printed_miss_) print_first_miss();
     timer_.end_tick(supervision_, plan_.real_time.has_value());
   }
+}
+
+/// A notice when the physics' solver has not converged for the first time.
+void Run::print_first_miss() {
+  const wire::SolverStatus solver = supervision::solver_status(world_.simulation);
+  if (solver.not_converged == 0) return;
+  printed_miss_ = true;
+  console_.notice(fmt::format(
+      "tick {}: the solver did not converge for bodies that touch: their speeds miss the laws of "
+      "contact by up to {:.2g} m/s or rad/s; more iterations in <dynamics3d> make that less; the "
+      "summary counts such cases",
+      world_.simulation.state().tick, solver.worst_residual));
 }
 
 /// Until the tick is complete. Again if the world is paused then, or if a client has connected to a

@@ -71,6 +71,7 @@ class Run {
   std::optional<Ending> pace(Watch::clock::time_point start);
   std::optional<Ending> wait(const Wait& step);
   bool reset_world();
+  void print_first_miss();
 
   // Ending.
   void end_in_failure(const std::exception& error);
@@ -98,6 +99,7 @@ class Run {
   Watch watch_;
   reports::Summary summary_;
   PhaseTimer timer_;
+  bool printed_miss_ = false;
 };
 
 }  // namespace ziggurat::run

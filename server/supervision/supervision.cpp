@@ -272,6 +272,7 @@ wire::Status Supervision::status() const {
   status.last_tick = settings_.last_tick;
   server_.fill(status);
   budget_.fill(status);
+  status.solver = solver_status(world_.simulation);
   status.wall_uptime_s = std::chrono::duration<double>(clock::now() - start_).count();
   return status;
 }

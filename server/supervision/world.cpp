@@ -23,6 +23,11 @@ void World::reset(std::uint64_t new_seed) {
   seed = new_seed;
 }
 
+wire::SolverStatus solver_status(const simulation::Simulation& simulation) {
+  const auto convergence = simulation.convergence();
+  return {convergence.islands, convergence.not_converged, convergence.worst};
+}
+
 std::string scene_hash(const scene::Scene& scene) {
   math::Hash hash;
   for (const std::string& name : scene.files) {

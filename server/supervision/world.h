@@ -8,6 +8,7 @@
 #include "scene/additions.h"
 #include "scene/scene.h"
 #include "simulation/simulation.h"
+#include "wire/request.h"
 
 namespace ziggurat::supervision {
 
@@ -28,6 +29,9 @@ struct World {
   std::uint64_t seed;
   simulation::Simulation simulation;
 };
+
+/// Since the start or the last reset.
+wire::SolverStatus solver_status(const simulation::Simulation& simulation);
 
 /// The hash of the scene's files: 16 hexadecimal digits.
 std::string scene_hash(const scene::Scene& scene);

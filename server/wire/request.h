@@ -55,6 +55,13 @@ struct SessionStatus {
   scene::DeadlinePolicy deadline;
 };
 
+/// How well the physics' solver did since the world began.
+struct SolverStatus {
+  std::uint64_t islands = 0;        ///< of bodies that touch, solved over all substeps
+  std::uint64_t not_converged = 0;  ///< of them
+  double worst_residual = 0;        ///< violation of the laws of contacts and motors [m/s], [rad/s]
+};
+
 struct Status {
   enum class Phase { unspecified, gathering, running, paused, ending };
   std::uint64_t tick = 0;
@@ -73,6 +80,7 @@ struct Status {
   };
   std::vector<PhaseBudget> budget;
   double wall_uptime_s = 0;
+  SolverStatus solver;  ///< without islands: the solver does not tell
 };
 
 /// As protobuf's JSON, on one line.

@@ -75,6 +75,12 @@ void fill(const Status& from, v1::Status& to) {
     fill(phase.wall, *budget.mutable_wall());
   }
   to.set_wall_uptime_s(from.wall_uptime_s);
+  if (from.solver.islands > 0) {
+    v1::SolverStatus& solver = *to.mutable_solver();
+    solver.set_islands(from.solver.islands);
+    solver.set_not_converged(from.solver.not_converged);
+    solver.set_worst_residual(from.solver.worst_residual);
+  }
 }
 
 void fill(const world::Layout& layout, const world::State& state,

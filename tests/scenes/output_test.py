@@ -195,6 +195,12 @@ side_length="0.05" payload="hello"/></tags></devices>
         self.assertTrue(plain[0]["file"].endswith("tile.argos"))
         self.assertIn('2 entities (2 of model "tile")', self.ziggurat("check", scene).out)
 
+    def test_check_proposes_forces_where_iterations_change(self):
+        self.assertNotIn("max_impulse", self.ziggurat("check", self.scene).err)
+        self.change('iterations="10"', 'iterations="40"')
+        self.assertIn("4 N m with iterations=\"40\", and 1 with 10; write max_torque instead",
+                      self.ziggurat("check", self.scene).err)
+
     def test_messages_are_json(self):
         self.change('mass="2"', 'mass="-2"', 1)
         outcome = self.ziggurat("run", "--json", self.scene)

@@ -70,6 +70,8 @@ ServerStatus status_of(const v1::Status& from) {
     to.budget.push_back({phase.phase(), latency_of(phase.wall())});
   }
   to.uptime = from.wall_uptime_s();
+  to.solver = {from.solver().islands(), from.solver().not_converged(),
+               from.solver().worst_residual()};
   return to;
 }
 
@@ -126,9 +128,9 @@ Connection::Kind Supervisor::State::hear(const std::optional<std::chrono::millis
   const auto kind = connection.receive(timeout, options.is_interrupted);
   if (!kind) {
     const bool interrupted = options.is_interrupted && options.is_interrupted();
-    throw ConnectionError(std::string("no ") + what + " from " + options.endpoint +
-                          (interrupted ? ": interrupted"
-                                       : " after " + std::to_string(timeout->count()) + " ms"));
+    throw ConnectionError(
+        std::string("no ") + what + " from " + options.endpoint +
+        (interrupted ? ": interrupted" : " after " + std::to_string(timeout->count()) + " ms"));
   }
   if (*kind == Connection::Kind::kError) throw to_exception(connection.message().error());
   if (*kind == Connection::Kind::kEnd) {

@@ -14,7 +14,8 @@ from .parallel import ParallelEnv, all_readings, joint_targets, parallel_env
 from .robot import Robot
 from .server import Server
 from .session import Deadline, Ending, Event, Session, Tick, connect, resume
-from .supervisor import EntityState, LinkState, SessionStatus, States, Status, Supervisor, supervise
+from .supervisor import (EntityState, LinkState, SessionStatus, SolverStatus, States, Status,
+                         Supervisor, supervise)
 
 __version__ = "0.1.0"
 __all__ = [name for name in dir() if not name.startswith("_")]

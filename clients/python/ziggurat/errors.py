@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from . import protocol_pb2 as v1
+
+
+def name_of(enum: Any, number: int) -> str:
+    """A later version of the protocol may have more values: their number."""
+    return enum.Name(number) if number in enum.values() else str(number)
 
 
 class ZigguratError(Exception):
@@ -25,8 +32,7 @@ class ProtocolError(ZigguratError):
     """The server answered a message with an error, whose fields have the same names here."""
 
     def __init__(self, error: v1.Error):
-        self.code: str = v1.Error.Code.Name(error.code) if error.code in v1.Error.Code.values() \
-            else str(error.code)
+        self.code: str = name_of(v1.Error.Code, error.code)
         self.retryable: bool = error.retryable
         self.tick: int = error.tick
         self.robot: str = error.robot

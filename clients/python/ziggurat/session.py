@@ -8,7 +8,7 @@ from typing import Any, Iterator, Optional, Sequence, Union
 
 from . import protocol_pb2 as v1
 from .connection import Connection, Curve
-from .errors import Displaced, ProtocolError
+from .errors import Displaced, ProtocolError, name_of
 from .exchange import Exchange
 from .named import Named
 from .robot import Robot
@@ -157,7 +157,7 @@ class Session:
             if kind == "observation":
                 return self._observe(message.observation)
             if kind == "end":
-                self.ending = Ending(v1.End.Reason.Name(message.end.reason).lower(),
+                self.ending = Ending(name_of(v1.End.Reason, message.end.reason).lower(),
                                      message.end.message, message.end.tick)
                 raise StopIteration
             self._take(kind, message)

@@ -9,7 +9,7 @@ from . import protocol_pb2 as v1
 from .connection import Connection, Curve
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of
-from .errors import ConnectionLost, ProtocolError
+from .errors import ConnectionLost, ProtocolError, name_of
 from .session import Ending
 
 
@@ -27,6 +27,15 @@ class SessionStatus:
 
 
 @dataclass(frozen=True)
+class SolverStatus:
+    """Of the physics, since the world began. Without islands: not known."""
+
+    islands: int  # of bodies that touch, solved over all substeps
+    not_converged: int  # of them
+    worst_residual: float  # largest violation of the laws of contact [m/s] or [rad/s]
+
+
+@dataclass(frozen=True)
 class Status:
     tick: int
     time_ns: int  # simulated
@@ -38,6 +47,7 @@ class Status:
     sessions: Tuple[SessionStatus, ...]
     free_robots: Tuple[str, ...]  # without a session; the world waits for them
     gone_robots: Tuple[str, ...]
+    solver: SolverStatus
 
 
 @dataclass(frozen=True)
@@ -175,16 +185,19 @@ class Supervisor:
 
 
 def _status(given: v1.Status) -> Status:
-    return Status(given.tick, given.time_ns, v1.Status.Phase.Name(given.phase).lower(), given.seed,
+    return Status(given.tick, given.time_ns, name_of(v1.Status.Phase, given.phase).lower(), given.seed,
                   given.scene, given.scene_hash, given.last_tick,
                   tuple(map(_session, given.sessions)), tuple(given.free_robots),
-                  tuple(given.gone_robots))
+                  tuple(given.gone_robots),
+                  SolverStatus(given.solver.islands, given.solver.not_converged,
+                               given.solver.worst_residual))
 
 
 def _session(given: v1.SessionStatus) -> SessionStatus:
     latency = given.wall_latency
-    return SessionStatus(given.client, v1.Role.Name(given.role)[len("ROLE_"):].lower(),
-                         v1.SessionStatus.State.Name(given.state).lower(), tuple(given.robots),
+    role = name_of(v1.Role, given.role).removeprefix("ROLE_").lower()
+    state = name_of(v1.SessionStatus.State, given.state).lower()
+    return SessionStatus(given.client, role, state, tuple(given.robots),
                          given.tick, given.wall_waiting_s, given.wall_last_message_s,
                          (latency.p50, latency.p99, latency.max), given.misses)
 

@@ -36,6 +36,10 @@ TEST(Supervisor, ListsTheSessions) {
     session.set_role(v1::ROLE_OBSERVER);
     session.set_state(v1::SessionStatus::OWING);
     session.add_robots("a");
+    v1::SolverStatus& solver = *status.mutable_solver();
+    solver.set_islands(1000);
+    solver.set_not_converged(3);
+    solver.set_worst_residual(0.25);
     self.send(message);
   });
   Supervisor supervisor(supervise(server));
@@ -46,6 +50,9 @@ TEST(Supervisor, ListsTheSessions) {
   EXPECT_EQ(status.sessions[0].role, "observer");
   EXPECT_EQ(status.sessions[0].state, "owing");
   EXPECT_EQ(status.sessions[0].robots, std::vector<std::string>{"a"});
+  EXPECT_EQ(status.solver.islands, 1000U);
+  EXPECT_EQ(status.solver.not_converged, 3U);
+  EXPECT_EQ(status.solver.worst_residual, 0.25);
   EXPECT_NE(supervisor.last_answer_json().find("ROLE_OBSERVER"), std::string::npos);
 }
 

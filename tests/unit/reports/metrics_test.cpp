@@ -34,6 +34,16 @@ TEST(Metrics, ReadAsPrometheusAsks) {
             std::string::npos)
       << text;
   EXPECT_NE(text.find("phase=\"physics\",quantile=\"0.99\"} 0.002\n"), std::string::npos);
+  EXPECT_EQ(text.find("solver"), std::string::npos);
+}
+
+TEST(Metrics, TellHowWellTheSolverDid) {
+  wire::Status solved = status();
+  solved.solver = {1000, 3, 0.25};
+  const std::string text = to_prometheus(solved);
+  EXPECT_NE(text.find("\nziggurat_solver_islands 1000\n"), std::string::npos);
+  EXPECT_NE(text.find("\nziggurat_solver_not_converged 3\n"), std::string::npos);
+  EXPECT_NE(text.find("\nziggurat_solver_worst_residual 0.25\n"), std::string::npos);
 }
 
 TEST(Metrics, AreServedOverHttp) {

@@ -67,6 +67,12 @@ struct ServerStatus {
   };
   std::vector<Phase> budget;  ///< where the wall time of a tick goes
   double uptime = 0;          ///< [s, wall]
+  /// How well contacts were solved since the world began; without islands: not known.
+  struct Solver {
+    std::uint64_t islands = 0;        ///< of bodies that touch, solved over all substeps
+    std::uint64_t not_converged = 0;  ///< of them
+    double worst_residual = 0;        ///< largest violation of the laws of contact [m/s] or [rad/s]
+  } solver;
 };
 
 struct EntityState {

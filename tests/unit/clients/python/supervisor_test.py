@@ -74,11 +74,21 @@ class Supervision(SessionCase):
                                    wall_waiting_s=2.5, misses=1)
         status = self.ask(lambda world: world.status(),
                           {"status": v1.Status(tick=3, phase=v1.Status.RUNNING, seed=7,
-                                               sessions=[session], free_robots=["b"])})
+                                               sessions=[session], free_robots=["b"],
+                                               solver=v1.SolverStatus(islands=9, not_converged=2,
+                                                                      worst_residual=0.5))})
         self.assertEqual((status.phase, status.seed, status.free_robots), ("running", 7, ("b",)))
         self.assertEqual(status.sessions[0].role, "controller")
         self.assertEqual(status.sessions[0].state, "owing")
         self.assertEqual(status.sessions[0].wall_waiting, 2.5)
+        self.assertEqual(status.solver, ziggurat.SolverStatus(9, 2, 0.5))
+
+    def test_servers_of_later_versions_may_have_more_values(self):
+        session = v1.SessionStatus(role=77, state=78)
+        status = self.ask(lambda world: world.status(),
+                          {"status": v1.Status(phase=79, sessions=[session])})
+        self.assertEqual((status.phase, status.sessions[0].role, status.sessions[0].state),
+                         ("79", "77", "78"))
 
     def test_a_refused_request_is_an_exception(self):
         error = v1.Error(code=v1.Error.UNKNOWN_ENTITY, severity=v1.Error.DISCARD, message="No.")
