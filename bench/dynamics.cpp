@@ -2,6 +2,7 @@
 // detection: two-wheeled robots that drive, boxes at rest, towers.
 //
 // usage: bench_dynamics          prints microseconds of CPU time per substep
+//        bench_dynamics robots N
 //        bench_dynamics CUBES [SUBSTEPS [HZ [verbose]]]    a pile
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <string_view>
 #include <vector>
 
 #include "dynamics/system.h"
@@ -218,6 +220,10 @@ void bench_pile(int count, int steps, double hz, bool verbose) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 3 && std::string_view(argv[1]) == "robots") {
+    bench_robots(std::atoi(argv[2]));
+    return 0;
+  }
   if (argc > 1) {
     bench_pile(std::atoi(argv[1]), argc > 2 ? std::atoi(argv[2]) : 150,
                argc > 3 ? std::atof(argv[3]) : 100, argc > 4);

@@ -41,28 +41,45 @@ void project_wrenches(Tree& tree, std::span<double> out) {
   }
 }
 
+/// The mass matrix of a free root that carries `inertia`.
+void set_root_mass(const Inertia& inertia, double* mass, int n) {
+  const Vector3& h = inertia.first_moment;
+  const double coupling[3][3] = {{0, -h.z(), h.y()}, {h.z(), 0, -h.x()}, {-h.y(), h.x(), 0}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      mass[i * n + j] = inertia.second_moment(i, j);
+      mass[i * n + 3 + j] = mass[(3 + j) * n + i] = coupling[i][j];
+      mass[(3 + i) * n + 3 + j] = i == j ? inertia.mass : 0;
+    }
+  }
+}
+
 }  // namespace
 
 void compute_mass(Tree& tree) {
   const int size = static_cast<int>(tree.links.size()), n = tree.dofs;
   for (int i = 0; i < size; ++i) {
-    if (tree.links[i].joint == JointType::fixed) {
-      tree.inertia[i] = Inertia{};
-    } else {
-      tree.inertia[i] = link_inertia(tree, i);
-    }
+    tree.own_inertia[i] =
+        tree.links[i].joint == JointType::fixed ? Inertia{} : link_inertia(tree, i);
+    tree.inertia[i] = tree.own_inertia[i];
   }
   if (size > 1) tree.mass.assign(tree.mass.size(), 0);  // dofs on different branches do not couple
+  const int root = tree.free_root ? 6 : 0;  // dofs along the world's axes
   for (int i = size - 1; i >= 0; --i) {
     const int first = tree.first_dof[i];
-    for (int k = first; k < first + tree.dof_count[i]; ++k) {
+    for (int k = std::max(first, root); k < first + tree.dof_count[i]; ++k) {
       const Wrench momentum = tree.inertia[i] * tree.axes[k];
-      for (int j = k; j >= 0; j = tree.parent_dof[j]) {
+      for (int j = k; j >= root; j = tree.parent_dof[j]) {
         tree.mass[k * n + j] = tree.mass[j * n + k] = dot(tree.axes[j], momentum);
+      }
+      for (int j = 0; j < root; ++j) {
+        const double part = j < 3 ? momentum.moment[j] : momentum.force[j - 3];
+        tree.mass[k * n + j] = tree.mass[j * n + k] = part;
       }
     }
     if (i > 0) tree.inertia[tree.links[i].parent] += tree.inertia[i];
   }
+  if (tree.free_root) set_root_mass(tree.inertia[0], tree.mass.data(), n);
 }
 
 void bias_forces(Tree& tree, std::span<double> out) {
@@ -87,7 +104,7 @@ void bias_forces(Tree& tree, std::span<double> out) {
       tree.wrench[i] = Wrench{};
       continue;
     }
-    const Inertia inertia = link_inertia(tree, i);
+    const Inertia& inertia = tree.own_inertia[i];
     tree.wrench[i] = inertia * acceleration + cross(motion, inertia * motion);
   }
   project_wrenches(tree, out);

@@ -10,10 +10,10 @@
 
 namespace ziggurat::dynamics {
 
-/// Fills tree.mass, with both triangles; needs place().
+/// Fills tree.mass, with both triangles, and tree.own_inertia; needs place().
 void compute_mass(Tree& tree);
 
-/// Coriolis, centrifugal and gyroscopic forces c(q, v); needs place() and move().
+/// Coriolis, centrifugal and gyroscopic forces c(q, v); needs place(), move() and compute_mass().
 /// @param out  of each dof [N m] or [N]
 void bias_forces(Tree& tree, std::span<double> out);
 

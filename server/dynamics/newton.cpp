@@ -7,41 +7,50 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// sloped := slope times the columns, row by row.
-/// @param columns  R values per dof
+/// One side of a block of R rows.
+struct Side {
+  int place = -1;                   // of its tree in the island
+  int dofs = 0;                     // of the tree
+  const double* columns = nullptr;  // R values per dof
+  std::span<const int> touched;     // dofs whose columns are not zero, ascending
+  int leading = 0;                  // so many of them are the first dofs of the tree: 6 or 0
+};
+
+Side side_of(const Problem& problem, int place, int first, std::span<const int> dofs) {
+  const Tree& tree = *problem.trees[place];
+  return {place, tree.dofs, problem.jacobian.data() + first, dofs,
+          tree.free_root && dofs.size() >= 6 ? 6 : 0};
+}
+
+/// sloped := slope times the columns of a side, row by row, one entry per touched dof.
 template <int R>
-void apply_slope(const double* slope, const double* columns, int dofs, double* sloped) {
-  for (int k = 0; k < dofs; ++k, columns += R) {
+void apply_slope(const double* slope, const Side& side, double* sloped) {
+  const std::size_t count = side.touched.size();
+  for (std::size_t e = 0; e < count; ++e) {
+    const double* column = side.columns + side.touched[e] * R;
     for (int r = 0; r < R; ++r) {
       double sum = 0;
-      for (int c = 0; c < R; ++c) sum += slope[r * R + c] * columns[c];
-      sloped[r * dofs + k] = sum;
+      for (int c = 0; c < R; ++c) sum += slope[r * R + c] * column[c];
+      sloped[r * count + e] = sum;
     }
   }
 }
 
-/// out += columns^T sloped, n x m.
-template <int R>
-void add_product(const double* columns, int n, const double* sloped, int m, double* out) {
-  for (int i = 0; i < n; ++i, columns += R, out += m) {
-    for (int j = 0; j < m; ++j) {
-      double sum = out[j];
-      for (int r = 0; r < R; ++r) sum += columns[r] * sloped[r * m + j];
-      out[j] = sum;
-    }
+/// A row of the matrix += column^T sloped.
+/// @param L  how many of the dofs are leading: the compiler knows their number
+template <int R, int L>
+void add_to_row(const double* column, const Side& side, const double* sloped, double* row) {
+  const std::size_t count = side.touched.size();
+  double leading[L > 0 ? L : 1];
+  for (int j = 0; j < L; ++j) leading[j] = row[j];
+  for (int r = 0; r < R; ++r) {
+    for (int j = 0; j < L; ++j) leading[j] += column[r] * sloped[r * count + j];
   }
-}
-
-/// The same for one body each: sizes that the compiler knows.
-template <int R>
-void add_body_product(const double* columns, const double* sloped, double* out) {
-  for (int i = 0; i < 6; ++i, columns += R, out += 6) {
-    double row[6];
-    for (int j = 0; j < 6; ++j) row[j] = out[j];
-    for (int r = 0; r < R; ++r) {
-      for (int j = 0; j < 6; ++j) row[j] += columns[r] * sloped[r * 6 + j];
-    }
-    for (int j = 0; j < 6; ++j) out[j] = row[j];
+  for (int j = 0; j < L; ++j) row[j] = leading[j];
+  for (std::size_t e = L; e < count; ++e) {
+    double sum = row[side.touched[e]];
+    for (int r = 0; r < R; ++r) sum += column[r] * sloped[r * count + e];
+    row[side.touched[e]] = sum;
   }
 }
 
@@ -49,21 +58,22 @@ void add_body_product(const double* columns, const double* sloped, double* out) 
 template <int R>
 void add_slope_of(const Problem& problem, const Block& block, const double* slope,
                   std::vector<double>& sloped, BlockMatrix& matrix) {
-  const int sides[] = {block.a, block.b}, first[] = {block.ja, block.jb};
-  for (int s = 0; s < 2; ++s) {
-    if (sides[s] < 0) continue;
-    const int m = problem.trees[sides[s]]->dofs;
-    sloped.resize(static_cast<std::size_t>(m) * R);
-    apply_slope<R>(slope, problem.jacobian.data() + first[s], m, sloped.data());
-    for (int t = 0; t < 2; ++t) {
-      if (sides[t] < 0) continue;
-      const double* columns = problem.jacobian.data() + first[t];
-      const int n = problem.trees[sides[t]]->dofs;
-      double* out = matrix.block(sides[t], sides[s]);
-      if (n == 6 && m == 6) {
-        add_body_product<R>(columns, sloped.data(), out);
-      } else {
-        add_product<R>(columns, n, sloped.data(), m, out);
+  Side sides[2];
+  if (block.a >= 0) sides[0] = side_of(problem, block.a, block.ja, block.dofs_a);
+  if (block.b >= 0) sides[1] = side_of(problem, block.b, block.jb, block.dofs_b);
+  for (const Side& s : sides) {
+    if (s.place < 0) continue;
+    sloped.resize(s.touched.size() * R);
+    apply_slope<R>(slope, s, sloped.data());
+    for (const Side& t : sides) {
+      if (t.place < 0) continue;
+      double* out = matrix.block(t.place, s.place);
+      for (const int k : t.touched) {
+        if (s.leading == 6) {
+          add_to_row<R, 6>(t.columns + k * R, s, sloped.data(), out + k * s.dofs);
+        } else {
+          add_to_row<R, 0>(t.columns + k * R, s, sloped.data(), out + k * s.dofs);
+        }
       }
     }
   }
@@ -83,16 +93,26 @@ void Solver::add_slope(const Problem& problem, const Block& block, const Linear&
 /// Adds J^T constant to the right-hand side, which is in v.
 void Solver::add_constant(Problem& problem, const Block& block, const Linear& linear) {
   if (linear.zero) return;
-  const int sides[] = {block.a, block.b}, first[] = {block.ja, block.jb};
-  for (int s = 0; s < 2; ++s) {
-    if (sides[s] < 0) continue;
+  const auto add_side = [&](int place, int first, std::span<const int> dofs) {
+    if (place < 0) return;
     const int rows = block.rows;
-    const double* columns = problem.jacobian.data() + first[s];
-    double* right = problem.velocity.data() + problem.offset[sides[s]];
-    for (int k = 0; k < problem.trees[sides[s]]->dofs; ++k) {
-      for (int r = 0; r < rows; ++r) right[k] += columns[k * rows + r] * linear.constant[r];
+    const double* columns = problem.jacobian.data() + first;
+    const double* constant = linear.constant.data();
+    double* right = problem.velocity.data() + problem.offset[place];
+    for (const int k : dofs) {
+      const double* column = columns + k * rows;
+      double sum = right[k] + column[0] * constant[0];
+      if (rows == 3) {
+        sum += column[1] * constant[1];
+        sum += column[2] * constant[2];
+      } else {
+        for (int r = 1; r < rows; ++r) sum += column[r] * constant[r];
+      }
+      right[k] = sum;
     }
-  }
+  };
+  add_side(block.a, block.ja, block.dofs_a);
+  add_side(block.b, block.jb, block.dofs_b);
 }
 
 /// The mass matrices.
@@ -108,18 +128,22 @@ void Solver::start_matrix(Problem& problem) {
   }
 }
 
-/// One step of Newton's method.
+/// The speeds of all blocks at the present velocities.
+void Solver::take_speeds(const Problem& problem) {
+  speeds_.resize(problem.blocks.size());
+  for (std::size_t i = 0; i < speeds_.size(); ++i) {
+    problem.speeds(problem.blocks[i], speeds_[i].data());
+  }
+}
+
+/// One step of Newton's method. Speeds must be taken, and are taken at the velocities that it finds.
 /// @return  false if the matrix has no factors; then nothing has changed
 bool Solver::step(Problem& problem) {
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    double u[Block::most_rows];
-    problem.speeds(problem.blocks[i], u);
-    linearise(problem.blocks[i], u, linear_[i]);
-  }
   kept_velocity_ = problem.velocity;
   start_matrix(problem);
   problem.velocity = problem.momentum;
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    linearise(problem.blocks[i], speeds_[i].data(), linear_[i]);
     add_slope(problem, problem.blocks[i], linear_[i]);
     add_constant(problem, problem.blocks[i], linear_[i]);
   }
@@ -128,6 +152,7 @@ bool Solver::step(Problem& problem) {
     return false;
   }
   matrix_.solve(problem.velocity.data());
+  take_speeds(problem);
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
     Block& block = problem.blocks[i];
     const Linear& linear = linear_[i];
@@ -135,8 +160,7 @@ bool Solver::step(Problem& problem) {
       block.impulse.fill(0);
       continue;
     }
-    double u[Block::most_rows];
-    problem.speeds(block, u);
+    const auto& u = speeds_[i];
     for (int r = 0; r < block.rows; ++r) {
       double sum = linear.constant[r];
       for (int c = 0; c < block.rows; ++c) sum -= linear.slope[r * block.rows + c] * u[c];
@@ -146,19 +170,25 @@ bool Solver::step(Problem& problem) {
   return true;
 }
 
+/// At the speeds that were taken.
 /// @param scale  out: the largest speed, or change of speed by an impulse
-double Solver::worst_miss(const Problem& problem, double& scale) const {
+double Solver::miss_now(const Problem& problem, double& scale) const {
   double worst = 0;
   scale = 0;
-  for (const Block& block : problem.blocks) {
-    double u[Block::most_rows];
-    problem.speeds(block, u);
-    worst = std::max(worst, miss(block, u));
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    const Block& block = problem.blocks[i];
+    const auto& u = speeds_[i];
+    worst = std::max(worst, miss(block, u.data()));
     for (int r = 0; r < block.rows; ++r) {
       scale = std::max({scale, std::abs(u[r]), std::abs(block.impulse[r]) * block.mobility[r]});
     }
   }
   return worst;
+}
+
+double Solver::worst_miss(const Problem& problem, double& scale) {
+  take_speeds(problem);
+  return miss_now(problem, scale);
 }
 
 void Solver::Snapshot::take(const Problem& problem) {
@@ -172,14 +202,14 @@ void Solver::Snapshot::give_back(Problem& problem) const {
   for (std::size_t i = 0; i < impulses.size(); ++i) problem.blocks[i].impulse = impulses[i];
 }
 
-/// Newton's method from the present state.
+/// Newton's method from the present state, whose speeds are taken.
 /// @return  whether it converged; then the problem holds the solution
 bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
   double scale = 0;
   for (int i = 0; i < most; ++i) {
     if (!step(problem)) return false;
     ++outcome.iterations;
-    outcome.miss = worst_miss(problem, scale);
+    outcome.miss = miss_now(problem, scale);
     if (outcome.miss <= tolerance(scale)) return true;
   }
   return false;
@@ -225,6 +255,7 @@ Outcome Solver::solve(Problem& problem) {
 void Solver::solve_displacement(Problem& problem) {
   Outcome outcome;
   start(problem);
+  take_speeds(problem);
   if (matrix_.work() <= options.newton_work) {
     if (iterate(problem, outcome, options.most_iterations)) return;
     start_.give_back(problem);

@@ -81,6 +81,8 @@ class Solver {
   bool step(Problem& problem);
   void start(Problem& problem);
   bool still_solved(const Problem& problem, Outcome& outcome);
+  void take_speeds(const Problem& problem);
+  double miss_now(const Problem& problem, double& scale) const;
   bool proximal(Problem& problem, Outcome& outcome, int most);
   bool proximal_step(Problem& problem);
   bool interior_points(Problem& problem, Outcome& outcome);
@@ -91,7 +93,7 @@ class Solver {
   void advance_interior(Problem& problem, double way);
   void add_slope(const Problem& problem, const Block& block, const Linear& linear);
   void add_constant(Problem& problem, const Block& block, const Linear& linear);
-  double worst_miss(const Problem& problem, double& scale) const;
+  double worst_miss(const Problem& problem, double& scale);
   void sweep_until_converged(Problem& problem, Outcome& outcome, int most);
   void prepare_sweeps(Problem& problem);
   void sweep_contact(Problem& problem, Block& block, std::size_t index);
@@ -101,6 +103,7 @@ class Solver {
   }
 
   BlockMatrix matrix_;
+  std::vector<std::array<double, Block::most_rows>> speeds_;  // of each block, by take_speeds()
   std::vector<Linear> linear_;
   std::vector<int> sizes_;
   std::vector<double> sloped_;

@@ -29,6 +29,7 @@ void Problem::clear() {
   blocks.clear();
   jacobian.clear();
   momentum.clear();
+  inverse_mass.clear();
   velocity.clear();
   couplings.clear();
 }
@@ -39,26 +40,43 @@ void Problem::add(Tree& tree) {
   offset.push_back(first);
   momentum.resize(first + tree.dofs);
   momentum_after(tree, length, {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
+  for (int k = 0; k < tree.dofs; ++k) inverse_mass.push_back(1 / tree.mass[k * tree.dofs + k]);
   velocity.insert(velocity.end(), tree.v.begin(), tree.v.end());
+}
+
+/// Adds columns of zeros for a tree.
+/// @return  where they begin in the Jacobian
+int Problem::add_columns(const Tree& tree, int rows) {
+  const int first = static_cast<int>(jacobian.size());
+  jacobian.resize(jacobian.size() + static_cast<std::size_t>(tree.dofs) * rows, 0.0);
+  return first;
 }
 
 /// Adds the columns of a contact on one side.
 /// @return  where they begin in the Jacobian
 int Problem::add_rows(const Tree& tree, int link, const Vector3& point, const Block& block,
                       double sign) {
-  const int first = static_cast<int>(jacobian.size()), rows = block.rows;
-  jacobian.resize(first + tree.dofs * rows, 0.0);
+  const int rows = block.rows, first = add_columns(tree, rows);
   const Matrix3 frame = sign * block.frame;
   const Vector3 arm = point - tree.origin;
-  while (link > 0 && tree.dof_count[link] == 0) link = tree.links[link].parent;
-  if (tree.dof_count[link] == 0) return first;
-  for (int k = tree.first_dof[link] + tree.dof_count[link] - 1; k >= 0; k = tree.parent_dof[k]) {
+  const std::span<const int> dofs = tree.dofs_of(link);
+  const std::size_t root = tree.free_root ? 6 : 0;  // dofs along the world's axes
+  for (const int k : dofs.subspan(root)) {
     const Motion& axis = tree.axes[k];
     double* column = jacobian.data() + first + k * rows;
     const Vector3 speed = axis.linear + axis.angular.cross(arm);
     column[0] = frame.col(0).dot(speed);
     for (int r = 1; r < std::min(rows, 3); ++r) column[r] = frame.col(r).dot(speed);
     for (int r = 3; r < rows; ++r) column[r] = frame.col(r - 3).dot(axis.angular);
+  }
+  for (int r = 0; r < rows && root > 0; ++r) {
+    const Vector3 direction = frame.col(r % 3);
+    const Vector3 moment = r < 3 ? Vector3(arm.cross(direction)) : direction;
+    double* row = jacobian.data() + first + r;
+    for (int k = 0; k < 3; ++k) {
+      row[k * rows] = moment[k];
+      if (r < 3) row[(3 + k) * rows] = direction[k];
+    }
   }
   return first;
 }
@@ -67,17 +85,31 @@ int Problem::add_rows(const Tree& tree, int link, const Vector3& point, const Bl
 /// rows that friction treats alike.
 void Problem::weigh(Block& block) const {
   block.mobility.fill(0);
-  const auto add_side = [&](int place, int first) {
+  const auto add_side = [&](int place, int first, std::span<const int> dofs) {
     if (place < 0) return;
-    const Tree& tree = *trees[place];
-    for (int k = 0; k < tree.dofs; ++k) {
-      const double inverse = 1 / tree.mass[k * tree.dofs + k];
-      const double* column = jacobian.data() + first + k * block.rows;
-      for (int r = 0; r < block.rows; ++r) block.mobility[r] += column[r] * column[r] * inverse;
+    const double* inverse = inverse_mass.data() + offset[place];
+    const double* columns = jacobian.data() + first;
+    const int rows = block.rows;
+    if (rows == 3) {
+      double sum0 = block.mobility[0], sum1 = block.mobility[1], sum2 = block.mobility[2];
+      for (const int k : dofs) {
+        const double* column = columns + k * 3;
+        const double factor = inverse[k];
+        sum0 += column[0] * column[0] * factor;
+        sum1 += column[1] * column[1] * factor;
+        sum2 += column[2] * column[2] * factor;
+      }
+      block.mobility[0] = sum0, block.mobility[1] = sum1, block.mobility[2] = sum2;
+      return;
+    }
+    for (const int k : dofs) {
+      const double* column = columns + k * rows;
+      const double factor = inverse[k];
+      for (int r = 0; r < rows; ++r) block.mobility[r] += column[r] * column[r] * factor;
     }
   };
-  add_side(block.a, block.ja);
-  add_side(block.b, block.jb);
+  add_side(block.a, block.ja, block.dofs_a);
+  add_side(block.b, block.jb, block.dofs_b);
   for (int r = 1; r < block.rows; r += r == 3 ? 1 : 2) {
     if (r == 3) continue;  // turning about the normal is alone
     block.mobility[r] = block.mobility[r + 1] = (block.mobility[r] + block.mobility[r + 1]) / 2;
@@ -86,7 +118,7 @@ void Problem::weigh(Block& block) const {
 }
 
 void Problem::add(const Contact& contact, int a, int b, int source) {
-  Block block;
+  Block& block = blocks.emplace_back();
   block.law = Block::Law::contact;
   const bool turns = contact.rolling > 0 || contact.spinning > 0;
   block.rows = turns ? 6 : contact.friction > 0 ? 3 : 1;
@@ -95,9 +127,17 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
   block.friction = contact.friction;
   block.spinning = contact.spinning;
   block.rolling = contact.rolling;
-  block.frame = frame_about(contact.normal);
-  if (a >= 0) block.ja = add_rows(*trees[a], contact.a.link, contact.point, block, 1);
-  if (b >= 0) block.jb = add_rows(*trees[b], contact.b.link, contact.point, block, -1);
+  const Block* before = blocks.size() > 1 ? &blocks[blocks.size() - 2] : nullptr;
+  const bool same = before && before->frame.col(0) == contact.normal;
+  block.frame = same ? before->frame : frame_about(contact.normal);
+  if (a >= 0) {
+    block.ja = add_rows(*trees[a], contact.a.link, contact.point, block, 1);
+    block.dofs_a = trees[a]->dofs_of(contact.a.link);
+  }
+  if (b >= 0) {
+    block.jb = add_rows(*trees[b], contact.b.link, contact.point, block, -1);
+    block.dofs_b = trees[b]->dofs_of(contact.b.link);
+  }
   weigh(block);
   block.gap = contact.gap;
   block.seek[0] = contact.gap > 0 ? -contact.gap / length : 0;
@@ -121,26 +161,22 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
     const std::pair<int, int> pair(std::min(a, b), std::max(a, b));
     if (couplings.empty() || couplings.back() != pair) couplings.push_back(pair);
   }
-  blocks.push_back(block);
 }
 
 void Problem::add(const Servo& servo, int place, int source) {
   const Tree& tree = *trees[place];
-  Block block;
+  Block& block = blocks.emplace_back();
   block.law = Block::Law::bounded;
   block.rows = 1;
   block.a = place;
+  block.ja = add_columns(tree, 1);
   if (servo.dof >= 0) {
-    block.ja = static_cast<int>(jacobian.size());
-    jacobian.resize(jacobian.size() + tree.dofs, 0.0);
     jacobian[block.ja + servo.dof] = 1;
+    block.dofs_a = tree.dof_alone(servo.dof);
   } else {
-    block.ja = static_cast<int>(jacobian.size());
-    jacobian.resize(jacobian.size() + tree.dofs, 0.0);
     const Vector3 arm = tree.position[servo.link] - tree.origin;
-    int link = servo.link;
-    while (link > 0 && tree.dof_count[link] == 0) link = tree.links[link].parent;
-    for (int k = tree.first_dof[link] + tree.dof_count[link] - 1; k >= 0; k = tree.parent_dof[k]) {
+    block.dofs_a = tree.dofs_of(servo.link);
+    for (const int k : block.dofs_a) {
       const Motion& axis = tree.axes[k];
       jacobian[block.ja + k] = servo.direction.angular.dot(axis.angular) +
                                servo.direction.linear.dot(axis.linear + axis.angular.cross(arm));
@@ -153,7 +189,6 @@ void Problem::add(const Servo& servo, int place, int source) {
   block.impulse[0] = std::clamp(servo.impulse, servo.lower, servo.upper);
   block.source = source;
   block.kind = Block::Source::servo;
-  blocks.push_back(block);
 }
 
 void Problem::add(const Limit& limit, int place, int source) {
@@ -161,13 +196,13 @@ void Problem::add(const Limit& limit, int place, int source) {
   const int dof = joint_dof(tree, limit.link);
   const double q = tree.q[tree.first_place[limit.link]];
   const bool at_lower = q - limit.lower < limit.upper - q;
-  Block block;
+  Block& block = blocks.emplace_back();
   block.law = Block::Law::bounded;
   block.rows = 1;
   block.a = place;
-  block.ja = static_cast<int>(jacobian.size());
-  jacobian.resize(jacobian.size() + tree.dofs, 0.0);
+  block.ja = add_columns(tree, 1);
   jacobian[block.ja + dof] = at_lower ? 1 : -1;
+  block.dofs_a = tree.dof_alone(dof);
   weigh(block);
   block.gap = at_lower ? q - limit.lower : limit.upper - q;
   block.seek[0] = block.gap > 0 ? -block.gap / length : 0;
@@ -175,35 +210,44 @@ void Problem::add(const Limit& limit, int place, int source) {
   block.impulse[0] = std::max(0.0, at_lower ? limit.impulse : -limit.impulse);
   block.source = source;
   block.kind = Block::Source::limit;
-  blocks.push_back(block);
 }
 
 void Problem::speeds(const Block& block, double* u) const {
   const int rows = block.rows;
   for (int r = 0; r < rows; ++r) u[r] = 0;
-  const auto add_side = [&](int place, int first) {
+  const auto add_side = [&](int place, int first, std::span<const int> dofs) {
     if (place < 0) return;
     const double* v = velocity.data() + offset[place];
-    const double* column = jacobian.data() + first;
-    const int dofs = trees[place]->dofs;
+    const double* columns = jacobian.data() + first;
     if (rows == 3) {
       double sum0 = 0, sum1 = 0, sum2 = 0;
-      for (int k = 0; k < dofs; ++k, column += 3) {
-        sum0 += column[0] * v[k], sum1 += column[1] * v[k], sum2 += column[2] * v[k];
+      for (const int k : dofs) {
+        const double* column = columns + k * 3;
+        const double speed = v[k];
+        sum0 += column[0] * speed, sum1 += column[1] * speed, sum2 += column[2] * speed;
       }
       u[0] += sum0, u[1] += sum1, u[2] += sum2;
       return;
     }
-    for (int k = 0; k < dofs; ++k, column += rows) {
+    for (const int k : dofs) {
+      const double* column = columns + k * rows;
       for (int r = 0; r < rows; ++r) u[r] += column[r] * v[k];
     }
   };
-  add_side(block.a, block.ja);
-  add_side(block.b, block.jb);
+  add_side(block.a, block.ja, block.dofs_a);
+  add_side(block.b, block.jb, block.dofs_b);
 }
 
 bool Problem::turn_into_displacement() {
-  bool needed = false;
+  const auto bounces = [](const Block& block) {
+    return block.kind != Block::Source::servo && block.bounced > 0 && block.impulse[0] > 0 &&
+           block.gap > 0;
+  };
+  const auto needs_it = [&](const Block& block) {
+    const bool overlaps = block.kind != Block::Source::servo && block.gap < -allowed_overlap;
+    return overlaps || bounces(block);
+  };
+  if (std::none_of(blocks.begin(), blocks.end(), needs_it)) return false;
   for (Block& block : blocks) {
     if (block.kind == Block::Source::servo) {
       block.law = Block::Law::off;
@@ -212,8 +256,7 @@ bool Problem::turn_into_displacement() {
     double u[Block::most_rows];
     speeds(block, u);
     const double after = block.gap + length * u[0];
-    const bool bounced = block.bounced > 0 && block.impulse[0] > 0 && block.gap > 0;
-    if (bounced || block.gap < -allowed_overlap) needed = true;
+    const bool bounced = bounces(block);
     block.law = Block::Law::bounded;
     block.lower = bounced ? -std::numeric_limits<double>::infinity() : 0;
     block.upper = std::numeric_limits<double>::infinity();
@@ -224,7 +267,6 @@ bool Problem::turn_into_displacement() {
     }
     block.impulse.fill(0);
   }
-  if (!needed) return false;
   std::fill(momentum.begin(), momentum.end(), 0.0);
   std::fill(velocity.begin(), velocity.end(), 0.0);
   return true;

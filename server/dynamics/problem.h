@@ -26,6 +26,7 @@ struct Block {
   int rows = 0;          ///< 1, 3 or 6
   int a = -1, b = -1;    ///< places of the trees in the island, or -1
   int ja = 0, jb = 0;    ///< into Problem::jacobian: per dof of the tree, a column of `rows`
+  std::span<const int> dofs_a, dofs_b;  ///< that move each side, ascending; other columns are zero
   double friction = 0, spinning = 0, rolling = 0;  ///< bounds over the normal impulse: 1, [m], [m]
   double lower = 0, upper = 0;
   std::array<double, most_rows> seek{};     ///< the speeds that the impulses seek [m/s], [rad/s]
@@ -37,7 +38,7 @@ struct Block {
   double gap = 0;         ///< of contacts and limits [m] or [rad]
   double restitution = 0; ///< of contacts that bounce
   double bounced = 0;     ///< > 0: speed apart after an impact, see constraint.h
-  Matrix3 frame;          ///< columns: normal and tangents of a contact
+  Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
   int source = 0;         ///< into the contacts, servos or limits of the system
   enum class Source : unsigned char { contact, servo, limit } kind = Source::contact;
 };
@@ -49,6 +50,7 @@ struct Problem {
   std::vector<Block> blocks;
   std::vector<double> jacobian;
   std::vector<double> momentum;    ///< p
+  std::vector<double> inverse_mass;  ///< of each dof as if it were alone: 1 / M_kk [1/kg] or [1/(kg m^2)]
   std::vector<double> velocity;    ///< v: start and solution
   std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block
 
@@ -69,6 +71,7 @@ struct Problem {
   bool turn_into_displacement();
 
  private:
+  int add_columns(const Tree& tree, int rows);
   int add_rows(const Tree& tree, int link, const Vector3& point, const Block& block, double sign);
   void weigh(Block& block) const;
 };

@@ -16,7 +16,14 @@ void add_impulse(const Problem& problem, const Block& block, const double* impul
     if (sides[s] < 0) continue;
     const double* column = problem.jacobian.data() + first[s];
     double* to = out.data() + problem.offset[sides[s]];
-    for (int k = 0; k < problem.trees[sides[s]]->dofs; ++k, column += block.rows) {
+    const int dofs = problem.trees[sides[s]]->dofs;
+    if (block.rows == 3) {
+      for (int k = 0; k < dofs; ++k, column += 3) {
+        to[k] += column[0] * impulse[0] + column[1] * impulse[1] + column[2] * impulse[2];
+      }
+      continue;
+    }
+    for (int k = 0; k < dofs; ++k, column += block.rows) {
       double sum = 0;
       for (int r = 0; r < block.rows; ++r) sum += column[r] * impulse[r];
       to[k] += sum;

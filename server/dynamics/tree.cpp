@@ -1,5 +1,7 @@
 #include "dynamics/tree.h"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "dynamics/rotation.h"
@@ -77,7 +79,21 @@ void Tree::count() {
     parent_side_.push_back(link.joint_in_parent.orientation.toRotationMatrix());
     link_side_.push_back(link.joint_in_link.orientation.conjugate().toRotationMatrix());
   }
-  single = size == 1 && dofs == 6;
+  ways.clear();
+  way_end.clear();
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto begin = static_cast<std::ptrdiff_t>(ways.size());
+    int carrier = static_cast<int>(i);
+    while (carrier >= 0 && dof_count[carrier] == 0) carrier = links[carrier].parent;
+    int k = carrier < 0 ? -1 : first_dof[carrier] + dof_count[carrier] - 1;
+    for (; k >= 0; k = parent_dof[k]) ways.push_back(k);
+    std::reverse(ways.begin() + begin, ways.end());
+    way_end.push_back(static_cast<int>(ways.size()));
+  }
+  dof_places.resize(dofs);
+  std::iota(dof_places.begin(), dof_places.end(), 0);
+  free_root = links[0].joint == JointType::floating && dof_count[0] == 6;
+  single = size == 1 && free_root;
   q.assign(places, 0);
   v.assign(dofs, 0);
   for (std::size_t i = 0; i < size; ++i) {
@@ -88,6 +104,7 @@ void Tree::count() {
   position.resize(size);
   axes.resize(dofs);
   motion.resize(size);
+  own_inertia.resize(size);
   inertia.resize(size);
   wrench.resize(size);
   acceleration.resize(size);

@@ -52,7 +52,11 @@ class Tree {
   std::vector<int> first_place;   ///< of each link, into q
   std::vector<int> parent_dof;    ///< of each dof: the one before it on the way to the root, or -1
   std::vector<double> damping;    ///< of each dof [N m s] or [N s/m]
-  bool single = false;            ///< one floating link with all six freedoms
+  std::vector<int> ways;          ///< the dofs from the root to each link, one after the other
+  std::vector<int> way_end;       ///< of each link, into `ways`
+  std::vector<int> dof_places;    ///< 0, 1, … dofs - 1
+  bool free_root = false;         ///< floating with all six freedoms: dofs 0 to 5 are the world's axes
+  bool single = false;            ///< one link, with a free root
 
   // The state.
   /// A floating root: position [m] and orientation w x y z; a revolute joint: angle [rad]; a
@@ -79,7 +83,8 @@ class Tree {
   std::vector<Motion> motion;  ///< of each link, about O
 
   // Memory to work in.
-  std::vector<Inertia> inertia;  ///< of each link with all that it carries, about O
+  std::vector<Inertia> own_inertia;  ///< of each link alone, about O, by compute_mass()
+  std::vector<Inertia> inertia;      ///< of each link with all that it carries, about O
   std::vector<Wrench> wrench;
   std::vector<Motion> acceleration;
   std::vector<double> mass;    ///< mass matrix, dofs x dofs, row by row
@@ -93,6 +98,8 @@ class Tree {
   /// Leaves one link that is fixed to the world: nothing that moves. Takes no memory.
   void take_apart() noexcept;
 
+  std::span<const int> dofs_of(int link) const;  ///< that move a link, ascending
+  std::span<const int> dof_alone(int dof) const;  ///< a span of it
   math::Pose pose(int link) const;           ///< X_WL, after place()
   void set_root(const math::Pose& pose);     ///< of a floating or fixed root
   Vector3 velocity(int link) const;          ///< of the centre of mass, after move() [m/s]
@@ -113,6 +120,12 @@ void move(Tree& tree);
 /// q moved by the displacement `step` in the coordinates of v: turns by the exponential map.
 /// @param step  [rad], [m]
 void displace(Tree& tree, std::span<const double> step);
+
+inline std::span<const int> Tree::dofs_of(int link) const {
+  const int begin = link > 0 ? way_end[link - 1] : 0;
+  return {ways.data() + begin, static_cast<std::size_t>(way_end[link] - begin)};
+}
+inline std::span<const int> Tree::dof_alone(int dof) const { return {dof_places.data() + dof, 1}; }
 
 /// The dof of a revolute or prismatic joint.
 inline int joint_dof(const Tree& tree, int link) { return tree.first_dof[link]; }
