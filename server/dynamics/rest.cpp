@@ -26,24 +26,43 @@ Load load(const Tree& tree) {
 
 void System::wake(int tree) {
   if (!asleep(tree)) return;
-  while (sleepers_[tree].next >= 0) {
-    const int next = sleepers_[tree].next;
-    sleepers_[tree].next = -1;
+  while (next_[tree] >= 0) {
+    const int next = next_[tree];
+    next_[tree] = -1;
     sleepers_[tree].quiet = 0;
     tree = next;
   }
 }
 
-void System::wake_all() { sleepers_.assign(trees.size(), Sleeper{}); }
+void System::wake_all() {
+  sleepers_.assign(trees.size(), Sleeper{});
+  next_.assign(trees.size(), -1);
+}
 
-/// Whether what acts on a sleeper, or its speed, is no longer what it was.
+void System::push(int tree, int link, const Wrench& wrench) {
+  Wrench& external = trees[tree].external[link];
+  external = external + wrench;
+  if (watch_.size() < trees.size()) watch_.resize(trees.size(), 0);
+  if (watch_[tree] & pushed) return;
+  watch_[tree] |= pushed;
+  pushed_.push_back(tree);
+}
+
+void System::forget_pushes() {
+  for (const int tree : pushed_) {
+    watch_[tree] &= static_cast<unsigned char>(~pushed);
+    auto& external = trees[tree].external;
+    std::fill(external.begin(), external.end(), Wrench{});
+  }
+  pushed_.clear();
+}
+
+/// Whether what acts on a sleeper is no longer what it was.
 bool System::changed(int index) const {
-  const Tree& tree = trees[index];
   const Sleeper& sleeper = sleepers_[index];
-  if (std::any_of(tree.v.begin(), tree.v.end(), [](double v) { return v != 0; })) return true;
-  const Load now = load(tree);
+  const Load now = load(trees[index]);
   const double bound = sleeper.force_bound;
-  return sleeper.command != sleeper.command_asleep || tree.gravity != sleeper.gravity ||
+  return sleeper.command != sleeper.command_asleep ||
          (now.force - sleeper.force).squaredNorm() > bound * bound ||
          (now.moment - sleeper.moment).squaredNorm() > bound * bound * 1e-4;
 }
@@ -69,18 +88,27 @@ void System::note_commands() {
   }
   for (const Servo& servo : servos_) {
     if (servo.tree < 0) continue;
+    watch_[servo.tree] |= commanded;
     double& command = sleepers_[servo.tree].command;
     command = 1.25 * command + servo.speed + 3 * servo.lower + 7 * servo.upper;
   }
 }
 
-void System::wake_what_changed() {
+bool System::wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos) {
+  length_ = length;
+  contacts_ = contacts;
+  servos_ = servos;
   if (sleepers_.size() > trees.size()) wake_all();
   sleepers_.resize(trees.size());
+  next_.resize(trees.size(), -1);
+  watch_.resize(trees.size(), 0);
   note_commands();
   const int count = static_cast<int>(trees.size());
+  bool woke = false;
   for (int i = 0; i < count; ++i) {
-    if (asleep(i) && changed(i)) wake(i);
+    if (watch_[i] == 0 || !asleep(i) || !changed(i)) continue;
+    wake(i);
+    woke = true;
   }
   const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
   for (bool again = true; again;) {  // who wakes may touch another
@@ -90,14 +118,10 @@ void System::wake_what_changed() {
       if (!moves(a) || !moves(b) || asleep(a) == asleep(b) || !comes_to_touch(contact)) continue;
       wake(a);
       wake(b);
-      again = true;
+      again = woke = true;
     }
   }
-  awake_.clear();
-  for (int i = 0; i < count; ++i) {
-    if (!asleep(i)) awake_.push_back(i);
-  }
-  report_.awake = static_cast<int>(awake_.size());
+  return woke;
 }
 
 /// Lets an island sleep that has been at rest for long enough.
@@ -128,11 +152,12 @@ void System::settle(int first_tree, int last_tree, bool carried) {
     const Load now = load(tree);
     double mass = 0;
     for (const Link& link : tree.links) mass += link.mass;
-    sleeper.next = i + 1 < last_tree ? tree_order_[i + 1] : tree_order_[first_tree];
+    next_[index] = i + 1 < last_tree ? tree_order_[i + 1] : tree_order_[first_tree];
     sleeper.command_asleep = sleeper.command;
     sleeper.force = now.force;
     sleeper.moment = now.moment;
-    sleeper.gravity = tree.gravity;
+    const bool is_held = !now.force.isZero(0) || !now.moment.isZero(0);
+    watch_[index] = static_cast<unsigned char>((watch_[index] & ~held) | (is_held ? held : 0));
     sleeper.force_bound = rest.force * (mass * tree.gravity.norm() + now.force.norm());
   }
 }

@@ -128,12 +128,14 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
 
 Report System::step(double length, std::span<Contact> contacts, std::span<Servo> servos,
                     std::span<Limit> limits) {
-  length_ = length;
-  contacts_ = contacts;
-  servos_ = servos;
   limits_ = limits;
   report_ = {};
-  wake_what_changed();
+  wake_disturbed(length, contacts, servos);
+  awake_.clear();
+  for (int i = 0; i < static_cast<int>(trees.size()); ++i) {
+    if (!asleep(i)) awake_.push_back(i);
+  }
+  report_.awake = static_cast<int>(awake_.size());
   gather(contacts, servos, limits);
   for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
     const int first = first_tree_[i], last = first_tree_[i + 1];
@@ -143,6 +145,7 @@ Report System::step(double length, std::span<Contact> contacts, std::span<Servo>
       solve_island(first, last, first_item_[i], first_item_[i + 1]);
     }
   }
+  forget_pushes();
   return report_;
 }
 

@@ -39,15 +39,23 @@ class System {
 
   /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and are
   /// ignored, until something wakes its island: a contact with a tree that is awake and comes to
-  /// touch it, a change of its force, gravity, speed or servos, or wake().
+  /// touch it, a change of what pushes it or of its servos, or wake().
   bool asleep(int tree) const {
-    return static_cast<std::size_t>(tree) < sleepers_.size() && sleepers_[tree].next >= 0;
+    return static_cast<std::size_t>(tree) < next_.size() && next_[tree] >= 0;
   }
-  /// Wakes a tree and what sleeps with it: to be called when it was moved, or what it touches was
-  /// moved or removed.
+  /// Wakes a tree and what sleeps with it: to be called when it was moved, its speed or gravity was
+  /// set, or what it touches was moved or removed.
   void wake(int tree);
   /// Must be called when trees were removed or changed places.
   void wake_all();
+
+  /// Adds to a link's external wrench for the coming substep. What sleeps notices no other.
+  void push(int tree, int link, const Wrench& wrench);
+
+  /// Wakes what the coming substep would not leave at rest. step() does so, too; to be called before it
+  /// where contacts of sleepers are told only if something wakes.
+  /// @return  whether something did
+  bool wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos);
 
   /// Advances all trees that are awake by one substep. Their external wrenches must be set.
   /// @param length    [s]
@@ -69,8 +77,8 @@ class System {
   };
   int find(int tree);
   bool before(const Item& a, const Item& b) const;
-  void wake_what_changed();
   bool changed(int tree) const;
+  void forget_pushes();
   bool comes_to_touch(const Contact& contact) const;
   void note_commands();
   void settle(int first_tree, int last_tree, bool carried);
@@ -84,14 +92,19 @@ class System {
 
   /// What is known of a tree's sleep.
   struct Sleeper {
-    int next = -1;             // in the ring of those that sleep with it; -1: awake
     double quiet = 0;          // how long it has been at rest [s]
     double command = 0;        // of its servos, see note_commands()
     double command_asleep = 0;
     double force_bound = 0;    // of changes [N], [N m] per radius of 1 m
-    Vector3 force{0, 0, 0}, moment{0, 0, 0}, gravity{0, 0, 0};  // when it fell asleep
+    Vector3 force{0, 0, 0}, moment{0, 0, 0};  // when it fell asleep
   };
   std::vector<Sleeper> sleepers_;
+  std::vector<int> next_;  // of each tree: the next in the ring of those that sleep with it; -1: awake
+  // Of each tree: whether more than being touched may wake it. It is commanded, was pushed when it fell
+  // asleep, or is pushed now.
+  enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4 };
+  std::vector<unsigned char> watch_;
+  std::vector<int> pushed_;  // trees
   std::vector<int> awake_;
   double length_ = 0;
   std::span<Contact> contacts_;

@@ -11,11 +11,13 @@ dynamics::Tree& Articulation::tree() const { return system->trees[index]; }
 btTransform Articulation::transform(std::size_t part) const { return transform_of(tree(), part); }
 
 void Articulation::apply_force(std::size_t part, const btVector3& force) const {
-  tree().external[part].force += from_bullet(force);
+  system->push(static_cast<int>(index), static_cast<int>(part),
+               {math::Vector3::Zero(), from_bullet(force)});
 }
 
 void Articulation::apply_torque(std::size_t part, const btVector3& torque) const {
-  tree().external[part].moment += from_bullet(torque);
+  system->push(static_cast<int>(index), static_cast<int>(part),
+               {from_bullet(torque), math::Vector3::Zero()});
 }
 
 void Articulation::motions(std::span<Motion> out) const {

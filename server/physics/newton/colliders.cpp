@@ -12,12 +12,22 @@
 namespace ziggurat::physics {
 namespace {
 
-constexpr btScalar box_slack = 1e-3;  // how much larger than needed a new box is made [m]
+// How much larger than needed a new box is made: by some steps at the present speed, as far as that
+// is little for its size, and at least by so much [m].
+constexpr double least_slack = 1e-3;
+constexpr double steps_ahead = 6;
+constexpr double share_of_size = 0.1;
 
 bool inside(const btVector3& outer_low, const btVector3& outer_high, const btVector3& low,
             const btVector3& high) {
   return outer_low.x() <= low.x() && outer_low.y() <= low.y() && outer_low.z() <= low.z() &&
          outer_high.x() >= high.x() && outer_high.y() >= high.y() && outer_high.z() >= high.z();
+}
+
+bool boxes_meet(const btVector3& low, const btVector3& high, const btVector3& other_low,
+             const btVector3& other_high) {
+  return low.x() <= other_high.x() && other_low.x() <= high.x() && low.y() <= other_high.y() &&
+         other_low.y() <= high.y() && low.z() <= other_high.z() && other_low.z() <= high.z();
 }
 
 std::size_t index_of(const btBroadphaseProxy& proxy) {
@@ -31,6 +41,7 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   const LinkBody& placed = body.links[i];
   if (!link.collides || placed.carrier != LinkBody::carries_itself) return std::nullopt;
   Collider collider;
+  collider.present = true;
   collider.shape = contact_shape(link.geometry);
   collider.entity = body.entity;
   collider.link = i;
@@ -50,24 +61,24 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
 
 /// Links of one entity do not touch each other, nor do two that stand.
 struct Colliders::Filter final : btOverlapFilterCallback {
-  explicit Filter(const std::vector<Collider>& all) : colliders(all) {}
+  explicit Filter(const std::vector<ColliderGroup>& all) : groups(all) {}
   bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
-    const Collider& one = colliders[index_of(*a)];
-    const Collider& other = colliders[index_of(*b)];
+    const ColliderGroup& one = groups[index_of(*a)];
+    const ColliderGroup& other = groups[index_of(*b)];
     return one.entity != other.entity && (one.moves || other.moves);
   }
-  const std::vector<Collider>& colliders;
+  const std::vector<ColliderGroup>& groups;
 };
 
 double least_reach(double length) { return 1e-3 + 15 * length * length; }
 
-Colliders::Colliders() : filter_(std::make_unique<Filter>(all)) {
+Colliders::Colliders() : filter_(std::make_unique<Filter>(groups)) {
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(filter_.get());
 }
 
 Colliders::~Colliders() {
-  for (Collider& collider : all) {
-    if (collider.proxy) broadphase_.destroyProxy(collider.proxy, nullptr);
+  for (ColliderGroup& group : groups) {
+    if (group.proxy) broadphase_.destroyProxy(group.proxy, nullptr);
   }
 }
 
@@ -84,37 +95,60 @@ void Colliders::add(const Body& body, const scene::Entity& entity, const dynamic
     if (auto collider = make_collider(body, entity, i)) made.push_back(std::move(*collider));
   }
   make_room(all, made.size());
+  make_room(groups, made.size());
   for (Collider& collider : made) {  // only Bullet allocates, which does not throw
     place(collider, tree);
+    // What stands never leaves its box, so its links may have one each: a tighter one.
+    const bool joins = &collider != &made.front() && collider.moves && groups.back().moves;
+    if (!joins) groups.push_back({collider.entity, all.size(), 0, collider.moves});
+    ++groups.back().count;
+    collider.group = groups.size() - 1;
     all.push_back(std::move(collider));
-    insert(all.back(), all.size() - 1);
+  }
+  for (std::size_t i = groups.size(); i > 0 && groups[i - 1].entity == body.entity; --i) {
+    insert(groups[i - 1], i - 1);
   }
 }
 
-void Colliders::insert(Collider& collider, std::size_t index) {
-  btVector3 low, high;
-  collider.outline->getAabb(collider.pose, low, high);
-  collider.proxy =
-      broadphase_.createProxy(low, high, 0, reinterpret_cast<void*>(index), 1, 1, nullptr);
+/// Takes the boxes of its colliders, where they are.
+void Colliders::enclose(ColliderGroup& group) {
+  group.low.setValue(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  group.high = -group.low;
+  for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+    Collider& collider = all[i];
+    const btVector3 reach(collider.reach, collider.reach, collider.reach);
+    collider.outline->getAabb(collider.pose, collider.low, collider.high);
+    collider.low -= reach, collider.high += reach;
+    group.low.setMin(collider.low);
+    group.high.setMax(collider.high);
+  }
+}
+
+void Colliders::insert(ColliderGroup& group, std::size_t index) {
+  enclose(group);
+  group.proxy = broadphase_.createProxy(group.low, group.high, 0, reinterpret_cast<void*>(index),
+                                        1, 1, nullptr);
 }
 
 void Colliders::remove(std::size_t entity) {
-  for (Collider& collider : all) {
-    if (collider.entity != entity || !collider.proxy) continue;
-    broadphase_.destroyProxy(collider.proxy, nullptr);
-    collider = {};
+  for (ColliderGroup& group : groups) {
+    if (group.entity != entity || !group.proxy) continue;
+    broadphase_.destroyProxy(group.proxy, nullptr);
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) all[i] = {};
+    group = {};
   }
-  while (!all.empty() && !all.back().proxy && floor != all.size() - 1) all.pop_back();
+  while (!all.empty() && !all.back().present && floor != all.size() - 1) all.pop_back();
+  while (!groups.empty() && !groups.back().proxy) groups.pop_back();
 }
 
 void Colliders::moved(std::size_t entity, const dynamics::Tree& tree) {
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    Collider& collider = all[i];
-    if (collider.entity != entity || !collider.proxy) continue;
-    collider.rests = false;
-    place(collider, tree);
-    broadphase_.destroyProxy(collider.proxy, nullptr);
-    insert(collider, i);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    ColliderGroup& group = groups[g];
+    if (group.entity != entity || !group.proxy) continue;
+    group.rests = false;
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) place(all[i], tree);
+    broadphase_.destroyProxy(group.proxy, nullptr);
+    insert(group, g);
   }
 }
 
@@ -134,51 +168,67 @@ btTransform Colliders::pose(const Collider& collider, const dynamics::System& sy
 
 /// Bullet's boxes only grow: a body that fell fast would keep a large one, and a neighbour in
 /// each pair it makes, forever. Ours are renewed when too small or much too large.
-void Colliders::keep_in_box(Collider& collider) {
-  const btVector3 reach(collider.reach, collider.reach, collider.reach);
-  const btVector3 slack(box_slack, box_slack, box_slack);
-  btVector3 low, high;
-  collider.outline->getAabb(collider.pose, low, high);
-  low -= reach, high += reach;
-  const btBroadphaseProxy& proxy = *collider.proxy;
-  if (inside(proxy.m_aabbMin, proxy.m_aabbMax, low, high) &&
-      inside(low - 3 * slack, high + 3 * slack, proxy.m_aabbMin, proxy.m_aabbMax)) {
+/// @param step  how far it moves in the substep [m]
+void Colliders::keep_in_box(ColliderGroup& group, double step) {
+  const btVector3 size = group.high - group.low;
+  const double most = share_of_size * std::min({size.x(), size.y(), size.z()});
+  const double ahead = std::max(least_slack, std::min(steps_ahead * step, most));
+  const btVector3 slack(ahead, ahead, ahead);
+  const btBroadphaseProxy& proxy = *group.proxy;
+  if (inside(proxy.m_aabbMin, proxy.m_aabbMax, group.low, group.high) &&
+      inside(group.low - 3 * slack, group.high + 3 * slack, proxy.m_aabbMin, proxy.m_aabbMax)) {
     return;
   }
-  broadphase_.setAabbForceUpdate(collider.proxy, low - slack, high + slack, nullptr);
+  broadphase_.setAabbForceUpdate(group.proxy, group.low - slack, group.high + slack, nullptr);
 }
 
 void Colliders::follow(const dynamics::System& system, double length) {
   const double least = least_reach(length);
-  for (Collider& collider : all) {
-    if (!collider.proxy) continue;
-    if (!collider.moves) {
-      collider.rests = true;
-      if (collider.reach == least) continue;
+  woke = false;
+  for (ColliderGroup& group : groups) {
+    if (!group.proxy) continue;
+    group.rested = group.rests;
+    group.rests = !group.moves || system.asleep(static_cast<int>(group.entity));
+    woke |= group.rested && !group.rests;
+    if (group.moves ? group.unchanged() : all[group.first].reach == least) continue;
+    double fastest = 0;
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+      Collider& collider = all[i];
       collider.reach = least;
-      keep_in_box(collider);
-      continue;
+      if (!group.moves) continue;
+      place(collider, system.trees[group.entity]);
+      const double speed =
+          collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
+      collider.reach += 1.3 * length * speed;
+      fastest = std::max(fastest, speed);
     }
-    const bool slept = collider.rests;
-    collider.rests = system.asleep(static_cast<int>(collider.entity));
-    if (slept && collider.rests) continue;
-    place(collider, system.trees[collider.entity]);
-    const double speed =
-        collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
-    collider.reach = least + 1.3 * length * speed;
-    keep_in_box(collider);
+    enclose(group);
+    keep_in_box(group, length * fastest);
+  }
+}
+
+void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b,
+                          std::vector<Near>& out) const {
+  if (!boxes_meet(a.low, a.high, b.low, b.high)) return;
+  for (std::size_t i = a.first; i < a.first + a.count; ++i) {
+    const Collider& one = all[i];
+    if (!boxes_meet(one.low, one.high, b.low, b.high)) continue;
+    for (std::size_t j = b.first; j < b.first + b.count; ++j) {
+      if (!boxes_meet(one.low, one.high, all[j].low, all[j].high)) continue;
+      out.push_back({std::min(i, j), std::max(i, j)});
+    }
   }
 }
 
 void Colliders::find_near(std::vector<Near>& out) {
   out.clear();
   broadphase_.calculateOverlappingPairs(nullptr);
-  btBroadphasePairArray& pairs = broadphase_.getOverlappingPairCache()->getOverlappingPairArray();
+  const btBroadphasePairArray& pairs =
+      broadphase_.getOverlappingPairCache()->getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {
-    btBroadphasePair& pair = pairs[i];
-    std::size_t a = index_of(*pair.m_pProxy0), b = index_of(*pair.m_pProxy1);
-    if (b < a) std::swap(a, b);
-    out.push_back({a, b, &pair.m_internalTmpValue});
+    const ColliderGroup& a = groups[index_of(*pairs[i].m_pProxy0)];
+    const ColliderGroup& b = groups[index_of(*pairs[i].m_pProxy1)];
+    if (!(a.unchanged() && b.unchanged())) find_near(a, b, out);
   }
 }
 

@@ -26,7 +26,8 @@ struct Collider {
   btTransform in_part = btTransform::getIdentity();  ///< X_PS
   bool centred = true;                               ///< in_part is the identity
   bool moves = false;
-  bool rests = false;  ///< as in the substep before: it stands, or sleeps
+  bool present = false;  ///< otherwise removed; the floor is not, either
+  std::size_t group = 0; ///< into the broad phase's groups
   bool rolls = false;  ///< has wheels: does not rub on what is below or above it
   scene::Surface surface;
   double smallest = 1e30;  ///< half extent [m]
@@ -37,15 +38,28 @@ struct Collider {
   btVector3 velocity{0, 0, 0};                    ///< of the shape's centre [m/s]
   btVector3 angular_velocity{0, 0, 0};            ///< [rad/s]
   double reach = 0;                               ///< how far its surface may come [m]
+  btVector3 low{0, 0, 0}, high{0, 0, 0};          ///< corners of the box about it and its reach [m]
 
   std::unique_ptr<btCollisionShape> outline;  ///< for the box about it
-  btBroadphaseProxy* proxy = nullptr;         ///< none: the floor, or removed
+};
+
+/// What the broad phase sees as one box: all colliders of an entity that moves, or one that stands.
+struct ColliderGroup {
+  std::size_t entity = 0;
+  std::size_t first = 0, count = 0;  ///< into Colliders::all
+  bool moves = false;
+  bool rests = false;   ///< in the coming substep: it stands, or sleeps
+  bool rested = false;  ///< in the substep before
+  btVector3 low{0, 0, 0}, high{0, 0, 0};  ///< corners of the box about those of its colliders [m]
+  btBroadphaseProxy* proxy = nullptr;     ///< none: removed
+
+  /// It is as it was in the substep before.
+  bool unchanged() const { return rests && rested; }
 };
 
 /// Two colliders that may touch within the substep.
 struct Near {
-  std::size_t a = 0, b = 0;  ///< into Colliders::all
-  int* memory = nullptr;     ///< of the pair; 0 when it is new
+  std::size_t a = 0, b = 0;  ///< into Colliders::all; a < b
 };
 
 class Colliders {
@@ -54,7 +68,13 @@ class Colliders {
   ~Colliders();
 
   std::vector<Collider> all;
+  std::vector<ColliderGroup> groups;
   std::optional<std::size_t> floor;  ///< into `all`
+  bool woke = false;  ///< one that rested in the substep before does no more
+
+  bool rests(const Collider& collider) const {
+    return !collider.present || groups[collider.group].rests;
+  }
 
   void add_floor(const scene::Surface& surface);
   /// Those of a body whose tree is placed.
@@ -69,14 +89,17 @@ class Colliders {
   void follow(const dynamics::System& system, double length);
   /// X_WS of a collider now.
   btTransform pose(const Collider& collider, const dynamics::System& system) const;
-  /// Pairs whose boxes overlap, of which at least one moves. The floor is in none.
+  /// Pairs whose boxes overlap, of which at least one moves, without those that are as they were in
+  /// the substep before. The floor is in none.
   void find_near(std::vector<Near>& out);
 
  private:
   struct Filter;
   void place(Collider& collider, const dynamics::Tree& tree) const;
-  void keep_in_box(Collider& collider);
-  void insert(Collider& collider, std::size_t index);
+  void enclose(ColliderGroup& group);
+  void keep_in_box(ColliderGroup& group, double step);
+  void insert(ColliderGroup& group, std::size_t index);
+  void find_near(const ColliderGroup& a, const ColliderGroup& b, std::vector<Near>& out) const;
 
   std::unique_ptr<Filter> filter_;
   btDbvtBroadphase broadphase_;

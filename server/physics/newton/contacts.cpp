@@ -59,10 +59,12 @@ bool tumbles(const Collider& a, const Collider& b, const Approach& approach, dou
   return length * (turning + approach.fastest / std::min(a.smallest, b.smallest)) > far;
 }
 
+std::uint64_t key(std::size_t a, std::size_t b) { return std::uint64_t{a} << 32 | b; }
+
 }  // namespace
 
 /// The pair of a place that remembers it; a new one if it is new.
-int Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
+Contacts::Pair& Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
   if (place == 0) {
     if (unused_.empty()) {
       if (pairs_.empty()) pairs_.emplace_back();
@@ -79,7 +81,7 @@ int Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
     ++live_;
   }
   pairs_[place].seen = substep_;
-  return place;
+  return pairs_[place];
 }
 
 std::span<dynamics::Contact> Contacts::find(double length) {
@@ -87,25 +89,36 @@ std::span<dynamics::Contact> Contacts::find(double length) {
   contacts_.clear();
   owner_.clear();
   colliders_.find_near(near_);
-  std::size_t seen = 0;
-  for (const Near& near : near_) {
-    const int number = pair_of(near.a, near.b, *near.memory);
-    meet(pairs_[number], length);
-    ++seen;
-  }
+  std::size_t awake = 0;  // pairs
+  const auto meet_pair = [&](std::size_t a, std::size_t b, int& place) {
+    Pair& pair = pair_of(a, b, place);
+    meet(pair, length);
+    awake += !pair.rests;
+  };
+  for (const Near& near : near_) meet_pair(near.a, near.b, places_[key(near.a, near.b)]);
   if (colliders_.floor) {
     floor_pairs_.resize(colliders_.all.size(), 0);
-    for (std::size_t i = 0; i < colliders_.all.size(); ++i) {
-      const Collider& collider = colliders_.all[i];
-      if (!collider.proxy || !collider.moves) continue;
-      if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
-      const int number = pair_of(i, *colliders_.floor, floor_pairs_[i]);
-      meet(pairs_[number], length);
-      ++seen;
+    for (const ColliderGroup& group : colliders_.groups) {
+      if (!group.proxy || !group.moves || group.unchanged()) continue;
+      for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+        const Collider& collider = colliders_.all[i];
+        if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
+        meet_pair(i, *colliders_.floor, floor_pairs_[i]);
+      }
     }
   }
-  if (seen < live_) drop_unseen();
+  if (colliders_.woke || awake + resting_ != live_) drop_unseen();
   drop_hidden();
+  return contacts_;
+}
+
+std::span<dynamics::Contact> Contacts::add_resting() {
+  for (std::size_t i = 1; i < pairs_.size(); ++i) {
+    Pair& pair = pairs_[i];
+    if (!pair.live || pair.seen == substep_) continue;
+    pair.first = contacts_.size();
+    emit(pair);
+  }
   return contacts_;
 }
 
@@ -175,26 +188,32 @@ void Contacts::drop(std::size_t number) {
   pair.live = false;
   pair.count = 0;
   --live_;
+  resting_ -= pair.rests;
   unused_.push_back(static_cast<int>(number));
-  if (colliders_.floor == pair.b && pair.a < floor_pairs_.size()) floor_pairs_[pair.a] = 0;
+  if (colliders_.floor != pair.b) {
+    places_.erase(key(pair.a, pair.b));
+  } else if (pair.a < floor_pairs_.size()) {
+    floor_pairs_[pair.a] = 0;
+  }
 }
 
 /// Pairs that came apart lose their memory.
 void Contacts::drop_unseen() {
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
-    if (pairs_[i].live && pairs_[i].seen != substep_) drop(i);
+    const Pair& pair = pairs_[i];
+    if (!pair.live || pair.seen == substep_) continue;
+    const bool rests =
+        colliders_.rests(colliders_.all[pair.a]) && colliders_.rests(colliders_.all[pair.b]);
+    if (!rests) drop(i);
   }
 }
 
 void Contacts::meet(Pair& pair, double length) {
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
-  const bool rested = pair.rests;
-  pair.rests = a.rests && b.rests;
-  if (rested && pair.rests) {
-    pair.first = contacts_.size();
-    return emit(pair);
-  }
+  resting_ -= pair.rests;
+  pair.rests = colliders_.rests(a) && colliders_.rests(b);
+  resting_ += pair.rests;
   const double slack = least_reach(length);
   const double reach = a.reach + b.reach;
   contact::Contacts found =

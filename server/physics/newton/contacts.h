@@ -2,7 +2,9 @@
 // Contact points of a substep for dynamics/, and what is remembered of them.
 
 #include <array>
+#include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "dynamics/constraint.h"
@@ -15,8 +17,11 @@ class Contacts {
  public:
   explicit Contacts(Colliders& colliders) : colliders_(colliders) {}
 
-  /// All contacts of the coming substep, with the impulses of the last one.
+  /// Contacts of the coming substep, with the impulses of the last one; without those of pairs that
+  /// both rest, which do nothing as long as both do.
   std::span<dynamics::Contact> find(double length);
+  /// Those and the others: where something wakes in the substep.
+  std::span<dynamics::Contact> add_resting();
   /// Notes the impulses that dynamics/ has written to them.
   void remember();
   /// Forgets what touched an entity, before it is removed or moved; wakes what rested there.
@@ -36,7 +41,7 @@ class Contacts {
     std::size_t a = 0, b = 0;  // colliders
     bool live = false;
     unsigned seen = 0;  // the substep in which it was near last
-    bool rests = false;  // both sides did in the last substep
+    bool rests = false;  // both sides did in the substep in which it was seen last
     dynamics::Contact law;  // what all its contacts have in common
     math::Vector3 normal{0, 0, 1};
     int count = 0;
@@ -44,7 +49,7 @@ class Contacts {
     std::size_t first = 0;  // of its contacts in the list
   };
 
-  int pair_of(std::size_t a, std::size_t b, int& place);
+  Pair& pair_of(std::size_t a, std::size_t b, int& place);
   void meet(Pair& pair, double length);
   void add(const contact::Contacts& found, Pair& pair);
   void emit(const Pair& pair);
@@ -56,7 +61,8 @@ class Contacts {
   Colliders& colliders_;
   std::vector<Pair> pairs_;  // [0] is none
   std::vector<int> unused_;
-  std::size_t live_ = 0;
+  std::size_t live_ = 0, resting_ = 0;
+  std::unordered_map<std::uint64_t, int> places_;  // of pairs by their colliders; not with the floor
   unsigned substep_ = 0;
   std::vector<Near> near_;
   std::vector<int> floor_pairs_;  // of each collider

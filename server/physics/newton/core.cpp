@@ -98,7 +98,7 @@ std::optional<std::size_t> NewtonCore::overlapped_by(
     std::span<const PlacedCollider> colliders) const {
   std::optional<std::size_t> first;
   for (const Collider& collider : colliders_.all) {
-    if (!collider.proxy || (first && *first <= collider.entity)) continue;
+    if (!collider.present || (first && *first <= collider.entity)) continue;
     const PlacedCollider other{collider.shape, colliders_.pose(collider, system_)};
     if (std::ranges::any_of(colliders, [&](const auto& each) { return overlaps(each, other); })) {
       first = collider.entity;
@@ -171,15 +171,13 @@ void NewtonCore::remember() {
 void NewtonCore::substep(std::span<Body> bodies, double length, int splits) {
   colliders_.follow(system_, length);
   set_servos_and_limits(bodies, length, splits);
-  const dynamics::Report report =
-      system_.step(length, contacts_.find(length), servos_, limits_);
+  std::span<dynamics::Contact> contacts = contacts_.find(length);
+  if (system_.wake_disturbed(length, contacts, servos_)) contacts = contacts_.add_resting();
+  const dynamics::Report report = system_.step(length, contacts, servos_, limits_);
   remember();
   convergence_.islands += report.islands;
   convergence_.not_converged += report.not_converged;
   convergence_.worst = std::max(convergence_.worst, report.miss);
-  for (dynamics::Tree& tree : system_.trees) {
-    std::fill(tree.external.begin(), tree.external.end(), dynamics::Wrench{});
-  }
 }
 
 }  // namespace ziggurat::physics

@@ -31,9 +31,9 @@ TEST(Rest, ABoxOnTheFloorSleepsAndWakesByAForce) {
   run(world, 1, 100);
   ASSERT_TRUE(world.system.asleep(0));
   EXPECT_EQ(world.step(0.01).awake, 0);
-  world.tree(0).external[0].force = Vector3(0, 0, 1e-4 * g);  // less than a thousandth of its weight
+  world.system.push(0, 0, {Vector3::Zero(), Vector3(0, 0, 1e-4 * g)});  // less than a thousandth of its weight
   EXPECT_EQ(world.step(0.01).awake, 0);
-  world.tree(0).external[0].force = Vector3(0, 0, 2 * g);
+  world.system.push(0, 0, {Vector3::Zero(), Vector3(0, 0, 2 * g)});
   EXPECT_EQ(world.step(0.01).awake, 1);
   EXPECT_NEAR(world.tree(0).v[5], g * 0.01, 1e-9);
 }

@@ -45,6 +45,41 @@ TEST(NewtonStack, HeavyStandsOnLight) {
   }
 }
 
+// The contacts of sleepers are told again in the very substep in which they wake.
+TEST(NewtonStack, IsCarriedWhenItIsWoken) {
+  const double h = 0.01;
+  World world(newton(true), h);
+  for (int i = 0; i < 3; ++i) world.add(loose(at(0, 0, 0.1 * i), cube, 1));
+  run(world, 1, h);
+  world.add(loose(at(0, 0, 0.5), scene::Sphere{0.02}, 0.1));  // falls 0.2 m: 0.2 s
+  world.watch_contacts(0, 0);
+  int pressed = 0;
+  for (int i = 0; i < 60; ++i) {
+    world.step();
+    const LinkTouch touch = world.take_touch(0, 0);
+    // From below the weight of three, from above that of two; at the impact more.
+    EXPECT_GT(touch.magnitude, 4.99 * earth * h) << i;
+    pressed += touch.magnitude > 5.2 * earth * h;
+    EXPECT_GT(origin(world, 0).position.z(), -1e-6) << i;
+  }
+  EXPECT_GE(pressed, 1);  // the ball did arrive, and woke them
+  EXPECT_NEAR(origin(world, 3).position.z(), 0.3, 1e-4);
+}
+
+TEST(NewtonStack, ThatSleepsMovesWithNothingAndWakesWhenItsFloorIsTaken) {
+  World world(newton(), 0.01);
+  world.add(standing(at(0, 0, -0.5), scene::Box{{1, 1, 0.5}}));
+  world.add(loose(at(0, 0, 0), cube, 1));
+  world.add(loose(at(0, 0, 0.1), cube, 1));
+  run(world, 1, 0.01);
+  const Pose rest = origin(world, 2);
+  run(world, 1, 0.01);
+  EXPECT_EQ(origin(world, 2).position, rest.position);
+  world.remove(0);
+  run(world, 0.5, 0.01);
+  EXPECT_NEAR(origin(world, 2).position.z(), rest.position.z() - earth * 0.125, 1e-6);
+}
+
 TEST(NewtonPlanks, LieOnTheFloorWhereTheyFell) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
