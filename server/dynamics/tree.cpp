@@ -79,19 +79,7 @@ void Tree::count() {
     parent_side_.push_back(link.joint_in_parent.orientation.toRotationMatrix());
     link_side_.push_back(link.joint_in_link.orientation.conjugate().toRotationMatrix());
   }
-  ways.clear();
-  way_end.clear();
-  for (std::size_t i = 0; i < size; ++i) {
-    const auto begin = static_cast<std::ptrdiff_t>(ways.size());
-    int carrier = static_cast<int>(i);
-    while (carrier >= 0 && dof_count[carrier] == 0) carrier = links[carrier].parent;
-    int k = carrier < 0 ? -1 : first_dof[carrier] + dof_count[carrier] - 1;
-    for (; k >= 0; k = parent_dof[k]) ways.push_back(k);
-    std::reverse(ways.begin() + begin, ways.end());
-    way_end.push_back(static_cast<int>(ways.size()));
-  }
-  dof_places.resize(dofs);
-  std::iota(dof_places.begin(), dof_places.end(), 0);
+  note_ways();
   free_root = links[0].joint == JointType::floating && dof_count[0] == 6;
   single = size == 1 && free_root;
   q.assign(places, 0);
@@ -117,6 +105,23 @@ void Tree::count() {
     Motion& axis = axes[next++];
     (k < 3 ? axis.angular : axis.linear)[k % 3] = 1;
   }
+}
+
+/// The dofs on the way to each link.
+void Tree::note_ways() {
+  ways.clear();
+  way_end.clear();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const auto begin = static_cast<std::ptrdiff_t>(ways.size());
+    int carrier = static_cast<int>(i);
+    while (carrier >= 0 && dof_count[carrier] == 0) carrier = links[carrier].parent;
+    int k = carrier < 0 ? -1 : first_dof[carrier] + dof_count[carrier] - 1;
+    for (; k >= 0; k = parent_dof[k]) ways.push_back(k);
+    std::reverse(ways.begin() + begin, ways.end());
+    way_end.push_back(static_cast<int>(ways.size()));
+  }
+  dof_places.resize(dofs);
+  std::iota(dof_places.begin(), dof_places.end(), 0);
 }
 
 void Tree::take_apart() noexcept {

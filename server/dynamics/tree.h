@@ -107,6 +107,7 @@ class Tree {
 
  private:
   void count();
+  void note_ways();
   math::Pose fixed_root_;
   std::vector<Matrix3> parent_side_, link_side_;  // rotations X_PJ and X_JL of each link
   friend void place(Tree& tree);
