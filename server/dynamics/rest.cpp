@@ -49,12 +49,13 @@ void System::push(int tree, int link, const Wrench& wrench) {
 }
 
 void System::forget_pushes() {
-  for (const int tree : pushed_) {
+  std::erase_if(pushed_, [&](int tree) {
+    if (!takes_part(tree)) return false;
     watch_[tree] &= static_cast<unsigned char>(~pushed);
     auto& external = trees[tree].external;
     std::fill(external.begin(), external.end(), Wrench{});
-  }
-  pushed_.clear();
+    return true;
+  });
 }
 
 /// Whether what acts on a sleeper is no longer what it was.
@@ -106,7 +107,7 @@ bool System::wake_disturbed(double length, std::span<Contact> contacts, std::spa
   const int count = static_cast<int>(trees.size());
   bool woke = false;
   for (int i = 0; i < count; ++i) {
-    if (watch_[i] == 0 || !asleep(i) || !changed(i)) continue;
+    if (watch_[i] == 0 || !takes_part(i) || !asleep(i) || !changed(i)) continue;
     wake(i);
     woke = true;
   }

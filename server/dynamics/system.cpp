@@ -127,13 +127,14 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
 }
 
 Report System::step(double length, std::span<Contact> contacts, std::span<Servo> servos,
-                    std::span<Limit> limits) {
+                    std::span<Limit> limits, std::span<const std::uint8_t> chosen) {
   limits_ = limits;
+  chosen_ = chosen;
   report_ = {};
   wake_disturbed(length, contacts, servos);
   awake_.clear();
   for (int i = 0; i < static_cast<int>(trees.size()); ++i) {
-    if (!asleep(i)) awake_.push_back(i);
+    if (takes_part(i) && !asleep(i)) awake_.push_back(i);
   }
   report_.awake = static_cast<int>(awake_.size());
   gather(contacts, servos, limits);
@@ -146,6 +147,7 @@ Report System::step(double length, std::span<Contact> contacts, std::span<Servo>
     }
   }
   forget_pushes();
+  chosen_ = {};
   return report_;
 }
 

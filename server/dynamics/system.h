@@ -64,8 +64,10 @@ class System {
   /// @param contacts  those between two trees that stand on the world do nothing; impulses are
   ///                  read and written
   /// @param limits    of joints whose trees are awake
+  /// @param chosen    of each tree whether it takes part; the others stay as they are, and nothing
+  ///                  may act between them and these. Empty: all do
   Report step(double length, std::span<Contact> contacts, std::span<Servo> servos = {},
-              std::span<Limit> limits = {});
+              std::span<Limit> limits = {}, std::span<const std::uint8_t> chosen = {});
 
   Solver& solver() { return solver_; }
 
@@ -75,6 +77,7 @@ class System {
     int kind;  // contact, servo, limit
     int index;
   };
+  bool takes_part(int tree) const { return chosen_.empty() || chosen_[tree]; }
   int find(int tree);
   bool before(const Item& a, const Item& b) const;
   bool changed(int tree) const;
@@ -110,6 +113,7 @@ class System {
   std::span<Contact> contacts_;
   std::span<Servo> servos_;
   std::span<Limit> limits_;
+  std::span<const std::uint8_t> chosen_;
   Report report_;
 
   std::vector<int> parent_, island_, place_;

@@ -9,13 +9,28 @@
 namespace ziggurat::magnetism {
 namespace {
 
-/// Below this distance two magnets count as this far apart: spheres cannot come closer.
+/// Below the sum of two of these the magnets count as this far apart: spheres cannot come closer.
 double core_radius(const Magnet& magnet) {
   const auto* sphere = std::get_if<Sphere>(&magnet.shape);
-  return sphere != nullptr ? sphere->radius : 0;
+  return sphere != nullptr ? std::max(sphere->radius, magnet.core) : magnet.core;
 }
 
 }  // namespace
+
+void PairSet::clear() {
+  first_.clear();
+  second_.clear();
+  magnets_.clear();
+}
+
+void PairSet::add(std::uint32_t first, std::uint32_t second) {
+  first_.push_back(first);
+  second_.push_back(second);
+  for (const std::uint32_t magnet : {first, second}) {
+    const auto place = std::lower_bound(magnets_.begin(), magnets_.end(), magnet);
+    if (place == magnets_.end() || *place != magnet) magnets_.insert(place, magnet);
+  }
+}
 
 Field::Field(std::vector<Magnet> magnets, std::size_t bodies, const Options& options)
     : kernel_(options.kernel != nullptr ? *options.kernel : best_kernel()),
@@ -80,6 +95,7 @@ void Field::set_turns(std::span<const Quaternion> turns) {
   std::copy(turns.begin(), turns.end(), turns_.begin());
 }
 
+Vector3 Field::position(std::size_t magnet) const { return vector(positions_[magnet]); }
 Vector3 Field::moment(std::size_t magnet) const { return vector(moments_[magnet]); }
 Vector3 Field::flux(std::size_t magnet) const { return vector(fields_[magnet]); }
 
@@ -104,17 +120,75 @@ void Field::evaluate(double dt, std::span<const Pose> bodies, std::span<const do
   collect(bodies, wrenches);
 }
 
+void Field::evaluate(PairSet& pairs, std::span<const Pose> bodies,
+                     std::span<const double> currents, std::span<Wrench> wrenches) {
+  for (const std::uint32_t i : pairs.magnets_) {
+    const std::uint32_t body = magnets_[i].body;
+    rotations_[body] = bodies[body].orientation.toRotationMatrix();
+    place(i, bodies[body], currents[i]);
+    forces_[i] = fields_[i] = Row{};
+    if (shapes_) torques_[i] = Row{};
+    wrenches[body] = {};
+  }
+  const std::size_t count = pairs.first_.size();
+  const auto nothing = static_cast<std::uint32_t>(magnets_.size());
+  pairs.first_.resize((count + 3) / 4 * 4, nothing);
+  pairs.second_.resize(pairs.first_.size(), nothing);
+  kernel_.pairs(dipoles(), {pairs.first_.data(), pairs.second_.data(), pairs.first_.size()}, range_,
+                {forces_.data(), fields_.data()});
+  pairs.first_.resize(count);
+  pairs.second_.resize(count);
+  for (std::size_t k = 0; shapes_ && k < count; ++k) {
+    const std::size_t i = pairs.first_[k], j = pairs.second_[k];
+    if (is_near(i, j)) add_interaction_of_shapes(i, j);
+  }
+  for (const std::uint32_t i : pairs.magnets_) {
+    collect(i, bodies[magnets_[i].body], wrenches[magnets_[i].body]);
+  }
+}
+
+void Field::list_near(double reach,
+                      std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const {
+  out.clear();
+  const double limit = std::min(reach, range_.maximum);
+  const auto consider = [&](std::uint32_t i, std::uint32_t j) {
+    const Row& a = positions_[i];
+    const Row& b = positions_[j];
+    const double x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+    if (x * x + y * y + z * z <= limit * limit && magnets_[i].body != magnets_[j].body) {
+      out.emplace_back(i, j);
+    }
+  };
+  const auto count = static_cast<std::uint32_t>(magnets_.size());
+  if (neighbours_.listed()) {
+    const Pairs pairs = neighbours_.pairs();
+    for (std::size_t k = 0; k < pairs.count && pairs.first[k] < count; ++k) {
+      consider(pairs.first[k], pairs.second[k]);
+    }
+    return;
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t j = i + 1; j < count; ++j) consider(i, j);
+  }
+}
+
+/// Whether a pair needs more than dipoles.
+bool Field::is_near(std::size_t first, std::size_t second) const {
+  const Row& a = positions_[first];
+  const Row& b = positions_[second];
+  const double x = a.x - b.x;
+  const double y = a.y - b.y;
+  const double z = a.z - b.z;
+  const double reach =
+      std::min(std::max(shapes_->reach(first), shapes_->reach(second)), range_.maximum);
+  return x * x + y * y + z * z < reach * reach;
+}
+
 /// Calls visit(i, j), i < j, in order for all pairs that need more than dipoles.
 template <class Visit>
 void Field::visit_near_pairs(const Visit& visit) {
   const auto consider = [&](std::size_t i, std::size_t j) {
-    const Row& a = positions_[i];
-    const Row& b = positions_[j];
-    const double x = a.x - b.x;
-    const double y = a.y - b.y;
-    const double z = a.z - b.z;
-    const double reach = std::min(std::max(shapes_->reach(i), shapes_->reach(j)), range_.maximum);
-    if (x * x + y * y + z * z < reach * reach) visit(i, j);
+    if (is_near(i, j)) visit(i, j);
   };
   const Neighbours* list = &neighbours_;
   if (!list->listed()) {
@@ -177,13 +251,17 @@ void Field::place(std::span<const Pose> bodies, std::span<const double> currents
     rotations_[b] = bodies[b].orientation.toRotationMatrix();
   }
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
-    const Magnet& magnet = magnets_[i];
-    const Eigen::Matrix3d& rotation = rotations_[magnet.body];
-    Vector3 moment = magnet.passive_moment + currents[i] * magnet.active_moment;
-    if (magnet.freely_turning) moment = turns_[i] * moment;
-    positions_[i] = row(bodies[magnet.body].position + rotation * magnet.position, positions_[i].w);
-    moments_[i] = row(rotation * moment, moments_[i].w);
+    place(i, bodies[magnets_[i].body], currents[i]);
   }
+}
+
+void Field::place(std::size_t i, const Pose& body, double current) {
+  const Magnet& magnet = magnets_[i];
+  const Eigen::Matrix3d& rotation = rotations_[magnet.body];
+  Vector3 moment = magnet.passive_moment + current * magnet.active_moment;
+  if (magnet.freely_turning) moment = turns_[i] * moment;
+  positions_[i] = row(body.position + rotation * magnet.position, positions_[i].w);
+  moments_[i] = row(rotation * moment, moments_[i].w);
 }
 
 void Field::turn(double dt) {
@@ -216,16 +294,18 @@ void Field::turn(double dt) {
 void Field::collect(std::span<const Pose> bodies, std::span<Wrench> wrenches) const {
   std::fill(wrenches.begin(), wrenches.end(), Wrench{});
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
-    const Magnet& magnet = magnets_[i];
-    Wrench& wrench = wrenches[magnet.body];
-    const Vector3 force = vector(forces_[i]);
-    const Vector3 lever = vector(positions_[i]) - bodies[magnet.body].position;
-    wrench.force += force;
-    wrench.torque += lever.cross(force);
-    if (!magnet.freely_turning) {
-      wrench.torque += vector(moments_[i]).cross(vector(fields_[i]));
-      if (shapes_) wrench.torque += vector(torques_[i]);
-    }
+    collect(i, bodies[magnets_[i].body], wrenches[magnets_[i].body]);
+  }
+}
+
+void Field::collect(std::size_t i, const Pose& body, Wrench& wrench) const {
+  const Vector3 force = vector(forces_[i]);
+  const Vector3 lever = vector(positions_[i]) - body.position;
+  wrench.force += force;
+  wrench.torque += lever.cross(force);
+  if (!magnets_[i].freely_turning) {
+    wrench.torque += vector(moments_[i]).cross(vector(fields_[i]));
+    if (shapes_) wrench.torque += vector(torques_[i]);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "magnetism/adaptive.h"
@@ -29,9 +30,26 @@ struct Magnet {
   Vector3 passive_moment = Vector3::Zero();         ///< in the body's axes [A m^2]
   Vector3 active_moment = Vector3::Zero();          ///< added per unit of current, likewise
   Shape shape = PointShape{};
+  /// Radius of the ball about its centre that no other magnet's ball can enter [m]: where the balls
+  /// of two overlap, their distance counts as the sum of the radii.
+  double core = 0;
   /// Turns without friction in a socket of the body at `position`: its orientation is a state of
   /// the field. A magnet that turns freely counts as a sphere whatever its shape.
   bool freely_turning = false;
+};
+
+/// Some pairs of fixed magnets, whose forces are wanted more often than all others'.
+class PairSet {
+ public:
+  void clear();
+  /// @param first  < second; in ascending order of first, then second
+  void add(std::uint32_t first, std::uint32_t second);
+  bool empty() const { return first_.empty(); }
+
+ private:
+  friend class Field;
+  std::vector<std::uint32_t> first_, second_;  // padded while they are in use
+  std::vector<std::uint32_t> magnets_;         // of them, each once
 };
 
 enum class Precision {
@@ -64,6 +82,12 @@ class Field {
   void evaluate(double dt, std::span<const Pose> bodies, std::span<const double> currents,
                 std::span<Wrench> wrenches);
 
+  /// The forces of some pairs alone; nothing turns. Unlike evaluate() it looks at no others.
+  /// @param bodies    poses; those of the pairs' magnets count
+  /// @param wrenches  out; those of the pairs' bodies are set, others stay
+  void evaluate(PairSet& pairs, std::span<const Pose> bodies, std::span<const double> currents,
+                std::span<Wrench> wrenches);
+
   /// Back to the start: freely turning magnets as in the scene, up to the tilt.
   void reset();
 
@@ -74,7 +98,16 @@ class Field {
   /// Puts back what turns() gave, for a saved state.
   void set_turns(std::span<const Quaternion> turns);
 
+  /// Pairs of different bodies whose magnets are not farther apart than this, and than max_distance,
+  /// as of the last evaluate(); in ascending order.
+  /// @param reach  [m]
+  void list_near(double reach,
+                 std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const;
+
+  double core(std::size_t magnet) const { return positions_[magnet].w; }  ///< as it counts [m]
+
   /// As of the last evaluate(), in the world.
+  Vector3 position(std::size_t magnet) const;  ///< [m]
   Vector3 moment(std::size_t magnet) const;  ///< [A m^2]
   Vector3 flux(std::size_t magnet) const;    ///< flux density of the others' dipoles at it [T]
 
@@ -83,13 +116,16 @@ class Field {
 
  private:
   void place(std::span<const Pose> bodies, std::span<const double> currents);
+  void place(std::size_t magnet, const Pose& body, double current);
   void turn(double dt);
   template <class Visit>
   void visit_near_pairs(const Visit& visit);
   void add_field_of_shapes(std::size_t first, std::size_t second);
   void add_interaction_of_shapes(std::size_t first, std::size_t second);
   double fade(double distance) const;
+  bool is_near(std::size_t first, std::size_t second) const;
   void collect(std::span<const Pose> bodies, std::span<Wrench> wrenches) const;
+  void collect(std::size_t magnet, const Pose& body, Wrench& wrench) const;
   Dipoles dipoles() const { return {positions_.data(), moments_.data(), magnets_.size()}; }
 
   const Kernel& kernel_;

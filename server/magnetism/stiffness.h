@@ -24,7 +24,9 @@ struct Bond {
   double twist_rate = 0;    ///< sqrt(K r^2 / reduced inertia) [rad/s]
 };
 
-/// Warn where substep * rate is not below this: the limit of explicit substeps is 2.
+/// Bonds of freely turning magnets come to rest while substep * rate is below this (the limit of
+/// explicit substeps is 2). Bodies with fixed magnets that tumble freely need far less: they fall
+/// together within a substep.
 inline constexpr double stiffest_product = 1.6;
 
 /// The bond of two such bodies whose faces along +-x, +-y, +-z (in this order) touch, every magnet

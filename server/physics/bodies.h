@@ -72,6 +72,9 @@ struct Turret {
 
 struct Magnet {
   scene::Magnet scene;
+  /// Of the ball about its centre that no magnet of another entity can enter, because colliders
+  /// are in between; 0: none [m].
+  double core = 0;
   double current = 0;  ///< times the active field
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "physics/assembly.h"
+#include "physics/magnet_cores.h"
 #include "physics/shape.h"
 #include "physics/turning_magnets.h"
 #include "physics/welding.h"
@@ -87,7 +88,7 @@ Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::
   body.entity = number;
   body.reference_link = entity.reference_link;
   body.placed = entity.pose;
-  for (const scene::Magnet& magnet : entity.devices.magnets) body.magnets.push_back({magnet});
+  for (const scene::Magnet& magnet : entity.devices.magnets) body.magnets.push_back({.scene = magnet});
   body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
   const std::vector<Pose> assembled = assemble(entity);
   std::vector<Pose> placed;
@@ -97,6 +98,7 @@ Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::
   } else {
     make_parts(body, entity, assembled, placed, physics.magnetism.has_value());
   }
+  if (physics.magnetism) set_magnet_cores(body, entity);
   return body;
 }
 

@@ -68,8 +68,12 @@ double Core::velocity(JointIndex joint) const {
   return with(core_, [&](const auto& core) { return core.velocity(joint); });
 }
 
-void Core::substep(std::span<Body> bodies, double length, int splits) {
-  with(core_, [&](auto& core) { core.substep(bodies, length, splits); });
+void Core::substep(std::span<Body> bodies, double length, int splits, Plugin* stiff) {
+  if (auto* newton = std::get_if<std::unique_ptr<NewtonCore>>(&core_)) {
+    (*newton)->substep(bodies, length, splits, stiff);
+  } else {
+    std::get<std::unique_ptr<SweepsCore>>(core_)->substep(bodies, length, splits);
+  }
 }
 
 void Core::contacts(std::vector<Contact>& out) const {

@@ -52,7 +52,8 @@ class Core {
   /// Moves all bodies on, with the forces that were applied since the last substep.
   /// @param length  [s]
   /// @param splits  a motor may give its impulse in so many substeps
-  void substep(std::span<Body> bodies, double length, int splits);
+  /// @param stiff   what has stiff pairs; null: none. Bullet's core takes no notice of them.
+  void substep(std::span<Body> bodies, double length, int splits, Plugin* stiff);
 
   /// What touched in the last substep, in ascending order.
   void contacts(std::vector<Contact>& out) const;

@@ -39,20 +39,23 @@ PlacedMagnet place(const Body& body, std::size_t number, const scene::Magnetism&
   placed.magnet.passive_moment = in_mover.orientation * passive_moment(magnet, magnetism);
   placed.magnet.active_moment = in_mover.orientation * active_moment(magnet, magnetism);
   placed.magnet.freely_turning = placed.turning.has_value();
+  placed.magnet.core = body.magnets[number].core;
   return placed;
 }
 
 /// The rate of the stiffest bond of a link's faces, with the mass of all that moves with it. In the
 /// link's axes about the part's centre of mass.
 /// @param of_body  all magnets of the body
-double stiffest_rate(const Body& body, std::size_t number, std::span<const PlacedMagnet> of_body) {
+/// @param fixed    of them those that are fixed count, or else those that turn freely
+double stiffest_rate(const Body& body, std::size_t number, std::span<const PlacedMagnet> of_body,
+                     bool fixed) {
   const LinkBody& link = body.links[number];
   const Part& part = body.parts[link.part];
   if (!part.moves) return 0;
   const Eigen::Matrix3d into = link.in_part.orientation.conjugate().toRotationMatrix();
   std::vector<magnetism::Magnet> magnets;
   for (const PlacedMagnet& placed : of_body) {
-    if (placed.link != number) continue;
+    if (placed.link != number || placed.turning.has_value() == fixed) continue;
     magnets.push_back(placed.magnet);
     magnets.back().position = into * placed.magnet.position;
   }
@@ -65,9 +68,20 @@ double stiffest_rate(const Body& body, std::size_t number, std::span<const Place
                                    .inertia = inertia.diagonal()});
 }
 
+PairOfMagnets pair_of(const magnetism::Field& field, std::size_t i, std::size_t j) {
+  PairOfMagnets pair;
+  pair.moments = field.moment(i).norm() * field.moment(j).norm();
+  pair.first = field.position(i);
+  pair.second = field.position(j);
+  pair.closest = field.core(i) + field.core(j);
+  pair.distance = std::max({(pair.first - pair.second).norm(), pair.closest, 1e-6});
+  return pair;
+}
+
 }  // namespace
 
-Magnets::Magnets(const scene::Magnetism& magnetism) : settings_(magnetism) {
+Magnets::Magnets(const scene::Magnetism& magnetism, bool divides)
+    : settings_(magnetism), divides_(divides) {
   if (magnetism.max_distance) options_.max_distance = *magnetism.max_distance;
   if (magnetism.adaptive) options_.precision = magnetism::Precision::adaptive;
   options_.tolerance = magnetism.tolerance;
@@ -98,58 +112,155 @@ void Magnets::give_up_field() {
   field_.reset();
 }
 
-void Magnets::build_field() {
+void Magnets::build_field(std::span<const Body> bodies) {
   carriers_.clear();
   std::vector<magnetism::Magnet> magnets;
   for (const PlacedMagnet& placed : magnets_) {
-    const std::pair carrier(placed.entity, placed.part);
-    auto found = std::find(carriers_.begin(), carriers_.end(), carrier);
-    if (found == carriers_.end()) found = carriers_.insert(carriers_.end(), carrier);
+    const auto found = std::ranges::find_if(carriers_, [&](const Carrier& carrier) {
+      return carrier.entity == placed.entity && carrier.part == placed.part;
+    });
     magnets.push_back(placed.magnet);
     magnets.back().body = static_cast<std::uint32_t>(found - carriers_.begin());
+    if (found == carriers_.end()) {
+      carriers_.push_back({.entity = placed.entity, .part = placed.part});
+    }
   }
   poses_.resize(carriers_.size());
   wrenches_.resize(carriers_.size());
   field_.emplace(std::move(magnets), carriers_.size(), options_);
+  weigh_carriers(bodies);
   std::vector<Quaternion> turns(field_->turns().begin(), field_->turns().end());
   for (std::size_t i = 0; i < magnets_.size(); ++i) turns[i] = magnets_[i].turn.value_or(turns[i]);
   field_->set_turns(turns);
 }
 
 void Magnets::before_substep(std::span<Body> bodies, double substep) {
+  ++substeps_;
+  close_.clear();
+  stiff_.clear();
   if (magnets_.empty()) return;
-  if (!field_) build_field();
+  if (!field_) build_field(bodies);
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
     currents_[i] = bodies[magnets_[i].entity].magnets[magnets_[i].number].current;
   }
   for (std::size_t i = 0; i < carriers_.size(); ++i) {
-    const auto [entity, part] = carriers_[i];
-    poses_[i] = from_bullet(bodies[entity].transform(part));
+    poses_[i] = from_bullet(bodies[carriers_[i].entity].transform(carriers_[i].part));
   }
   field_->evaluate(substep, poses_, currents_, wrenches_);
-  for (std::size_t i = 0; i < carriers_.size(); ++i) {
-    const auto [entity, part] = carriers_[i];
-    Body& body = bodies[entity];
-    if (!body.parts[part].moves) continue;
-    body.apply_force(part, to_bullet(wrenches_[i].force));
-    body.apply_torque(part, to_bullet(wrenches_[i].torque));
-  }
+  for (std::size_t i = 0; i < carriers_.size(); ++i) push(bodies, i, 1);
+  if (divides_) find_close_pairs(bodies, substep);
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
     if (!magnets_[i].turning) continue;
     bodies[magnets_[i].entity].links[*magnets_[i].turning].turn = field_->turns()[i];
   }
 }
 
-StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism& magnetism) {
+void Magnets::push(std::span<Body> bodies, std::size_t carrier, double share) const {
+  const std::size_t part = carriers_[carrier].part;
+  Body& body = bodies[carriers_[carrier].entity];
+  if (!body.parts[part].moves) return;
+  body.apply_force(part, to_bullet(math::Vector3(share * wrenches_[carrier].force)));
+  body.apply_torque(part, to_bullet(math::Vector3(share * wrenches_[carrier].torque)));
+}
+
+void Magnets::weigh_carriers(std::span<const Body> bodies) {
+  felt_inverse_mass_ = inverse_inertia_ = 0;
+  for (Carrier& carrier : carriers_) {
+    const Part& part = bodies[carrier.entity].parts[carrier.part];
+    if (!part.moves) continue;
+    carrier.inverse_mass = 1 / part.mass;
+    carrier.inverse_inertia = 1 / part.inertia.minCoeff();
+  }
+  for (const magnetism::Magnet& magnet : field_->magnets()) {
+    const Carrier& carrier = carriers_[magnet.body];
+    const double felt =
+        carrier.inverse_mass + magnet.position.squaredNorm() * carrier.inverse_inertia;
+    felt_inverse_mass_ = std::max(felt_inverse_mass_, felt);
+    inverse_inertia_ = std::max(inverse_inertia_, carrier.inverse_inertia);
+  }
+}
+
+/// Notes how a carrier moves, once in a substep.
+void Magnets::follow(Carrier& carrier, const Body& body) {
+  if (carrier.seen == substeps_) return;
+  carrier.seen_before = carrier.seen;
+  carrier.velocity_before = carrier.velocity;
+  carrier.turning_before = carrier.turning;
+  carrier.seen = substeps_;
+  carrier.centre = poses_[&carrier - carriers_.data()].position;
+  if (carrier.inverse_mass == 0) return;
+  body.motions(motions_);
+  carrier.velocity = from_bullet(motions_[carrier.part].velocity);
+  carrier.turning = from_bullet(motions_[carrier.part].angular_velocity);
+}
+
+/// Freely turning magnets are left out: their orientations relax, they keep no energy.
+void Magnets::find_close_pairs(std::span<const Body> bodies, double substep) {
+  double moment = 0;
+  for (std::size_t i = 0; i < magnets_.size(); ++i) {
+    if (!magnets_[i].turning) moment = std::max(moment, field_->moment(i).norm());
+  }
+  field_->list_near(close_reach(moment, felt_inverse_mass_, inverse_inertia_, substep), near_);
+  for (const auto& [i, j] : near_) {
+    const std::size_t a = field_->magnets()[i].body, b = field_->magnets()[j].body;
+    const std::size_t first = carriers_[a].entity, second = carriers_[b].entity;
+    if (magnets_[i].turning || magnets_[j].turning || first == second) continue;
+    if (carriers_[a].inverse_mass + carriers_[b].inverse_mass == 0) continue;
+    follow(carriers_[a], bodies[first]);
+    follow(carriers_[b], bodies[second]);
+    const PairOfMagnets pair = pair_of(*field_, i, j);
+    const int parts = parts_of(pair, carriers_[a], carriers_[b], substep, substeps_);
+    if (parts < 0) continue;
+    close_.push_back({i, j, parts});
+    if (parts > 0) stiff_.push_back({first, second, parts});
+  }
+}
+
+void Magnets::choose_stiff(std::span<const std::uint8_t> entities) {
+  chosen_.clear();
+  chosen_carriers_.clear();
+  for (const ClosePair& pair : close_) {
+    const std::size_t a = field_->magnets()[pair.first].body;
+    const std::size_t b = field_->magnets()[pair.second].body;
+    if (!entities[carriers_[a].entity] && !entities[carriers_[b].entity]) continue;
+    const auto counts = [&](std::size_t carrier) {
+      return entities[carriers_[carrier].entity] || carriers_[carrier].inverse_mass == 0;
+    };
+    if (!counts(a) || !counts(b)) continue;
+    chosen_.add(pair.first, pair.second);
+    for (const std::size_t carrier : {a, b}) {
+      const auto place = std::ranges::lower_bound(chosen_carriers_, carrier);
+      if (place == chosen_carriers_.end() || *place != carrier) {
+        chosen_carriers_.insert(place, carrier);
+      }
+    }
+  }
+}
+
+void Magnets::push_stiff(std::span<Body> bodies, double share) {
+  for (const std::size_t i : chosen_carriers_) {
+    poses_[i] = from_bullet(bodies[carriers_[i].entity].transform(carriers_[i].part));
+  }
+  field_->evaluate(chosen_, poses_, currents_, wrenches_);
+  for (const std::size_t i : chosen_carriers_) push(bodies, i, share);
+}
+
+StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism& magnetism,
+                           bool divides) {
   StiffestBond stiffest;
   for (const Body& body : bodies) {
     std::vector<PlacedMagnet> magnets;
     for (std::size_t i = 0; i < body.magnets.size(); ++i) {
       magnets.push_back(place(body, i, magnetism));
     }
-    for (std::size_t i = 0; i < body.links.size(); ++i) {
-      const double rate = stiffest_rate(body, i, magnets);
-      if (rate > stiffest.rate) stiffest = {body.entity, rate};
+    for (std::size_t i = 0; i < body.links.size() && !magnets.empty(); ++i) {
+      for (const bool fixed : {false, true}) {
+        const double rate = stiffest_rate(body, i, magnets, fixed);
+        const double safe = !fixed    ? magnetism::stiffest_product
+                            : divides ? safe_divided
+                                      : safe_whole;
+        if (rate / safe > stiffest.rate / stiffest.safe) stiffest = {body.entity, rate, safe, fixed};
+      }
     }
   }
   return stiffest;

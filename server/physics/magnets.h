@@ -6,6 +6,7 @@
 
 #include "magnetism/field.h"
 #include "physics/plugin.h"
+#include "physics/stiff_magnets.h"
 
 namespace ziggurat::physics {
 
@@ -22,15 +23,24 @@ struct PlacedMagnet {
 
 class Magnets final : public Plugin {
  public:
-  explicit Magnets(const scene::Magnetism& magnetism);
+  /// @param divides  whether the core divides substeps for stiff pairs
+  explicit Magnets(const scene::Magnetism& magnetism, bool divides = false);
 
   void body_added(Body& body) override;
   void body_removed(const Body& body) override;
   void before_substep(std::span<Body> bodies, double substep) override;
 
+  std::span<const StiffPair> stiff_pairs() const override { return stiff_; }
+  void choose_stiff(std::span<const std::uint8_t> entities) override;
+  void push_stiff(std::span<Body> bodies, double share) override;
+
  private:
   void give_up_field();
-  void build_field();
+  void build_field(std::span<const Body> bodies);
+  void weigh_carriers(std::span<const Body> bodies);
+  void find_close_pairs(std::span<const Body> bodies, double substep);
+  void follow(Carrier& carrier, const Body& body);
+  void push(std::span<Body> bodies, std::size_t carrier, double share) const;
 
   magnetism::Options options_;
   scene::Magnetism settings_;
@@ -39,17 +49,31 @@ class Magnets final : public Plugin {
 
   // Made when the first substep after a change begins.
   std::optional<magnetism::Field> field_;
-  std::vector<std::pair<std::size_t, std::size_t>> carriers_;  // entity and part of each body
+  std::vector<Carrier> carriers_;  // the bodies of the field
   std::vector<math::Pose> poses_;
   std::vector<magnetism::Wrench> wrenches_;
+
+  // Pairs for which a substep is divided.
+  bool divides_;
+  std::uint64_t substeps_ = 0;
+  double felt_inverse_mass_ = 0, inverse_inertia_ = 0;  // the largest of the carriers
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> near_;
+  std::vector<ClosePair> close_;  // of this substep
+  std::vector<StiffPair> stiff_;  // of them those for which it must be divided
+  magnetism::PairSet chosen_;
+  std::vector<std::size_t> chosen_carriers_;
+  std::vector<Motion> motions_;
 };
 
-/// The largest rate of a bond between two bodies like one of these [rad/s], and whose it is.
-/// Explicit substeps follow it while substep * rate < magnetism::stiffest_product.
+/// The bond between two bodies like one of these that needs the shortest substeps.
 struct StiffestBond {
-  std::size_t entity = 0;
-  double rate = 0;
+  std::size_t entity = 0;  ///< whose it is
+  double rate = 0;         ///< see magnetism/stiffness.h [rad/s]
+  double safe = 1;         ///< substeps are short enough while substep * rate is below this
+  bool fixed = false;      ///< by magnets that are fixed in their bodies
 };
-StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism& magnetism);
+/// @param divides  whether the core divides substeps for stiff pairs
+StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism& magnetism,
+                           bool divides);
 
 }  // namespace ziggurat::physics

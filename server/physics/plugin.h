@@ -4,6 +4,7 @@
 // them.
 
 #include <compare>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,13 @@ Contact in_order(Contact contact);
 /// Sorts contacts by their sides.
 void sort(std::vector<Contact>& contacts);
 
+/// Two entities, of which at least one moves, between which forces change so fast that the substep
+/// must be divided for them.
+struct StiffPair {
+  std::size_t a = 0, b = 0;  ///< in order of adding
+  int parts = 1;             ///< into so many; > 0
+};
+
 /// Every function may do nothing. They are called in the order of a substep.
 class Plugin {
  public:
@@ -46,6 +54,16 @@ class Plugin {
   /// Called with the poses at the substep's beginning; forces last for it.
   /// @param substep  its length [s]
   virtual void before_substep(std::span<Body> /*bodies*/, double /*substep*/) {}
+
+  /// Of the coming substep, after before_substep(). A core may divide the substep for them; it then
+  /// calls choose_stiff() once for each set of entities, and push_stiff() in each part.
+  virtual std::span<const StiffPair> stiff_pairs() const { return {}; }
+  /// Chooses the forces that these entities exert on each other, and that what stands exerts.
+  /// @param entities  of each whether it belongs to the set
+  virtual void choose_stiff(std::span<const std::uint8_t> /*entities*/) {}
+  /// Applies the chosen forces at the poses of now, times `share`. before_substep() has applied
+  /// them once.
+  virtual void push_stiff(std::span<Body> /*bodies*/, double /*share*/) {}
 
   /// Contacts cost time: they are reported only if a plug-in asks for them.
   virtual bool wants_contacts(std::span<const Body> /*bodies*/) const { return false; }

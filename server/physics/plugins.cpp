@@ -28,7 +28,10 @@ constexpr std::array choices{
       return pushed ? make<Gravity>(*p.gravity) : nullptr;
     },
     +[](const scene::Physics&) { return make<ViscousDamping>(); },
-    +[](const scene::Physics& p) { return p.magnetism ? make<Magnets>(*p.magnetism) : nullptr; },
+    +[](const scene::Physics& p) {
+      const bool divides = p.solver == scene::Solver::newton;
+      return p.magnetism ? make<Magnets>(*p.magnetism, divides) : nullptr;
+    },
     +[](const scene::Physics&) { return make<Wheels>(); },
     +[](const scene::Physics&) { return make<Touch>(); },
 };
@@ -60,6 +63,13 @@ void Plugins::move(Body& body) {
 
 void Plugins::before_substep(std::span<Body> bodies, double substep) {
   for (auto& plugin : plugins_) plugin->before_substep(bodies, substep);
+}
+
+Plugin* Plugins::stiff() const {
+  for (auto& plugin : plugins_) {
+    if (!plugin->stiff_pairs().empty()) return plugin.get();
+  }
+  return nullptr;
 }
 
 void Plugins::after_substep(std::span<Body> bodies, double substep, const Core& core) {

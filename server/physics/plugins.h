@@ -22,6 +22,8 @@ class Plugins {
   void remove(const Body& body);
   void move(Body& body);
   void before_substep(std::span<Body> bodies, double substep);
+  /// The one that has stiff pairs in the coming substep; null: none has.
+  Plugin* stiff() const;
   /// Tells of contacts, then of the end.
   void after_substep(std::span<Body> bodies, double substep, const Core& core);
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -35,8 +36,8 @@ Vector3 inertia_of(const scene::Box& box, double mass) {
 
 Vector3 extents_of(const scene::Box& box) { return box.size / 2; }
 
-bool holds(const scene::Box& box, const Vector3& center, double radius, double slack) {
-  return ((box.size / 2 - center.cwiseAbs()).array() >= radius - slack).all();
+double depth_of(const scene::Box& box, const Vector3& point) {
+  return (box.size / 2 - point.cwiseAbs()).minCoeff();
 }
 
 BulletShape bullet_of(const scene::Box& box) {
@@ -61,9 +62,9 @@ Vector3 extents_of(const scene::Cylinder& cylinder) {
   return {cylinder.radius, cylinder.radius, cylinder.height / 2};
 }
 
-bool holds(const scene::Cylinder& cylinder, const Vector3& center, double radius, double slack) {
-  return center.head<2>().norm() + radius <= cylinder.radius + slack &&
-         std::abs(center.z()) + radius <= cylinder.height / 2 + slack;
+double depth_of(const scene::Cylinder& cylinder, const Vector3& point) {
+  return std::min(cylinder.radius - point.head<2>().norm(),
+                  cylinder.height / 2 - std::abs(point.z()));
 }
 
 BulletShape bullet_of(const scene::Cylinder& cylinder) {
@@ -84,8 +85,8 @@ Vector3 inertia_of(const scene::Sphere& sphere, double mass) {
 
 Vector3 extents_of(const scene::Sphere& sphere) { return Vector3::Constant(sphere.radius); }
 
-bool holds(const scene::Sphere& sphere, const Vector3& center, double radius, double slack) {
-  return center.norm() + radius <= sphere.radius + slack;
+double depth_of(const scene::Sphere& sphere, const Vector3& point) {
+  return sphere.radius - point.norm();
 }
 
 BulletShape bullet_of(const scene::Sphere& sphere) {
@@ -118,10 +119,10 @@ Vector3 extents_of(const scene::Capsule& capsule) {
   return {capsule.radius, capsule.radius, capsule.height / 2};
 }
 
-bool holds(const scene::Capsule& capsule, const Vector3& center, double radius, double slack) {
+double depth_of(const scene::Capsule& capsule, const Vector3& point) {
   const double half = half_segment(capsule);
-  const Vector3 nearest(0, 0, std::clamp(center.z(), -half, half));
-  return (center - nearest).norm() + radius <= capsule.radius + slack;
+  const Vector3 nearest(0, 0, std::clamp(point.z(), -half, half));
+  return capsule.radius - (point - nearest).norm();
 }
 
 BulletShape bullet_of(const scene::Capsule& capsule) {
@@ -158,11 +159,13 @@ Vector3 extents_of(const scene::Hull& hull) {
   return extents;
 }
 
-bool holds(const scene::Hull& hull, const Vector3& center, double radius, double slack) {
-  const Vector3 in_link = frame_of(hull) * center;
-  return std::ranges::all_of(hull.polyhedron->faces, [&](const scene::Polyhedron::Face& face) {
-    return face.normal.dot(in_link) + radius <= face.offset + slack;
-  });
+double depth_of(const scene::Hull& hull, const Vector3& point) {
+  const Vector3 in_link = frame_of(hull) * point;
+  double depth = std::numeric_limits<double>::infinity();
+  for (const scene::Polyhedron::Face& face : hull.polyhedron->faces) {
+    depth = std::min(depth, face.offset - face.normal.dot(in_link));
+  }
+  return depth;
 }
 
 std::unique_ptr<btConvexHullShape> bullet_hull(const scene::Hull& hull) {
@@ -210,10 +213,8 @@ Vector3 half_extents(const scene::Geometry& geometry) {
   return std::visit([](const auto& shape) { return extents_of(shape); }, geometry);
 }
 
-bool holds_ball(const scene::Geometry& geometry, const Vector3& center, double radius,
-                double slack) {
-  return std::visit([&](const auto& shape) { return holds(shape, center, radius, slack); },
-                    geometry);
+double depth(const scene::Geometry& geometry, const Vector3& point) {
+  return std::visit([&](const auto& shape) { return depth_of(shape, point); }, geometry);
 }
 
 BulletShape bullet_shape(const scene::Geometry& geometry) {

@@ -22,10 +22,9 @@ math::Vector3 inertia(const scene::Geometry& geometry, double mass);
 /// Of the box about the shape and S's origin, along S's axes [m].
 math::Vector3 half_extents(const scene::Geometry& geometry);
 
-/// Whether a ball lies inside.
-/// @param center  in S [m];  @param slack  by which it may reach out [m]
-bool holds_ball(const scene::Geometry& geometry, const math::Vector3& center, double radius,
-                double slack);
+/// Radius of the largest ball about a point that the shape holds [m]; negative outside.
+/// @param point  in S [m]
+double depth(const scene::Geometry& geometry, const math::Vector3& point);
 
 /// In S.
 std::unique_ptr<btCollisionShape> bullet_shape(const scene::Geometry& geometry);

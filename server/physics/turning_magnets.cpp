@@ -65,7 +65,7 @@ void carry_turning_magnets(std::vector<LinkBody>& links, const scene::Entity& en
     if (!at_centre(child, joint.child_frame.position)) continue;
     if (!has_centred_magnet(entity, joint.child, child)) continue;
     const Vector3 center = math::inverse(links[joint.parent].center) * joint.parent_frame.position;
-    if (holds_ball(entity.links[joint.parent].geometry, center, sphere->radius, rounding)) {
+    if (depth(entity.links[joint.parent].geometry, center) >= sphere->radius - rounding) {
       carried[joint.parent].push_back(joint.child);
     }
   }

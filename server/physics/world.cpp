@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "magnetism/stiffness.h"
 #include "physics/convert.h"
 #include "physics/core.h"
 #include "physics/magnets.h"
@@ -165,7 +164,7 @@ void World::step() {
   p.stepped = p.bodies.size();
   for (int split = 0; split < p.splits; ++split) {
     p.plugins.before_substep(p.bodies, p.length);
-    p.core.substep(p.bodies, p.length, p.splits);
+    p.core.substep(p.bodies, p.length, p.splits, p.plugins.stiff());
     p.plugins.after_substep(p.bodies, p.length, p.core);
   }
 }
@@ -202,12 +201,14 @@ Convergence World::convergence() const { return parts_->core.convergence(); }
 
 World::Stiffness World::stiffest_bond() const {
   const Parts& p = *parts_;
-  Stiffness stiffness{0, 0, p.length, magnetism::stiffest_product};
-  if (!p.settings.magnetism) return stiffness;
-  const StiffestBond stiffest = physics::stiffest_bond(p.bodies, *p.settings.magnetism);
-  stiffness.entity = stiffest.entity;
-  stiffness.product = stiffest.rate * p.length;
-  return stiffness;
+  if (!p.settings.magnetism) return {.substep = p.length};
+  const bool divides = p.settings.solver == scene::Solver::newton;
+  const StiffestBond stiffest = physics::stiffest_bond(p.bodies, *p.settings.magnetism, divides);
+  return {.entity = stiffest.entity,
+          .product = stiffest.rate * p.length,
+          .substep = p.length,
+          .safe = stiffest.safe,
+          .divisible = stiffest.fixed && !divides};
 }
 
 double World::energy() const {

@@ -83,13 +83,14 @@ class World {
   /// The same of one entity that is present.
   void read(std::size_t entity, world::State& state) const;
 
-  /// How stiff the scene's magnetic bonds are for its substeps: the largest product of substep and
-  /// rate, and the entity it belongs to; 0 where there is no magnetism.
+  /// How stiff the scene's magnetic bonds are for its substeps: the product of substep and rate that
+  /// is the largest share of a safe one, and the entity it belongs to; 0 where there is no magnetism.
   struct Stiffness {
     std::size_t entity = 0;
-    double product = 0;  ///< explicit steps are safe up to `safe` and unstable from 2 on
-    double substep = 0;  ///< internal [s]
-    double safe = 0;
+    double product = 0;
+    double substep = 0;      ///< internal [s]
+    double safe = 1;         ///< bonds gain no energy while `product` is below this
+    bool divisible = false;  ///< solver="newton" would divide substeps for such bonds
   };
   Stiffness stiffest_bond() const;
 

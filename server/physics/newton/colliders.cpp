@@ -191,20 +191,33 @@ void Colliders::follow(const dynamics::System& system, double length) {
     group.rests = !group.moves || system.asleep(static_cast<int>(group.entity));
     woke |= group.rested && !group.rests;
     if (group.moves ? group.unchanged() : all[group.first].reach == least) continue;
-    double fastest = 0;
-    for (std::size_t i = group.first; i < group.first + group.count; ++i) {
-      Collider& collider = all[i];
-      collider.reach = least;
-      if (!group.moves) continue;
-      place(collider, system.trees[group.entity]);
-      const double speed =
-          collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
-      collider.reach += 1.3 * length * speed;
-      fastest = std::max(fastest, speed);
-    }
-    enclose(group);
-    keep_in_box(group, length * fastest);
+    follow(group, system, length);
   }
+}
+
+void Colliders::follow(const dynamics::System& system, double length,
+                       std::span<const std::uint8_t> chosen) {
+  for (ColliderGroup& group : groups) {
+    if (!group.proxy || !group.moves || !chosen[group.entity]) continue;
+    group.rests = false;
+    follow(group, system, length);
+  }
+}
+
+void Colliders::follow(ColliderGroup& group, const dynamics::System& system, double length) {
+  double fastest = 0;
+  for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+    Collider& collider = all[i];
+    collider.reach = least_reach(length);
+    if (!group.moves) continue;
+    place(collider, system.trees[group.entity]);
+    const double speed =
+        collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
+    collider.reach += 1.3 * length * speed;
+    fastest = std::max(fastest, speed);
+  }
+  enclose(group);
+  keep_in_box(group, length * fastest);
 }
 
 void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b,

@@ -87,6 +87,9 @@ class Colliders {
 
   /// Takes the poses and motions of all trees that are awake.
   void follow(const dynamics::System& system, double length);
+  /// Those of some trees that are awake, for a part of the substep.
+  void follow(const dynamics::System& system, double length,
+              std::span<const std::uint8_t> chosen);
   /// X_WS of a collider now.
   btTransform pose(const Collider& collider, const dynamics::System& system) const;
   /// Pairs whose boxes overlap, of which at least one moves, without those that are as they were in
@@ -96,6 +99,7 @@ class Colliders {
  private:
   struct Filter;
   void place(Collider& collider, const dynamics::Tree& tree) const;
+  void follow(ColliderGroup& group, const dynamics::System& system, double length);
   void enclose(ColliderGroup& group);
   void keep_in_box(ColliderGroup& group, double step);
   void insert(ColliderGroup& group, std::size_t index);

@@ -80,6 +80,7 @@ Contacts::Pair& Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
     pairs_[place].live = true;
     ++live_;
   }
+  if (pairs_[place].seen != substep_) pairs_[place].earlier.setZero();
   pairs_[place].seen = substep_;
   return pairs_[place];
 }
@@ -119,6 +120,41 @@ std::span<dynamics::Contact> Contacts::add_resting() {
     pair.first = contacts_.size();
     emit(pair);
   }
+  return contacts_;
+}
+
+std::span<dynamics::Contact> Contacts::find(double length, std::span<const std::uint8_t> chosen) {
+  contacts_.clear();
+  owner_.clear();
+  colliders_.find_near(near_);
+  ++part_;
+  const auto stands_or_chosen = [&](std::size_t i) {
+    return !colliders_.all[i].moves || chosen[colliders_.all[i].entity];
+  };
+  for (const Near& near : near_) {
+    if (!stands_or_chosen(near.a) || !stands_or_chosen(near.b)) continue;
+    meet(pair_of(near.a, near.b, places_[key(near.a, near.b)]), length);
+  }
+  for (std::size_t i = 0; colliders_.floor && i < colliders_.all.size(); ++i) {
+    const Collider& collider = colliders_.all[i];
+    if (!collider.present || !collider.moves || !chosen[collider.entity]) continue;
+    if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
+    meet(pair_of(i, *colliders_.floor, floor_pairs_[i]), length);
+  }
+  for (Pair& pair : pairs_) {  // what came apart in this part of the substep
+    if (pair.count == 0 || pair.met == part_ || pair.rests) continue;
+    if (stands_or_chosen(pair.a) && stands_or_chosen(pair.b)) pair.count = 0;
+  }
+  drop_hidden();
+  return contacts_;
+}
+
+std::span<dynamics::Contact> Contacts::keep(std::span<const std::uint8_t> chosen) {
+  keep_if([&](std::size_t i) {
+    const auto stands_or_chosen = [&](const Collider& c) { return !c.moves || chosen[c.entity]; };
+    const Pair& pair = pairs_[owner_[i]];
+    return stands_or_chosen(colliders_.all[pair.a]) && stands_or_chosen(colliders_.all[pair.b]);
+  });
   return contacts_;
 }
 
@@ -169,12 +205,17 @@ void Contacts::drop_hidden() {
       }
     }
   }
-  if (!dropped) return;
+  if (dropped) keep_if([&](std::size_t i) { return pairs_[owner_[i]].count > 0; });
+}
+
+/// @param is_kept  of the place of a contact: the same for all of a pair
+template <class IsKept>
+void Contacts::keep_if(IsKept is_kept) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < owner_.size(); ++i) {
     Pair& pair = pairs_[owner_[i]];
     const bool first = pair.first == i;
-    if (pair.count == 0) continue;
+    if (!is_kept(i)) continue;
     if (first) pair.first = kept;
     contacts_[kept] = contacts_[i];
     owner_[kept++] = owner_[i];
@@ -211,6 +252,7 @@ void Contacts::drop_unseen() {
 void Contacts::meet(Pair& pair, double length) {
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
+  pair.met = part_;
   resting_ -= pair.rests;
   pair.rests = colliders_.rests(a) && colliders_.rests(b);
   resting_ += pair.rests;
@@ -294,12 +336,13 @@ void Contacts::emit(const Pair& pair) {
   }
 }
 
-void Contacts::remember() {
+void Contacts::remember(bool more) {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Pair& pair = pairs_[owner_[i]];
     Remembered& point = pair.points[i - pair.first];
     point.impulse = contacts_[i].impulse;
     point.angular_impulse = contacts_[i].angular_impulse;
+    if (more) pair.earlier += point.impulse;
   }
 }
 
@@ -318,11 +361,12 @@ void Contacts::forget(std::size_t entity, dynamics::System& system) {
 void Contacts::tell(std::vector<Contact>& out) const {
   out.clear();
   for (const Pair& pair : pairs_) {
-    math::Vector3 middle(0, 0, 0), sum(0, 0, 0);
+    math::Vector3 middle(0, 0, 0), sum = pair.earlier;
     int count = 0;
     for (int i = 0; i < pair.count; ++i) {
       const Remembered& point = pair.points[i];
-      if (point.impulse.dot(pair.normal) <= 0 && point.gap > 0) continue;
+      const bool pressed = point.impulse.dot(pair.normal) > 0 || !pair.earlier.isZero(0);
+      if (!pressed && point.gap > 0) continue;
       middle += point.point;
       sum += point.impulse;
       ++count;

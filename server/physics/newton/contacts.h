@@ -22,8 +22,16 @@ class Contacts {
   std::span<dynamics::Contact> find(double length);
   /// Those and the others: where something wakes in the substep.
   std::span<dynamics::Contact> add_resting();
+  /// The same for a part of the substep in which only some trees move, all of them awake: contacts
+  /// among them, and with what stands.
+  std::span<dynamics::Contact> find(double length, std::span<const std::uint8_t> chosen);
+  /// Leaves out the contacts of all others, until the next find().
+  std::span<dynamics::Contact> keep(std::span<const std::uint8_t> chosen);
+  /// Which colliders were near each other at the last find().
+  std::span<const Near> near() const { return near_; }
   /// Notes the impulses that dynamics/ has written to them.
-  void remember();
+  /// @param more  parts of the substep are still to come
+  void remember(bool more = false);
   /// Forgets what touched an entity, before it is removed or moved; wakes what rested there.
   void forget(std::size_t entity, dynamics::System& system);
 
@@ -41,9 +49,11 @@ class Contacts {
     std::size_t a = 0, b = 0;  // colliders
     bool live = false;
     unsigned seen = 0;  // the substep in which it was near last
+    unsigned met = 0;   // likewise, counting parts of substeps too
     bool rests = false;  // both sides did in the substep in which it was seen last
     dynamics::Contact law;  // what all its contacts have in common
     math::Vector3 normal{0, 0, 1};
+    math::Vector3 earlier{0, 0, 0};  // impulse in earlier parts of the substep [N s]
     int count = 0;
     std::array<Remembered, most_points> points;
     std::size_t first = 0;  // of its contacts in the list
@@ -55,6 +65,8 @@ class Contacts {
   void emit(const Pair& pair);
   bool covers(const Pair& seen, const Pair& hidden) const;
   void drop_hidden();
+  template <class IsKept>
+  void keep_if(IsKept is_kept);
   void drop(std::size_t number);
   void drop_unseen();
 
@@ -63,7 +75,7 @@ class Contacts {
   std::vector<int> unused_;
   std::size_t live_ = 0, resting_ = 0;
   std::unordered_map<std::uint64_t, int> places_;  // of pairs by their colliders; not with the floor
-  unsigned substep_ = 0;
+  unsigned substep_ = 0, part_ = 0;
   std::vector<Near> near_;
   std::vector<int> floor_pairs_;  // of each collider
   std::vector<dynamics::Contact> contacts_;

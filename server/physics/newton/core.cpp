@@ -132,16 +132,18 @@ double NewtonCore::velocity(JointIndex index) const {
   return tree.v[dof_of(tree, joint.part)];
 }
 
-void NewtonCore::set_servos_and_limits(std::span<Body> bodies, double length, int splits) {
+void NewtonCore::set_servos_and_limits(std::span<Body> bodies, const Share& share) {
   servos_.clear();
   limits_.clear();
   std::size_t entity = 0;  // joints of an entity stand together
   bool is_factored = false;
   for (const CoordinateJoint& joint : joints_) {
+    if (!share.has(joint.entity)) continue;
     dynamics::Tree& tree = system_.trees[joint.entity];
     if (std::exchange(entity, joint.entity) != joint.entity) is_factored = false;
     if (joint.mode != scene::JointMode::disabled) {
-      servos_.push_back(servo_of(joint, tree, length, joint.max_impulse / splits, is_factored));
+      const double impulse = joint.max_impulse / share.splits * share.of_impulses;
+      servos_.push_back(servo_of(joint, tree, share.length, impulse, is_factored));
     }
     if (joint.limit) {
       limits_.push_back({static_cast<int>(joint.entity), static_cast<int>(joint.part),
@@ -149,35 +151,117 @@ void NewtonCore::set_servos_and_limits(std::span<Body> bodies, double length, in
     }
   }
   for (const Held& held : held_) {
-    for (const auto& servo : servos_of(bodies[held.entity], held.impulses)) {
+    if (!share.has(held.entity)) continue;
+    for (dynamics::Servo servo : servos_of(bodies[held.entity], held.impulses)) {
+      servo.lower *= share.of_impulses;
+      servo.upper *= share.of_impulses;
       servos_.push_back(servo);
     }
   }
 }
 
 /// The impulses of this substep are where the next one begins.
-void NewtonCore::remember() {
-  contacts_.remember();
+void NewtonCore::remember(const Share& share) {
+  contacts_.remember(share.more);
   std::size_t servo = 0, limit = 0;
   for (CoordinateJoint& joint : joints_) {
+    if (!share.has(joint.entity)) continue;
     if (joint.mode != scene::JointMode::disabled) joint.motor_impulse = servos_[servo++].impulse;
     if (joint.limit) joint.limit_impulse = limits_[limit++].impulse;
   }
   for (Held& held : held_) {
+    if (!share.has(held.entity)) continue;
     for (double& impulse : held.impulses) impulse = servos_[servo++].impulse;
   }
 }
 
-void NewtonCore::substep(std::span<Body> bodies, double length, int splits) {
-  colliders_.follow(system_, length);
-  set_servos_and_limits(bodies, length, splits);
-  std::span<dynamics::Contact> contacts = contacts_.find(length);
-  if (system_.wake_disturbed(length, contacts, servos_)) contacts = contacts_.add_resting();
-  const dynamics::Report report = system_.step(length, contacts, servos_, limits_);
-  remember();
+void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
+  const dynamics::Report report =
+      system_.step(share.length, contacts, servos_, limits_, share.chosen);
+  remember(share);
   convergence_.islands += report.islands;
   convergence_.not_converged += report.not_converged;
   convergence_.worst = std::max(convergence_.worst, report.miss);
+}
+
+void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plugin* stiff) {
+  Share whole{.length = length, .splits = splits};
+  colliders_.follow(system_, length);
+  set_servos_and_limits(bodies, whole);
+  std::span<dynamics::Contact> contacts = contacts_.find(length);
+  bool woke = stiff && wake_stiff(*stiff);
+  woke |= system_.wake_disturbed(length, contacts, servos_);
+  if (woke) contacts = contacts_.add_resting();
+  if (!stiff) return step(contacts, whole);
+  division_.find(stiff->stiff_pairs(), contacts_.near(), contacts, colliders_.all, system_.trees);
+  whole.chosen = division_.with(0);
+  set_servos_and_limits(bodies, whole);
+  step(contacts_.keep(whole.chosen), whole);
+  for (const int count : division_.counts()) {
+    substep_in_parts(bodies, length, splits, count, *stiff);
+  }
+}
+
+/// What takes the substep in parts must be awake.
+/// @return  whether something was not
+bool NewtonCore::wake_stiff(const Plugin& stiff) {
+  division_.find(stiff.stiff_pairs(), contacts_.near(), {}, colliders_.all, system_.trees);
+  const std::vector<std::uint8_t>& whole = division_.with(0);
+  bool woke = false;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (whole[i] || !system_.asleep(static_cast<int>(i))) continue;
+    system_.wake(static_cast<int>(i));
+    woke = true;
+  }
+  return woke;
+}
+
+/// Moves a set of trees on in steps of length / count. Forces act in the middle of each, as impulses: a
+/// step ends half-way between two of them, so that places and velocities belong together to second
+/// order (drift, kick, drift). All that acts does so, gravity and motors too, because friction that
+/// holds against a force must have the same share of what presses.
+void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
+                                  Plugin& stiff) {
+  Share share{.chosen = division_.with(count), .splits = splits};
+  stiff.choose_stiff(share.chosen);
+  stiff.push_stiff(bodies, -1);
+  constant_.clear();
+  gravity_.clear();
+  const auto each_tree = [&](auto visit) {
+    for (std::size_t i = 0; i < system_.trees.size(); ++i) {
+      if (share.chosen[i]) visit(static_cast<int>(i), system_.trees[i]);
+    }
+  };
+  each_tree([&](int, dynamics::Tree& tree) {
+    for (std::size_t k = 0; k < tree.links.size(); ++k) {
+      constant_.push_back(tree.external[k]);
+      constant_.back().force += tree.links[k].mass * tree.gravity;
+    }
+    gravity_.push_back(std::exchange(tree.gravity, math::Vector3(0, 0, 0)));
+    std::fill(tree.external.begin(), tree.external.end(), dynamics::Wrench{});
+  });
+  for (int i = 0; i <= count; ++i) {
+    const bool half = i == 0 || i == count;
+    const double kick = i == 0 ? 0 : half ? 2 : 1;  // of the forces over this length
+    share.length = length / count / (half ? 2 : 1);
+    share.of_impulses = kick * share.length / length;
+    share.more = i < count;
+    if (i > 0) {
+      auto constant = constant_.begin();
+      each_tree([&](int number, const dynamics::Tree& tree) {
+        for (std::size_t k = 0; k < tree.links.size(); ++k, ++constant) {
+          system_.push(number, static_cast<int>(k),
+                       {kick * constant->moment, kick * constant->force});
+        }
+      });
+      stiff.push_stiff(bodies, kick);
+    }
+    colliders_.follow(system_, share.length, share.chosen);
+    set_servos_and_limits(bodies, share);
+    step(contacts_.find(share.length, share.chosen), share);
+  }
+  auto gravity = gravity_.begin();
+  each_tree([&](int, dynamics::Tree& tree) { tree.gravity = *gravity++; });
 }
 
 }  // namespace ziggurat::physics

@@ -10,6 +10,7 @@
 #include "dynamics/system.h"
 #include "physics/bodies.h"
 #include "physics/newton/contacts.h"
+#include "physics/newton/division.h"
 #include "physics/newton/motors.h"
 #include "physics/overlap.h"
 #include "physics/plugin.h"
@@ -36,7 +37,7 @@ class NewtonCore {
   double position(JointIndex joint) const;
   double velocity(JointIndex joint) const;
 
-  void substep(std::span<Body> bodies, double length, int splits);
+  void substep(std::span<Body> bodies, double length, int splits, Plugin* stiff);
   void contacts(std::vector<Contact>& out) const { contacts_.tell(out); }
   Convergence convergence() const { return convergence_; }
 
@@ -48,8 +49,21 @@ class NewtonCore {
   };
 
   void detach(std::size_t entity);
-  void set_servos_and_limits(std::span<Body> bodies, double length, int splits);
-  void remember();
+  /// Trees that take a part of a substep, or all of it.
+  struct Share {
+    std::span<const std::uint8_t> chosen;  // of each tree; empty: all
+    double length = 0;                     // [s]
+    int splits = 1;                        // of the scene's substep, see substep()
+    double of_impulses = 1;                // what motors may give, of that in the substep
+    bool more = false;                     // other parts follow
+    bool has(std::size_t entity) const { return chosen.empty() || chosen[entity]; }
+  };
+  void set_servos_and_limits(std::span<Body> bodies, const Share& share);
+  void step(std::span<dynamics::Contact> contacts, const Share& share);
+  bool wake_stiff(const Plugin& stiff);
+  void remember(const Share& share);
+  void substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
+                        Plugin& stiff);
 
   scene::Physics settings_;
   dynamics::System system_;
@@ -59,6 +73,9 @@ class NewtonCore {
   std::vector<Held> held_;
   std::vector<dynamics::Servo> servos_;
   std::vector<dynamics::Limit> limits_;
+  Division division_;
+  std::vector<dynamics::Wrench> constant_;  // on the links of a set of trees, in its order
+  std::vector<math::Vector3> gravity_;      // of these trees [m/s^2]
   Convergence convergence_;
 };
 

@@ -68,12 +68,16 @@ TEST(MagneticRows, FollowTheReferenceUnderItsClock) {
 
 TEST(MagneticRows, WarnWhereTheBondIsTooStiffForTheSubstep) {
   scene::Scene scene = rows_scene();
+  scene.physics.solver = scene::Solver::newton;  // divides substeps for such bonds
   EXPECT_TRUE(Simulation(scene, {}).notices().empty());
-  scene.physics.iterations = 1;  // substeps of 0.2 s
+  scene.physics.solver = scene::Solver::sweeps;
   const auto notices = Simulation(scene, {}).notices();
   ASSERT_EQ(notices.size(), 1u);
   EXPECT_NE(notices[0].find("'magnet0'"), std::string::npos) << notices[0];
+  EXPECT_NE(notices[0].find("solver=\"newton\""), std::string::npos) << notices[0];
   EXPECT_NE(notices[0].find("max_substep"), std::string::npos);
+  scene.physics.max_substep = 2e-3;  // 0.68 / 5
+  EXPECT_TRUE(Simulation(scene, {}).notices().empty());
 }
 
 }  // namespace

@@ -284,5 +284,70 @@ TEST(Field, WorksWithoutMagnets) {
   EXPECT_EQ(wrenches[0].force, Vector3::Zero());
 }
 
+TEST(PairSet, OfAllPairsIsTheWholeField) {
+  const Scene scene = random_scene(9, 0.2, 5);
+  Options options;
+  options.max_distance = 0.25;
+  Field field(scene.magnets, scene.bodies.size(), options);
+  std::vector<Wrench> whole(scene.bodies.size()), pairs(scene.bodies.size());
+  field.evaluate(0, scene.bodies, scene.currents, whole);
+  PairSet all;
+  for (std::uint32_t i = 0; i < scene.magnets.size(); ++i) {
+    for (std::uint32_t j = i + 1; j < scene.magnets.size(); ++j) {
+      if (scene.magnets[i].body != scene.magnets[j].body) all.add(i, j);
+    }
+  }
+  field.evaluate(all, scene.bodies, scene.currents, pairs);
+  expect_same_bits(whole, pairs);
+}
+
+TEST(PairSet, LeavesTheOtherBodiesAlone) {
+  Scene scene = random_scene(4, 0.1, 7);
+  Field field(scene.magnets, scene.bodies.size(), {});
+  std::vector<Wrench> wrenches(scene.bodies.size());
+  field.evaluate(0, scene.bodies, scene.currents, wrenches);
+  const Wrench before = wrenches[0];
+  PairSet pairs;
+  std::uint32_t first = 0, second = 0;
+  while (scene.magnets[first].body != 1) ++first;
+  while (scene.magnets[second].body != 2) ++second;
+  pairs.add(first, second);
+  scene.bodies[1].position.x() += 0.01;
+  field.evaluate(pairs, scene.bodies, scene.currents, wrenches);
+  EXPECT_EQ(wrenches[0].force, before.force);
+  EXPECT_EQ(wrenches[1].force, -wrenches[2].force);
+  const auto moment = [&](std::uint32_t i) -> Vector3 {
+    const Magnet& m = scene.magnets[i];
+    return scene.bodies[m.body].orientation *
+           (m.passive_moment + scene.currents[i] * m.active_moment);
+  };
+  const auto at = [&](std::uint32_t i) {
+    return scene.bodies[scene.magnets[i].body] * scene.magnets[i].position;
+  };
+  const auto expected = dipole_pair(moment(first), moment(second), at(first) - at(second));
+  EXPECT_LT((wrenches[1].force - expected.force_on_first).norm(),
+            1e-11 * expected.force_on_first.norm());
+}
+
+TEST(Core, BoundsTheForceOfMagnetsInsideEachOther) {
+  std::vector<Magnet> magnets(2);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    magnets[i].body = i;
+    magnets[i].passive_moment = {0, 0, 1};
+    magnets[i].core = 4e-3;
+  }
+  for (const double distance : {1e-3, 7e-3, 9e-3}) {
+    Field field(magnets, 2, {});
+    const std::vector<Pose> poses{{{0, 0, 0}, Quaternion::Identity()},
+                                  {{0, 0, distance}, Quaternion::Identity()}};
+    std::vector<Wrench> wrenches(2);
+    field.evaluate(0, poses, std::vector<double>(2), wrenches);
+    const auto expected = dipole_pair({0, 0, 1}, {0, 0, 1}, {0, 0, -distance}, 8e-3);
+    EXPECT_NEAR(wrenches[0].force.z(), expected.force_on_first.z(),
+                1e-12 * expected.force_on_first.norm());
+    EXPECT_LE(wrenches[0].force.norm(), 6e-7 / std::pow(8e-3, 4) * (1 + 1e-12));
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::magnetism

@@ -60,7 +60,7 @@ struct Bench {
   std::string step() {
     log.clear();
     plugins.before_substep(bodies, h);
-    core.substep(bodies, h, 1);
+    core.substep(bodies, h, 1, plugins.stiff());
     plugins.after_substep(bodies, h, core);
     return log;
   }

@@ -1,0 +1,34 @@
+#pragma once
+// Which trees take a substep in parts, because forces between them change too fast for it: those of
+// stiff pairs, and all that they may touch meanwhile.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/newton/colliders.h"
+#include "physics/plugin.h"
+
+namespace ziggurat::physics {
+
+class Division {
+ public:
+  /// @param pairs  the stiff ones
+  /// @param near   colliders that may touch within the substep
+  /// @param contacts  likewise, of those that have just woken
+  void find(std::span<const StiffPair> pairs, std::span<const Near> near,
+            std::span<const dynamics::Contact> contacts, const std::vector<Collider>& colliders, const std::vector<dynamics::Tree>& trees);
+
+  /// Into how many parts the sets of trees divide the substep: ascending, each once.
+  const std::vector<int>& counts() const { return counts_; }
+  /// Of each tree whether its substep has so many parts; 0: it takes it as a whole.
+  const std::vector<std::uint8_t>& with(int count);
+
+ private:
+  int find(int tree);
+
+  std::vector<int> leader_, parts_, counts_;  // the first two of each tree
+  std::vector<std::uint8_t> chosen_;
+};
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,94 @@
+#include "physics/stiff_magnets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ziggurat::physics {
+namespace {
+
+using math::Vector3;
+
+/// Below this product of rate and substep a pair never matters: what it does in a substep is as
+/// good as constant.
+constexpr double soft = 0.02;
+/// A substep is divided where it would misplace more than this share of the pair's bond energy.
+constexpr double share = 2e-4;
+/// Product of rate and length that a part should have.
+constexpr double part_product = 0.2;
+constexpr int most_parts = 128;
+
+/// What one carrier does at a point, now and a substep ago.
+struct PointMotion {
+  Vector3 now, before;
+};
+
+PointMotion motion_at(const Carrier& carrier, const Vector3& point) {
+  const Vector3 arm = point - carrier.centre;
+  return {carrier.velocity + carrier.turning.cross(arm),
+          carrier.velocity_before + carrier.turning_before.cross(arm)};
+}
+
+/// Of a force at a point [1/kg].
+double felt_inverse_mass(const Carrier& carrier, const Vector3& point) {
+  return carrier.inverse_mass + (point - carrier.centre).squaredNorm() * carrier.inverse_inertia;
+}
+
+/// The most that a pair's force and torque can be at a distance, for any directions of its moments,
+/// and the fastest rate at which it can swing or fall together.
+struct Stiffness {
+  double force, torque;                  // [N], [N m]
+  double inverse_mass, inverse_inertia;  // of both [1/kg], [1/(kg m^2)]
+  double rate;                           // [rad/s]
+
+  Stiffness(const PairOfMagnets& pair, const Carrier& a, const Carrier& b, double distance)
+      : torque(2 * magnetism::magnetic_constant * pair.moments / (distance * distance * distance)),
+        inverse_mass(felt_inverse_mass(a, pair.first) + felt_inverse_mass(b, pair.second)),
+        inverse_inertia(a.inverse_inertia + b.inverse_inertia) {
+    force = 3 * torque / distance;  // the energy is -torque
+    rate = std::sqrt(4 * force / distance * inverse_mass + torque * inverse_inertia);
+  }
+};
+
+}  // namespace
+
+double close_reach(double moment, double inverse_mass, double inverse_inertia, double substep) {
+  const double energy = 2 * magnetism::magnetic_constant * moment * moment;  // times 1 m^3
+  const double rate = soft / substep;
+  return std::max(std::pow(24 * energy * inverse_mass / (rate * rate), 0.2),
+                  std::cbrt(4 * energy * inverse_inertia / (rate * rate)));
+}
+
+int parts_of(const PairOfMagnets& pair, const Carrier& a, const Carrier& b, double substep,
+             std::uint64_t now) {
+  const Stiffness at_d(pair, a, b, pair.distance);
+  if (!(substep * at_d.rate > soft)) return -1;
+  const Vector3 middle = (pair.first + pair.second) / 2;
+  const PointMotion at_a = motion_at(a, middle), at_b = motion_at(b, middle);
+  double speed = (at_a.now - at_b.now).norm();
+  double turning = (a.turning - b.turning).norm();
+  // What holds both, contacts as well, decides by how much they will speed up.
+  const auto known = [now](const Carrier& c) {
+    const bool seen = c.seen_before > 0 && c.seen_before + 1 == now;
+    return c.inverse_mass == 0 || seen;
+  };
+  if (known(a) && known(b)) {
+    speed += (at_a.now - at_a.before - at_b.now + at_b.before).norm();
+    turning += (a.turning - a.turning_before - b.turning + b.turning_before).norm();
+  } else {
+    speed += substep * at_d.force * at_d.inverse_mass;
+    turning += substep * at_d.torque * at_d.inverse_inertia;
+  }
+  // A substep takes the force at its beginning: half a substep's change of energy is misplaced.
+  const double misplaced = substep / 2 * (at_d.force * speed + at_d.torque * turning);
+  const double closest = pair.closest > 0 ? std::min(pair.closest, pair.distance) : pair.distance;
+  const double bond = Stiffness(pair, a, b, closest).torque;
+  if (!(misplaced > share * bond)) return 0;
+  const double nearest = std::max(pair.distance - substep * speed,
+                                  std::min(closest, pair.distance / 2));
+  const double rate = Stiffness(pair, a, b, nearest).rate;
+  const double fastest = std::max({rate, speed / nearest, turning});
+  return static_cast<int>(std::clamp(std::ceil(substep * fastest / part_product), 1.0,
+                                     static_cast<double>(most_parts)));
+}
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,61 @@
+#pragma once
+// Pairs of magnets whose forces change too fast for one substep: which they are, and into how many
+// parts a substep must be divided for them. docs/magnetism.md derives the limits.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "magnetism/field.h"
+
+namespace ziggurat::physics {
+
+/// Two bodies bonded by fixed magnets may tumble freely without gaining energy while substep * rate
+/// (magnetism/stiffness.h) is below this. Measured: see docs/magnetism.md.
+constexpr double safe_whole = 0.15;  ///< where the core takes the substep as a whole
+constexpr double safe_divided = 64;  ///< where it divides it for stiff pairs
+
+/// What moves with some magnets.
+struct Carrier {
+  std::size_t entity = 0;
+  std::size_t part = 0;
+  double inverse_mass = 0;     ///< [1/kg]; 0: it stands
+  double inverse_inertia = 0;  ///< the largest principal one [1/(kg m^2)]
+
+  // As of the substep `seen`:
+  std::uint64_t seen = 0;                     ///< 0: none yet
+  math::Vector3 centre{0, 0, 0};              ///< of mass, in the world [m]
+  math::Vector3 velocity{0, 0, 0};            ///< of it [m/s]
+  math::Vector3 turning{0, 0, 0};             ///< [rad/s]
+  std::uint64_t seen_before = 0;              ///< the substep of these:
+  math::Vector3 velocity_before{0, 0, 0};     ///< [m/s]
+  math::Vector3 turning_before{0, 0, 0};      ///< [rad/s]
+};
+
+/// A pair of fixed magnets of different carriers that are close enough to matter.
+struct ClosePair {
+  std::uint32_t first = 0, second = 0;  ///< magnets
+  int parts = 0;                        ///< 0: a substep need not be divided for it
+};
+
+/// No two magnets farther apart than this are a ClosePair [m].
+/// @param moment           the largest of a magnet [A m^2]
+/// @param inverse_mass     the largest of a carrier, as felt at its magnets [1/kg]
+/// @param inverse_inertia  the largest of a carrier [1/(kg m^2)]
+double close_reach(double moment, double inverse_mass, double inverse_inertia, double substep);
+
+/// How stiff a pair is. The bounds hold for any directions of the moments.
+struct PairOfMagnets {
+  double moments = 0;              ///< product of both [(A m^2)^2]
+  double distance = 0;             ///< as it counts [m]
+  double closest = 0;              ///< that contact allows; 0: unknown [m]
+  math::Vector3 first{0, 0, 0};    ///< where they are [m]
+  math::Vector3 second{0, 0, 0};
+};
+
+/// @param substep  its length [s];  @param now  its number
+/// @return  into how many parts it should be divided; 0: none; -1: they are too far apart to matter
+int parts_of(const PairOfMagnets& pair, const Carrier& a, const Carrier& b, double substep,
+             std::uint64_t now);
+
+}  // namespace ziggurat::physics

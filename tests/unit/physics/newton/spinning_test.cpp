@@ -1,0 +1,184 @@
+// Free rotation, gyroscopes and what must not fall asleep, with solver="newton": closed forms at many
+// substeps. Bodies are set turning by a plug-in.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "../../long_runs.h"
+#include "newton_scene.h"
+#include "physics/convert.h"
+#include "physics/core.h"
+#include "physics/plugins.h"
+
+namespace ziggurat::physics {
+namespace {
+
+using namespace testing;
+
+/// Gives a part an angular impulse in the first substep.
+class Twist final : public Plugin {
+ public:
+  Twist(std::size_t part, const Vector3& impulse) : part_(part), impulse_(impulse) {}
+  void before_substep(std::span<Body> bodies, double substep) override {
+    bodies[0].apply_torque(part_, to_bullet(Vector3(impulse_ / substep)));
+    impulse_.setZero();
+  }
+
+ private:
+  std::size_t part_;
+  Vector3 impulse_;  // [N m s]
+};
+
+/// One entity in a core, with plug-ins.
+struct Spinning {
+  double h;
+  std::vector<Body> bodies;
+  Core core;
+  Plugins plugins;
+
+  Spinning(const scene::Physics& physics, double substep, const scene::Entity& entity)
+      : h(substep), core(physics), plugins(physics, core) {
+    bodies.push_back(core.add(entity, 0));
+    plugins.add(bodies.back());
+  }
+  ~Spinning() { core.remove(bodies[0]); }
+  void twist(std::size_t part, const Vector3& impulse) {
+    plugins.add(std::make_unique<Twist>(part, impulse));
+  }
+  void step() {
+    plugins.before_substep(bodies, h);
+    core.substep(bodies, h, 1, plugins.stiff());
+    plugins.after_substep(bodies, h, core);
+  }
+  Pose pose(std::size_t part) const { return from_bullet(bodies[0].transform(part)); }
+  Vector3 spin(std::size_t part) const {
+    std::vector<Motion> motions;
+    bodies[0].motions(motions);
+    return from_bullet(motions[part].angular_velocity);
+  }
+};
+
+class NewtonSpin : public ::testing::TestWithParam<int> {
+ protected:
+  double h = 1.0 / GetParam();
+};
+INSTANTIATE_TEST_SUITE_P(Hertz, NewtonSpin, ::testing::Values(50, 100, 200, 500, 1000, 2000));
+
+// L. D. Landau, E. M. Lifshitz, Mechanics, section 37: the components of the angular velocity in
+// the body are Jacobi's elliptic functions, of period 4 K(k) / rate.
+TEST_P(NewtonSpin, OfAnAsymmetricBodyKeepsEnergyAndMomentumAndFlipsOnTime) {
+  Spinning bench(newton(false, 0), h, loose(at(0, 0, 0), scene::Box{{0.1, 0.2, 0.3}}, 1));
+  const Vector3 inertia = bench.bodies[0].parts[0].inertia;  // x, y, z: falling
+  const double i3 = inertia.x(), i2 = inertia.y(), i1 = inertia.z();
+  const Vector3 omega(0.01, 8, 0.02), momentum = inertia.cwiseProduct(omega);
+  const double energy = momentum.dot(omega) / 2, l2 = momentum.squaredNorm();
+  const bool about_third = l2 > 2 * energy * i2;
+  const double a = (i3 - i2) * (l2 - 2 * energy * i1), b = (i2 - i1) * (2 * energy * i3 - l2);
+  const double rate = std::sqrt((about_third ? a : b) / (i1 * i2 * i3));
+  const double half_period = 2 * std::comp_ellint_1(std::sqrt(about_third ? b / a : a / b)) / rate;
+  bench.twist(0, momentum);
+  double first = 0, last = 0, before = omega.y(), worst_energy = 0, worst_momentum = 0;
+  int flips = 0;
+  for (int i = 1; i * h <= long_runs::a_minute; ++i) {
+    bench.step();
+    const math::Quaternion turned = bench.pose(0).orientation;
+    const Vector3 now = turned.conjugate() * bench.spin(0);
+    const Vector3 carried = inertia.cwiseProduct(now);
+    worst_energy = std::max(worst_energy, std::abs(carried.dot(now) / 2 - energy) / energy);
+    worst_momentum =
+        std::max(worst_momentum, (turned * carried - momentum).norm() / momentum.norm());
+    if (now.y() * before < 0) {
+      const double time = (i - now.y() / (now.y() - before)) * h;
+      if (flips++ == 0) first = time;
+      last = time;
+    }
+    before = now.y();
+  }
+  EXPECT_LT(worst_energy, 1e-3);
+  EXPECT_LT(worst_momentum, 1e-3);
+  if (long_runs::is_slow) return;
+  ASSERT_GT(flips, 4);
+  EXPECT_NEAR((last - first) / (flips - 1), half_period, 0.01 * half_period);
+}
+
+TEST_P(NewtonSpin, OfManyTurnsPerSubstepIsExact) {
+  // 526 rad/s: 5.3 rad per substep at 100 Hz.
+  const double speed = 526;
+  for (const scene::Geometry& shape :
+       {scene::Geometry(scene::Sphere{0.05}), scene::Geometry(scene::Cylinder{0.05, 0.02}),
+        scene::Geometry(scene::Box{{0.1, 0.05, 0.02}})}) {
+    Spinning bench(newton(false, 0), h, loose(at(0, 0, 0), shape, 1));
+    bench.twist(0, {0, 0, speed * bench.bodies[0].parts[0].inertia.z()});
+    const int steps = GetParam() / 2;
+    for (int i = 0; i < steps; ++i) bench.step();
+    EXPECT_NEAR(bench.spin(0).z(), speed, 1e-9 * speed);
+    const math::Quaternion expected = about({0, 0, 1}, std::remainder(speed * steps * h, 2 * EIGEN_PI));
+    EXPECT_LT(bench.pose(0).orientation.angularDistance(expected), 1e-3);
+  }
+}
+
+/// A disc on a massless rod that turns freely about a point, 1 rad off the vertical, in steady
+/// precession. @return  error of the precession after half a second, relative.
+double precession_error(double h) {
+  const double theta = 1, arm = 0.1, mass = 0.5, radius = 0.06, height = 0.02;
+  const scene::Cylinder disc{radius, height};
+  const math::Quaternion tilt = about({0, 1, 0}, theta);
+  scene::Entity entity = prototype("top", at(0, 0, 1), false,
+                                   {link("base", scene::Box{{0.01, 0.01, 0.01}}, 1),
+                                    link("disc", disc, mass)});
+  entity.joints.push_back(joint(scene::JointType::spherical, Vector3::UnitZ(),
+                                {{0, 0, 0}, tilt}, at(0, 0, height / 2 - arm)));
+  Spinning bench(newton(false), h, entity);
+  const std::size_t part = bench.bodies[0].links[1].part;
+  const Vector3 inertia = bench.bodies[0].parts[part].inertia;
+  const double i3 = inertia.z(), across = inertia.x() + mass * arm * arm;
+  const double rate = 4, cosine = std::cos(theta);  // of the precession [rad/s]
+  // m g l = rate (i3 w3 - across rate cos): H. Goldstein, Classical Mechanics, section 5.7.
+  const double w3 = (mass * earth * arm / rate + across * rate * cosine) / i3;
+  const Vector3 axis(std::sin(theta), 0, cosine), up(0, 0, 1);
+  const Vector3 momentum = i3 * w3 * axis + across * rate * (up - cosine * axis);
+  bench.twist(part, momentum);
+  const int steps = static_cast<int>(std::lround(0.5 / h));
+  const Vector3 pivot(0, 0, 1);
+  for (int i = 0; i < steps; ++i) bench.step();
+  const Vector3 now = bench.pose(part).position - pivot;
+  EXPECT_NEAR(now.norm(), arm, 1e-9);
+  EXPECT_NEAR(now.z() / arm, cosine, 0.02);
+  return std::abs(std::atan2(now.y(), now.x()) / (rate * steps * h) - 1);
+}
+
+TEST_P(NewtonSpin, OfAGyroscopePrecessesByTheFormula) {
+  EXPECT_LT(precession_error(h), GetParam() >= 1000 ? 1e-3 : 2e-2 * std::max(1.0, 100 * h));
+}
+
+TEST(NewtonSpin, OfAGyroscopeGetsBetterWithShorterSubsteps) {
+  EXPECT_LT(precession_error(1e-3), precession_error(0.01) + 1e-6);
+  EXPECT_LT(precession_error(5e-4), precession_error(0.02) + 1e-6);
+}
+
+TEST_P(NewtonSpin, AFreeBodyThatStartsSlowlyDoesNotFallAsleep) {
+  World world(newton(true, 0.005), h);  // 5 mm/s^2
+  world.add(loose(at(0, 0, 1), cube, 1));
+  run(world, 4, h);
+  EXPECT_NEAR(origin(world, 0).position.z(), 1 - 0.005 * 8, 1e-9);
+}
+
+TEST_P(NewtonSpin, ABallOnATwentiethOfADegreeRolls) {
+  const double angle = 0.05 / 180 * EIGEN_PI, radius = 0.05, seconds = 4;
+  const math::Quaternion tilt = about({0, 1, 0}, angle);
+  World world(newton(), h);
+  world.add(standing({-0.5 * (tilt * Vector3::UnitZ()), tilt}, scene::Box{{4, 2, 0.5}}, 1));
+  const Vector3 start = radius * (tilt * Vector3::UnitZ()) - Vector3(0, 0, radius);
+  world.add(loose({start, math::Quaternion::Identity()}, scene::Sphere{radius}, 0.1, 0.6));
+  run(world, seconds, h);
+  const Vector3 centre(0, 0, radius);
+  const double way = (origin(world, 1) * centre - start - centre).norm();
+  const double expected = 5.0 / 7 * earth * std::sin(angle) * seconds * seconds / 2;
+  EXPECT_NEAR(way, expected, 0.001 * expected + 1.02 * expected * 2 * h / seconds / 2);
+}
+
+}  // namespace
+}  // namespace ziggurat::physics
