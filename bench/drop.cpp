@@ -1,9 +1,9 @@
 // The substep of the drop scene (n/2 boxes and n/2 cylinders of 1 cm, 0.25 kg, at the areal density
-// of dynamics3d_single_body_test, 10 ms substeps) in three worlds, interleaved round by round:
+// of dynamics3d_single_body_test, 10 ms substeps) in four worlds, interleaved round by round:
 //
-//   ours   physics::World with its defaults, its state read once per tick of 20 substeps
+//   newton, sweeps   physics::World by either solver, its state read once per tick of 20 substeps
 //   raw    bare Bullet in raw metres with its default margins and 10 iterations, box floor of 1 cm
-//   same   bare Bullet with our contacts, solver and boxes, and nothing else
+//   same   bare Bullet with the contacts, solver and boxes of "sweeps", and nothing else
 //
 // Thread CPU time. usage: bench_drop [rounds]
 
@@ -100,8 +100,9 @@ Times time_run(const std::function<void(int)>& tick) {
           (mark[3] - mark[0]) / (40 * per_tick) * 1e6};
 }
 
-Times ours(const std::vector<Placed>& placed) {
+Times ours(const std::vector<Placed>& placed, scene::Solver solver) {
   scene::Physics settings;
+  settings.solver = solver;
   settings.floor = scene::Floor{};
   settings.gravity = 9.8;
   physics::World world(settings, substep);
@@ -221,21 +222,24 @@ double median(std::vector<double> values) {
 
 void compare(int count, int rounds) {
   const std::vector<Placed> placed = drop_scene(count);
-  std::vector<Times> own, bare, own_settings;
+  std::vector<Times> newton, own, bare, own_settings;
   for (int round = 0; round < rounds; ++round) {
-    own.push_back(ours(placed));
+    newton.push_back(ours(placed, scene::Solver::newton));
+    own.push_back(ours(placed, scene::Solver::sweeps));
     bare.push_back(raw(placed));
     own_settings.push_back(same(placed));
   }
   const auto row = [&](const char* phase, double Times::*part) {
-    std::vector<double> us, faster, over;
+    std::vector<double> newton_us, newton_faster, us, faster, over;
     for (int i = 0; i < rounds; ++i) {
+      newton_us.push_back(newton[i].*part);
+      newton_faster.push_back(bare[i].*part / (newton[i].*part));
       us.push_back(own[i].*part);
       faster.push_back(bare[i].*part / (own[i].*part));
       over.push_back(own[i].*part / (own_settings[i].*part));
     }
-    fmt::print("| {} | {} | {:.0f} | {:.2f} | {:.2f} |\n", count, phase, median(us), median(faster),
-               median(over));
+    fmt::print("| {} | {} | {:.0f} | {:.2f} | {:.0f} | {:.2f} | {:.2f} |\n", count, phase,
+               median(newton_us), median(newton_faster), median(us), median(faster), median(over));
   };
   row("fall, 0-0.6 s", &Times::fall);
   row("settling, 0.6-2 s", &Times::settle);
@@ -247,8 +251,8 @@ void compare(int count, int rounds) {
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 7;
   fmt::print(
-      "| bodies | phase | ours, us per substep | raw Bullet / ours | ours / same settings, bare |\n"
-      "|---|---|---|---|---|\n");
+      "| bodies | phase | newton, us per substep | raw Bullet / newton | sweeps, us per substep | raw "
+      "Bullet / sweeps | sweeps / same settings, bare |\n|---|---|---|---|---|---|---|\n");
   for (const int count : {100, 400, 1600})
     compare(count, count > 1000 ? std::max(1, rounds / 2) : rounds);
 }
