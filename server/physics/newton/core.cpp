@@ -185,7 +185,9 @@ void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share)
 }
 
 void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plugin* stiff) {
-  Share whole{.length = length, .splits = splits};
+  Share whole;
+  whole.length = length;
+  whole.splits = splits;
   colliders_.follow(system_, length);
   set_servos_and_limits(bodies, whole);
   std::span<dynamics::Contact> contacts = contacts_.find(length);
@@ -222,7 +224,9 @@ bool NewtonCore::wake_stiff(const Plugin& stiff) {
 /// holds against a force must have the same share of what presses.
 void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
                                   Plugin& stiff) {
-  Share share{.chosen = division_.with(count), .splits = splits};
+  Share share;
+  share.chosen = division_.with(count);
+  share.splits = splits;
   stiff.choose_stiff(share.chosen);
   stiff.push_stiff(bodies, -1);
   constant_.clear();
