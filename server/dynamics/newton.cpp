@@ -172,18 +172,20 @@ bool Solver::step(Problem& problem) {
 
 /// At the speeds that were taken.
 /// @param scale  out: the largest speed, or change of speed by an impulse
+/// @return       infinite if a speed or an impulse is no number
 double Solver::miss_now(const Problem& problem, double& scale) const {
-  double worst = 0;
+  double worst = 0, sum = 0;
   scale = 0;
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
     const Block& block = problem.blocks[i];
     const auto& u = speeds_[i];
     worst = std::max(worst, miss(block, u.data()));
     for (int r = 0; r < block.rows; ++r) {
+      sum += std::abs(u[r]) + std::abs(block.impulse[r]);  // the maxima skip what is no number
       scale = std::max({scale, std::abs(u[r]), std::abs(block.impulse[r]) * block.mobility[r]});
     }
   }
-  return worst;
+  return std::isfinite(sum) ? worst : HUGE_VAL;
 }
 
 double Solver::worst_miss(const Problem& problem, double& scale) {
