@@ -126,16 +126,21 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
   }
 }
 
+/// Those that take part.
+void System::find_awake() {
+  awake_.clear();
+  for (int i = 0; i < static_cast<int>(trees.size()); ++i) {
+    if (takes_part(i) && !asleep(i)) awake_.push_back(i);
+  }
+}
+
 Report System::step(double length, std::span<Contact> contacts, std::span<Servo> servos,
                     std::span<Limit> limits, std::span<const std::uint8_t> chosen) {
   limits_ = limits;
   chosen_ = chosen;
   report_ = {};
   wake_disturbed(length, contacts, servos);
-  awake_.clear();
-  for (int i = 0; i < static_cast<int>(trees.size()); ++i) {
-    if (takes_part(i) && !asleep(i)) awake_.push_back(i);
-  }
+  find_awake();
   report_.awake = static_cast<int>(awake_.size());
   gather(contacts, servos, limits);
   for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
@@ -263,6 +268,29 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     }
   }
   settle(first_tree, last_tree, carried);
+}
+
+void System::push_apart(std::span<Contact> contacts) {
+  contacts_ = contacts;
+  servos_ = {};
+  find_awake();
+  gather(contacts_, servos_, limits_);
+  for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
+    const int first = first_item_[i], last = first_item_[i + 1];
+    if (first == last || item_order_[first].kind != contact_item) continue;
+    gather_island(first_tree_[i], first_tree_[i + 1], first, last);
+    std::fill(problem_.velocity.begin(), problem_.velocity.end(), 0.0);
+    for (Block& block : problem_.blocks) block.impulse.fill(0);
+    if (!problem_.turn_into_displacement()) continue;
+    solver_.solve_displacement(problem_);
+    for (std::size_t k = 0; k < problem_.trees.size(); ++k) {
+      Tree& tree = *problem_.trees[k];
+      displace(tree, {problem_.velocity.data() + problem_.offset[k],
+                      static_cast<std::size_t>(tree.dofs)});
+      dynamics::place(tree);
+      move(tree);
+    }
+  }
 }
 
 /// Gives back to contacts, servos and limits what they gave, in world axes.

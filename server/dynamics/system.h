@@ -69,6 +69,10 @@ class System {
   Report step(double length, std::span<Contact> contacts, std::span<Servo> servos = {},
               std::span<Limit> limits = {}, std::span<const std::uint8_t> chosen = {});
 
+  /// Moves apart what overlaps, without speed: for overlaps that are found after a substep.
+  /// @param contacts  of trees that are awake; their impulses do not matter
+  void push_apart(std::span<Contact> contacts);
+
   Solver& solver() { return solver_; }
 
  private:
@@ -85,6 +89,7 @@ class System {
   bool comes_to_touch(const Contact& contact) const;
   void note_commands();
   void settle(int first_tree, int last_tree, bool carried);
+  void find_awake();
   void gather(std::span<const Contact> contacts, std::span<const Servo> servos,
               std::span<const Limit> limits);
   void gather_island(int first_tree, int last_tree, int first_item, int last_item);

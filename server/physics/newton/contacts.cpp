@@ -89,6 +89,7 @@ std::span<dynamics::Contact> Contacts::find(double length) {
   ++substep_;
   contacts_.clear();
   owner_.clear();
+  turned_.clear();
   colliders_.find_near(near_);
   std::size_t awake = 0;  // pairs
   const auto meet_pair = [&](std::size_t a, std::size_t b, int& place) {
@@ -126,6 +127,7 @@ std::span<dynamics::Contact> Contacts::add_resting() {
 std::span<dynamics::Contact> Contacts::find(double length, std::span<const std::uint8_t> chosen) {
   contacts_.clear();
   owner_.clear();
+  turned_.clear();
   colliders_.find_near(near_);
   ++part_;
   const auto stands_or_chosen = [&](std::size_t i) {
@@ -271,6 +273,7 @@ void Contacts::meet(Pair& pair, double length) {
   }
   if (!tumbling || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
   add(found, pair);
+  if (tumbling && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
 }
 
 /// Appends the pair's contacts, each with the impulse of the point of the last substep that is

@@ -32,6 +32,8 @@ class Contacts {
   /// Notes the impulses that dynamics/ has written to them.
   /// @param more  parts of the substep are still to come
   void remember(bool more = false);
+  /// Contacts between bodies that turned far in the substep and what stands, where they overlap now.
+  std::span<dynamics::Contact> find_turned(const dynamics::System& system);
   /// Forgets what touched an entity, before it is removed or moved; wakes what rested there.
   void forget(std::size_t entity, dynamics::System& system);
 
@@ -81,6 +83,8 @@ class Contacts {
   std::vector<dynamics::Contact> contacts_;
   std::vector<int> owner_;  // pair of each contact
   std::array<Remembered, most_points> before_;  // of the pair under way, a substep ago
+  std::vector<std::size_t> turned_;            // pairs of the substep, one side of which stands
+  std::vector<dynamics::Contact> overlaps_;    // of these
   std::vector<std::pair<std::size_t, int>> standing_;  // a mover and its pair with what stands
 };
 

@@ -175,10 +175,20 @@ void NewtonCore::remember(const Share& share) {
   }
 }
 
+/// Takes two steps, because a push turns, too.
+void NewtonCore::push_apart_what_turned() {
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::span<dynamics::Contact> overlaps = contacts_.find_turned(system_);
+    if (overlaps.empty()) return;
+    system_.push_apart(overlaps);
+  }
+}
+
 void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
   const dynamics::Report report =
       system_.step(share.length, contacts, servos_, limits_, share.chosen);
   remember(share);
+  push_apart_what_turned();
   convergence_.islands += report.islands;
   convergence_.not_converged += report.not_converged;
   convergence_.worst = std::max(convergence_.worst, report.miss);

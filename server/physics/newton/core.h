@@ -62,6 +62,7 @@ class NewtonCore {
   void step(std::span<dynamics::Contact> contacts, const Share& share);
   bool wake_stiff(const Plugin& stiff);
   void remember(const Share& share);
+  void push_apart_what_turned();
   void substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
                         Plugin& stiff);
 
