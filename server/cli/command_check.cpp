@@ -39,6 +39,7 @@ struct Finding {
   std::vector<ControllerDeadline> deadlines;
   std::size_t entities = 0;  ///< in the world; 0 if it could not be built
   std::size_t robots = 0;
+  scene::Solver solver = {};
 
   std::size_t count(Severity severity) const {
     return static_cast<std::size_t>(
@@ -128,6 +129,7 @@ std::vector<ControllerDeadline> deadlines_of(const scene::Scene& scene) {
 Finding examine(const std::string& path, const run::Options& options) {
   auto read = scene::read_file(path, options.scene_file);
   Finding finding{std::move(read.problems), uses_of_models(read.scene), deadlines_of(read.scene)};
+  finding.solver = read.scene.physics.solver;
   const auto add = [&](const std::vector<scene::Problem>& more) {
     finding.problems.insert(finding.problems.end(), more.begin(), more.end());
   };
@@ -136,8 +138,7 @@ Finding examine(const std::string& path, const run::Options& options) {
   add_plain_tags(read.scene, finding.problems);
   add_impulses(read.scene, finding.problems);
   try {
-    const simulation::Simulation simulation(read.scene,
-                                            {run::choose_seed(options, read.scene), {}});
+    const simulation::Simulation simulation(read.scene, {run::choose_seed(options, read.scene)});
     finding.entities = simulation.layout().entities.size();
     finding.robots = simulation.layout().robots.size();
     for (const auto& notice : simulation.notices()) {
@@ -172,6 +173,7 @@ nlohmann::ordered_json to_json(const std::string& path, const Finding& finding) 
           {"robots", finding.robots},
           {"models", models},
           {"deadlines", deadlines},
+          {"solver", scene::to_text(finding.solver)},
           {"problems", problems}};
 }
 
@@ -196,9 +198,9 @@ std::string verdict(const std::string& path, const Finding& finding) {
   }
   if (!deadlines.empty()) deadlines += ")";
   return fmt::format(
-      "{}: good; {}{}, {} with a controller{}; {}", path,
+      "{}: good; {}{}, {} with a controller{}; solver {}; {}", path,
       finding.entities == 1 ? "1 entity" : fmt::format("{} entities", finding.entities), models,
-      finding.robots, deadlines, counted(notices, "notice"));
+      finding.robots, deadlines, scene::to_text(finding.solver), counted(notices, "notice"));
 }
 
 }  // namespace

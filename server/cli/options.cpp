@@ -240,7 +240,8 @@ po::options_description serve_options() {
 po::options_description check_options() {
   po::options_description options("", width);
   options.add(scene_options())
-      .add_options()("json", "the report as JSON on stdout")("quiet", "faults only");
+      .add_options()("clock", text("nominal|beta50"), clock_help)(
+          "json", "the report as JSON on stdout")("quiet", "faults only");
   return options;
 }
 
@@ -268,7 +269,7 @@ run::Options parse_options(const Arguments& arguments, const po::options_descrip
   }
   read_length(values, options);
   if (values.has("seed")) options.seed = text::to_integer("--seed", values.text("seed"));
-  if (values.has("clock")) options.clock = to_clock(values.text("clock"));
+  if (values.has("clock")) options.scene_file.clock = to_clock(values.text("clock"));
   if (values.has("real-time")) {
     options.real_time = positive_number("--real-time", values.text("real-time"));
   }

@@ -55,9 +55,9 @@ std::string to_text(const Summary& summary) {
   }
   if (const auto& solver = summary.solver; solver.not_converged > 0) {
     text += fmt::format(
-        "  the solver did not converge in {} of {} islands; the worst residual is {:.2g} m/s or "
+        "  solver {} did not converge in {} of {} islands; the worst residual is {:.2g} m/s or "
         "rad/s\n",
-        solver.not_converged, solver.islands, solver.worst_residual);
+        summary.solver_name, solver.not_converged, solver.islands, solver.worst_residual);
   }
   text += fmt::format("  seed {}, hash {}", summary.seed, math::to_hex(summary.hash));
   return text;
@@ -96,10 +96,11 @@ std::string to_json(const Summary& summary) {
       {"failures", failures},
       {"missed_deadlines", missed},
       {"vanished", summary.vanished}};
+  json["solver"]["name"] = summary.solver_name;
   if (summary.solver.islands > 0) {
-    json["solver"] = {{"islands", summary.solver.islands},
-                      {"not_converged", summary.solver.not_converged},
-                      {"worst_residual", summary.solver.worst_residual}};
+    json["solver"]["islands"] = summary.solver.islands;
+    json["solver"]["not_converged"] = summary.solver.not_converged;
+    json["solver"]["worst_residual"] = summary.solver.worst_residual;
   }
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -44,7 +44,8 @@ struct Summary {
   std::uint64_t seed = 0;
   std::uint64_t hash = 0;
   std::size_t robots = 0;
-  wire::SolverStatus solver;  ///< without islands: the solver does not tell
+  std::string solver_name;    ///< as in a scene file
+  wire::SolverStatus solver;  ///< without islands: it does not tell
 
   struct Failure {
     std::string robot;

@@ -48,7 +48,7 @@ supervision::World Run::read_world(const Tell& tell) {
   scene::OpenScene opened = load_scene(path_, options_, console_);
   tell(0.5, "The world is being built.");
   const std::uint64_t seed = choose_seed(options_, opened.scene);
-  return {path_, std::move(opened), seed, options_.clock};
+  return {path_, std::move(opened), seed};
 }
 
 /// Answers clients while another thread loads the world, which alone uses the console meanwhile.

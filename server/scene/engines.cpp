@@ -45,15 +45,21 @@ void read_magnetism(Draft& draft, Element magnetism) {
 
 void read_dynamics3d(Draft& draft, Element& engine) {
   Physics& physics = draft.scene.physics;
-  physics.clock =
+  const Clock written =
       engine.optional("clock", OneOf<Clock>{{"nominal", Clock::nominal}, {"beta50", Clock::beta50}},
                       Clock::nominal);
+  physics.clock = draft.options.clock.value_or(written);
   physics.solver = engine.optional(
       "solver", OneOf<Solver>{{"newton", Solver::newton}, {"sweeps", Solver::sweeps}},
-      Solver::sweeps);
+      usual_solver(physics.clock));
   physics.max_substep = engine.optional("max_substep", duration);
   physics.solver_iterations =
       engine.optional("solver_iterations", Whole{1, most_solver_iterations});
+  if (physics.solver_iterations && physics.solver == Solver::newton) {
+    draft.report.notice(engine.where(),
+                        "solver_iterations has no effect with solver=\"newton\", which runs until "
+                        "it converges; remove it, or write solver=\"sweeps\"");
+  }
   draft.defaults.friction = engine.optional("friction", non_negative);
   draft.defaults.rolling_friction = engine.optional("rolling_friction", non_negative);
   draft.defaults.spinning_friction = engine.optional("spinning_friction", non_negative);
@@ -142,6 +148,8 @@ void read_engines(Draft& draft, Element& root) {
   auto engines = root.required_child("physics_engines");
   if (!engines) return;
   Physics& physics = draft.scene.physics;
+  physics.clock = draft.options.clock.value_or(Clock::nominal);
+  physics.solver = usual_solver(physics.clock);
   Ids ids;
   bool has_dynamics3d = false;
   for (Element& engine : engines->children()) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -29,6 +30,7 @@ std::variant<File, std::string> open_file(const std::filesystem::path& path, std
 
 struct ReadOptions {
   bool lenient = false;  ///< unknown attributes (not elements) become notices
+  std::optional<Clock> clock;  ///< instead of the scene's
   std::size_t max_size = std::size_t{64} << 20;  ///< of the scene with what it includes and with
                                                  ///< its models written out [bytes]
   OpenFile open = open_file;  ///< every file that is read, the scene's and those it includes

@@ -36,6 +36,17 @@ enum class Solver {
   newton,  ///< equations of motion of our own, contacts by Newton's method
 };
 
+/// What moves bodies where a scene names no solver. Recorded runs under the slow clock are
+/// reproduced by sweeps.
+constexpr Solver usual_solver(Clock clock) {
+  return clock == Clock::beta50 ? Solver::sweeps : Solver::newton;
+}
+
+/// As in a scene file.
+constexpr const char* to_text(Solver solver) {
+  return solver == Solver::newton ? "newton" : "sweeps";
+}
+
 struct Experiment {
   unsigned ticks_per_second = 10;  ///< >= 1
   double length = 0;               ///< [s] simulated; 0 = until stopped
@@ -182,7 +193,7 @@ struct Physics {
   std::string id;
   unsigned iterations = 10;  ///< substeps per tick, >= 1
   Clock clock = Clock::nominal;
-  Solver solver = Solver::sweeps;
+  Solver solver = usual_solver(clock);
   std::optional<double> max_substep;          ///< [s]: longer substeps are split inside
   std::optional<unsigned> solver_iterations;  ///< constraint solver sweeps per substep
   std::optional<Floor> floor;

@@ -18,18 +18,11 @@ namespace ziggurat::simulation {
 namespace {
 
 /// Physical time that a substep covers [s].
-double substep_length(const scene::Scene& scene, const Options& options) {
+double substep_length(const scene::Scene& scene) {
   const double tick = 1.0 / scene.experiment.ticks_per_second;
   const double iterations = scene.physics.iterations;
-  const bool slow = options.clock.value_or(scene.physics.clock) == scene::Clock::beta50;
+  const bool slow = scene.physics.clock == scene::Clock::beta50;
   return slow ? tick / (iterations * iterations) : tick / iterations;
-}
-
-/// What the scene says of physics, with the clock that was chosen.
-scene::Physics physics_of(const scene::Scene& scene, const Options& options) {
-  scene::Physics physics = scene.physics;
-  physics.clock = options.clock.value_or(physics.clock);
-  return physics;
 }
 
 }  // namespace
@@ -108,8 +101,8 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
     : seed(options.seed),
       ticks_per_second(scene.experiment.ticks_per_second),
       substeps(scene.physics.iterations),
-      substep(substep_length(scene, options)),
-      physics(physics_of(scene, options), substep),
+      substep(substep_length(scene)),
+      physics(scene.physics, substep),
       rays(scene.physics),
       layout(made) {
   entities = place(scene, options.seed);

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +17,7 @@
 namespace ziggurat::simulation {
 
 struct Options {
-  std::uint64_t seed = 1;             ///< of every random stream; not 0
-  std::optional<scene::Clock> clock;  ///< overrides the scene's
+  std::uint64_t seed = 1;  ///< of every random stream; not 0
 };
 
 class Simulation {

@@ -8,18 +8,16 @@
 
 namespace ziggurat::supervision {
 
-World::World(std::string path_given, scene::OpenScene opened, std::uint64_t seed_given,
-             std::optional<scene::Clock> clock_given)
+World::World(std::string path_given, scene::OpenScene opened, std::uint64_t seed_given)
     : path(std::move(path_given)),
       scene(std::move(opened.scene)),
       additions(std::move(opened.additions)),
       scene_hash(supervision::scene_hash(scene)),
-      clock(clock_given),
       seed(seed_given),
-      simulation(scene, {seed, clock}) {}
+      simulation(scene, {seed}) {}
 
 void World::reset(std::uint64_t new_seed) {
-  simulation.reset(scene, {new_seed, clock});
+  simulation.reset(scene, {new_seed});
   seed = new_seed;
 }
 

@@ -2,7 +2,6 @@
 // The world of a run: what it was made from and what it has become.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "scene/additions.h"
@@ -13,10 +12,8 @@
 namespace ziggurat::supervision {
 
 struct World {
-  /// @param clock  overrides the scene's
   /// @throws scene::SceneError if an entity cannot be placed or built
-  World(std::string path, scene::OpenScene opened, std::uint64_t seed,
-        std::optional<scene::Clock> clock);
+  World(std::string path, scene::OpenScene opened, std::uint64_t seed);
 
   /// Builds the world again, with this seed. @throws scene::SceneError; then nothing changes
   void reset(std::uint64_t new_seed);
@@ -25,7 +22,6 @@ struct World {
   const scene::Scene scene;
   const scene::Additions additions;  ///< reads elements that are added to the scene
   const std::string scene_hash;      ///< of the scene's files: 16 hexadecimal digits
-  const std::optional<scene::Clock> clock;
   std::uint64_t seed;
   simulation::Simulation simulation;
 };

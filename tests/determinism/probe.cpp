@@ -16,7 +16,7 @@ namespace {
 void run(const std::string& path, int ticks) {
   auto read = ziggurat::scene::read_file(path);
   if (!read.ok()) throw ziggurat::scene::SceneError(read.problems);
-  ziggurat::simulation::Simulation simulation(read.scene, {7, {}});
+  ziggurat::simulation::Simulation simulation(read.scene, {7});
   std::cout << "scene " << path << '\n';
   for (int tick = 0; tick <= ticks; ++tick) {
     if (tick > 0) simulation.step();

@@ -2,11 +2,13 @@
 """Runs a construction scene many times, each time set up differently, and judges every run.
 
     tests/scenes/construction/perturb.py --runs 100
+    tests/scenes/construction/perturb.py --wide --runs 100
     tests/scenes/construction/perturb.py --staircase --runs 20 --least 0.8
 
 Perturbation number K is always the same. Stacking scene: the robot up to 3 cm farther back and turned
 by up to 3 degrees, both blocks shifted by up to 1 cm in x and in y and turned by up to 3 degrees, another
-seed, and half, the same or twice the number of iterations. Staircase: the robot shifted by up to 2 cm and
+seed, and half, the same or twice the number of iterations. With --wide: robot and blocks shifted by up to
+3 cm in x and y and turned by up to 12 degrees instead. Staircase: the robot shifted by up to 2 cm and
 turned by up to 5 degrees, every block shifted by up to 1.5 cm and turned by up to 8 degrees, another seed.
 """
 
@@ -37,14 +39,18 @@ def move(body, x=0.0, y=0.0, turn=0.0):
     body.set("orientation", f"{turns[0] + turn:.4f},{turns[1]},{turns[2]}")
 
 
-def perturb(tree, number):
+def perturb(tree, number, wide=False):
     """Applies a perturbation to the scene; 0 changes nothing. Returns a description."""
     if number == 0:
         return "unchanged"
     draw = random.Random(number)
     changes = []
     for entity in tree.getroot().find("arena").iter("prototype"):
-        if entity.get("id").startswith("robot"):
+        if wide:
+            x, y, turn = draw.uniform(-0.03, 0.03), draw.uniform(-0.03, 0.03), draw.uniform(-12, 12)
+            move(entity.find("body"), x, y, turn)
+            changes.append(f"{entity.get('id')} {1000 * x:+.0f}, {1000 * y:+.0f} mm, {turn:+.1f} deg")
+        elif entity.get("id").startswith("robot"):
             back, turn = draw.uniform(0, 0.03), draw.uniform(-3, 3)
             move(entity.find("body"), x=-back, turn=turn)
             changes.append(f"robot {1000 * back:.0f} mm back, {turn:+.1f} deg")
@@ -60,6 +66,10 @@ def perturb(tree, number):
     return "; ".join(changes)
 
 
+def perturb_widely(tree, number):
+    return perturb(tree, number, wide=True)
+
+
 def perturb_staircase(tree, number):
     if number == 0:
         return "unchanged"
@@ -72,14 +82,17 @@ def perturb_staircase(tree, number):
     return f"perturbation {number}"
 
 
-def run(number, options=(), staircase=False, keep=None):
+def run(number, options=(), change=perturb, solver=None, keep=None):
     """Runs and judges one perturbation: (verdict, description of the changes, log lines)."""
+    staircase = change is perturb_staircase
     scene = STAIRCASE if staircase else STACKING
     with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
         shutil.copytree(ROOT / "scenes", pathlib.Path(folder) / "scenes")
         copy = pathlib.Path(folder) / scene.relative_to(ROOT)
         tree = ElementTree.parse(copy)
-        changes = (perturb_staircase if staircase else perturb)(tree, number)
+        changes = change(tree, number)
+        if solver:
+            tree.find("physics_engines/dynamics3d").set("solver", solver)
         tree.write(copy)
         trace, readings = (pathlib.Path(folder) / name for name in ("trace.csv", "readings.jsonl"))
         outcome = subprocess.run(
@@ -115,7 +128,12 @@ def main():
     parser.add_argument("--first", type=int, default=1, help="number of the first perturbation")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--least", type=float, default=0.95, help="least share of good runs")
-    parser.add_argument("--staircase", action="store_true", help="the staircase, not the stack")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--wide", dest="change", action="store_const", const=perturb_widely,
+                      default=perturb, help="larger perturbations of the stack")
+    kind.add_argument("--staircase", dest="change", action="store_const", const=perturb_staircase,
+                      help="the staircase, not the stack")
+    parser.add_argument("--solver", help="written into the scene: newton or sweeps")
     parser.add_argument("--controller", action="append", default=[], metavar="ID=CMD",
                         help="passed on to ziggurat run")
     parser.add_argument("--keep", metavar="DIR", help="keep scene and trace of bad runs")
@@ -126,7 +144,8 @@ def main():
     worst = judge.Verdict([], 0, 0, 0)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         runs = pool.map(
-            lambda number: run(number, options, arguments.staircase, arguments.keep), numbers)
+            lambda number: run(number, options, arguments.change, arguments.solver,
+                               arguments.keep), numbers)
         for number, (verdict, changes, _) in zip(numbers, runs):
             print(table_line(number, verdict, changes), flush=True)
             good += verdict.good

@@ -9,8 +9,9 @@ namespace {
 
 using namespace testing;
 
-scene::Scene rows_scene() {
-  return read_scene(std::filesystem::path(ZIGGURAT_SCENES) / "dynamics3d_magnetism_test.argos");
+scene::Scene rows_scene(scene::Clock clock = scene::Clock::nominal) {
+  return read_scene(std::filesystem::path(ZIGGURAT_SCENES) / "dynamics3d_magnetism_test.argos",
+                    clock);
 }
 
 constexpr std::size_t walls = 4, rows = 4, boxes = 5;
@@ -33,7 +34,7 @@ void expect_in_rows(const world::State& state) {
 }
 
 TEST(MagneticRows, CloseAtTheNominalClock) {
-  Simulation run(rows_scene(), {.seed = 1, .clock = scene::Clock::nominal});
+  Simulation run(rows_scene(), {.seed = 1});
   for (int tick = 0; tick < 60; ++tick) run.step();  // 12 s
   expect_in_rows(run.state());
   for (std::size_t row = 0; row < rows; ++row) {
@@ -47,7 +48,7 @@ TEST(MagneticRows, CloseAtTheNominalClock) {
 
 TEST(MagneticRows, FollowTheReferenceUnderItsClock) {
   // Poses of the first row in the recorded run of the reference simulator, mirrored in its middle.
-  Simulation run(rows_scene(), {.seed = 1, .clock = scene::Clock::beta50});
+  Simulation run(rows_scene(scene::Clock::beta50), {.seed = 1});
   const struct {
     std::uint64_t tick;
     double outer, inner;

@@ -10,20 +10,25 @@
 
 namespace ziggurat::simulation::testing {
 
-inline scene::Scene read_scene(const std::filesystem::path& path) {
-  scene::ReadResult result = scene::read_file(path);
+inline scene::Scene read_scene(const std::filesystem::path& path,
+                               scene::Clock clock = scene::Clock::nominal) {
+  scene::ReadOptions options;
+  options.clock = clock;
+  scene::ReadResult result = scene::read_file(path, options);
   std::string problems;
   for (const scene::Problem& problem : result.problems) problems += to_string(problem) + "\n";
   if (!result.ok()) throw std::runtime_error(problems);
   return std::move(result.scene);
 }
 
-inline scene::Scene drop_scene() {
-  return read_scene(std::filesystem::path(ZIGGURAT_SCENES) / "dynamics3d_single_body_test.argos");
+inline scene::Scene drop_scene(scene::Clock clock = scene::Clock::nominal) {
+  return read_scene(std::filesystem::path(ZIGGURAT_SCENES) / "dynamics3d_single_body_test.argos",
+                    clock);
 }
 
-inline scene::Scene vehicle_scene() {
-  return read_scene(std::filesystem::path(ZIGGURAT_SCENES) / "dynamics3d_multi_body_test.argos");
+inline scene::Scene vehicle_scene(scene::Clock clock = scene::Clock::nominal) {
+  return read_scene(std::filesystem::path(ZIGGURAT_SCENES) / "dynamics3d_multi_body_test.argos",
+                    clock);
 }
 
 /// Entities of the drop scene that fall: 1 cm boxes and cylinders, of 0.25 kg each.

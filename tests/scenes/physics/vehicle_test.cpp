@@ -18,8 +18,8 @@ struct Trip {
 };
 
 /// @param left,right  targets of the wheels on either side, each about its own outward axis [rad/s]
-Trip run_vehicle(const scene::Scene& scene, scene::Clock clock, double left, double right, int ticks) {
-  Simulation run(scene, {.seed = 1, .clock = clock});
+Trip run_vehicle(const scene::Scene& scene, double left, double right, int ticks) {
+  Simulation run(scene, {.seed = 1});
   const auto& layout = run.layout();
   std::size_t vehicle = 0;
   while (layout.entities[vehicle].id != "vehicle") ++vehicle;
@@ -46,7 +46,7 @@ Trip run_vehicle(const scene::Scene& scene, scene::Clock clock, double left, dou
 }
 
 TEST(Vehicle, SpinsClockwiseInPlace) {
-  const Trip result = run_vehicle(vehicle_scene(), scene::Clock::nominal, 1, 1, 300);
+  const Trip result = run_vehicle(vehicle_scene(), 1, 1, 300);
   EXPECT_LT(result.most_deviation, 0.02);
   EXPECT_LT(result.turned, -5);
   EXPECT_LT(result.away, 0.01);
@@ -57,17 +57,17 @@ TEST(Vehicle, DrivesStraightInAnOpenArena) {
   std::erase_if(scene.entities, [](const scene::Entity& entity) { return entity.id != "vehicle"; });
   scene.arena.size = {4, 4, 0.5};
   // 1 rad/s on wheels of 2 cm for a minute.
-  const Trip forward = run_vehicle(scene, scene::Clock::nominal, -1, 1, 300);
+  const Trip forward = run_vehicle(scene, -1, 1, 300);
   EXPECT_NEAR(std::fabs(forward.end.x()), 1.2, 0.024);
   EXPECT_NEAR(forward.end.y(), 0, 0.01);
   EXPECT_NEAR(forward.turned, 0, 0.02);
   EXPECT_LT(forward.most_deviation, 0.02);
-  const Trip backward = run_vehicle(scene, scene::Clock::nominal, 1, -1, 300);
+  const Trip backward = run_vehicle(scene, 1, -1, 300);
   EXPECT_NEAR(backward.end.x(), -forward.end.x(), 0.01);
 }
 
 TEST(Vehicle, TurnsUnderTheSlowClockAsTheReferenceDid) {
-  const Trip result = run_vehicle(vehicle_scene(), scene::Clock::beta50, 1, 1, 300);
+  const Trip result = run_vehicle(vehicle_scene(scene::Clock::beta50), 1, 1, 300);
   EXPECT_NEAR(result.turned, -1.03, 0.15 * 1.03);
   EXPECT_LT(result.most_deviation, 0.06);
   EXPECT_LT(result.away, 0.005);

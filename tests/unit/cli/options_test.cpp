@@ -14,7 +14,7 @@ TEST(Options, DefaultsAreThoseOfTheHelp) {
   EXPECT_EQ(run::only_scene(options), "scene.argos");
   EXPECT_EQ(options.lua_processes, 1u);
   EXPECT_EQ(options.scene_file.max_size, std::size_t{64} << 20);
-  EXPECT_FALSE(options.ticks || options.duration || options.seed || options.clock ||
+  EXPECT_FALSE(options.ticks || options.duration || options.seed || options.scene_file.clock ||
                options.real_time || options.hash || options.quiet || options.insecure);
 }
 
@@ -41,7 +41,7 @@ TEST(Options, AreTakenFromTheCommandLine) {
                             "--lenient"});
   EXPECT_EQ(options.ticks, 7u);
   EXPECT_EQ(options.seed, 0u);
-  EXPECT_EQ(options.clock, scene::Clock::beta50);
+  EXPECT_EQ(options.scene_file.clock, scene::Clock::beta50);
   EXPECT_EQ(options.real_time, 2.0);
   EXPECT_EQ(options.lua_processes, 0u);
   ASSERT_EQ(options.controllers.size(), 1u);

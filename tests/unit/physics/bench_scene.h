@@ -1,5 +1,6 @@
 #pragma once
-// Small worlds for physics tests, built without a scene file.
+// Small worlds for physics tests, built without a scene file, moved by the solver that the tests are
+// compiled for: CMakeLists.txt makes a program for each.
 
 #include <string>
 #include <vector>
@@ -19,10 +20,29 @@ inline math::Pose at(double x, double y, double z) {
   return {{x, y, z}, math::Quaternion::Identity()};
 }
 
-inline scene::Physics with_gravity(double g) {
+#ifdef ZIGGURAT_TEST_SWEEPS
+constexpr scene::Solver tested_solver = scene::Solver::sweeps;
+#else
+constexpr scene::Solver tested_solver = scene::usual_solver(scene::Clock::nominal);
+#endif
+
+inline scene::Physics empty_space() {
   scene::Physics physics;
+  physics.solver = tested_solver;
+  return physics;
+}
+
+inline scene::Physics with_gravity(double g) {
+  scene::Physics physics = empty_space();
   physics.gravity = g;
   return physics;
+}
+
+/// How far a body falls from rest [m]: exactly, or by semi-implicit Euler.
+/// @param g  [m/s^2]  @param h  length of a substep [s]
+inline double fall(double g, double h, int substeps) {
+  const int twice = tested_solver == scene::Solver::newton ? substeps : substeps + 1;
+  return g * h * h * substeps * twice / 2;
 }
 
 inline scene::Physics with_floor(double g) {

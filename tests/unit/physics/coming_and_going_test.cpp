@@ -57,15 +57,16 @@ TEST(AddEntity, FallsWithoutAffectingDistantEntities) {
   for (int n = 1; n <= 40; ++n) {
     world.step();
     alone.step();
-    ASSERT_NEAR(position(world, 2).z(), 7 - g * h * h * n * (n + 1) / 2, 1e-12) << "substep " << n;
+    ASSERT_NEAR(position(world, 2).z(), 7 - fall(g, h, n), 1e-12) << "substep " << n;
     ASSERT_EQ(position(world, 0), position(alone, 0));
     ASSERT_EQ(state_of(world).links[2].pose.position, state_of(alone).links[2].pose.position);
   }
 }
 
 TEST(AddEntity, HardlyAffectsDistantContacts) {
-  // The results are not bit-identical: Bullet solves small islands in batches that end their sweeps
-  // together, and finds pairs in the order of a tree that all bodies share.
+  // With sweeps the results are not bit-identical: Bullet solves small islands in batches that end their
+  // sweeps together, and finds pairs in the order of a tree that all bodies share.
+  const double bound = tested_solver == scene::Solver::sweeps ? 1e-5 : 0;
   World world(with_floor(9.8), 0.01), alone(with_floor(9.8), 0.01);
   for (World* each : {&world, &alone}) {
     for (int i = 0; i < 5; ++i) each->add(box_at({0.3 * i, 0, 0.02 + 0.01 * i}));
@@ -76,7 +77,7 @@ TEST(AddEntity, HardlyAffectsDistantContacts) {
     world.step();
     alone.step();
     for (std::size_t k = 0; k < 5; ++k) {
-      ASSERT_LT((position(world, k) - position(alone, k)).norm(), 1e-5) << i;
+      ASSERT_LE((position(world, k) - position(alone, k)).norm(), bound) << i;
     }
   }
 }

@@ -55,7 +55,7 @@ TEST(Revolute, APendulumSwingsInItsClosedFormPeriod) {
 }
 
 TEST(Revolute, PositiveIsRightHandedAboutTheChildsAxis) {
-  World world(scene::Physics{}, 0.001);
+  World world(empty_space(), 0.001);
   world.add(pair(joint(scene::JointType::revolute, Vector3::UnitZ(), identity, identity), cube, 1));
   const JointIndex axis = world.joint(0, 0);
   world.add_motor(axis, scene::JointMode::velocity, 1);
@@ -68,7 +68,7 @@ TEST(Revolute, PositiveIsRightHandedAboutTheChildsAxis) {
 
 TEST(Prismatic, StopsAtItsLimits) {
   for (const double direction : {1.0, -1.0}) {
-    World world(scene::Physics{}, 0.01);
+    World world(empty_space(), 0.01);
     scene::Joint slide = joint(scene::JointType::prismatic, Vector3::UnitX(), identity, identity);
     slide.limit = scene::JointLimit{-0.1, 0.2};
     world.add(pair(slide, cube, 0.5));
@@ -171,7 +171,7 @@ TEST(Fixed, StaysRigidUnderLoad) {
 
 TEST(Fixed, FramesPlaceTheChild) {
   // Dialect 2.3: R_c = R_p R_P R_C^-1, p_c = p_p + R_p t_P - R_c t_C.
-  World world(scene::Physics{}, 0.01);
+  World world(empty_space(), 0.01);
   const Pose parent{{0.3, -0.1, 0.2}, about({1, 0, 2}, 0.8)},
       child{{0.05, 0.02, -0.4}, about({0, 3, 1}, -1.1)};
   scene::Entity entity = prototype("pair", {{1, 2, 3}, about({0, 1, 1}, 0.4)}, true,

@@ -77,7 +77,7 @@ TEST(Welded, TurnAccordingToTheirInertia) {
   // From rest, a motor's impulse L gives L / I.
   for (const Vector3& axis : {Vector3::UnitX().eval(), Vector3::UnitY().eval(),
                               Vector3::UnitZ().eval(), Vector3(1, -2, 0.5).normalized()}) {
-    World world(scene::Physics{}, 0.001);
+    World world(empty_space(), 0.001);
     world.add(hung(crooked, scene::JointType::revolute, axis));
     const JointIndex hinge = world.joint(0, 0);
     const double impulse = 1e-4;  // [N m s]
@@ -92,7 +92,7 @@ TEST(Welded, TurnAccordingToTheirInertia) {
 }
 
 TEST(Welded, MoveAccordingToTheirMass) {
-  World world(scene::Physics{}, 0.001);
+  World world(empty_space(), 0.001);
   world.add(hung(crooked, scene::JointType::prismatic, Vector3::UnitY()));
   const JointIndex rail = world.joint(0, 0);
   world.add_motor(rail, scene::JointMode::velocity, 1e-3);
@@ -286,7 +286,7 @@ TEST(Welded, AFixedShelfCarriesABox) {
 
 /// A fixed magnet, and a free bar with a magnet at its end.
 scene::Physics magnetic() {
-  scene::Physics physics;
+  scene::Physics physics = empty_space();
   physics.magnetism = scene::Magnetism{};
   return physics;
 }
@@ -362,7 +362,7 @@ TEST(Welded, AreHitByRaysAtTheirPoses) {
   const world::State state = state_of(world);
   rays.update(state);
   const double bottom = state.links[0].pose.position.z() - 0.2;
-  EXPECT_NEAR(bottom, 4.8 - 9.8 * 0.01 * 0.01 * 55, 1e-9);
+  EXPECT_NEAR(bottom, 4.8 - fall(9.8, 0.01, 10), 1e-9);
   // A horizontal ray below the top through two legs: it hits the first one.
   const auto hit = rays.cast({.start = {1, 0.13, bottom + 0.001},
                               .end = {-1, 0.13, bottom + 0.001},

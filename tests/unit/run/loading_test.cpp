@@ -91,7 +91,7 @@ TEST_F(Included, ScriptsAreFoundBesideTheFileThatNamesThem) {
   const std::string path = folder_.path() + "/scenes/a.argos";
   reports::Console console({true, false});
   const auto scene = load_scene(path, {}, console).scene;
-  const simulation::Simulation simulation(scene, {1, {}});
+  const simulation::Simulation simulation(scene, {1});
   const std::string block_script = folder_.path() + "/parts/block.lua";
   EXPECT_EQ(script_paths(scene, simulation.layout(), path),
             (std::vector<std::string>{block_script, folder_.path() + "/scenes/own.lua",

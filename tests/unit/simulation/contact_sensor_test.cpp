@@ -121,7 +121,7 @@ TEST(ContactSensor, OfALinkThatNothingTouches) {
 TEST(ContactSensor, OfARobotThatComesAndGoes) {
   SmallScene small{"", base, robot("r", "0,0,0", ""), ground};
   const scene::Scene scene = small.read();
-  Simulation world(scene, {1, {}});
+  Simulation world(scene, {1});
   run(world, 2);
   scene::Entity second = scene.entities[0];
   second.id = "s";

@@ -111,8 +111,8 @@ struct Twins {
   }
 
   scene::ReadResult read;
-  Simulation world{read.scene, {1, {}}};
-  Simulation untouched{read.scene, {1, {}}};
+  Simulation world{read.scene, {1}};
+  Simulation untouched{read.scene, {1}};
 };
 
 /// @param failing  the allocation that fails
@@ -132,7 +132,7 @@ bool spawn(Simulation& world, const scene::Scene& scene, const scene::Entity& en
 bool reset(Simulation& world, const scene::Scene& scene, std::size_t failing) {
   const ziggurat::testing::FailingAllocation out_of_memory(failing);
   try {
-    world.reset(scene, {7, {}});
+    world.reset(scene, {7});
     return true;
   } catch (const std::bad_alloc&) {
     return false;
@@ -199,7 +199,7 @@ TEST_P(FailingSpawnWith, AResetOutOfMemoryAnywhereChangesNothing) {
     ASSERT_LT(stages, 100'000u);
   }
   EXPECT_GT(stages, 100u);
-  twins.untouched.reset(twins.read.scene, {7, {}});
+  twins.untouched.reset(twins.read.scene, {7});
   twins.step(3);
 }
 

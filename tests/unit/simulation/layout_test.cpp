@@ -56,7 +56,7 @@ TEST(Layout, SaysWhichRadiosSendAndReceive) {
 }
 
 TEST(Layout, TheForceOfAMotorIsAnImpulsePerSubstepOfTheClock) {
-  const scene::Scene scene =
+  scene::Scene scene =
       testing::SmallScene{
           R"(<joints implementation="default"><joint id="j" mode="velocity" max_torque="3"/></joints>)",
           "",
@@ -67,7 +67,8 @@ TEST(Layout, TheForceOfAMotorIsAnImpulsePerSubstepOfTheClock) {
           R"(<child link="b"/></joint></joints></prototype>)"}
           .read();
   const auto impulse = [&](scene::Clock clock) {
-    return Simulation(scene, {1, clock}).layout().joint_actuators.at(0).max_impulse;
+    scene.physics.clock = clock;
+    return Simulation(scene, {1}).layout().joint_actuators.at(0).max_impulse;
   };
   EXPECT_DOUBLE_EQ(impulse(scene::Clock::nominal), 3 * 0.05);  // 10 ticks/s, 2 substeps
   EXPECT_DOUBLE_EQ(impulse(scene::Clock::beta50), 3 * 0.025);

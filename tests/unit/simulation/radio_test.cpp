@@ -96,7 +96,7 @@ TEST(Radio, MeasuresWithThePosesOfTheLastTick) {
   ASSERT_TRUE(read.ok()) << scene::to_string(read.problems.front());
   auto moved = read.scene;
   moved.entities[1].devices.radios[0].range = 0.125;
-  Simulation simulation(moved, {1, {}});
+  Simulation simulation(moved, {1});
   simulation.commands().joint_targets[0] = 2;
   const auto gap = [&] {
     const auto& layout = simulation.layout();

@@ -42,7 +42,7 @@ struct SmallScene {
   }
   scene::Scene read() const { return read_all().scene; }
 
-  Simulation run(std::uint64_t seed = 1) const { return Simulation(read(), {seed, {}}); }
+  Simulation run(std::uint64_t seed = 1) const { return Simulation(read(), {seed}); }
 };
 
 /// A robot of one box of 10 cm with `devices` at `position`, driven by `c`.

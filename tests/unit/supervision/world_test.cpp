@@ -34,7 +34,7 @@ std::uint64_t seed_that_fits(bool fits) {
   for (std::uint64_t seed = 1;; ++seed) {
     bool did_fit = true;
     try {
-      const World world("narrow.argos", narrow_scene(), seed, std::nullopt);
+      const World world("narrow.argos", narrow_scene(), seed);
     } catch (const scene::SceneError&) {
       did_fit = false;
     }
@@ -44,7 +44,7 @@ std::uint64_t seed_that_fits(bool fits) {
 
 TEST(World, ARefusedResetChangesNothing) {
   const std::uint64_t good = seed_that_fits(true);
-  World world("narrow.argos", narrow_scene(), good, std::nullopt);
+  World world("narrow.argos", narrow_scene(), good);
   for (int i = 0; i < 3; ++i) world.simulation.step();
   const std::uint64_t hash = world.simulation.hash();
   EXPECT_THROW(world.reset(seed_that_fits(false)), scene::SceneError);
@@ -55,7 +55,7 @@ TEST(World, ARefusedResetChangesNothing) {
 
 TEST(World, AResetStartsAgainWithTheNewSeed) {
   const std::uint64_t good = seed_that_fits(true);
-  World world("narrow.argos", narrow_scene(), good, std::nullopt);
+  World world("narrow.argos", narrow_scene(), good);
   const std::uint64_t first = world.simulation.hash();
   world.simulation.step();
   world.reset(good);
