@@ -251,6 +251,7 @@ bool Problem::turn_into_displacement() {
   for (Block& block : blocks) {
     if (block.kind == Block::Source::servo) {
       block.law = Block::Law::off;
+      block.impulse.fill(0);  // sweeps begin with what all impulses do
       continue;
     }
     double u[Block::most_rows];

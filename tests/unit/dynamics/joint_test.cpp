@@ -76,6 +76,28 @@ TEST(Joint, AVelocityServoHoldsItsSpeedUnderLoadUpToItsImpulse) {
   EXPECT_NEAR(world.tree(0).v[0] - before, 50 * (0.1 / 2 - g * 0.01), 1e-9);
 }
 
+TEST(Joint, TheImpulseOfAServoDoesNotDisplaceWhatOverlaps) {
+  // A lift carries a box that overlaps it by 1 mm.
+  System system;
+  system.solver().options.newton_work = 0;  // displacements by sweeps
+  system.trees.push_back(slide(2));
+  system.trees.push_back(testing::box({0.1, 0.1, 0.1}, 1, {{0, 0, 0.1}, {1, 0, 0, 0}}));
+  std::vector<Contact> contacts;
+  for (const double x : {-0.05, 0.05}) {
+    for (const double y : {-0.05, 0.05}) {
+      Contact& contact = contacts.emplace_back();
+      contact.a = {1, 0}, contact.b = {0, 1};
+      contact.point = {x, y, 0.05}, contact.gap = -1e-3, contact.friction = 0.5;
+    }
+  }
+  for (Tree& tree : system.trees) testing::weigh(tree);
+  std::vector<Servo> servos(1);
+  servos[0].tree = 0, servos[0].dof = 0, servos[0].lower = -10, servos[0].upper = 10;
+  system.step(0.01, contacts, servos);
+  EXPECT_NEAR(servos[0].impulse, 3 * g * 0.01, 1e-4);
+  EXPECT_LT(std::abs(system.trees[0].q[0]), 1e-3);
+}
+
 TEST(Joint, DampingIsImplicit) {
   Link load = testing::hung(testing::box_link({0.2, 0.2, 0.2}, 1), 0, JointType::prismatic,
                             Vector3::UnitX(), Vector3::Zero(), Vector3::Zero());
