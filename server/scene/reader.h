@@ -29,8 +29,8 @@ using OpenFile = std::function<std::variant<File, std::string>(const std::filesy
 std::variant<File, std::string> open_file(const std::filesystem::path& path, std::size_t max_size);
 
 struct ReadOptions {
-  bool lenient = false;  ///< unknown attributes (not elements) become notices
-  std::optional<Clock> clock;  ///< instead of the scene's
+  bool lenient = false;             ///< unknown attributes (not elements) become notices
+  std::optional<Clock> clock = {};  ///< instead of the scene's
   std::size_t max_size = std::size_t{64} << 20;  ///< of the scene with what it includes and with
                                                  ///< its models written out [bytes]
   OpenFile open = open_file;  ///< every file that is read, the scene's and those it includes
