@@ -16,7 +16,7 @@ builder.reach = 0.080             -- from the robot's centre to the face of a he
 local wheel_radius, half_track = 0.025, 0.052
 -- Rotation of the wheels / rotation of the robot, as they skid: without a block, and with one,
 -- whose weight reduces the load on the rear wheels.
-local slip = {[false] = 1.32, [true] = 1.08}
+local slip = {[false] = 1.335, [true] = 1.12}
 builder.loaded = false            -- for the odometry: whether the robot carries a block
 local front_sensor = 0.065        -- position of the front proximity sensors
 local camera_forward = 0.0055     -- position of the camera
