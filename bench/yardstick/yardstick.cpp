@@ -3,8 +3,8 @@
 // usage: bench_yardstick          errors, a table per check
 //        bench_yardstick cost     microseconds of CPU time per substep
 //
-// MuJoCo runs with elliptic cones, its Newton solver and the contact parameters that it takes by default;
-// "stiff": with the shortest time constant that it takes, two steps.
+// MuJoCo runs with elliptic cones, its Newton solver and the contact parameters that it takes by
+// default; "stiff": with the shortest time constant that it takes, two steps.
 
 #include <cmath>
 #include <cstdio>
@@ -28,7 +28,7 @@ namespace scenes = physics::testing;
 using yardstick::Model;
 using yardstick::text;
 
-constexpr double earth = 9.8;  // [m/s^2]
+constexpr double earth = 9.8;                             // [m/s^2]
 constexpr int rates[] = {50, 100, 200, 500, 1000, 2000};  // substeps per second
 
 double cpu_seconds() {
@@ -40,8 +40,8 @@ double cpu_seconds() {
 // ---- A box slides down a slope: distance over a t^2 / 2, less 1.
 
 constexpr double slope = 0.35, slope_friction = 0.3, slide_time = 3;
-const double slide = earth * (std::sin(slope) - slope_friction * std::cos(slope)) * slide_time *
-                     slide_time / 2;
+const double slide =
+    earth * (std::sin(slope) - slope_friction * std::cos(slope)) * slide_time * slide_time / 2;
 
 double our_slide(double h) {
   const math::Quaternion tilt = scenes::about({0, 1, 0}, slope);
@@ -127,17 +127,18 @@ double their_tumbling(double h, const char* integrator) {
   return model.energy() / start - 1;
 }
 
-// ---- Pendulums of links of 0.2 m, let go stretched out: energy over what falls to the lowest place.
+// ---- Pendulums of links of 0.2 m, let go stretched out: energy over what falls to the lowest
+// place.
 
 constexpr double link_length = 0.2, link_mass = 0.3;
 
-double our_chain(int links, double seconds, double h) {
+double our_chain(double h, int links, double seconds) {
   dynamics::System system;
   system.trees.push_back(dynamics::testing::chain(links, link_length, link_mass));
   dynamics::Tree& tree = system.trees[0];
   tree.gravity = Vector3(0, 0, -dynamics::testing::g);
-  const double start = dynamics::testing::energy(tree), fall = dynamics::testing::g * link_mass *
-                                                               links * link_length * links / 2;
+  const double start = dynamics::testing::energy(tree),
+               fall = dynamics::testing::g * link_mass * links * link_length * links / 2;
   double worst = 0;
   for (int i = 0; i < seconds / h; ++i) {
     system.step(h, {});
@@ -146,10 +147,11 @@ double our_chain(int links, double seconds, double h) {
   return worst;
 }
 
-double their_chain(int links, double seconds, double h, const char* integrator) {
+double their_chain(double h, int links, double seconds, const char* integrator) {
   std::string bodies, ends;
   for (int i = 0; i < links; ++i) {
-    bodies += "<body pos='" + std::string(i ? "0.2" : "0") + " 0 0'><joint type='hinge' axis='0 1 0'/>"
+    bodies += "<body pos='" + std::string(i ? "0.2" : "0") +
+              " 0 0'><joint type='hinge' axis='0 1 0'/>"
               "<geom type='box' pos='0.1 0 0' size='0.1 0.01 0.01' mass='0.3'/>";
     ends += "</body>";
   }
@@ -172,7 +174,7 @@ struct Stack {
 };
 constexpr Stack tower{10, 0.01, 0.01, 0.01}, heavy{2, 0.1, 1, 1000};
 
-double our_stack(const Stack& stack, double h) {
+double our_stack(double h, const Stack& stack) {
   World world(scenes::newton(true), h);
   const scene::Box box{Vector3::Constant(stack.side)};
   for (int i = 0; i < stack.count; ++i) {
@@ -184,13 +186,14 @@ double our_stack(const Stack& stack, double h) {
   return (scenes::origin(world, stack.count - 1).position - start).norm();
 }
 
-double their_stack(const Stack& stack, double h, bool stiff) {
+double their_stack(double h, const Stack& stack, bool stiff) {
   std::string bodies = "<geom type='plane' size='9 9 1' friction='0.7 0 0'/>";
   for (int i = 0; i < stack.count; ++i) {
-    bodies += text("<body pos='0 0 {1}'><freejoint/><geom type='box' size='{2} {2} {2}' mass='{3}' "
-                   "friction='0.7 0 0'/></body>",
-                   {(i + 0.5) * stack.side, stack.side / 2,
-                    i + 1 < stack.count ? stack.mass : stack.top_mass});
+    bodies += text(
+        "<body pos='0 0 {1}'><freejoint/><geom type='box' size='{2} {2} {2}' mass='{3}' "
+        "friction='0.7 0 0'/></body>",
+        {(i + 0.5) * stack.side, stack.side / 2,
+         i + 1 < stack.count ? stack.mass : stack.top_mass});
   }
   Model model(bodies, h, Vector3(0, 0, -earth));
   if (stiff) model.stiffen();
@@ -284,9 +287,10 @@ double their_boxes(int count, int substeps) {
   std::string bodies = "<geom type='plane' size='99 99 1'/>";
   for (int i = 0; i < count; ++i) {
     const Vector3 at = place_of(i, count);
-    bodies += text("<body pos='{1} {2} 0.05'><freejoint/>"
-                   "<geom type='box' size='0.05 0.05 0.05' mass='1'/></body>",
-                   {at.x(), at.y()});
+    bodies += text(
+        "<body pos='{1} {2} 0.05'><freejoint/>"
+        "<geom type='box' size='0.05 0.05 0.05' mass='1'/></body>",
+        {at.x(), at.y()});
   }
   Model model(bodies, 0.01, Vector3(0, 0, -earth));
   return time_of(substeps, [&] { model.step(); });
@@ -307,36 +311,41 @@ void table(const char* title, const std::vector<std::pair<const char*, Measure>>
   }
 }
 
+/// A function of the substep's length and more, with the rest chosen.
+template <class Function, class... Rest>
+Measure with(Function function, Rest... rest) {
+  return [=](double h) { return function(h, rest...); };
+}
+
 void errors() {
-  using namespace std::placeholders;
   table("Box on a slope of 0.35 rad, friction 0.3, 3 s: distance over a t^2 / 2, less 1",
         {{"ours", our_slide},
-         {"MuJoCo", std::bind(their_slide, _1, false)},
-         {"MuJoCo, stiff", std::bind(their_slide, _1, true)}});
+         {"MuJoCo", with(their_slide, false)},
+         {"MuJoCo, stiff", with(their_slide, true)}});
   table("Slider of 3 m/s, friction 0.3: highest gap [m]",
         {{"ours", our_gap},
-         {"MuJoCo", std::bind(their_gap, _1, false)},
-         {"MuJoCo, stiff", std::bind(their_gap, _1, true)}});
+         {"MuJoCo", with(their_gap, false)},
+         {"MuJoCo, stiff", with(their_gap, true)}});
   table("Asymmetric body, 4 rad/s about its middle axis, 10 s: relative change of energy",
         {{"ours", our_tumbling},
-         {"MuJoCo, Euler", std::bind(their_tumbling, _1, "Euler")},
-         {"MuJoCo, RK4", std::bind(their_tumbling, _1, "RK4")}});
+         {"MuJoCo, Euler", with(their_tumbling, "Euler")},
+         {"MuJoCo, RK4", with(their_tumbling, "RK4")}});
   table("Double pendulum, 10 s: worst change of energy over what falls",
-        {{"ours", std::bind(our_chain, 2, 10, _1)},
-         {"MuJoCo, Euler", std::bind(their_chain, 2, 10, _1, "Euler")},
-         {"MuJoCo, RK4", std::bind(their_chain, 2, 10, _1, "RK4")}});
+        {{"ours", with(our_chain, 2, 10)},
+         {"MuJoCo, Euler", with(their_chain, 2, 10, "Euler")},
+         {"MuJoCo, RK4", with(their_chain, 2, 10, "RK4")}});
   table("Chain of 10 links, 2 s: worst change of energy over what falls",
-        {{"ours", std::bind(our_chain, 10, 2, _1)},
-         {"MuJoCo, Euler", std::bind(their_chain, 10, 2, _1, "Euler")},
-         {"MuJoCo, RK4", std::bind(their_chain, 10, 2, _1, "RK4")}});
+        {{"ours", with(our_chain, 10, 2)},
+         {"MuJoCo, Euler", with(their_chain, 10, 2, "Euler")},
+         {"MuJoCo, RK4", with(their_chain, 10, 2, "RK4")}});
   table("Tower of 10 boxes of 1 cm, 10 s: how far the top moves [m]",
-        {{"ours", std::bind(our_stack, tower, _1)},
-         {"MuJoCo", std::bind(their_stack, tower, _1, false)},
-         {"MuJoCo, stiff", std::bind(their_stack, tower, _1, true)}});
+        {{"ours", with(our_stack, tower)},
+         {"MuJoCo", with(their_stack, tower, false)},
+         {"MuJoCo, stiff", with(their_stack, tower, true)}});
   table("1 000 kg on 1 kg, boxes of 10 cm, 10 s: how far the top moves [m]",
-        {{"ours", std::bind(our_stack, heavy, _1)},
-         {"MuJoCo", std::bind(their_stack, heavy, _1, false)},
-         {"MuJoCo, stiff", std::bind(their_stack, heavy, _1, true)}});
+        {{"ours", with(our_stack, heavy)},
+         {"MuJoCo", with(their_stack, heavy, false)},
+         {"MuJoCo, stiff", with(their_stack, heavy, true)}});
 }
 
 void costs() {
@@ -348,8 +357,8 @@ void costs() {
     std::fflush(stdout);
   }
   for (const int count : {1, 16, 64}) {
-    std::printf("| %d boxes on the floor, awake | %.2f | %.2f |\n", count, our_boxes(count, 10) / count,
-                their_boxes(count, 10) / count);
+    std::printf("| %d boxes on the floor, awake | %.2f | %.2f |\n", count,
+                our_boxes(count, 10) / count, their_boxes(count, 10) / count);
     std::fflush(stdout);
   }
   for (const int count : {64, 1024}) {

@@ -88,18 +88,22 @@ const scene::Joint* joint_of(const scene::Scene& scene, std::size_t controller,
 void add_impulses(const scene::Scene& scene, std::vector<scene::Problem>& problems) {
   const unsigned iterations = scene.physics.iterations, usual = scene::Physics{}.iterations;
   if (iterations == usual) return;
+  const auto substeps_per_second = [&](double count) {
+    const double nominal = count * scene.experiment.ticks_per_second;
+    return scene.physics.clock == scene::Clock::beta50 ? nominal * count : nominal;
+  };
   for (std::size_t c = 0; c < scene.controllers.size(); ++c) {
     for (const auto& motor : scene.controllers[c].devices.joints.actuators) {
       const auto* joint = joint_of(scene, c, motor.joint);
       if (joint == nullptr || motor.max_impulse == 0) continue;
       const bool turns = joint->type == scene::JointType::revolute;
-      const double per_substep = motor.max_impulse * scene.experiment.ticks_per_second;
       problems.push_back(
           {Severity::notice, scene.files[motor.where.file], motor.where,
            fmt::format("max_impulse is per substep: joint {} has {:.6g} {} with iterations=\"{}\", "
                        "and {:.6g} with {}; write {} instead, which stays when iterations change",
-                       scene::in_quotes(motor.joint), per_substep * iterations, turns ? "N m" : "N",
-                       iterations, per_substep * usual, usual,
+                       scene::in_quotes(motor.joint),
+                       motor.max_impulse * substeps_per_second(iterations), turns ? "N m" : "N",
+                       iterations, motor.max_impulse * substeps_per_second(usual), usual,
                        turns ? "max_torque" : "max_force")});
     }
   }

@@ -33,7 +33,7 @@ struct SolverOptions {
   int most_sweeps = 60;      ///< of large islands
   int displacement_sweeps = 20;  ///< of a displacement that Newton's method does not find
   int last_sweeps = 10;      ///< where the interior point method does not converge
-  double relative_tolerance = 1e-7;  ///< of the largest speed or speed change in the island
+  double relative_tolerance = 1e-9;  ///< of the largest speed or speed change in the island
   double still_tolerance = 1e-8;     ///< of it, for the last substep's solution
   double soft_tolerance = 2e-5;      ///< of it, where Newton's method did not converge
   double absolute_tolerance = 1e-10; ///< [m/s] or [rad/s]

@@ -44,7 +44,6 @@ class PairSet {
   void clear();
   /// @param first  < second; in ascending order of first, then second
   void add(std::uint32_t first, std::uint32_t second);
-  bool empty() const { return first_.empty(); }
 
  private:
   friend class Field;

@@ -217,6 +217,8 @@ side_length="0.05" payload="hello"/></tags></devices>
         self.change('iterations="10"', 'iterations="40"')
         self.assertIn("4 N m with iterations=\"40\", and 1 with 10; write max_torque instead",
                       self.ziggurat("check", self.scene).err)
+        self.assertIn("160 N m with iterations=\"40\", and 10 with 10; write max_torque instead",
+                      self.ziggurat("check", self.scene, "--clock", "beta50").err)
 
     def test_messages_are_json(self):
         self.change('mass="2"', 'mass="-2"', 1)
