@@ -251,7 +251,8 @@ void compare(int count, int rounds) {
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 7;
   fmt::print(
-      "| bodies | phase | newton, us per substep | raw Bullet / newton | sweeps, us per substep | raw "
+      "| bodies | phase | newton, us per substep | raw Bullet / newton | sweeps, us per substep | "
+      "raw "
       "Bullet / sweeps | sweeps / same settings, bare |\n|---|---|---|---|---|---|---|\n");
   for (const int count : {100, 400, 1600})
     compare(count, count > 1000 ? std::max(1, rounds / 2) : rounds);

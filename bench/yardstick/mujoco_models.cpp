@@ -24,11 +24,14 @@ std::string text(std::string pattern, std::initializer_list<double> numbers) {
 Model::Model(const std::string& bodies, double length, const math::Vector3& gravity,
              const char* integrator, const std::string& motors) {
   const std::string head =
-      text("<mujoco><size njmax='2000' nconmax='600'/><option timestep='{1}' gravity='{2} {3} {4}' ",
-           {length, gravity.x(), gravity.y(), gravity.z()}) +
-      "cone='elliptic' solver='Newton' integrator='" + integrator + "'><flag energy='enable'/></option>";
+      text(
+          "<mujoco><size njmax='2000' nconmax='600'/><option timestep='{1}' gravity='{2} {3} {4}' ",
+          {length, gravity.x(), gravity.y(), gravity.z()}) +
+      "cone='elliptic' solver='Newton' integrator='" + integrator +
+      "'><flag energy='enable'/></option>";
   const std::string xml = head + "<worldbody>" + bodies + "</worldbody>" +
-                          (motors.empty() ? "" : "<actuator>" + motors + "</actuator>") + "</mujoco>";
+                          (motors.empty() ? "" : "<actuator>" + motors + "</actuator>") +
+                          "</mujoco>";
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
   mj_makeEmptyFileVFS(files.get(), "model.xml", static_cast<int>(xml.size()));

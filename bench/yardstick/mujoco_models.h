@@ -29,8 +29,8 @@ struct Model {
   void stiffen();  ///< contacts: as far as MuJoCo takes it for this step
   void step() { mj_step(model, data); }
   void run(double seconds);
-  double energy();                        ///< potential and kinetic [J]
-  math::Vector3 place(int body) const;    ///< of its frame; 0: the world [m]
+  double energy();                      ///< potential and kinetic [J]
+  math::Vector3 place(int body) const;  ///< of its frame; 0: the world [m]
 
   mjModel* model = nullptr;
   mjData* data = nullptr;

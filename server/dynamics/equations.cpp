@@ -64,7 +64,7 @@ void compute_mass(Tree& tree) {
     tree.inertia[i] = tree.own_inertia[i];
   }
   if (size > 1) tree.mass.assign(tree.mass.size(), 0);  // dofs on different branches do not couple
-  const int root = tree.free_root ? 6 : 0;  // dofs along the world's axes
+  const int root = tree.free_root ? 6 : 0;              // dofs along the world's axes
   for (int i = size - 1; i >= 0; --i) {
     const int first = tree.first_dof[i];
     for (int k = std::max(first, root); k < first + tree.dof_count[i]; ++k) {

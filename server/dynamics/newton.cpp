@@ -136,7 +136,8 @@ void Solver::take_speeds(const Problem& problem) {
   }
 }
 
-/// One step of Newton's method. Speeds must be taken, and are taken at the velocities that it finds.
+/// One step of Newton's method. Speeds must be taken, and are taken at the velocities that it
+/// finds.
 /// @return  false if the matrix has no factors; then nothing has changed
 bool Solver::step(Problem& problem) {
   kept_velocity_ = problem.velocity;

@@ -12,18 +12,18 @@ namespace ziggurat::dynamics {
 
 /// What became of a substep.
 struct Report {
-  int islands = 0;         ///< solved for contacts, servos or limits
-  int not_converged = 0;   ///< of them
-  int most_iterations = 0; ///< of Newton's method in an island
-  int most_descents = 0;   ///< of the softened problem
-  int most_interior = 0;   ///< of the interior point method
-  int most_sweeps = 0;     ///< over the contacts of an island
-  double miss = 0;         ///< worst violation of the contact law [m/s] or [rad/s]
-  int awake = 0;           ///< trees that moved
+  int islands = 0;          ///< solved for contacts, servos or limits
+  int not_converged = 0;    ///< of them
+  int most_iterations = 0;  ///< of Newton's method in an island
+  int most_descents = 0;    ///< of the softened problem
+  int most_interior = 0;    ///< of the interior point method
+  int most_sweeps = 0;      ///< over the contacts of an island
+  double miss = 0;          ///< worst violation of the contact law [m/s] or [rad/s]
+  int awake = 0;            ///< trees that moved
 };
 
-/// What makes an island sleep. It must touch the world, and all its coordinates must stay this slow for
-/// this time: a body on a slope that starts to move is faster by then.
+/// What makes an island sleep. It must touch the world, and all its coordinates must stay this slow
+/// for this time: a body on a slope that starts to move is faster by then.
 struct RestOptions {
   bool sleeps = true;
   double speed = 5e-5;    ///< of what moves [m/s]
@@ -37,9 +37,9 @@ class System {
   std::vector<Tree> trees;
   RestOptions rest;
 
-  /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and are
-  /// ignored, until something wakes its island: a contact with a tree that is awake and comes to
-  /// touch it, a change of what pushes it or of its servos, or wake().
+  /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and
+  /// are ignored, until something wakes its island: a contact with a tree that is awake and comes
+  /// to touch it, a change of what pushes it or of its servos, or wake().
   bool asleep(int tree) const {
     return static_cast<std::size_t>(tree) < next_.size() && next_[tree] >= 0;
   }
@@ -52,15 +52,15 @@ class System {
   /// Adds to a link's external wrench for the coming substep. What sleeps notices no other.
   void push(int tree, int link, const Wrench& wrench);
 
-  /// Wakes what the coming substep would not leave at rest. step() does so, too; to be called before it
-  /// where contacts of sleepers are told only if something wakes.
+  /// Wakes what the coming substep would not leave at rest. step() does so, too; to be called
+  /// before it where contacts of sleepers are told only if something wakes.
   /// @return  whether something did
   bool wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos);
 
   /// Advances all trees that are awake by one substep. Their external wrenches must be set.
   /// @param length    [s]
-  /// The order of contacts in the list does not matter: in an island they are sorted by trees, links
-  /// and places.
+  /// The order of contacts in the list does not matter: in an island they are sorted by trees,
+  /// links and places.
   /// @param contacts  those between two trees that stand on the world do nothing; impulses are
   ///                  read and written
   /// @param limits    of joints whose trees are awake
@@ -100,16 +100,17 @@ class System {
 
   /// What is known of a tree's sleep.
   struct Sleeper {
-    double quiet = 0;          // how long it has been at rest [s]
-    double command = 0;        // of its servos, see note_commands()
+    double quiet = 0;    // how long it has been at rest [s]
+    double command = 0;  // of its servos, see note_commands()
     double command_asleep = 0;
-    double force_bound = 0;    // of changes [N], [N m] per radius of 1 m
+    double force_bound = 0;                   // of changes [N], [N m] per radius of 1 m
     Vector3 force{0, 0, 0}, moment{0, 0, 0};  // when it fell asleep
   };
   std::vector<Sleeper> sleepers_;
-  std::vector<int> next_;  // of each tree: the next in the ring of those that sleep with it; -1: awake
-  // Of each tree: whether more than being touched may wake it. It is commanded, was pushed when it fell
-  // asleep, or is pushed now.
+  std::vector<int>
+      next_;  // of each tree: the next in the ring of those that sleep with it; -1: awake
+  // Of each tree: whether more than being touched may wake it. It is commanded, was pushed when it
+  // fell asleep, or is pushed now.
   enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4 };
   std::vector<unsigned char> watch_;
   std::vector<int> pushed_;  // trees

@@ -32,7 +32,8 @@ struct Link {
   double damping = 0;          ///< of the joint's speeds [N m s] or [N s/m]
 };
 
-/// Freedoms of a floating root: bits of turning about x, y, z and moving along x, y, z of the world.
+/// Freedoms of a floating root: bits of turning about x, y, z and moving along x, y, z of the
+/// world.
 constexpr unsigned all_freedoms = 0b111111;
 constexpr unsigned upright_freedoms = 0b111100;  ///< turns about z only
 constexpr unsigned planar_freedoms = 0b011100;   ///< as well, and keeps its height
@@ -46,17 +47,17 @@ class Tree {
   // What does not change.
   std::vector<Link> links;
   unsigned freedoms;
-  int dofs = 0;                   ///< size of v
-  std::vector<int> first_dof;     ///< of each link, into v
-  std::vector<int> dof_count;     ///< of each link
-  std::vector<int> first_place;   ///< of each link, into q
-  std::vector<int> parent_dof;    ///< of each dof: the one before it on the way to the root, or -1
-  std::vector<double> damping;    ///< of each dof [N m s] or [N s/m]
-  std::vector<int> ways;          ///< the dofs from the root to each link, one after the other
-  std::vector<int> way_end;       ///< of each link, into `ways`
-  std::vector<int> dof_places;    ///< 0, 1, … dofs - 1
-  bool free_root = false;         ///< floating with all six freedoms: dofs 0 to 5 are the world's axes
-  bool single = false;            ///< one link, with a free root
+  int dofs = 0;                  ///< size of v
+  std::vector<int> first_dof;    ///< of each link, into v
+  std::vector<int> dof_count;    ///< of each link
+  std::vector<int> first_place;  ///< of each link, into q
+  std::vector<int> parent_dof;   ///< of each dof: the one before it on the way to the root, or -1
+  std::vector<double> damping;   ///< of each dof [N m s] or [N s/m]
+  std::vector<int> ways;         ///< the dofs from the root to each link, one after the other
+  std::vector<int> way_end;      ///< of each link, into `ways`
+  std::vector<int> dof_places;   ///< 0, 1, … dofs - 1
+  bool free_root = false;  ///< floating with all six freedoms: dofs 0 to 5 are the world's axes
+  bool single = false;     ///< one link, with a free root
 
   // The state.
   /// A floating root: position [m] and orientation w x y z; a revolute joint: angle [rad]; a
@@ -87,23 +88,23 @@ class Tree {
   std::vector<Inertia> inertia;      ///< of each link with all that it carries, about O
   std::vector<Wrench> wrench;
   std::vector<Motion> acceleration;
-  std::vector<double> mass;    ///< mass matrix, dofs x dofs, row by row
-  std::vector<double> factor;  ///< its factors, see equations.h
+  std::vector<double> mass;       ///< mass matrix, dofs x dofs, row by row
+  std::vector<double> factor;     ///< its factors, see equations.h
   std::array<double, 6> drift{};  ///< see momentum_after()
-  std::vector<double> scratch;  ///< of each dof
-  std::vector<double> stages;   ///< of the integrator, see flight.h
-  std::vector<double> before;   ///< q and v, kept while a flight is tried
-  double flight_step = 0;      ///< the step that the integrator would take next [s]
+  std::vector<double> scratch;    ///< of each dof
+  std::vector<double> stages;     ///< of the integrator, see flight.h
+  std::vector<double> before;     ///< q and v, kept while a flight is tried
+  double flight_step = 0;         ///< the step that the integrator would take next [s]
 
   /// Leaves one link that is fixed to the world: nothing that moves. Takes no memory.
   void take_apart() noexcept;
 
-  std::span<const int> dofs_of(int link) const;  ///< that move a link, ascending
+  std::span<const int> dofs_of(int link) const;   ///< that move a link, ascending
   std::span<const int> dof_alone(int dof) const;  ///< a span of it
-  math::Pose pose(int link) const;           ///< X_WL, after place()
-  void set_root(const math::Pose& pose);     ///< of a floating or fixed root
-  Vector3 velocity(int link) const;          ///< of the centre of mass, after move() [m/s]
-  Vector3 angular_velocity(int link) const;  ///< after move() [rad/s]
+  math::Pose pose(int link) const;                ///< X_WL, after place()
+  void set_root(const math::Pose& pose);          ///< of a floating or fixed root
+  Vector3 velocity(int link) const;               ///< of the centre of mass, after move() [m/s]
+  Vector3 angular_velocity(int link) const;       ///< after move() [rad/s]
 
  private:
   void count();

@@ -120,8 +120,8 @@ void Field::evaluate(double dt, std::span<const Pose> bodies, std::span<const do
   collect(bodies, wrenches);
 }
 
-void Field::evaluate(PairSet& pairs, std::span<const Pose> bodies,
-                     std::span<const double> currents, std::span<Wrench> wrenches) {
+void Field::evaluate(PairSet& pairs, std::span<const Pose> bodies, std::span<const double> currents,
+                     std::span<Wrench> wrenches) {
   for (const std::uint32_t i : pairs.magnets_) {
     const std::uint32_t body = magnets_[i].body;
     rotations_[body] = bodies[body].orientation.toRotationMatrix();

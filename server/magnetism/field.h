@@ -97,18 +97,17 @@ class Field {
   /// Puts back what turns() gave, for a saved state.
   void set_turns(std::span<const Quaternion> turns);
 
-  /// Pairs of different bodies whose magnets are not farther apart than this, and than max_distance,
-  /// as of the last evaluate(); in ascending order.
+  /// Pairs of different bodies whose magnets are not farther apart than this, and than
+  /// max_distance, as of the last evaluate(); in ascending order.
   /// @param reach  [m]
-  void list_near(double reach,
-                 std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const;
+  void list_near(double reach, std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const;
 
   double core(std::size_t magnet) const { return positions_[magnet].w; }  ///< as it counts [m]
 
   /// As of the last evaluate(), in the world.
   Vector3 position(std::size_t magnet) const;  ///< [m]
-  Vector3 moment(std::size_t magnet) const;  ///< [A m^2]
-  Vector3 flux(std::size_t magnet) const;    ///< flux density of the others' dipoles at it [T]
+  Vector3 moment(std::size_t magnet) const;    ///< [A m^2]
+  Vector3 flux(std::size_t magnet) const;      ///< flux density of the others' dipoles at it [T]
 
   /// How often the neighbour list was built so far.
   std::size_t rebuilds() const { return neighbours_.rebuilds(); }

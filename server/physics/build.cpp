@@ -88,7 +88,8 @@ Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::
   body.entity = number;
   body.reference_link = entity.reference_link;
   body.placed = entity.pose;
-  for (const scene::Magnet& magnet : entity.devices.magnets) body.magnets.push_back({.scene = magnet});
+  for (const scene::Magnet& magnet : entity.devices.magnets)
+    body.magnets.push_back({.scene = magnet});
   body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
   const std::vector<Pose> assembled = assemble(entity);
   std::vector<Pose> placed;

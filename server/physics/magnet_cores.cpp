@@ -20,7 +20,8 @@ struct Ball {
 
 Ball ball_of(const Body& body, const scene::Entity& entity, const scene::Magnet& magnet) {
   const bool on_origin = magnet.anchor.link == scene::Anchor::origin;
-  std::size_t number = on_origin ? body.reference_link : static_cast<std::size_t>(magnet.anchor.link);
+  std::size_t number =
+      on_origin ? body.reference_link : static_cast<std::size_t>(magnet.anchor.link);
   const LinkBody& anchor = body.links[number];
   math::Pose frame = anchor.frame_in_part();
   if (on_origin) frame = frame * body.origin_from_reference;
@@ -41,8 +42,8 @@ void set_magnet_cores(Body& body, const scene::Entity& entity) {
   constexpr double share = 0.9;
   std::vector<Ball> balls;
   for (const Magnet& magnet : body.magnets) balls.push_back(ball_of(body, entity, magnet.scene));
-  const bool several = std::ranges::any_of(
-      balls, [&](const Ball& ball) { return ball.part != balls[0].part; });
+  const bool several =
+      std::ranges::any_of(balls, [&](const Ball& ball) { return ball.part != balls[0].part; });
   for (std::size_t i = 0; i < balls.size() && !several; ++i) {
     double radius = balls[i].radius;
     for (std::size_t j = 0; j < balls.size(); ++j) {  // those that act on each other stay apart

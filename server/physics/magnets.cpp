@@ -259,7 +259,8 @@ StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism&
         const double safe = !fixed    ? magnetism::stiffest_product
                             : divides ? safe_divided
                                       : safe_whole;
-        if (rate / safe > stiffest.rate / stiffest.safe) stiffest = {body.entity, rate, safe, fixed};
+        if (rate / safe > stiffest.rate / stiffest.safe)
+          stiffest = {body.entity, rate, safe, fixed};
       }
     }
   }

@@ -83,8 +83,8 @@ int parts_of(const PairOfMagnets& pair, const Carrier& a, const Carrier& b, doub
   const double closest = pair.closest > 0 ? std::min(pair.closest, pair.distance) : pair.distance;
   const double bond = Stiffness(pair, a, b, closest).torque;
   if (!(misplaced > share * bond)) return 0;
-  const double nearest = std::max(pair.distance - substep * speed,
-                                  std::min(closest, pair.distance / 2));
+  const double nearest =
+      std::max(pair.distance - substep * speed, std::min(closest, pair.distance / 2));
   const double rate = Stiffness(pair, a, b, nearest).rate;
   const double fastest = std::max({rate, speed / nearest, turning});
   return static_cast<int>(std::clamp(std::ceil(substep * fastest / part_product), 1.0,

@@ -23,13 +23,13 @@ struct Carrier {
   double inverse_inertia = 0;  ///< the largest principal one [1/(kg m^2)]
 
   // As of the substep `seen`:
-  std::uint64_t seen = 0;                     ///< 0: none yet
-  math::Vector3 centre{0, 0, 0};              ///< of mass, in the world [m]
-  math::Vector3 velocity{0, 0, 0};            ///< of it [m/s]
-  math::Vector3 turning{0, 0, 0};             ///< [rad/s]
-  std::uint64_t seen_before = 0;              ///< the substep of these:
-  math::Vector3 velocity_before{0, 0, 0};     ///< [m/s]
-  math::Vector3 turning_before{0, 0, 0};      ///< [rad/s]
+  std::uint64_t seen = 0;                  ///< 0: none yet
+  math::Vector3 centre{0, 0, 0};           ///< of mass, in the world [m]
+  math::Vector3 velocity{0, 0, 0};         ///< of it [m/s]
+  math::Vector3 turning{0, 0, 0};          ///< [rad/s]
+  std::uint64_t seen_before = 0;           ///< the substep of these:
+  math::Vector3 velocity_before{0, 0, 0};  ///< [m/s]
+  math::Vector3 turning_before{0, 0, 0};   ///< [rad/s]
 };
 
 /// A pair of fixed magnets of different carriers that are close enough to matter.
@@ -46,10 +46,10 @@ double close_reach(double moment, double inverse_mass, double inverse_inertia, d
 
 /// How stiff a pair is. The bounds hold for any directions of the moments.
 struct PairOfMagnets {
-  double moments = 0;              ///< product of both [(A m^2)^2]
-  double distance = 0;             ///< as it counts [m]
-  double closest = 0;              ///< that contact allows; 0: unknown [m]
-  math::Vector3 first{0, 0, 0};    ///< where they are [m]
+  double moments = 0;            ///< product of both [(A m^2)^2]
+  double distance = 0;           ///< as it counts [m]
+  double closest = 0;            ///< that contact allows; 0: unknown [m]
+  math::Vector3 first{0, 0, 0};  ///< where they are [m]
   math::Vector3 second{0, 0, 0};
 };
 

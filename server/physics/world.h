@@ -83,8 +83,9 @@ class World {
   /// The same of one entity that is present.
   void read(std::size_t entity, world::State& state) const;
 
-  /// How stiff the scene's magnetic bonds are for its substeps: the product of substep and rate that
-  /// is the largest share of a safe one, and the entity it belongs to; 0 where there is no magnetism.
+  /// How stiff the scene's magnetic bonds are for its substeps: the product of substep and rate
+  /// that is the largest share of a safe one, and the entity it belongs to; 0 where there is no
+  /// magnetism.
   struct Stiffness {
     std::size_t entity = 0;
     double product = 0;

@@ -24,7 +24,7 @@ struct Options {
   std::optional<std::uint64_t> ticks;  ///< replaces the scene's length
   std::optional<double> duration;      ///< simulated [s], replaces the length too; 0 = until Ctrl-C
   std::optional<std::uint64_t> seed;   ///< 0 = drawn from the system
-  std::optional<double> real_time;  ///< simulated seconds per second of wall time; > 0
+  std::optional<double> real_time;     ///< simulated seconds per second of wall time; > 0
 
   unsigned lua_processes = 1;                                    ///< 0 = one per robot
   std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command

@@ -228,12 +228,13 @@ std::vector<std::string> Simulation::notices() const {
   const physics::World::Stiffness bond = parts_->physics.stiffest_bond();
   if (bond.product < bond.safe) return {};
   return {fmt::format(
-      "two bodies like '{}' bonded by their magnets swing too fast for substeps of {:.3g} s, and may "
-      "gain energy (substep times rate is {:.2f}; it is safe below {}); write {}more iterations, or "
+      "two bodies like '{}' bonded by their magnets swing too fast for substeps of {:.3g} s, and "
+      "may "
+      "gain energy (substep times rate is {:.2f}; it is safe below {}); write {}more iterations, "
+      "or "
       "max_substep=\"{:.2g}\" on <dynamics3d>",
       parts_->layout.entities[bond.entity].id, bond.substep, bond.product, bond.safe,
-      bond.divisible ? "solver=\"newton\", " : "",
-      0.9 * bond.substep * bond.safe / bond.product)};
+      bond.divisible ? "solver=\"newton\", " : "", 0.9 * bond.substep * bond.safe / bond.product)};
 }
 
 physics::Convergence Simulation::convergence() const { return parts_->physics.convergence(); }

@@ -12,7 +12,7 @@ constexpr bool is_slow = true;
 constexpr bool is_slow = false;
 #endif
 
-constexpr double a_minute = is_slow ? 2 : 60;   ///< simulated [s]
+constexpr double a_minute = is_slow ? 2 : 60;  ///< simulated [s]
 constexpr int links_of_a_chain = is_slow ? 5 : 20;
 
 }  // namespace ziggurat::long_runs

@@ -25,7 +25,7 @@ bool inside(const btVector3& outer_low, const btVector3& outer_high, const btVec
 }
 
 bool boxes_meet(const btVector3& low, const btVector3& high, const btVector3& other_low,
-             const btVector3& other_high) {
+                const btVector3& other_high) {
   return low.x() <= other_high.x() && other_low.x() <= high.x() && low.y() <= other_high.y() &&
          other_low.y() <= high.y() && low.z() <= other_high.z() && other_low.z() <= high.z();
 }
@@ -126,8 +126,8 @@ void Colliders::enclose(ColliderGroup& group) {
 
 void Colliders::insert(ColliderGroup& group, std::size_t index) {
   enclose(group);
-  group.proxy = broadphase_.createProxy(group.low, group.high, 0, reinterpret_cast<void*>(index),
-                                        1, 1, nullptr);
+  group.proxy = broadphase_.createProxy(group.low, group.high, 0, reinterpret_cast<void*>(index), 1,
+                                        1, nullptr);
 }
 
 void Colliders::remove(std::size_t entity) {

@@ -20,18 +20,18 @@ namespace ziggurat::physics {
 struct Collider {
   static constexpr std::size_t floor = static_cast<std::size_t>(-1);
   contact::Shape shape;
-  std::size_t entity = floor;  ///< its number, and that of its tree
-  std::size_t link = 0;        ///< into Body::links
-  std::size_t part = 0;        ///< into Body::parts
+  std::size_t entity = floor;                        ///< its number, and that of its tree
+  std::size_t link = 0;                              ///< into Body::links
+  std::size_t part = 0;                              ///< into Body::parts
   btTransform in_part = btTransform::getIdentity();  ///< X_PS
   bool centred = true;                               ///< in_part is the identity
   bool moves = false;
-  bool present = false;  ///< otherwise removed; the floor is not, either
-  std::size_t group = 0; ///< into the broad phase's groups
-  bool rolls = false;  ///< has wheels: does not rub on what is below or above it
+  bool present = false;   ///< otherwise removed; the floor is not, either
+  std::size_t group = 0;  ///< into the broad phase's groups
+  bool rolls = false;     ///< has wheels: does not rub on what is below or above it
   scene::Surface surface;
   double smallest = 1e30;  ///< half extent [m]
-  double radius = 0;  ///< of the sphere about the shape's centre that holds it [m]
+  double radius = 0;       ///< of the sphere about the shape's centre that holds it [m]
 
   // Of the coming substep:
   btTransform pose = btTransform::getIdentity();  ///< X_WS
@@ -48,8 +48,8 @@ struct ColliderGroup {
   std::size_t entity = 0;
   std::size_t first = 0, count = 0;  ///< into Colliders::all
   bool moves = false;
-  bool rests = false;   ///< in the coming substep: it stands, or sleeps
-  bool rested = false;  ///< in the substep before
+  bool rests = false;                     ///< in the coming substep: it stands, or sleeps
+  bool rested = false;                    ///< in the substep before
   btVector3 low{0, 0, 0}, high{0, 0, 0};  ///< corners of the box about those of its colliders [m]
   btBroadphaseProxy* proxy = nullptr;     ///< none: removed
 
@@ -70,7 +70,7 @@ class Colliders {
   std::vector<Collider> all;
   std::vector<ColliderGroup> groups;
   std::optional<std::size_t> floor;  ///< into `all`
-  bool woke = false;  ///< one that rested in the substep before does no more
+  bool woke = false;                 ///< one that rested in the substep before does no more
 
   bool rests(const Collider& collider) const {
     return !collider.present || groups[collider.group].rests;
@@ -88,8 +88,7 @@ class Colliders {
   /// Takes the poses and motions of all trees that are awake.
   void follow(const dynamics::System& system, double length);
   /// Those of some trees that are awake, for a part of the substep.
-  void follow(const dynamics::System& system, double length,
-              std::span<const std::uint8_t> chosen);
+  void follow(const dynamics::System& system, double length, std::span<const std::uint8_t> chosen);
   /// X_WS of a collider now.
   btTransform pose(const Collider& collider, const dynamics::System& system) const;
   /// Pairs whose boxes overlap, of which at least one moves, without those that are as they were in

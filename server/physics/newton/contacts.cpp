@@ -42,8 +42,7 @@ Approach approach_of(const contact::Contacts& found, const Collider& a, const Co
   Approach out;
   for (int i = 0; i < found.count; ++i) {
     const contact::Point& point = found.points[i];
-    const double speed =
-        found.normal.dot(velocity_at(b, point.on_b) - velocity_at(a, point.on_b));
+    const double speed = found.normal.dot(velocity_at(b, point.on_b) - velocity_at(a, point.on_b));
     out.least = std::min(out.least, double(point.distance));
     out.fastest = std::max(out.fastest, speed);
     out.may_touch |= point.distance <= slack + length * std::max(0.0, speed);
@@ -165,7 +164,8 @@ std::span<dynamics::Contact> Contacts::keep(std::span<const std::uint8_t> chosen
 /// one body that moves, the others stand.
 bool Contacts::covers(const Pair& seen, const Pair& hidden) const {
   constexpr btScalar flush = 1e-5, slack = 1e-4;  // [m]
-  const bool seen_first = !colliders_.all[seen.a].moves, hidden_first = !colliders_.all[hidden.a].moves;
+  const bool seen_first = !colliders_.all[seen.a].moves,
+             hidden_first = !colliders_.all[hidden.a].moves;
   const Collider& cover = colliders_.all[seen_first ? seen.a : seen.b];
   const Collider& other = colliders_.all[hidden_first ? hidden.a : hidden.b];
   const btVector3 up = to_bullet(seen_first ? math::Vector3(-seen.normal) : seen.normal);
@@ -303,8 +303,8 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
     int nearest = -1;
     double least = same;
     for (int j = 0; j < old_count; ++j) {
-      const double away = std::min((old[j].on_a - now.on_a).length2(),
-                                   (old[j].on_b - now.on_b).length2());
+      const double away =
+          std::min((old[j].on_a - now.on_a).length2(), (old[j].on_b - now.on_b).length2());
       if (!taken[j] && away < least) least = away, nearest = j;
     }
     if (nearest >= 0) {

@@ -32,7 +32,8 @@ class Contacts {
   /// Notes the impulses that dynamics/ has written to them.
   /// @param more  parts of the substep are still to come
   void remember(bool more = false);
-  /// Contacts between bodies that turned far in the substep and what stands, where they overlap now.
+  /// Contacts between bodies that turned far in the substep and what stands, where they overlap
+  /// now.
   std::span<dynamics::Contact> find_turned(const dynamics::System& system);
   /// Forgets what touched an entity, before it is removed or moved; wakes what rested there.
   void forget(std::size_t entity, dynamics::System& system);
@@ -50,9 +51,9 @@ class Contacts {
   struct Pair {
     std::size_t a = 0, b = 0;  // colliders
     bool live = false;
-    unsigned seen = 0;  // the substep in which it was near last
-    unsigned met = 0;   // likewise, counting parts of substeps too
-    bool rests = false;  // both sides did in the substep in which it was seen last
+    unsigned seen = 0;      // the substep in which it was near last
+    unsigned met = 0;       // likewise, counting parts of substeps too
+    bool rests = false;     // both sides did in the substep in which it was seen last
     dynamics::Contact law;  // what all its contacts have in common
     math::Vector3 normal{0, 0, 1};
     math::Vector3 earlier{0, 0, 0};  // impulse in earlier parts of the substep [N s]
@@ -76,15 +77,16 @@ class Contacts {
   std::vector<Pair> pairs_;  // [0] is none
   std::vector<int> unused_;
   std::size_t live_ = 0, resting_ = 0;
-  std::unordered_map<std::uint64_t, int> places_;  // of pairs by their colliders; not with the floor
+  std::unordered_map<std::uint64_t, int>
+      places_;  // of pairs by their colliders; not with the floor
   unsigned substep_ = 0, part_ = 0;
   std::vector<Near> near_;
   std::vector<int> floor_pairs_;  // of each collider
   std::vector<dynamics::Contact> contacts_;
-  std::vector<int> owner_;  // pair of each contact
+  std::vector<int> owner_;                      // pair of each contact
   std::array<Remembered, most_points> before_;  // of the pair under way, a substep ago
-  std::vector<std::size_t> turned_;            // pairs of the substep, one side of which stands
-  std::vector<dynamics::Contact> overlaps_;    // of these
+  std::vector<std::size_t> turned_;             // pairs of the substep, one side of which stands
+  std::vector<dynamics::Contact> overlaps_;     // of these
   std::vector<std::pair<std::size_t, int>> standing_;  // a mover and its pair with what stands
 };
 

@@ -228,10 +228,10 @@ bool NewtonCore::wake_stiff(const Plugin& stiff) {
   return woke;
 }
 
-/// Moves a set of trees on in steps of length / count. Forces act in the middle of each, as impulses: a
-/// step ends half-way between two of them, so that places and velocities belong together to second
-/// order (drift, kick, drift). All that acts does so, gravity and motors too, because friction that
-/// holds against a force must have the same share of what presses.
+/// Moves a set of trees on in steps of length / count. Forces act in the middle of each, as
+/// impulses: a step ends half-way between two of them, so that places and velocities belong
+/// together to second order (drift, kick, drift). All that acts does so, gravity and motors too,
+/// because friction that holds against a force must have the same share of what presses.
 void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
                                   Plugin& stiff) {
   Share share;

@@ -17,7 +17,8 @@ class Division {
   /// @param near   colliders that may touch within the substep
   /// @param contacts  likewise, of those that have just woken
   void find(std::span<const StiffPair> pairs, std::span<const Near> near,
-            std::span<const dynamics::Contact> contacts, const std::vector<Collider>& colliders, const std::vector<dynamics::Tree>& trees);
+            std::span<const dynamics::Contact> contacts, const std::vector<Collider>& colliders,
+            const std::vector<dynamics::Tree>& trees);
 
   /// Into how many parts the sets of trees divide the substep: ascending, each once.
   const std::vector<int>& counts() const { return counts_; }

@@ -56,8 +56,7 @@ std::array<dynamics::Servo, 3> servos_of(const Body& body, const std::array<doub
   std::array<dynamics::Servo, 3> servos;
   for (int i = 0; i < 3; ++i) {
     servos[i].tree = static_cast<int>(body.entity);
-    servos[i].upper =
-        (i < 2 ? ground.limits.max_force : ground.limits.max_torque) * ground.length;
+    servos[i].upper = (i < 2 ? ground.limits.max_force : ground.limits.max_torque) * ground.length;
     servos[i].lower = -servos[i].upper;
     servos[i].impulse = impulses[i];
   }

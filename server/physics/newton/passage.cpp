@@ -52,8 +52,8 @@ contact::Contacts first_meeting(const Collider& a, const Collider& b, double len
   double time = 0;
   for (int step = 0; step < most_steps; ++step) {
     const btTransform pose_a = pose_after(a, time), pose_b = pose_after(b, time);
-    contact::Contacts found = contact::find(a.shape, pose_a, b.shape, pose_b, a.reach + b.reach,
-                                            contact::Support::all);
+    contact::Contacts found =
+        contact::find(a.shape, pose_a, b.shape, pose_b, a.reach + b.reach, contact::Support::all);
     const double distance = least_distance(found);
     if (found.count == 0) return found;  // out of reach
     if (distance <= near) {

@@ -54,9 +54,9 @@ dynamics::Tree make_tree(const Body& body, const scene::Entity& entity,
 
 btTransform transform_of(const dynamics::Tree& tree, std::size_t part) {
   const Eigen::Matrix3d& m = tree.rotation[part];
-  return btTransform(btMatrix3x3(m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0),
-                                 m(2, 1), m(2, 2)),
-                     to_bullet(tree.position[part]));
+  return btTransform(
+      btMatrix3x3(m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)),
+      to_bullet(tree.position[part]));
 }
 
 int dof_of(const dynamics::Tree& tree, std::size_t part) { return tree.first_dof[part]; }

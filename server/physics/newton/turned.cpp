@@ -1,5 +1,5 @@
-// A contact is linear in the displacement. What turns far in a substep, as when it strikes a floor with a
-// corner, may overlap by a part of its size at the end, with corners that were far away.
+// A contact is linear in the displacement. What turns far in a substep, as when it strikes a floor
+// with a corner, may overlap by a part of its size at the end, with corners that were far away.
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace ziggurat::physics {
 namespace {
 
 constexpr btScalar close = btScalar(1e-3);  // points that must not come to overlap, either [m]
-constexpr double deep = 2e-5;              // [m]
+constexpr double deep = 2e-5;               // [m]
 
 bool is_deep(const contact::Contacts& found) {
   return std::any_of(found.points.begin(), found.points.begin() + found.count,

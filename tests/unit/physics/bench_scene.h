@@ -1,6 +1,6 @@
 #pragma once
-// Small worlds for physics tests, built without a scene file, moved by the solver that the tests are
-// compiled for: CMakeLists.txt makes a program for each.
+// Small worlds for physics tests, built without a scene file, moved by the solver that the tests
+// are compiled for: CMakeLists.txt makes a program for each.
 
 #include <string>
 #include <vector>

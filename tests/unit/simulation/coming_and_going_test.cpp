@@ -26,8 +26,7 @@ std::string tag(const std::string& payload) {
 /// A scene and a world of it.
 class World {
  public:
-  explicit World(const SmallScene& small)
-      : read_(small.read_all()), simulation(read_.scene, {1}) {}
+  explicit World(const SmallScene& small) : read_(small.read_all()), simulation(read_.scene, {1}) {}
 
   void spawn(const std::string& xml) {
     const auto& entities = simulation.layout().entities;

@@ -1,5 +1,5 @@
-// Free rotation, gyroscopes and what must not fall asleep, with solver="newton": closed forms at many
-// substeps. Bodies are set turning by a plug-in.
+// Free rotation, gyroscopes and what must not fall asleep, with solver="newton": closed forms at
+// many substeps. Bodies are set turning by a plug-in.
 
 #include <gtest/gtest.h>
 
@@ -115,7 +115,8 @@ TEST_P(NewtonSpin, OfManyTurnsPerSubstepIsExact) {
     const int steps = GetParam() / 2;
     for (int i = 0; i < steps; ++i) bench.step();
     EXPECT_NEAR(bench.spin(0).z(), speed, 1e-9 * speed);
-    const math::Quaternion expected = about({0, 0, 1}, std::remainder(speed * steps * h, 2 * EIGEN_PI));
+    const math::Quaternion expected =
+        about({0, 0, 1}, std::remainder(speed * steps * h, 2 * EIGEN_PI));
     EXPECT_LT(bench.pose(0).orientation.angularDistance(expected), 1e-3);
   }
 }
@@ -126,11 +127,11 @@ double precession_error(double h) {
   const double theta = 1, arm = 0.1, mass = 0.5, radius = 0.06, height = 0.02;
   const scene::Cylinder disc{radius, height};
   const math::Quaternion tilt = about({0, 1, 0}, theta);
-  scene::Entity entity = prototype("top", at(0, 0, 1), false,
-                                   {link("base", scene::Box{{0.01, 0.01, 0.01}}, 1),
-                                    link("disc", disc, mass)});
-  entity.joints.push_back(joint(scene::JointType::spherical, Vector3::UnitZ(),
-                                {{0, 0, 0}, tilt}, at(0, 0, height / 2 - arm)));
+  scene::Entity entity =
+      prototype("top", at(0, 0, 1), false,
+                {link("base", scene::Box{{0.01, 0.01, 0.01}}, 1), link("disc", disc, mass)});
+  entity.joints.push_back(joint(scene::JointType::spherical, Vector3::UnitZ(), {{0, 0, 0}, tilt},
+                                at(0, 0, height / 2 - arm)));
   Spinning bench(newton(false), h, entity);
   const std::size_t part = bench.bodies[0].links[1].part;
   const Vector3 inertia = bench.bodies[0].parts[part].inertia;

@@ -1,5 +1,5 @@
-// Bodies with fixed magnets that tumble freely and fall together, with solver="newton": kinetic plus
-// magnetic energy never grows, at any substep.
+// Bodies with fixed magnets that tumble freely and fall together, with solver="newton": kinetic
+// plus magnetic energy never grows, at any substep.
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,8 @@ void scatter(World& world, int count, unsigned seed) {
   std::vector<Vector3> centres;
   while (static_cast<int>(centres.size()) < count) {
     const Vector3 centre = random.in_cube(count == 2 ? 0.0175 : 0.03 * std::cbrt(count));
-    if (std::ranges::all_of(centres, [&](const Vector3& c) { return (c - centre).norm() > 0.025; })) {
+    if (std::ranges::all_of(centres,
+                            [&](const Vector3& c) { return (c - centre).norm() > 0.025; })) {
       centres.push_back(centre);
       world.add(neodymium(centre, random.turn()));
     }
@@ -99,8 +100,7 @@ class TumblingMagnets : public ::testing::TestWithParam<int> {
  protected:
   double h = 1.0 / GetParam();
 };
-INSTANTIATE_TEST_SUITE_P(Hertz, TumblingMagnets,
-                         ::testing::Values(50, 100, 200, 500, 1000, 2000));
+INSTANTIATE_TEST_SUITE_P(Hertz, TumblingMagnets, ::testing::Values(50, 100, 200, 500, 1000, 2000));
 
 TEST_P(TumblingMagnets, OfTwelveSeedsNoneGainsEnergy) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
@@ -129,7 +129,8 @@ struct Fall {
 };
 
 TEST_P(TumblingMagnets, FallTogetherAsTheFormulaSays) {
-  // While the pair is soft a substep takes the force at its beginning: it runs ahead by half of one.
+  // While the pair is soft a substep takes the force at its beginning: it runs ahead by half of
+  // one.
   const double start = 0.06;
   World world(floating(), h);
   world.add(neodymium({0, 0, 0}, math::Quaternion::Identity()));
@@ -202,7 +203,8 @@ TEST(TumblingMagnets, PlacedInsideEachOtherStayHarmless) {
   double fastest = 0;
   for (int i = 0; i < 300; ++i) {
     world.step();
-    for (const auto& link : state_of(world).links) fastest = std::max(fastest, link.velocity.norm());
+    for (const auto& link : state_of(world).links)
+      fastest = std::max(fastest, link.velocity.norm());
   }
   EXPECT_LT(mass * fastest * fastest, 10 * bond);
 }
