@@ -43,18 +43,15 @@ void System::push(int tree, int link, const Wrench& wrench) {
   Wrench& external = trees[tree].external[link];
   external = external + wrench;
   if (watch_.size() < trees.size()) watch_.resize(trees.size(), 0);
-  if (watch_[tree] & pushed) return;
   watch_[tree] |= pushed;
-  pushed_.push_back(tree);
 }
 
 void System::forget_pushes() {
-  std::erase_if(pushed_, [&](int tree) {
-    if (!takes_part(tree)) return false;
+  each_that_takes_part([&](int tree) {
+    if (!(watch_[tree] & pushed)) return;
     watch_[tree] &= static_cast<unsigned char>(~pushed);
     auto& external = trees[tree].external;
     std::fill(external.begin(), external.end(), Wrench{});
-    return true;
   });
 }
 
@@ -104,13 +101,12 @@ bool System::wake_disturbed(double length, std::span<Contact> contacts, std::spa
   next_.resize(trees.size(), -1);
   watch_.resize(trees.size(), 0);
   note_commands();
-  const int count = static_cast<int>(trees.size());
   bool woke = false;
-  for (int i = 0; i < count; ++i) {
-    if (watch_[i] == 0 || !takes_part(i) || !asleep(i) || !changed(i)) continue;
-    wake(i);
+  each_that_takes_part([&](int tree) {
+    if (watch_[tree] == 0 || !asleep(tree) || !changed(tree)) return;
+    wake(tree);
     woke = true;
-  }
+  });
   const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
   for (bool again = true; again;) {  // who wakes may touch another
     again = false;

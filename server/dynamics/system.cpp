@@ -129,13 +129,13 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
 /// Those that take part.
 void System::find_awake() {
   awake_.clear();
-  for (int i = 0; i < static_cast<int>(trees.size()); ++i) {
-    if (takes_part(i) && !asleep(i)) awake_.push_back(i);
-  }
+  each_that_takes_part([&](int tree) {
+    if (!asleep(tree)) awake_.push_back(tree);
+  });
 }
 
 Report System::step(double length, std::span<Contact> contacts, std::span<Servo> servos,
-                    std::span<Limit> limits, std::span<const std::uint8_t> chosen) {
+                    std::span<Limit> limits, std::span<const int> chosen) {
   limits_ = limits;
   chosen_ = chosen;
   report_ = {};
@@ -270,9 +270,10 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   settle(first_tree, last_tree, carried);
 }
 
-void System::push_apart(std::span<Contact> contacts) {
+void System::push_apart(std::span<Contact> contacts, std::span<const int> chosen) {
   contacts_ = contacts;
   servos_ = {};
+  chosen_ = chosen;
   find_awake();
   gather(contacts_, servos_, limits_);
   for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
@@ -290,7 +291,7 @@ void System::push_apart(std::span<Contact> contacts) {
       dynamics::place(tree);
       move(tree);
     }
-  }
+  }  chosen_ = {};
 }
 
 /// Gives back to contacts, servos and limits what they gave, in world axes.

@@ -64,14 +64,15 @@ class System {
   /// @param contacts  those between two trees that stand on the world do nothing; impulses are
   ///                  read and written
   /// @param limits    of joints whose trees are awake
-  /// @param chosen    of each tree whether it takes part; the others stay as they are, and nothing
-  ///                  may act between them and these. Empty: all do
+  /// @param chosen    trees that take part, ascending; the others stay as they are, and nothing may
+  ///                  act between them and these. Empty: all do
   Report step(double length, std::span<Contact> contacts, std::span<Servo> servos = {},
-              std::span<Limit> limits = {}, std::span<const std::uint8_t> chosen = {});
+              std::span<Limit> limits = {}, std::span<const int> chosen = {});
 
   /// Moves apart what overlaps, without speed: for overlaps that are found after a substep.
   /// @param contacts  of trees that are awake; their impulses do not matter
-  void push_apart(std::span<Contact> contacts);
+  /// @param chosen    as in step(): no others have contacts
+  void push_apart(std::span<Contact> contacts, std::span<const int> chosen = {});
 
   Solver& solver() { return solver_; }
 
@@ -81,7 +82,8 @@ class System {
     int kind;  // contact, servo, limit
     int index;
   };
-  bool takes_part(int tree) const { return chosen_.empty() || chosen_[tree]; }
+  template <class Visit>
+  void each_that_takes_part(Visit visit) const;
   int find(int tree);
   bool before(const Item& a, const Item& b) const;
   bool changed(int tree) const;
@@ -113,13 +115,12 @@ class System {
   // fell asleep, or is pushed now.
   enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4 };
   std::vector<unsigned char> watch_;
-  std::vector<int> pushed_;  // trees
   std::vector<int> awake_;
   double length_ = 0;
   std::span<Contact> contacts_;
   std::span<Servo> servos_;
   std::span<Limit> limits_;
-  std::span<const std::uint8_t> chosen_;
+  std::span<const int> chosen_;
   Report report_;
 
   std::vector<int> parent_, island_, place_;
@@ -129,5 +130,15 @@ class System {
   Problem problem_;
   Solver solver_;
 };
+
+/// Calls visit(tree) in ascending order.
+template <class Visit>
+void System::each_that_takes_part(Visit visit) const {
+  if (!chosen_.empty()) {
+    for (const int tree : chosen_) visit(tree);
+  } else {
+    for (int tree = 0; tree < static_cast<int>(trees.size()); ++tree) visit(tree);
+  }
+}
 
 }  // namespace ziggurat::dynamics

@@ -17,19 +17,17 @@ double core_radius(const Magnet& magnet) {
 
 }  // namespace
 
-void PairSet::clear() {
+void PairSet::assign(std::span<const MagnetPair> pairs) {
   first_.clear();
   second_.clear();
   magnets_.clear();
-}
-
-void PairSet::add(std::uint32_t first, std::uint32_t second) {
-  first_.push_back(first);
-  second_.push_back(second);
-  for (const std::uint32_t magnet : {first, second}) {
-    const auto place = std::lower_bound(magnets_.begin(), magnets_.end(), magnet);
-    if (place == magnets_.end() || *place != magnet) magnets_.insert(place, magnet);
+  for (const auto& [first, second] : pairs) {
+    first_.push_back(first);
+    second_.push_back(second);
+    magnets_.insert(magnets_.end(), {first, second});
   }
+  std::sort(magnets_.begin(), magnets_.end());
+  magnets_.erase(std::unique(magnets_.begin(), magnets_.end()), magnets_.end());
 }
 
 Field::Field(std::vector<Magnet> magnets, std::size_t bodies, const Options& options)
@@ -147,8 +145,7 @@ void Field::evaluate(PairSet& pairs, std::span<const Pose> bodies, std::span<con
   }
 }
 
-void Field::list_near(double reach,
-                      std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const {
+void Field::list_near(double reach, std::vector<MagnetPair>& out) {
   out.clear();
   const double limit = std::min(reach, range_.maximum);
   const auto consider = [&](std::uint32_t i, std::uint32_t j) {
@@ -159,9 +156,15 @@ void Field::list_near(double reach,
       out.emplace_back(i, j);
     }
   };
+  const Neighbours* list = &neighbours_;
+  if (!list->listed()) {
+    if (!close_ || close_reach_ != limit) close_.emplace(close_reach_ = limit);
+    close_->update(dipoles());
+    list = &*close_;
+  }
   const auto count = static_cast<std::uint32_t>(magnets_.size());
-  if (neighbours_.listed()) {
-    const Pairs pairs = neighbours_.pairs();
+  if (list->listed()) {
+    const Pairs pairs = list->pairs();
     for (std::size_t k = 0; k < pairs.count && pairs.first[k] < count; ++k) {
       consider(pairs.first[k], pairs.second[k]);
     }

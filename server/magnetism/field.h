@@ -38,17 +38,21 @@ struct Magnet {
   bool freely_turning = false;
 };
 
+/// Two magnets; first < second.
+using MagnetPair = std::pair<std::uint32_t, std::uint32_t>;
+
 /// Some pairs of fixed magnets, whose forces are wanted more often than all others'.
 class PairSet {
  public:
-  void clear();
-  /// @param first  < second; in ascending order of first, then second
-  void add(std::uint32_t first, std::uint32_t second);
+  /// @param pairs  in ascending order
+  void assign(std::span<const MagnetPair> pairs);
+  /// The magnets of the pairs, ascending.
+  std::span<const std::uint32_t> magnets() const { return magnets_; }
 
  private:
   friend class Field;
   std::vector<std::uint32_t> first_, second_;  // padded while they are in use
-  std::vector<std::uint32_t> magnets_;         // of them, each once
+  std::vector<std::uint32_t> magnets_;
 };
 
 enum class Precision {
@@ -100,7 +104,7 @@ class Field {
   /// Pairs of different bodies whose magnets are not farther apart than this, and than
   /// max_distance, as of the last evaluate(); in ascending order.
   /// @param reach  [m]
-  void list_near(double reach, std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const;
+  void list_near(double reach, std::vector<MagnetPair>& out);
 
   double core(std::size_t magnet) const { return positions_[magnet].w; }  ///< as it counts [m]
 
@@ -145,6 +149,10 @@ class Field {
   // Adaptive precision: what shapes do beyond dipoles.
   std::optional<ShapedMagnets> shapes_;
   std::optional<Neighbours> near_;  // where neighbours_ keeps no list
+
+  // Where it keeps none, for list_near().
+  double close_reach_ = 0;
+  std::optional<Neighbours> close_;
   std::vector<Row> torques_;
   std::vector<std::uint32_t> body_of_;  // of every magnet
 };

@@ -217,24 +217,24 @@ void Magnets::find_close_pairs(std::span<const Body> bodies, double substep) {
 }
 
 void Magnets::choose_stiff(std::span<const std::uint8_t> entities) {
-  chosen_.clear();
-  chosen_carriers_.clear();
+  chosen_pairs_.clear();
   for (const ClosePair& pair : close_) {
-    const std::size_t a = field_->magnets()[pair.first].body;
-    const std::size_t b = field_->magnets()[pair.second].body;
-    if (!entities[carriers_[a].entity] && !entities[carriers_[b].entity]) continue;
-    const auto counts = [&](std::size_t carrier) {
-      return entities[carriers_[carrier].entity] || carriers_[carrier].inverse_mass == 0;
-    };
-    if (!counts(a) || !counts(b)) continue;
-    chosen_.add(pair.first, pair.second);
-    for (const std::size_t carrier : {a, b}) {
-      const auto place = std::ranges::lower_bound(chosen_carriers_, carrier);
-      if (place == chosen_carriers_.end() || *place != carrier) {
-        chosen_carriers_.insert(place, carrier);
-      }
+    const Carrier& a = carriers_[field_->magnets()[pair.first].body];
+    const Carrier& b = carriers_[field_->magnets()[pair.second].body];
+    const bool counts = (entities[a.entity] || a.inverse_mass == 0) &&
+                        (entities[b.entity] || b.inverse_mass == 0);
+    if (counts && (entities[a.entity] || entities[b.entity])) {
+      chosen_pairs_.emplace_back(pair.first, pair.second);
     }
   }
+  chosen_.assign(chosen_pairs_);
+  chosen_carriers_.clear();
+  for (const std::uint32_t magnet : chosen_.magnets()) {
+    chosen_carriers_.push_back(field_->magnets()[magnet].body);
+  }
+  std::sort(chosen_carriers_.begin(), chosen_carriers_.end());
+  chosen_carriers_.erase(std::unique(chosen_carriers_.begin(), chosen_carriers_.end()),
+                         chosen_carriers_.end());
 }
 
 void Magnets::push_stiff(std::span<Body> bodies, double share) {

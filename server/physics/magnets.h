@@ -57,7 +57,7 @@ class Magnets final : public Plugin {
   bool divides_;
   std::uint64_t substeps_ = 0;
   double felt_inverse_mass_ = 0, inverse_inertia_ = 0;  // the largest of the carriers
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> near_;
+  std::vector<magnetism::MagnetPair> near_, chosen_pairs_;
   std::vector<ClosePair> close_;  // of this substep
   std::vector<StiffPair> stiff_;  // of them those for which it must be divided
   magnetism::PairSet chosen_;

@@ -70,6 +70,16 @@ struct Colliders::Filter final : btOverlapFilterCallback {
   const std::vector<ColliderGroup>& groups;
 };
 
+/// Which groups' boxes meet one.
+struct Colliders::Hits final : btBroadphaseAabbCallback {
+  explicit Hits(std::vector<std::size_t>& out) : found(out) {}
+  bool process(const btBroadphaseProxy* proxy) override {
+    found.push_back(index_of(*proxy));
+    return true;
+  }
+  std::vector<std::size_t>& found;
+};
+
 double least_reach(double length) { return 1e-3 + 15 * length * length; }
 
 Colliders::Colliders() : filter_(std::make_unique<Filter>(groups)) {
@@ -136,6 +146,7 @@ void Colliders::remove(std::size_t entity) {
     broadphase_.destroyProxy(group.proxy, nullptr);
     for (std::size_t i = group.first; i < group.first + group.count; ++i) all[i] = {};
     group = {};
+    group.entity = entity;  // their order stays
   }
   while (!all.empty() && !all.back().present && floor != all.size() - 1) all.pop_back();
   while (!groups.empty() && !groups.back().proxy) groups.pop_back();
@@ -168,43 +179,49 @@ btTransform Colliders::pose(const Collider& collider, const dynamics::System& sy
 
 /// Bullet's boxes only grow: a body that fell fast would keep a large one, and a neighbour in
 /// each pair it makes, forever. Ours are renewed when too small or much too large.
-/// @param step  how far it moves in the substep [m]
-void Colliders::keep_in_box(ColliderGroup& group, double step) {
+/// @param step     how far it moves in the substep [m]
+/// @param shrinks  whether a box may be too large
+void Colliders::keep_in_box(ColliderGroup& group, double step, bool shrinks) {
   const btVector3 size = group.high - group.low;
   const double most = share_of_size * std::min({size.x(), size.y(), size.z()});
   const double ahead = std::max(least_slack, std::min(steps_ahead * step, most));
   const btVector3 slack(ahead, ahead, ahead);
   const btBroadphaseProxy& proxy = *group.proxy;
-  if (inside(proxy.m_aabbMin, proxy.m_aabbMax, group.low, group.high) &&
-      inside(group.low - 3 * slack, group.high + 3 * slack, proxy.m_aabbMin, proxy.m_aabbMax)) {
-    return;
-  }
+  const bool fits =
+      !shrinks ||
+      inside(group.low - 3 * slack, group.high + 3 * slack, proxy.m_aabbMin, proxy.m_aabbMax);
+  if (fits && inside(proxy.m_aabbMin, proxy.m_aabbMax, group.low, group.high)) return;
   broadphase_.setAabbForceUpdate(group.proxy, group.low - slack, group.high + slack, nullptr);
 }
 
 void Colliders::follow(const dynamics::System& system, double length) {
   const double least = least_reach(length);
   woke = false;
+  followed_.clear();
   for (ColliderGroup& group : groups) {
     if (!group.proxy) continue;
     group.rested = group.rests;
     group.rests = !group.moves || system.asleep(static_cast<int>(group.entity));
     woke |= group.rested && !group.rests;
     if (group.moves ? group.unchanged() : all[group.first].reach == least) continue;
-    follow(group, system, length);
+    if (group.moves) followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
+    keep_in_box(group, follow(group, system, length), true);
   }
 }
 
-void Colliders::follow(const dynamics::System& system, double length,
-                       std::span<const std::uint8_t> chosen) {
-  for (ColliderGroup& group : groups) {
-    if (!group.proxy || !group.moves || !chosen[group.entity]) continue;
+void Colliders::follow(const dynamics::System& system, double length, const TreeSet& chosen) {
+  followed_.clear();
+  each_of(groups, chosen, [&](ColliderGroup& group) {
+    if (!group.proxy || !group.moves) return;
     group.rests = false;
-    follow(group, system, length);
-  }
+    followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
+    keep_in_box(group, follow(group, system, length), false);
+  });
 }
 
-void Colliders::follow(ColliderGroup& group, const dynamics::System& system, double length) {
+/// Takes the poses and motions of its colliders.
+/// @return  how far it moves [m]
+double Colliders::follow(ColliderGroup& group, const dynamics::System& system, double length) {
   double fastest = 0;
   for (std::size_t i = group.first; i < group.first + group.count; ++i) {
     Collider& collider = all[i];
@@ -217,7 +234,7 @@ void Colliders::follow(ColliderGroup& group, const dynamics::System& system, dou
     fastest = std::max(fastest, speed);
   }
   enclose(group);
-  keep_in_box(group, length * fastest);
+  return length * fastest;
 }
 
 void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b,
@@ -242,6 +259,22 @@ void Colliders::find_near(std::vector<Near>& out) {
     const ColliderGroup& a = groups[index_of(*pairs[i].m_pProxy0)];
     const ColliderGroup& b = groups[index_of(*pairs[i].m_pProxy1)];
     if (!(a.unchanged() && b.unchanged())) find_near(a, b, out);
+  }
+}
+
+void Colliders::find_near(std::vector<Near>& out, const TreeSet& chosen) {
+  out.clear();
+  Hits hits(hits_);
+  for (const std::size_t index : followed_) {
+    const ColliderGroup& group = groups[index];
+    hits_.clear();
+    broadphase_.aabbTest(group.low, group.high, hits);
+    std::sort(hits_.begin(), hits_.end());
+    for (const std::size_t hit : hits_) {
+      const ColliderGroup& other = groups[hit];
+      const bool counts = !other.moves || (chosen.holds[other.entity] && hit > index);
+      if (counts && other.entity != group.entity) find_near(group, other, out);
+    }
   }
 }
 

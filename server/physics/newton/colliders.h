@@ -13,6 +13,7 @@
 #include "dynamics/system.h"
 #include "physics/bodies.h"
 #include "physics/contact/shapes.h"
+#include "physics/newton/tree_set.h"
 #include "scene/scene.h"
 
 namespace ziggurat::physics {
@@ -88,24 +89,30 @@ class Colliders {
   /// Takes the poses and motions of all trees that are awake.
   void follow(const dynamics::System& system, double length);
   /// Those of some trees that are awake, for a part of the substep.
-  void follow(const dynamics::System& system, double length, std::span<const std::uint8_t> chosen);
+  void follow(const dynamics::System& system, double length, const TreeSet& chosen);
+  /// Groups that move and whose poses the last follow() took, ascending.
+  std::span<const std::size_t> followed() const { return followed_; }
   /// X_WS of a collider now.
   btTransform pose(const Collider& collider, const dynamics::System& system) const;
   /// Pairs whose boxes overlap, of which at least one moves, without those that are as they were in
   /// the substep before. The floor is in none.
   void find_near(std::vector<Near>& out);
+  /// Those among some trees that were followed last, and with what stands.
+  void find_near(std::vector<Near>& out, const TreeSet& chosen);
 
  private:
   struct Filter;
+  struct Hits;
   void place(Collider& collider, const dynamics::Tree& tree) const;
-  void follow(ColliderGroup& group, const dynamics::System& system, double length);
+  double follow(ColliderGroup& group, const dynamics::System& system, double length);
   void enclose(ColliderGroup& group);
-  void keep_in_box(ColliderGroup& group, double step);
+  void keep_in_box(ColliderGroup& group, double step, bool shrinks);
   void insert(ColliderGroup& group, std::size_t index);
   void find_near(const ColliderGroup& a, const ColliderGroup& b, std::vector<Near>& out) const;
 
   std::unique_ptr<Filter> filter_;
   btDbvtBroadphase broadphase_;
+  std::vector<std::size_t> followed_, hits_;
 };
 
 /// How far a surface may come within a substep without moving yet [m].

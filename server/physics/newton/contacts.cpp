@@ -86,31 +86,45 @@ Contacts::Pair& Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
 
 std::span<dynamics::Contact> Contacts::find(double length) {
   ++substep_;
+  colliders_.find_near(near_);
+  meet_all(length);
+  const auto awake = std::ranges::count_if(met_, [&](int pair) { return !pairs_[pair].rests; });
+  if (colliders_.woke || static_cast<std::size_t>(awake) + resting_ != live_) drop_unseen();
+  drop_hidden();
+  return contacts_;
+}
+
+std::span<dynamics::Contact> Contacts::find(double length, const TreeSet& chosen) {
+  colliders_.find_near(near_, chosen);
+  std::swap(met_, met_before_);
+  meet_all(length);
+  for (const int number : met_before_) {  // what came apart in this part of the substep
+    if (pairs_[number].met != part_) pairs_[number].count = 0;
+  }
+  drop_hidden();
+  return contacts_;
+}
+
+/// All pairs that are near, and those with the floor.
+void Contacts::meet_all(double length) {
+  ++part_;
   contacts_.clear();
   owner_.clear();
   turned_.clear();
-  colliders_.find_near(near_);
-  std::size_t awake = 0;  // pairs
-  const auto meet_pair = [&](std::size_t a, std::size_t b, int& place) {
-    Pair& pair = pair_of(a, b, place);
-    meet(pair, length);
-    awake += !pair.rests;
-  };
-  for (const Near& near : near_) meet_pair(near.a, near.b, places_[key(near.a, near.b)]);
-  if (colliders_.floor) {
-    floor_pairs_.resize(colliders_.all.size(), 0);
-    for (const ColliderGroup& group : colliders_.groups) {
-      if (!group.proxy || !group.moves || group.unchanged()) continue;
-      for (std::size_t i = group.first; i < group.first + group.count; ++i) {
-        const Collider& collider = colliders_.all[i];
-        if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
-        meet_pair(i, *colliders_.floor, floor_pairs_[i]);
-      }
+  met_.clear();
+  for (const Near& near : near_) {
+    meet(pair_of(near.a, near.b, places_[key(near.a, near.b)]), length);
+  }
+  if (!colliders_.floor) return;
+  floor_pairs_.resize(colliders_.all.size(), 0);
+  for (const std::size_t index : colliders_.followed()) {
+    const ColliderGroup& group = colliders_.groups[index];
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+      const Collider& collider = colliders_.all[i];
+      if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
+      meet(pair_of(i, *colliders_.floor, floor_pairs_[i]), length);
     }
   }
-  if (colliders_.woke || awake + resting_ != live_) drop_unseen();
-  drop_hidden();
-  return contacts_;
 }
 
 std::span<dynamics::Contact> Contacts::add_resting() {
@@ -123,39 +137,25 @@ std::span<dynamics::Contact> Contacts::add_resting() {
   return contacts_;
 }
 
-std::span<dynamics::Contact> Contacts::find(double length, std::span<const std::uint8_t> chosen) {
-  contacts_.clear();
-  owner_.clear();
-  turned_.clear();
-  colliders_.find_near(near_);
-  ++part_;
-  const auto stands_or_chosen = [&](std::size_t i) {
-    return !colliders_.all[i].moves || chosen[colliders_.all[i].entity];
-  };
-  for (const Near& near : near_) {
-    if (!stands_or_chosen(near.a) || !stands_or_chosen(near.b)) continue;
-    meet(pair_of(near.a, near.b, places_[key(near.a, near.b)]), length);
-  }
-  for (std::size_t i = 0; colliders_.floor && i < colliders_.all.size(); ++i) {
+/// Whether each side is chosen, or stands.
+bool Contacts::is_among(const Pair& pair, const TreeSet& chosen) const {
+  const auto counts = [&](std::size_t i) {
     const Collider& collider = colliders_.all[i];
-    if (!collider.present || !collider.moves || !chosen[collider.entity]) continue;
-    if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
-    meet(pair_of(i, *colliders_.floor, floor_pairs_[i]), length);
-  }
-  for (Pair& pair : pairs_) {  // what came apart in this part of the substep
-    if (pair.count == 0 || pair.met == part_ || pair.rests) continue;
-    if (stands_or_chosen(pair.a) && stands_or_chosen(pair.b)) pair.count = 0;
-  }
-  drop_hidden();
-  return contacts_;
+    return !collider.moves || chosen.holds[collider.entity];
+  };
+  return counts(pair.a) && counts(pair.b);
 }
 
-std::span<dynamics::Contact> Contacts::keep(std::span<const std::uint8_t> chosen) {
-  keep_if([&](std::size_t i) {
-    const auto stands_or_chosen = [&](const Collider& c) { return !c.moves || chosen[c.entity]; };
-    const Pair& pair = pairs_[owner_[i]];
-    return stands_or_chosen(colliders_.all[pair.a]) && stands_or_chosen(colliders_.all[pair.b]);
-  });
+void Contacts::choose(const TreeSet& chosen) {
+  met_.clear();
+  for (std::size_t i = 1; i < pairs_.size(); ++i) {
+    if (pairs_[i].count > 0 && is_among(pairs_[i], chosen)) met_.push_back(static_cast<int>(i));
+  }
+}
+
+std::span<dynamics::Contact> Contacts::keep(const TreeSet& chosen) {
+  keep_if([&](std::size_t i) { return is_among(pairs_[owner_[i]], chosen); });
+  std::erase_if(turned_, [&](std::size_t pair) { return !is_among(pairs_[pair], chosen); });
   return contacts_;
 }
 
@@ -255,6 +255,7 @@ void Contacts::meet(Pair& pair, double length) {
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
   pair.met = part_;
+  met_.push_back(static_cast<int>(&pair - pairs_.data()));
   resting_ -= pair.rests;
   pair.rests = colliders_.rests(a) && colliders_.rests(b);
   resting_ += pair.rests;

@@ -24,9 +24,11 @@ class Contacts {
   std::span<dynamics::Contact> add_resting();
   /// The same for a part of the substep in which only some trees move, all of them awake: contacts
   /// among them, and with what stands.
-  std::span<dynamics::Contact> find(double length, std::span<const std::uint8_t> chosen);
+  std::span<dynamics::Contact> find(double length, const TreeSet& chosen);
+  /// To be called before the first part of a set of trees.
+  void choose(const TreeSet& chosen);
   /// Leaves out the contacts of all others, until the next find().
-  std::span<dynamics::Contact> keep(std::span<const std::uint8_t> chosen);
+  std::span<dynamics::Contact> keep(const TreeSet& chosen);
   /// Which colliders were near each other at the last find().
   std::span<const Near> near() const { return near_; }
   /// Notes the impulses that dynamics/ has written to them.
@@ -52,7 +54,7 @@ class Contacts {
     std::size_t a = 0, b = 0;  // colliders
     bool live = false;
     unsigned seen = 0;      // the substep in which it was near last
-    unsigned met = 0;       // likewise, counting parts of substeps too
+    unsigned met = 0;       // likewise, counting parts as substeps
     bool rests = false;     // both sides did in the substep in which it was seen last
     dynamics::Contact law;  // what all its contacts have in common
     math::Vector3 normal{0, 0, 1};
@@ -63,7 +65,9 @@ class Contacts {
   };
 
   Pair& pair_of(std::size_t a, std::size_t b, int& place);
+  void meet_all(double length);
   void meet(Pair& pair, double length);
+  bool is_among(const Pair& pair, const TreeSet& chosen) const;
   void add(const contact::Contacts& found, Pair& pair);
   void emit(const Pair& pair);
   bool covers(const Pair& seen, const Pair& hidden) const;
@@ -79,7 +83,8 @@ class Contacts {
   std::size_t live_ = 0, resting_ = 0;
   std::unordered_map<std::uint64_t, int>
       places_;  // of pairs by their colliders; not with the floor
-  unsigned substep_ = 0, part_ = 0;
+  unsigned substep_ = 0, part_ = 0;  // how many there were; part_: of both
+  std::vector<int> met_, met_before_;  // pairs, by the last find() and the one before
   std::vector<Near> near_;
   std::vector<int> floor_pairs_;  // of each collider
   std::vector<dynamics::Contact> contacts_;

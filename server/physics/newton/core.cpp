@@ -33,6 +33,13 @@ std::vector<CoordinateJoint> make_joints(const scene::Entity& entity, const Body
   return made;
 }
 
+/// Those of all trees, if none are chosen.
+template <class Item, class Visit>
+void each_of(std::vector<Item>& items, const TreeSet* chosen, Visit visit) {
+  if (chosen) return physics::each_of(items, *chosen, visit);
+  std::for_each(items.begin(), items.end(), visit);
+}
+
 }  // namespace
 
 NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) {}
@@ -137,8 +144,7 @@ void NewtonCore::set_servos_and_limits(std::span<Body> bodies, const Share& shar
   limits_.clear();
   std::size_t entity = 0;  // joints of an entity stand together
   bool is_factored = false;
-  for (const CoordinateJoint& joint : joints_) {
-    if (!share.has(joint.entity)) continue;
+  each_of(joints_, share.chosen, [&](const CoordinateJoint& joint) {
     dynamics::Tree& tree = system_.trees[joint.entity];
     if (std::exchange(entity, joint.entity) != joint.entity) is_factored = false;
     if (joint.mode != scene::JointMode::disabled) {
@@ -149,46 +155,43 @@ void NewtonCore::set_servos_and_limits(std::span<Body> bodies, const Share& shar
       limits_.push_back({static_cast<int>(joint.entity), static_cast<int>(joint.part),
                          joint.limit->lower, joint.limit->upper, joint.limit_impulse});
     }
-  }
-  for (const Held& held : held_) {
-    if (!share.has(held.entity)) continue;
+  });
+  each_of(held_, share.chosen, [&](const Held& held) {
     for (dynamics::Servo servo : servos_of(bodies[held.entity], held.impulses)) {
       servo.lower *= share.of_impulses;
       servo.upper *= share.of_impulses;
       servos_.push_back(servo);
     }
-  }
+  });
 }
 
 /// The impulses of this substep are where the next one begins.
 void NewtonCore::remember(const Share& share) {
   contacts_.remember(share.more);
   std::size_t servo = 0, limit = 0;
-  for (CoordinateJoint& joint : joints_) {
-    if (!share.has(joint.entity)) continue;
+  each_of(joints_, share.chosen, [&](CoordinateJoint& joint) {
     if (joint.mode != scene::JointMode::disabled) joint.motor_impulse = servos_[servo++].impulse;
     if (joint.limit) joint.limit_impulse = limits_[limit++].impulse;
-  }
-  for (Held& held : held_) {
-    if (!share.has(held.entity)) continue;
+  });
+  each_of(held_, share.chosen, [&](Held& held) {
     for (double& impulse : held.impulses) impulse = servos_[servo++].impulse;
-  }
+  });
 }
 
 /// Takes two steps, because a push turns, too.
-void NewtonCore::push_apart_what_turned() {
+void NewtonCore::push_apart_what_turned(const Share& share) {
   for (int pass = 0; pass < 2; ++pass) {
     const std::span<dynamics::Contact> overlaps = contacts_.find_turned(system_);
     if (overlaps.empty()) return;
-    system_.push_apart(overlaps);
+    system_.push_apart(overlaps, share.trees());
   }
 }
 
 void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
   const dynamics::Report report =
-      system_.step(share.length, contacts, servos_, limits_, share.chosen);
+      system_.step(share.length, contacts, servos_, limits_, share.trees());
   remember(share);
-  push_apart_what_turned();
+  push_apart_what_turned(share);
   convergence_.islands += report.islands;
   convergence_.not_converged += report.not_converged;
   convergence_.worst = std::max(convergence_.worst, report.miss);
@@ -206,9 +209,11 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   if (woke) contacts = contacts_.add_resting();
   if (!stiff) return step(contacts, whole);
   division_.find(stiff->stiff_pairs(), contacts_.near(), contacts, colliders_.all, system_.trees);
-  whole.chosen = division_.with(0);
-  set_servos_and_limits(bodies, whole);
-  step(contacts_.keep(whole.chosen), whole);
+  whole.chosen = &division_.with(0);
+  if (!whole.chosen->trees.empty()) {
+    set_servos_and_limits(bodies, whole);
+    step(contacts_.keep(*whole.chosen), whole);
+  }
   for (const int count : division_.counts()) {
     substep_in_parts(bodies, length, splits, count, *stiff);
   }
@@ -218,14 +223,39 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
 /// @return  whether something was not
 bool NewtonCore::wake_stiff(const Plugin& stiff) {
   division_.find(stiff.stiff_pairs(), contacts_.near(), {}, colliders_.all, system_.trees);
-  const std::vector<std::uint8_t>& whole = division_.with(0);
+  const TreeSet& whole = division_.with(0);
   bool woke = false;
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    if (whole[i] || !system_.asleep(static_cast<int>(i))) continue;
+  for (std::size_t i = 0; i < whole.holds.size(); ++i) {
+    if (whole.holds[i] || !system_.asleep(static_cast<int>(i))) continue;
     system_.wake(static_cast<int>(i));
     woke = true;
   }
   return woke;
+}
+
+/// Takes from some trees what pushes them, and their gravity.
+void NewtonCore::hold_back(const TreeSet& chosen) {
+  constant_.clear();
+  gravity_.clear();
+  for (const int number : chosen.trees) {
+    dynamics::Tree& tree = system_.trees[number];
+    for (std::size_t k = 0; k < tree.links.size(); ++k) {
+      constant_.push_back(std::exchange(tree.external[k], dynamics::Wrench{}));
+      constant_.back().force += tree.links[k].mass * tree.gravity;
+    }
+    gravity_.push_back(std::exchange(tree.gravity, math::Vector3(0, 0, 0)));
+  }
+}
+
+/// Pushes them so, times `share`.
+void NewtonCore::push_held_back(const TreeSet& chosen, double share) {
+  auto constant = constant_.begin();
+  for (const int number : chosen.trees) {
+    for (std::size_t k = 0; k < system_.trees[number].links.size(); ++k, ++constant) {
+      system_.push(number, static_cast<int>(k),
+                   {share * constant->moment, share * constant->force});
+    }
+  }
 }
 
 /// Moves a set of trees on in steps of length / count. Forces act in the middle of each, as
@@ -234,26 +264,14 @@ bool NewtonCore::wake_stiff(const Plugin& stiff) {
 /// because friction that holds against a force must have the same share of what presses.
 void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
                                   Plugin& stiff) {
+  const TreeSet& chosen = division_.with(count);
   Share share;
-  share.chosen = division_.with(count);
+  share.chosen = &chosen;
   share.splits = splits;
-  stiff.choose_stiff(share.chosen);
+  contacts_.choose(chosen);
+  stiff.choose_stiff(chosen.holds);
   stiff.push_stiff(bodies, -1);
-  constant_.clear();
-  gravity_.clear();
-  const auto each_tree = [&](auto visit) {
-    for (std::size_t i = 0; i < system_.trees.size(); ++i) {
-      if (share.chosen[i]) visit(static_cast<int>(i), system_.trees[i]);
-    }
-  };
-  each_tree([&](int, dynamics::Tree& tree) {
-    for (std::size_t k = 0; k < tree.links.size(); ++k) {
-      constant_.push_back(tree.external[k]);
-      constant_.back().force += tree.links[k].mass * tree.gravity;
-    }
-    gravity_.push_back(std::exchange(tree.gravity, math::Vector3(0, 0, 0)));
-    std::fill(tree.external.begin(), tree.external.end(), dynamics::Wrench{});
-  });
+  hold_back(chosen);
   for (int i = 0; i <= count; ++i) {
     const bool half = i == 0 || i == count;
     const double kick = i == 0 ? 0 : half ? 2 : 1;  // of the forces over this length
@@ -261,21 +279,15 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
     share.of_impulses = kick * share.length / length;
     share.more = i < count;
     if (i > 0) {
-      auto constant = constant_.begin();
-      each_tree([&](int number, const dynamics::Tree& tree) {
-        for (std::size_t k = 0; k < tree.links.size(); ++k, ++constant) {
-          system_.push(number, static_cast<int>(k),
-                       {kick * constant->moment, kick * constant->force});
-        }
-      });
+      push_held_back(chosen, kick);
       stiff.push_stiff(bodies, kick);
     }
-    colliders_.follow(system_, share.length, share.chosen);
+    colliders_.follow(system_, share.length, chosen);
     set_servos_and_limits(bodies, share);
-    step(contacts_.find(share.length, share.chosen), share);
+    step(contacts_.find(share.length, chosen), share);
   }
   auto gravity = gravity_.begin();
-  each_tree([&](int, dynamics::Tree& tree) { tree.gravity = *gravity++; });
+  for (const int number : chosen.trees) system_.trees[number].gravity = *gravity++;
 }
 
 }  // namespace ziggurat::physics

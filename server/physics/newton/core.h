@@ -51,18 +51,20 @@ class NewtonCore {
   void detach(std::size_t entity);
   /// Trees that take a part of a substep, or all of it.
   struct Share {
-    std::span<const std::uint8_t> chosen;  // of each tree; empty: all
-    double length = 0;                     // [s]
-    int splits = 1;                        // of the scene's substep, see substep()
-    double of_impulses = 1;                // what motors may give, of that in the substep
-    bool more = false;                     // other parts follow
-    bool has(std::size_t entity) const { return chosen.empty() || chosen[entity]; }
+    const TreeSet* chosen = nullptr;  // null: all
+    double length = 0;                // [s]
+    int splits = 1;                   // of the scene's substep, see substep()
+    double of_impulses = 1;           // what motors may give, of that in the substep
+    bool more = false;                // other parts follow
+    std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
   };
   void set_servos_and_limits(std::span<Body> bodies, const Share& share);
   void step(std::span<dynamics::Contact> contacts, const Share& share);
   bool wake_stiff(const Plugin& stiff);
   void remember(const Share& share);
-  void push_apart_what_turned();
+  void push_apart_what_turned(const Share& share);
+  void hold_back(const TreeSet& chosen);
+  void push_held_back(const TreeSet& chosen, double share);
   void substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
                         Plugin& stiff);
 
@@ -76,7 +78,7 @@ class NewtonCore {
   std::vector<dynamics::Limit> limits_;
   Division division_;
   std::vector<dynamics::Wrench> constant_;  // on the links of a set of trees, in its order
-  std::vector<math::Vector3> gravity_;      // of these trees [m/s^2]
+  std::vector<math::Vector3> gravity_;      // of these trees, likewise [m/s^2]
   Convergence convergence_;
 };
 

@@ -48,9 +48,13 @@ void Division::find(std::span<const StiffPair> pairs, std::span<const Near> near
   counts_.erase(std::unique(counts_.begin(), counts_.end()), counts_.end());
 }
 
-const std::vector<std::uint8_t>& Division::with(int count) {
-  chosen_.resize(parts_.size());
-  for (std::size_t i = 0; i < parts_.size(); ++i) chosen_[i] = parts_[i] == count;
+const TreeSet& Division::with(int count) {
+  chosen_.trees.clear();
+  chosen_.holds.resize(parts_.size());
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    chosen_.holds[i] = parts_[i] == count;
+    if (parts_[i] == count) chosen_.trees.push_back(static_cast<int>(i));
+  }
   return chosen_;
 }
 

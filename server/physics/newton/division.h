@@ -2,11 +2,11 @@
 // Which trees take a substep in parts, because forces between them change too fast for it: those of
 // stiff pairs, and all that they may touch meanwhile.
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "physics/newton/colliders.h"
+#include "physics/newton/tree_set.h"
 #include "physics/plugin.h"
 
 namespace ziggurat::physics {
@@ -22,14 +22,15 @@ class Division {
 
   /// Into how many parts the sets of trees divide the substep: ascending, each once.
   const std::vector<int>& counts() const { return counts_; }
-  /// Of each tree whether its substep has so many parts; 0: it takes it as a whole.
-  const std::vector<std::uint8_t>& with(int count);
+  /// The trees whose substep has so many parts; 0: that take it as a whole. Valid until the next
+  /// call.
+  const TreeSet& with(int count);
 
  private:
   int find(int tree);
 
   std::vector<int> leader_, parts_, counts_;  // the first two of each tree
-  std::vector<std::uint8_t> chosen_;
+  TreeSet chosen_;
 };
 
 }  // namespace ziggurat::physics

@@ -291,12 +291,14 @@ TEST(PairSet, OfAllPairsIsTheWholeField) {
   Field field(scene.magnets, scene.bodies.size(), options);
   std::vector<Wrench> whole(scene.bodies.size()), pairs(scene.bodies.size());
   field.evaluate(0, scene.bodies, scene.currents, whole);
-  PairSet all;
+  std::vector<MagnetPair> listed;
   for (std::uint32_t i = 0; i < scene.magnets.size(); ++i) {
     for (std::uint32_t j = i + 1; j < scene.magnets.size(); ++j) {
-      if (scene.magnets[i].body != scene.magnets[j].body) all.add(i, j);
+      if (scene.magnets[i].body != scene.magnets[j].body) listed.emplace_back(i, j);
     }
   }
+  PairSet all;
+  all.assign(listed);
   field.evaluate(all, scene.bodies, scene.currents, pairs);
   expect_same_bits(whole, pairs);
 }
@@ -307,11 +309,11 @@ TEST(PairSet, LeavesTheOtherBodiesAlone) {
   std::vector<Wrench> wrenches(scene.bodies.size());
   field.evaluate(0, scene.bodies, scene.currents, wrenches);
   const Wrench before = wrenches[0];
-  PairSet pairs;
   std::uint32_t first = 0, second = 0;
   while (scene.magnets[first].body != 1) ++first;
   while (scene.magnets[second].body != 2) ++second;
-  pairs.add(first, second);
+  PairSet pairs;
+  pairs.assign(std::vector<MagnetPair>{{first, second}});
   scene.bodies[1].position.x() += 0.01;
   field.evaluate(pairs, scene.bodies, scene.currents, wrenches);
   EXPECT_EQ(wrenches[0].force, before.force);
