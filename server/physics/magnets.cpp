@@ -221,8 +221,8 @@ void Magnets::choose_stiff(std::span<const std::uint8_t> entities) {
   for (const ClosePair& pair : close_) {
     const Carrier& a = carriers_[field_->magnets()[pair.first].body];
     const Carrier& b = carriers_[field_->magnets()[pair.second].body];
-    const bool counts = (entities[a.entity] || a.inverse_mass == 0) &&
-                        (entities[b.entity] || b.inverse_mass == 0);
+    const bool counts =
+        (entities[a.entity] || a.inverse_mass == 0) && (entities[b.entity] || b.inverse_mass == 0);
     if (counts && (entities[a.entity] || entities[b.entity])) {
       chosen_pairs_.emplace_back(pair.first, pair.second);
     }

@@ -187,9 +187,8 @@ void Colliders::keep_in_box(ColliderGroup& group, double step, bool shrinks) {
   const double ahead = std::max(least_slack, std::min(steps_ahead * step, most));
   const btVector3 slack(ahead, ahead, ahead);
   const btBroadphaseProxy& proxy = *group.proxy;
-  const bool fits =
-      !shrinks ||
-      inside(group.low - 3 * slack, group.high + 3 * slack, proxy.m_aabbMin, proxy.m_aabbMax);
+  const bool fits = !shrinks || inside(group.low - 3 * slack, group.high + 3 * slack,
+                                       proxy.m_aabbMin, proxy.m_aabbMax);
   if (fits && inside(proxy.m_aabbMin, proxy.m_aabbMax, group.low, group.high)) return;
   broadphase_.setAabbForceUpdate(group.proxy, group.low - slack, group.high + slack, nullptr);
 }

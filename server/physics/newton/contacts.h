@@ -82,8 +82,8 @@ class Contacts {
   std::vector<int> unused_;
   std::size_t live_ = 0, resting_ = 0;
   std::unordered_map<std::uint64_t, int>
-      places_;  // of pairs by their colliders; not with the floor
-  unsigned substep_ = 0, part_ = 0;  // how many there were; part_: of both
+      places_;                         // of pairs by their colliders; not with the floor
+  unsigned substep_ = 0, part_ = 0;    // how many there were; part_: of both
   std::vector<int> met_, met_before_;  // pairs, by the last find() and the one before
   std::vector<Near> near_;
   std::vector<int> floor_pairs_;  // of each collider

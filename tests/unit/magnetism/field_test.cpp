@@ -177,7 +177,8 @@ TEST(Field, AllPairsAndListGiveTheSameBits) {
   Options listed;
   listed.max_distance = 0.07;
   const auto by_list = run(scene, listed);
-  // The same range with so many more magnets that all pairs are faster than a list. They have no moment.
+  // The same range with so many more magnets that all pairs are faster than a list. They have no
+  // moment.
   Scene crowded = scene;
   for (int k = 0; k < 800; ++k) {
     Magnet magnet;
