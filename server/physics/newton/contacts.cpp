@@ -86,6 +86,7 @@ Contacts::Pair& Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
 
 std::span<dynamics::Contact> Contacts::find(double length) {
   ++substep_;
+  share_ = 1;
   colliders_.find_near(near_);
   meet_all(length);
   const auto awake = std::ranges::count_if(met_, [&](int pair) { return !pairs_[pair].rests; });
@@ -94,7 +95,8 @@ std::span<dynamics::Contact> Contacts::find(double length) {
   return contacts_;
 }
 
-std::span<dynamics::Contact> Contacts::find(double length, const TreeSet& chosen) {
+std::span<dynamics::Contact> Contacts::find(double length, const TreeSet& chosen, double share) {
+  share_ = share;
   colliders_.find_near(near_, chosen);
   std::swap(met_, met_before_);
   meet_all(length);
@@ -334,8 +336,8 @@ void Contacts::emit(const Pair& pair) {
     dynamics::Contact& contact = contacts_.emplace_back(pair.law);
     contact.point = pair.points[i].point;
     contact.gap = pair.points[i].gap;
-    contact.impulse = pair.points[i].impulse;
-    contact.angular_impulse = pair.points[i].angular_impulse;
+    contact.impulse = share_ * pair.points[i].impulse;
+    contact.angular_impulse = share_ * pair.points[i].angular_impulse;
     owner_.push_back(static_cast<int>(&pair - pairs_.data()));
   }
 }
@@ -344,9 +346,11 @@ void Contacts::remember(bool more) {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Pair& pair = pairs_[owner_[i]];
     Remembered& point = pair.points[i - pair.first];
-    point.impulse = contacts_[i].impulse;
-    point.angular_impulse = contacts_[i].angular_impulse;
-    if (more) pair.earlier += point.impulse;
+    if (more) pair.earlier += contacts_[i].impulse;
+    if (share_ == 0) continue;
+    point.impulse = contacts_[i].impulse / share_;
+    point.angular_impulse = contacts_[i].angular_impulse / share_;
+    pair.share = share_;
   }
 }
 
@@ -372,7 +376,7 @@ void Contacts::tell(std::vector<Contact>& out) const {
       const bool pressed = point.impulse.dot(pair.normal) > 0 || !pair.earlier.isZero(0);
       if (!pressed && point.gap > 0) continue;
       middle += point.point;
-      sum += point.impulse;
+      sum += pair.share * point.impulse;
       ++count;
     }
     if (count == 0) continue;

@@ -24,7 +24,8 @@ class Contacts {
   std::span<dynamics::Contact> add_resting();
   /// The same for a part of the substep in which only some trees move, all of them awake: contacts
   /// among them, and with what stands.
-  std::span<dynamics::Contact> find(double length, const TreeSet& chosen);
+  /// @param share  of the substep's forces that act in the part
+  std::span<dynamics::Contact> find(double length, const TreeSet& chosen, double share);
   /// To be called before the first part of a set of trees.
   void choose(const TreeSet& chosen);
   /// Leaves out the contacts of all others, until the next find().
@@ -47,7 +48,8 @@ class Contacts {
   static constexpr int most_points = 8;  // of a pair; 4 unless it tumbles
   struct Remembered {
     btVector3 on_a{0, 0, 0}, on_b{0, 0, 0};  // in the colliders' frames [m]
-    math::Vector3 point{0, 0, 0}, impulse{0, 0, 0}, angular_impulse{0, 0, 0};
+    math::Vector3 point{0, 0, 0};
+    math::Vector3 impulse{0, 0, 0}, angular_impulse{0, 0, 0};  // for all forces of a substep
     double gap = 0;
   };
   struct Pair {
@@ -59,6 +61,7 @@ class Contacts {
     dynamics::Contact law;  // what all its contacts have in common
     math::Vector3 normal{0, 0, 1};
     math::Vector3 earlier{0, 0, 0};  // impulse in earlier parts of the substep [N s]
+    double share = 1;                // of the substep's forces, that acted in its last part
     int count = 0;
     std::array<Remembered, most_points> points;
     std::size_t first = 0;  // of its contacts in the list
@@ -83,6 +86,7 @@ class Contacts {
   std::size_t live_ = 0, resting_ = 0;
   std::unordered_map<std::uint64_t, int>
       places_;                         // of pairs by their colliders; not with the floor
+  double share_ = 1;                   // of a substep's forces, that acts in the coming one
   unsigned substep_ = 0, part_ = 0;    // how many there were; part_: of both
   std::vector<int> met_, met_before_;  // pairs, by the last find() and the one before
   std::vector<Near> near_;

@@ -150,31 +150,38 @@ void NewtonCore::set_servos_and_limits(std::span<Body> bodies, const Share& shar
     if (joint.mode != scene::JointMode::disabled) {
       const double impulse = joint.max_impulse / share.splits * share.of_impulses;
       servos_.push_back(servo_of(joint, tree, share.length, impulse, is_factored));
+      servos_.back().impulse *= share.of_impulses;
     }
     if (joint.limit) {
       limits_.push_back({static_cast<int>(joint.entity), static_cast<int>(joint.part),
-                         joint.limit->lower, joint.limit->upper, joint.limit_impulse});
+                         joint.limit->lower, joint.limit->upper,
+                         share.of_impulses * joint.limit_impulse});
     }
   });
   each_of(held_, share.chosen, [&](const Held& held) {
     for (dynamics::Servo servo : servos_of(bodies[held.entity], held.impulses)) {
       servo.lower *= share.of_impulses;
       servo.upper *= share.of_impulses;
+      servo.impulse *= share.of_impulses;
       servos_.push_back(servo);
     }
   });
 }
 
-/// The impulses of this substep are where the next one begins.
+/// The impulses of this substep are where the next one begins. Those of a part without forces are
+/// not: the ones of the substep before are nearer to what comes.
 void NewtonCore::remember(const Share& share) {
   contacts_.remember(share.more);
+  if (share.of_impulses == 0) return;
   std::size_t servo = 0, limit = 0;
   each_of(joints_, share.chosen, [&](CoordinateJoint& joint) {
-    if (joint.mode != scene::JointMode::disabled) joint.motor_impulse = servos_[servo++].impulse;
-    if (joint.limit) joint.limit_impulse = limits_[limit++].impulse;
+    if (joint.mode != scene::JointMode::disabled) {
+      joint.motor_impulse = servos_[servo++].impulse / share.of_impulses;
+    }
+    if (joint.limit) joint.limit_impulse = limits_[limit++].impulse / share.of_impulses;
   });
   each_of(held_, share.chosen, [&](Held& held) {
-    for (double& impulse : held.impulses) impulse = servos_[servo++].impulse;
+    for (double& impulse : held.impulses) impulse = servos_[servo++].impulse / share.of_impulses;
   });
 }
 
@@ -284,7 +291,7 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
     }
     colliders_.follow(system_, share.length, chosen);
     set_servos_and_limits(bodies, share);
-    step(contacts_.find(share.length, chosen), share);
+    step(contacts_.find(share.length, chosen, share.of_impulses), share);
   }
   auto gravity = gravity_.begin();
   for (const int number : chosen.trees) system_.trees[number].gravity = *gravity++;

@@ -54,7 +54,7 @@ class NewtonCore {
     const TreeSet* chosen = nullptr;  // null: all
     double length = 0;                // [s]
     int splits = 1;                   // of the scene's substep, see substep()
-    double of_impulses = 1;           // what motors may give, of that in the substep
+    double of_impulses = 1;           // of the substep's forces and impulses, that act in it
     bool more = false;                // other parts follow
     std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
   };
