@@ -8,7 +8,6 @@ processor time (of server and scripts) per substep, and the real-time factor of 
 """
 
 import argparse
-import copy
 import json
 import os
 import pathlib
@@ -18,32 +17,13 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import xml.etree.ElementTree as ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench"))
+import scenes  # noqa: E402
+
 SCENE = ROOT / "scenes/prototype_srocs_system.argos"
 BIN = pathlib.Path(os.environ.get("ZIGGURAT_BIN", ROOT / "build/release/bin"))
-DISTANCE = 0.5  # between robots [m]: too far for a robot to see the blocks of another
-
-
-def side_by_side(count):
-    """The stacking scene `count` times: robots and blocks in rows along x."""
-    tree = ElementTree.parse(SCENE)
-    root = tree.getroot()
-    arena = root.find("arena")
-    arena.set("size", "2, 20, 1")
-    originals = list(arena)
-    for original in originals:
-        arena.remove(original)
-    for row in range(count):
-        for original in originals:
-            entity = copy.deepcopy(original)
-            entity.set("id", f"{original.get('id')}_{row}")
-            x, _, z = original.find("body").get("position").split(",")
-            y = (row - (count - 1) / 2) * DISTANCE
-            entity.find("body").set("position", f"{x}, {y}, {z}")
-            arena.append(entity)
-    return tree
 
 
 def processor_time():
@@ -82,12 +62,12 @@ def main():
     parser.add_argument("--scene", type=int, metavar="N")
     arguments = parser.parse_args()
     if arguments.scene:
-        side_by_side(arguments.scene).write(sys.stdout, encoding="unicode")
+        scenes.stacking(arguments.scene).write(sys.stdout, encoding="unicode")
         return
     print("| robots, blocks | physics [µs per substep] | exchange | all | processor | × real time |")
     print("|---|---|---|---|---|---|")
     for count in (1, 16):
-        *times, factor = measure(side_by_side(count), arguments.repeat)
+        *times, factor = measure(scenes.stacking(count), arguments.repeat)
         columns = " | ".join(f"{time:.0f}" for time in times)
         print(f"| {count}, {2 * count} | {columns} | {factor:.1f} |", flush=True)
 

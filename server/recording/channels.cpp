@@ -94,13 +94,18 @@ void write(Message& message, std::string_view name, const std::string* id, const
         value);
 }
 
+/// Of a device; null for values that are recorded by position.
+const std::string* id_in(const world::DeviceLists& lists, world::IdOf id, std::size_t device) {
+  return id ? &id(lists, device) : nullptr;
+}
+
 template <const auto& table, class Struct>
 void add(const Moment& moment, const world::RobotLayout& robot, const Struct& from, Message& out) {
   world::for_each_channel(table, [&](auto i) {
     const auto& channel = std::get<i>(table);
     const world::Range range = channel.devices(moment.layout, robot);
     for (std::size_t device = range.begin; device < range.end(); ++device) {
-      write(out, channel.recorded, channel.id ? &channel.id(moment.layout, device) : nullptr,
+      write(out, channel.recorded, id_in(moment.layout, channel.id, device),
             (from.*channel.values)[device]);
     }
   });

@@ -1,0 +1,151 @@
+"""Scenes that the benchmarks run, as trees of XML elements."""
+
+import copy
+import math
+import pathlib
+import xml.etree.ElementTree as ElementTree
+
+SCENES = pathlib.Path(__file__).resolve().parents[1] / "scenes"
+
+
+def report(name, iterations=None):
+    """A scene of the report; with another number of substeps per tick, if one is given."""
+    tree = ElementTree.parse(SCENES / f"{name}.argos")
+    if iterations:
+        tree.find("physics_engines/dynamics3d").set("iterations", str(iterations))
+    return tree
+
+
+def stacking(count, iterations=None, distance=0.5):
+    """The stacking scene `count` times: robots and blocks in rows along x, `distance` apart [m]: too far
+    for a robot to see the blocks of another."""
+    tree = report("prototype_srocs_system", iterations)
+    arena = tree.find("arena")
+    arena.set("size", f"2, {max(20, 2 * count * distance)}, 1")
+    originals = list(arena)
+    for original in originals:
+        arena.remove(original)
+    for row in range(count):
+        for original in originals:
+            entity = copy.deepcopy(original)
+            entity.set("id", f"{original.get('id')}_{row}")
+            x, _, z = original.find("body").get("position").split(",")
+            y = (row - (count - 1) / 2) * distance
+            entity.find("body").set("position", f"{x}, {y}, {z}")
+            arena.append(entity)
+    return tree
+
+
+def magnets(columns, rows):
+    """The scene of magnetic boxes with `rows` rows of `columns` boxes."""
+    tree = report("dynamics3d_magnetism_test")
+    arena = tree.find("arena")
+    width, depth = 0.05 * (columns - 1) + 0.3, 0.1 * (rows - 1) + 0.2
+    arena.set("size", f"{width:.6g}, {depth:.6g}, 0.5")
+    half = 0.025 / 2  # of a wall's thickness
+    for wall, size, x, y in (("bn", (2 * half, depth - 2 * half), width / 2 - half, half),
+                             ("be", (width - 2 * half, 2 * half), half, half - depth / 2),
+                             ("bs", (2 * half, depth - 2 * half), half - width / 2, -half),
+                             ("bw", (width - 2 * half, 2 * half), -half, depth / 2 - half)):
+        box = arena.find(f"box[@id='{wall}']")
+        box.set("size", f"{size[0]:.6g}, {size[1]:.6g}, 0.025")
+        box.find("body").set("position", f"{x:.6g}, {y:.6g}, 0")
+    group = arena.find("distribute")
+    for element in (group.find("position"), group.find("orientation")):
+        element.set("layout", f"{columns}, {rows}, 1")
+    group.find("entity").set("quantity", str(columns * rows))
+    return tree
+
+
+ROBOT = """
+<prototype id="r{number}" movable="true">
+  <body position="{x:g}, {y:g}, 0" orientation="{yaw}, 0, 0"/>
+  <controller config="wander"/>
+  <links ref="base">
+    <link id="base" geometry="cylinder" radius="0.05" height="0.03" mass="0.3" position="0, 0, 0.012" orientation="0, 0, 0"/>
+    <link id="left" geometry="cylinder" radius="0.02" height="0.006" mass="0.02" position="0, 0.055, 0.02" orientation="0, 0, -90"/>
+    <link id="right" geometry="cylinder" radius="0.02" height="0.006" mass="0.02" position="0, -0.055, 0.02" orientation="0, 0, 90"/>
+    <link id="front" geometry="sphere" radius="0.005" mass="0.01" position="0.035, 0, 0.001" orientation="0, 0, 0"/>
+    <link id="back" geometry="sphere" radius="0.005" mass="0.01" position="-0.035, 0, 0.001" orientation="0, 0, 0"/>
+  </links>
+  <joints>
+    <joint id="left" type="revolute" axis="0, 0, 1">
+      <parent link="base" position="0, 0.055, 0.008" orientation="0, 0, -90"/><child link="left"/>
+    </joint>
+    <joint id="right" type="revolute" axis="0, 0, 1">
+      <parent link="base" position="0, -0.055, 0.008" orientation="0, 0, 90"/><child link="right"/>
+    </joint>
+    <joint id="front" type="fixed"><parent link="base" position="0.035, 0, -0.011"/><child link="front"/></joint>
+    <joint id="back" type="fixed"><parent link="base" position="-0.035, 0, -0.011"/><child link="back"/></joint>
+  </joints>
+  <devices>
+    <proximity_sensors>{rays}</proximity_sensors>
+    <radios medium="radio"><radio id="radio" anchor="base" position="0, 0, 0.02" range="0.6"/></radios>
+  </devices>
+</prototype>
+"""
+
+SWARM = """
+<argos-configuration>
+  <framework><experiment length="0" ticks_per_second="10" random_seed="1"/></framework>
+  <controllers>
+    <lua_controller id="wander">
+      <actuators>
+        <joints implementation="default">
+          <joint id="left" mode="velocity" max_torque="5"/><joint id="right" mode="velocity" max_torque="5"/>
+        </joints>
+        <radios implementation="default"/>
+      </actuators>
+      <sensors>
+        <joints implementation="default"><joint id="left" mode="velocity"/><joint id="right" mode="velocity"/></joints>
+        <proximity implementation="default" show_rays="false"/>
+        <radios implementation="default"/>
+      </sensors>
+      <params script="wander.lua"/>
+    </lua_controller>
+  </controllers>
+  <arena size="{size:g}, {size:g}, 1" center="0, 0, 0.5">{robots}</arena>
+  <physics_engines>
+    <dynamics3d id="dynamics" iterations="10"><gravity g="9.8"/><floor height="0.01"/></dynamics3d>
+  </physics_engines>
+  <media><radio id="radio"/></media>
+</argos-configuration>
+"""
+
+WANDER = """\
+-- Drives straight, backs away from what is near, and tells how many messages it heard.
+local backing = 0
+
+function init() end
+
+function step()
+  local near = 0
+  for _, value in ipairs(robot.proximity) do near = math.max(near, value) end
+  backing = near > 0.05 and 10 or math.max(backing - 1, 0)
+  local speed = backing > 0 and -2 or 3
+  robot.joints.left.set_target(speed)
+  robot.joints.right.set_target(-speed)
+  robot.radios.radio.tx_data({#robot.radios.radio.rx_data, near})
+end
+
+function reset() backing = 0 end
+function destroy() end
+"""
+
+
+def swarm(count):
+    """Robots on two wheels and two casters, with a radio and eight rays, 40 cm apart. Their script, WANDER,
+    must stand beside the scene as wander.lua."""
+    columns, pitch = math.ceil(math.sqrt(count)), 0.4
+    robots = []
+    for i in range(count):
+        rays = ""
+        for k in range(8):
+            x, y = math.cos(k * math.pi / 4 + 0.01), math.sin(k * math.pi / 4 + 0.01)
+            rays += (f'<sensor anchor="base" offset="{0.055 * x:.4f}, {0.055 * y:.4f}, 0.02"'
+                     f' direction="{x:.4f}, {y:.4f}, 0" range="0.15"/>')
+        robots.append(ROBOT.format(number=i, x=(i % columns - (columns - 1) / 2) * pitch,
+                                   y=(i // columns - (columns - 1) / 2) * pitch,
+                                   yaw=i * 137 % 360, rays=rays))
+    text = SWARM.format(size=columns * pitch + 1, robots="".join(robots))
+    return ElementTree.ElementTree(ElementTree.fromstring(text.strip()))
