@@ -35,7 +35,9 @@ end
 
 -- Drives back for another approach.
 function states.retreat()
-  if builder.back_away(0.04) > 0.2 or seconds() > 4 then
+  local away = builder.back_away(0.04)
+  if away or seconds() > 10 then
+    if not away then builder.forget_face() end
     builder.stop()
     return "approach"
   end
@@ -43,7 +45,12 @@ end
 
 -- Turns to both sides, each time farther, until the camera sees a face.
 function states.search()
-  builder.drive(0, seconds() % 8 < 2 and 0.2 or (seconds() % 8 < 6 and -0.2 or 0.2))
+  local turn, length, until_end = 0.2, 2, 2
+  while seconds() > until_end do
+    turn, length = -turn, 2 * length
+    until_end = until_end + length
+  end
+  builder.drive(0, turn)
   if builder.nearest_face() then
     builder.stop()
     return "approach"

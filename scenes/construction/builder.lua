@@ -180,23 +180,50 @@ function builder.dock_at(face, fastest, touch)
   builder.drive(speed, steer(face, speed))
 end
 
-local unseen = 0  -- steps since the camera saw a face
+local unseen = 0           -- steps since the camera saw a face
+local tracked = math.huge  -- about how far away the face is that it drives to
 
--- Drives to the nearest face, as above; "lost" if the camera sees none.
-function builder.dock(fastest)
+-- That face; nil if it is not in the image. `another` if the nearest is another one, farther away.
+local function tracked_face()
   local face = builder.nearest_face()
-  unseen = face and 0 or unseen + 1
-  if face then return builder.dock_at(face, fastest, true) end
-  builder.stop()
-  if unseen > 5 then return "lost" end
+  local another = face and face.forward > tracked + 0.05
+  if another then face = nil end
+  if face then tracked = face.forward end
+  return face, another
 end
 
--- Drives backwards along the line in front of the nearest face; call it in every step. Returns the
--- distance of that face, 0 if the camera sees none.
+-- The next face to drive to may be any.
+function builder.forget_face() tracked = math.huge end
+
+-- Drives to the nearest face, as above; "lost" if the camera sees none. "askew", too, if the face leaves
+-- the image and the camera sees another, or if it is too far aside for the way that is left.
+function builder.dock(fastest)
+  local face, another = tracked_face()
+  unseen = face and 0 or unseen + 1
+  if not face then
+    builder.stop()
+    if another then return "askew" end
+    if unseen > 5 then
+      builder.forget_face()
+      return "lost"
+    end
+    return
+  end
+  local to_go = face.forward - builder.reach
+  if to_go < 0.15 and math.abs(builder.offset(face)) > 0.01 + 0.5 * to_go then return "askew" end
+  local outcome = builder.dock_at(face, fastest, true)
+  if outcome == "docked" then builder.forget_face() end
+  return outcome
+end
+
+-- Drives backwards to the line in front of that face; call it in every step. True where an approach is
+-- easy: 20 cm away and near the line, or far away.
 function builder.back_away(speed)
-  local face = builder.nearest_face()
+  tracked = tracked + speed * builder.tick
+  local face = tracked_face()
   builder.drive(-speed, face and steer(face, -speed) or 0)
-  return face and face.forward or 0
+  if not face or math.min(face.forward, builder.ahead()) < 0.2 then return false end
+  return math.abs(builder.offset(face)) < 0.15 * (face.forward - 0.1) or face.forward > 0.5
 end
 
 return builder

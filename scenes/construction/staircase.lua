@@ -285,9 +285,16 @@ function states.line_up_column(faces)
   end
 end
 
+-- Looks at the column to steer by, which corrects the odometry, then in the target's direction.
 function states.face_column(faces)
   refresh_target(faces)
-  if turn_to(target.yaw) then return "approach_column" end
+  local column = reference()
+  if not seen_column(faces, column) and seconds() < 12 then
+    local front, pose = fronts[column], builder.pose
+    if turn_to(math.atan(front.y - pose.y, front.x - pose.x)) then look_around() end
+  elseif turn_to(target.yaw) then
+    return "approach_column"
+  end
 end
 
 function states.approach_column(faces)

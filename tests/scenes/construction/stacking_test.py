@@ -34,6 +34,22 @@ class Stacking(unittest.TestCase):
             with self.subTest(perturbation=number):
                 self.assert_good(perturb.run(number, [CPP]))
 
+    def test_both_controllers_do_the_same(self):
+        def last_line(*options):
+            with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
+                return subprocess.run(
+                    [perturb.BIN / "ziggurat", "run", perturb.STACKING, "--duration", "34", "--hash",
+                     "--quiet", *options], check=True, capture_output=True, text=True,
+                    env=dict(os.environ, XDG_RUNTIME_DIR=folder)).stdout.splitlines()[-1]
+        self.assertRegex(last_line(), "^hash 340 [0-9a-f]{16}$")
+        self.assertEqual(last_line(), last_line(CPP))
+
+    def test_blocks_far_aside(self):
+        """The robot must drive back to the line in front of the block, and never push it."""
+        for number in (15, 48):
+            with self.subTest(perturbation=number):
+                self.assert_good(perturb.run(number, change=perturb.perturb_widely))
+
 
 class Blocks(unittest.TestCase):
     def test_two_blocks_at_a_gap_of_one_centimetre_attract_and_come_to_rest(self):

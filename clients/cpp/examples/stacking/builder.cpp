@@ -12,7 +12,7 @@ namespace {
 // Dimensions of the robot [m]. It does not know the positions of the blocks.
 constexpr double reach = 0.080;  // from its centre to the face of a block under the end effector
 constexpr double wheel_radius = 0.025, half_track = 0.052;
-constexpr double slip = 1.32;           // rotation of the wheels / rotation of the robot: they skid
+constexpr double slip = 1.335;          // rotation of the wheels / rotation of the robot: they skid
 constexpr double front_sensor = 0.065;  // position of the front proximity sensors
 constexpr double tag_side = 0.024;
 constexpr double settle = 0.03;  // distance constant of the approach to the line [m]
@@ -108,31 +108,54 @@ std::optional<Face> Builder::nearest_face() const {
   return nearest;
 }
 
-Docking Builder::dock(double fastest) {
+/// The face that it drives to; none if it is not in the image.
+/// @param another  whether the nearest is another one, farther away
+std::optional<Face> Builder::tracked_face(bool& another) {
   const std::optional<Face> face = nearest_face();
+  another = face && face->forward > tracked_ + 0.05;
+  if (another) return std::nullopt;
+  if (face) tracked_ = face->forward;
+  return face;
+}
+
+void Builder::forget_face() { tracked_ = std::numeric_limits<double>::infinity(); }
+
+Docking Builder::dock(double fastest) {
+  bool another = false;
+  const std::optional<Face> face = tracked_face(another);
   unseen_ = face ? 0 : unseen_ + 1;
-  if (!face) {
-    stop();
-    return unseen_ > 5 ? Docking::lost : Docking::under_way;
+  Docking outcome = Docking::under_way;
+  if (face) {
+    outcome = dock_at(*face, fastest);
+  } else if (another) {
+    outcome = Docking::askew;
+  } else if (unseen_ > 5) {
+    outcome = Docking::lost;
   }
-  const double to_go = std::min(face->forward, ahead()) - reach;
-  if (to_go < 0.03 && (std::abs(face->offset()) > 0.006 || std::abs(face->heading) > 0.12)) {
-    stop();
-    return Docking::askew;
-  }
-  if (to_go < 0.0005) {
-    stop();
-    return Docking::docked;
-  }
+  if (!face || outcome != Docking::under_way) stop();
+  if (outcome == Docking::docked || outcome == Docking::lost) forget_face();
+  return outcome;
+}
+
+Docking Builder::dock_at(const Face& face, double fastest) {
+  const double aside = std::abs(face.offset());
+  const double face_to_go = face.forward - reach;
+  if (face_to_go < 0.15 && aside > 0.01 + 0.5 * face_to_go) return Docking::askew;
+  const double to_go = std::min(face.forward, ahead()) - reach;
+  if (to_go < 0.03 && (aside > 0.006 || std::abs(face.heading) > 0.12)) return Docking::askew;
+  if (to_go < 0.0005) return Docking::docked;
   const double speed = std::max(0.008, std::min(fastest, 1.2 * to_go));
-  drive(speed, steer(*face, speed));
+  drive(speed, steer(face, speed));
   return Docking::under_way;
 }
 
-double Builder::back_away(double speed) {
-  const std::optional<Face> face = nearest_face();
+bool Builder::back_away(double speed) {
+  tracked_ += speed * tick;
+  bool another = false;
+  const std::optional<Face> face = tracked_face(another);
   drive(-speed, face ? steer(*face, -speed) : 0);
-  return face ? face->forward : 0;
+  if (!face || std::min(face->forward, ahead()) < 0.2) return false;
+  return std::abs(face->offset()) < 0.15 * (face->forward - 0.1) || face->forward > 0.5;
 }
 
 }  // namespace stacking

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 namespace stacking {
@@ -48,13 +49,18 @@ class Builder {
   /// At floor level, facing the robot; none if the camera sees none.
   std::optional<Face> nearest_face() const;
   /// Drives to the nearest face; call it in every step. `askew` if the robot came close but is not
-  /// on the line, `lost` if the camera sees no face.
+  /// on the line or too far aside for the way that is left, or if the face left the image and the
+  /// camera sees another; `lost` if it sees none.
   Docking dock(double fastest);
-  /// Drives backwards along the line in front of the nearest face. The distance to that face [m]; 0
-  /// if the camera does not see it.
-  double back_away(double speed);
+  /// Drives backwards to the line in front of that face; call it in every step. True where an
+  /// approach is easy: 20 cm away and near the line, or far away.
+  bool back_away(double speed);
+  /// The next face to drive to may be any.
+  void forget_face();
 
  private:
+  std::optional<Face> tracked_face(bool& another);
+  Docking dock_at(const Face& face, double fastest);
   double distance(std::size_t sensor) const;
   double ahead() const;
 
@@ -65,10 +71,11 @@ class Builder {
   ziggurat::Radio& radio_;
   std::span<ziggurat::Magnet> magnets_;
   std::span<const ziggurat::ProximitySensor> proximity_;
-  double lift_height_ = 0;       // target [m]
-  double lift_speed_limit_ = 0;  // [m/s]
-  double lift_speed_ = 0;        // present [m/s]
-  int unseen_ = 0;               // steps since the camera saw a face
+  double lift_height_ = 0;                                    // target [m]
+  double lift_speed_limit_ = 0;                               // [m/s]
+  double lift_speed_ = 0;                                     // present [m/s]
+  int unseen_ = 0;                                            // steps since the camera saw a face
+  double tracked_ = std::numeric_limits<double>::infinity();  // distance of that face [m]
 };
 
 }  // namespace stacking

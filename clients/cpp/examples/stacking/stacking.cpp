@@ -62,6 +62,7 @@ class Stacker {
   State fetch();
   State put_down();
   State approach();
+  State retreat();
   State search();
 
   ziggurat::Robot& robot_;
@@ -86,10 +87,24 @@ State Stacker::approach() {
   return ++blocks_met_ == 1 ? State::lower : State::place;
 }
 
-/// Turns to both sides until the camera sees a face.
+/// Drives back for another approach.
+State Stacker::retreat() {
+  const bool away = builder_.back_away(0.04);
+  if (!away && seconds() <= 10) return state_;
+  if (!away) builder_.forget_face();
+  builder_.stop();
+  return State::approach;
+}
+
+/// Turns to both sides, each time farther, until the camera sees a face.
 State Stacker::search() {
-  const double phase = std::fmod(seconds(), 8);
-  builder_.drive(0, phase < 2 || phase >= 6 ? 0.2 : -0.2);
+  double turn = 0.2, length = 2, until_end = 2;
+  while (seconds() > until_end) {
+    turn = -turn;
+    length *= 2;
+    until_end += length;
+  }
+  builder_.drive(0, turn);
   if (!builder_.nearest_face()) return state_;
   builder_.stop();
   return State::approach;
@@ -104,9 +119,7 @@ State Stacker::fetch() {
     case State::approach:
       return approach();
     case State::retreat:
-      if (builder_.back_away(0.04) <= 0.2 && seconds() <= 4) return state_;
-      builder_.stop();
-      return State::approach;
+      return retreat();
     case State::search:
       return search();
     case State::lower:
