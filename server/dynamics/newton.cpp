@@ -218,13 +218,16 @@ bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
   return false;
 }
 
-/// Shapes the matrix and keeps the state.
-void Solver::start(Problem& problem) {
+/// Shapes the matrix, if it is not too large for that, and keeps the state.
+/// @return  multiplications that a factorisation takes
+double Solver::start(Problem& problem) {
+  start_.take(problem);
+  if (problem.trees.size() > options.most_trees) return HUGE_VAL;
   sizes_.clear();
   for (const Tree* tree : problem.trees) sizes_.push_back(tree->dofs);
   matrix_.shape(sizes_, problem.couplings);
   linear_.resize(problem.blocks.size());
-  start_.take(problem);
+  return matrix_.work();
 }
 
 /// Whether the velocities and impulses of the last substep still solve the problem.
@@ -238,28 +241,71 @@ bool Solver::still_solved(const Problem& problem, Outcome& outcome) {
 Outcome Solver::solve(Problem& problem) {
   Outcome outcome;
   if (still_solved(problem, outcome)) return outcome;
-  start(problem);
-  if (matrix_.work() > options.most_work) {
+  const double work = start(problem);
+  if (work > options.most_work) {
     sweep_until_converged(problem, outcome, options.most_sweeps);
     return outcome;
   }
-  if (matrix_.work() <= options.newton_work) {
+  if (work <= options.newton_work) {
     if (iterate(problem, outcome, options.most_iterations)) return outcome;
     start_.give_back(problem);
+    if (soften_after_sweeps(problem, outcome)) return outcome;
+    start_.give_back(problem);
+  } else if (proximal(problem, outcome)) {
+    return outcome;
   }
-  if (proximal(problem, outcome, options.most_descents)) return outcome;
   start_.give_back(problem);
   interior_points(problem, outcome);
-  if (proximal(problem, outcome, options.most_descents)) return outcome;
-  sweep_until_converged(problem, outcome, options.last_sweeps);
+  outcome.converged = proximal(problem, outcome);
+  if (outcome.converged) return outcome;
+  const double before = outcome.miss;
+  start_.take(problem);
+  if (!soften_after_sweeps(problem, outcome) && outcome.miss > before) {
+    start_.give_back(problem);
+    outcome.miss = before;
+  }
   return outcome;
+}
+
+bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most) {
+  constexpr int between = 10;  // sweeps from one look at the miss to the next
+  sweeps_.start(problem);
+  for (int sweep = 1; sweep <= most; ++sweep) {
+    ++outcome.sweeps;
+    sweeps_.sweep();
+    if (sweep % between != 0 && sweep < most) {
+      sweeps_.accelerate();
+      continue;
+    }
+    sweeps_.finish(problem);
+    double scale = 0;
+    outcome.miss = worst_miss(problem, scale);
+    outcome.converged = outcome.miss <= soft_tolerance(scale);
+    if (outcome.converged) return true;
+    sweeps_.accelerate();
+  }
+  return false;
+}
+
+/// Some sweeps, then the softened problem from where they end. Sweeps find which contacts hold,
+/// stick and slide; where some of them contradict each other a little, as rolling friction and the
+/// two ends of a line do, only the softened problem ends.
+bool Solver::soften_after_sweeps(Problem& problem, Outcome& outcome) {
+  sweeps_.start(problem);
+  for (int sweep = 1; sweep <= options.first_sweeps; ++sweep) {
+    sweeps_.sweep();
+    if (sweep < options.first_sweeps) sweeps_.accelerate();
+  }
+  sweeps_.finish(problem);
+  outcome.sweeps += options.first_sweeps;
+  return outcome.converged = patient_proximal(problem, outcome);
 }
 
 void Solver::solve_displacement(Problem& problem) {
   Outcome outcome;
-  start(problem);
-  take_speeds(problem);
-  if (matrix_.work() <= options.newton_work) {
+  const double work = start(problem);
+  if (work <= options.newton_work) {
+    take_speeds(problem);
     if (iterate(problem, outcome, options.most_iterations)) return;
     start_.give_back(problem);
   }

@@ -2,49 +2,54 @@
 // Solves the velocity problem of an island, by the first of these that converges:
 // - Newton's method on the contact law (semi-smooth, as in Alart and Curnier 1991; S. Hueeber and
 //   B. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), for small islands;
-// - Newton's method on the softened problem about the last impulses (the method of multipliers, R. T.
-//   Rockafellar, Math. Oper. Res. 1, 1976), for what rests;
-// - the interior point method, for what strikes;
-// - sweeps over the contacts, where a factorisation costs too much or nothing else converges.
-// All factor one matrix along the contact graph.
+// - Newton's method on the softened problem about the last impulses (the method of multipliers, R.
+// T.
+//   Rockafellar, Math. Oper. Res. 1, 1976): of larger islands for what rests, of small ones with a
+//   line search, after sweeps;
+// - the interior point method, for larger islands that strike;
+// - sweeps over the contacts alone, where a factorisation costs too much.
+// All but the last factor one matrix along the contact graph.
 
 #include "dynamics/block_matrix.h"
 #include "dynamics/law.h"
+#include "dynamics/sweeps.h"
 
 namespace ziggurat::dynamics {
 
 /// How an island was solved.
 struct Outcome {
-  int iterations = 0;   ///< of Newton's method
-  int descents = 0;     ///< steps of the softened problem
-  int interior = 0;     ///< steps of the interior point method
-  int sweeps = 0;       ///< over all contacts
-  double miss = 0;      ///< worst violation of the contact law that is left [m/s] or [rad/s]
+  int iterations = 0;  ///< of Newton's method
+  int descents = 0;    ///< steps of the softened problem
+  int interior = 0;    ///< steps of the interior point method
+  int sweeps = 0;      ///< over all contacts
+  double miss = 0;     ///< worst violation of the contact law that is left [m/s] or [rad/s]
   bool converged = true;
 };
 
 struct SolverOptions {
   double newton_work = 3e4;  ///< multiplications of a factorisation; more: not on the law itself
   int most_iterations = 16;  ///< of Newton's method on the law itself
-  int most_descents = 8;     ///< steps of the softened problem
+  int most_descents = 8;     ///< full steps of the softened problem
   double softness = 1e-3;    ///< its impulses give way by this times the mobility
   int most_interior = 25;    ///< steps of the interior point method
   double most_work = 1.2e7;  ///< multiplications of a factorisation; more: sweeps
-  int most_sweeps = 60;      ///< of large islands
-  int displacement_sweeps = 20;  ///< of a displacement that Newton's method does not find
-  int last_sweeps = 10;      ///< where the interior point method does not converge
-  double relative_tolerance = 1e-9;  ///< of the largest speed or speed change in the island
-  double still_tolerance = 1e-8;     ///< of it, for the last substep's solution
-  double soft_tolerance = 2e-5;      ///< of it, where Newton's method did not converge
-  double absolute_tolerance = 1e-10; ///< [m/s] or [rad/s]
+  std::size_t most_trees = 300;       ///< of an island whose matrix is looked at
+  int most_sweeps = 60;               ///< of islands that are not factored
+  int first_sweeps = 20;              ///< before patient steps
+  int most_patient = 60;              ///< steps of the softened problem with a line search
+  int displacement_sweeps = 20;       ///< of a displacement that Newton's method does not find
+  double relative_tolerance = 1e-9;   ///< of the largest speed or speed change in the island
+  double still_tolerance = 1e-8;      ///< of it, for the last substep's solution
+  double soft_tolerance = 2e-5;       ///< of it, where Newton's method did not converge
+  double absolute_tolerance = 1e-10;  ///< [m/s] or [rad/s]
 };
 
 /// A block in the interior point method: impulse and speed in units in which a contact's cone is
 /// x_0 >= |(x_1, x_2)|, and what belongs to its present step.
 struct InteriorBlock {
   Vector3 impulse{0, 0, 0}, speed{0, 0, 0}, anchor{0, 0, 0};
-  Vector3 unit{0, 0, 0};   ///< impulses of the block over those here
-  Vector3 give{0, 0, 0};   ///< speed over impulse
+  Vector3 unit{0, 0, 0};              ///< impulses of the block over those here
+  Vector3 give{0, 0, 0};              ///< speed over impulse
   double lower = 0, upper = 0;        ///< of blocks that are not cones
   double at_lower = 0, at_upper = 0;  ///< their speeds beyond the one sought; 0: without bound
   Matrix3 scaling = Matrix3::Zero(), unscaling = Matrix3::Zero(), slope = Matrix3::Zero();
@@ -79,12 +84,13 @@ class Solver {
   void start_matrix(Problem& problem);
   bool iterate(Problem& problem, Outcome& outcome, int most);
   bool step(Problem& problem);
-  void start(Problem& problem);
+  double start(Problem& problem);
   bool still_solved(const Problem& problem, Outcome& outcome);
   void take_speeds(const Problem& problem);
   double miss_now(const Problem& problem, double& scale) const;
-  bool proximal(Problem& problem, Outcome& outcome, int most);
-  bool proximal_step(Problem& problem);
+  bool proximal(Problem& problem, Outcome& outcome);
+  bool patient_proximal(Problem& problem, Outcome& outcome);
+  bool proximal_step(Problem& problem, double softness, double shortest, double& unbalanced);
   bool interior_points(Problem& problem, Outcome& outcome);
   void enter(const Problem& problem, double margin);
   double linearise_interior(Problem& problem);
@@ -94,12 +100,13 @@ class Solver {
   void add_slope(const Problem& problem, const Block& block, const Linear& linear);
   void add_constant(Problem& problem, const Block& block, const Linear& linear);
   double worst_miss(const Problem& problem, double& scale);
-  void sweep_until_converged(Problem& problem, Outcome& outcome, int most);
-  void prepare_sweeps(Problem& problem);
-  void sweep_contact(Problem& problem, Block& block, std::size_t index);
-  void sweep_block(Problem& problem, Block& block, std::size_t index);
+  bool sweep_until_converged(Problem& problem, Outcome& outcome, int most);
+  bool soften_after_sweeps(Problem& problem, Outcome& outcome);
   double tolerance(double scale) const {
     return options.absolute_tolerance + options.relative_tolerance * scale;
+  }
+  double soft_tolerance(double scale) const {
+    return options.absolute_tolerance + options.soft_tolerance * scale;
   }
 
   BlockMatrix matrix_;
@@ -107,14 +114,11 @@ class Solver {
   std::vector<Linear> linear_;
   std::vector<int> sizes_;
   std::vector<double> sloped_;
-  std::vector<double> kept_velocity_;
+  std::vector<double> kept_velocity_, anchored_;
   Snapshot start_, snapshot_;
   std::vector<double> direction_, residual_;
   std::vector<InteriorBlock> interior_;
-  // Of the sweeps.
-  std::vector<double> response_;  // M^-1 J^T, as the Jacobian
-  std::vector<double> diagonal_;  // per block and row: J M^-1 J^T
-  std::vector<double> coupling_;  // per block: of both tangents with the normal
+  Sweeps sweeps_;
 };
 
 }  // namespace ziggurat::dynamics

@@ -54,55 +54,125 @@ double imbalance(const Problem& problem, std::vector<double>& out) {
   return worst;
 }
 
-/// One step about the anchors.
-/// @return  false if the matrix has no factors
-bool Solver::proximal_step(Problem& problem) {
-  start_matrix(problem);
+namespace {
+
+/// Impulses of the softened law at the present velocities.
+/// @param linear  out: its linearisations; may be null
+void soften(Problem& problem, double softness, Linear* linear) {
   for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
     Block& block = problem.blocks[k];
     double u[Block::most_rows];
     problem.speeds(block, u);
-    soften(block, u, options.softness, block.impulse.data(), &linear_[k]);
-    add_slope(problem, block, linear_[k]);
+    soften(block, u, softness, block.impulse.data(), linear ? linear + k : nullptr);
   }
-  imbalance(problem, direction_);
-  if (!matrix_.factor()) return false;
-  matrix_.solve(direction_.data());
-  for (std::size_t k = 0; k < direction_.size(); ++k) problem.velocity[k] += direction_[k];
-  for (Block& block : problem.blocks) {
-    double u[Block::most_rows];
-    problem.speeds(block, u);
-    soften(block, u, options.softness, block.impulse.data(), nullptr);
-  }
-  return true;
 }
 
-/// Steps as long as they lead nearer to the law.
+/// The square of the momentum that is missing, over the masses [J].
+double square(const Problem& problem, const std::vector<double>& missing) {
+  double sum = 0;
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    sum += missing[i] * missing[i] * problem.inverse_mass[i];
+  }
+  return sum;
+}
+
+}  // namespace
+
+/// One step about the anchors.
+/// @param shortest    part of the way; below 1 it goes as far as it leaves less momentum missing
+/// @param unbalanced  out: the largest change of a coordinate's speed that is missing
+/// @return            false if no step does
+bool Solver::proximal_step(Problem& problem, double softness, double shortest, double& unbalanced) {
+  constexpr double enough = 0.1;
+  start_matrix(problem);
+  soften(problem, softness, linear_.data());
+  for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
+    add_slope(problem, problem.blocks[k], linear_[k]);
+  }
+  unbalanced = imbalance(problem, residual_);
+  const double before = square(problem, residual_);
+  if (before == 0) return true;
+  direction_ = residual_;
+  if (!matrix_.factor()) return false;
+  matrix_.solve(direction_.data());
+  kept_velocity_ = problem.velocity;
+  for (double way = 1; way >= shortest; way /= 2) {
+    for (std::size_t k = 0; k < direction_.size(); ++k) {
+      problem.velocity[k] = kept_velocity_[k] + way * direction_[k];
+    }
+    soften(problem, softness, nullptr);
+    unbalanced = imbalance(problem, residual_);
+    if (shortest == 1) return true;
+    if (square(problem, residual_) < (1 - enough * way) * before) return true;
+  }
+  return false;
+}
+
+/// Full steps as long as they lead nearer to the law.
 /// @return  whether the miss became small; otherwise the problem holds the best state met
-bool Solver::proximal(Problem& problem, Outcome& outcome, int most) {
-  double scale = 0;
+bool Solver::proximal(Problem& problem, Outcome& outcome) {
+  double scale = 0, unbalanced = 0;
   double before = std::max(worst_miss(problem, scale), imbalance(problem, residual_));
   snapshot_.take(problem);
   double best = before;
   for (Block& block : problem.blocks) block.anchor = block.impulse;
   bool enough = false;
-  for (int i = 0; i < most; ++i) {
+  for (int i = 0; i < options.most_descents; ++i) {
     ++outcome.descents;
-    if (!proximal_step(problem)) break;
-    const double unbalanced = imbalance(problem, residual_);
-    const double law = worst_miss(problem, scale);
-    const double now = std::max(law, unbalanced);
+    if (!proximal_step(problem, options.softness, 1, unbalanced)) break;
+    const double law = worst_miss(problem, scale), now = std::max(law, unbalanced);
     if (!(now < HUGE_VAL)) break;
     if (now < best) {
       best = now;
       snapshot_.take(problem);
     }
     if (now <= tolerance(scale)) return outcome.miss = now, true;
-    enough = best <= options.absolute_tolerance + options.soft_tolerance * scale;
+    enough = best <= soft_tolerance(scale);
     if (i > 0 && now > 0.3 * before) break;
     before = now;
     if (unbalanced <= 0.1 * law) {
       for (Block& block : problem.blocks) block.anchor = block.impulse;
+    }
+  }
+  snapshot_.give_back(problem);
+  outcome.miss = best;
+  return enough;
+}
+
+/// Steps that lead nearer to the law: from anchor to anchor, with less softness where few steps
+/// are enough for one, and more where many are not.
+/// @return  whether the miss became small; otherwise the problem holds the best state met
+bool Solver::patient_proximal(Problem& problem, Outcome& outcome) {
+  constexpr int few = 5, many = 15;
+  constexpr double hardest = 1e-7, softest = 1, shortest = 1e-4;
+  double scale = 0, unbalanced = 0, softness = options.softness;
+  double best = std::max(worst_miss(problem, scale), imbalance(problem, residual_));
+  double at_anchor = HUGE_VAL;
+  snapshot_.take(problem);
+  anchored_ = problem.velocity;
+  for (Block& block : problem.blocks) block.anchor = block.impulse;
+  bool enough = false;
+  for (int i = 0, steps = 1; i < options.most_patient; ++i, ++steps) {
+    ++outcome.descents;
+    const bool nearer = proximal_step(problem, softness, shortest, unbalanced);
+    const double law = worst_miss(problem, scale), now = std::max(law, unbalanced);
+    if (nearer && now < best) {
+      best = now;
+      snapshot_.take(problem);
+    }
+    if (nearer && now <= tolerance(scale)) return outcome.miss = now, true;
+    enough = best <= soft_tolerance(scale);
+    if (!nearer || steps > many) {
+      if (enough || softness >= softest) break;
+      softness *= 10, steps = 0;
+      problem.velocity = anchored_;
+    } else if (unbalanced <= 0.1 * law) {
+      if (enough && law > 0.3 * at_anchor) break;  // no nearer
+      at_anchor = law;
+      for (Block& block : problem.blocks) block.anchor = block.impulse;
+      anchored_ = problem.velocity;
+      if (steps <= few) softness = std::max(hardest, softness / 10);
+      steps = 0;
     }
   }
   snapshot_.give_back(problem);

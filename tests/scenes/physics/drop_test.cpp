@@ -53,6 +53,7 @@ Outcome drop(const scene::Scene& scene, std::uint64_t seed, int ticks) {
     ++count;
   }
   EXPECT_EQ(count, 100);
+  EXPECT_EQ(run.convergence().not_converged, 0u);
   outcome.mean_height /= count;
   return outcome;
 }
@@ -117,6 +118,15 @@ TEST(Drop, ComesToRestInAnyOrderOfDeclaration) {
   std::swap(scene.distributions[0], scene.distributions[1]);
   std::reverse(scene.entities.begin(), scene.entities.end());
   expect_rest(drop(scene, 1, 75));
+}
+
+TEST(Drop, ConvergesInEveryIsland) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Simulation run(drop_scene(), {.seed = seed});
+    for (int tick = 0; tick < 20; ++tick) run.step();
+    EXPECT_GT(run.convergence().islands, 1000u);
+    EXPECT_EQ(run.convergence().not_converged, 0u) << "seed " << seed;
+  }
 }
 
 TEST(Drop, IsTheSameAfterAnotherRunInTheSameProcess) {

@@ -36,6 +36,7 @@ void expect_in_rows(const world::State& state) {
 TEST(MagneticRows, CloseAtTheNominalClock) {
   Simulation run(rows_scene(), {.seed = 1});
   for (int tick = 0; tick < 60; ++tick) run.step();  // 12 s
+  EXPECT_EQ(run.convergence().not_converged, 0u);
   expect_in_rows(run.state());
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t i = 1; i < boxes; ++i) {

@@ -1,0 +1,54 @@
+// Heaps solved by sweeps alone, as large ones are.
+
+#include <gtest/gtest.h>
+
+#include "pile.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+void sweep_only(System& system) { system.solver().options.most_work = 0; }
+
+TEST(Sweeps, ConvergeForATowerThatStands) {
+  testing::Touching world;
+  world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
+  const int count = 5;
+  const double side = 0.05, mass = 0.1, substep = 0.01;
+  for (int i = 0; i < count; ++i) {
+    world.add_box(Vector3::Constant(side), mass, testing::at(0, 0, side * (i + 0.5)), 0.7);
+  }
+  sweep_only(world.system);
+  world.system.rest.sleeps = false;
+  Report last;
+  for (int i = 0; i < 100; ++i) last = world.step(substep);
+  EXPECT_LT(world.worst.miss, 5e-3);  // in the first substep, from no impulses
+  EXPECT_LT(last.miss, 5e-5);
+  Vector3 carried(0, 0, 0);
+  for (const Contact& contact : world.contacts) {
+    if (contact.a.tree < 0 || contact.b.tree < 0) carried += contact.impulse;
+  }
+  const double weight = count * mass * testing::g * substep;
+  EXPECT_NEAR(carried.z(), weight, 1e-3 * weight);
+  EXPECT_LT((world.tree(count - 1).position[0] - Vector3(0, 0, side * (count - 0.5))).norm(), 1e-3);
+}
+
+TEST(Sweeps, KeepAPileNearTheContactLaw) {
+  testing::Touching world = testing::pile(20);
+  sweep_only(world.system);
+  double late = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Report report = world.step(0.01);
+    EXPECT_EQ(report.most_interior + report.most_iterations + report.most_descents, 0);
+    EXPECT_LE(report.most_sweeps, world.system.solver().options.most_sweeps);
+    if (i >= 70) late = std::max(late, report.miss);
+  }
+  EXPECT_LT(world.worst.miss, 2e-2);
+  EXPECT_LT(late, 1e-3);
+  for (const Tree& tree : world.system.trees) {
+    EXPECT_LT(tree.velocity(0).norm(), 1e-2);
+    EXPECT_GT(tree.position[0].z(), 0.004);
+  }
+}
+
+}  // namespace
+}  // namespace ziggurat::dynamics
