@@ -24,7 +24,6 @@ struct Config {
   Rate rate;                  ///< of a connection's messages, besides expected answers
   std::chrono::milliseconds heartbeat{1000};  ///< of wall time that a session hears nothing; > 0
   std::chrono::milliseconds lease{0};         ///< how long robots of a lost session are kept for it
-  int io_threads = 1;
 
   // What depends on the scene: counts from Server::open() on.
 

@@ -151,7 +151,8 @@ bool DisturbedLink::arrives(const Received& received, Time now) {
   }
   line->incoming_bytes += received.bytes.size();
   line->incoming.push(now + effect.delay, {received.connection, std::string(received.bytes),
-                                           received.is_single_frame, received.roles});
+                                           received.is_single_frame, received.access,
+                                           received.skipped});
   if (line->incoming_bytes > most_bytes_) line->incoming.hurry(now);
   return false;
 }
@@ -165,7 +166,8 @@ std::optional<Received> DisturbedLink::next(Time now) {
     line.incoming_bytes -= arrived_.bytes.size();
     const bool is_over = line.paths.empty() && line.incoming.empty() && line.outgoing.empty();
     if (is_over) lines_.erase(entry);
-    return Received{arrived_.connection, arrived_.bytes, arrived_.is_single_frame, arrived_.roles};
+    return Received{arrived_.connection, arrived_.bytes, arrived_.is_single_frame, arrived_.access,
+                    arrived_.skipped};
   }
   return std::nullopt;
 }

@@ -52,6 +52,8 @@ class DisturbedLink {
   /// When next() or release() have something to do.
   Time next_event() const;
 
+  /// Whether a session over this connection is disturbed, or was and something is under way still.
+  bool holds(const std::string& connection) const { return lines_.contains(connection); }
   /// Per target.
   const std::vector<Lost>& lost_messages() const { return lost_; }
   /// Sentences for people since the last call.
@@ -62,7 +64,8 @@ class DisturbedLink {
     std::string connection;
     std::string bytes;
     bool is_single_frame = true;
-    Roles roles;
+    Access access;
+    std::size_t skipped = 0;
   };
   /// A target that drives robots of a session.
   struct Path {

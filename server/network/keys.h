@@ -1,7 +1,9 @@
 #pragma once
 // CURVE keys as they lie in files, Z85: 40 characters for 32 bytes.
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -28,6 +30,12 @@ struct Roles {
   }
 };
 inline constexpr Roles all_roles{true, true, true};
+
+/// What a connection may do, and by which key.
+struct Access {
+  Roles roles = all_roles;
+  std::optional<std::size_t> key;  ///< into Curve::clients; none: not encrypted
+};
 
 /// Who may connect.
 struct ClientKey {

@@ -1,7 +1,9 @@
 #pragma once
-// How the barrier and its peers reach each other: one connection is one routing id.
+// How the barrier and its peers reach each other. A connection has a name that the server chose and
+// that no other connection ever has.
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -21,15 +23,16 @@ enum class Delivery {
   congested,    ///< the peer does not read; the message was dropped
 };
 
-/// Sends a message over the connection with this routing id, without waiting.
+/// Sends a message over this connection, without waiting.
 using Send = std::function<Delivery(const std::string& connection, const wire::Outbox& message)>;
 
 /// A message of a peer.
 struct Received {
-  std::string connection;       ///< its routing id
+  std::string connection;
   std::string_view bytes;       ///< valid until the next message is received
   bool is_single_frame = true;  ///< a message of the protocol is one ZeroMQ frame
-  Roles roles = all_roles;      ///< that the connection may have
+  Access access;                ///< that the connection has
+  std::size_t skipped = 0;      ///< size of a message that was too long to be kept: there are no bytes
 };
 
 }  // namespace ziggurat::network

@@ -44,7 +44,10 @@ struct Server::State {
               return link ? link->send(connection, message, barrier.now)
                           : socket.send(connection, message);
             },
-            Clock::now()) {}
+            Clock::now(),
+            [this](const std::string& connection, Standing standing) {
+              socket.set_standing(connection, standing);
+            }) {}
 
   template <class Done>
   Outcome wait_until(Done done, const Wait& wait, world::Commands* commands);
@@ -75,7 +78,12 @@ bool Server::State::take_messages(Done done, world::Commands* commands) {
   }
   for (int i = 0; i < messages_at_once && socket.receive(received); ++i) {
     if (!link || link->arrives(received, barrier.now)) receive(barrier, received, commands);
+    socket.handled();
     if (done()) return true;
+  }
+  for (const std::string& connection : socket.take_gone()) {
+    // What such a link still holds back arrives first; a heartbeat then finds that it is gone.
+    if (!link || !link->holds(connection)) disconnect(barrier, connection);
   }
   return done();
 }
@@ -98,6 +106,8 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
   for (;;) {
     // What has arrived is not late, however long the server was kept from looking.
     barrier.now = Clock::now();
+    socket.set_ticking(commands != nullptr && !barrier.gate.is_standing());
+    socket.tend();
     if (take_messages(done, commands)) return Outcome::complete;
     advance();
     if (done()) return Outcome::complete;
@@ -191,7 +201,9 @@ std::vector<Call> Server::take_calls() { return state_->barrier.calls.take(); }
 bool Server::can_hear(const Call& call) const { return network::can_hear(state_->barrier, call); }
 
 void Server::answer(const Call& call, const std::function<void(wire::Outbox&)>& write) {
+  const Time begin = Clock::now();
   network::answer(state_->barrier, call, write);
+  state_->socket.charge_others(Clock::now() - begin);
 }
 
 void Server::fill(wire::Status& status) const {
@@ -212,6 +224,7 @@ std::vector<Performance> Server::performance() const {
 
 Report Server::take_report() {
   Report report = state_->barrier.journal.take();
+  std::ranges::move(state_->socket.take_notices(), std::back_inserter(report.notices));
   if (state_->link)
     std::ranges::move(state_->link->take_notices(), std::back_inserter(report.notices));
   return report;

@@ -1,179 +1,214 @@
 #include "network/socket.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <system_error>
+#include <utility>
 
 #include "network/endpoint.h"
 
 namespace ziggurat::network {
 namespace {
 
-constexpr int linger_ms = 1000;            // what is under way at the end may take this long
-constexpr int receive_queue = 8;           // messages of a peer that wait here; it waits beyond
-constexpr int waiting_connections = 4096;  // until they are accepted; beyond the queue's end the
-                                           // kernel lets them try again, after seconds
-constexpr int handshake_ms = 10000;        // half-open connections hold a descriptor no longer
-constexpr int keepalive_idle_s = 30;  // tcp: answered by the peer's kernel, so that a controller
-                                      // held in a debugger stays, and a vanished machine does not
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
 
-std::string reason(const zmq::error_t& error) {
-  switch (error.num()) {
-    case EADDRINUSE:
-      return "the address is taken; another server may listen there";
-    case EADDRNOTAVAIL:
-    case ENODEV:
-      return "this machine has no such address";
-    case EACCES:
-      return "no permission to listen there";
-    case ENOENT:
-      return "the folder does not exist";
-    default:
-      return error.what();
-  }
+constexpr milliseconds linger{1000};  // what waits at the end may take this long
+constexpr milliseconds tending{250};
+constexpr milliseconds saved_share{5};  // of the time for others
+constexpr int accepted_at_once = 16;
+
+/// How many descriptors connections may have: an eighth is for files and processes.
+std::size_t descriptors_for_peers() {
+  constexpr std::size_t most = 65'536, least_reserved = 48;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return most_without_session;
+  const auto all = static_cast<std::size_t>(std::min<rlim_t>(limit.rlim_cur, most));
+  const std::size_t reserved = std::max(least_reserved, all / 8);
+  return all > reserved ? all - reserved : 1;
 }
 
 }  // namespace
 
-Socket::Socket(const Config& config) : context_(config.io_threads) {
-  if (config.curve) {
-    clients_ = config.curve->clients;
-    gatekeeper_.emplace(context_, clients_);
-  }
-  try {
-    routers_.push_back(make_router(config));
-    if (config.curve) {
-      routers_[0].set(zmq::sockopt::curve_server, true);
-      routers_[0].set(zmq::sockopt::curve_secretkey, config.curve->secret_key);
-    }
-    const bool allows_any = config.insecure || config.curve;
-    for (const std::string& endpoint : config.endpoints) bind(routers_[0], endpoint, allows_any);
-  } catch (...) {
-    close();
-    throw;
-  }
+Socket::Socket(const Config& config)
+    : longest_(config.max_message_bytes),
+      most_peers_(descriptors_for_peers()),
+      most_strangers_(std::clamp(most_peers_ / 2, std::size_t{1}, most_without_session)),
+      next_tending_(Clock::now()),
+      share_(share_of_others, saved_share) {
+  if (config.curve) keys_.emplace(*config.curve);
+  const bool allows_any = config.insecure || config.curve;
+  for (const std::string& endpoint : config.endpoints) listen(endpoint, false, allows_any);
 }
 
-Socket::~Socket() { close(); }
-
-/// Ends the gatekeeper, too.
-void Socket::close() {
-  // While it listens, no other server takes a path.
-  for (const std::string& file : files_) ::unlink(file.c_str());
-  routers_.clear();
-  if (gatekeeper_) context_.shutdown();
+Socket::~Socket() {
+  const Time end = Clock::now() + linger;
+  for (;;) {
+    polled_.clear();
+    for (const int descriptor : peers_.flush()) polled_.push_back({descriptor, POLLOUT, 0});
+    const auto rest = std::chrono::duration_cast<milliseconds>(end - Clock::now());
+    if (polled_.empty() || rest.count() <= 0) return;
+    ::poll(polled_.data(), polled_.size(), static_cast<int>(rest.count()));
+  }
 }
 
 void Socket::add_private(const Config& config) {
-  routers_.push_back(make_router(config));
-  bind(routers_.back(), config.private_endpoint, false);
+  listen(config.private_endpoint, true, false);
   std::rotate(endpoints_.begin(), endpoints_.end() - 1, endpoints_.end());
 }
 
-zmq::socket_t Socket::make_router(const Config& config) {
-  zmq::socket_t router(context_, zmq::socket_type::router);
-  router.set(zmq::sockopt::linger, linger_ms);
-  router.set(zmq::sockopt::router_mandatory, true);
-  router.set(zmq::sockopt::rcvhwm, receive_queue);
-  router.set(zmq::sockopt::backlog, waiting_connections);
-  router.set(zmq::sockopt::handshake_ivl, handshake_ms);
-  router.set(zmq::sockopt::tcp_keepalive, 1);
-  router.set(zmq::sockopt::tcp_keepalive_idle, keepalive_idle_s);
-  // Twice what is allowed: up to there a peer is told TOO_LARGE, beyond it is disconnected.
-  router.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(2 * config.max_message_bytes));
-  return router;
+void Socket::listen(const std::string& endpoint, bool is_private, bool allows_any) {
+  check_endpoint(endpoint, allows_any);
+  const Door& door = doors_.emplace_back(Door{Listener(endpoint), is_private});
+  endpoints_.push_back(door.listener.endpoint());
+  peers_.others().add(door.listener.number(), doors_.size() - 1);
 }
 
-void Socket::bind(zmq::socket_t& router, const std::string& endpoint, bool allows_any) {
-  check_endpoint(endpoint, allows_any);
-  std::string address = endpoint;
-  constexpr std::string_view localhost = "tcp://localhost:";  // bind() takes addresses only
-  if (address.starts_with(localhost)) {
-    address = "tcp://127.0.0.1:" + address.substr(localhost.size());
-  }
-  router.set(zmq::sockopt::ipv6, address.starts_with("tcp://["));
-  try {
-    router.bind(address);
-  } catch (const zmq::error_t& error) {
-    throw EndpointError(fmt::format("{}: can't listen: {}", endpoint, reason(error)));
-  }
-  endpoints_.push_back(router.get(zmq::sockopt::last_endpoint));
-  if (std::string file = file_of(endpoint); !file.empty()) files_.push_back(std::move(file));
+/// @param write  writes the content, `size` bytes
+Delivery Socket::send(const std::string& connection, std::size_t size, bool is_observation,
+                      const auto& write) {
+  PeerSocket* peer = peers_.find(connection);
+  if (peer == nullptr || !peer->is_open()) return Delivery::unreachable;
+  const std::size_t at = peer->content_at(size);
+  frame_.reserve(at + size);
+  write(frame_.bytes.get() + at);
+  peers_.act(*peer, [&](PeerSocket& to) { to.send(frame_, size, is_observation); });
+  return peer->is_over() ? Delivery::unreachable : Delivery::sent;
 }
 
 Delivery Socket::send(const std::string& connection, const wire::Outbox& message) {
-  zmq::message_t frame(message.size());
-  message.write(static_cast<std::uint8_t*>(frame.data()));
-  return send_frame(connection, frame);
+  return send(connection, message.size(), message.is_observation(),
+              [&](std::uint8_t* to) { message.write(to); });
 }
 
 Delivery Socket::send(const std::string& connection, std::string_view bytes) {
-  zmq::message_t frame(bytes);
-  return send_frame(connection, frame);
+  return send(connection, bytes.size(), false,
+              [&](std::uint8_t* to) { std::memcpy(to, bytes.data(), bytes.size()); });
 }
 
-Delivery Socket::send_frame(const std::string& connection, zmq::message_t& frame) {
-  zmq::socket_t& router = routers_[static_cast<std::size_t>(connection[0])];
-  try {
-    const auto flags = zmq::send_flags::sndmore | zmq::send_flags::dontwait;
-    const zmq::const_buffer id(connection.data() + 1, connection.size() - 1);
-    if (!router.send(id, flags)) return Delivery::congested;
-    return router.send(frame, zmq::send_flags::dontwait) ? Delivery::sent : Delivery::congested;
-  } catch (const zmq::error_t& error) {
-    if (error.num() == EHOSTUNREACH) return Delivery::unreachable;
-    throw;
-  }
+void Socket::set_standing(const std::string& connection, Standing standing) {
+  peers_.set_standing(connection, standing, Clock::now());
+}
+
+bool Socket::may_serve_others() { return !is_ticking_ || share_.has_some(Clock::now()); }
+
+void Socket::charge_others(std::chrono::duration<double> time) {
+  if (is_ticking_) share_.charge(time);
+}
+
+void Socket::handled() {
+  if (!charged_since_) return;
+  charge_others(Clock::now() - *charged_since_);
+  charged_since_.reset();
 }
 
 bool Socket::receive(Received& received) {
-  for (std::size_t i = 0; i < routers_.size(); ++i) {
-    const std::size_t router = next_;
-    next_ = (next_ + 1) % routers_.size();
-    if (receive(static_cast<char>(router), received)) return true;
-  }
+  handled();
+  peers_.bury();
+  if (receive_from(controllers_, received)) return true;
+  if (!may_serve_others()) return false;
+  charged_since_ = Clock::now();
+  if (receive_from(others_, received)) return true;
+  handled();
   return false;
 }
 
-bool Socket::receive(char index, Received& received) {
-  zmq::socket_t& router = routers_[static_cast<std::size_t>(index)];
-  if (!router.recv(frame_, zmq::recv_flags::dontwait)) return false;
-  received.connection.assign(1, index);
-  received.connection.append(static_cast<const char*>(frame_.data()), frame_.size());
-  int frames = 0;
-  while (frame_.more()) {
-    (void)router.recv(frame_, zmq::recv_flags::none);
-    ++frames;
+bool Socket::receive_from(Group& group, Received& received) {
+  for (;;) {
+    if (take_message(group, received)) return true;
+    const auto ready = group.list.next();
+    if (!ready) return false;
+    read_from(group, *ready);
   }
-  received.is_single_frame = frames == 1;
-  received.bytes = {static_cast<const char*>(frame_.data()), frame_.size()};
-  received.roles = index == 0 && gatekeeper_ ? roles_of_sender() : all_roles;
-  return true;
 }
 
-/// What the key of the connection allows; nothing if it has none.
-Roles Socket::roles_of_sender() {
-  const char* user = zmq_msg_gets(frame_.handle(), "User-Id");
-  const std::string_view text = user == nullptr ? "" : user;
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-  const bool is_number = error == std::errc{} && end == text.data() + text.size();
-  return is_number && index < clients_.size() ? clients_[index].roles : Roles{};
+/// The next message of the group's current connection.
+bool Socket::take_message(Group& group, Received& received) {
+  PeerSocket* peer = group.current.empty() ? nullptr : peers_.find(group.current);
+  bool has_message = false;
+  if (peer != nullptr) {
+    const Standing standing = peer->is_trusted() ? Standing::controller : peer->standing();
+    peers_.act(*peer, [&](PeerSocket& from) {
+      has_message = from.next(longest_message(standing, longest_), received);
+    });
+  }
+  if (!has_message) group.current.clear();
+  return has_message;
 }
 
-Socket::Ready Socket::poll(std::chrono::milliseconds timeout, std::span<const int> descriptors) {
-  items_.clear();
-  for (auto& router : routers_) items_.push_back({router.handle(), 0, ZMQ_POLLIN, 0});
-  for (const int descriptor : descriptors) {
-    items_.push_back({nullptr, descriptor, ZMQ_POLLIN, 0});
+/// A connection that is ready becomes the current one of the group.
+void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
+  if (ready.id < PeerTable::first_id) return accept(doors_[ready.id]);
+  PeerSocket* peer = peers_.find(ready.id);
+  if (peer == nullptr) return;
+  peers_.act(*peer, [&](PeerSocket& from) {
+    if (ready.can_write) from.flush();
+    if (ready.can_read && !from.is_over()) from.read();
+  });
+  if (!peer->is_over()) group.current = peer->name();
+}
+
+void Socket::accept(const Door& door) {
+  for (int i = 0; i < accepted_at_once; ++i) {
+    const Time now = Clock::now();
+    const bool is_full = peers_.strangers() >= most_strangers_ || peers_.size() >= most_peers_;
+    if (is_full && !peers_.make_place(now)) return set_accepting(false);
+    peers_.bury();
+    Descriptor client = door.listener.accept();
+    if (!client.is_open()) {
+      const bool lacks_descriptors = errno == EMFILE || errno == ENFILE;
+      if (lacks_descriptors && !peers_.make_place(now)) set_accepting(false);
+      return;
+    }
+    peers_.add(std::move(client), keys_ && !door.is_private ? &*keys_ : nullptr, door.is_private,
+               now);
   }
-  const int count = zmq_poll(items_.data(), static_cast<int>(items_.size()), timeout.count());
-  if (count < 0 && zmq_errno() != EINTR) throw zmq::error_t();
+}
+
+/// Those who connect meanwhile wait in the kernel.
+void Socket::set_accepting(bool is_accepting) {
+  if (is_accepting_ == is_accepting) return;
+  is_accepting_ = is_accepting;
+  for (std::size_t i = 0; i < doors_.size(); ++i) {
+    peers_.others().change(doors_[i].listener.number(), i, is_accepting, false);
+  }
+}
+
+void Socket::tend() {
+  const Time now = Clock::now();
+  if (now < next_tending_) return;
+  next_tending_ = now + tending;
+  peers_.end_old(now);
+  peers_.bury();
+  set_accepting(true);
+}
+
+Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptors) {
+  handled();
+  const bool serves_others = may_serve_others();
+  const auto has_more = [](const Group& group) {
+    return !group.current.empty() || group.list.has_more();
+  };
+  if (has_more(controllers_) || (serves_others && has_more(others_))) return Ready::message;
+  if (!serves_others) {
+    timeout = std::min(timeout, std::chrono::ceil<milliseconds>(share_.time_until_some()));
+  }
+  polled_.assign({{controllers_.list.number(), POLLIN, 0},
+                  {serves_others ? others_.list.number() : -1, POLLIN, 0}});
+  const std::size_t ours = polled_.size();
+  for (const int descriptor : descriptors) polled_.push_back({descriptor, POLLIN, 0});
+  const auto longest = milliseconds(std::numeric_limits<int>::max());
+  const int count = ::poll(polled_.data(), polled_.size(),
+                           static_cast<int>(std::min(timeout, longest).count()));
+  if (count < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
   if (count < 0) return Ready::woken;
-  for (std::size_t i = routers_.size(); i < items_.size(); ++i) {
-    if (items_[i].revents != 0) return Ready::woken;
+  for (std::size_t i = ours; i < polled_.size(); ++i) {
+    if (polled_[i].revents != 0) return Ready::woken;
   }
   return count > 0 ? Ready::message : Ready::timed_out;
 }

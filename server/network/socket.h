@@ -1,6 +1,9 @@
 #pragma once
-// The server's end of all connections: a ROUTER bound to every endpoint, and one for the private
-// endpoint, because a ROUTER protects all of its endpoints or none.
+// The server's end of all connections: it listens at every endpoint and speaks ZMTP as a ROUTER does,
+// but takes no routing ids from clients. Controllers come first: while a tick runs, all others
+// together have a small share of the wall time.
+
+#include <poll.h>
 
 #include <chrono>
 #include <optional>
@@ -8,11 +11,13 @@
 #include <string>
 #include <string_view>
 #include <vector>
-#include <zmq.hpp>
 
 #include "network/config.h"
-#include "network/gatekeeper.h"
+#include "network/limits.h"
 #include "network/link.h"
+#include "network/listener.h"
+#include "network/peer_table.h"
+#include "network/time_share.h"
 #include "wire/outbox.h"
 
 namespace ziggurat::network {
@@ -21,7 +26,10 @@ class Socket {
  public:
   /// @throws EndpointError
   explicit Socket(const Config& config);
+  /// Sends what waits for clients that read, for a second at most.
   ~Socket();
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
 
   /// Listens at the config's private endpoint, too, and names it first. @throws EndpointError
   void add_private(const Config& config);
@@ -32,30 +40,65 @@ class Socket {
   Delivery send(const std::string& connection, const wire::Outbox& message);
   Delivery send(const std::string& connection, std::string_view bytes);
 
+  /// What a connection is from now on.
+  void set_standing(const std::string& connection, Standing standing);
   /// A message that arrived, if any. Valid until the next call.
   bool receive(Received& received);
+  /// The last message was handled: its time is over.
+  void handled();
+  /// Connections that have ended since the last call.
+  std::vector<std::string> take_gone() { return peers_.take_gone(); }
+
+  /// A tick runs, or does not: whether the share of others than controllers is limited.
+  void set_ticking(bool is_ticking) { is_ticking_ = is_ticking; }
+  /// Others have taken so much time, beside that between two calls of receive().
+  void charge_others(std::chrono::duration<double> time);
+  /// Disconnects those that have been without session for too long.
+  void tend();
 
   enum class Ready { message, woken, timed_out };
   /// Waits for a message, a readable descriptor, a signal, or the end of the time.
   Ready poll(std::chrono::milliseconds timeout, std::span<const int> descriptors);
 
- private:
-  void close();
-  zmq::socket_t make_router(const Config& config);
-  void bind(zmq::socket_t& router, const std::string& endpoint, bool allows_any);
-  Delivery send_frame(const std::string& connection, zmq::message_t& frame);
-  bool receive(char router, Received& received);
-  Roles roles_of_sender();
+  /// Sentences for people since the last call.
+  std::vector<std::string> take_notices() { return peers_.take_notices(); }
 
-  zmq::context_t context_;
-  std::vector<ClientKey> clients_;
-  std::optional<Gatekeeper> gatekeeper_;
-  std::vector<zmq::socket_t> routers_;  // the first byte of a connection's id is its router's index
-  std::size_t next_ = 0;                // router that is asked first, in turn
+ private:
+  struct Door {
+    Listener listener;
+    bool is_private = false;
+  };
+  /// Connections that are served together, and the one whose messages are given out.
+  struct Group {
+    ReadyList& list;
+    std::string current;
+  };
+
+  void listen(const std::string& endpoint, bool is_private, bool allows_any);
+  Delivery send(const std::string& connection, std::size_t size, bool is_observation,
+                const auto& write);
+  bool may_serve_others();
+  bool receive_from(Group& group, Received& received);
+  bool take_message(Group& group, Received& received);
+  void read_from(Group& group, const ReadyList::Ready& ready);
+  void accept(const Door& door);
+  void set_accepting(bool is_accepting);
+
+  const std::size_t longest_;  // message [bytes]
+  const std::size_t most_peers_, most_strangers_;
+  std::optional<zmtp::CurveKeys> keys_;
+  std::vector<Door> doors_;
   std::vector<std::string> endpoints_;
-  std::vector<std::string> files_;  // of ipc endpoints, to remove at the end
-  zmq::message_t frame_;
-  std::vector<zmq::pollitem_t> items_;
+  PeerTable peers_;
+  Group controllers_{peers_.controllers(), {}}, others_{peers_.others(), {}};
+  bool is_accepting_ = true;
+  Time next_tending_;
+
+  bool is_ticking_ = false;
+  TimeShare share_;
+  std::optional<Time> charged_since_;
+  Buffer frame_;
+  std::vector<pollfd> polled_;
 };
 
 }  // namespace ziggurat::network

@@ -125,6 +125,7 @@ struct Welcome {
   Role role = Role::controller;
   std::uint32_t wall_lease_ms = 0;
   std::uint32_t wall_heartbeat_ms = 0;
+  std::uint64_t max_message_bytes = std::uint64_t{64} << 20;  ///< of the client's messages
   std::vector<DeadlinePolicy> deadlines;  ///< per robot of the session; empty: all wait
 };
 
@@ -147,7 +148,6 @@ struct Run {
   std::uint32_t ticks_per_second = 10;
   std::string scene_hash;  ///< 16 hexadecimal digits
   std::string server_version;
-  std::uint64_t max_message_bytes = std::uint64_t{64} << 20;
   bool is_hardware_in_the_loop = false;  ///< paced by the clock; no session is waited for
 };
 

@@ -96,6 +96,8 @@ void Outbox::encode(Encoding encoding) {
 
 const v1::ServerMessage& Outbox::message() const { return message_->message; }
 
+bool Outbox::is_observation() const { return message_->message.has_observation(); }
+
 std::size_t Outbox::size() const {
   return message_->text.empty() ? message_->size : message_->text.size();
 }
@@ -122,7 +124,7 @@ void Outbox::welcome(const Run& run, const Roster& roster, const Welcome& sessio
                                                : v1::MODE_LOCK_STEP);
   welcome.set_seed(run.seed);
   welcome.set_scene_hash(run.scene_hash);
-  welcome.set_max_message_bytes(run.max_message_bytes);
+  welcome.set_max_message_bytes(session.max_message_bytes);
   welcome.set_server_version(run.server_version);
   for (const std::size_t robot : roster.robots) describe(run, robot, *welcome.add_robots());
   fill(session.deadlines, welcome);

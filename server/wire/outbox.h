@@ -64,6 +64,7 @@ class Outbox {
   void encode(Encoding encoding);
 
   const v1::ServerMessage& message() const;  ///< the current one
+  bool is_observation() const;               ///< the current one is
   std::size_t size() const;            ///< of the current message [bytes]
   void write(std::uint8_t* to) const;  ///< writes size() bytes
 

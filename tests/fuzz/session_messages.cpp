@@ -77,7 +77,7 @@ void Play::say(const std::string& peer, const v1::ClientMessage& message) {
 
 void Play::receive(const std::string& peer, std::string_view bytes, bool is_single_frame) {
   const bool is_collecting = phase_ == Phase::collecting;
-  network::receive(barrier_, {peer, bytes, is_single_frame, all_roles},
+  network::receive(barrier_, {peer, bytes, is_single_frame, Access{}},
                    is_collecting ? &commands_ : nullptr);
 }
 

@@ -74,11 +74,15 @@ Granted begin_with_robots(Barrier& barrier, const wire::Hello& hello) {
 }
 
 /// The session that has the Hello's token. Its older connection, if it still has one, is displaced.
-Granted resume_session(Barrier& barrier, const wire::Hello& hello) {
+Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access& access) {
   Session* session = barrier.sessions.with_token(hello.session_token);
   if (session == nullptr) {
     return make_refusal(ErrorCode::no_such_session, "session_token",
                         "No session of this run has that token, or none any more.");
+  }
+  if (session->key != access.key) {
+    return make_refusal(ErrorCode::forbidden, "session_token",
+                        "The session was begun with another key, and only that one resumes it.");
   }
   std::vector<std::size_t> robots;
   for (std::size_t i = 0; i < session->roster.robots.size(); ++i) {
@@ -97,16 +101,17 @@ Granted resume_session(Barrier& barrier, const wire::Hello& hello) {
   return session;
 }
 
-Granted begin(Barrier& barrier, const wire::Hello& hello, const Roles& roles) {
-  if (auto refusal = check_hello(barrier, hello, roles)) return std::move(*refusal);
+Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) {
+  if (auto refusal = check_hello(barrier, hello, access.roles)) return std::move(*refusal);
   if (hello.role != wire::Role::controller) return begin_without_robots(barrier, hello);
   return hello.session_token.empty() ? begin_with_robots(barrier, hello)
-                                     : resume_session(barrier, hello);
+                                     : resume_session(barrier, hello, access);
 }
 
 /// Binds the session to its connection.
 void bind(Barrier& barrier, Session& session, const std::string& connection) {
   session.connection = connection;
+  if (barrier.on_standing) barrier.on_standing(connection, standing_of(&session));
   session.contact = {barrier.now, barrier.now, 0, 0};
   barrier.connections.bind(connection, session.id);
 }
@@ -127,6 +132,7 @@ bool welcome(Barrier& barrier, Session& session) {
   welcome.minor = session.minor;
   welcome.role = session.role;
   welcome.wall_lease_ms = static_cast<std::uint32_t>(barrier.config.lease.count());
+  welcome.max_message_bytes = longest_message(barrier, session.connection, &session);
   welcome.wall_heartbeat_ms = static_cast<std::uint32_t>(barrier.config.heartbeat.count());
   for (const std::size_t robot : session.roster.robots) {
     welcome.deadlines.push_back(barrier.deadlines.policy(robot));
@@ -146,18 +152,19 @@ void refuse(Barrier& barrier, const std::string& connection, const wire::Hello& 
                                    to_string(refusal.fault.code), refusal.fault.message));
 }
 
-void admit(Barrier& barrier, const std::string& connection, const Roles& roles) {
+void admit(Barrier& barrier, const std::string& connection, const Access& access) {
   const wire::Hello hello = barrier.inbox.hello();
-  auto granted = begin(barrier, hello, roles);
+  auto granted = begin(barrier, hello, access);
   if (auto* refusal = std::get_if<wire::Refusal>(&granted)) {
     return refuse(barrier, connection, hello, std::move(*refusal));
   }
   Session& session = *std::get<Session*>(granted);
-  bind(barrier, session, connection);
   session.role = hello.role;
   session.client = label_of(hello);
   session.minor = std::min(hello.version.minor, wire::version.minor);
   session.state = SessionState::ready;
+  session.key = access.key;
+  bind(barrier, session, connection);
   set_policies(barrier, session, hello);
   update_patience(barrier, session);
   const bool is_welcomed = welcome(barrier, session);
@@ -173,7 +180,7 @@ Delivery tell_loading(Barrier& barrier, Session& session) {
 }
 
 /// Keeps the Hello in hand until the world is loaded.
-void keep_waiting(Barrier& barrier, const std::string& connection, const Roles& roles,
+void keep_waiting(Barrier& barrier, const std::string& connection, const Access& access,
                   std::string_view bytes) {
   const wire::Hello hello = barrier.inbox.hello();
   const bool is_full = barrier.sessions.connected() >= barrier.config.max_sessions ||
@@ -184,18 +191,18 @@ void keep_waiting(Barrier& barrier, const std::string& connection, const Roles& 
     return refuse(barrier, connection, hello, std::move(refusal));
   }
   Session& session = barrier.sessions.add();
-  bind(barrier, session, connection);
   session.state = SessionState::hello;
-  session.application = {std::string(bytes), roles};
+  session.application = {std::string(bytes), access};
+  bind(barrier, session, connection);
   tell_loading(barrier, session);
 }
 
 }  // namespace
 
-void handle_hello(Barrier& barrier, const std::string& connection, const Roles& roles,
+void handle_hello(Barrier& barrier, const std::string& connection, const Access& access,
                   std::string_view bytes) {
-  if (!barrier.run) return keep_waiting(barrier, connection, roles, bytes);
-  admit(barrier, connection, roles);
+  if (!barrier.run) return keep_waiting(barrier, connection, access, bytes);
+  admit(barrier, connection, access);
 }
 
 void admit_waiting(Barrier& barrier) {
@@ -209,7 +216,7 @@ void admit_waiting(Barrier& barrier) {
   });
   for (const auto& [connection, application] : waiting) {
     barrier.inbox.parse(application.hello);
-    admit(barrier, connection, application.roles);
+    admit(barrier, connection, application.access);
   }
 }
 

@@ -10,9 +10,9 @@ namespace ziggurat::network {
 
 /// Handles the Hello in `barrier.inbox`, of a connection without a session: Welcome or Refusal.
 /// While the world is loading it waits.
-/// @param roles  that the connection may have
+/// @param access  of the connection
 /// @param bytes  the whole message
-void handle_hello(Barrier& barrier, const std::string& connection, const Roles& roles,
+void handle_hello(Barrier& barrier, const std::string& connection, const Access& access,
                   std::string_view bytes);
 
 /// The world is loaded: handles those that wait as if they had just arrived, in the order of

@@ -4,9 +4,10 @@
 
 namespace ziggurat::network {
 
-Barrier::Barrier(const Config& from, Send to, Time at)
+Barrier::Barrier(const Config& from, Send to, Time at, OnStanding told)
     : config(from),
       send(std::move(to)),
+      on_standing(std::move(told)),
       now(at),
       connections(from.rate, 2 * from.max_sessions),
       timers{never, at + from.heartbeat} {}

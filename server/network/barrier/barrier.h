@@ -5,6 +5,7 @@
 // admission.h, exchange.h, departure.h, population.h, timing.h.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "network/barrier/tick_gate.h"
 #include "network/config.h"
 #include "network/latencies.h"
+#include "network/limits.h"
 #include "network/link.h"
 #include "network/report.h"
 #include "wire/inbox.h"
@@ -40,12 +42,15 @@ struct Timers {
 };
 
 struct Barrier {
-  Barrier(const Config& config, Send send, Time now);
+  /// Told what a connection is from now on.
+  using OnStanding = std::function<void(const std::string& connection, Standing standing)>;
+  Barrier(const Config& config, Send send, Time now, OnStanding on_standing = {});
   Barrier(const Barrier&) = delete;
   Barrier& operator=(const Barrier&) = delete;
 
   Config config;
   Send send;
+  OnStanding on_standing;  // may be empty
   Time now;                      // set before anything is done
   std::optional<wire::Run> run;  // none while the world is loading
   Progress progress;             // likewise

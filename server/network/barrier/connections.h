@@ -44,6 +44,8 @@ class Connections {
 
   void bind(const std::string& id, SessionId session);
   void unbind(const std::string& id);
+  /// It is gone, and is never heard of again.
+  void erase(const std::string& id) { connections_.erase(id); }
   SessionId session_of(const std::string& id) const;
 
   std::size_t size() const { return connections_.size(); }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "network/barrier/exchange.h"
 #include "network/barrier/talk.h"
 #include "network/barrier/timing.h"
 #include "wire/fault.h"
@@ -26,6 +27,13 @@ void release_all(Barrier& barrier, const Session& holder, bool may_resume) {
   for (const std::size_t robot : holder.roster.robots) {
     if (barrier.seats[robot].holder == holder.id) release(barrier, holder, robot, may_resume);
   }
+}
+
+/// The session's connection has no session any more.
+void unbind(Barrier& barrier, const Session& session) {
+  barrier.connections.unbind(session.connection);
+  barrier.calls.forget(session.connection);
+  if (barrier.on_standing) barrier.on_standing(session.connection, Standing::none);
 }
 
 }  // namespace
@@ -65,11 +73,17 @@ void lose(Barrier& barrier, Session& session, std::string_view why) {
   const bool may_resume = session.state != SessionState::draining && !session.roster.empty();
   if (!may_resume) return erase(barrier, session);
   barrier.gate.settle(session.turn);
-  barrier.connections.unbind(session.connection);
-  barrier.calls.forget(session.connection);
+  unbind(barrier, session);
   session.state = SessionState::lost;
   session.lease_end = barrier.now + barrier.config.lease;
   release_all(barrier, session, true);
+}
+
+void disconnect(Barrier& barrier, const std::string& connection) {
+  Session* session = barrier.sessions.find(barrier.connections.session_of(connection));
+  if (session != nullptr) lose(barrier, *session, "its connection is gone");
+  barrier.connections.erase(connection);
+  stand_if_paused(barrier);
 }
 
 void displace(Barrier& barrier, Session& session, const std::string& by) {
@@ -82,10 +96,7 @@ void displace(Barrier& barrier, Session& session, const std::string& by) {
 
 void erase(Barrier& barrier, Session& session) {
   barrier.gate.settle(session.turn);
-  if (session.state != SessionState::lost) {
-    barrier.connections.unbind(session.connection);
-    barrier.calls.forget(session.connection);
-  }
+  if (session.state != SessionState::lost) unbind(barrier, session);
   release_all(barrier, session, false);
   for (const std::size_t robot : session.roster.robots) {
     if (barrier.seats[robot].claimant == session.id) barrier.seats.drop_claim(robot);

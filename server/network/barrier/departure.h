@@ -15,6 +15,8 @@ void handle_leave(Barrier& barrier, Session& session);
 
 /// The session's connection is gone, or closed: its robots are free, and it may resume.
 void lose(Barrier& barrier, Session& session, std::string_view why);
+/// The connection is gone, and its session is lost.
+void disconnect(Barrier& barrier, const std::string& connection);
 /// The session is over, because another client takes over its robots.
 /// @param by  the other client
 void displace(Barrier& barrier, Session& session, const std::string& by);

@@ -34,11 +34,16 @@ void handle_request(Barrier& barrier, Session& session) {
 }
 
 /// Why a message can't be looked into, if it can't.
-std::optional<wire::Fault> check_size(const Config& config, std::size_t bytes) {
-  if (bytes <= config.max_message_bytes) return std::nullopt;
-  return make_fault(
-      ErrorCode::too_large, {},
-      fmt::format("The message has {} bytes; {} are allowed.", bytes, config.max_message_bytes));
+std::optional<wire::Fault> check_size(const Barrier& barrier, const Received& received,
+                                      const Session* session) {
+  const std::size_t size = received.bytes.size() + received.skipped;
+  const std::size_t allowed = longest_message(barrier, received.connection, session);
+  // A Hello of this user's own processes may be longer than those of others: the socket knows.
+  const bool is_too_long = received.skipped > 0 || size > barrier.config.max_message_bytes ||
+                           (session != nullptr && size > allowed);
+  if (!is_too_long) return std::nullopt;
+  return make_fault(ErrorCode::too_large, {},
+                    fmt::format("The message has {} bytes; {} are allowed.", size, allowed));
 }
 
 /// Whether the connection may send one more message; if not, it is told once.
@@ -95,7 +100,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
   if (session == nullptr) connection.encoding = encoding;
   if (!may_send(barrier, id, connection, session)) return;
   if (!received.is_single_frame) return answer_malformed(barrier, id, session, {});
-  if (auto fault = check_size(barrier.config, received.bytes.size())) {
+  if (auto fault = check_size(barrier, received, session)) {
     return answer_fault(barrier, id, session, std::move(*fault));
   }
   if (encoding != connection.encoding) {
@@ -111,7 +116,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
   if (session != nullptr) {
     handle(barrier, connection, *session, kind, commands);
   } else if (kind == InboxKind::hello) {
-    handle_hello(barrier, id, received.roles, received.bytes);
+    handle_hello(barrier, id, received.access, received.bytes);
   } else {
     answer_fault(
         barrier, id, nullptr,

@@ -66,7 +66,6 @@ void forget_robots(Barrier& barrier) {
 
 void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines) {
   barrier.run.emplace(run);
-  barrier.run->max_message_bytes = barrier.config.max_message_bytes;
   barrier.progress = {1, "The world is loaded."};
   barrier.deadlines = Deadlines(deadlines, run.controllers.size());
   barrier.latencies.resize(run.controllers.size());

@@ -1,7 +1,9 @@
 #pragma once
 // What the server knows of one client.
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "network/barrier/turn.h"
@@ -38,13 +40,14 @@ struct Contact {
 /// A Hello that waits for the world.
 struct Application {
   std::string hello;  ///< the whole message
-  Roles roles;        ///< that its connection may have
+  Access access;      ///< of its connection
 };
 
 struct Session {
   SessionId id = SessionId::none;
   SessionState state = SessionState::ready;
-  std::string connection;  ///< its routing id; lost: of the last one
+  std::string connection;  ///< the one that it was made over; lost: the last one
+  std::optional<std::size_t> key;  ///< that it was made with, see Access
   wire::Role role = wire::Role::controller;
   std::string client;       ///< name and version, for messages
   std::string token;        ///< to resume with

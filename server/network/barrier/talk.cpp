@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "network/barrier/departure.h"
 #include "wire/fault.h"
 
@@ -59,6 +61,22 @@ void answer_malformed(Barrier& barrier, const std::string& connection, Session* 
       wire::make_fault(ErrorCode::malformed, {},
                        fmt::format("Not a ClientMessage of ziggurat.v1: {}.",
                                    why.empty() ? "one ZeroMQ frame holds one message" : why)));
+}
+
+Standing standing_of(const Session* session) {
+  if (session == nullptr) return Standing::none;
+  if (session->state == SessionState::hello) return Standing::waiting;
+  if (session->role == wire::Role::controller) return Standing::controller;
+  return session->role == wire::Role::supervisor ? Standing::supervisor : Standing::observer;
+}
+
+std::size_t longest_message(const Barrier& barrier, const std::string& connection,
+                            const Session* session) {
+  const std::size_t most =
+      longest_message(standing_of(session), barrier.config.max_message_bytes);
+  const Connection* known = barrier.connections.find(connection);
+  const bool is_json = known != nullptr && known->encoding == wire::Encoding::json;
+  return is_json ? std::min(most, longest_json) : most;
 }
 
 std::uint64_t tick_of(const Barrier& barrier) { return barrier.gate.tick().value_or(0); }

@@ -23,6 +23,12 @@ void answer_fault(Barrier& barrier, const std::string& connection, Session* sess
 void answer_malformed(Barrier& barrier, const std::string& connection, Session* session,
                       std::string_view why);
 
+/// What a connection is whose session this is; null: none.
+Standing standing_of(const Session* session);
+/// Of what its client may send [bytes].
+std::size_t longest_message(const Barrier& barrier, const std::string& connection,
+                            const Session* session);
+
 /// The tick in hand; 0 before the first.
 std::uint64_t tick_of(const Barrier& barrier);
 /// Some of a session's robots, for messages: "r0, r1, r2 and 7 more".

@@ -88,7 +88,7 @@ class Peers {
     send_bytes(peer, bytes_of(message, json));
   }
   void send_bytes(const std::string& peer, const std::string& bytes) {
-    const Received received{peer, bytes, true, all_roles};
+    const Received received{peer, bytes, true, Access{}};
     if (!link || link->arrives(received, now)) receive(barrier, received, &commands);
   }
 

@@ -1,0 +1,56 @@
+#pragma once
+// What connections may take of the server's memory and time (docs/protocol.md, K5).
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+
+namespace ziggurat::network {
+
+/// What a connection is to the server.
+enum class Standing {
+  none,        ///< without session
+  waiting,     ///< its Hello waits for the world
+  observer,    ///< with a session of that role
+  supervisor,  ///< likewise
+  controller,  ///< likewise: the tick path
+};
+
+inline constexpr std::size_t kibibyte = std::size_t{1} << 10, mebibyte = std::size_t{1} << 20;
+
+/// Of a message [bytes].
+/// @param most  of any message
+inline std::size_t longest_message(Standing standing, std::size_t most) {
+  switch (standing) {
+    case Standing::none:
+    case Standing::waiting:
+    case Standing::observer:
+      return std::min(most, 64 * kibibyte);
+    case Standing::supervisor:
+      return std::min(most, 4 * mebibyte);
+    case Standing::controller:
+      return most;
+  }
+  return 0;
+}
+/// Of a message in JSON, whatever its session [bytes].
+inline constexpr std::size_t longest_json = 4 * mebibyte;
+
+// Connections without session: how many, and how old they may become.
+inline constexpr std::size_t most_without_session = 512;
+inline constexpr std::chrono::seconds handshake_time{10};
+inline constexpr std::chrono::seconds time_without_session{60};
+/// Younger ones are not disconnected to make place.
+inline constexpr std::chrono::seconds least_age{1};
+
+/// Of messages of a client that have not arrived completely, of all clients [bytes].
+inline constexpr std::size_t most_unfinished = 512 * mebibyte;
+/// Of messages that wait for a client that does not read, its newest Observation aside [bytes].
+inline constexpr std::size_t most_waiting = 4 * mebibyte;
+/// The same for all clients.
+inline constexpr std::size_t most_waiting_in_all = 256 * mebibyte;
+
+/// Share of the wall time that connections other than controllers' may take while a tick runs.
+inline constexpr double share_of_others = 0.05;
+
+}  // namespace ziggurat::network

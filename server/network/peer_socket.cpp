@@ -1,0 +1,196 @@
+#include "network/peer_socket.h"
+
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <new>
+#include <utility>
+
+namespace ziggurat::network {
+namespace {
+
+using Step = zmtp::Taken::Step;
+
+constexpr std::size_t least_room = 8 * kibibyte;  // for one read
+
+/// How much memory an idle connection keeps.
+std::size_t kept_when_idle(Standing standing) {
+  return standing == Standing::controller ? mebibyte : least_room;
+}
+
+}  // namespace
+
+void Buffer::reserve(std::size_t size) {
+  if (capacity >= size) return;
+  bytes.reset();
+  capacity = 0;
+  bytes = std::make_unique_for_overwrite<std::uint8_t[]>(size);
+  capacity = size;
+}
+
+PeerSocket::PeerSocket(std::string name, Descriptor descriptor, const zmtp::CurveKeys* keys,
+                       bool is_trusted, Time now)
+    : name_(std::move(name)),
+      descriptor_(std::move(descriptor)),
+      engine_(keys),
+      is_trusted_(is_trusted),
+      since_(now),
+      reply_(engine_.greeting()) {
+  send_reply();
+}
+
+void PeerSocket::set_standing(Standing standing, Time now) {
+  standing_ = standing;
+  if (standing == Standing::none) since_ = now;
+}
+
+/// Room behind end_ for the rest of the frame, as far as about as much has arrived already: a header
+/// alone takes no memory.
+void PeerSocket::make_room() {
+  const std::size_t have = end_ - begin_;
+  const std::size_t wanted = std::clamp(needed_, have + least_room, 2 * have + least_room);
+  if (input_.capacity - begin_ >= wanted) return;
+  if (input_.capacity >= wanted) {
+    std::memmove(input_.bytes.get(), input_.bytes.get() + begin_, have);
+  } else {
+    Buffer larger;
+    larger.reserve(wanted);
+    if (have > 0) std::memcpy(larger.bytes.get(), input_.bytes.get() + begin_, have);
+    input_ = std::move(larger);
+  }
+  begin_ = 0;
+  end_ = have;
+}
+
+/// Everything that has arrived is used up.
+void PeerSocket::let_go() {
+  begin_ = end_ = 0;
+  if (input_.capacity > kept_when_idle(standing_)) input_ = {};
+}
+
+void PeerSocket::read() {
+  try {
+    make_room();
+  } catch (const std::bad_alloc&) {
+    return give_up();
+  }
+  const ssize_t size = ::recv(number(), input_.bytes.get() + end_, input_.capacity - end_, 0);
+  if (size > 0) {
+    end_ += static_cast<std::size_t>(size);
+  } else if (size == 0 || (errno != EAGAIN && errno != EINTR)) {
+    is_over_ = true;
+  }
+}
+
+/// Passes over a frame that is too long. True if that was the end of its message.
+bool PeerSocket::skip(Received& received) {
+  const std::size_t here = std::min(to_skip_, end_ - begin_);
+  begin_ += here;
+  to_skip_ -= here;
+  return to_skip_ == 0 && end_message(more_to_skip_, received);
+}
+
+/// A frame that is too long is passed over and told, or the connection is over.
+bool PeerSocket::pass_too_long(const zmtp::Taken& taken, std::size_t limit) {
+  const bool is_bearable = standing_ != Standing::none && taken.size / 2 <= limit;
+  if (!is_bearable) return false;
+  to_skip_ = skipped_ = taken.size;
+  more_to_skip_ = taken.has_more;
+  return true;
+}
+
+/// A frame of a message is over. True if the message is, too.
+bool PeerSocket::end_message(bool has_more, Received& received) {
+  const bool is_first = !std::exchange(has_frames_, has_more);
+  if (has_more) return false;
+  received.connection = name_;
+  received.is_single_frame = is_first;
+  received.access = engine_.access();
+  received.skipped = std::exchange(skipped_, 0);
+  if (received.skipped > 0) received.bytes = {};
+  return true;
+}
+
+bool PeerSocket::next(std::size_t limit, Received& received) {
+  while (!is_over_) {
+    if (to_skip_ > 0) {
+      if (skip(received)) return true;
+      if (to_skip_ > 0) break;
+      continue;
+    }
+    const std::span input(input_.bytes.get() + begin_, end_ - begin_);
+    const zmtp::Taken taken = engine_.take(input, limit, reply_);
+    if (!reply_.empty()) send_reply();
+    needed_ = taken.size;
+    if (taken.step == Step::incomplete) {
+      if (begin_ == end_) let_go();
+      return false;
+    }
+    if (taken.step == Step::failed) {
+      is_over_ = true;
+    } else if (taken.step == Step::too_long) {
+      is_over_ = !pass_too_long(taken, limit);
+    } else {
+      begin_ += taken.size;
+      needed_ = 0;
+      if (taken.step == Step::passed) continue;
+      received.bytes = zmtp::text_of(taken.content);
+      if (end_message(taken.has_more, received)) return true;
+    }
+  }
+  let_go();
+  return false;
+}
+
+std::size_t PeerSocket::write(std::span<const std::uint8_t> bytes) {
+  const ssize_t size = ::send(number(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (size >= 0) return static_cast<std::size_t>(size);
+  if (errno != EAGAIN && errno != EINTR) is_over_ = true;
+  return 0;
+}
+
+void PeerSocket::send(Buffer& frame, std::size_t content, bool is_observation) {
+  const std::size_t size = engine_.content_at(content) + content;
+  engine_.seal({frame.bytes.get(), size}, content);
+  send_bytes(frame, size, is_observation);
+}
+
+void PeerSocket::send_bytes(Buffer& frame, std::size_t size, bool is_observation) {
+  if (is_over_) return;
+  const std::size_t sent = waiting_.empty() ? write({frame.bytes.get(), size}) : 0;
+  if (sent == size || is_over_) return;
+  if (is_observation) {
+    drop_waiting_observation();
+  } else {
+    is_congested_ = waiting_bytes_ > 0 && waiting_bytes_ + size > most_waiting;
+    if (is_congested_) return give_up();
+    waiting_bytes_ += size;
+  }
+  waiting_.push_back({std::exchange(frame, {}), size, sent, is_observation});
+}
+
+void PeerSocket::drop_waiting_observation() {
+  std::erase_if(waiting_, [](const Parcel& each) { return each.is_observation && each.sent == 0; });
+}
+
+void PeerSocket::send_reply() {
+  Buffer frame;
+  frame.reserve(reply_.size());
+  std::memcpy(frame.bytes.get(), reply_.data(), reply_.size());
+  send_bytes(frame, reply_.size(), false);
+  reply_.clear();
+}
+
+void PeerSocket::flush() {
+  while (!waiting_.empty() && !is_over_) {
+    Parcel& first = waiting_.front();
+    first.sent += write({first.frame.bytes.get() + first.sent, first.size - first.sent});
+    if (first.sent < first.size) return;
+    if (!first.is_observation) waiting_bytes_ -= first.size;
+    waiting_.pop_front();
+  }
+}
+
+}  // namespace ziggurat::network

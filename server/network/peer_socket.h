@@ -1,0 +1,108 @@
+#pragma once
+// One connection: what arrives on it, cut into messages, and what waits to be sent. Nothing here
+// waits, and both directions are bounded.
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "network/descriptor.h"
+#include "network/limits.h"
+#include "network/link.h"
+#include "network/zmtp/engine.h"
+
+namespace ziggurat::network {
+
+/// Bytes without a value of their own at first.
+struct Buffer {
+  std::unique_ptr<std::uint8_t[]> bytes;
+  std::size_t capacity = 0;
+
+  /// Room for so many, whose content is lost if there was less. @throws std::bad_alloc
+  void reserve(std::size_t size);
+};
+
+class PeerSocket {
+ public:
+  /// Sends the first bytes of the handshake.
+  /// @param name  of the connection
+  /// @param keys  must outlive the connection; null: it is not encrypted
+  /// @param is_trusted  of this user: limits of connections without session do not hold
+  PeerSocket(std::string name, Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted,
+             Time now);
+
+  const std::string& name() const { return name_; }
+  int number() const { return descriptor_.number(); }
+  bool is_trusted() const { return is_trusted_; }
+  Standing standing() const { return standing_; }
+  /// When it came to have no session.
+  Time since() const { return since_; }
+  void set_standing(Standing standing, Time now);
+  bool is_open() const { return engine_.is_open(); }  ///< the handshake is over
+  /// The connection is gone, or must be closed.
+  bool is_over() const { return is_over_; }
+  void give_up() { is_over_ = true; }
+
+  /// Reads once. What next() gave is not valid any more.
+  void read();
+  /// The next message that has arrived completely, if there is one. Its access and bytes are set.
+  /// @param limit  of its size [bytes]
+  bool next(std::size_t limit, Received& received);
+
+  /// Where its content is to stand in the frame, which has that many bytes more.
+  std::size_t content_at(std::size_t content) const { return engine_.content_at(content); }
+  /// Sends a frame with its content in place, now or as soon as the client reads. The connection is
+  /// over if too much waits for it. A newer Observation takes the place of one that waits.
+  /// @param frame  is taken if it has to wait
+  void send(Buffer& frame, std::size_t content, bool is_observation);
+  /// Sends what waits, as far as that is possible.
+  void flush();
+  bool has_waiting() const { return !waiting_.empty(); }
+
+  std::size_t unfinished_bytes() const { return input_.capacity; }
+  /// Waits to be sent, without Observations.
+  std::size_t waiting_bytes() const { return waiting_bytes_; }
+  /// The connection is over because the client does not read.
+  bool is_congested() const { return is_congested_; }
+
+ private:
+  struct Parcel {
+    Buffer frame;
+    std::size_t size = 0, sent = 0;
+    bool is_observation = false;
+  };
+  void make_room();
+  void let_go();
+  bool skip(Received& received);
+  bool pass_too_long(const zmtp::Taken& taken, std::size_t limit);
+  bool end_message(bool has_more, Received& received);
+  std::size_t write(std::span<const std::uint8_t> bytes);
+  void send_bytes(Buffer& frame, std::size_t size, bool is_observation);
+  void send_reply();
+  void drop_waiting_observation();
+
+  const std::string name_;
+  Descriptor descriptor_;
+  zmtp::Engine engine_;
+  const bool is_trusted_;
+  Standing standing_ = Standing::none;
+  Time since_;
+  bool is_over_ = false, is_congested_ = false;
+
+  Buffer input_;  // what has arrived is from begin_ to end_
+  std::size_t begin_ = 0, end_ = 0;
+  std::size_t needed_ = 0;       // of the frame that begins there
+  bool has_frames_ = false;      // of the message, before the one at begin_
+  std::size_t to_skip_ = 0;      // of a frame that is too long
+  std::size_t skipped_ = 0;      // bytes of the message that were not kept
+  bool more_to_skip_ = false;    // the message goes on behind that frame
+  std::string reply_;
+
+  std::deque<Parcel> waiting_;  // the first may be sent in part
+  std::size_t waiting_bytes_ = 0;
+};
+
+}  // namespace ziggurat::network

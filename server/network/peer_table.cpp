@@ -1,0 +1,156 @@
+#include "network/peer_table.h"
+
+#include <cstring>
+#include <utility>
+
+namespace ziggurat::network {
+namespace {
+
+constexpr std::chrono::seconds between_notices{10};  // peers could cause any number
+
+/// Names are numbers, 8 bytes each.
+std::string name_of(std::uint64_t id) {
+  return {reinterpret_cast<const char*>(&id), sizeof id};
+}
+std::uint64_t id_of(const std::string& name) {
+  std::uint64_t id = 0;
+  if (name.size() == sizeof id) std::memcpy(&id, name.data(), sizeof id);
+  return id;
+}
+
+}  // namespace
+
+PeerTable::PeerTable() : next_notice_(std::chrono::steady_clock::now()) {}
+
+void PeerTable::add(Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now) {
+  const std::uint64_t id = ++last_id_;
+  auto& peer = peers_[id];
+  peer = std::make_unique<PeerSocket>(name_of(id), std::move(descriptor), keys, is_trusted, now);
+  ++strangers_;
+  others_.add(peer->number(), id, peer->has_waiting());
+  settle(*peer, {0, 0, peer->has_waiting()});
+}
+
+PeerSocket* PeerTable::find(std::uint64_t id) const {
+  const auto found = peers_.find(id);
+  return found == peers_.end() || found->second->is_over() ? nullptr : found->second.get();
+}
+
+PeerSocket* PeerTable::find(const std::string& name) const { return find(id_of(name)); }
+
+PeerTable::Account PeerTable::account_of(const PeerSocket& peer) {
+  return {peer.unfinished_bytes(), peer.waiting_bytes(), peer.has_waiting()};
+}
+
+void PeerTable::settle(PeerSocket& peer, const Account& before) {
+  const Account after = account_of(peer);
+  unfinished_ += after.unfinished - before.unfinished;
+  waiting_ += after.waiting - before.waiting;
+  if (peer.is_over()) {
+    return end(peer, peer.is_congested()
+                         ? "A client was disconnected because it does not read what it is sent."
+                         : nullptr);
+  }
+  if (after.has_waiting != before.has_waiting) {
+    list_of(peer).change(peer.number(), id_of(peer.name()), true, after.has_waiting);
+  }
+  if (unfinished_ > most_unfinished && after.unfinished > mebibyte) {
+    end(peer, "A client was disconnected: too much of clients' messages has arrived in part.");
+  }
+  while (waiting_ > most_waiting_in_all) {
+    PeerSocket* most = most_waiting_peer();
+    if (most == nullptr) break;
+    end(*most, "A client was disconnected because too much waits for clients that do not read.");
+  }
+}
+
+PeerSocket* PeerTable::most_waiting_peer() const {
+  PeerSocket* most = nullptr;
+  for (const auto& [id, peer] : peers_) {
+    if (peer->is_over() || peer->waiting_bytes() == 0) continue;
+    if (most == nullptr || peer->waiting_bytes() > most->waiting_bytes()) most = peer.get();
+  }
+  return most;
+}
+
+ReadyList& PeerTable::list_of(const PeerSocket& peer) {
+  return peer.standing() == Standing::controller ? controllers_ : others_;
+}
+
+void PeerTable::set_standing(const std::string& name, Standing standing, Time now) {
+  PeerSocket* peer = find(name);
+  if (peer == nullptr) return;
+  strangers_ -= peer->standing() == Standing::none ? 1 : 0;
+  strangers_ += standing == Standing::none ? 1 : 0;
+  ReadyList& before = list_of(*peer);
+  peer->set_standing(standing, now);
+  ReadyList& after = list_of(*peer);
+  if (&before == &after) return;
+  before.remove(peer->number());
+  after.add(peer->number(), id_of(name), peer->has_waiting());
+}
+
+/// The connection is over. Its memory stays until bury().
+/// @param why  a sentence for people, if there is something to tell
+void PeerTable::end(PeerSocket& peer, const char* why) {
+  peer.give_up();
+  waiting_ -= peer.waiting_bytes();
+  unfinished_ -= peer.unfinished_bytes();
+  list_of(peer).remove(peer.number());
+  over_.push_back(id_of(peer.name()));
+  const Time now = std::chrono::steady_clock::now();
+  if (why == nullptr || now < next_notice_) return;
+  next_notice_ = now + between_notices;
+  notices_.emplace_back(why);
+}
+
+void PeerTable::bury() {
+  for (const std::uint64_t id : over_) {
+    const auto found = peers_.find(id);
+    if (found == peers_.end()) continue;
+    strangers_ -= found->second->standing() == Standing::none ? 1 : 0;
+    gone_.push_back(found->second->name());
+    peers_.erase(found);
+  }
+  over_.clear();
+}
+
+std::vector<std::string> PeerTable::take_gone() {
+  return gone_.empty() ? std::vector<std::string>() : std::exchange(gone_, {});
+}
+
+bool PeerTable::make_place(Time now) {
+  PeerSocket* oldest = nullptr;
+  for (const auto& [id, peer] : peers_) {
+    if (peer->standing() != Standing::none || peer->is_over() || peer->is_trusted()) continue;
+    const auto order = [](const PeerSocket& one) { return std::pair(one.is_open(), one.since()); };
+    if (oldest == nullptr || order(*peer) < order(*oldest)) oldest = peer.get();
+  }
+  if (oldest == nullptr || oldest->since() + least_age > now) return false;
+  end(*oldest, "Too many connections without session: the oldest are disconnected.");
+  return true;
+}
+
+void PeerTable::end_old(Time now) {
+  for (const auto& [id, peer] : peers_) {
+    if (peer->standing() != Standing::none || peer->is_over() || peer->is_trusted()) continue;
+    const Time::duration age = now - peer->since();
+    if (age > time_without_session || (!peer->is_open() && age > handshake_time)) end(*peer);
+  }
+}
+
+std::vector<int> PeerTable::flush() {
+  std::vector<int> waiting;
+  for (const auto& [id, peer] : peers_) {
+    if (peer->is_over()) continue;
+    peer->flush();
+    if (peer->has_waiting() && !peer->is_over()) waiting.push_back(peer->number());
+  }
+  return waiting;
+}
+
+std::vector<std::string> PeerTable::take_notices() {
+  return notices_.empty() ? std::vector<std::string>() : std::exchange(notices_, {});
+}
+
+}  // namespace ziggurat::network

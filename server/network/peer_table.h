@@ -1,0 +1,79 @@
+#pragma once
+// All connections, and what they take together.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "network/limits.h"
+#include "network/link.h"
+#include "network/peer_socket.h"
+#include "network/ready_list.h"
+
+namespace ziggurat::network {
+
+class PeerTable {
+ public:
+  static constexpr std::uint64_t first_id = 1024;  ///< numbers below are free for other descriptors
+
+  PeerTable();
+
+  /// A client has connected.
+  void add(Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now);
+  /// Null if its connection is over. Pointers hold until bury().
+  PeerSocket* find(std::uint64_t id) const;
+  PeerSocket* find(const std::string& name) const;
+
+  /// Does something with a connection, and keeps account of what that changes.
+  template <class Action>
+  void act(PeerSocket& peer, Action action) {
+    const Account before = account_of(peer);
+    action(peer);
+    settle(peer, before);
+  }
+  void set_standing(const std::string& name, Standing standing, Time now);
+
+  /// Forgets connections that are over.
+  void bury();
+  /// Names of connections that were forgotten since the last call.
+  std::vector<std::string> take_gone();
+
+  /// Disconnects the oldest connection without session, first of those whose handshake is not over.
+  /// False if all are young.
+  bool make_place(Time now);
+  /// Disconnects those that have been without session for too long.
+  void end_old(Time now);
+  /// Sends what waits, as far as possible. @returns descriptors of those who do not read yet
+  std::vector<int> flush();
+
+  std::size_t size() const { return peers_.size(); }
+  std::size_t strangers() const { return strangers_; }  ///< connections without session
+  ReadyList& controllers() { return controllers_; }
+  ReadyList& others() { return others_; }
+  std::vector<std::string> take_notices();
+
+ private:
+  struct Account {
+    std::size_t unfinished = 0, waiting = 0;  // bytes
+    bool has_waiting = false;
+  };
+  static Account account_of(const PeerSocket& peer);
+  void settle(PeerSocket& peer, const Account& before);
+  ReadyList& list_of(const PeerSocket& peer);
+  void end(PeerSocket& peer, const char* why = nullptr);
+  PeerSocket* most_waiting_peer() const;
+
+  ReadyList controllers_, others_;
+  std::unordered_map<std::uint64_t, std::unique_ptr<PeerSocket>> peers_;
+  std::uint64_t last_id_ = first_id;
+  std::vector<std::uint64_t> over_;  // not forgotten yet
+  std::vector<std::string> gone_;
+  std::size_t strangers_ = 0, unfinished_ = 0, waiting_ = 0;
+  std::vector<std::string> notices_;
+  Time next_notice_;
+};
+
+}  // namespace ziggurat::network

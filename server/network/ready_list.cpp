@@ -1,0 +1,48 @@
+#include "network/ready_list.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+namespace ziggurat::network {
+namespace {
+
+epoll_event event_of(std::uint64_t id, bool wants_to_read, bool wants_to_write) {
+  epoll_event event{};
+  event.events = (wants_to_read ? EPOLLIN : 0U) | (wants_to_write ? EPOLLOUT : 0U);
+  event.data.u64 = id;
+  return event;
+}
+
+}  // namespace
+
+ReadyList::ReadyList() : epoll_(::epoll_create1(EPOLL_CLOEXEC)) {
+  if (!epoll_.is_open()) throw std::system_error(errno, std::generic_category(), "epoll_create1");
+}
+
+void ReadyList::add(int descriptor, std::uint64_t id, bool wants_to_write) {
+  epoll_event event = event_of(id, true, wants_to_write);
+  ::epoll_ctl(number(), EPOLL_CTL_ADD, descriptor, &event);
+}
+
+void ReadyList::change(int descriptor, std::uint64_t id, bool wants_to_read, bool wants_to_write) {
+  epoll_event event = event_of(id, wants_to_read, wants_to_write);
+  ::epoll_ctl(number(), EPOLL_CTL_MOD, descriptor, &event);
+}
+
+void ReadyList::remove(int descriptor) {
+  ::epoll_ctl(number(), EPOLL_CTL_DEL, descriptor, nullptr);
+}
+
+std::optional<ReadyList::Ready> ReadyList::next() {
+  if (!has_more()) {
+    next_ = 0;
+    count_ = std::max(
+        0, ::epoll_wait(number(), events_.data(), static_cast<int>(events_.size()), 0));
+  }
+  if (!has_more()) return std::nullopt;
+  const epoll_event& event = events_[static_cast<std::size_t>(next_++)];
+  return Ready{event.data.u64, (event.events & ~EPOLLOUT) != 0, (event.events & EPOLLOUT) != 0};
+}
+
+}  // namespace ziggurat::network

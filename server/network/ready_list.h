@@ -1,0 +1,42 @@
+#pragma once
+// Which of many descriptors are ready, as the system tells it (epoll).
+
+#include <sys/epoll.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "network/descriptor.h"
+
+namespace ziggurat::network {
+
+class ReadyList {
+ public:
+  struct Ready {
+    std::uint64_t id = 0;
+    bool can_read = false;  ///< or the connection is over
+    bool can_write = false;
+  };
+
+  /// @throws std::system_error
+  ReadyList();
+
+  void add(int descriptor, std::uint64_t id, bool wants_to_write = false);
+  void change(int descriptor, std::uint64_t id, bool wants_to_read, bool wants_to_write);
+  void remove(int descriptor);
+
+  /// One that is ready, in turn. It does not wait.
+  std::optional<Ready> next();
+  /// Some of those that the system told of were not given out yet.
+  bool has_more() const { return next_ < count_; }
+  /// Readable while one is ready.
+  int number() const { return epoll_.number(); }
+
+ private:
+  Descriptor epoll_;
+  std::array<epoll_event, 64> events_{};
+  int count_ = 0, next_ = 0;
+};
+
+}  // namespace ziggurat::network

@@ -1,0 +1,54 @@
+#pragma once
+// Frames of ZMTP, ZeroMQ's wire protocol (RFC 37): a byte of flags, the size in one byte or eight, the
+// body.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace ziggurat::network::zmtp {
+
+using Bytes = std::span<const std::uint8_t>;
+
+inline constexpr std::size_t longest_header = 9;  // [bytes]
+
+struct Header {
+  bool has_more = false;    ///< the message goes on with another frame
+  bool is_command = false;  ///< for the connection itself, no part of a message
+  bool is_valid = true;     ///< no flag is set that the protocol does not have
+  std::size_t length = 0;   ///< of the header [bytes]
+  std::uint64_t body = 0;   ///< size of what follows [bytes]
+};
+
+/// The header of the frame that `input` begins with; none if more of it must arrive.
+std::optional<Header> read_header(Bytes input);
+
+/// Length of the header of a frame with this body [bytes].
+std::size_t header_length(std::size_t body);
+/// Writes header_length(body) bytes: the header of the only frame of a message.
+void write_header(std::size_t body, std::uint8_t* to);
+
+/// Appends a command with its frame.
+/// @param name  of the command, at most 255 bytes; @param data  what follows the name
+void append_command(std::string& to, std::string_view name, std::string_view data);
+/// What follows the name if the body is that of this command.
+std::optional<Bytes> command_data(Bytes body, std::string_view name);
+
+/// Properties of a connection, as commands carry them.
+struct Metadata {
+  std::string socket_type;
+  bool is_valid = false;
+};
+Metadata read_metadata(Bytes data);
+/// Whether they are those of a client that can talk with a ROUTER.
+bool is_of_client(const Metadata& metadata);
+/// Those of our end: a ROUTER.
+std::string our_metadata();
+
+std::string_view text_of(Bytes bytes);
+Bytes bytes_of(std::string_view text);
+
+}  // namespace ziggurat::network::zmtp
