@@ -50,6 +50,7 @@ LIBRARIES = {
     "Bullet": (r"bullet/|bt[A-Z]\w*\.h$|Bullet\w*/|LinearMath/", ["physics"]),
     "protobuf": (r"google/protobuf/", ["protocol", "wire", "recording"]),
     "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "clients/cpp"]),
+    "libsodium": (r"sodium\.h$", ["network"]),
     "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
     "libpng": (r"png\.h$", ["recording"]),
     "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua", "processes"]),

@@ -26,8 +26,10 @@ class Allowance {
     tokens_ -= 1;
     return true;
   }
+  /// The last message counts for more, which may be owed.
+  void charge(double tokens) { tokens_ -= tokens; }
   /// The last message was welcome.
-  void give_back() { tokens_ += 1; }
+  void give_back(double tokens = 1) { tokens_ += tokens; }
   bool is_full(const Rate& rate, Time now) const { return at(rate, now) >= rate.at_once; }
 
  private:

@@ -1,9 +1,14 @@
 #pragma once
 // Patterns for ids: `*` any text, `?` any character, `[a-z]` one of a set, `[!a-z]` one outside it.
 
+#include <cstddef>
 #include <string_view>
 
 namespace ziggurat::network {
+
+// Of a message, wherever they stand in it: they bound the time that matching takes.
+inline constexpr std::size_t most_patterns = 64;
+inline constexpr std::size_t longest_pattern = 256;  ///< [bytes]
 
 bool has_wildcards(std::string_view pattern);
 

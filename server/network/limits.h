@@ -33,8 +33,6 @@ inline std::size_t longest_message(Standing standing, std::size_t most) {
   }
   return 0;
 }
-/// Of a message in JSON, whatever its session [bytes].
-inline constexpr std::size_t longest_json = 4 * mebibyte;
 
 // Connections without session: how many, and how old they may become.
 inline constexpr std::size_t most_without_session = 512;

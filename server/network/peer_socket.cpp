@@ -13,22 +13,14 @@ namespace {
 
 using Step = zmtp::Taken::Step;
 
-constexpr std::size_t least_room = 8 * kibibyte;  // for one read
+constexpr std::size_t least_space = 8 * kibibyte;  // for one read
 
 /// How much memory an idle connection keeps.
 std::size_t kept_when_idle(Standing standing) {
-  return standing == Standing::controller ? mebibyte : least_room;
+  return standing == Standing::controller ? mebibyte : least_space;
 }
 
 }  // namespace
-
-void Buffer::reserve(std::size_t size) {
-  if (capacity >= size) return;
-  bytes.reset();
-  capacity = 0;
-  bytes = std::make_unique_for_overwrite<std::uint8_t[]>(size);
-  capacity = size;
-}
 
 PeerSocket::PeerSocket(std::string name, Descriptor descriptor, const zmtp::CurveKeys* keys,
                        bool is_trusted, Time now)
@@ -37,7 +29,8 @@ PeerSocket::PeerSocket(std::string name, Descriptor descriptor, const zmtp::Curv
       engine_(keys),
       is_trusted_(is_trusted),
       since_(now),
-      reply_(engine_.greeting()) {
+      reply_(engine_.greeting()),
+      output_(descriptor_.number()) {
   send_reply();
 }
 
@@ -46,11 +39,11 @@ void PeerSocket::set_standing(Standing standing, Time now) {
   if (standing == Standing::none) since_ = now;
 }
 
-/// Room behind end_ for the rest of the frame, as far as about as much has arrived already: a header
+/// Space behind end_ for the rest of the frame, as far as about as much has arrived already: a header
 /// alone takes no memory.
-void PeerSocket::make_room() {
+void PeerSocket::enlarge() {
   const std::size_t have = end_ - begin_;
-  const std::size_t wanted = std::clamp(needed_, have + least_room, 2 * have + least_room);
+  const std::size_t wanted = std::clamp(needed_, have + least_space, 2 * have + least_space);
   if (input_.capacity - begin_ >= wanted) return;
   if (input_.capacity >= wanted) {
     std::memmove(input_.bytes.get(), input_.bytes.get() + begin_, have);
@@ -72,7 +65,7 @@ void PeerSocket::let_go() {
 
 void PeerSocket::read() {
   try {
-    make_room();
+    enlarge();
   } catch (const std::bad_alloc&) {
     return give_up();
   }
@@ -144,13 +137,6 @@ bool PeerSocket::next(std::size_t limit, Received& received) {
   return false;
 }
 
-std::size_t PeerSocket::write(std::span<const std::uint8_t> bytes) {
-  const ssize_t size = ::send(number(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-  if (size >= 0) return static_cast<std::size_t>(size);
-  if (errno != EAGAIN && errno != EINTR) is_over_ = true;
-  return 0;
-}
-
 void PeerSocket::send(Buffer& frame, std::size_t content, bool is_observation) {
   const std::size_t size = engine_.content_at(content) + content;
   engine_.seal({frame.bytes.get(), size}, content);
@@ -159,20 +145,8 @@ void PeerSocket::send(Buffer& frame, std::size_t content, bool is_observation) {
 
 void PeerSocket::send_bytes(Buffer& frame, std::size_t size, bool is_observation) {
   if (is_over_) return;
-  const std::size_t sent = waiting_.empty() ? write({frame.bytes.get(), size}) : 0;
-  if (sent == size || is_over_) return;
-  if (is_observation) {
-    drop_waiting_observation();
-  } else {
-    is_congested_ = waiting_bytes_ > 0 && waiting_bytes_ + size > most_waiting;
-    if (is_congested_) return give_up();
-    waiting_bytes_ += size;
-  }
-  waiting_.push_back({std::exchange(frame, {}), size, sent, is_observation});
-}
-
-void PeerSocket::drop_waiting_observation() {
-  std::erase_if(waiting_, [](const Parcel& each) { return each.is_observation && each.sent == 0; });
+  output_.send(frame, size, is_observation);
+  is_over_ = output_.has_failed() || output_.is_congested();
 }
 
 void PeerSocket::send_reply() {
@@ -184,13 +158,9 @@ void PeerSocket::send_reply() {
 }
 
 void PeerSocket::flush() {
-  while (!waiting_.empty() && !is_over_) {
-    Parcel& first = waiting_.front();
-    first.sent += write({first.frame.bytes.get() + first.sent, first.size - first.sent});
-    if (first.sent < first.size) return;
-    if (!first.is_observation) waiting_bytes_ -= first.size;
-    waiting_.pop_front();
-  }
+  if (is_over_) return;
+  output_.flush();
+  is_over_ = output_.has_failed();
 }
 
 }  // namespace ziggurat::network

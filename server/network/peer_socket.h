@@ -4,26 +4,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
-#include <memory>
 #include <span>
 #include <string>
 
 #include "network/descriptor.h"
 #include "network/limits.h"
 #include "network/link.h"
+#include "network/output_queue.h"
 #include "network/zmtp/engine.h"
 
 namespace ziggurat::network {
-
-/// Bytes without a value of their own at first.
-struct Buffer {
-  std::unique_ptr<std::uint8_t[]> bytes;
-  std::size_t capacity = 0;
-
-  /// Room for so many, whose content is lost if there was less. @throws std::bad_alloc
-  void reserve(std::size_t size);
-};
 
 class PeerSocket {
  public:
@@ -45,6 +35,8 @@ class PeerSocket {
   /// The connection is gone, or must be closed.
   bool is_over() const { return is_over_; }
   void give_up() { is_over_ = true; }
+  /// It is over because the client does not read.
+  bool is_congested() const { return output_.is_congested(); }
 
   /// Reads once. What next() gave is not valid any more.
   void read();
@@ -60,29 +52,18 @@ class PeerSocket {
   void send(Buffer& frame, std::size_t content, bool is_observation);
   /// Sends what waits, as far as that is possible.
   void flush();
-  bool has_waiting() const { return !waiting_.empty(); }
-
+  const OutputQueue& output() const { return output_; }
+  /// Memory for what has arrived.
   std::size_t unfinished_bytes() const { return input_.capacity; }
-  /// Waits to be sent, without Observations.
-  std::size_t waiting_bytes() const { return waiting_bytes_; }
-  /// The connection is over because the client does not read.
-  bool is_congested() const { return is_congested_; }
 
  private:
-  struct Parcel {
-    Buffer frame;
-    std::size_t size = 0, sent = 0;
-    bool is_observation = false;
-  };
-  void make_room();
+  void enlarge();
   void let_go();
   bool skip(Received& received);
   bool pass_too_long(const zmtp::Taken& taken, std::size_t limit);
   bool end_message(bool has_more, Received& received);
-  std::size_t write(std::span<const std::uint8_t> bytes);
   void send_bytes(Buffer& frame, std::size_t size, bool is_observation);
   void send_reply();
-  void drop_waiting_observation();
 
   const std::string name_;
   Descriptor descriptor_;
@@ -90,7 +71,7 @@ class PeerSocket {
   const bool is_trusted_;
   Standing standing_ = Standing::none;
   Time since_;
-  bool is_over_ = false, is_congested_ = false;
+  bool is_over_ = false;
 
   Buffer input_;  // what has arrived is from begin_ to end_
   std::size_t begin_ = 0, end_ = 0;
@@ -100,9 +81,7 @@ class PeerSocket {
   std::size_t skipped_ = 0;      // bytes of the message that were not kept
   bool more_to_skip_ = false;    // the message goes on behind that frame
   std::string reply_;
-
-  std::deque<Parcel> waiting_;  // the first may be sent in part
-  std::size_t waiting_bytes_ = 0;
+  OutputQueue output_;
 };
 
 }  // namespace ziggurat::network

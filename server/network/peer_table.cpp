@@ -1,5 +1,7 @@
 #include "network/peer_table.h"
 
+#include <malloc.h>
+
 #include <cstring>
 #include <utility>
 
@@ -26,9 +28,9 @@ void PeerTable::add(Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_
   const std::uint64_t id = ++last_id_;
   auto& peer = peers_[id];
   peer = std::make_unique<PeerSocket>(name_of(id), std::move(descriptor), keys, is_trusted, now);
-  ++strangers_;
-  others_.add(peer->number(), id, peer->has_waiting());
-  settle(*peer, {0, 0, peer->has_waiting()});
+  ++without_session_;
+  others_.add(peer->number(), id, !peer->output().is_empty());
+  settle(*peer, {0, 0, !peer->output().is_empty()});
 }
 
 PeerSocket* PeerTable::find(std::uint64_t id) const {
@@ -39,7 +41,7 @@ PeerSocket* PeerTable::find(std::uint64_t id) const {
 PeerSocket* PeerTable::find(const std::string& name) const { return find(id_of(name)); }
 
 PeerTable::Account PeerTable::account_of(const PeerSocket& peer) {
-  return {peer.unfinished_bytes(), peer.waiting_bytes(), peer.has_waiting()};
+  return {peer.unfinished_bytes(), peer.output().waiting_bytes(), !peer.output().is_empty()};
 }
 
 void PeerTable::settle(PeerSocket& peer, const Account& before) {
@@ -67,8 +69,8 @@ void PeerTable::settle(PeerSocket& peer, const Account& before) {
 PeerSocket* PeerTable::most_waiting_peer() const {
   PeerSocket* most = nullptr;
   for (const auto& [id, peer] : peers_) {
-    if (peer->is_over() || peer->waiting_bytes() == 0) continue;
-    if (most == nullptr || peer->waiting_bytes() > most->waiting_bytes()) most = peer.get();
+    if (peer->is_over() || peer->output().waiting_bytes() == 0) continue;
+    if (most == nullptr || peer->output().waiting_bytes() > most->output().waiting_bytes()) most = peer.get();
   }
   return most;
 }
@@ -80,21 +82,21 @@ ReadyList& PeerTable::list_of(const PeerSocket& peer) {
 void PeerTable::set_standing(const std::string& name, Standing standing, Time now) {
   PeerSocket* peer = find(name);
   if (peer == nullptr) return;
-  strangers_ -= peer->standing() == Standing::none ? 1 : 0;
-  strangers_ += standing == Standing::none ? 1 : 0;
+  without_session_ -= peer->standing() == Standing::none ? 1 : 0;
+  without_session_ += standing == Standing::none ? 1 : 0;
   ReadyList& before = list_of(*peer);
   peer->set_standing(standing, now);
   ReadyList& after = list_of(*peer);
   if (&before == &after) return;
   before.remove(peer->number());
-  after.add(peer->number(), id_of(name), peer->has_waiting());
+  after.add(peer->number(), id_of(name), !peer->output().is_empty());
 }
 
 /// The connection is over. Its memory stays until bury().
 /// @param why  a sentence for people, if there is something to tell
 void PeerTable::end(PeerSocket& peer, const char* why) {
   peer.give_up();
-  waiting_ -= peer.waiting_bytes();
+  waiting_ -= peer.output().waiting_bytes();
   unfinished_ -= peer.unfinished_bytes();
   list_of(peer).remove(peer.number());
   over_.push_back(id_of(peer.name()));
@@ -108,11 +110,17 @@ void PeerTable::bury() {
   for (const std::uint64_t id : over_) {
     const auto found = peers_.find(id);
     if (found == peers_.end()) continue;
-    strangers_ -= found->second->standing() == Standing::none ? 1 : 0;
+    const PeerSocket& peer = *found->second;
+    without_session_ -= peer.standing() == Standing::none ? 1 : 0;
+    has_let_go_ |= peer.unfinished_bytes() + peer.output().waiting_bytes() > mebibyte;
     gone_.push_back(found->second->name());
     peers_.erase(found);
   }
   over_.clear();
+}
+
+void PeerTable::give_back_memory() {
+  if (std::exchange(has_let_go_, false)) ::malloc_trim(0);
 }
 
 std::vector<std::string> PeerTable::take_gone() {
@@ -144,7 +152,7 @@ std::vector<int> PeerTable::flush() {
   for (const auto& [id, peer] : peers_) {
     if (peer->is_over()) continue;
     peer->flush();
-    if (peer->has_waiting() && !peer->is_over()) waiting.push_back(peer->number());
+    if (!peer->output().is_empty() && !peer->is_over()) waiting.push_back(peer->number());
   }
   return waiting;
 }

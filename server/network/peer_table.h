@@ -38,6 +38,8 @@ class PeerTable {
 
   /// Forgets connections that are over.
   void bury();
+  /// What forgotten connections held goes back to the system.
+  void give_back_memory();
   /// Names of connections that were forgotten since the last call.
   std::vector<std::string> take_gone();
 
@@ -50,7 +52,7 @@ class PeerTable {
   std::vector<int> flush();
 
   std::size_t size() const { return peers_.size(); }
-  std::size_t strangers() const { return strangers_; }  ///< connections without session
+  std::size_t without_session() const { return without_session_; }  ///< connections without session
   ReadyList& controllers() { return controllers_; }
   ReadyList& others() { return others_; }
   std::vector<std::string> take_notices();
@@ -71,7 +73,8 @@ class PeerTable {
   std::uint64_t last_id_ = first_id;
   std::vector<std::uint64_t> over_;  // not forgotten yet
   std::vector<std::string> gone_;
-  std::size_t strangers_ = 0, unfinished_ = 0, waiting_ = 0;
+  std::size_t without_session_ = 0, unfinished_ = 0, waiting_ = 0;
+  bool has_let_go_ = false;  // much memory, since give_back_memory()
   std::vector<std::string> notices_;
   Time next_notice_;
 };

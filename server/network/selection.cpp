@@ -15,9 +15,6 @@ namespace {
 using wire::ErrorCode;
 using wire::make_fault;
 
-constexpr std::size_t max_pattern = 256;  // bytes: bounds the time that matching takes
-constexpr std::size_t max_globs = 64;
-
 enum class Fit { none, by_pattern, by_id };
 
 /// What each robot of the layout is to the ids and patterns.
@@ -33,14 +30,14 @@ std::variant<std::vector<Fit>, wire::Fault> fit_names(const std::vector<std::str
       continue;
     }
     if (!has_wildcards(name)) {
-      const std::string id = name.substr(0, max_pattern);
+      const std::string id = name.substr(0, longest_pattern);
       return make_fault(ErrorCode::unknown_robot, "robots",
                         fmt::format("The scene has no robot '{}'.", id), id);
     }
-    if (name.size() > max_pattern || ++globs > max_globs) {
+    if (name.size() > longest_pattern || ++globs > most_patterns) {
       return make_fault(
           ErrorCode::too_many, "robots",
-          fmt::format("A Hello may have {} patterns of {} bytes at most.", max_globs, max_pattern));
+          fmt::format("A Hello may have {} patterns of {} bytes at most.", most_patterns, longest_pattern));
     }
     for (std::size_t i = 0; i < fits.size(); ++i) {
       if (fits[i] == Fit::none && matches(name, layout.robots[i].id)) fits[i] = Fit::by_pattern;
@@ -64,7 +61,7 @@ std::variant<std::vector<Selected>, wire::Fault> select_robots(const wire::Hello
       std::none_of(run.controllers.begin(), run.controllers.end(), is_wanted)) {
     return make_fault(
         ErrorCode::unknown_controller, "controller",
-        fmt::format("The scene has no controller '{}'.", hello.controller.substr(0, max_pattern)));
+        fmt::format("The scene has no controller '{}'.", hello.controller.substr(0, longest_pattern)));
   }
   auto fitted = fit_names(hello.robots, run.layout);
   if (auto* fault = std::get_if<wire::Fault>(&fitted)) return std::move(*fault);

@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr milliseconds linger{1000};  // what waits at the end may take this long
-constexpr milliseconds tending{250};
+constexpr milliseconds tending{500};
 constexpr milliseconds saved_share{5};  // of the time for others
 constexpr int accepted_at_once = 16;
 
@@ -38,7 +38,7 @@ std::size_t descriptors_for_peers() {
 Socket::Socket(const Config& config)
     : longest_(config.max_message_bytes),
       most_peers_(descriptors_for_peers()),
-      most_strangers_(std::clamp(most_peers_ / 2, std::size_t{1}, most_without_session)),
+      most_without_session_(std::clamp(most_peers_ / 2, std::size_t{1}, most_without_session)),
       next_tending_(Clock::now()),
       share_(share_of_others, saved_share) {
   if (config.curve) keys_.emplace(*config.curve);
@@ -156,7 +156,7 @@ void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
 void Socket::accept(const Door& door) {
   for (int i = 0; i < accepted_at_once; ++i) {
     const Time now = Clock::now();
-    const bool is_full = peers_.strangers() >= most_strangers_ || peers_.size() >= most_peers_;
+    const bool is_full = peers_.without_session() >= most_without_session_ || peers_.size() >= most_peers_;
     if (is_full && !peers_.make_place(now)) return set_accepting(false);
     peers_.bury();
     Descriptor client = door.listener.accept();
@@ -185,6 +185,7 @@ void Socket::tend() {
   next_tending_ = now + tending;
   peers_.end_old(now);
   peers_.bury();
+  peers_.give_back_memory();
   set_accepting(true);
 }
 

@@ -85,7 +85,7 @@ class Socket {
   void set_accepting(bool is_accepting);
 
   const std::size_t longest_;  // message [bytes]
-  const std::size_t most_peers_, most_strangers_;
+  const std::size_t most_peers_, most_without_session_;
   std::optional<zmtp::CurveKeys> keys_;
   std::vector<Door> doors_;
   std::vector<std::string> endpoints_;

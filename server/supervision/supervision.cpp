@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string_view>
+#include <unordered_map>
 
 #include "math/hash.h"
 #include "network/glob.h"
@@ -31,11 +33,16 @@ Selection select(const std::vector<std::string>& patterns, const simulation::Sim
   const auto& all = world.layout().entities;
   std::vector<bool> is_selected(all.size(), patterns.empty());
   Selection selection;
+  std::unordered_map<std::string_view, std::size_t> places;
+  for (std::size_t i = 0; i < all.size() && !patterns.empty(); ++i) {
+    if (!world.state().is_absent(i)) places[all[i].id] = i;
+  }
   for (const std::string& pattern : patterns) {
-    bool is_known = false;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (world.state().is_absent(i)) continue;
-      if (all[i].id != pattern && !network::matches(pattern, all[i].id)) continue;
+    const auto named = places.find(pattern);
+    bool is_known = named != places.end();
+    if (is_known) is_selected[named->second] = true;
+    for (std::size_t i = 0; i < all.size() && network::has_wildcards(pattern); ++i) {
+      if (world.state().is_absent(i) || !network::matches(pattern, all[i].id)) continue;
       is_selected[i] = is_known = true;
     }
     if (!is_known && !selection.unknown) selection.unknown = pattern;
@@ -231,7 +238,7 @@ Supervision::Reply Supervision::fail(const network::Call& call, ErrorCode code, 
 Supervision::Reply Supervision::unknown_entity(const network::Call& call, std::string field,
                                                const std::string& id) {
   return fail(call, ErrorCode::unknown_entity, std::move(field),
-              fmt::format("There is no entity '{}'.", id));
+              fmt::format("There is no entity '{}'.", id.substr(0, network::longest_pattern)));
 }
 
 Supervision::Reply Supervision::done(const network::Call& call) {

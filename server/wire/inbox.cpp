@@ -3,8 +3,10 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include <limits>
+#include <new>
 
 #include "wire/command.h"
+#include "wire/cost.h"
 #include "wire/response.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
@@ -25,7 +27,11 @@ struct Inbox::Message {
     constexpr std::size_t enough = std::size_t{64} << 20;
     parsed += size;
     if (parsed < enough) return;
+    forget();
     parsed = size;
+  }
+  void forget() {
+    parsed = 0;
     v1::Command().Swap(&command);
     v1::ClientMessage().Swap(&message);
   }
@@ -42,7 +48,23 @@ Inbox::Kind Inbox::parse(std::string_view bytes) {
   in.kind = Kind::malformed;
   in.complaint.clear();
   if (bytes.size() > std::numeric_limits<int>::max()) return in.kind;
-  in.forget(bytes.size());
+  const bool is_json = encoding_of(bytes) == Encoding::json;
+  if ((is_json ? count_json_values(bytes) : count_fields(bytes)) > most_fields) {
+    in.complaint = "it has more fields than any message needs";
+    return in.kind;
+  }
+  try {
+    in.forget(bytes.size());
+    return decode(bytes);
+  } catch (const std::bad_alloc&) {
+    in.forget();
+    in.complaint = "there is no memory for it";
+    return in.kind = Kind::malformed;
+  }
+}
+
+Inbox::Kind Inbox::decode(std::string_view bytes) {
+  Message& in = *message_;
   if (const auto content = v1::sole_field(bytes, v1::ClientMessage::kCommandFieldNumber)) {
     if (in.command.ParseFromArray(content->data(), static_cast<int>(content->size()))) {
       in.kind = Kind::command;

@@ -31,7 +31,8 @@ class Inbox {
   Inbox();
   ~Inbox();
 
-  /// In either form, see encoding_of().
+  /// In either form, see encoding_of(). A message that would cost too much to decode is malformed,
+  /// and so is one for which there is not enough memory.
   Kind parse(std::string_view bytes);
   /// What makes the current message malformed, for people; may be empty.
   const std::string& complaint() const;
@@ -53,6 +54,7 @@ class Inbox {
 
  private:
   struct Message;
+  Kind decode(std::string_view bytes);
   std::unique_ptr<Message> message_;
 };
 

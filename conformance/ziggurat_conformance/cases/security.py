@@ -59,6 +59,8 @@ CASES = [
             join("controller", "*"), *observe("controller"), Hang("controller"),
             send_hello("observer", "*", session_token=Token("controller")),
             hear_refusal("observer", "FORBIDDEN"),
-            Join("both", hello("*", session_token=Token("controller"))),
-            Hear("both", "observation")),
+            send_hello("both", "*", session_token=Token("controller")),
+            hear_refusal("both", "FORBIDDEN"),  # another key (L12)
+            Join("controller", hello("*", session_token=Token("controller"))),
+            Hear("controller", "observation")),
 ]

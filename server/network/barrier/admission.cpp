@@ -132,7 +132,7 @@ bool welcome(Barrier& barrier, Session& session) {
   welcome.minor = session.minor;
   welcome.role = session.role;
   welcome.wall_lease_ms = static_cast<std::uint32_t>(barrier.config.lease.count());
-  welcome.max_message_bytes = longest_message(barrier, session.connection, &session);
+  welcome.max_message_bytes = longest_message(barrier, &session);
   welcome.wall_heartbeat_ms = static_cast<std::uint32_t>(barrier.config.heartbeat.count());
   for (const std::size_t robot : session.roster.robots) {
     welcome.deadlines.push_back(barrier.deadlines.policy(robot));

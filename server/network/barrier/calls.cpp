@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "network/glob.h"
 #include "wire/fault.h"
 
 namespace ziggurat::network {
@@ -11,6 +12,27 @@ namespace ziggurat::network {
 using wire::ErrorCode;
 using wire::make_fault;
 using Kind = wire::Request::Kind;
+
+namespace {
+
+constexpr std::size_t most_ids = 65'536;  // of a request, patterns included
+
+std::optional<wire::Fault> check_entities(const std::vector<std::string>& entities) {
+  std::size_t patterns = 0;
+  for (const std::string& each : entities) {
+    if (has_wildcards(each) && (each.size() > longest_pattern || ++patterns > most_patterns)) {
+      return make_fault(ErrorCode::too_many, "read.entities",
+                        fmt::format("A request may have {} patterns of {} bytes at most.",
+                                    most_patterns, longest_pattern));
+    }
+  }
+  if (entities.size() <= most_ids) return std::nullopt;
+  return make_fault(
+      ErrorCode::too_many, "read.entities",
+      fmt::format("The request names {} entities; {} are allowed.", entities.size(), most_ids));
+}
+
+}  // namespace
 
 std::optional<wire::Fault> check_request(const wire::Request& request, wire::Role role) {
   const bool only_reads = request.kind == Kind::status || request.kind == Kind::read;
@@ -24,7 +46,7 @@ std::optional<wire::Fault> check_request(const wire::Request& request, wire::Rol
   if (request.kind == Kind::snapshot || request.kind == Kind::restore) {
     return make_fault(ErrorCode::unimplemented, {}, "There are no snapshots yet.");
   }
-  return std::nullopt;
+  return check_entities(request.entities);
 }
 
 std::optional<wire::Fault> Calls::add(const std::string& connection, wire::Request request) {

@@ -37,7 +37,7 @@ void handle_request(Barrier& barrier, Session& session) {
 std::optional<wire::Fault> check_size(const Barrier& barrier, const Received& received,
                                       const Session* session) {
   const std::size_t size = received.bytes.size() + received.skipped;
-  const std::size_t allowed = longest_message(barrier, received.connection, session);
+  const std::size_t allowed = longest_message(barrier, session);
   // A Hello of this user's own processes may be longer than those of others: the socket knows.
   const bool is_too_long = received.skipped > 0 || size > barrier.config.max_message_bytes ||
                            (session != nullptr && size > allowed);
@@ -69,8 +69,9 @@ bool may_send(Barrier& barrier, const std::string& id, Connection& connection, S
 }
 
 /// The message in `barrier.inbox`, of a session.
+/// @param bytes  that it has
 void handle(Barrier& barrier, Connection& connection, Session& session, InboxKind kind,
-            world::Commands* commands) {
+            std::size_t bytes, world::Commands* commands) {
   if (kind == InboxKind::leave) return handle_leave(barrier, session);
   if (kind == InboxKind::heartbeat) return handle_heartbeat(barrier, session);
   const bool is_waiting = session.state == SessionState::hello;
@@ -82,7 +83,7 @@ void handle(Barrier& barrier, Connection& connection, Session& session, InboxKin
   }
   if (kind == InboxKind::request) return handle_request(barrier, session);
   const bool is_expected = handle_command(barrier, session, commands);
-  if (is_expected) Connections::refund(connection);
+  if (is_expected) Connections::refund(connection, bytes);
 }
 
 }  // namespace
@@ -99,6 +100,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
       received.is_single_frame ? wire::encoding_of(received.bytes) : wire::Encoding::binary;
   if (session == nullptr) connection.encoding = encoding;
   if (!may_send(barrier, id, connection, session)) return;
+  Connections::charge_size(connection, received.bytes.size());
   if (!received.is_single_frame) return answer_malformed(barrier, id, session, {});
   if (auto fault = check_size(barrier, received, session)) {
     return answer_fault(barrier, id, session, std::move(*fault));
@@ -114,7 +116,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
     return answer_malformed(barrier, id, session, barrier.inbox.complaint());
   }
   if (session != nullptr) {
-    handle(barrier, connection, *session, kind, commands);
+    handle(barrier, connection, *session, kind, received.bytes.size(), commands);
   } else if (kind == InboxKind::hello) {
     handle_hello(barrier, id, received.access, received.bytes);
   } else {

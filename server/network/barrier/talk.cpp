@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "network/barrier/departure.h"
 #include "wire/fault.h"
 
@@ -70,13 +68,8 @@ Standing standing_of(const Session* session) {
   return session->role == wire::Role::supervisor ? Standing::supervisor : Standing::observer;
 }
 
-std::size_t longest_message(const Barrier& barrier, const std::string& connection,
-                            const Session* session) {
-  const std::size_t most =
-      longest_message(standing_of(session), barrier.config.max_message_bytes);
-  const Connection* known = barrier.connections.find(connection);
-  const bool is_json = known != nullptr && known->encoding == wire::Encoding::json;
-  return is_json ? std::min(most, longest_json) : most;
+std::size_t longest_message(const Barrier& barrier, const Session* session) {
+  return longest_message(standing_of(session), barrier.config.max_message_bytes);
 }
 
 std::uint64_t tick_of(const Barrier& barrier) { return barrier.gate.tick().value_or(0); }

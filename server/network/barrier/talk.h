@@ -26,8 +26,7 @@ void answer_malformed(Barrier& barrier, const std::string& connection, Session* 
 /// What a connection is whose session this is; null: none.
 Standing standing_of(const Session* session);
 /// Of what its client may send [bytes].
-std::size_t longest_message(const Barrier& barrier, const std::string& connection,
-                            const Session* session);
+std::size_t longest_message(const Barrier& barrier, const Session* session);
 
 /// The tick in hand; 0 before the first.
 std::uint64_t tick_of(const Barrier& barrier);

@@ -6,16 +6,18 @@ import time
 
 
 class RawPeer:
-    """A DEALER's connection. `drip`: wall time between two sent bytes [s]; 0 sends all at once."""
+    """A DEALER's connection. `drip`: wall time between two sent bytes [s]; 0 sends all at once.
+    `routing_id`: that it asks for, also one that libzmq would not let a client set."""
 
-    def __init__(self, endpoint, drip=0.0):
+    def __init__(self, endpoint, drip=0.0, routing_id=b""):
         host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
         self.socket = socket.create_connection((host, int(port)), timeout=20)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._drip = drip
         self._send_bytes(GREETING)
         self._receive_bytes(64)
-        self._send_bytes(_frame(4, b"\x05READY\x0bSocket-Type" + struct.pack(">I", 6) + b"DEALER"))
+        self._send_bytes(_frame(4, b"\x05READY" + _property(b"Socket-Type", b"DEALER")
+                                + _property(b"Identity", routing_id)))
         self._receive_frame()  # the server's READY
 
     def __enter__(self):
@@ -34,6 +36,10 @@ class RawPeer:
 
     def send_message(self, message):
         self._send_bytes(_frame(0, message))
+
+    def send_beginning(self, size, sent):
+        """`sent` bytes of a frame of `size` bytes, and its header."""
+        self._send_bytes(struct.pack(">BQ", 2, size) + bytes(sent))
 
     def send_half(self, message):
         """A frame whose header announces more bytes than follow."""
@@ -63,6 +69,10 @@ class RawPeer:
 
 
 GREETING = (b"\xff" + bytes(8) + b"\x7f" + b"\x03\x00" + b"NULL".ljust(20, b"\0") + bytes(32))
+
+
+def _property(name, value):
+    return bytes([len(name)]) + name + struct.pack(">I", len(value)) + value
 
 
 def _frame(flags, body):

@@ -193,6 +193,31 @@ TEST_F(Protected, K3_ARoleThatTheKeyDoesNotHaveIsForbidden) {
   });
 }
 
+TEST_F(Protected, L12_ASessionIsResumedOnlyWithItsKey) {
+  const SmallRun small(1);
+  config.curve->clients[1].roles.controller = true;
+  Server server(config, small.run());
+  meanwhile(server, [&] {
+    Options mine = options(server, "friend");
+    mine.connect_timeout = milliseconds{20'000};
+    mine.robots = {"*"};
+    ziggurat::Session session(mine);
+    for (const auto& [key, endpoint] : {std::pair("viewer", 1), std::pair("", 0)}) {
+      Options other = options(server, key, static_cast<std::size_t>(endpoint));
+      other.connect_timeout = milliseconds{20'000};
+      other.session_token = session.token();
+      try {
+        ziggurat::Session stolen(other);
+        ADD_FAILURE() << "resumed with " << key;
+      } catch (const ProtocolError& error) {
+        EXPECT_EQ(error.details().code, "FORBIDDEN");
+      }
+    }
+    mine.session_token = session.token();
+    EXPECT_EQ(ziggurat::Session(mine).token(), session.token());
+  });
+}
+
 TEST_F(Protected, ClientsSayWhatIsWrongWithTheirKeys) {
   Options options;
   options.endpoint = "tcp://127.0.0.1:1";

@@ -1,0 +1,20 @@
+#pragma once
+// What decoding a message would cost, found out before it is decoded.
+
+#include <cstddef>
+#include <string_view>
+
+namespace ziggurat::wire {
+
+/// Fields of a message, those of messages in it included. A legal message has fewer: a Command has
+/// 65 536 radio messages for a robot at most, and arrays count as one.
+inline constexpr std::size_t most_fields = std::size_t{1} << 18;
+
+/// How many fields a ClientMessage in binary form has; it stops counting beyond `most_fields`.
+/// Decoding takes up to about 100 bytes of memory for each.
+std::size_t count_fields(std::string_view bytes);
+
+/// At least as many as a text of JSON has values: one for each comma and bracket.
+std::size_t count_json_values(std::string_view text);
+
+}  // namespace ziggurat::wire

@@ -1,0 +1,50 @@
+#include "wire/cost.h"
+
+#include <gtest/gtest.h>
+
+#include "wire/inbox.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat::wire {
+namespace {
+
+TEST(Cost, FieldsAreCountedInMessagesOfMessages) {
+  v1::ClientMessage message;
+  EXPECT_EQ(count_fields(message.SerializeAsString()), 0U);
+  message.mutable_command()->set_tick(7);
+  for (int i = 0; i < 1000; ++i) message.mutable_command()->add_joint_targets(i);
+  EXPECT_EQ(count_fields(message.SerializeAsString()), 3U) << "an array is one";
+  for (int i = 0; i < 10; ++i) {
+    auto& line = *message.mutable_command()->add_log();
+    line.set_robot(1);
+    line.set_text("x");
+  }
+  EXPECT_EQ(count_fields(message.SerializeAsString()), 3U + 30U);
+}
+
+TEST(Cost, AMessageOfEmptyPartsIsNotDecoded) {
+  const std::string payloads = [] {
+    v1::ClientMessage message;
+    for (std::size_t i = 0; i <= most_fields; ++i) message.mutable_command()->add_tag_payloads();
+    return message.SerializeAsString();
+  }();
+  Inbox inbox;
+  EXPECT_EQ(inbox.parse(payloads), Inbox::Kind::malformed);
+  EXPECT_NE(inbox.complaint(), "");
+  std::string unknown = "\x12\xff\xff\xff\x1f";  // a Command of unknown fields
+  while (unknown.size() < 4'000'000) unknown += "\x78\x01";
+  EXPECT_GT(count_fields(unknown.substr(5)), most_fields);
+  std::string json = R"({"command":{"tagPayloads":[)";
+  for (std::size_t i = 0; i <= most_fields; ++i) json += "\"\",";
+  EXPECT_EQ(inbox.parse(json + "\"\"]}}"), Inbox::Kind::malformed);
+}
+
+TEST(Cost, AnyBytesEnd) {
+  EXPECT_EQ(count_fields("\xff\xff\xff"), 0U);
+  EXPECT_EQ(count_fields(std::string("\x0a\x7f", 2)), 0U);
+  EXPECT_EQ(count_fields(std::string(100, '\x0b')), 100U) << "groups";
+  EXPECT_EQ(count_fields(std::string("\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80", 11)), 0U);
+}
+
+}  // namespace
+}  // namespace ziggurat::wire
