@@ -150,9 +150,9 @@ bool DisturbedLink::arrives(const Received& received, Time now) {
     return true;
   }
   line->incoming_bytes += received.bytes.size();
-  line->incoming.push(now + effect.delay, {received.connection, std::string(received.bytes),
-                                           received.is_single_frame, received.access,
-                                           received.skipped});
+  line->incoming.push(now + effect.delay,
+                      {received.connection, std::string(received.bytes), received.is_single_frame,
+                       received.access, received.skipped});
   if (line->incoming_bytes > most_bytes_) line->incoming.hurry(now);
   return false;
 }

@@ -32,7 +32,7 @@ struct Received {
   std::string_view bytes;       ///< valid until the next message is received
   bool is_single_frame = true;  ///< a message of the protocol is one ZeroMQ frame
   Access access;                ///< that the connection has
-  std::size_t skipped = 0;      ///< size of a message that was too long to be kept: there are no bytes
+  std::size_t skipped = 0;  ///< size of a message that was too long to be kept: there are no bytes
 };
 
 }  // namespace ziggurat::network

@@ -89,8 +89,8 @@ std::optional<Address> address_of_interface(std::string_view name, const std::st
   if (::getifaddrs(&all) != 0) return std::nullopt;
   const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> owner(all, ::freeifaddrs);
   for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
-    const bool is_it = each->ifa_addr != nullptr && each->ifa_addr->sa_family == AF_INET &&
-                       name == each->ifa_name;
+    const bool is_it =
+        each->ifa_addr != nullptr && each->ifa_addr->sa_family == AF_INET && name == each->ifa_name;
     if (!is_it) continue;
     auto address = numeric_address(nullptr, port);
     if (!address) return std::nullopt;

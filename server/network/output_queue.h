@@ -23,8 +23,8 @@ class OutputQueue {
   /// @param descriptor  of a socket that does not block
   explicit OutputQueue(int descriptor) : descriptor_(descriptor) {}
 
-  /// Sends bytes now, or as soon as the client reads. A newer Observation takes the place of one that
-  /// waits.
+  /// Sends bytes now, or as soon as the client reads. A newer Observation takes the place of one
+  /// that waits.
   /// @param frame  is taken if it has to wait
   void send(Buffer& frame, std::size_t size, bool is_observation);
   /// Sends what waits, as far as that is possible.

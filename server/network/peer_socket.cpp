@@ -39,8 +39,8 @@ void PeerSocket::set_standing(Standing standing, Time now) {
   if (standing == Standing::none) since_ = now;
 }
 
-/// Space behind end_ for the rest of the frame, as far as about as much has arrived already: a header
-/// alone takes no memory.
+/// Space behind end_ for the rest of the frame, as far as about as much has arrived already: a
+/// header alone takes no memory.
 void PeerSocket::enlarge() {
   const std::size_t have = end_ - begin_;
   const std::size_t wanted = std::clamp(needed_, have + least_space, 2 * have + least_space);

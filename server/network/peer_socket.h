@@ -75,11 +75,11 @@ class PeerSocket {
 
   Buffer input_;  // what has arrived is from begin_ to end_
   std::size_t begin_ = 0, end_ = 0;
-  std::size_t needed_ = 0;       // of the frame that begins there
-  bool has_frames_ = false;      // of the message, before the one at begin_
-  std::size_t to_skip_ = 0;      // of a frame that is too long
-  std::size_t skipped_ = 0;      // bytes of the message that were not kept
-  bool more_to_skip_ = false;    // the message goes on behind that frame
+  std::size_t needed_ = 0;     // of the frame that begins there
+  bool has_frames_ = false;    // of the message, before the one at begin_
+  std::size_t to_skip_ = 0;    // of a frame that is too long
+  std::size_t skipped_ = 0;    // bytes of the message that were not kept
+  bool more_to_skip_ = false;  // the message goes on behind that frame
   std::string reply_;
   OutputQueue output_;
 };

@@ -11,9 +11,7 @@ namespace {
 constexpr std::chrono::seconds between_notices{10};  // peers could cause any number
 
 /// Names are numbers, 8 bytes each.
-std::string name_of(std::uint64_t id) {
-  return {reinterpret_cast<const char*>(&id), sizeof id};
-}
+std::string name_of(std::uint64_t id) { return {reinterpret_cast<const char*>(&id), sizeof id}; }
 std::uint64_t id_of(const std::string& name) {
   std::uint64_t id = 0;
   if (name.size() == sizeof id) std::memcpy(&id, name.data(), sizeof id);
@@ -70,7 +68,8 @@ PeerSocket* PeerTable::most_waiting_peer() const {
   PeerSocket* most = nullptr;
   for (const auto& [id, peer] : peers_) {
     if (peer->is_over() || peer->output().waiting_bytes() == 0) continue;
-    if (most == nullptr || peer->output().waiting_bytes() > most->output().waiting_bytes()) most = peer.get();
+    if (most == nullptr || peer->output().waiting_bytes() > most->output().waiting_bytes())
+      most = peer.get();
   }
   return most;
 }

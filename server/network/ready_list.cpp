@@ -37,8 +37,8 @@ void ReadyList::remove(int descriptor) {
 std::optional<ReadyList::Ready> ReadyList::next() {
   if (!has_more()) {
     next_ = 0;
-    count_ = std::max(
-        0, ::epoll_wait(number(), events_.data(), static_cast<int>(events_.size()), 0));
+    count_ =
+        std::max(0, ::epoll_wait(number(), events_.data(), static_cast<int>(events_.size()), 0));
   }
   if (!has_more()) return std::nullopt;
   const epoll_event& event = events_[static_cast<std::size_t>(next_++)];

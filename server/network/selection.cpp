@@ -35,9 +35,9 @@ std::variant<std::vector<Fit>, wire::Fault> fit_names(const std::vector<std::str
                         fmt::format("The scene has no robot '{}'.", id), id);
     }
     if (name.size() > longest_pattern || ++globs > most_patterns) {
-      return make_fault(
-          ErrorCode::too_many, "robots",
-          fmt::format("A Hello may have {} patterns of {} bytes at most.", most_patterns, longest_pattern));
+      return make_fault(ErrorCode::too_many, "robots",
+                        fmt::format("A Hello may have {} patterns of {} bytes at most.",
+                                    most_patterns, longest_pattern));
     }
     for (std::size_t i = 0; i < fits.size(); ++i) {
       if (fits[i] == Fit::none && matches(name, layout.robots[i].id)) fits[i] = Fit::by_pattern;
@@ -59,9 +59,9 @@ std::variant<std::vector<Selected>, wire::Fault> select_robots(const wire::Hello
   };
   if (!hello.controller.empty() &&
       std::none_of(run.controllers.begin(), run.controllers.end(), is_wanted)) {
-    return make_fault(
-        ErrorCode::unknown_controller, "controller",
-        fmt::format("The scene has no controller '{}'.", hello.controller.substr(0, longest_pattern)));
+    return make_fault(ErrorCode::unknown_controller, "controller",
+                      fmt::format("The scene has no controller '{}'.",
+                                  hello.controller.substr(0, longest_pattern)));
   }
   auto fitted = fit_names(hello.robots, run.layout);
   if (auto* fault = std::get_if<wire::Fault>(&fitted)) return std::move(*fault);

@@ -156,7 +156,8 @@ void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
 void Socket::accept(const Door& door) {
   for (int i = 0; i < accepted_at_once; ++i) {
     const Time now = Clock::now();
-    const bool is_full = peers_.without_session() >= most_without_session_ || peers_.size() >= most_peers_;
+    const bool is_full =
+        peers_.without_session() >= most_without_session_ || peers_.size() >= most_peers_;
     if (is_full && !peers_.make_place(now)) return set_accepting(false);
     peers_.bury();
     Descriptor client = door.listener.accept();
@@ -204,8 +205,8 @@ Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptor
   const std::size_t ours = polled_.size();
   for (const int descriptor : descriptors) polled_.push_back({descriptor, POLLIN, 0});
   const auto longest = milliseconds(std::numeric_limits<int>::max());
-  const int count = ::poll(polled_.data(), polled_.size(),
-                           static_cast<int>(std::min(timeout, longest).count()));
+  const int count =
+      ::poll(polled_.data(), polled_.size(), static_cast<int>(std::min(timeout, longest).count()));
   if (count < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
   if (count < 0) return Ready::woken;
   for (std::size_t i = ours; i < polled_.size(); ++i) {

@@ -1,7 +1,7 @@
 #pragma once
-// The server's end of all connections: it listens at every endpoint and speaks ZMTP as a ROUTER does,
-// but takes no routing ids from clients. Controllers come first: while a tick runs, all others
-// together have a small share of the wall time.
+// The server's end of all connections: it listens at every endpoint and speaks ZMTP as a ROUTER
+// does, but takes no routing ids from clients. Controllers come first: while a tick runs, all
+// others together have a small share of the wall time.
 
 #include <poll.h>
 

@@ -65,8 +65,8 @@ class Outbox {
 
   const v1::ServerMessage& message() const;  ///< the current one
   bool is_observation() const;               ///< the current one is
-  std::size_t size() const;            ///< of the current message [bytes]
-  void write(std::uint8_t* to) const;  ///< writes size() bytes
+  std::size_t size() const;                  ///< of the current message [bytes]
+  void write(std::uint8_t* to) const;        ///< writes size() bytes
 
  private:
   struct Message;

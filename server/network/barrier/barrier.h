@@ -50,7 +50,7 @@ struct Barrier {
 
   Config config;
   Send send;
-  OnStanding on_standing;  // may be empty
+  OnStanding on_standing;        // may be empty
   Time now;                      // set before anything is done
   std::optional<wire::Run> run;  // none while the world is loading
   Progress progress;             // likewise

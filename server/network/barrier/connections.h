@@ -26,8 +26,8 @@ class Connections {
   Connections(const Rate& rate, std::size_t limit) : rate_(rate), limit_(limit) {}
 
   /// The connection that a message came from, a new one if it was not known. Each time that their
-  /// number has doubled, those without a session that may send their full amount again are forgotten:
-  /// a new record says the same about them. At the limit, all without a session are.
+  /// number has doubled, those without a session that may send their full amount again are
+  /// forgotten: a new record says the same about them. At the limit, all without a session are.
   Connection& receive_from(const std::string& id, Time now);
   /// Null if it is not known.
   const Connection* find(const std::string& id) const;
@@ -45,9 +45,7 @@ class Connections {
     connection.allowance.charge(static_cast<double>(bytes / bytes_per_message));
   }
   /// The last message does not count.
-  static void refund(Connection& connection, std::size_t bytes) {
-    connection.allowance.give_back(1 + static_cast<double>(bytes / bytes_per_message));
-  }
+  static void refund(Connection& connection) { connection.allowance.give_back(); }
 
   void bind(const std::string& id, SessionId session);
   void unbind(const std::string& id);
@@ -64,7 +62,7 @@ class Connections {
 
   Rate rate_;
   std::size_t limit_;
-  std::size_t forget_at_ = std::min(limit_, fewest_);  // connections
+  std::size_t forget_at_ = std::min(limit_, fewest_);        // connections
   std::unordered_map<std::string, Connection> connections_;  // walked only to forget some
 };
 

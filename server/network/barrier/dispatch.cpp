@@ -69,9 +69,8 @@ bool may_send(Barrier& barrier, const std::string& id, Connection& connection, S
 }
 
 /// The message in `barrier.inbox`, of a session.
-/// @param bytes  that it has
 void handle(Barrier& barrier, Connection& connection, Session& session, InboxKind kind,
-            std::size_t bytes, world::Commands* commands) {
+            world::Commands* commands) {
   if (kind == InboxKind::leave) return handle_leave(barrier, session);
   if (kind == InboxKind::heartbeat) return handle_heartbeat(barrier, session);
   const bool is_waiting = session.state == SessionState::hello;
@@ -83,7 +82,7 @@ void handle(Barrier& barrier, Connection& connection, Session& session, InboxKin
   }
   if (kind == InboxKind::request) return handle_request(barrier, session);
   const bool is_expected = handle_command(barrier, session, commands);
-  if (is_expected) Connections::refund(connection, bytes);
+  if (is_expected) Connections::refund(connection);
 }
 
 }  // namespace
@@ -100,7 +99,9 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
       received.is_single_frame ? wire::encoding_of(received.bytes) : wire::Encoding::binary;
   if (session == nullptr) connection.encoding = encoding;
   if (!may_send(barrier, id, connection, session)) return;
-  Connections::charge_size(connection, received.bytes.size());
+  if (standing_of(session) != Standing::controller) {
+    Connections::charge_size(connection, received.bytes.size());
+  }
   if (!received.is_single_frame) return answer_malformed(barrier, id, session, {});
   if (auto fault = check_size(barrier, received, session)) {
     return answer_fault(barrier, id, session, std::move(*fault));
@@ -116,7 +117,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
     return answer_malformed(barrier, id, session, barrier.inbox.complaint());
   }
   if (session != nullptr) {
-    handle(barrier, connection, *session, kind, received.bytes.size(), commands);
+    handle(barrier, connection, *session, kind, commands);
   } else if (kind == InboxKind::hello) {
     handle_hello(barrier, id, received.access, received.bytes);
   } else {

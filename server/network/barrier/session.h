@@ -46,7 +46,7 @@ struct Application {
 struct Session {
   SessionId id = SessionId::none;
   SessionState state = SessionState::ready;
-  std::string connection;  ///< the one that it was made over; lost: the last one
+  std::string connection;          ///< the one that it was made over; lost: the last one
   std::optional<std::size_t> key;  ///< that it was made with, see Access
   wire::Role role = wire::Role::controller;
   std::string client;       ///< name and version, for messages

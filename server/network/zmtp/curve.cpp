@@ -130,23 +130,24 @@ bool CurvePeer::initiate(Bytes body, std::string& reply) {
   if (!content || !is_fresh(number_of(number))) return false;
   const Key client_key = key_of(*content);
   const Bytes vouch_nonce = Bytes(*content).subspan(key_size, long_nonce_size);
-  const auto vouched = open_box(Bytes(*content).subspan(key_size + long_nonce_size, vouch_size),
-                                make_nonce("VOUCH---", vouch_nonce), client_key,
-                                our_transient_secret_);
+  const auto vouched =
+      open_box(Bytes(*content).subspan(key_size + long_nonce_size, vouch_size),
+               make_nonce("VOUCH---", vouch_nonce), client_key, our_transient_secret_);
   const bool is_vouched =
-      vouched &&
-      ::sodium_memcmp(vouched->data(), client_transient_.data(), key_size) == 0 &&
+      vouched && ::sodium_memcmp(vouched->data(), client_transient_.data(), key_size) == 0 &&
       ::sodium_memcmp(vouched->data() + key_size, keys_.public_key().data(), key_size) == 0;
   if (!is_vouched) return false;
   const auto client = keys_.client(client_key);
   if (!client) {
-    append_command(reply, "ERROR", "\x03" "400");
+    append_command(reply, "ERROR",
+                   "\x03"
+                   "400");
     return false;
   }
   client_ = *client;
   if (!is_of_client(read_metadata(Bytes(*content).subspan(least)))) return false;
-  const int result = ::crypto_box_beforenm(shared_.data(), client_transient_.data(),
-                                           our_transient_secret_.data());
+  const int result =
+      ::crypto_box_beforenm(shared_.data(), client_transient_.data(), our_transient_secret_.data());
   if (result != 0) return false;
   const auto our_number = bytes_of_number(++sent_);
   const std::string ours = our_metadata();
@@ -166,9 +167,9 @@ std::optional<CurvePeer::Opened> CurvePeer::open(std::span<std::uint8_t> body) {
   if (!is_fresh(number_of(number))) return std::nullopt;
   const auto box = body.subspan(message_name.size() + number_size);
   const auto content = box.subspan(mac_size);
-  const int result = ::crypto_box_open_easy_afternm(
-      content.data(), box.data(), box.size(), make_nonce("CurveZMQMESSAGEC", number).data(),
-      shared_.data());
+  const int result =
+      ::crypto_box_open_easy_afternm(content.data(), box.data(), box.size(),
+                                     make_nonce("CurveZMQMESSAGEC", number).data(), shared_.data());
   if (result != 0) return std::nullopt;
   return Opened{content.subspan(1), (content[0] & more_in_box) != 0,
                 (content[0] & command_in_box) != 0};

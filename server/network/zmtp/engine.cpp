@@ -79,8 +79,10 @@ Taken Engine::take(std::span<std::uint8_t> input, std::size_t limit, std::string
   if (header->body > most) {
     const bool fits = header->body < SIZE_MAX / 2;
     if (!is_traffic || !fits) return failed();
-    return {Step::too_long, header->length + static_cast<std::size_t>(header->body),
-            header->has_more, {}};
+    return {Step::too_long,
+            header->length + static_cast<std::size_t>(header->body),
+            header->has_more,
+            {}};
   }
   const std::size_t size = header->length + static_cast<std::size_t>(header->body);
   if (input.size() < size) return {Step::incomplete, size, false, {}};

@@ -24,8 +24,8 @@ struct Taken {
     failed,      ///< not ZMTP, or not allowed: the connection must be closed
   };
   Step step = Step::incomplete;
-  /// Of the bytes that are used up; of an incomplete frame, how many there must be; of one that is too
-  /// long, its whole length, of which not all has arrived.
+  /// Of the bytes that are used up; of an incomplete frame, how many there must be; of one that is
+  /// too long, its whole length, of which not all has arrived.
   std::size_t size = 0;
   bool has_more = false;              ///< frame, too_long: the message goes on
   std::span<std::uint8_t> content{};  ///< frame: points into the input

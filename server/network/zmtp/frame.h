@@ -1,6 +1,6 @@
 #pragma once
-// Frames of ZMTP, ZeroMQ's wire protocol (RFC 37): a byte of flags, the size in one byte or eight, the
-// body.
+// Frames of ZMTP, ZeroMQ's wire protocol (RFC 37): a byte of flags, the size in one byte or eight,
+// the body.
 
 #include <cstddef>
 #include <cstdint>

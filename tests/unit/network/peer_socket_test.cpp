@@ -88,7 +88,8 @@ TEST_F(PeerSocketTest, OtherProtocolsEndTheConnection) {
 
 TEST_F(PeerSocketTest, MessagesAreCutFromAnyPieces) {
   const std::string all = greeting() + ready("DEALER") + frame(0, "one") + frame(1, "two") +
-                          frame(0, "three") + frame(4, std::string("\x04PING\0\0x", 8)) + frame(0, "four");
+                          frame(0, "three") + frame(4, std::string("\x04PING\0\0x", 8)) +
+                          frame(0, "four");
   std::vector<std::string> heard;
   for (const char byte : all) {
     say({byte});
