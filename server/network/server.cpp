@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "network/answers.h"
 #include "network/barrier/admission.h"
 #include "network/barrier/departure.h"
 #include "network/barrier/dispatch.h"
@@ -59,7 +60,9 @@ struct Server::State {
   Socket socket;
   std::optional<DisturbedLink> link;
   Barrier barrier;
-  bool is_opened = false;  // and clients that wait for the world are still to be answered
+  Answers answers;
+  std::uint64_t changes = 0;  // another number if anything that a status tells may have changed
+  bool is_opened = false;     // and clients that wait for the world are still to be answered
   Received received;
 };
 
@@ -75,21 +78,25 @@ bool Server::State::take_messages(Done done, world::Commands* commands) {
   if (std::exchange(is_opened, false)) admit_waiting(barrier);
   while (const auto held = link ? link->next(barrier.now) : std::nullopt) {
     receive(barrier, *held, commands);
+    ++changes;
   }
   for (int i = 0; i < messages_at_once && socket.receive(received); ++i) {
     if (!link || link->arrives(received, barrier.now)) receive(barrier, received, commands);
     socket.handled();
+    changes += barrier.inbox.is_question() ? 0 : 1;
     if (done()) return true;
   }
   for (const std::string& connection : socket.take_gone()) {
     // What such a link still holds back arrives first; a heartbeat then finds that it is gone.
     if (!link || !link->holds(connection)) disconnect(barrier, connection);
+    ++changes;
   }
   return done();
 }
 
 void Server::State::advance() {
   const Time now = Clock::now();
+  if (now >= network::next_event(barrier)) ++changes;
   if (link) link->release(now);
   network::advance(barrier, now);
 }
@@ -150,6 +157,7 @@ Outcome Server::gather(const Wait& wait) {
 void Server::publish(const world::Observations& observations,
                      const std::vector<std::string>& tag_payloads) {
   state_->advance();
+  ++state_->changes;
   network::publish(state_->barrier, observations, tag_payloads);
 }
 
@@ -174,16 +182,18 @@ void Server::add_robots(std::span<const std::string> scripts,
                         const world::Observations& observations,
                         const std::vector<std::string>& tag_payloads) {
   state_->advance();
+  ++state_->changes;
   network::add_robots(state_->barrier, scripts, {&observations, &tag_payloads});
 }
 
 void Server::remove_robots(std::span<const std::size_t> robots, const std::string& why) {
+  ++state_->changes;
   network::remove_robots(state_->barrier, robots, why);
 }
 
-void Server::pause() { network::pause(state_->barrier); }
-
-void Server::resume() {
+void Server::set_paused(bool is_paused) {
+  ++state_->changes;
+  if (is_paused) return network::pause(state_->barrier);
   state_->advance();
   network::resume(state_->barrier);
 }
@@ -192,6 +202,7 @@ bool Server::paused() const { return state_->barrier.gate.is_standing(); }
 
 void Server::reset(std::uint64_t seed) {
   state_->advance();
+  ++state_->changes;
   if (state_->link) state_->link->set_seed(seed);
   network::reset(state_->barrier, seed);
 }
@@ -201,8 +212,15 @@ std::vector<Call> Server::take_calls() { return state_->barrier.calls.take(); }
 bool Server::can_hear(const Call& call) const { return network::can_hear(state_->barrier, call); }
 
 void Server::answer(const Call& call, const std::function<void(wire::Outbox&)>& write) {
-  const Time begin = Clock::now();
+  ++state_->changes;
   network::answer(state_->barrier, call, write);
+}
+
+void Server::answer_question(const Call& call, const std::function<void(wire::Outbox&)>& write) {
+  const Time begin = Clock::now();
+  wire::Answer& answer = state_->answers.find(call.request, state_->changes, write);
+  network::answer(state_->barrier, call,
+                  [&](wire::Outbox& outbox) { outbox.response(call.request.id, answer); });
   state_->socket.charge_others(Clock::now() - begin);
 }
 

@@ -21,6 +21,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "network/config.h"
@@ -83,9 +84,10 @@ class Server {
   /// @param tag_payloads  of the same tick, for each of Layout::tags
   void publish(const world::Observations& observations,
                const std::vector<std::string>& tag_payloads);
-  void publish(world::Observations&&, const std::vector<std::string>&) = delete;
-  void publish(const world::Observations&, std::vector<std::string>&&) = delete;
-  void publish(world::Observations&&, std::vector<std::string>&&) = delete;
+  template <class Seen, class Payloads>
+  requires(!std::is_lvalue_reference_v<Seen> ||
+           !std::is_lvalue_reference_v<Payloads>) void publish(Seen&& temporary,
+                                                               Payloads&& or_this_one) = delete;
 
   /// Until every robot that is not gone has answered the published tick; values are written into
   /// `commands` as they arrive, those of robots that are gone become zero. On anything but
@@ -116,10 +118,9 @@ class Server {
   ///             not told
   void remove_robots(std::span<const std::size_t> robots, const std::string& why = {});
 
-  /// No tick is complete from now on: collect() must still be called. Once the tick is answered,
-  /// the world stands, sessions are told, and paused() is true.
-  void pause();
-  void resume();
+  /// While that holds no tick is complete: collect() must still be called. Once the tick is
+  /// answered, the world stands, sessions are told, and paused() is true.
+  void set_paused(bool is_paused);
   bool paused() const;
 
   /// The world went back to its start: sessions are told, what they owed is void, and the next
@@ -133,6 +134,11 @@ class Server {
   bool can_hear(const Call& call) const;
   /// Every call is answered once; `write` puts the response into the outbox.
   void answer(const Call& call, const std::function<void(wire::Outbox&)>& write);
+  /// The same for a call that changes nothing. If another one has asked the same while nothing has
+  /// changed, it gets the same answer. The time that it takes counts as that of others than
+  /// controllers.
+  /// @param write  puts the response with number 0 into the outbox
+  void answer_question(const Call& call, const std::function<void(wire::Outbox&)>& write);
   /// Adds what a server knows: sessions, and robots that are free or have left.
   void fill(wire::Status& status) const;
   std::vector<RobotStatus> status() const;       ///< per robot of the layout

@@ -1,13 +1,16 @@
 #include "reports/metrics.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
-#include <thread>
+#include <string_view>
 
+#include "network/endpoint.h"
+#include "network/listener.h"
+#include "reports/http_port.h"
 #include "text/numbers.h"
 
 namespace ziggurat::reports {
@@ -16,9 +19,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds period{250};  // between copies
-constexpr std::size_t threads = 2;
-constexpr std::size_t most_waiting = 16;  // connections
-constexpr time_t most_seconds = 5;        // for a request to arrive, or an answer to be taken
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -80,18 +80,6 @@ void add_sessions(std::string& out, const wire::Status& status) {
   });
 }
 
-/// The address in an IPv6 host, which is written as [ADDRESS]; any other host as it is.
-std::string without_brackets(const std::string& host) {
-  const bool has_brackets = host.starts_with('[') && host.ends_with(']');
-  return has_brackets ? host.substr(1, host.size() - 2) : host;
-}
-
-/// The port that is bound, any free one for 0; -1 if it can't be.
-int bind_port(httplib::Server& server, const std::string& host, int port) {
-  if (port == 0) return server.bind_to_any_port(host.c_str());
-  return server.bind_to_port(host.c_str(), port) ? port : -1;
-}
-
 }  // namespace
 
 std::string to_prometheus(const wire::Status& status) {
@@ -133,16 +121,18 @@ std::string to_prometheus(const wire::Status& status) {
 }
 
 struct MetricsPort::State {
-  httplib::Server server;
   std::string url;
-  std::thread thread;
   Clock::time_point published{};
   std::mutex mutex;  // of the next two
   std::string prometheus, json;
+  std::optional<HttpPort> port;  // last: its thread ends first
 
-  std::string read(const std::string& text) {
+  HttpPort::Content read(std::string_view path) {
     const std::lock_guard lock(mutex);
-    return text;
+    if (path == "/metrics") return {"text/plain; version=0.0.4; charset=utf-8", prometheus};
+    if (path == "/status") return {"application/json", json};
+    if (path == "/") return {"text/plain", "Ziggurat: /metrics for Prometheus, /status for JSON\n"};
+    return {};
   }
 };
 
@@ -163,41 +153,22 @@ MetricsPort::MetricsPort(const std::string& address, bool insecure)
     throw text::UsageError(fmt::format(
         "--metrics: other machines can reach {}; use 127.0.0.1, or add --insecure", host));
   }
-  State& s = *state_;
-  // The library's own options would let two programs share a port.
-  s.server.set_socket_options([](socket_t socket) {
-    const int yes = 1;
-    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  });
-  s.server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
-  s.server.set_read_timeout(most_seconds).set_write_timeout(most_seconds);
-  s.server.set_keep_alive_max_count(most_waiting).set_payload_max_length(0);
-  s.server.Get("/metrics", [&s](const httplib::Request&, httplib::Response& response) {
-    response.set_content(s.read(s.prometheus), "text/plain; version=0.0.4; charset=utf-8");
-  });
-  s.server.Get("/status", [&s](const httplib::Request&, httplib::Response& response) {
-    response.set_content(s.read(s.json), "application/json");
-  });
-  s.server.Get("/", [](const httplib::Request&, httplib::Response& response) {
-    response.set_content("Ziggurat: /metrics for Prometheus, /status for JSON\n", "text/plain");
-  });
-  const int bound = bind_port(s.server, without_brackets(host), static_cast<int>(port));
-  if (bound < 0) {
+  try {
+    State& state = *state_;
+    // Other machines may know this one by any name.
+    state.port.emplace(network::Listener("tcp://" + address), insecure ? "*" : host,
+                       [&state](std::string_view path) { return state.read(path); });
+    const std::string& endpoint = state.port->endpoint();
+    state.url = fmt::format("http://{}{}", host, endpoint.substr(endpoint.rfind(':')));
+  } catch (const network::EndpointError&) {
     throw std::runtime_error(
         fmt::format("--metrics: {} can't be opened; the port must be free (0 takes any free one), "
                     "and the host one of this machine",
                     address));
   }
-  s.url = fmt::format("http://{}:{}", host, bound);
-  s.thread = std::thread([&s] { s.server.listen_after_bind(); });
-  // stop() has no effect on a server that does not run yet.
-  while (!s.server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-MetricsPort::~MetricsPort() {
-  state_->server.stop();
-  if (state_->thread.joinable()) state_->thread.join();
-}
+MetricsPort::~MetricsPort() = default;
 
 const std::string& MetricsPort::url() const { return state_->url; }
 

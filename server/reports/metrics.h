@@ -11,7 +11,7 @@ namespace ziggurat::reports {
 /// In the text format 0.0.4 of Prometheus.
 std::string to_prometheus(const wire::Status& status);
 
-/// Serves GET /metrics (Prometheus), /status (JSON) and / (a list of these) on separate threads.
+/// Serves GET /metrics (Prometheus), /status (JSON) and / (a list of these) on a thread of its own.
 /// The run publishes a copy of its status from time to time.
 class MetricsPort {
  public:

@@ -130,7 +130,7 @@ void Run::print_notices() {
   const bool has_controllers =
       robots_without_controller().size() < world_.simulation.layout().robots.size();
   if (service_ == Service::run || plan_.real_time || has_controllers) return;
-  server_.pause();  // otherwise the run would be over before a supervisor can connect
+  server_.set_paused(true);  // otherwise the run would be over before a supervisor can connect
   console_.notice(
       "paused: the scene has no controllers; start the server with --real-time, or write "
       "'ziggurat ctl URL resume'");

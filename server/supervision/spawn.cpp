@@ -81,7 +81,7 @@ void Supervision::add_controller(const scene::Entity& entity) {
 Supervision::Reply Supervision::remove(const network::Call& call) {
   const std::string& id = call.request.text;
   const auto entity = entity_named(id);
-  if (!entity) return unknown_entity(call, "remove.entity", id);
+  if (!entity) return fail(call, no_entity("remove.entity", id));
   std::vector<std::size_t> robots;
   const auto& all = world_.simulation.layout().robots;
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -55,6 +55,12 @@ Selection select(const std::vector<std::string>& patterns, const simulation::Sim
 
 }  // namespace
 
+wire::Fault no_entity(std::string field, const std::string& id) {
+  return wire::make_fault(
+      ErrorCode::unknown_entity, std::move(field),
+      fmt::format("There is no entity '{}'.", id.substr(0, network::longest_pattern)));
+}
+
 void PauseTimer::update(bool is_paused) {
   if (is_paused == paused_since_.has_value()) return;
   if (is_paused) {
@@ -97,8 +103,7 @@ void Supervision::serve() {
 Supervision::Reply Supervision::handle(const network::Call& call) {
   switch (call.request.kind) {
     case Kind::status:
-      server_.answer(call,
-                     [&](wire::Outbox& outbox) { outbox.response(call.request.id, status()); });
+      server_.answer_question(call, [&](wire::Outbox& outbox) { outbox.response(0, status()); });
       return Reply::given;
     case Kind::read:
       return read(call);
@@ -126,7 +131,7 @@ Supervision::Reply Supervision::handle(const network::Call& call) {
 
 Supervision::Reply Supervision::pause(const network::Call& call) {
   steps_left_ = 0;
-  server_.pause();
+  server_.set_paused(true);
   paused_.update(server_.paused());
   return server_.paused() ? done(call) : Reply::later;
 }
@@ -135,7 +140,7 @@ Supervision::Reply Supervision::pause(const network::Call& call) {
 Supervision::Reply Supervision::resume(const network::Call& call) {
   stepping_.reset();
   steps_left_ = 0;
-  server_.resume();
+  server_.set_paused(false);
   paused_.update(server_.paused());
   return done(call);
 }
@@ -157,7 +162,7 @@ Supervision::Reply Supervision::step(const network::Call& call) {
   }
   stepping_ = call;
   steps_left_ = call.request.ticks;
-  server_.resume();
+  server_.set_paused(false);
   paused_.update(server_.paused());
   return Reply::later;
 }
@@ -194,12 +199,15 @@ void Supervision::refuse_reset(const std::string& why) {
 
 Supervision::Reply Supervision::read(const network::Call& call) {
   const simulation::Simulation& simulation = world_.simulation;
-  const Selection selection = select(call.request.entities, simulation);
-  if (selection.unknown) return unknown_entity(call, "read.entities", *selection.unknown);
-  const std::string hash = math::to_hex(simulation.hash());
-  server_.answer(call, [&](wire::Outbox& outbox) {
-    outbox.response(call.request.id, simulation.layout(), simulation.state(), selection.entities,
-                    hash);
+  server_.answer_question(call, [&](wire::Outbox& outbox) {
+    const Selection selection = select(call.request.entities, simulation);
+    if (selection.unknown) {
+      wire::Fault fault = no_entity("read.entities", *selection.unknown);
+      fault.tick = simulation.state().tick;
+      return outbox.response(0, fault);
+    }
+    outbox.response(0, simulation.layout(), simulation.state(), selection.entities,
+                    math::to_hex(simulation.hash()));
   });
   return Reply::given;
 }
@@ -207,7 +215,7 @@ Supervision::Reply Supervision::read(const network::Call& call) {
 Supervision::Reply Supervision::move(const network::Call& call) {
   const wire::Request& request = call.request;
   const auto entity = entity_named(request.text);
-  if (!entity) return unknown_entity(call, "move.entity", request.text);
+  if (!entity) return fail(call, no_entity("move.entity", request.text));
   if (request.position.size() != 3 || !all_finite(request.position)) {
     return fail(call, ErrorCode::bad_value, "move.position",
                 "A position must be three finite numbers x, y, z in metres.");
@@ -227,18 +235,15 @@ Supervision::Reply Supervision::move(const network::Call& call) {
   return done(call);
 }
 
-Supervision::Reply Supervision::fail(const network::Call& call, ErrorCode code, std::string field,
-                                     std::string message) {
-  wire::Fault fault = wire::make_fault(code, std::move(field), std::move(message));
+Supervision::Reply Supervision::fail(const network::Call& call, wire::Fault fault) {
   fault.tick = world_.simulation.state().tick;
   server_.answer(call, [&](wire::Outbox& outbox) { outbox.response(call.request.id, fault); });
   return Reply::given;
 }
 
-Supervision::Reply Supervision::unknown_entity(const network::Call& call, std::string field,
-                                               const std::string& id) {
-  return fail(call, ErrorCode::unknown_entity, std::move(field),
-              fmt::format("There is no entity '{}'.", id.substr(0, network::longest_pattern)));
+Supervision::Reply Supervision::fail(const network::Call& call, ErrorCode code, std::string field,
+                                     std::string message) {
+  return fail(call, wire::make_fault(code, std::move(field), std::move(message)));
 }
 
 Supervision::Reply Supervision::done(const network::Call& call) {
@@ -257,7 +262,7 @@ std::optional<std::size_t> Supervision::entity_named(const std::string& id) cons
 
 void Supervision::published() {
   paused_.update(server_.paused());
-  if (steps_left_ > 0 && --steps_left_ == 0) server_.pause();
+  if (steps_left_ > 0 && --steps_left_ == 0) server_.set_paused(true);
 }
 
 void Supervision::charge(Phase phase, double seconds) {

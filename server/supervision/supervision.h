@@ -16,6 +16,10 @@
 
 namespace ziggurat::supervision {
 
+/// The fault of a request for an entity that is not there.
+/// @param field  of the request
+wire::Fault no_entity(std::string field, const std::string& id);
+
 /// How long a paced run has been paused: its schedule shifts by that.
 class PauseTimer {
  public:
@@ -76,7 +80,7 @@ class Supervision {
   void add_controller(const scene::Entity& entity);
   Reply fail(const network::Call& call, wire::ErrorCode code, std::string field,
              std::string message);
-  Reply unknown_entity(const network::Call& call, std::string field, const std::string& id);
+  Reply fail(const network::Call& call, wire::Fault fault);
   Reply done(const network::Call& call);
   std::optional<std::size_t> entity_named(const std::string& id) const;
 

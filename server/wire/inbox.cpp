@@ -141,6 +141,12 @@ std::uint64_t Inbox::request_id() const { return message_->message.request().id(
 
 Request Inbox::request() const { return read(message_->message.request()); }
 
+bool Inbox::is_question() const {
+  const auto request = message_->message.request().request_case();
+  return message_->kind == Kind::request &&
+         (request == v1::Request::kStatus || request == v1::Request::kRead);
+}
+
 std::uint64_t Inbox::command_tick() const { return message_->command.tick(); }
 
 std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {

@@ -62,7 +62,8 @@ v1::End::Reason reason_of(EndReason reason) {
 struct Outbox::Message {
   v1::ServerMessage message;
   std::size_t size = 0;
-  std::string text;  // its JSON, if that is asked for; empty otherwise
+  std::string text;  // its JSON, or what is sent of an answer; empty otherwise
+  Answer* answer = nullptr;  // the message is made from this one
 
   // What protobuf keeps for reuse is as large as the largest of each part ever was: now and then
   // it begins anew.
@@ -82,11 +83,16 @@ Outbox::Outbox(Outbox&&) noexcept = default;
 Outbox& Outbox::operator=(Outbox&&) noexcept = default;
 
 void Outbox::finish() {
+  message_->answer = nullptr;
   message_->size = message_->message.ByteSizeLong();
   message_->text.clear();
 }
 
 void Outbox::encode(Encoding encoding) {
+  if (message_->answer != nullptr) {
+    message_->text = message_->answer->bytes(message_->message.response().id(), encoding);
+    return;
+  }
   if (encoding == Encoding::binary) {
     message_->text.clear();
   } else if (message_->text.empty()) {
@@ -220,6 +226,14 @@ void Outbox::response(std::uint64_t request, const world::Layout& layout, const 
   fill(layout, state, entities, *response.mutable_states());
   response.mutable_states()->set_hash(std::string(hash));
   finish();
+}
+
+void Outbox::response(std::uint64_t request, Answer& answer) {
+  v1::Response& response = *message_->message.mutable_response();
+  response.Clear();
+  response.set_id(request);
+  finish();
+  message_->answer = &answer;
 }
 
 void Outbox::response(std::uint64_t request, const Fault& fault) {

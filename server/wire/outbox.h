@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "wire/answer.h"
 #include "wire/messages.h"
 #include "wire/request.h"
 #include "wire/roster.h"
@@ -53,6 +54,8 @@ class Outbox {
   /// @param entities  into Layout::entities, ascending;  @param hash  16 hexadecimal digits
   void response(std::uint64_t request, const world::Layout& layout, const world::State& state,
                 std::span<const std::size_t> entities, std::string_view hash);
+  /// @param answer  must stay until the message is sent
+  void response(std::uint64_t request, Answer& answer);
   void loading(double progress, std::string_view message);
   void paused(std::uint64_t tick);
   /// @param by  name of the client that has the robots now

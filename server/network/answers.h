@@ -1,0 +1,38 @@
+#pragma once
+// Answers to requests that change nothing, `status` and `read`: clients that ask the same while
+// nothing has changed get the same answer, which is computed once.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "wire/answer.h"
+#include "wire/outbox.h"
+#include "wire/request.h"
+
+namespace ziggurat::network {
+
+class Answers {
+ public:
+  using Write = std::function<void(wire::Outbox&)>;
+
+  /// @param changes  a number that is another one if anything has changed
+  /// @param write  writes the answer with number 0
+  wire::Answer& find(const wire::Request& request, std::uint64_t changes, const Write& write);
+
+ private:
+  struct Kept {
+    wire::Request::Kind kind;
+    std::vector<std::string> entities;
+    wire::Answer answer;
+  };
+
+  std::vector<Kept> kept_;
+  std::uint64_t changes_ = 0;
+  std::chrono::steady_clock::time_point made_{};  // the first of them
+  wire::Outbox outbox_;
+};
+
+}  // namespace ziggurat::network
