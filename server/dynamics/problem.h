@@ -45,6 +45,7 @@ struct Block {
 
 struct Problem {
   double length = 0;               ///< of the substep [s]
+  double allowed_overlap = 1e-6;   ///< that turn_into_displacement() leaves [m]
   std::vector<Tree*> trees;        ///< by their index in the system
   std::vector<int> offset;         ///< of each tree in p and v
   std::vector<Block> blocks;
@@ -76,8 +77,6 @@ struct Problem {
   void weigh(Block& block) const;
 };
 
-/// What an overlap may remain [m]: rounding must not move bodies.
-constexpr double allowed_overlap = 1e-6;
 /// Slower impacts do not bounce [m/s].
 constexpr double slowest_bounce = 0.05;
 

@@ -207,6 +207,7 @@ void System::add(const Outcome& outcome) {
 void System::gather_island(int first_tree, int last_tree, int first_item, int last_item) {
   problem_.clear();
   problem_.length = length_;
+  problem_.allowed_overlap = allowed_overlap;
   for (int i = first_tree; i < last_tree; ++i) {
     Tree& tree = trees[tree_order_[i]];
     compute_mass(tree);

@@ -36,6 +36,7 @@ class System {
  public:
   std::vector<Tree> trees;
   RestOptions rest;
+  double allowed_overlap = 1e-6;  ///< it may remain, because rounding must not move bodies [m]
 
   /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and
   /// are ignored, until something wakes its island: a contact with a tree that is awake and comes

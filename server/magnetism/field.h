@@ -95,6 +95,7 @@ class Field {
   void reset();
 
   std::span<const Magnet> magnets() const { return magnets_; }
+  bool turns_freely() const { return !free_.empty(); }  ///< one of them does
 
   /// Per magnet: its rotation in the body since the start; identity unless freely turning.
   std::span<const Quaternion> turns() const { return turns_; }

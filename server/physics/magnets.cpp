@@ -1,6 +1,7 @@
 #include "physics/magnets.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "magnetism/stiffness.h"
 #include "physics/convert.h"
@@ -104,6 +105,12 @@ void Magnets::body_removed(const Body& body) {
   currents_.resize(magnets_.size());
 }
 
+void Magnets::body_moved(Body& body) {
+  for (Carrier& carrier : carriers_) {
+    if (carrier.entity == body.entity) carrier.rests = false;
+  }
+}
+
 /// The next one goes on with the orientations of this one.
 void Magnets::give_up_field() {
   for (std::size_t i = 0; field_ && i < magnets_.size(); ++i) {
@@ -127,6 +134,7 @@ void Magnets::build_field(std::span<const Body> bodies) {
   }
   poses_.resize(carriers_.size());
   wrenches_.resize(carriers_.size());
+  evaluated_ = false;
   field_.emplace(std::move(magnets), carriers_.size(), options_);
   weigh_carriers(bodies);
   std::vector<Quaternion> turns(field_->turns().begin(), field_->turns().end());
@@ -134,21 +142,40 @@ void Magnets::build_field(std::span<const Body> bodies) {
   field_->set_turns(turns);
 }
 
+/// Takes the poses of the carriers, and the currents.
+/// @return  whether something differs from what it was
+bool Magnets::take_poses(std::span<const Body> bodies) {
+  bool changed = false;
+  for (std::size_t i = 0; i < magnets_.size(); ++i) {
+    const double current = bodies[magnets_[i].entity].magnets[magnets_[i].number].current;
+    changed |= std::exchange(currents_[i], current) != current;
+  }
+  for (std::size_t i = 0; i < carriers_.size(); ++i) {
+    Carrier& carrier = carriers_[i];
+    const Body& body = bodies[carrier.entity];
+    const bool rested = std::exchange(carrier.rests, body.sleeps());
+    if (rested && carrier.rests) continue;
+    const Pose pose = from_bullet(body.transform(carrier.part));
+    const bool same = pose.position == poses_[i].position &&
+                      pose.orientation.coeffs() == poses_[i].orientation.coeffs();
+    changed |= !same;
+    poses_[i] = pose;
+  }
+  return changed;
+}
+
 void Magnets::before_substep(std::span<Body> bodies, double substep) {
-  ++substeps_;
-  close_.clear();
   stiff_.clear();
   if (magnets_.empty()) return;
   if (!field_) build_field(bodies);
-  for (std::size_t i = 0; i < magnets_.size(); ++i) {
-    currents_[i] = bodies[magnets_[i].entity].magnets[magnets_[i].number].current;
+  const bool changed = take_poses(bodies);
+  if (changed || !evaluated_ || field_->turns_freely()) {
+    ++substeps_;
+    field_->evaluate(substep, poses_, currents_, wrenches_);
+    evaluated_ = true;
+    if (divides_) find_close_pairs(bodies, substep);
   }
-  for (std::size_t i = 0; i < carriers_.size(); ++i) {
-    poses_[i] = from_bullet(bodies[carriers_[i].entity].transform(carriers_[i].part));
-  }
-  field_->evaluate(substep, poses_, currents_, wrenches_);
   for (std::size_t i = 0; i < carriers_.size(); ++i) push(bodies, i, 1);
-  if (divides_) find_close_pairs(bodies, substep);
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
     if (!magnets_[i].turning) continue;
     bodies[magnets_[i].entity].links[*magnets_[i].turning].turn = field_->turns()[i];
@@ -181,12 +208,13 @@ void Magnets::weigh_carriers(std::span<const Body> bodies) {
 }
 
 /// Notes how a carrier moves, once in a substep.
-void Magnets::follow(Carrier& carrier, const Body& body) {
+void Magnets::note_motion(Carrier& carrier, const Body& body) {
   if (carrier.seen == substeps_) return;
   carrier.seen_before = carrier.seen;
   carrier.velocity_before = carrier.velocity;
   carrier.turning_before = carrier.turning;
   carrier.seen = substeps_;
+  carrier.need = {};
   carrier.centre = poses_[&carrier - carriers_.data()].position;
   if (carrier.inverse_mass == 0) return;
   body.motions(motions_);
@@ -201,18 +229,26 @@ void Magnets::find_close_pairs(std::span<const Body> bodies, double substep) {
     if (!magnets_[i].turning) moment = std::max(moment, field_->moment(i).norm());
   }
   field_->list_near(close_reach(moment, felt_inverse_mass_, inverse_inertia_, substep), near_);
+  const auto carrier = [&](std::uint32_t magnet) -> Carrier& {
+    return carriers_[field_->magnets()[magnet].body];
+  };
+  close_.clear();
   for (const auto& [i, j] : near_) {
-    const std::size_t a = field_->magnets()[i].body, b = field_->magnets()[j].body;
-    const std::size_t first = carriers_[a].entity, second = carriers_[b].entity;
-    if (magnets_[i].turning || magnets_[j].turning || first == second) continue;
-    if (carriers_[a].inverse_mass + carriers_[b].inverse_mass == 0) continue;
-    follow(carriers_[a], bodies[first]);
-    follow(carriers_[b], bodies[second]);
-    const PairOfMagnets pair = pair_of(*field_, i, j);
-    const int parts = parts_of(pair, carriers_[a], carriers_[b], substep, substeps_);
-    if (parts < 0) continue;
-    close_.push_back({i, j, parts});
-    if (parts > 0) stiff_.push_back({first, second, parts});
+    Carrier &a = carrier(i), &b = carrier(j);
+    if (magnets_[i].turning || magnets_[j].turning || a.entity == b.entity) continue;
+    if (a.inverse_mass + b.inverse_mass == 0) continue;
+    note_motion(a, bodies[a.entity]);
+    note_motion(b, bodies[b.entity]);
+    const auto need = need_of(pair_of(*field_, i, j), a, b, substep, substeps_);
+    if (!need) continue;
+    close_.push_back({i, j, *need});
+    a.need += *need;
+    b.need += *need;
+  }
+  for (const ClosePair& pair : close_) {
+    const Carrier &a = carrier(pair.first), &b = carrier(pair.second);
+    const int parts = parts_for(pair.need, a, b);
+    if (parts > 0) stiff_.push_back({a.entity, b.entity, parts});
   }
 }
 
@@ -242,6 +278,7 @@ void Magnets::push_stiff(std::span<Body> bodies, double share) {
     poses_[i] = from_bullet(bodies[carriers_[i].entity].transform(carriers_[i].part));
   }
   field_->evaluate(chosen_, poses_, currents_, wrenches_);
+  evaluated_ = false;
   for (const std::size_t i : chosen_carriers_) push(bodies, i, share);
 }
 

@@ -28,6 +28,7 @@ class Magnets final : public Plugin {
 
   void body_added(Body& body) override;
   void body_removed(const Body& body) override;
+  void body_moved(Body& body) override;
   void before_substep(std::span<Body> bodies, double substep) override;
 
   std::span<const StiffPair> stiff_pairs() const override { return stiff_; }
@@ -38,8 +39,9 @@ class Magnets final : public Plugin {
   void give_up_field();
   void build_field(std::span<const Body> bodies);
   void weigh_carriers(std::span<const Body> bodies);
+  bool take_poses(std::span<const Body> bodies);
   void find_close_pairs(std::span<const Body> bodies, double substep);
-  void follow(Carrier& carrier, const Body& body);
+  void note_motion(Carrier& carrier, const Body& body);
   void push(std::span<Body> bodies, std::size_t carrier, double share) const;
 
   magnetism::Options options_;
@@ -52,14 +54,15 @@ class Magnets final : public Plugin {
   std::vector<Carrier> carriers_;  // the bodies of the field
   std::vector<math::Pose> poses_;
   std::vector<magnetism::Wrench> wrenches_;
+  bool evaluated_ = false;  // wrenches_ are those at poses_ and currents_
 
   // Pairs for which a substep is divided.
   bool divides_;
-  std::uint64_t substeps_ = 0;
+  std::uint64_t substeps_ = 0;  // without those in which nothing had changed
   double felt_inverse_mass_ = 0, inverse_inertia_ = 0;  // the largest of the carriers
   std::vector<magnetism::MagnetPair> near_, chosen_pairs_;
-  std::vector<ClosePair> close_;  // of this substep
-  std::vector<StiffPair> stiff_;  // of them those for which it must be divided
+  std::vector<ClosePair> close_;  // of the last one of these
+  std::vector<StiffPair> stiff_;  // of them those for which the substep must be divided
   magnetism::PairSet chosen_;
   std::vector<std::size_t> chosen_carriers_;
   std::vector<Motion> motions_;

@@ -11,10 +11,13 @@ using math::Vector3;
 /// Below this product of rate and substep a pair never matters: what it does in a substep is as
 /// good as constant.
 constexpr double soft = 0.02;
-/// A substep is divided where it would misplace more than this share of the pair's bond energy.
-constexpr double share = 2e-4;
-/// Product of rate and length that a part should have.
-constexpr double part_product = 0.2;
+/// The pairs of a body must not misplace more than this share of a bond's energy in a substep.
+constexpr double share = 1e-4;
+/// Those that misplace less than this part of it count for the sum, but are not divided.
+constexpr double least_part = 0.1;
+/// Product of rate and length that a part should have where the magnets touch, and the largest that
+/// it may have where they are farther apart.
+constexpr double part_angle = 0.2, largest_angle = 0.3;
 constexpr int most_parts = 128;
 
 /// What one carrier does at a point, now and a substep ago.
@@ -58,10 +61,11 @@ double close_reach(double moment, double inverse_mass, double inverse_inertia, d
                   std::cbrt(4 * energy * inverse_inertia / (rate * rate)));
 }
 
-int parts_of(const PairOfMagnets& pair, const Carrier& a, const Carrier& b, double substep,
-             std::uint64_t now) {
+std::optional<Need> need_of(const PairOfMagnets& pair, const Carrier& a, const Carrier& b,
+                            double substep, std::uint64_t now) {
   const Stiffness at_d(pair, a, b, pair.distance);
-  if (!(substep * at_d.rate > soft)) return -1;
+  if (!(substep * at_d.rate > soft)) return {};
+  if (a.rests && b.rests) return Need{};
   const Vector3 middle = (pair.first + pair.second) / 2;
   const PointMotion at_a = motion_at(a, middle), at_b = motion_at(b, middle);
   double speed = (at_a.now - at_b.now).norm();
@@ -78,17 +82,35 @@ int parts_of(const PairOfMagnets& pair, const Carrier& a, const Carrier& b, doub
     speed += substep * at_d.force * at_d.inverse_mass;
     turning += substep * at_d.torque * at_d.inverse_inertia;
   }
-  // A substep takes the force at its beginning: half a substep's change of energy is misplaced.
-  const double misplaced = substep / 2 * (at_d.force * speed + at_d.torque * turning);
   const double closest = pair.closest > 0 ? std::min(pair.closest, pair.distance) : pair.distance;
   const double bond = Stiffness(pair, a, b, closest).torque;
-  if (!(misplaced > share * bond)) return 0;
+  Need need;
+  // A substep takes the force at its beginning: half a substep's change of energy is misplaced.
+  need.misplaced = substep / 2 * (at_d.force * speed + at_d.torque * turning) / bond;
+  if (need.misplaced <= least_part * share) return need;
   const double nearest =
       std::max(pair.distance - substep * speed, std::min(closest, pair.distance / 2));
-  const double rate = Stiffness(pair, a, b, nearest).rate;
-  const double fastest = std::max({rate, speed / nearest, turning});
-  return static_cast<int>(std::clamp(std::ceil(substep * fastest / part_product), 1.0,
-                                     static_cast<double>(most_parts)));
+  const Stiffness at_nearest(pair, a, b, nearest);
+  const double angle = substep * std::max({at_nearest.rate, speed / nearest, turning});
+  // A part misplaces energy to second order.
+  need.parts_squared = angle * angle * at_nearest.torque / bond / (part_angle * part_angle);
+  need.fewest_parts = angle / largest_angle;
+  return need;
+}
+
+Need& Need::operator+=(const Need& other) {
+  misplaced += other.misplaced;
+  parts_squared += other.parts_squared;
+  fewest_parts = std::max(fewest_parts, other.fewest_parts);
+  return *this;
+}
+
+int parts_for(const Need& need, const Carrier& a, const Carrier& b) {
+  const double around = std::max(a.need.misplaced, b.need.misplaced);
+  if (need.misplaced <= least_part * share || around <= share) return 0;
+  const double parts = std::max({std::sqrt(std::max(a.need.parts_squared, b.need.parts_squared)),
+                                 a.need.fewest_parts, b.need.fewest_parts});
+  return static_cast<int>(std::clamp(std::ceil(parts), 1.0, static_cast<double>(most_parts)));
 }
 
 }  // namespace ziggurat::physics

@@ -3,8 +3,7 @@
 // parts a substep must be divided for them. docs/magnetism.md derives the limits.
 
 #include <cstdint>
-#include <span>
-#include <vector>
+#include <optional>
 
 #include "magnetism/field.h"
 
@@ -15,6 +14,15 @@ namespace ziggurat::physics {
 constexpr double safe_whole = 0.15;  ///< where the core takes the substep as a whole
 constexpr double safe_divided = 64;  ///< where it divides it for stiff pairs
 
+/// What a pair, or all pairs of a carrier, need in a substep.
+struct Need {
+  double misplaced = 0;      ///< energy, if it is taken as a whole, over that of a bond
+  double parts_squared = 0;  ///< of the number into which it should be divided, if it must be
+  double fewest_parts = 0;   ///< and never into fewer
+
+  Need& operator+=(const Need& other);
+};
+
 /// What moves with some magnets.
 struct Carrier {
   std::size_t entity = 0;
@@ -22,11 +30,14 @@ struct Carrier {
   double inverse_mass = 0;     ///< [1/kg]; 0: it stands
   double inverse_inertia = 0;  ///< the largest principal one [1/(kg m^2)]
 
+  bool rests = false;  ///< its body sleeps, in the coming substep
+
   // As of the substep `seen`:
   std::uint64_t seen = 0;                  ///< 0: none yet
   math::Vector3 centre{0, 0, 0};           ///< of mass, in the world [m]
   math::Vector3 velocity{0, 0, 0};         ///< of it [m/s]
   math::Vector3 turning{0, 0, 0};          ///< [rad/s]
+  Need need;                               ///< of all its pairs
   std::uint64_t seen_before = 0;           ///< the substep of these:
   math::Vector3 velocity_before{0, 0, 0};  ///< [m/s]
   math::Vector3 turning_before{0, 0, 0};   ///< [rad/s]
@@ -35,7 +46,7 @@ struct Carrier {
 /// A pair of fixed magnets of different carriers that are close enough to matter.
 struct ClosePair {
   std::uint32_t first = 0, second = 0;  ///< magnets
-  int parts = 0;                        ///< 0: a substep need not be divided for it
+  Need need;
 };
 
 /// No two magnets farther apart than this are a ClosePair [m].
@@ -53,9 +64,14 @@ struct PairOfMagnets {
   math::Vector3 second{0, 0, 0};
 };
 
+/// Both were seen in this substep, or rest.
 /// @param substep  its length [s];  @param now  its number
-/// @return  into how many parts it should be divided; 0: none; -1: they are too far apart to matter
-int parts_of(const PairOfMagnets& pair, const Carrier& a, const Carrier& b, double substep,
-             std::uint64_t now);
+/// @return  none if they are too far apart to matter
+std::optional<Need> need_of(const PairOfMagnets& pair, const Carrier& a, const Carrier& b,
+                            double substep, std::uint64_t now);
+
+/// Into how many parts the substep must be divided for a pair of two carriers; 0: it is taken as a
+/// whole.
+int parts_for(const Need& need, const Carrier& a, const Carrier& b);
 
 }  // namespace ziggurat::physics
