@@ -178,6 +178,15 @@ TEST(Rate, M7_ExpectedAnswersAreFree) {
   }
 }
 
+TEST(Rate, M7_LongMessagesCountMoreThanOnce) {
+  const SmallRun small(1);
+  Peers peers(small);
+  const std::string garbage(40 * 1024, '\xff');
+  for (int i = 0; i < 1000; ++i) peers.send_bytes("unknown", garbage);
+  EXPECT_LE(peers.inboxes["unknown"].size(), 2000U / 11 + 2);
+  EXPECT_EQ(peers.inboxes["unknown"].back().error().code(), v1::Error::TOO_MANY);
+}
+
 TEST(Rate, M7_PeersWithoutASessionToo) {
   const SmallRun small(1);
   Peers peers(small);

@@ -9,12 +9,15 @@ import os
 import pathlib
 import re
 import resource
+import select
 import socket
 import subprocess
 import sys
 import threading
 import time
 import unittest
+
+import zmq
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
@@ -126,6 +129,77 @@ class Uninvited(SceneTest):
             self.assertEqual(v1.Error.Severity.Name(error.severity), "FATAL")
             second.socket.close()
         self.end(process)
+
+    # ---- encryption ----
+
+    def test_altered_bytes_of_an_encrypted_connection(self):
+        """A program between client and server alters one byte of each connection. It gets nowhere, and the
+        server serves on."""
+        for name in ("server", "friend"):
+            self.assertEqual(self.ziggurat("keygen", "--out", self.folder / name).code, 0)
+        friend = (self.folder / "friend.public").read_text().strip()
+        self.write("clients", f"{friend} controller,observer\n")
+        process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--quiet", "--ticks", 0,
+                             "--curve-secret", self.folder / "server.secret",
+                             "--curve-clients", self.folder / "clients", limit=240)
+        self.endpoint = process.stdout.readline().split()[1]
+        self.passed = 0
+        self.assertTrue(self.is_welcome(self.altering(10**6)))
+        answered = [at for at in range(0, self.passed, 3 if IS_FULL else 9)
+                    if self.is_welcome(self.altering(at), 0.2)]
+        # Bytes without a meaning: the greeting's filler, the version's minor, the signature's length, and the
+        # padding of the first command, up to byte 145.
+        self.assertLess(max(answered, default=0), 146, answered)
+        self.assertTrue(self.is_welcome(self.endpoint))
+        self.end(process)
+
+    def is_welcome(self, endpoint, seconds=SLOW):
+        """Whether a client with a listed key gets a session."""
+        keys = [(self.folder / name).read_text().strip().encode()
+                for name in ("friend.secret", "friend.public", "server.public")]
+        with zmq.Context() as context, context.socket(zmq.DEALER) as dealer:
+            dealer.curve_secretkey, dealer.curve_publickey, dealer.curve_serverkey = keys
+            dealer.linger, dealer.rcvtimeo = 0, int(1000 * seconds)
+            dealer.connect(endpoint)
+            dealer.send(hello(v1.ROLE_OBSERVER))
+            try:
+                while True:
+                    kind = v1.ServerMessage.FromString(dealer.recv()).WhichOneof("message")
+                    if kind != "loading":
+                        return kind == "welcome"
+            except zmq.Again:
+                return False
+
+    def altering(self, position):
+        """An endpoint that leads to the server, but for one bit of what clients send, for one connection."""
+        listener = socket.create_server(("127.0.0.1", 0))
+
+        def carry():
+            listener.settimeout(SLOW)
+            client, _ = listener.accept()
+            listener.close()
+            server = socket.create_connection(("127.0.0.1", int(self.endpoint.rsplit(":", 1)[1])))
+            passed = 0
+            try:
+                while True:
+                    for source in select.select([client, server], [], [])[0]:
+                        data = bytearray(source.recv(65536))
+                        if not data:
+                            return
+                        if source is client:
+                            if 0 <= position - passed < len(data):
+                                data[position - passed] ^= 0x10
+                            passed += len(data)
+                            self.passed = passed  # by the last connection
+                        (server if source is client else client).sendall(data)
+            except OSError:
+                pass
+            finally:
+                client.close()
+                server.close()
+
+        threading.Thread(target=carry, daemon=True).start()
+        return f"tcp://127.0.0.1:{listener.getsockname()[1]}"
 
     # ---- memory ----
 
