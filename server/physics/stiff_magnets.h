@@ -37,7 +37,7 @@ struct Carrier {
   math::Vector3 centre{0, 0, 0};           ///< of mass, in the world [m]
   math::Vector3 velocity{0, 0, 0};         ///< of it [m/s]
   math::Vector3 turning{0, 0, 0};          ///< [rad/s]
-  Need need;                               ///< of all its pairs
+  Need need{};                             ///< of all its pairs
   std::uint64_t seen_before = 0;           ///< the substep of these:
   math::Vector3 velocity_before{0, 0, 0};  ///< [m/s]
   math::Vector3 turning_before{0, 0, 0};   ///< [rad/s]
@@ -46,7 +46,7 @@ struct Carrier {
 /// A pair of fixed magnets of different carriers that are close enough to matter.
 struct ClosePair {
   std::uint32_t first = 0, second = 0;  ///< magnets
-  Need need;
+  Need need{};
 };
 
 /// No two magnets farther apart than this are a ClosePair [m].
