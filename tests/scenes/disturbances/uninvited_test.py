@@ -42,6 +42,14 @@ def read_request(number, *entities):
                             ).SerializeToString()
 
 
+def varint(value):
+    encoded = b""
+    while value >= 0x80:
+        encoded += bytes([value & 0x7F | 0x80])
+        value >>= 7
+    return encoded + bytes([value])
+
+
 def observer(endpoint):
     peer = RawPeer(endpoint)
     peer.send_message(hello(v1.ROLE_OBSERVER))
@@ -277,6 +285,25 @@ class Uninvited(SceneTest):
                 code = told.response.error.code or told.error.code
                 self.assertEqual(v1.Error.Code.Name(code) if code else None, expected)
         self.assertLess(self.most_memory(process), 300 * MEBIBYTE)
+        self.end(process)
+
+    def test_a_message_for_which_there_is_no_memory(self):
+        """A controller's: it is its error, and neither it nor the server ends."""
+        limit = 400 * MEBIBYTE
+        process = self.serve(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        with RawPeer(self.endpoint) as peer:
+            peer.send_message(hello(robots=["*"]))
+            self.assertTrue(answer(peer).HasField("welcome"))
+            self.assertTrue(answer(peer).HasField("observation"))
+            positions = b"\x01" * (60 * MEBIBYTE)  # 240 MiB of numbers, and as much while they grow
+            command = v1.Command(robots=[1, 1])
+            field = command.SerializeToString()[:1] + varint(len(positions)) + positions
+            peer.send_message(b"\x12" + varint(len(field)) + field)
+            error = answer(peer).error
+            self.assertEqual(v1.Error.Code.Name(error.code), "MALFORMED", error)
+            self.assertIn("memory", error.message)
+            peer.send_message(v1.ClientMessage(heartbeat=v1.Heartbeat(sequence=7)).SerializeToString())
+        observer(self.endpoint).socket.close()
         self.end(process)
 
     # ---- descriptors ----
