@@ -79,6 +79,20 @@ void add_slope_of(const Problem& problem, const Block& block, const double* slop
   }
 }
 
+/// Whether a contact is faster than what one substep's forces give.
+bool has_strike(const Problem& problem) {
+  double fastest = 0, forces = 0;
+  for (const Block& block : problem.blocks) {
+    double u[Block::most_rows];
+    problem.speeds(block, u);
+    for (int r = 0; r < std::min(block.rows, 3); ++r) fastest = std::max(fastest, std::abs(u[r]));
+  }
+  for (const Tree* tree : problem.trees) {
+    forces = std::max(forces, problem.length * tree->gravity.norm());
+  }
+  return fastest > forces;
+}
+
 }  // namespace
 
 /// Adds J^T slope J to the matrix.
@@ -291,6 +305,7 @@ bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most)
 /// stick and slide; where some of them contradict each other a little, as rolling friction and the
 /// two ends of a line do, only the softened problem ends.
 bool Solver::soften_after_sweeps(Problem& problem, Outcome& outcome) {
+  const bool strikes = has_strike(problem);
   sweeps_.start(problem);
   for (int sweep = 1; sweep <= options.first_sweeps; ++sweep) {
     sweeps_.sweep();
@@ -298,7 +313,7 @@ bool Solver::soften_after_sweeps(Problem& problem, Outcome& outcome) {
   }
   sweeps_.finish(problem);
   outcome.sweeps += options.first_sweeps;
-  return outcome.converged = patient_proximal(problem, outcome);
+  return outcome.converged = patient_proximal(problem, outcome, strikes);
 }
 
 void Solver::solve_displacement(Problem& problem) {

@@ -89,7 +89,7 @@ class Solver {
   void take_speeds(const Problem& problem);
   double miss_now(const Problem& problem, double& scale) const;
   bool proximal(Problem& problem, Outcome& outcome);
-  bool patient_proximal(Problem& problem, Outcome& outcome);
+  bool patient_proximal(Problem& problem, Outcome& outcome, bool strikes);
   bool proximal_step(Problem& problem, double softness, double shortest, double& unbalanced);
   bool interior_points(Problem& problem, Outcome& outcome);
   void enter(const Problem& problem, double margin);

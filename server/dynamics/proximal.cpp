@@ -141,8 +141,9 @@ bool Solver::proximal(Problem& problem, Outcome& outcome) {
 
 /// Steps that lead nearer to the law: from anchor to anchor, with less softness where few steps
 /// are enough for one, and more where many are not.
+/// @param strikes  then it need not be as exact as for what stands and must not creep
 /// @return  whether the miss became small; otherwise the problem holds the best state met
-bool Solver::patient_proximal(Problem& problem, Outcome& outcome) {
+bool Solver::patient_proximal(Problem& problem, Outcome& outcome, bool strikes) {
   constexpr int few = 5, many = 15;
   constexpr double hardest = 1e-7, softest = 1, shortest = 1e-4;
   double scale = 0, unbalanced = 0, softness = options.softness;
@@ -162,6 +163,7 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome) {
     }
     if (nearer && now <= tolerance(scale)) return outcome.miss = now, true;
     enough = best <= soft_tolerance(scale);
+    if (enough && strikes) break;
     if (!nearer || steps > many) {
       if (enough || softness >= softest) break;
       softness *= 10, steps = 0;
