@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <exception>
+#include <span>
 #include <string>
 #include <variant>
 
 #include "cli/commands.h"
+#include "processes/guardian.h"
 #include "processes/signals.h"
 #include "reports/console.h"
 #include "run/version.h"
@@ -32,13 +34,15 @@ void allow_many_connections() {
   (void)::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-int execute(const Command& command, const Arguments& arguments) {
+int execute(const Command& command, const Arguments& arguments, std::span<char*> texts) {
   if (const auto* plain = std::get_if<Execute>(&command.execute)) return (*plain)(arguments);
-  processes::Signals signals;
+  processes::Guardian guardian(texts);
+  processes::Signals signals(&guardian);
   return std::get<ExecuteWithSignals>(command.execute)(arguments, signals);
 }
 
-int dispatch(Arguments arguments, reports::Console& console) {
+/// @param texts  the arguments of main()
+int dispatch(Arguments arguments, std::span<char*> texts, reports::Console& console) {
   if (arguments.empty()) {
     console.report(help_help());
     return exit_code::fault;
@@ -53,7 +57,7 @@ int dispatch(Arguments arguments, reports::Console& console) {
   if (name == "--help" || name == "-h") return execute_help({});
   const Command& command = command_named(name);
   if (asks_for_help(arguments)) return execute_help({name});
-  return execute(command, arguments);
+  return execute(command, arguments, texts);
 }
 
 }  // namespace
@@ -67,7 +71,7 @@ int main(int count, char** texts) {
   reports::Console console(style);
   cli::allow_many_connections();
   try {
-    return cli::dispatch(arguments, console);
+    return cli::dispatch(arguments, {texts, static_cast<std::size_t>(count)}, console);
   } catch (const scene::SceneError& error) {
     for (const auto& problem : error.problems()) console.problem(problem);
   } catch (const std::exception& error) {

@@ -38,9 +38,10 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 }
 
 // Between fork and exec: async-signal-safe calls only. Reports errno through the pipe.
-[[noreturn]] void become(char* const* arguments, char* const* environment, pid_t parent,
-                         int report) {
+[[noreturn]] void become(char* const* arguments, char* const* environment, pid_t parent, int report,
+                         const Guardian* guardian) {
   ::setpgid(0, 0);
+  if (guardian) guardian->end_group(::getpid());
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);  // the parent died before prctl()
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD}) ::signal(number, SIG_DFL);
@@ -57,7 +58,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const Program& program) {
+ChildProcess::ChildProcess(const Program& program, const Guardian* guardian) : guardian_(guardian) {
   auto arguments = program.arguments;
   auto environment = environment_with(program.environment);
   const auto argument_pointers = pointers(arguments);
@@ -66,7 +67,9 @@ ChildProcess::ChildProcess(const Program& program) {
   if (::pipe2(report, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category());
   const pid_t parent = ::getpid();
   id_ = ::fork();
-  if (id_ == 0) become(argument_pointers.data(), environment_pointers.data(), parent, report[1]);
+  if (id_ == 0) {
+    become(argument_pointers.data(), environment_pointers.data(), parent, report[1], guardian);
+  }
   const int fork_error = errno;
   ::close(report[1]);
   if (id_ < 0) {
@@ -81,21 +84,29 @@ ChildProcess::ChildProcess(const Program& program) {
   } while (count < 0 && errno == EINTR);
   ::close(report[0]);
   if (count == sizeof error) {
-    ::waitpid(id_, nullptr, 0);
+    collect();
     throw std::system_error(error, std::generic_category());
   }
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
-    : id_(std::exchange(other.id_, -1)), status_(other.status_) {}
+    : guardian_(other.guardian_), id_(std::exchange(other.id_, -1)), status_(other.status_) {}
 
 ChildProcess::~ChildProcess() {
   if (id_ < 0) return;
   // Until waitpid() the id of the group cannot be reused.
   if (!status_) {
     signal(SIGKILL);
-    ::waitpid(id_, nullptr, 0);
+    collect();
   }
+}
+
+/// Waits until it has ended. Afterwards its id may be that of another process.
+int ChildProcess::collect() {
+  if (guardian_) guardian_->forget_group(id_);
+  int status = 0;
+  ::waitpid(id_, &status, 0);
+  return status;
 }
 
 bool ChildProcess::poll() {
@@ -106,9 +117,7 @@ bool ChildProcess::poll() {
     return false;
   }
   signal(SIGKILL);  // the processes that it left in its group
-  int status = 0;
-  ::waitpid(id_, &status, 0);
-  status_ = status;
+  status_ = collect();
   return true;
 }
 

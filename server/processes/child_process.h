@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "processes/guardian.h"
+
 namespace ziggurat::processes {
 
 struct Program {
@@ -19,8 +21,9 @@ struct Program {
 class ChildProcess {
  public:
   /// Starts it with an empty stdin, the same stdout and stderr, and no signal blocked or ignored.
+  /// @param guardian  kills its group if this program is killed; must outlive it; null: none
   /// @throws std::system_error if it cannot be started
-  explicit ChildProcess(const Program& program);
+  explicit ChildProcess(const Program& program, const Guardian* guardian = nullptr);
   /// Kills the processes of its group that still run.
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;
@@ -31,6 +34,7 @@ class ChildProcess {
   /// Whether it has ended; never waits.
   bool poll();
   bool ended() const { return status_.has_value(); }
+  bool ended_well() const { return status_ == 0; }  ///< with exit code 0
 
   /// "ended with exit code 3" or "was killed by signal 9 (Killed)"; only after it has ended.
   std::string how_it_ended() const;
@@ -39,6 +43,9 @@ class ChildProcess {
   void signal(int number) const;
 
  private:
+  int collect();
+
+  const Guardian* guardian_ = nullptr;
   pid_t id_ = -1;              ///< also of its process group; -1 = moved from
   std::optional<int> status_;  ///< as of waitpid
 };

@@ -48,7 +48,8 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
   return launches;
 }
 
-ControllerProcess start(const Launch& launch, const world::Layout& layout) {
+ControllerProcess start(const Launch& launch, const world::Layout& layout,
+                        const Guardian* guardian) {
   if (!launch.robots_file.empty()) {
     recording::OutputFile file(launch.robots_file);
     for (const std::size_t robot : launch.robots) {
@@ -57,7 +58,7 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout) {
     file.close();
   }
   try {
-    return {launch.name, launch.robots, ChildProcess(launch.program)};
+    return {launch.name, launch.robots, ChildProcess(launch.program, guardian)};
   } catch (const std::system_error& error) {
     throw std::runtime_error(fmt::format("{} cannot be started ({}): {}", launch.name,
                                          launch.program.arguments[0], error.code().message()));
@@ -103,20 +104,22 @@ Launch plan_spawned(std::size_t robot, std::size_t number, const world::Layout& 
 }
 
 std::vector<ControllerProcess> start_all(const std::vector<Launch>& launches,
-                                         const world::Layout& layout) {
+                                         const world::Layout& layout, const Guardian* guardian) {
   std::vector<ControllerProcess> processes;
-  for (const auto& launch : launches) processes.push_back(start(launch, layout));
+  for (const auto& launch : launches) processes.push_back(start(launch, layout, guardian));
   return processes;
 }
 
 Controllers::Controllers(const scene::Scene& scene, const world::Layout& layout,
                          const std::vector<std::string>& scripts, LaunchSettings settings)
     : settings_(std::move(settings)),
-      processes_(start_all(plan_controllers(scene, layout, scripts, *settings_), layout)) {}
+      processes_(start_all(plan_controllers(scene, layout, scripts, *settings_), layout,
+                           settings_->guardian)) {}
 
 void Controllers::start_spawned(std::size_t robot, const world::Layout& layout) {
   if (!settings_) return;
-  auto started = start_all({plan_spawned(robot, spawned_++, layout, *settings_)}, layout);
+  auto started =
+      start_all({plan_spawned(robot, spawned_++, layout, *settings_)}, layout, settings_->guardian);
   processes_.push_back(std::move(started.front()));
 }
 

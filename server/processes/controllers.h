@@ -30,10 +30,11 @@ struct ControllerProcess {
 
 /// How the controllers of a run are started.
 struct LaunchSettings {
-  std::string endpoint;    ///< where they connect
-  std::string folder;      ///< for files with the ids of robots
-  std::string lua_runner;  ///< path or name of ziggurat-lua
-  unsigned lua_processes;  ///< 0 = one per robot
+  std::string endpoint;                ///< where they connect
+  std::string folder;                  ///< for files with the ids of robots
+  std::string lua_runner;              ///< path or name of ziggurat-lua
+  unsigned lua_processes;              ///< 0 = one per robot
+  const Guardian* guardian = nullptr;  ///< ends them if this program is killed; null: none
 };
 
 /// The processes that control the scene's robots. Lua robots that have a script are shared among
@@ -50,9 +51,11 @@ Launch plan_spawned(std::size_t robot, std::size_t number, const world::Layout& 
                     const LaunchSettings& settings);
 
 /// Starts all. If one cannot be started, those that were started are killed.
+/// @param guardian  ends them if this program is killed; null: none
 /// @throws std::runtime_error that names the process and the reason
 std::vector<ControllerProcess> start_all(const std::vector<Launch>& launches,
-                                         const world::Layout& layout);
+                                         const world::Layout& layout,
+                                         const Guardian* guardian = nullptr);
 
 /// The controller processes that a run has started.
 class Controllers {

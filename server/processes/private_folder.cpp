@@ -1,7 +1,13 @@
 #include "processes/private_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -11,10 +17,48 @@ namespace {
 
 // A socket's path has at most 107 bytes; the part after the parent folder has less than 40.
 constexpr std::size_t longest_parent = 64;
+constexpr std::string_view prefix = "ziggurat-";
+constexpr std::size_t name_length = prefix.size() + 6;
+constexpr std::time_t young = 60;  // [s]: between being made and being locked
+
+/// The descriptor of its lock, or -1 if a program that runs has it.
+int lock(const std::string& folder, int flags) {
+  const std::string path = folder + "/lock";
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0600);
+  if (file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+  ::close(file);
+  return -1;
+}
+
+/// Removes a folder whose program has ended. One without a lock is removed if it is empty and old.
+void remove_if_left(const std::string& folder) {
+  struct stat status {};
+  if (::lstat(folder.c_str(), &status) != 0) return;
+  if (!S_ISDIR(status.st_mode) || status.st_uid != ::geteuid()) return;
+  const int file = lock(folder, 0);
+  if (file < 0) {
+    if (status.st_mtime + young < std::time(nullptr)) ::rmdir(folder.c_str());
+    return;
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+  ::close(file);
+}
+
+void remove_left_folders(const std::string& parent) {
+  std::error_code error;
+  std::vector<std::string> found;
+  for (auto it = std::filesystem::directory_iterator(parent, error);
+       !error && it != std::filesystem::directory_iterator(); it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.size() == name_length && name.starts_with(prefix)) found.push_back(it->path());
+  }
+  for (const std::string& folder : found) remove_if_left(folder);
+}
 
 }  // namespace
 
-PrivateFolder::PrivateFolder() {
+PrivateFolder::PrivateFolder(const Guardian* guardian) {
   std::vector<std::string> parents;
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
   if (runtime && runtime[0] == '/' && std::string(runtime).size() <= longest_parent) {
@@ -22,9 +66,12 @@ PrivateFolder::PrivateFolder() {
   }
   parents.emplace_back("/tmp");
   for (const auto& parent : parents) {
-    std::string name = parent + "/ziggurat-XXXXXX";
+    remove_left_folders(parent);
+    std::string name = parent + "/" + std::string(prefix) + "XXXXXX";
     if (::mkdtemp(name.data())) {  // mode 0700
       path_ = name;
+      lock_ = lock(path_, O_CREAT);
+      if (guardian) guardian->remove_folder(path_);
       return;
     }
   }
@@ -34,6 +81,7 @@ PrivateFolder::PrivateFolder() {
 PrivateFolder::~PrivateFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+  if (lock_ >= 0) ::close(lock_);
 }
 
 }  // namespace ziggurat::processes

@@ -3,13 +3,18 @@
 
 #include <string>
 
+#include "processes/guardian.h"
+
 namespace ziggurat::processes {
 
 class PrivateFolder {
  public:
   /// Makes it in XDG_RUNTIME_DIR, otherwise in /tmp, with a path short enough for a socket in it.
+  /// Removes there what programs of this user left behind that could not clean up: each holds a
+  /// lock on its folder as long as it runs.
+  /// @param guardian  removes it if this program is killed; null: none
   /// @throws std::system_error
-  PrivateFolder();
+  explicit PrivateFolder(const Guardian* guardian = nullptr);
   /// Removes it with everything in it.
   ~PrivateFolder();
   PrivateFolder(const PrivateFolder&) = delete;
@@ -19,6 +24,7 @@ class PrivateFolder {
 
  private:
   std::string path_;
+  int lock_ = -1;  ///< of the file `lock` in it
 };
 
 }  // namespace ziggurat::processes

@@ -1,40 +1,101 @@
 #include "processes/signals.h"
 
+#include <poll.h>
+#include <sys/eventfd.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <optional>
+#include <string_view>
 #include <system_error>
 
 namespace ziggurat::processes {
+namespace {
 
-Signals::Signals() {
+constexpr int interrupted = 130;  // exit code
+
+void close_if_open(int descriptor) {
+  if (descriptor >= 0) ::close(descriptor);
+}
+
+}  // namespace
+
+Signals::Signals(Guardian* guardian) : guardian_(guardian) {
   sigset_t set;
   ::sigemptyset(&set);
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) ::sigaddset(&set, number);
-  ::sigprocmask(SIG_BLOCK, &set, &former_);
+  ::pthread_sigmask(SIG_BLOCK, &set, &former_);
   ::signal(SIGPIPE, SIG_IGN);
-  descriptor_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
-  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "signalfd");
+  signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
+  news_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  end_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  const int error = errno;
+  if (signals_ < 0 || news_ < 0 || end_ < 0) {
+    for (const int descriptor : {signals_, news_, end_}) close_if_open(descriptor);
+    throw std::system_error(error, std::generic_category(), "signals cannot be received");
+  }
+  thread_ = std::thread([this] { watch(); });
 }
 
 Signals::~Signals() {
-  take();  // pending signals must not end the program when they are unblocked
-  ::close(descriptor_);
-  ::sigprocmask(SIG_SETMASK, &former_, nullptr);
+  ::eventfd_write(end_, 1);
+  thread_.join();
+  receive();  // pending signals must not end the program when they are unblocked
+  for (const int descriptor : {signals_, news_, end_}) ::close(descriptor);
+  ::pthread_sigmask(SIG_SETMASK, &former_, nullptr);
 }
 
 Signals::Arrived Signals::take() {
-  Arrived arrived;
+  eventfd_t ignored = 0;
+  ::eventfd_read(news_, &ignored);
+  return {interruptions_.exchange(0), child_.exchange(false)};
+}
+
+void Signals::receive() {
   signalfd_siginfo info;
-  while (::read(descriptor_, &info, sizeof info) == sizeof info) {
+  while (::read(signals_, &info, sizeof info) == sizeof info) {
     if (info.ssi_signo == SIGCHLD) {
-      arrived.child = true;
+      child_ = true;
     } else {
-      ++arrived.interruptions;
+      ++interruptions_;
     }
   }
-  return arrived;
+}
+
+/// The thread.
+void Signals::watch() {
+  using clock = std::chrono::steady_clock;
+  std::optional<clock::time_point> deadline;
+  for (;;) {
+    int timeout = -1;
+    if (deadline) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline - clock::now());
+      timeout = std::max(0, static_cast<int>(left.count()));
+    }
+    pollfd descriptors[] = {{signals_, POLLIN, 0}, {end_, POLLIN, 0}};
+    ::poll(descriptors, 2, timeout);
+    if (descriptors[1].revents != 0) return;
+    if (deadline && clock::now() >= *deadline) end_by_force();
+    if (descriptors[0].revents == 0) continue;
+    receive();
+    if (interruptions_ > 0 && !deadline) deadline = clock::now() + patience;
+    ::eventfd_write(news_, 1);
+  }
+}
+
+/// Without destructors: another thread is in the middle of something.
+void Signals::end_by_force() {
+  constexpr std::string_view text =
+      "\nziggurat: interrupted in the middle of a tick or of an output; the program did not wait "
+      "for it\n";
+  pollfd error{STDERR_FILENO, POLLOUT, 0};
+  if (!is_completed_ && ::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0) {
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+  }
+  if (guardian_) guardian_->end_now();
+  ::_exit(is_completed_ ? exit_code_.load() : interrupted);
 }
 
 }  // namespace ziggurat::processes

@@ -1,22 +1,36 @@
 #pragma once
-// SIGINT, SIGTERM, SIGHUP and SIGCHLD as input of a descriptor that can be polled.
+// SIGINT, SIGTERM, SIGHUP and SIGCHLD as input of a descriptor that can be polled. The program ends
+// at most a second after the first interruption, whatever it is doing.
 
 #include <signal.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "processes/guardian.h"
 
 namespace ziggurat::processes {
 
 class Signals {
  public:
+  /// Wall time from the first interruption until the program is ended by force.
+  static constexpr std::chrono::milliseconds patience{900};
+
   /// Changes the whole process: blocks these signals for this thread and all threads started later,
-  /// and ignores SIGPIPE, so that a closed pipe is an error of write(). main() makes the only one.
+  /// and ignores SIGPIPE, so that a closed pipe is an error of write(). Starts a thread that ends
+  /// the process with exit code 130 if it still runs when the patience is over: in a long tick, or
+  /// in an output that takes no more. main() makes the only one.
+  /// @param guardian  must outlive this; null: none
   /// @throws std::system_error
-  Signals();
+  explicit Signals(Guardian* guardian = nullptr);
   /// Restores the previous mask.
   ~Signals();
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;
 
-  int descriptor() const { return descriptor_; }
+  /// Readable when a signal has arrived that take() did not return yet.
+  int descriptor() const { return news_; }
 
   struct Arrived {
     int interruptions = 0;  ///< SIGINT, SIGTERM, SIGHUP
@@ -25,9 +39,25 @@ class Signals {
   /// The signals since the last call; never waits.
   Arrived take();
 
+  /// All that matters is done: an end by force is no news from now on, and has this exit code.
+  void completed(int exit_code) {
+    exit_code_ = exit_code;
+    is_completed_ = true;
+  }
+
+  Guardian* guardian() const { return guardian_; }
+
  private:
-  int descriptor_ = -1;
+  void watch();
+  void receive();
+  [[noreturn]] void end_by_force();
+
+  Guardian* guardian_;
+  int signals_ = -1, news_ = -1, end_ = -1;
   sigset_t former_;
+  std::atomic<int> interruptions_ = 0, exit_code_ = 0;
+  std::atomic<bool> child_ = false, is_completed_ = false;
+  std::thread thread_;
 };
 
 }  // namespace ziggurat::processes

@@ -18,6 +18,7 @@ class HashFile {
 
   /// @throws WriteError
   void write(std::uint64_t tick, std::uint64_t hash);
+  void flush() { file_.flush(); }  ///< @throws WriteError
   void close() { file_.close(); }
 
  private:

@@ -39,6 +39,7 @@ void OutputFile::close() {
 }
 
 void OutputFile::flush() {
+  if (descriptor_ < 0) return;  // it was closed by an error that was reported
   const char* next = buffer_.data();
   std::size_t left = buffer_.size();
   while (left > 0) {

@@ -31,12 +31,13 @@ class OutputFile {
   /// @throws WriteError
   void written();
 
+  /// Writes what is in the buffer. Call it between whole lines. @throws WriteError
+  void flush();
+
   /// Writes the rest and closes; further calls do nothing. @throws WriteError
   void close();
 
  private:
-  void flush();
-
   std::string path_;
   int descriptor_ = -1;
   fmt::memory_buffer buffer_;

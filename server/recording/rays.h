@@ -22,6 +22,7 @@ class Rays {
 
   /// @throws WriteError
   void write(const world::State& state);
+  void flush() { file_.flush(); }  ///< @throws WriteError
   void close() { file_.close(); }
 
  private:

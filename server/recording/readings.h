@@ -20,6 +20,7 @@ class Readings {
   /// What was true and observed at a tick, and the commands that answered it. @throws WriteError
   void write(const world::State& state, const world::Observations& observations,
              const world::Commands& commands);
+  void flush() { file_.flush(); }  ///< @throws WriteError
   void close() { file_.close(); }
 
  private:

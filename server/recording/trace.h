@@ -21,6 +21,7 @@ class Trace {
 
   /// Without rows of what is absent. @throws WriteError
   void write(const world::State& state);
+  void flush() { file_.flush(); }  ///< @throws WriteError
   void close() { file_.close(); }
 
  private:

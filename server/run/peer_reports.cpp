@@ -41,6 +41,12 @@ void PeerReports::print_log(std::uint64_t tick) {
   console_.flush();
 }
 
+bool PeerReports::has_failure(std::span<const std::size_t> robots) const {
+  return std::ranges::any_of(failures_, [&](const auto& failure) {
+    return std::ranges::find(robots, failure.first) != robots.end();
+  });
+}
+
 std::vector<reports::Summary::Failure> PeerReports::failures() const {
   auto sorted = failures_;
   std::ranges::sort(sorted, {},

@@ -2,6 +2,7 @@
 // Prints what the server reports of controllers and other peers.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,9 @@ class PeerReports {
 
   /// Prints the log lines of a tick, in the order of the robots.
   void print_log(std::uint64_t tick);
+
+  /// Whether the controller of one of these robots failed.
+  bool has_failure(std::span<const std::size_t> robots) const;
 
   /// Of all robots whose controller failed: sorted by tick, then by scene order.
   std::vector<reports::Summary::Failure> failures() const;

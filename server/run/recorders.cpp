@@ -1,8 +1,16 @@
 #include "run/recorders.h"
 
-#include <exception>
+#include <chrono>
+#include <utility>
 
 namespace ziggurat::run {
+namespace {
+
+// Shorter than processes::Signals::patience: when the program is ended by force in a long tick, all
+// that was written before is on the disk.
+constexpr std::chrono::milliseconds flush_interval{400};
+
+}  // namespace
 
 Recorders::Recorders(const Options& options, const supervision::World& world) {
   const world::Layout& layout = world.simulation.layout();
@@ -17,9 +25,30 @@ Recorders::Recorders(const Options& options, const supervision::World& world) {
     pictures_.emplace(*options.pictures, world.scene, world.simulation.entities(), layout);
   }
   if (!options.images.empty()) images_.emplace(options.images, layout);
+  const bool writes_each_tick = trace_ || hashes_ || readings_ || rays_;
+  if (writes_each_tick) flushing_.emplace(flush_interval, [this] { flush(); });
+}
+
+/// On the other thread.
+void Recorders::flush() {
+  const std::lock_guard lock(mutex_);
+  try {
+    if (trace_) trace_->flush();
+    if (hashes_) hashes_->flush();
+    if (readings_) readings_->flush();
+    if (rays_) rays_->flush();
+  } catch (const recording::WriteError&) {
+    failed_flush_ = std::current_exception();
+  }
+}
+
+void Recorders::report_failed_flush() {
+  if (failed_flush_) std::rethrow_exception(std::exchange(failed_flush_, nullptr));
 }
 
 void Recorders::tick(const simulation::Simulation& simulation) {
+  const std::lock_guard lock(mutex_);
+  report_failed_flush();
   if (trace_) trace_->write(simulation.state());
   if (hashes_) hashes_->write(simulation.state().tick, simulation.hash());
   if (rays_) rays_->write(simulation.state());
@@ -29,11 +58,14 @@ void Recorders::tick(const simulation::Simulation& simulation) {
 
 void Recorders::exchange(const world::State& state, const world::Observations& observations,
                          const world::Commands& commands) {
+  const std::lock_guard lock(mutex_);
+  report_failed_flush();
   if (readings_) readings_->write(state, observations, commands);
 }
 
 void Recorders::close() {
-  std::exception_ptr first;
+  flushing_.reset();
+  std::exception_ptr first = std::exchange(failed_flush_, nullptr);
   const auto close = [&](auto& file) {
     if (!file) return;
     try {

@@ -1,6 +1,8 @@
 #pragma once
 // The output files of a run.
 
+#include <exception>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,11 +16,14 @@
 #include "reports/summary.h"
 #include "run/options.h"
 #include "run/pictures.h"
+#include "run/repeating.h"
 #include "simulation/simulation.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {
 
+/// What is written of a tick is on the disk half a second of wall time later at most, also while
+/// the world is paused or a tick takes long.
 class Recorders {
  public:
   /// Creates all files, so that a path that cannot be written is reported before the run.
@@ -49,6 +54,11 @@ class Recorders {
   void write_report_card(const reports::ReportCard& card);
 
  private:
+  void flush();
+  void report_failed_flush();
+
+  std::mutex mutex_;                 ///< of all files: a tick is written whole
+  std::exception_ptr failed_flush_;  ///< what the other thread met; thrown by the next call
   std::optional<recording::Trace> trace_;
   std::optional<recording::HashFile> hashes_;
   std::optional<recording::Readings> readings_;
@@ -58,6 +68,7 @@ class Recorders {
   bool report_card_is_picture_ = false;
   std::optional<recording::Images> images_;
   std::optional<Pictures> pictures_;
+  std::optional<Repeating> flushing_;  ///< the last: it uses the others
 };
 
 }  // namespace ziggurat::run

@@ -31,6 +31,7 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       plan_(make_plan()),
       with_controllers_(!options.without_controllers && !(options.pictures && plan_.ticks == 0)),
       scripts_(script_paths(world_.scene, world_.simulation.layout(), path_)),
+      folder_(signals.guardian()),
       recorders_(options, world_),
       controllers_(start_controllers()),
       supervision_(supervision_settings(), world_, server_, controllers_, console_),
@@ -51,8 +52,19 @@ supervision::World Run::read_world(const Tell& tell) {
   return {path_, std::move(opened), seed};
 }
 
+/// A killed program cannot remove the files of its sockets.
+void Run::guard_sockets() {
+  if (!signals_.guardian()) return;
+  for (const auto& endpoint : server_.endpoints()) {
+    if (const auto file = network::file_of(endpoint); !file.empty()) {
+      signals_.guardian()->remove_file(file);
+    }
+  }
+}
+
 /// Answers clients while another thread loads the world, which alone uses the console meanwhile.
 std::unique_ptr<supervision::World> Run::load_world() {
+  guard_sockets();
   if (service_ == Service::serve) announce(options_, server_.endpoints(), console_);
   Background<supervision::World> loading([this](const Tell& tell) { return read_world(tell); });
   const std::array descriptors{signals_.descriptor(), loading.descriptor()};
@@ -115,7 +127,7 @@ processes::Controllers Run::start_controllers() {
           world_.simulation.layout(),
           scripts_,
           {server_.endpoints().front(), folder_.path(), processes::find_lua_runner(),
-           options_.lua_processes}};
+           options_.lua_processes, signals_.guardian()}};
 }
 
 supervision::Supervision::Settings Run::supervision_settings() const {
@@ -151,9 +163,10 @@ int Run::execute() {
   for (const auto& picture : recorders_.pictures()) console_.result(picture);
   const bool has_passed = report_hil();
   print_summary();
-  const int code = exit_code_of(summary_);
-  return code == reports::exit_code::finished && !has_passed ? reports::exit_code::gate_missed
-                                                             : code;
+  int code = exit_code_of(summary_);
+  if (code == reports::exit_code::finished && !has_passed) code = reports::exit_code::gate_missed;
+  signals_.completed(code);
+  return code;
 }
 
 /// From the start to the end, again after each reset.

@@ -55,6 +55,7 @@ class Run {
 
   // Setting up.
   supervision::World read_world(const Tell& tell);
+  void guard_sockets();
   std::unique_ptr<supervision::World> load_world();
   Plan make_plan() const;
   network::Config complete_config();

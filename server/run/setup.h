@@ -32,8 +32,8 @@ void announce(const Options& options, const std::vector<std::string>& endpoints,
 /// What clients are told at the end of the run.
 wire::End end_message(const reports::Summary& summary);
 
-/// Ends the program on Ctrl-C before there is a world. The thread that loads it has nothing to clean
-/// up, and ends with the process.
+/// Ends the program on Ctrl-C before there is a world. The thread that loads it has nothing to
+/// clean up, and ends with the process.
 [[noreturn]] void end_while_loading();
 
 }  // namespace ziggurat::run

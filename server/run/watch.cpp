@@ -18,8 +18,15 @@ constexpr milliseconds short_wait{20};      // while a controller may have vanis
 constexpr milliseconds last_messages{250};  // of a process that ended may arrive as late as that
 constexpr milliseconds noticeable{500};     // a wait that the progress line names
 constexpr milliseconds long_wait{5000};     // a wait that gets a line of its own
-constexpr milliseconds end_wait{2000};      // for controllers to answer the end
-constexpr int patience_ms = 1000;           // for processes to end after that
+
+/// How long controllers may take to end.
+struct Patience {
+  milliseconds answer;  ///< to the message that the run is over
+  int exit_ms;          ///< after that, and again after SIGTERM
+};
+constexpr Patience usual{milliseconds{2000}, 1000};
+// Together with what else is to be done, less than Signals::patience.
+constexpr Patience interrupted{milliseconds{400}, 100};
 
 }  // namespace
 
@@ -80,7 +87,8 @@ std::optional<Ending> Watch::until(const Step& step) {
     if (!ending && is_stopped_) ending = Ending::deadline_missed;
     if (!ending) ending = supervisor_request();
     const bool complete = outcome == network::Outcome::complete;
-    if (!ending && !complete) ending = lost_controller();
+    const bool may_have_lost = !complete || child_ended_ || missed_since_;
+    if (!ending && may_have_lost) ending = lost_controller();
     if (ending || complete) {
       peers_.print_log(tick_);
       printed_.clear();
@@ -98,6 +106,7 @@ void Watch::serve() {
 
 std::optional<Ending> Watch::interruption() {
   const auto arrived = signals_.take();
+  child_ended_ |= arrived.child;
   if (arrived.interruptions == 0) return std::nullopt;
   return arrived.interruptions > 1 ? Ending::forced : Ending::interrupted;
 }
@@ -112,11 +121,15 @@ std::optional<Ending> Watch::supervisor_request() {
 // its robots, may still arrive; and a lost connection may be that of a process whose end is not
 // known yet.
 std::optional<Ending> Watch::lost_controller() {
+  child_ended_ = false;
   if (waits_for_clients_) return std::nullopt;
   const auto status = server_.status();
   const auto is_needed = [&](const processes::ControllerProcess& process) {
+    // One that was ended from outside took leave perhaps; its own failures are reported already.
+    const bool was_ended = !process.process.ended_well() && !peers_.has_failure(process.robots);
     return std::ranges::any_of(process.robots, [&](std::size_t robot) {
-      return status[robot].membership != Membership::gone && is_required(status[robot]);
+      const bool is_missing = status[robot].membership != Membership::gone || was_ended;
+      return is_missing && is_required(status[robot]);
     });
   };
   const auto* ended = controllers_.first_ended(is_needed);
@@ -209,9 +222,10 @@ void Watch::report_awaited() {
 }
 
 void Watch::end_run(const wire::End& end) {
+  const Patience patience = end.reason == wire::EndReason::interrupted ? interrupted : usual;
   server_.finish(end);
   const std::array descriptors{signals_.descriptor()};
-  const auto deadline = clock::now() + end_wait;
+  const auto deadline = clock::now() + patience.answer;
   while (clock::now() < deadline) {
     const auto outcome = server_.drain({short_wait, descriptors});
     take_report();
@@ -222,7 +236,7 @@ void Watch::end_run(const wire::End& end) {
     }
   }
   peers_.print_log(tick_);
-  controllers_.end(patience_ms, [&] { return signals_.take().interruptions > 0; });
+  controllers_.end(patience.exit_ms, [&] { return signals_.take().interruptions > 0; });
 }
 
 }  // namespace ziggurat::run

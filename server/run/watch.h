@@ -84,6 +84,7 @@ class Watch {
   bool gathered_ = false;
   std::uint64_t tick_ = 0;
   std::string vanished_;
+  bool child_ended_ = false;                       ///< one or more, since the last look
   bool is_stopped_ = false;                        ///< by a deadline
   std::optional<clock::time_point> missed_since_;  ///< since when a controller seems to be lost
   clock::time_point waiting_since_{};

@@ -22,6 +22,26 @@ TEST(PrivateFolder, IsOursAloneAndGoesWithItsContents) {
   EXPECT_FALSE(fs::exists(path));
 }
 
+TEST(PrivateFolder, RemovesWhatDeadProgramsLeftAndNothingElse) {
+  const PrivateFolder parent;
+  const char* before = std::getenv("XDG_RUNTIME_DIR");
+  const std::string kept = before ? before : "";
+  ::setenv("XDG_RUNTIME_DIR", parent.path().c_str(), 1);
+  const std::string left = parent.path() + "/ziggurat-aaaaaa";
+  const std::string unlocked = parent.path() + "/ziggurat-bbbbbb";
+  const std::string other = parent.path() + "/ziggurat-notes";
+  for (const auto& each : {left, unlocked, other}) fs::create_directory(each);
+  for (const char* file : {"/lock", "/run"}) std::ofstream(left + file) << "x";
+  std::ofstream(other + "/notes") << "of the user";
+  const PrivateFolder first;
+  const PrivateFolder second;
+  before ? ::setenv("XDG_RUNTIME_DIR", kept.c_str(), 1) : ::unsetenv("XDG_RUNTIME_DIR");
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(unlocked)) << "young: it may be locked in a moment";
+  EXPECT_TRUE(fs::exists(other + "/notes"));
+  EXPECT_TRUE(fs::exists(first.path())) << "its program runs";
+}
+
 TEST(PrivateFolder, IsShortEvenIfTheRuntimeFolderIsNot) {
   const PrivateFolder parent;
   const auto deep = fs::path(parent.path()) / std::string(120, 'x');

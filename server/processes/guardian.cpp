@@ -1,0 +1,231 @@
+#include "processes/guardian.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace ziggurat::processes {
+namespace {
+
+enum class Kind : std::int32_t {
+  end_group,
+  forget_group,
+  remove_file,
+  remove_folder,
+  end_now,
+  done
+};
+
+/// One write to the pipe: shorter than PIPE_BUF, so that orders of several processes do not mix.
+struct Order {
+  Kind kind = Kind::done;
+  pid_t group = 0;
+  dev_t device = 0;  ///< of a file, with `inode`: another file of that name stays
+  ino_t inode = 0;
+  char path[512] = {};
+};
+
+void send(int pipe, const Order& order) noexcept {
+  while (::write(pipe, &order, sizeof order) < 0 && errno == EINTR) {
+  }
+}
+
+/// False if the path is too long to be sent.
+bool set_path(Order& order, const std::string& path) noexcept {
+  if (path.size() >= sizeof order.path) return false;
+  std::memcpy(order.path, path.c_str(), path.size() + 1);
+  return true;
+}
+
+void sleep_ms(int ms) noexcept {
+  const timespec time{ms / 1000, (ms % 1000) * 1'000'000L};
+  ::nanosleep(&time, nullptr);
+}
+
+// --- the guardian's process
+// -----------------------------------------------------------------------
+
+/// What is left behind if the watched process ends now.
+struct Left {
+  std::vector<pid_t> groups;
+  std::vector<Order> files;
+  std::vector<std::string> folders;
+};
+
+void take(const Order& order, Left& left) {
+  switch (order.kind) {
+    case Kind::end_group:
+      left.groups.push_back(order.group);
+      break;
+    case Kind::forget_group:
+      std::erase(left.groups, order.group);
+      break;
+    case Kind::remove_file:
+      left.files.push_back(order);
+      break;
+    case Kind::remove_folder:
+      left.folders.emplace_back(order.path);
+      break;
+    case Kind::end_now:
+    case Kind::done:
+      break;
+  }
+}
+
+void clean_up(const Left& left) {
+  for (const pid_t group : left.groups) ::kill(-group, SIGKILL);
+  // A process that is being killed may still write into the folder.
+  const auto is_there = [](pid_t group) { return ::kill(-group, 0) == 0; };
+  for (int i = 0; i < 200 && std::ranges::any_of(left.groups, is_there); ++i) sleep_ms(1);
+  for (const Order& file : left.files) {
+    struct stat now {};
+    const bool is_same =
+        ::lstat(file.path, &now) == 0 && now.st_dev == file.device && now.st_ino == file.inode;
+    if (is_same) ::unlink(file.path);
+  }
+  std::error_code ignored;
+  for (const std::string& folder : left.folders) std::filesystem::remove_all(folder, ignored);
+}
+
+/// The next order; at the end of the pipe Kind::end_now.
+Order read_order(int pipe) {
+  Order order;
+  std::size_t have = 0;
+  while (have < sizeof order) {
+    const ssize_t count = ::read(pipe, reinterpret_cast<char*>(&order) + have, sizeof order - have);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return {Kind::end_now, 0, 0, 0, {}};
+    have += static_cast<std::size_t>(count);
+  }
+  return order;
+}
+
+/// Keeps nothing of the watched process but the pipe: neither its terminal and session, nor its
+/// files, whose readers wait for the last writer to close.
+void detach(int pipe) {
+  ::setsid();
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) ::signal(number, SIG_IGN);
+  const int empty = ::open("/dev/null", O_RDWR);
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (pipe != standard) ::dup2(empty, standard);
+  }
+  if (pipe > 3) ::close_range(3, static_cast<unsigned>(pipe) - 1, 0);
+  ::close_range(static_cast<unsigned>(std::max(pipe, 2)) + 1, ~0U, 0);
+}
+
+void show_name(std::span<char*> arguments) {
+  constexpr std::string_view name = "ziggurat-guardian";
+  ::prctl(PR_SET_NAME, "zig-guardian");
+  if (arguments.empty()) return;
+  // Arguments lie behind each other in memory.
+  char* const begin = arguments.front();
+  const auto size =
+      static_cast<std::size_t>(arguments.back() + std::strlen(arguments.back()) - begin);
+  std::memset(begin, 0, size);
+  std::memcpy(begin, name.data(), std::min(size, name.size()));
+}
+
+[[noreturn]] void guard(int pipe, std::span<char*> arguments) {
+  detach(pipe);
+  show_name(arguments);
+  Left left;
+  for (;;) {
+    const Order order = read_order(pipe);
+    if (order.kind == Kind::end_now) clean_up(left);
+    if (order.kind == Kind::end_now || order.kind == Kind::done) ::_exit(0);
+    take(order, left);
+  }
+}
+
+}  // namespace
+
+Guardian::Guardian(std::span<char*> arguments) {
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) {
+    throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
+  }
+  process_ = ::fork();
+  if (process_ == 0) {
+    ::close(ends[1]);
+    guard(ends[0], arguments);
+  }
+  const int error = errno;
+  ::close(ends[0]);
+  orders_ = ends[1];
+  // So that a guardian that was stopped stops nothing else.
+  ::fcntl(orders_, F_SETFL, O_NONBLOCK);
+  if (process_ < 0) {
+    ::close(orders_);
+    throw std::system_error(error, std::generic_category(), "cannot start a process");
+  }
+}
+
+Guardian::~Guardian() {
+  if (process_ < 0) return;
+  send(orders_, {});
+  ::close(orders_);
+  wait(1000);
+}
+
+void Guardian::end_group(pid_t group) const noexcept {
+  Order order;
+  order.kind = Kind::end_group;
+  order.group = group;
+  send(orders_, order);
+}
+
+void Guardian::forget_group(pid_t group) const noexcept {
+  Order order;
+  order.kind = Kind::forget_group;
+  order.group = group;
+  send(orders_, order);
+}
+
+void Guardian::remove_file(const std::string& path) const noexcept {
+  Order order;
+  order.kind = Kind::remove_file;
+  struct stat now {};
+  if (!set_path(order, path) || ::lstat(order.path, &now) != 0) return;
+  order.device = now.st_dev;
+  order.inode = now.st_ino;
+  send(orders_, order);
+}
+
+void Guardian::remove_folder(const std::string& path) const noexcept {
+  Order order;
+  order.kind = Kind::remove_folder;
+  if (set_path(order, path)) send(orders_, order);
+}
+
+void Guardian::end_now() noexcept {
+  Order order;
+  order.kind = Kind::end_now;
+  send(orders_, order);
+  ::close(orders_);
+  wait(300);
+  process_ = -1;
+}
+
+void Guardian::wait(int most_ms) noexcept {
+  for (int i = 0; i < most_ms; ++i) {
+    if (::waitpid(process_, nullptr, WNOHANG) != 0) return;
+    sleep_ms(1);
+  }
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+}
+
+}  // namespace ziggurat::processes

@@ -1,0 +1,153 @@
+"""The end of the program: by signals in any situation, and by force; what is left behind."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import time
+
+from harness import (CONTROLLER_FAILED, INTERRUPTED, SceneTest, main)
+
+ENDLESS = ("--duration", "0")
+MOST = 1.5  # [s]: the program promises 1; the rest is for a busy machine
+
+
+SLOW_TICK = """<argos-configuration>
+  <framework><experiment length="0" ticks_per_second="1" random_seed="1" /></framework>
+  <controllers />
+  <arena size="100,100,10" center="0,0,5">{}</arena>
+  <physics_engines>
+    <dynamics3d id="d" solver="sweeps" iterations="1000000"><floor /><gravity g="9.8" /></dynamics3d>
+  </physics_engines>
+  <media />
+</argos-configuration>""".format("".join(
+    f'<box id="b{i}" size="1,1,1" movable="true" mass="1"><body position="{2 * i},0,0" /></box>'
+    for i in range(20)))
+
+
+class Signals(SceneTest):
+    def assert_ends_soon(self, process, number, code=INTERRUPTED):
+        start = time.monotonic()
+        process.send_signal(number)
+        code_found = process.wait(30)
+        self.assertLess(time.monotonic() - start, MOST)
+        self.assertEqual(code_found, code)
+
+    def test_in_a_tick_that_takes_long(self):
+        scene = self.write("slow.argos", SLOW_TICK)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            hashes = self.folder / "hashes"
+            process = self.start("run", scene, "--hash-file", hashes)
+            self.wait_for(hashes.exists, bool, "hash file")
+            self.wait_until_it_computes(process.pid, 1)
+            self.assert_ends_soon(process, number)
+            self.assertIn("hash 0 ", hashes.read_text(), "what was written before is there")
+
+    def test_output_to_a_pipe_that_is_not_read(self):
+        process = self.start("run", self.scene, *ENDLESS)
+        self.wait_until_blocked(process.pid)
+        self.assert_ends_soon(process, signal.SIGINT)
+
+    def test_trace_to_a_pipe_without_reader(self):
+        fifo = self.folder / "t.csv"
+        os.mkfifo(fifo)
+        process = self.start("run", self.scene, *ENDLESS, "--trace", fifo)
+        self.wait_until_blocked(process.pid)
+        self.assert_ends_soon(process, signal.SIGTERM)
+
+    def test_trace_to_a_pipe_that_is_not_read(self):
+        fifo = self.folder / "t.csv"
+        os.mkfifo(fifo)
+        reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
+        self.addCleanup(os.close, reader)
+        process = self.start("run", self.scene, *ENDLESS, "--trace", fifo, stdout=subprocess.DEVNULL)
+        self.wait_until_blocked(process.pid)
+        self.assert_ends_soon(process, signal.SIGINT)
+
+    def test_a_controller_that_ignores_everything(self):
+        process = self.start("run", self.scene, "--controller",
+                             "swing=trap '' TERM INT HUP; echo begun; while :; do sleep 1; done")
+        self.read_until(process.stdout, "^begun$")
+        self.assert_ends_soon(process, signal.SIGINT)
+
+    def test_a_terminated_process_of_several_ends_the_run(self):
+        process = self.start("run", self.scene, *ENDLESS, "--lua-processes", 2)
+        self.read_until(process.stdout, r"^\[20 r2\]")
+        self.lua_processes(2)
+        [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
+        os.kill(victim, signal.SIGTERM)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, CONTROLLER_FAILED, outcome.err)
+        self.assertRegex(outcome.err, r"ziggurat-lua 2 of 2 .*ended with exit code 143 at tick \d+.*r1, r2")
+
+    def wait_until_blocked(self, pid):
+        """Until the process has had no processor time for most of a second."""
+        seen = [None] * 30
+
+        def used():
+            fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+            seen.append((fields[11], fields[12]))
+            seen.pop(0)
+            time.sleep(0.02)
+            return seen
+
+        self.wait_for(used, lambda found: len(set(found)) == 1, "end of all progress")
+
+
+class Killed(SceneTest):
+    def test_a_shells_children_end_with_the_server(self):
+        command = "sleep 1000.25 & sleep 1000.25 & echo begun; wait"
+        process = self.start("run", self.scene, "--controller", f"swing={command}")
+        self.read_until(process.stdout, "^begun$")
+        self.assertEqual(len(self.processes("sleep 1000.25", )) >= 2, True)
+        process.kill()
+        process.wait()
+        self.wait_for(lambda: [t for _, t in self.processes("sleep 1000.25") if t.startswith("sleep")],
+                      lambda left: not left, "end of the shell's children")
+        self.wait_for(lambda: list(self.runtime.iterdir()), lambda left: not left,
+                      "removal of the private folder")
+
+    def test_sockets_are_removed(self):
+        socket = self.folder / "s"
+        process = self.start("serve", self.scene, "--endpoint", f"ipc://{socket}")
+        self.read_until(process.stdout, "endpoint")
+        self.assertTrue(socket.exists())
+        process.kill()
+        process.wait()
+        self.wait_for(socket.exists, lambda there: not there, "removal of the socket")
+
+    def test_what_dead_programs_left_is_removed_at_the_next_start(self):
+        left = self.runtime / "ziggurat-AbCdEf"
+        left.mkdir()
+        (left / "lock").touch()
+        (left / "run").touch()
+        process = self.start("run", self.scene, *ENDLESS)
+        self.read_until(process.stdout, r"^\[2 r2\]")
+        self.assertFalse(left.exists())
+        other = self.start("run", self.scene, *ENDLESS)  # leaves the folder of the first alone
+        self.read_until(other.stdout, r"^\[2 r2\]")
+        self.assertEqual(len(list(self.runtime.iterdir())), 2)
+        for each in (process, other):
+            each.terminate()
+            self.finish(each)
+
+    def test_outputs_are_written_each_second(self):
+        trace, hashes = self.folder / "trace.csv", self.folder / "hashes"
+        readings = self.folder / "r.jsonl"
+        process = self.start("run", self.scene, *ENDLESS, "--real-time", 1, "--trace", trace,
+                             "--hash-file", hashes, "--readings", readings)
+        self.read_until(process.stdout, r"^\[10 r2\]")
+        time.sleep(1)
+        process.kill()
+        process.wait()
+        for file in (trace, hashes, readings):
+            self.assertTrue(file.read_text().endswith("\n"), file)
+        self.assertGreaterEqual(int(hashes.read_text().splitlines()[-1].split()[1]), 10)
+        self.assertGreaterEqual(int(trace.read_text().splitlines()[-1].split(",")[0]), 10)
+        json.loads(readings.read_text().splitlines()[-1])
+        self.wait_for(lambda: list(self.runtime.iterdir()), lambda left: not left, "removal")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,98 @@
+#include "processes/guardian.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "processes/child_process.h"
+#include "processes/private_folder.h"
+
+namespace ziggurat::processes {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Condition>
+bool eventually(Condition condition) {
+  for (int i = 0; i < 5000 && !condition(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return condition();
+}
+
+/// Runs this in a process of its own, which it must kill before it returns.
+template <class Work>
+void in_another_process(Work work) {
+  const pid_t process = ::fork();
+  if (process == 0) {
+    work();
+    ::_exit(1);
+  }
+  int status = 0;
+  ::waitpid(process, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status));
+}
+
+TEST(Guardian, EndsGroupsAndRemovesFilesOfAKilledProcess) {
+  const PrivateFolder folder;
+  const std::string in = folder.path();
+  in_another_process([&] {
+    const Guardian guardian;
+    std::ofstream(in + "/socket") << "x";
+    std::ofstream(in + "/replaced") << "x";
+    fs::create_directory(in + "/private");
+    std::ofstream(in + "/private/file") << "x";
+    guardian.remove_file(in + "/socket");
+    guardian.remove_file(in + "/replaced");
+    fs::rename(in + "/replaced", in + "/kept");
+    std::ofstream(in + "/replaced") << "of another program";
+    guardian.remove_folder(in + "/private");
+    // The child of a child, which a signal at the parent's death does not reach.
+    const ChildProcess child(
+        {{"/bin/sh", "-c", "sh -c 'echo $$ >" + in + "/id; exec sleep 1000' & wait"}, {}},
+        &guardian);
+    eventually([&] { return fs::exists(in + "/id") && fs::file_size(in + "/id") > 0; });
+    ::kill(::getpid(), SIGKILL);
+  });
+  pid_t grandchild = 0;
+  std::ifstream(in + "/id") >> grandchild;
+  ASSERT_GT(grandchild, 0);
+  // Gone, or ended and not yet collected by its new parent.
+  EXPECT_TRUE(eventually([&] {
+    std::string state;
+    std::ifstream status("/proc/" + std::to_string(grandchild) + "/stat");
+    status >> state >> state >> state;
+    return !status || state == "Z";
+  }));
+  EXPECT_TRUE(eventually([&] { return !fs::exists(in + "/private"); }));
+  EXPECT_FALSE(fs::exists(in + "/socket"));
+  EXPECT_TRUE(fs::exists(in + "/replaced")) << "another file of that name";
+}
+
+TEST(Guardian, DoesNothingAfterAnOrderlyEnd) {
+  const PrivateFolder folder;
+  std::ofstream(folder.path() + "/file") << "x";
+  {
+    const Guardian guardian;
+    guardian.remove_file(folder.path() + "/file");
+  }
+  EXPECT_TRUE(fs::exists(folder.path() + "/file"));
+}
+
+TEST(Guardian, WorksAtOnceIfAsked) {
+  const PrivateFolder folder;
+  std::ofstream(folder.path() + "/file") << "x";
+  Guardian guardian;
+  guardian.remove_file(folder.path() + "/file");
+  guardian.end_now();
+  EXPECT_FALSE(fs::exists(folder.path() + "/file"));
+}
+
+}  // namespace
+}  // namespace ziggurat::processes
