@@ -30,10 +30,10 @@ lock-step with them, for the scene's length or, if that is 0, until Ctrl-C.
 stdout has the lines that controllers log, as [TICK ROBOT] TEXT, and with --hash a last line with the
 hash, nothing else. stderr has faults, notices, progress (on a terminal) and a summary.
 
-Exit codes: 0 finished; 1 fault of scene, arguments or environment; 3 a controller failed or its
-process ended; 4 the gate was missed; 130 interrupted. Ctrl-C, SIGTERM and SIGHUP
-end the program within a second, also in the middle of a long tick; after a second one it does not wait
-for controllers. Output files are complete up to half a second before, also if the program is killed.
+Exit codes: 0 finished; 1 fault of scene, arguments or environment; 3 a controller failed, its
+process ended, or a deadline dropped a robot; 4 the gate was missed; 130 interrupted. Ctrl-C, SIGTERM and
+SIGHUP end the program within a second, also in the middle of a long tick; after a second one it does not
+wait for controllers. Output files are complete up to half a second before, also if the program is killed.
 
 )" << run_options();
   return text.str();

@@ -34,8 +34,8 @@ them forever, prints which robots it waits for, and ends after the scene's lengt
 A tcp address that is not loopback needs keys or --insecure, because every program that can connect
 controls robots.
 
-Exit codes: 0 finished; 1 fault of scene, arguments or environment; 3 a controller failed; 4 the gate
-was missed; 130 interrupted.
+Exit codes: 0 finished; 1 fault of scene, arguments or environment; 3 a controller failed, or a
+deadline dropped a robot; 4 the gate was missed; 130 interrupted.
 
 )" << serve_options();
   return text.str();

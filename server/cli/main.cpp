@@ -1,16 +1,16 @@
 // The program `ziggurat`: finds the command, and turns what it throws into a message and an exit
 // code. What belongs to the whole process, signals and limits, is set here and nowhere else.
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <span>
 #include <string>
 #include <variant>
 
 #include "cli/commands.h"
 #include "processes/guardian.h"
+#include "processes/limits.h"
 #include "processes/signals.h"
 #include "reports/console.h"
 #include "run/version.h"
@@ -25,17 +25,9 @@ bool asks_for_help(const Arguments& arguments) {
                      [](const auto& each) { return each == "--help" || each == "-h"; });
 }
 
-/// Raises the limit of open files as far as allowed: each connection is an open file, and the usual
-/// 1024 are fewer than the sessions that the protocol promises.
-void allow_many_connections() {
-  rlimit limit;
-  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
-  limit.rlim_cur = limit.rlim_max;
-  (void)::setrlimit(RLIMIT_NOFILE, &limit);
-}
-
 int execute(const Command& command, const Arguments& arguments, std::span<char*> texts) {
   if (const auto* plain = std::get_if<Execute>(&command.execute)) return (*plain)(arguments);
+  processes::check_limits();
   processes::Guardian guardian(texts);
   processes::Signals signals(&guardian);
   return std::get<ExecuteWithSignals>(command.execute)(arguments, signals);
@@ -69,11 +61,13 @@ int main(int count, char** texts) {
   reports::Console::Style style;
   style.json = std::ranges::find(arguments, "--json") != arguments.end();
   reports::Console console(style);
-  cli::allow_many_connections();
+  processes::allow_many_files();
   try {
     return cli::dispatch(arguments, {texts, static_cast<std::size_t>(count)}, console);
   } catch (const scene::SceneError& error) {
     for (const auto& problem : error.problems()) console.problem(problem);
+  } catch (const std::bad_alloc&) {
+    console.fault("there is no memory left for the scene or for what was asked for");
   } catch (const std::exception& error) {
     console.fault(error.what());
   }

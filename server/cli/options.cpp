@@ -19,6 +19,8 @@ auto texts(const char* name) {
 
 constexpr unsigned width = 96;         // of the help [characters]
 constexpr double longest_lease = 4e6;  // [s]
+// Simulated seconds per second of wall time. At the least a tick of 0.1 s takes a day.
+constexpr double least_factor = 1e-6, most_factor = 1e6;
 
 po::options_description scene_options() {
   po::options_description options("Reading the scene", width);
@@ -55,8 +57,11 @@ po::options_description world_options() {
       ("curve-secret", text("FILE"), "protect endpoints with this key ('ziggurat keygen')")  //
       ("curve-clients", text("FILE"),
        "the allowed clients: lines with a public key, roles (controller, supervisor, observer) and "
-       "a name")                                                     //
-      ("insecure", "allow endpoints that other machines can reach")  //
+       "a name")                                                                            //
+      ("paused", "stand at tick 0 until a supervisor resumes ('ziggurat ctl URL resume')")  //
+      ("fail-fast", "end when the first controller fails or the first robot is dropped")    //
+      ("allow-drops", "robots that a deadline dropped do not make the exit code 3")         //
+      ("insecure", "allow endpoints that other machines can reach")                         //
       ("metrics", text("HOST:PORT"),
        "serve the run's status over HTTP there: /metrics for Prometheus, /status as JSON");
   return options;
@@ -118,10 +123,12 @@ po::options_description picture_options() {
   return options;
 }
 
-double positive_number(std::string_view option, const std::string& value) {
-  const auto number = text::to_number(option, value);
-  if (number <= 0)
-    throw text::UsageError(fmt::format("{} is {}; it must be more than 0", option, value));
+double to_factor(const std::string& value) {
+  const auto number = text::to_number("--real-time", value);
+  if (!(number >= least_factor && number <= most_factor)) {
+    throw text::UsageError(fmt::format("--real-time is {}; it must be {:g} to {:g}, 1 is real time",
+                                       value, least_factor, most_factor));
+  }
   return number;
 }
 
@@ -178,6 +185,8 @@ void read_controllers(const Values& values, run::Options& options) {
   for (const auto& each : values.texts("controller")) {
     options.controllers.push_back(to_controller(each));
   }
+  options.fail_fast = values.has("fail-fast");
+  options.allow_drops = values.has("allow-drops");
   options.without_controllers = values.has("without-controllers");
   for (const auto& each : values.texts("deadline")) {
     options.deadlines.push_back(run::to_deadline(each));
@@ -202,6 +211,7 @@ void read_network(const Values& values, run::Options& options) {
     throw text::UsageError("--curve-secret and --curve-clients need each other; give both");
   }
   options.insecure = values.has("insecure");
+  options.paused = values.has("paused");
   options.metrics = values.text("metrics");
 }
 
@@ -271,7 +281,7 @@ run::Options parse_options(const Arguments& arguments, const po::options_descrip
   if (values.has("seed")) options.seed = text::to_integer("--seed", values.text("seed"));
   if (values.has("clock")) options.scene_file.clock = to_clock(values.text("clock"));
   if (values.has("real-time")) {
-    options.real_time = positive_number("--real-time", values.text("real-time"));
+    options.real_time = to_factor(values.text("real-time"));
   }
   options.hil = values.has("hil");
   if (values.has("gate")) options.gate = reports::parse_gate(values.text("gate"));

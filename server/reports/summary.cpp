@@ -19,6 +19,8 @@ const char* to_string(Ending ending) {
       return "forced";
     case Ending::controller_vanished:
       return "controller_vanished";
+    case Ending::failed_fast:
+      return "failed_fast";
     case Ending::deadline_missed:
       return "deadline_missed";
     case Ending::reset:
@@ -32,7 +34,8 @@ double ratio(double numerator, double denominator) {
 }
 
 bool is_by_controller(Ending ending) {
-  return ending == Ending::controller_vanished || ending == Ending::deadline_missed;
+  return ending == Ending::controller_vanished || ending == Ending::failed_fast ||
+         ending == Ending::deadline_missed;
 }
 
 }  // namespace
@@ -53,6 +56,7 @@ std::string to_text(const Summary& summary) {
     text += fmt::format("  controller '{}' missed its deadline at {} tick{}\n", each.controller,
                         each.ticks, each.ticks == 1 ? "" : "s");
   }
+  for (const auto& each : summary.dropped) text += fmt::format("  {}\n", each);
   if (const auto& solver = summary.solver; solver.not_converged > 0) {
     text += fmt::format(
         "  solver {} did not converge in {} of {} islands; the worst residual is {:.2g} m/s or "
@@ -95,6 +99,7 @@ std::string to_json(const Summary& summary) {
       {"robots", summary.robots},
       {"failures", failures},
       {"missed_deadlines", missed},
+      {"dropped", summary.dropped},
       {"vanished", summary.vanished}};
   json["solver"]["name"] = summary.solver_name;
   if (summary.solver.islands > 0) {
@@ -109,7 +114,8 @@ int exit_code_of(const Summary& summary) {
   if (summary.ending == Ending::interrupted || summary.ending == Ending::forced) {
     return exit_code::interrupted;
   }
-  if (is_by_controller(summary.ending) || !summary.failures.empty()) {
+  const bool has_drops = summary.drops_are_failures && !summary.dropped.empty();
+  if (is_by_controller(summary.ending) || !summary.failures.empty() || has_drops) {
     return exit_code::controller_failed;
   }
   return exit_code::finished;

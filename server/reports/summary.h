@@ -25,6 +25,7 @@ enum class Ending {
   interrupted,
   forced,
   controller_vanished,
+  failed_fast,      ///< at the first failure, as --fail-fast asks
   deadline_missed,  ///< of a controller whose policy is to stop
   reset,            ///< of the world; the run continues
 };
@@ -53,7 +54,9 @@ struct Summary {
     std::uint64_t tick = 0;
     std::string message;
   };
-  std::vector<Failure> failures;  ///< robots whose controller failed, in order of time
+  std::vector<Failure> failures;     ///< robots whose controller failed, in order of time
+  std::vector<std::string> dropped;  ///< a sentence on each robot that a deadline took out
+  bool drops_are_failures = true;
   std::string vanished;  ///< the sentence on the controller that ended the run; empty: none did
 
   struct Missed {

@@ -32,6 +32,8 @@ void Run::complete_summary() {
   summary_.hash = simulation.hash();
   summary_.solver_name = scene::to_text(world_.scene.physics.solver);
   summary_.solver = supervision::solver_status(simulation);
+  summary_.dropped = watch_.dropped();
+  summary_.drops_are_failures = !options_.allow_drops;
   summary_.vanished = watch_.vanished();
   const auto performance = server_.performance();
   for (std::size_t c = 0; c < performance.size(); ++c) {

@@ -32,6 +32,33 @@ const scene::Entity& as_written(const scene::Scene& scene, std::size_t entity) {
   return group->entity;
 }
 
+/// Refuses images that no memory holds: all of a tick's are kept at once.
+void check_images(const scene::Scene& scene, const std::string& path,
+                  std::vector<scene::Problem>& problems) {
+  constexpr double most = 0x1p30;  // [bytes]
+  double size = 0;
+  std::size_t count = 0;
+  const scene::Camera* first = nullptr;
+  const auto add = [&](const scene::Entity& entity, std::size_t quantity) {
+    if (!entity.controller) return;
+    const auto& use = scene.controllers[*entity.controller].devices.cameras;
+    for (const scene::Camera& camera : use ? use->cameras : std::vector<scene::Camera>()) {
+      if (!camera.image) continue;
+      if (!first) first = &camera;
+      size += 3.0 * camera.resolution[0] * camera.resolution[1] * static_cast<double>(quantity);
+      count += quantity;
+    }
+  };
+  for (const auto& entity : scene.entities) add(entity, 1);
+  for (const auto& group : scene.distributions) add(group.entity, group.quantity);
+  if (size <= most) return;
+  problems.push_back(
+      {scene::Problem::Severity::fault, path, first->where,
+       fmt::format("{} cameras take images of {:.1f} GiB at every tick; 1 GiB is the "
+                   "most; write smaller resolutions, or fewer cameras with image",
+                   count, size / most)});
+}
+
 }  // namespace
 
 scene::OpenScene load_scene(const std::string& path, const Options& options,
@@ -41,6 +68,7 @@ scene::OpenScene load_scene(const std::string& path, const Options& options,
   override_controllers(options, result.scene);
   auto scripts = processes::check_scripts(result.scene, path);
   problems.insert(problems.end(), scripts.begin(), scripts.end());
+  check_images(result.scene, path, problems);
   const auto faults = std::stable_partition(problems.begin(), problems.end(), [](const auto& each) {
     return each.severity == scene::Problem::Severity::notice;
   });

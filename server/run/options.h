@@ -34,11 +34,14 @@ struct Options {
   double lease = 0;  ///< wall time that the robots of a lost session are kept for it [s]
   bool without_controllers = false;         ///< the robots do nothing
   std::string curve_secret, curve_clients;  ///< paths; both or none
-  bool hil = false;                         ///< hardware in the loop: paced, never waits
-  std::vector<reports::Condition> gate;     ///< conditions that every controller must meet
-  std::string report_card;                  ///< path; empty = none
-  std::string metrics;                      ///< host:port; empty = none
-  bool insecure = false;                    ///< endpoints may be reached from other machines
+  bool fail_fast = false;    ///< the run ends when a controller fails or a robot is dropped
+  bool allow_drops = false;  ///< robots that a deadline dropped are no failure
+  bool paused = false;       ///< the world stands at tick 0 until a supervisor resumes it
+  bool hil = false;          ///< hardware in the loop: paced, never waits
+  std::vector<reports::Condition> gate;  ///< conditions that every controller must meet
+  std::string report_card;               ///< path; empty = none
+  std::string metrics;                   ///< host:port; empty = none
+  bool insecure = false;                 ///< endpoints may be reached from other machines
 
   bool quiet = false;
   bool json = false;

@@ -22,7 +22,7 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       service_(service),
       signals_(signals),
       console_({options.quiet, options.json}),
-      path_(existing_scene(options, console_)),
+      path_(existing_scene(options, service == Service::serve, console_)),
       config_(network_config(options, service == Service::serve)),
       listening_(std::make_unique<network::Server>(config_)),
       server_(*listening_),
@@ -35,8 +35,8 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       recorders_(options, world_),
       controllers_(start_controllers()),
       supervision_(supervision_settings(), world_, server_, controllers_, console_),
-      watch_({options.metrics, options.insecure, service == Service::serve}, world_, server_,
-             controllers_, supervision_, signals, console_) {
+      watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve},
+             world_, server_, controllers_, supervision_, signals, console_) {
   print_notices();
   summary_.scene = path_;
   summary_.robots = world_.simulation.layout().robots.size();
@@ -138,6 +138,10 @@ void Run::print_notices() {
   for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
   if (options_.seed.value_or(world_.scene.experiment.random_seed) == 0) {
     console_.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", world_.seed));
+  }
+  if (options_.paused) {
+    server_.set_paused(true);
+    return console_.notice("paused, as --paused asks; 'ziggurat ctl URL resume' begins");
   }
   const bool has_controllers =
       robots_without_controller().size() < world_.simulation.layout().robots.size();

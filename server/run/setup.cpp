@@ -10,7 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "run/files.h"
 #include "run/loading.h"
+#include "text/numbers.h"
 
 namespace ziggurat::run {
 namespace {
@@ -32,8 +34,12 @@ void hold_late_controllers(const Options& options, const scene::Scene& scene,
 
 }  // namespace
 
-std::string existing_scene(const Options& options, reports::Console& console) {
+std::string existing_scene(const Options& options, bool is_serve, reports::Console& console) {
   const std::string& path = only_scene(options);
+  check_files(options);
+  if (options.paused && options.endpoints.empty() && !is_serve) {
+    throw text::UsageError("--paused needs --endpoint, where a supervisor can connect to resume");
+  }
   if (!std::filesystem::exists(path)) load_scene(path, options, console);  // throws
   return path;
 }
@@ -84,6 +90,7 @@ wire::End end_message(const reports::Summary& summary) {
       end.reason = wire::EndReason::interrupted;
       break;
     case Ending::controller_vanished:
+    case Ending::failed_fast:
     case Ending::deadline_missed:
       end.reason = wire::EndReason::failed;
       break;

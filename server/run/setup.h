@@ -13,8 +13,9 @@
 namespace ziggurat::run {
 
 /// The path of the one scene, which exists: otherwise a client would connect to a run that cannot
-/// start. @throws text::UsageError, scene::SceneError
-std::string existing_scene(const Options& options, reports::Console& console);
+/// start. The files that options name are checked, too.
+/// @throws text::UsageError, scene::SceneError
+std::string existing_scene(const Options& options, bool is_serve, reports::Console& console);
 
 /// What the options say of the network, before the scene is read.
 /// @param is_serve  listens at the default endpoint if the options name none

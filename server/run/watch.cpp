@@ -39,6 +39,7 @@ Watch::Watch(const Settings& settings, const supervision::World& world, network:
       supervision_(supervision),
       signals_(signals),
       console_(console),
+      fails_fast_(settings.fail_fast),
       waits_for_clients_(settings.waits_for_clients),
       peers_(world, console),
       progress_(console, world.simulation.tick_length()) {
@@ -84,7 +85,7 @@ std::optional<Ending> Watch::until(const Step& step) {
     serve();
     take_report();
     auto ending = interruption();
-    if (!ending && is_stopped_) ending = Ending::deadline_missed;
+    if (!ending) ending = stopped_;
     if (!ending) ending = supervisor_request();
     const bool complete = outcome == network::Outcome::complete;
     const bool may_have_lost = !complete || child_ended_ || missed_since_;
@@ -157,8 +158,14 @@ void Watch::take_report() {
   auto report = server_.take_report();
   if (!report.stopped.empty()) {
     vanished_ = std::move(report.stopped);
-    is_stopped_ = true;
+    stopped_ = Ending::deadline_missed;
   }
+  const bool has_failed = !report.failures.empty() || !report.dropped.empty();
+  if (fails_fast_ && has_failed && !stopped_) {
+    stopped_ = Ending::failed_fast;
+    vanished_ = fmt::format("the run ends at tick {}, as --fail-fast asks", tick_);
+  }
+  std::ranges::copy(report.dropped, std::back_inserter(dropped_));
   peers_.take(std::move(report), tick_);
 }
 

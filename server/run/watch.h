@@ -28,6 +28,7 @@ class Watch {
   struct Settings {
     std::string metrics;             ///< host:port where the status is served; empty = not at all
     bool insecure = false;           ///< metrics: the host may be other than loopback
+    bool fail_fast = false;          ///< the first failure or drop of a robot ends the run
     bool waits_for_clients = false;  ///< serve: a client that disconnected may connect again
   };
 
@@ -53,6 +54,8 @@ class Watch {
 
   /// Sorted by tick, then by scene order.
   std::vector<reports::Summary::Failure> failures() const { return peers_.failures(); }
+  /// A sentence on each robot that a deadline took out of the run.
+  const std::vector<std::string>& dropped() const { return dropped_; }
   /// The sentence on the controller that ended the run; empty if none did.
   const std::string& vanished() const { return vanished_; }
 
@@ -77,15 +80,16 @@ class Watch {
   supervision::Supervision& supervision_;
   processes::Signals& signals_;
   reports::Console& console_;
-  const bool waits_for_clients_;
+  const bool fails_fast_, waits_for_clients_;
   std::optional<reports::MetricsPort> metrics_;
   PeerReports peers_;
   reports::Progress progress_;
   bool gathered_ = false;
   std::uint64_t tick_ = 0;
   std::string vanished_;
-  bool child_ended_ = false;                       ///< one or more, since the last look
-  bool is_stopped_ = false;                        ///< by a deadline
+  bool child_ended_ = false;                ///< one or more, since the last look
+  std::optional<reports::Ending> stopped_;  ///< by a deadline or a failure
+  std::vector<std::string> dropped_;
   std::optional<clock::time_point> missed_since_;  ///< since when a controller seems to be lost
   clock::time_point waiting_since_{};
   std::string printed_;  ///< the robots that were last printed as awaited

@@ -132,8 +132,10 @@ Supervision::Reply Supervision::handle(const network::Call& call) {
 Supervision::Reply Supervision::pause(const network::Call& call) {
   steps_left_ = 0;
   server_.set_paused(true);
+  is_pause_asked_ = true;
   paused_.update(server_.paused());
-  return server_.paused() ? done(call) : Reply::later;
+  // Before tick 0 nothing moves: the world will stand there.
+  return server_.paused() || !is_gathered_ ? done(call) : Reply::later;
 }
 
 /// A step that still runs ends here: its supervisor is told that the world is not paused.
@@ -141,6 +143,7 @@ Supervision::Reply Supervision::resume(const network::Call& call) {
   stepping_.reset();
   steps_left_ = 0;
   server_.set_paused(false);
+  is_pause_asked_ = false;
   paused_.update(server_.paused());
   return done(call);
 }
@@ -156,6 +159,7 @@ Supervision::Reply Supervision::step(const network::Call& call) {
   if (call.request.ticks == 0) {
     return fail(call, ErrorCode::bad_value, "step.ticks", "A step has at least one tick.");
   }
+  if (!is_gathered_ && is_pause_asked_) return Reply::later;  // the world stands at tick 0, then
   if (!server_.paused()) {
     return fail(call, ErrorCode::out_of_state, {},
                 "The world is not paused; send a Pause request before a Step.");
@@ -185,6 +189,7 @@ std::optional<std::uint64_t> Supervision::requested_reset() const {
 
 /// A reset removes all that was spawned. Processes of such robots end by themselves.
 void Supervision::reset_done() {
+  is_gathered_ = false;  // until every robot has its controller again
   spawned_ = 0;
   spawnable_size_ = settings_.max_spawned_size;
   controllers_.forget_robots(world_.simulation.layout().robots.size());

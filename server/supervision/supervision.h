@@ -94,7 +94,7 @@ class Supervision {
   std::uint64_t steps_left_ = 0;
   std::size_t spawned_ = 0;     ///< entities, since the start or the last reset
   std::size_t spawnable_size_;  ///< left for more entities [bytes]
-  bool is_gathered_ = false, shutdown_ = false;
+  bool is_gathered_ = false, is_pause_asked_ = false, shutdown_ = false;
   clock::time_point start_ = clock::now();
   PauseTimer paused_;
   TickBudget budget_;

@@ -1,8 +1,9 @@
 """Faults of an author: each gives one clear message and exit code 1, never a hang or a crash."""
 
 import socket
+import subprocess
 
-from harness import FAULT, FINISHED, SceneTest, main
+from harness import FAULT, FINISHED, ZIGGURAT, SceneTest, main
 
 
 class BrokenScene(SceneTest):
@@ -149,6 +150,67 @@ class BrokenArguments(SceneTest):
             outcome = self.refuses(r"/no/such/folder/x.*No such file", "run", self.scene, option,
                                    "/no/such/folder/x")
             self.assertEqual(outcome.out, "", "no controller has been started")
+
+    def test_outputs_with_a_wrong_ending(self):
+        for option, path, right in (("--trace", "t.json", r"\.csv"), ("--readings", "r.csv", r"\.jsonl"),
+                                    ("--rays", "r.json", r"\.jsonl"), ("--summary", "s.txt", r"\.json"),
+                                    ("--report-card", "c.png", r"\.json or \.svg")):
+            self.refuses(rf"{option} is '{path}'; its name must end with {right}", "run", self.scene,
+                         option, path)
+        self.refuses(r"--out is 'x.mp4'.*\.png", "render", self.scene, "--out", "x.mp4")
+
+    def test_an_output_that_is_another_file_of_the_run(self):
+        before = self.scene.read_bytes()
+        self.refuses(r"--hash-file is .*the file of the scene too", "run", self.scene, "--hash-file",
+                     self.scene)
+        link = self.folder / "link"
+        link.symlink_to(self.scene)
+        self.refuses(r"--hash-file is .*the file of the scene too", "run", self.scene, "--hash-file", link)
+        self.assertEqual(self.scene.read_bytes(), before)
+        self.refuses(r"--hash-file is .*the file of --trace too", "run", self.scene, "--trace", "t.csv",
+                     "--hash-file", f"../{self.folder.name}/t.csv")
+        self.assertFalse((self.folder / "t.csv").exists())
+
+    def test_a_list_of_clients_that_others_can_write(self):
+        for name in ("k.secret", "clients"):
+            self.write(name, "")
+        clients = self.folder / "clients"
+        for mode in (0o664, 0o646):
+            clients.chmod(mode)
+            self.refuses(r"--curve-clients is 'clients', which other users can write.*chmod go-w", "serve",
+                         self.scene, "--curve-secret", "k.secret", "--curve-clients", "clients")
+
+    def test_numbers_that_cannot_be_meant(self):
+        for value in ("1e-300", "0", "1e300", "nan", "-1"):
+            self.refuses(r"--real-time", "run", self.scene, f"--real-time={value}")
+        self.refuses("it must be 1e-06 to 1e.06", "run", self.scene, "--real-time=1e-300")
+
+    def test_images_that_no_memory_holds(self):
+        camera = ('<cameras implementation="default"><camera id="c" anchor="origin" position="0,0,0.1"'
+                  ' orientation="0,0,0" range="0.1:2" focal_length="2000,2000" image="true"'
+                  ' principal_point="2048,2048" resolution="4096,4096" /></cameras>')
+        self.change("</sensors>", camera + "</sensors>")
+        robots = self.text[self.text.index("<prototype"):self.text.index("</prototype>") + 12]
+        self.change("</arena>", "".join(
+            robots.replace('id="r0"', f'id="x{i}"').replace("0,0,0", f"0,0,{i}", 1) for i in range(30))
+            + "</arena>")
+        self.refuses(r"cameras take images of 1\.5 GiB at every tick; 1 GiB", "run", self.scene)
+
+    def test_limits_of_the_system(self):
+        for option, value, what in (("-n", 8, "8 open files"), ("-v", 200000, "200000 KiB of address"),
+                                    ("-s", 256, "256 KiB of stack")):
+            outcome = self.finish(subprocess.Popen(
+                ["sh", "-c", f'ulimit {option} {value} && exec "$@"', "sh", ZIGGURAT, "run", self.scene],
+                cwd=self.folder, env=self.environment, text=True, stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE))
+            self.assertEqual(outcome.code, FAULT, outcome.err)
+            self.assert_is_sentence(outcome, rf"{what}.*it needs \d+ or more; write: ulimit {option}")
+        outcome = self.finish(subprocess.Popen(
+            ["sh", "-c", 'ulimit -f 2 && exec "$@"', "sh", ZIGGURAT, "run", self.scene, "--trace", "t.csv"],
+            cwd=self.folder, env=self.environment, text=True, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE))
+        self.assertEqual(outcome.code, FAULT, outcome.err)
+        self.assert_is_sentence(outcome, r"t\.csv: cannot be written: File too large")
 
     def test_full_disk(self):
         for option in ("--trace", "--readings", "--hash-file", "--summary"):

@@ -1,5 +1,6 @@
 """Controllers that are stopped, killed and continued, under each deadline policy."""
 
+import json
 import os
 import re
 import signal
@@ -73,6 +74,24 @@ class Deadlines(SceneTest):
                 self.assertRegex(outcome.err,
                                  r"robot r1 \(controller 'frail'\) is dropped at tick \d+")
                 self.assertIn("drop:200:4", outcome.err)
+
+    def test_a_dropped_robot_is_a_failure_unless_it_is_allowed(self):
+        summary = self.folder / "s.json"
+        for options, code, ending in (((), CONTROLLER_FAILED, "finished"),
+                                      (("--allow-drops",), FINISHED, "finished"),
+                                      (("--fail-fast",), CONTROLLER_FAILED, "failed_fast")):
+            process = self.start("run", self.scene, "--ticks", 60, "--real-time", 2, "--lua-processes", 0,
+                                 "--deadline", "frail=drop:100:1", "--summary", summary, *options)
+            self.read_until(process.stdout, r"^\[10 r2\]")
+            [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
+            os.kill(victim, signal.SIGSTOP)
+            outcome = self.finish(process)
+            self.assertEqual(outcome.code, code, outcome.err)
+            found = json.loads(summary.read_text())
+            self.assertEqual(found["ending"], ending)
+            self.assertEqual(len(found["dropped"]), 1)
+            self.assertIn("robot r1 (controller 'frail') is dropped at tick", found["dropped"][0])
+            self.assertEqual(found["ticks"] < 60, ending == "failed_fast")
 
     def test_hold_drops_beyond_its_budget(self):
         process = self.disturb(signal.SIGSTOP, "--deadline", "frail=hold:200:4")

@@ -63,6 +63,17 @@ class Failing(SceneTest):
         self.assertIn("[6 r0] 6", outcome.lines)
         self.assertRegex(outcome.err, r"(?s)r1.*tick 3.*out of luck.*r1.*tick 3.*out of luck")
 
+    def test_fail_fast_ends_at_the_first_error(self):
+        self.write("swing.lua", """
+            local n = 0
+            function init() end
+            function step()
+               n = n + 1
+               if robot.id == "r1" and n == 3 then error("out of luck") end
+            end""")
+        outcome = self.run_scene("--fail-fast", *ENDLESS, code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.err, r"the run ends at tick \d+, as --fail-fast asks")
+
     def test_lua_error_at_the_start(self):
         self.write("swing.lua", "function init() error('no start') end function step() end")
         outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)

@@ -86,6 +86,27 @@ class Ctl(unittest.TestCase):
                 self.assertEqual(1, outcome.returncode, words)
                 self.assertIn(reason, outcome.stderr)
 
+    def test_a_pause_before_controllers_come_is_answered_at_once(self):
+        with Server(VEHICLE, "--duration", "0") as server:
+            server.ask("ctl", "pause")
+            self.assertEqual(server.tick(), 0)
+            lua = subprocess.Popen([BIN / "ziggurat-lua", "--connect", server.url, "--quiet"],
+                                   stdout=subprocess.DEVNULL)
+            try:
+                server.ask("ctl", "step", "3")  # waits for the controller
+                self.assertEqual(server.tick(), 3)
+            finally:
+                server.ask("ctl", "resume")
+                lua.kill()
+                lua.wait()
+
+    def test_can_be_paused_from_the_start(self):
+        with Server(DROP, "--duration", "0", "--real-time", "--paused") as server:
+            time.sleep(0.3)
+            self.assertEqual(server.tick(), 0)
+            server.ask("ctl", "resume")
+            server.wait_for_tick(2)
+
     def test_an_abandoned_step_does_not_block_later_requests(self):
         with Server(DROP, "--duration", "0") as server:
             impatient = subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "1000000"])

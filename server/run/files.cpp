@@ -1,0 +1,94 @@
+#include "run/files.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "text/numbers.h"
+
+namespace ziggurat::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct File {
+  std::string option;
+  std::string path;
+  std::vector<std::string> endings;  ///< allowed; empty = all
+};
+
+std::vector<File> outputs_of(const Options& options) {
+  std::vector<File> files{{"--trace", options.trace, {".csv"}},
+                          {"--readings", options.readings, {".jsonl"}},
+                          {"--rays", options.rays, {".jsonl"}},
+                          {"--hash-file", options.hash_file, {}},
+                          {"--summary", options.summary, {".json"}},
+                          {"--report-card", options.report_card, {".json", ".svg"}}};
+  if (options.pictures) files.push_back({"--out", options.pictures->out, {".png"}});
+  std::erase_if(files, [](const File& file) { return file.path.empty(); });
+  return files;
+}
+
+std::vector<File> inputs_of(const Options& options) {
+  std::vector<File> files;
+  for (const std::string& scene : options.scenes) files.push_back({"the scene", scene, {}});
+  if (!options.curve_secret.empty()) {
+    files.push_back({"--curve-secret", options.curve_secret, {}});
+    files.push_back({"--curve-clients", options.curve_clients, {}});
+  }
+  return files;
+}
+
+/// Names without ending are fine: a pipe, or /dev/stdout.
+void check_ending(const File& file) {
+  const std::string ending = fs::path(file.path).extension().string();
+  if (ending.empty() || file.endings.empty()) return;
+  for (const std::string& each : file.endings) {
+    if (ending == each) return;
+  }
+  throw text::UsageError(
+      fmt::format("{} is '{}'; its name must end with {}, because that is the "
+                  "format of its content",
+                  file.option, file.path, fmt::join(file.endings, " or ")));
+}
+
+/// Whether both paths are one file. What several may write to at once, a device or a pipe, is not.
+bool is_same(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::exists(a, error) && !fs::is_regular_file(a, error)) return false;
+  if (fs::equivalent(a, b, error)) return true;
+  const fs::path whole = fs::weakly_canonical(fs::absolute(a), error);
+  return !error && whole == fs::weakly_canonical(fs::absolute(b), error) && !error;
+}
+
+void check_clients(const std::string& path) {
+  struct stat status {};
+  if (path.empty() || ::stat(path.c_str(), &status) != 0) return;  // reported when it is read
+  if ((status.st_mode & (S_IWGRP | S_IWOTH)) == 0) return;
+  throw text::UsageError(fmt::format(
+      "--curve-clients is '{}', which other users can write: they could add their keys; "
+      "write: chmod go-w '{}'",
+      path, path));
+}
+
+}  // namespace
+
+void check_files(const Options& options) {
+  const std::vector<File> outputs = outputs_of(options);
+  std::vector<File> taken = inputs_of(options);
+  for (const File& output : outputs) {
+    check_ending(output);
+    for (const File& other : taken) {
+      if (!is_same(output.path, other.path)) continue;
+      throw text::UsageError(fmt::format("{} is '{}', the file of {} too; name another file",
+                                         output.option, output.path, other.option));
+    }
+    taken.push_back(output);
+  }
+  check_clients(options.curve_clients);
+}
+
+}  // namespace ziggurat::run

@@ -1,0 +1,13 @@
+#pragma once
+// The files that options name: checked before any of them is opened, because opening an output
+// empties it.
+
+#include "run/options.h"
+
+namespace ziggurat::run {
+
+/// @throws text::UsageError if an output's name has a wrong ending; if an output is the scene, a
+/// key file or another output, also by another path; if others may write the list of clients' keys
+void check_files(const Options& options);
+
+}  // namespace ziggurat::run
