@@ -177,7 +177,7 @@ Guardian::~Guardian() {
   if (process_ < 0) return;
   send(orders_, {});
   ::close(orders_);
-  wait(1000);
+  wait(100);  // longer only if it was stopped: then it is killed
 }
 
 void Guardian::end_group(pid_t group) const noexcept {
