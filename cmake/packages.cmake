@@ -17,3 +17,5 @@ pkg_check_modules(lua REQUIRED IMPORTED_TARGET GLOBAL lua5.3)
 pkg_check_modules(png REQUIRED IMPORTED_TARGET GLOBAL libpng)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET GLOBAL libxxhash)
 find_path(tinyobjloader_include tiny_obj_loader.h REQUIRED)  # a header and no more
+set(ZIGGURAT_PYTHON /usr/bin/python3 CACHE FILEPATH
+    "the Python that Debian's python3-zmq and python3-protobuf belong to")

@@ -6,6 +6,13 @@
                 robot.joints["left"].target = 1.0
 """
 
+try:
+    import google.protobuf
+    import zmq
+except ImportError as error:
+    raise ImportError(f"{error}. The client needs pyzmq and protobuf: apt-get install python3-zmq "
+                      "python3-protobuf, or pip install pyzmq protobuf") from None
+
 from .connection import Curve
 from .devices import *
 from .errors import ConnectionLost, Displaced, ProtocolError, Refused, Timeout, ZigguratError
@@ -18,4 +25,4 @@ from .supervisor import (EntityState, LinkState, SessionStatus, SolverStatus, St
                          Supervisor, supervise)
 
 __version__ = "0.1.0"
-__all__ = [name for name in dir() if not name.startswith("_")]
+__all__ = [name for name in dir() if not name.startswith("_") and name not in ("google", "zmq")]
