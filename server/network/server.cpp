@@ -217,11 +217,11 @@ void Server::answer(const Call& call, const std::function<void(wire::Outbox&)>& 
 }
 
 void Server::answer_question(const Call& call, const std::function<void(wire::Outbox&)>& write) {
-  const Time begin = Clock::now();
+  const ThreadClock::time_point begin = ThreadClock::now();
   wire::Answer& answer = state_->answers.find(call.request, state_->changes, write);
   network::answer(state_->barrier, call,
                   [&](wire::Outbox& outbox) { outbox.response(call.request.id, answer); });
-  state_->socket.charge_others(Clock::now() - begin);
+  state_->socket.charge_others(ThreadClock::now() - begin);
 }
 
 void Server::fill(wire::Status& status) const {

@@ -103,7 +103,7 @@ void Socket::charge_others(std::chrono::duration<double> time) {
 
 void Socket::handled() {
   if (!charged_since_) return;
-  charge_others(Clock::now() - *charged_since_);
+  charge_others(ThreadClock::now() - *charged_since_);
   charged_since_.reset();
 }
 
@@ -112,7 +112,7 @@ bool Socket::receive(Received& received) {
   peers_.bury();
   if (receive_from(controllers_, received)) return true;
   if (!may_serve_others()) return false;
-  charged_since_ = Clock::now();
+  charged_since_ = ThreadClock::now();
   if (receive_from(others_, received)) return true;
   handled();
   return false;

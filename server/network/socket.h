@@ -51,7 +51,7 @@ class Socket {
 
   /// A tick runs, or does not: whether the share of others than controllers is limited.
   void set_ticking(bool is_ticking) { is_ticking_ = is_ticking; }
-  /// Others have taken so much time, beside that between two calls of receive().
+  /// Others have taken so much processor time, beside that between two calls of receive().
   void charge_others(std::chrono::duration<double> time);
   /// Disconnects those that have been without session for too long.
   void tend();
@@ -96,7 +96,7 @@ class Socket {
 
   bool is_ticking_ = false;
   TimeShare share_;
-  std::optional<Time> charged_since_;
+  std::optional<ThreadClock::time_point> charged_since_;
   Buffer frame_;
   std::vector<pollfd> polled_;
 };

@@ -1,10 +1,29 @@
 #pragma once
-// A share of the wall time: who has used it up waits until more has passed.
+// A share of the wall time: who has used it up waits until more has passed. What is used is processor
+// time: a thread that other programs keep from running uses none.
+
+#include <time.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <ratio>
 
 namespace ziggurat::network {
+
+/// The processor time of this thread.
+struct ThreadClock {
+  using rep = std::int64_t;
+  using period = std::nano;
+  using duration = std::chrono::duration<rep, period>;
+  using time_point = std::chrono::time_point<ThreadClock>;
+  static constexpr bool is_steady = true;
+  static time_point now() {
+    timespec time{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return time_point(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
+  }
+};
 
 class TimeShare {
  public:
@@ -20,7 +39,7 @@ class TimeShare {
     refill(now);
     return left_.count() > 0;
   }
-  /// So much was used. It may be more than there was: then that is owed.
+  /// So much processor time was used. It may be more than there was: then that is owed.
   void charge(Seconds used) { left_ -= used; }
   /// Until has_some().
   Seconds time_until_some() const { return Seconds{std::max(0.0, -left_.count()) / share_}; }

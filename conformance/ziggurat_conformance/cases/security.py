@@ -59,8 +59,12 @@ CASES = [
             join("controller", "*"), *observe("controller"), Hang("controller"),
             send_hello("observer", "*", session_token=Token("controller")),
             hear_refusal("observer", "FORBIDDEN"),
+            Join("controller", hello("*", session_token=Token("controller"))),
+            Hear("controller", "observation")),
+    _secure("L12.another-key", "A session goes on only with the key that it was begun with",
+            join("controller", "*"), *observe("controller"), Hang("controller"),
             send_hello("both", "*", session_token=Token("controller")),
-            hear_refusal("both", "FORBIDDEN"),  # another key (L12)
+            hear_refusal("both", "FORBIDDEN"),
             Join("controller", hello("*", session_token=Token("controller"))),
             Hear("controller", "observation")),
 ]
