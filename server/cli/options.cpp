@@ -62,6 +62,9 @@ po::options_description world_options() {
       ("fail-fast", "end when the first controller fails or the first robot is dropped")    //
       ("allow-drops", "robots that a deadline dropped do not make the exit code 3")         //
       ("insecure", "allow endpoints that other machines can reach")                         //
+      ("allow-spawned-scripts", texts("DIR"),
+       "robots that a supervisor spawns may use the scripts and files below DIR, too; otherwise only "
+       "scripts that the scene names; may be repeated")  //
       ("metrics", text("HOST:PORT"),
        "serve the run's status over HTTP there: /metrics for Prometheus, /status as JSON");
   return options;
@@ -107,6 +110,12 @@ po::options_description controller_options() {
       ("lua-processes", text("N"),
        "share the Lua robots among N processes; default 1, "
        "0 is one for each robot")  //
+      ("trust-scripts",
+       "Lua scripts may start programs and use all of Lua and all files; otherwise they use only "
+       "files below the folders of the scene, its includes and its scripts")  //
+      ("lua-memory", text("MIB"), "largest memory of a robot's Lua script; default 256")  //
+      ("lua-instructions", text("MILLIONS"),
+       "most Lua instructions of a robot at one tick, in millions; default 1000")  //
       ("controller", texts("ID=CMD"), "start CMD for the scene's controller ID");
   return options;
 }
@@ -176,7 +185,26 @@ void read_length(const Values& values, run::Options& options) {
   }
 }
 
+/// What is passed to ziggurat-lua.
+std::vector<std::string> lua_arguments(const Values& values) {
+  std::vector<std::string> arguments;
+  if (values.has("trust-scripts")) arguments.emplace_back("--trust-scripts");
+  for (const auto& [option, passed] : {std::pair{"lua-memory", "--max-memory"},
+                                       std::pair{"lua-instructions", "--max-instructions"}}) {
+    if (!values.has(option)) continue;
+    constexpr std::uint64_t most = std::uint64_t{1} << 20;
+    const auto number = text::to_integer(std::string("--") + option, values.text(option));
+    if (number == 0 || number > most) {
+      throw text::UsageError(
+          fmt::format("--{} is {}; it must be from 1 to {}", option, number, most));
+    }
+    arguments.insert(arguments.end(), {passed, std::to_string(number)});
+  }
+  return arguments;
+}
+
 void read_controllers(const Values& values, run::Options& options) {
+  options.lua_arguments = lua_arguments(values);
   if (values.has("lua-processes")) {
     constexpr std::uint64_t most = std::uint64_t{1} << 20;
     options.lua_processes = static_cast<unsigned>(
@@ -212,6 +240,7 @@ void read_network(const Values& values, run::Options& options) {
   }
   options.insecure = values.has("insecure");
   options.paused = values.has("paused");
+  options.spawned_script_folders = values.texts("allow-spawned-scripts");
   options.metrics = values.text("metrics");
 }
 

@@ -28,6 +28,8 @@ Launch lua_launch(std::string name, std::vector<std::size_t> robots, const std::
   launch.robots_file = fmt::format("{}/{}", settings.folder, list);
   launch.program.arguments = {settings.lua_runner, "--connect",        settings.endpoint,
                               "--robots-file",     launch.robots_file, "--quiet"};
+  launch.program.arguments.insert(launch.program.arguments.end(), settings.lua_arguments.begin(),
+                                  settings.lua_arguments.end());
   launch.program.environment = no_keys;
   return launch;
 }

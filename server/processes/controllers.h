@@ -34,6 +34,7 @@ struct LaunchSettings {
   std::string folder;                  ///< for files with the ids of robots
   std::string lua_runner;              ///< path or name of ziggurat-lua
   unsigned lua_processes;              ///< 0 = one per robot
+  std::vector<std::string> lua_arguments;  ///< more arguments for ziggurat-lua
   const Guardian* guardian = nullptr;  ///< ends them if this program is killed; null: none
 };
 

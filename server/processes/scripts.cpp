@@ -107,13 +107,16 @@ std::vector<scene::Problem> check_scripts(const scene::Scene& scene, const fs::p
   return problems;
 }
 
-std::vector<scene::Problem> check_script(const scene::Scene& scene, const scene::Entity& entity,
-                                         const fs::path& scene_file) {
-  std::vector<scene::Problem> problems;
-  if (has_own_script(scene, entity)) {
-    check(scene, {&entity.params, entity.params_where}, scene_file, problems);
+std::vector<fs::path> scripts_of(const scene::Scene& scene, const fs::path& scene_file) {
+  std::vector<fs::path> scripts;
+  for (const Use& use : uses(scene)) {
+    const auto script = script_of(*use.params);
+    if (script.empty()) continue;
+    if (auto found = find_script(script, scene::file_of(scene, use.where), scene_file)) {
+      scripts.push_back(std::move(*found));
+    }
   }
-  return problems;
+  return scripts;
 }
 
 std::string script_path(const scene::Scene& scene, const scene::Entity& entity,

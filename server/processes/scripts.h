@@ -32,9 +32,10 @@ bool runs_script(const scene::Controller& controller);
 /// The file with the params of an entity that has a controller.
 std::string file_of_params(const scene::Scene& scene, const scene::Entity& entity);
 
-/// A fault if the script in the <params> of an entity is missing or does not compile.
-std::vector<scene::Problem> check_script(const scene::Scene& scene, const scene::Entity& entity,
-                                         const std::filesystem::path& scene_file);
+/// The scripts that the controllers and entities of a scene name, as absolute paths; those that are
+/// not found are left out.
+std::vector<std::filesystem::path> scripts_of(const scene::Scene& scene,
+                                              const std::filesystem::path& scene_file);
 
 /// The path of the script that an entity's Lua controller runs; empty if it names none.
 std::string script_path(const scene::Scene& scene, const scene::Entity& entity,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "processes/scripts.h"
+#include "processes/spawned_scripts.h"
 #include "run/background.h"
 #include "run/loading.h"
 #include "run/setup.h"
@@ -123,15 +124,24 @@ processes::Controllers Run::start_controllers() {
   server_.open(description(), complete_config());
   server_.remove_robots(robots_without_controller());
   if (service_ == Service::serve || !with_controllers_) return {};
-  return {world_.scene,
-          world_.simulation.layout(),
-          scripts_,
-          {server_.endpoints().front(), folder_.path(), processes::find_lua_runner(),
-           options_.lua_processes, signals_.guardian()}};
+  return {world_.scene, world_.simulation.layout(), scripts_, launch_settings()};
+}
+
+processes::LaunchSettings Run::launch_settings() const {
+  processes::LaunchSettings settings{server_.endpoints().front(), folder_.path(),
+                                     processes::find_lua_runner(), options_.lua_processes,
+                                     options_.lua_arguments, signals_.guardian()};
+  const auto allow = [&](const std::string& folder) {
+    settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
+  };
+  for (const auto& folder : processes::folders_of(world_.scene, path_)) allow(folder.string());
+  for (const auto& folder : options_.spawned_script_folders) allow(folder);
+  return settings;
 }
 
 supervision::Supervision::Settings Run::supervision_settings() const {
-  return {options_.scene_file.max_size, plan_.ticks.value_or(0), options_.hil, with_controllers_};
+  return {options_.scene_file.max_size, plan_.ticks.value_or(0), options_.hil, with_controllers_,
+          options_.spawned_script_folders};
 }
 
 void Run::print_notices() {

@@ -62,6 +62,7 @@ class Run {
   wire::Run description() const;
   std::vector<std::size_t> robots_without_controller() const;
   processes::Controllers start_controllers();
+  processes::LaunchSettings launch_settings() const;
   supervision::Supervision::Settings supervision_settings() const;
   void print_notices();
 

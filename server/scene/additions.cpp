@@ -57,7 +57,8 @@ bool Addition::ok() const {
 }
 
 Addition Additions::read(std::string text, const Scene& scene, std::size_t max_size,
-                         const std::function<bool(const std::string&)>& is_taken) const {
+                         const std::function<bool(const std::string&)>& is_taken,
+                         const OpenFile& open) const {
   Addition addition;
   // A copy, because models and controllers note which of their faults have been reported.
   Scene around;
@@ -72,7 +73,9 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
         {Problem::Severity::fault, name_of_additions, {}, "the file " + too_large(max_size)}};
     return addition;
   }
-  Draft draft(report, around, parts_->options);
+  ReadOptions options = parts_->options;
+  options.open = open;
+  Draft draft(report, around, options);
   draft.budget = budget_for(max_size);
   draft.defaults = parts_->defaults;
   draft.has_engine = parts_->has_engine;

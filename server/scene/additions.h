@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/files.h"
 #include "scene/problem.h"
 #include "scene/scene.h"
 
@@ -40,8 +41,10 @@ class Additions {
   /// @param scene     the one that this came with
   /// @param max_size  of the text with its model written out [bytes]
   /// @param is_taken  whether an id is that of another entity
+  /// @param open      opens the files that the element names
   Addition read(std::string text, const Scene& scene, std::size_t max_size,
-                const std::function<bool(const std::string&)>& is_taken) const;
+                const std::function<bool(const std::string&)>& is_taken,
+                const OpenFile& open = open_no_file) const;
 
  private:
   struct Parts;

@@ -119,6 +119,11 @@ std::variant<File, std::string> open_file(const fs::path& path, std::size_t max_
   return File{fs::canonical(path, error).string(), std::move(text)};
 }
 
+std::variant<File, std::string> open_no_file(const fs::path&, std::size_t) {
+  return "may not be read: an element that is added to a scene may read no file; use a model of the "
+         "scene";
+}
+
 Parts read_includes(Draft& draft, Element& root, const std::string& identity) {
   Includes includes{draft, {}, {identity}, {draft.scene.files[0]}, {identity}};
   includes.read_root(root, false);

@@ -7,26 +7,14 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "scene/additions.h"
+#include "scene/files.h"
 #include "scene/problem.h"
 #include "scene/scene.h"
 
 namespace ziggurat::scene {
-
-struct File {
-  std::string identity;  ///< the same for every path that leads to this file
-  std::string text;
-};
-
-/// Opens a file of at most `max_size` bytes. If that fails: why, as `does not exist; …`.
-using OpenFile = std::function<std::variant<File, std::string>(const std::filesystem::path&,
-                                                               std::size_t max_size)>;
-
-/// From disk, regular files only.
-std::variant<File, std::string> open_file(const std::filesystem::path& path, std::size_t max_size);
 
 struct ReadOptions {
   bool lenient = false;             ///< unknown attributes (not elements) become notices

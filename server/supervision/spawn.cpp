@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <exception>
-#include <iterator>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
 #include "processes/scripts.h"
+#include "processes/spawned_scripts.h"
 #include "supervision/supervision.h"
 
 namespace ziggurat::supervision {
@@ -37,14 +38,18 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
                             "spawn more.",
                             most_spawned));
   }
-  scene::Addition addition =
-      world_.additions.read(text, world_.scene, spawnable_size_,
-                            [this](const std::string& id) { return entity_named(id).has_value(); });
+  scene::Addition addition = read_addition(text);
   const scene::Entity& entity = addition.entity;
+  processes::SpawnedScript script;
   try {
     if (addition.ok()) {
-      std::ranges::move(processes::check_script(world_.scene, entity, world_.path),
-                        std::back_inserter(addition.problems));
+      script = processes::spawned_script(world_.scene, entity, world_.path, allowed_);
+      if (script.details) console_.notice(*script.details);
+      if (script.fault) {
+        addition.problems.push_back({scene::Problem::Severity::fault,
+                                     scene::file_of(world_.scene, entity.params_where),
+                                     entity.params_where, *script.fault});
+      }
     }
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
     world_.simulation.spawn(world_.scene, entity);
@@ -55,19 +60,30 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
   for (const scene::Problem& notice : addition.problems) console_.problem(notice);
   ++spawned_;
   spawnable_size_ -= addition.size;
-  if (entity.controller) add_controller(entity);
+  if (entity.controller) add_controller(entity, script.path);
   return done(call);
+}
+
+/// Reads an element. Of files it may use only those below the allowed folders.
+scene::Addition Supervision::read_addition(const std::string& text) const {
+  const auto is_taken = [this](const std::string& id) { return entity_named(id).has_value(); };
+  const auto open = [this](const std::filesystem::path& path, std::size_t max_size) {
+    return processes::is_below(allowed_.folders, path) ? scene::open_file(path, max_size)
+                                                       : scene::open_no_file(path, max_size);
+  };
+  return world_.additions.read(text, world_.scene, spawnable_size_, is_taken, open);
 }
 
 /// Gives the last robot of the layout, which was just spawned, its controller: a Lua process if the
 /// run has started those of the other robots, otherwise a client that connects.
-void Supervision::add_controller(const scene::Entity& entity) {
+/// @param script  of a Lua controller; empty if it has none
+void Supervision::add_controller(const scene::Entity& entity, const std::string& script) {
   const simulation::Simulation& simulation = world_.simulation;
-  const std::array scripts{processes::script_path(world_.scene, entity, world_.path)};
-  server_.add_robots(scripts, simulation.observations(), simulation.state().tag_payloads);
+  server_.add_robots(std::array{script}, simulation.observations(),
+                     simulation.state().tag_payloads);
   const std::array robot{simulation.layout().robots.size() - 1};
   const bool is_lua = processes::runs_script(world_.scene.controllers[*entity.controller]);
-  if (!settings_.with_controllers || (is_lua && scripts[0].empty())) {
+  if (!settings_.with_controllers || (is_lua && script.empty())) {
     return server_.remove_robots(robot);
   }
   if (!is_lua) return;

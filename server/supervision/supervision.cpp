@@ -78,6 +78,7 @@ PauseTimer::clock::duration PauseTimer::total() const {
 Supervision::Supervision(const Settings& settings, World& world, network::Server& server,
                          processes::Controllers& controllers, reports::Console& console)
     : settings_(settings),
+      allowed_(processes::allowed_files(world.scene, world.path, settings.spawned_script_folders)),
       world_(world),
       server_(server),
       controllers_(controllers),

@@ -10,6 +10,7 @@
 
 #include "network/server.h"
 #include "processes/controllers.h"
+#include "processes/spawned_scripts.h"
 #include "reports/console.h"
 #include "supervision/tick_budget.h"
 #include "supervision/world.h"
@@ -41,9 +42,11 @@ class Supervision {
     std::uint64_t last_tick = 0;       ///< 0: until stopped
     bool is_hardware_in_the_loop = false;
     bool with_controllers = true;  ///< otherwise spawned robots have no controller either
+    std::vector<std::string> spawned_script_folders;  ///< whose files spawned robots may use, too
   };
 
   /// Everything but the settings must outlive this. Notices on spawned entities go to the console.
+  /// @throws std::runtime_error if a folder of the settings is none
   Supervision(const Settings& settings, World& world, network::Server& server,
               processes::Controllers& controllers, reports::Console& console);
 
@@ -77,7 +80,8 @@ class Supervision {
   Reply move(const network::Call& call);
   Reply spawn(const network::Call& call);
   Reply remove(const network::Call& call);
-  void add_controller(const scene::Entity& entity);
+  scene::Addition read_addition(const std::string& text) const;
+  void add_controller(const scene::Entity& entity, const std::string& script);
   Reply fail(const network::Call& call, wire::ErrorCode code, std::string field,
              std::string message);
   Reply fail(const network::Call& call, wire::Fault fault);
@@ -85,6 +89,7 @@ class Supervision {
   std::optional<std::size_t> entity_named(const std::string& id) const;
 
   const Settings settings_;
+  const processes::AllowedFiles allowed_;  ///< for spawned entities
   World& world_;
   network::Server& server_;
   processes::Controllers& controllers_;

@@ -127,6 +127,56 @@ class Spawn(SceneTest):
         self.assertEqual(self.read()["hash"], before)
         self.end(process)
 
+    def scripted(self, script):
+        """A copy of robot r1 that names this script."""
+        return self.arm("x", "0,3,0").replace(
+            'config="swing" />', f'config="swing"><params script="{script}" speed="1"/></controller>')
+
+    def test_a_spawned_robot_runs_only_scripts_of_the_scene(self):
+        outside = self.folder / "outside"
+        outside.mkdir()
+        (outside / "evil.lua").write_text("top secret")
+        (self.folder / "link.lua").symlink_to(outside / "evil.lua")
+        process = self.begin("run", *PACED)
+        self.read_until(process.stdout, r"^\[5 r0\]")
+        answers = set()
+        for script in ("/etc/passwd", "/etc/none", outside / "evil.lua", "outside/evil.lua", "link.lua"):
+            answer = self.spawn(self.scripted(script), code=1)
+            self.assertRegex(answer, "script '.*' is neither a script that the scene names nor")
+            self.assertIn("--allow-spawned-scripts DIR", answer)
+            answers.add(answer.replace(str(script), ""))
+        self.assertEqual(len(answers), 1, "the answer must not tell which files exist")
+        self.spawn(self.scripted("swing.lua"))
+        self.read_until(process.stdout, r"^\[\d+ x\] step 3")
+        self.end(process)
+
+    def test_a_spawned_robot_runs_scripts_below_an_allowed_folder(self):
+        allowed = self.folder / "allowed"
+        allowed.mkdir()
+        (allowed / "mine.lua").write_text("function init() log('mine') end function step() end")
+        (allowed / "wrong.lua").write_text("top secret")
+        (allowed / "link.lua").symlink_to("/etc/passwd")
+        process = self.begin("run", *PACED, "--allow-spawned-scripts", allowed)
+        self.read_until(process.stdout, r"^\[5 r0\]")
+        self.assertIn("neither", self.spawn(self.scripted("link.lua"), code=1))
+        answer = self.spawn(self.scripted("wrong.lua"), code=1)
+        self.assertIn("does not compile; the server's output has the reason", answer)
+        self.assertNotIn("secret", answer)
+        self.spawn(self.scripted("mine.lua"))
+        self.read_until(process.stdout, r"^\[\d+ x\] mine")
+        self.assertRegex(self.end(process).err, "wrong.lua:1: .*secret")
+
+    def test_a_spawned_entity_reads_no_file(self):
+        (self.folder / "secret.obj").write_text("v top secret")
+        process = self.begin_without_controllers()
+        hull = ('<prototype id="h" movable="true"><body position="0,3,0"/><links ref="a">'
+                '<link id="a" geometry="hull" mass="1"><hull file="{}"/></link></links></prototype>')
+        for file in ("secret.obj", "none.obj"):
+            answer = self.spawn(hull.format(file), code=1)
+            self.assertNotIn("secret ", answer)
+            self.assertIn("may read no file; use a model of the scene", answer)
+        self.end(process)
+
     def test_notices_about_a_spawned_entity_are_printed_by_the_server(self):
         process = self.begin_without_controllers("--lenient")
         self.spawn(BOX.format("crate", "0.05,0.08,0.2").replace("<box ", '<box flavour="oak" '))

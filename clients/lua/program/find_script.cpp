@@ -16,15 +16,25 @@ bool is_readable(const fs::path& path) {
 }  // namespace
 
 FoundScript find_script(const std::string& resolved,
-                        const std::vector<std::pair<std::string, std::string>>& params) {
-  if (!resolved.empty() && is_readable(resolved)) return {resolved, {}};
+                        const std::vector<std::pair<std::string, std::string>>& params,
+                        const Folders& folders) {
   std::string written;
   for (const auto& [name, value] : params) {
     if (name == "script") written = value;
   }
-  if (!written.empty() && is_readable(written)) return {written, {}};
+  std::string outside;
+  for (const std::string& script : {resolved, written}) {
+    if (script.empty() || !is_readable(script)) continue;
+    if (folders.contain(script)) return {script, {}};
+    if (outside.empty()) outside = script;
+  }
   if (resolved.empty() && written.empty()) {
     return {{}, "the scene has no Lua script for it; set one with --script FILE"};
+  }
+  if (!outside.empty()) {
+    return {{},
+            outside + ": the server names this script, and it is not below " + folders.names() +
+                "; allow its folder with --script-folder DIR, or set another with --script FILE"};
   }
   std::error_code error;
   std::string fault = resolved.empty() ? written : resolved;

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "script/folders.h"
+
 namespace ziggurat::lua {
 
 struct FoundScript {
@@ -14,10 +16,12 @@ struct FoundScript {
 };
 
 /// The server's path if it can be read here, otherwise the scene's, relative to the working
-/// directory: the server may run on another machine.
+/// directory: the server may run on another machine. A server is not trusted: it can't choose a
+/// script outside the folders.
 /// @param resolved  the server's path
 /// @param params    of the robot; `script` is the scene's path
 FoundScript find_script(const std::string& resolved,
-                        const std::vector<std::pair<std::string, std::string>>& params);
+                        const std::vector<std::pair<std::string, std::string>>& params,
+                        const Folders& folders);
 
 }  // namespace ziggurat::lua

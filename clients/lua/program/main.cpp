@@ -9,6 +9,7 @@
 #include "program/options.h"
 #include "program/runner.h"
 #include "program/signals.h"
+#include "script/interrupt.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 
@@ -62,6 +63,7 @@ int main(int count, char** arguments) {
       return exit_finished;
     }
     lua::handle_signals();
+    lua::watch_scripts();
     return run(request.options);
   } catch (const std::exception& error) {
     if (const int number = lua::arrived_signal()) return exit_signal + number;

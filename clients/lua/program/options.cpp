@@ -26,6 +26,8 @@ usage: ziggurat-lua --connect URL [--robot GLOB]... [--script FILE]
 
 `ziggurat run` starts this program itself. A script has robot, log and logerr, and defines init,
 step, reset and destroy: see docs/lua-api.md. A script that fails ends only its own robot.
+A script can't start programs, and uses only files below the working directory, unless --trust-scripts
+or --script-folder allows more.
 
 Exit codes: 0 the run is over; 1 an error in an argument, the connection or the server's answer;
 3 a script failed; 130 Ctrl-C.)";
@@ -46,7 +48,15 @@ po::options_description description() {
       ("curve-secret", text("FILE"), "secret key of this program for it ('ziggurat keygen')")  //
       ("script", text("FILE"), "run this script instead of those of the scene")                //
       ("name", text("NAME"), "name of this program in the server's messages")                  //
-      ("max-memory", text("MIB"), "largest memory of the script of a robot; 1024")             //
+      ("script-folder", po::value<std::vector<std::string>>()->composing()->value_name("DIR"),
+       "the server may name only scripts below DIR, and scripts may use only files below it; may be "
+       "repeated; default: the working directory, and the folder of --script")  //
+      ("trust-scripts",
+       "scripts may use all of Lua, start programs, and read and write all files; no limit of "
+       "instructions unless one is set")                                          //
+      ("max-memory", text("MIB"), "largest memory of the script of a robot; 256")  //
+      ("max-instructions", text("MILLIONS"),
+       "most Lua instructions of a robot at one tick, in millions; 1000")  //
       ("echo",
        "print log lines here too; the default on a terminal. The server always gets them")  //
       ("quiet", "print only errors and what scripts print themselves")                      //
@@ -74,19 +84,19 @@ void append_robots(const std::string& path, std::vector<std::string>& robots) {
   }
 }
 
-std::size_t to_bytes(const std::string& mebibytes) {
+std::uint64_t to_count(const char* option, const std::string& value, const char* unit) {
   constexpr unsigned long long most = 1ULL << 20;
   std::size_t used = 0;
   unsigned long long number = 0;
   try {
-    number = std::stoull(mebibytes, &used);
+    number = std::stoull(value, &used);
   } catch (const std::logic_error&) {
   }
-  if (used != mebibytes.size() || mebibytes[0] == '-' || number == 0 || number > most) {
-    throw std::runtime_error("--max-memory " + mebibytes +
-                             ": must be a number of MiB from 1 to 1048576");
+  if (used != value.size() || value[0] == '-' || number == 0 || number > most) {
+    throw std::runtime_error(std::string(option) + " " + value + ": must be a number of " + unit +
+                             " from 1 to 1048576");
   }
-  return static_cast<std::size_t>(number) << 20;
+  return number;
 }
 
 std::string environment(const char* name) {
@@ -110,6 +120,26 @@ po::variables_map parse(int count, const char* const* arguments) {
     throw std::runtime_error(std::string(error.what()) + "; see ziggurat-lua --help");
   }
   return found;
+}
+
+void read_limits(const po::variables_map& found, ProgramOptions& options) {
+  const auto text_of = [&](const char* name) { return found[name].as<std::string>(); };
+  if (found.count("script-folder")) {
+    const auto folders = found["script-folder"].as<std::vector<std::string>>();
+    options.folders.assign(folders.begin(), folders.end());
+  } else if (options.script) {
+    options.folders.push_back(options.script->has_parent_path() ? options.script->parent_path()
+                                                                : ".");
+  }
+  options.trusts_scripts = found.count("trust-scripts") > 0;
+  if (options.trusts_scripts) options.max_instructions = 0;
+  if (found.count("max-memory")) {
+    options.max_memory = to_count("--max-memory", text_of("max-memory"), "MiB") << 20;
+  }
+  if (found.count("max-instructions")) {
+    options.max_instructions =
+        to_count("--max-instructions", text_of("max-instructions"), "millions") * 1'000'000;
+  }
 }
 
 }  // namespace
@@ -141,7 +171,7 @@ Request read_arguments(int count, const char* const* arguments, bool is_terminal
   options.curve_secret = value("curve-secret", environment("ZIGGURAT_CURVE_SECRET"));
   if (found.count("script")) options.script = value("script");
   options.name = value("name", options.name);
-  if (found.count("max-memory")) options.max_memory = to_bytes(value("max-memory"));
+  read_limits(found, options);
   options.quiet = found.count("quiet") > 0;
   options.echo = found.count("echo") > 0 || (is_terminal && !options.quiet);
   return request;

@@ -2,6 +2,7 @@
 // The command line of ziggurat-lua.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,7 +17,12 @@ struct ProgramOptions {
   std::optional<std::filesystem::path> script;  ///< instead of the scene's
   std::string server_key, curve_secret;         ///< as in ziggurat::Options
   std::string name = "ziggurat-lua";
-  std::size_t max_memory = std::size_t{1} << 30;  ///< per robot [bytes]
+  /// Scripts that the server names must be below these, and so must the files that scripts use;
+  /// never empty.
+  std::vector<std::filesystem::path> folders{"."};
+  bool trusts_scripts = false;                      ///< all of Lua, all files
+  std::size_t max_memory = std::size_t{256} << 20;  ///< per robot [bytes]
+  std::uint64_t max_instructions = 1'000'000'000;   ///< per robot and call; 0 = any number
   bool echo = false;                              ///< print log lines here too
   bool quiet = false;
 };

@@ -16,6 +16,7 @@ namespace ziggurat::lua {
 class Runner {
  public:
   /// @param session  freshly opened; outlives the runner
+  /// @throws std::runtime_error if a folder of the options is none
   Runner(ziggurat::Session& session, const ProgramOptions& options);
 
   /// Until the run is over or a signal interrupts it.
@@ -40,6 +41,7 @@ class Runner {
 
   ziggurat::Session& session_;
   const ProgramOptions& options_;
+  const Folders folders_;
   std::vector<Seat> seats_;  ///< as the session's robots
   std::size_t failures_ = 0;
 };

@@ -5,7 +5,6 @@
 
 #include "script/error_message.h"
 #include "script/guarded.h"
-#include "script/interrupt.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -44,6 +43,8 @@ Controller::Controller(Robot& robot, const ControllerOptions& options)
     : robot_(robot),
       random_(options.seed, robot_.id()),
       max_memory_(options.max_memory),
+      max_instructions_(options.max_instructions),
+      folders_(options.folders),
       script_(shown(options.script).string()),
       folder_(shown(options.script).parent_path().string()),
       state_(options.max_memory) {
@@ -51,24 +52,24 @@ Controller::Controller(Robot& robot, const ControllerOptions& options)
 }
 
 Failure Controller::start() {
-  const Running running(state_.get());
+  const Running running(calling());
   if (auto failure = run_chunk()) return failure;
   return call("init", true, "init, tick 0");
 }
 
 Failure Controller::step(std::uint64_t tick) {
-  const Running running(state_.get());
+  const Running running(calling());
   return call("step", true, "step " + std::to_string(tick));
 }
 
 Failure Controller::reset(std::uint64_t seed) {
   random_ = RandomStreams(seed, robot_.id());
-  const Running running(state_.get());
+  const Running running(calling());
   return call("reset", false, "reset, tick 0");
 }
 
 Failure Controller::destroy(std::uint64_t last_tick) {
-  const Running running(state_.get());
+  const Running running(calling());
   return call("destroy", false, "destroy, after tick " + std::to_string(last_tick));
 }
 
@@ -112,7 +113,7 @@ void Controller::push_protected(int (*function)(lua_State*)) {
 int Controller::build(lua_State* state) {
   auto& self = *static_cast<Controller*>(lua_touserdata(state, 1));
   prepare_error_messages(state);
-  set_up(state, {self.robot_, self.log_, self.random_, self.folder_});
+  set_up(state, {self.robot_, self.log_, self.random_, self.folder_, self.folders_});
   return 0;
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "script/environment.h"
+#include "script/folders.h"
+#include "script/interrupt.h"
 #include "script/log_lines.h"
 #include "script/memory.h"
 #include "ziggurat/robot.h"
@@ -17,7 +19,11 @@ namespace ziggurat::lua {
 struct ControllerOptions {
   std::filesystem::path script;
   std::uint64_t seed = 1;                         ///< of the run
-  std::size_t max_memory = std::size_t{1} << 30;  ///< of the script's Lua state [bytes]
+  std::size_t max_memory = std::size_t{256} << 20;  ///< of the script's Lua state [bytes]
+  std::uint64_t max_instructions = 1'000'000'000;   ///< of a call (interrupt.h); 0 = any number
+  /// The files that the script may use; they outlive it. Null: the script is trusted, and may use
+  /// all of Lua.
+  const Folders* folders = nullptr;
 };
 
 /// The error of a script: `scenes/x.lua:12: attempt to … (in step 37)`, a line feed, and Lua's
@@ -62,12 +68,15 @@ class Controller {
   Failure call(const char* function, bool is_required, const std::string& moment);
   Failure call_prepared(const std::string& moment);
   void push_protected(int (*function)(lua_State*));
+  Calling calling() const { return {robot_.id().c_str(), state_.get(), max_instructions_}; }
   std::string describe_error(const std::string& moment);
 
   Robot& robot_;
   LogLines log_;
   RandomStreams random_;
   std::size_t max_memory_;
+  std::uint64_t max_instructions_;
+  const Folders* folders_;
   std::string script_;  // path for messages
   std::string folder_;  // of the script
   Wanted wanted_;       // by prepare()

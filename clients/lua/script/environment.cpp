@@ -8,7 +8,9 @@
 #include "script/math_random.h"
 #include "script/ordered_pairs.h"
 #include "script/robot_random.h"
+#include "script/sandbox.h"
 #include "script/tables.h"
+#include "script/watched_functions.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -40,6 +42,7 @@ void confine_libraries(lua_State* state, RandomStream& math_random) {
   lua_pop(state, 1);
   set_math_random(state, math_random);
   set_ordered_pairs(state);
+  set_watched_functions(state);
 }
 
 void prepend_to_package_path(lua_State* state, const std::string& folder) {
@@ -90,6 +93,7 @@ void push_robot(lua_State* state, Robot& robot) {
 void set_up(lua_State* state, const Environment& environment) {
   luaL_openlibs(state);
   confine_libraries(state, environment.random.math_random);
+  if (environment.files != nullptr) confine(state, *environment.files);
   prepend_to_package_path(state, environment.folder);
   lua_pushglobaltable(state);
   set_log_functions(state, environment.log);

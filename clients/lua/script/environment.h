@@ -4,6 +4,7 @@
 #include <lua.hpp>
 #include <string>
 
+#include "script/folders.h"
 #include "script/log_lines.h"
 #include "script/random_stream.h"
 #include "ziggurat/robot.h"
@@ -26,6 +27,7 @@ struct Environment {
   LogLines& log;
   RandomStreams& random;
   const std::string& folder;  ///< of the script; the first place to search for modules
+  const Folders* files;       ///< those that the script may use; null: it is trusted
 };
 
 /// Opens the libraries and sets the globals. May raise a Lua error.

@@ -1,21 +1,111 @@
 #include "script/interrupt.h"
 
+#include <signal.h>
+#include <sys/time.h>
+#include <unistd.h>
+
 #include <atomic>
+#include <cstdio>
 
 namespace ziggurat::lua {
 namespace {
 
+constexpr int step = 1000;                // instructions between two looks of the hook
+constexpr long interval_us = 50'000;      // computing time between two looks of the signal
+constexpr unsigned patience = 100;        // such intervals without an instruction
+constexpr int switch_cost = 100;           // of a coroutine that is resumed [instructions]
+constexpr int exit_failed_script = 3;
+
 std::atomic<bool> interrupted{false};
-std::atomic<lua_State*> running{nullptr};
+std::atomic<lua_State*> running{nullptr};  // the coroutine that runs now
 static_assert(std::atomic<bool>::is_always_lock_free &&
               std::atomic<lua_State*>::is_always_lock_free);
 
-void raise(lua_State* state, lua_Debug*) { luaL_error(state, "interrupted"); }
+// Of the running call. Written by the thread that runs scripts, and by its signal handler.
+struct Watch {
+  const char* robot = "";
+  std::uint64_t max_instructions = 0;
+  std::uint64_t instructions = 0;  // counted so far
+  bool was_seen = false;           // by the signal
+  bool is_counting = false;
+  bool is_over = false;  // more than max_instructions
+  unsigned quiet = 0;    // looks of the signal since an instruction was counted
+  char place[LUA_IDSIZE + 16] = "";  // file and line where is_over began
+};
+Watch watch;
+
+// The line that runs, or that has called the library function which runs. Allocates nothing.
+void note_place(lua_State* state) {
+  lua_Debug where{};
+  for (int level = 0; lua_getstack(state, level, &where) != 0; ++level) {
+    lua_getinfo(state, "Sl", &where);
+    if (where.currentline <= 0) continue;
+    std::snprintf(watch.place, sizeof watch.place, "%s:%d", where.short_src, where.currentline);
+    return;
+  }
+}
+
+void raise(lua_State* state, lua_Debug*) {
+  if (interrupted) {
+    luaL_error(state, "interrupted");
+  } else {
+    luaL_error(state, "%s: runs more than %d million instructions in one call: an endless loop?",
+               watch.place, static_cast<int>(watch.max_instructions / 1'000'000));
+  }
+}
 
 // Raises again at each instruction: a script that catches the error does not continue.
-void set_hook(lua_State* state) {
+void end_script(lua_State* state) {
   constexpr int each = LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT;
   lua_sethook(state, raise, each, 1);
+}
+
+void add(std::uint64_t instructions, lua_State* state) {
+  watch.quiet = 0;
+  watch.instructions += instructions;
+  if (watch.is_over || watch.instructions <= watch.max_instructions) return;
+  watch.is_over = true;
+  note_place(state);
+}
+
+void count(lua_State* state, lua_Debug* what) {
+  if (!watch.is_counting) return lua_sethook(state, nullptr, 0, 0);  // left by an earlier call
+  add(step, state);
+  if (!watch.is_over) return;
+  end_script(state);
+  raise(state, what);
+}
+
+// A hook that counts already stays: it would begin to count again.
+void set_hook(lua_State* state) {
+  if (interrupted || watch.is_over) return end_script(state);
+  const bool counts = lua_gethook(state) == count;
+  if (watch.is_counting && !counts) lua_sethook(state, count, LUA_MASKCOUNT, step);
+}
+
+// In a library function: its state does not change meanwhile, so that it can be looked at.
+[[noreturn]] void end_process(lua_State* state) {
+  note_place(state);
+  char text[512];
+  const int size = std::snprintf(text, sizeof text,
+                                 "ziggurat-lua: robot '%.100s': %s: calls a library function that "
+                                 "does not end; this process ends with all of its robots\n",
+                                 watch.robot, watch.place);
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, static_cast<size_t>(size));
+  ::_exit(exit_failed_script);
+}
+
+void look(int) {
+  lua_State* const state = running;
+  if (state == nullptr || watch.max_instructions == 0 || watch.is_over) return;
+  if (!watch.was_seen) {
+    watch.was_seen = true;
+  } else if (!watch.is_counting) {
+    watch.is_counting = true;
+    set_hook(state);
+  } else if (++watch.quiet > patience) {
+    end_process(state);
+  }
 }
 
 }  // namespace
@@ -27,13 +117,39 @@ void interrupt_scripts() noexcept {
 
 bool are_scripts_interrupted() noexcept { return interrupted; }
 
+bool must_scripts_end() noexcept { return interrupted || watch.is_over; }
+
 void allow_scripts() noexcept { interrupted = false; }
 
-Running::Running(lua_State* state) noexcept {
-  running = state;
-  if (interrupted) set_hook(state);
+void watch_scripts() {
+  struct sigaction action = {};
+  action.sa_handler = look;
+  action.sa_flags = SA_RESTART;
+  ::sigemptyset(&action.sa_mask);
+  ::sigaction(SIGVTALRM, &action, nullptr);
+  const itimerval timer{{0, interval_us}, {0, interval_us}};
+  ::setitimer(ITIMER_VIRTUAL, &timer, nullptr);
 }
 
-Running::~Running() { running = nullptr; }
+Running::Running(const Calling& calling) noexcept : state_(calling.state) {
+  watch = {};
+  watch.robot = calling.robot;
+  watch.max_instructions = calling.max_instructions;
+  running = calling.state;
+  if (interrupted) set_hook(calling.state);
+}
+
+Running::~Running() {
+  running = nullptr;
+  if (watch.is_counting) lua_sethook(state_, nullptr, 0, 0);
+  watch = {};
+}
+
+lua_State* switch_to(lua_State* coroutine) noexcept {
+  lua_State* const former = running.exchange(coroutine);
+  if (watch.is_counting) add(switch_cost, former);
+  set_hook(coroutine);
+  return former;
+}
 
 }  // namespace ziggurat::lua

@@ -1,28 +1,52 @@
 #pragma once
-// Lets a signal handler end scripts, also in endless loops. Signals belong to the process, and so
-// does this state; nothing else in this program does.
+// Ends scripts from a signal handler, also in endless loops: when the program is interrupted, and
+// when a call runs too many instructions. Signals belong to the process, and so does this state;
+// nothing else in this program does.
 
+#include <cstdint>
 #include <lua.hpp>
 
 namespace ziggurat::lua {
 
 /// The running script, and each one that is called later, ends with the Lua error "interrupted".
-/// May be called from a signal handler. A coroutine or a long library function ends only when it
-/// returns.
+/// May be called from a signal handler. A long library function ends only when it returns.
 void interrupt_scripts() noexcept;
 
 bool are_scripts_interrupted() noexcept;
 
+/// Whether the running script ends: interrupted, or after too many instructions.
+bool must_scripts_end() noexcept;
+
 /// For tests: scripts run again.
 void allow_scripts() noexcept;
 
-/// While it lives, interrupt_scripts() ends the script of `state`. Do not nest.
+/// From now on a signal (SIGVTALRM) looks at the running call each time that this process has
+/// computed for 50 ms. A call that lasts longer counts its instructions from there on: counting all of
+/// them would make every script slower. A call that then runs no instruction for 5 s of computing
+/// is in a library function that can't be ended: the process ends with a message.
+void watch_scripts();
+
+/// A call of a script.
+struct Calling {
+  const char* robot = "";              ///< id, for messages
+  lua_State* state = nullptr;          ///< of the script
+  std::uint64_t max_instructions = 0;  ///< 0 = any number
+};
+
+/// While it lives, interrupt_scripts() ends the script, and too many instructions do. Do not nest.
 class Running {
  public:
-  explicit Running(lua_State* state) noexcept;
+  explicit Running(const Calling& calling) noexcept;
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
+
+ private:
+  lua_State* state_;
 };
+
+/// The running call continues in another coroutine.
+/// @returns the former one
+lua_State* switch_to(lua_State* coroutine) noexcept;
 
 }  // namespace ziggurat::lua

@@ -29,7 +29,7 @@ World world_of(const std::vector<std::size_t>& controllers) {
 
 std::vector<Launch> plan(const World& world, unsigned lua_processes) {
   return plan_controllers(world.scene, world.layout, world.scripts,
-                          {"ipc:///e", "/f", "ziggurat-lua", lua_processes});
+                          {"ipc:///e", "/f", "ziggurat-lua", lua_processes, {"--max-memory", "9"}});
 }
 
 std::vector<std::vector<std::size_t>> blocks(const std::vector<Launch>& launches) {
@@ -61,7 +61,7 @@ TEST(Controllers, CommandsFindTheServerInTheirEnvironment) {
   EXPECT_EQ(blocks(launches), (Blocks{{1}, {0, 2}}));
   EXPECT_EQ(launches[0].program.arguments,
             (std::vector<std::string>{"ziggurat-lua", "--connect", "ipc:///e", "--robots-file",
-                                      "/f/robots-0", "--quiet"}));
+                                      "/f/robots-0", "--quiet", "--max-memory", "9"}));
   EXPECT_EQ(launches[1].program.arguments,
             (std::vector<std::string>{"/bin/sh", "-c", "./drive --fast"}));
   EXPECT_EQ(launches[1].program.environment,

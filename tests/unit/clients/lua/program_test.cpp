@@ -23,6 +23,10 @@ std::string fault_of(std::vector<const char*> arguments) {
   return "";
 }
 
+Folders below(const std::filesystem::path& folder) {
+  return Folders(std::vector<std::filesystem::path>{folder});
+}
+
 class Program : public ScriptTest {
  protected:
   Program() {
@@ -81,6 +85,7 @@ TEST_F(Program, ReportsWrongArguments) {
   EXPECT_NE(fault_of({"--connect", "x", "stray"}).find("--help"), std::string::npos);
   for (const char* memory : {"0", "-1", "x", "1x", "", "99999999999999999999"}) {
     EXPECT_NE(fault_of({"--connect", "x", "--max-memory", memory}), "") << memory;
+    EXPECT_NE(fault_of({"--connect", "x", "--max-instructions", memory}), "") << memory;
   }
 }
 
@@ -95,22 +100,52 @@ TEST_F(Program, HasAHelpText) {
 TEST_F(Program, FindsTheServersScript) {
   write("main.lua", "");
   const auto path = (folder() / "main.lua").string();
-  EXPECT_EQ(find_script(path, {{"script", "other.lua"}}).path, path);
+  EXPECT_EQ(find_script(path, {{"script", "other.lua"}}, below(folder())).path, path);
+}
+
+TEST_F(Program, RunsNoScriptOutsideItsFoldersThoughTheServerNamesIt) {
+  write("main.lua", "");
+  std::filesystem::create_directory(folder() / "inside");
+  std::filesystem::create_symlink(folder() / "main.lua", folder() / "inside/link.lua");
+  const Folders inside = below(folder() / "inside");
+  for (const auto path : {folder() / "main.lua", folder() / "inside/../main.lua",
+                          folder() / "inside/link.lua"}) {
+    const auto found = find_script(path.string(), {}, inside);
+    EXPECT_TRUE(found.path.empty()) << path;
+    EXPECT_NE(found.fault.find("allow its folder with --script-folder DIR"), std::string::npos);
+    EXPECT_TRUE(find_script("", {{"script", path.string()}}, inside).path.empty()) << path;
+  }
+}
+
+TEST_F(Program, AllowsItsWorkingDirectoryAndTheFolderOfItsScript) {
+  using Paths = std::vector<std::filesystem::path>;
+  EXPECT_EQ(read({"--connect", "x"}).options.folders, (Paths{"."}));
+  EXPECT_EQ(read({"--connect", "x", "--script", "/a/b.lua"}).options.folders, (Paths{".", "/a"}));
+  EXPECT_EQ(read({"--connect", "x", "--script-folder", "/c"}).options.folders, (Paths{"/c"}));
+  EXPECT_THROW(below(folder() / "none"), std::runtime_error);
+}
+
+TEST_F(Program, LimitsInstructionsUnlessScriptsAreTrusted) {
+  EXPECT_EQ(read({"--connect", "x"}).options.max_instructions, 1'000'000'000u);
+  EXPECT_EQ(read({"--connect", "x", "--trust-scripts"}).options.max_instructions, 0u);
+  EXPECT_EQ(read({"--connect", "x", "--trust-scripts", "--max-instructions", "3"})
+                .options.max_instructions,
+            3'000'000u);
 }
 
 TEST_F(Program, FindsTheScriptFromTheWorkingDirectory) {
   write("main.lua", "");
   const auto relative = std::filesystem::proximate(folder() / "main.lua").string();
-  EXPECT_EQ(find_script("/elsewhere/main.lua", {{"speed", "1"}, {"script", relative}}).path,
+  EXPECT_EQ(find_script("/elsewhere/main.lua", {{"speed", "1"}, {"script", relative}}, below(folder())).path,
             relative);
 }
 
 TEST_F(Program, NamesThePathsOfAMissingScript) {
-  const auto found = find_script("/elsewhere/main.lua", {{"script", "no/main.lua"}});
+  const auto found = find_script("/elsewhere/main.lua", {{"script", "no/main.lua"}}, below("."));
   EXPECT_TRUE(found.path.empty());
   EXPECT_NE(found.fault.find("/elsewhere/main.lua"), std::string::npos);
   EXPECT_NE(found.fault.find("'no/main.lua'"), std::string::npos);
-  EXPECT_NE(find_script("", {}).fault.find("--script"), std::string::npos);
+  EXPECT_NE(find_script("", {}, below(".")).fault.find("--script"), std::string::npos);
 }
 
 }  // namespace

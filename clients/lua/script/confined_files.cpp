@@ -1,0 +1,141 @@
+#include "script/confined_files.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "script/guarded.h"
+
+namespace ziggurat::lua {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Upvalues of every function here: the folders, and Lua's own function.
+const Folders& folders_of(lua_State* state) { return upvalue<const Folders>(state); }
+
+/// Whether a script may create this file, or change it: no program, script or scene, as those run
+/// with more rights than the script has.
+bool may_write(const Folders& folders, const char* file) {
+  constexpr std::string_view code[] = {".lua", ".argos", ".xml", ".so", ".py", ".sh"};
+  if (!may_read(folders, file)) return false;
+  const fs::path path(file);
+  for (const auto ending : code) {
+    if (path.extension() == ending) return false;
+  }
+  std::error_code error;
+  const auto status = fs::status(path, error);
+  constexpr auto may_run = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
+  return !fs::exists(status) || (status.permissions() & may_run) == fs::perms::none;
+}
+
+/// Calls Lua's own function with the arguments of this one.
+int call_original(lua_State* state) {
+  lua_pushvalue(state, lua_upvalueindex(2));
+  lua_insert(state, 1);
+  lua_call(state, lua_gettop(state) - 1, LUA_MULTRET);
+  return lua_gettop(state);
+}
+
+/// nil, a message and a number, as Lua returns them for a file that cannot be opened.
+int refuse(lua_State* state, const char* file) {
+  lua_pushnil(state);
+  push_refusal(state, file);
+  lua_pushinteger(state, EACCES);
+  return 3;
+}
+
+int raise_refusal(lua_State* state, const char* file) {
+  luaL_where(state, 1);
+  push_refusal(state, file);
+  lua_concat(state, 2);
+  return lua_error(state);
+}
+
+int open(lua_State* state) {
+  const char* const file = luaL_checkstring(state, 1);
+  const char* const mode = luaL_optstring(state, 2, "r");
+  const bool reads_only = std::strpbrk(mode, "wa+") == nullptr;
+  const bool allowed = reads_only ? may_read(folders_of(state), file)
+                                  : may_write(folders_of(state), file);
+  return allowed ? call_original(state) : refuse(state, file);
+}
+
+/// io.lines, io.input and io.output: a file, its name, or nothing.
+template <bool (*may)(const Folders&, const char*)>
+int open_by_name(lua_State* state) {
+  if (lua_isstring(state, 1)) {
+    const char* const file = lua_tostring(state, 1);
+    if (!may(folders_of(state), file)) return raise_refusal(state, file);
+  }
+  return call_original(state);
+}
+
+/// os.remove and os.rename, of regular files only: a link that is moved could lead elsewhere.
+template <int names>
+int change_names(lua_State* state) {
+  for (int i = 1; i <= names; ++i) {
+    const char* const file = luaL_checkstring(state, i);
+    if (!may_write(folders_of(state), file)) return refuse(state, file);
+  }
+  return call_original(state);
+}
+
+template <int (*function)(lua_State*)>
+void replace(lua_State* state, const char* name, const Folders& folders) {
+  lua_pushlightuserdata(state, const_cast<Folders*>(&folders));
+  lua_getfield(state, -2, name);
+  lua_pushcclosure(state, guarded<function>, 2);
+  lua_setfield(state, -2, name);
+}
+
+// A file's metatable is its table of methods, and has its finalizer: a script that changed it could
+// run where no instruction is counted.
+void hide_metatable_of_files(lua_State* state) {
+  luaL_getmetatable(state, LUA_FILEHANDLE);
+  lua_newtable(state);
+  for (const char* name : {"close", "flush", "lines", "read", "seek", "setvbuf", "write"}) {
+    lua_getfield(state, -2, name);
+    lua_setfield(state, -2, name);
+  }
+  lua_setfield(state, -2, "__index");
+  lua_pushboolean(state, 0);
+  lua_setfield(state, -2, "__metatable");
+  lua_pop(state, 1);
+}
+
+}  // namespace
+
+bool may_read(const Folders& folders, const char* file) {
+  if (!folders.contain(file)) return false;
+  std::error_code error;
+  const auto status = fs::status(file, error);
+  return !fs::exists(status) || fs::is_regular_file(status);  // a pipe could wait forever
+}
+
+void push_refusal(lua_State* state, const char* file) {
+  lua_pushfstring(state,
+                  "'%s' is not a file that scripts may use this way; they may read and write files in "
+                  "the folders of the scene and its scripts, but change no programs; --trust-scripts "
+                  "allows all",
+                  file);
+}
+
+void confine_files(lua_State* state, const Folders& folders) {
+  lua_getglobal(state, LUA_IOLIBNAME);
+  replace<open>(state, "open", folders);
+  replace<open_by_name<may_read>>(state, "lines", folders);
+  replace<open_by_name<may_read>>(state, "input", folders);
+  replace<open_by_name<may_write>>(state, "output", folders);
+  lua_pop(state, 1);
+  lua_getglobal(state, LUA_OSLIBNAME);
+  replace<change_names<1>>(state, "remove", folders);
+  replace<change_names<2>>(state, "rename", folders);
+  lua_pop(state, 1);
+  hide_metatable_of_files(state);
+}
+
+}  // namespace ziggurat::lua

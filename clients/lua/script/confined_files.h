@@ -1,0 +1,19 @@
+#pragma once
+// The functions of the libraries io and os that open, remove and rename files.
+
+#include <lua.hpp>
+
+#include "script/folders.h"
+
+namespace ziggurat::lua {
+
+/// Limits them to the files below the folders, which outlive the state. May raise a Lua error.
+void confine_files(lua_State* state, const Folders& folders);
+
+/// Whether a script may read this file: it is below the folders, and regular or missing.
+bool may_read(const Folders& folders, const char* file);
+
+/// Pushes "'FILE' is not a file that scripts may use; …".
+void push_refusal(lua_State* state, const char* file);
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,15 @@
+#pragma once
+// What a script that is not trusted can do: it starts no program, loads no byte code and no C
+// library, and uses only files below some folders (docs/lua-api.md has the whole list).
+
+#include <lua.hpp>
+
+#include "script/folders.h"
+
+namespace ziggurat::lua {
+
+/// Replaces what would reach further, in a state whose libraries are open. May raise a Lua error.
+/// @param folders  outlive the state
+void confine(lua_State* state, const Folders& folders);
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,28 @@
+#pragma once
+// The files that a scene is read from.
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <variant>
+
+namespace ziggurat::scene {
+
+struct File {
+  std::string identity;  ///< the same for every path that leads to this file
+  std::string text;
+};
+
+/// Opens a file of at most `max_size` bytes. If that fails: why, as `does not exist; …`.
+using OpenFile = std::function<std::variant<File, std::string>(const std::filesystem::path&,
+                                                               std::size_t max_size)>;
+
+/// From disk, regular files only.
+std::variant<File, std::string> open_file(const std::filesystem::path& path, std::size_t max_size);
+
+/// For elements that are added to a scene: no file may be read.
+std::variant<File, std::string> open_no_file(const std::filesystem::path& path,
+                                             std::size_t max_size);
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,106 @@
+// An endless loop ends with file and line, wherever it runs; other scripts are not affected.
+
+#include "script/interrupt.h"
+#include "script_fixture.h"
+
+namespace ziggurat::lua {
+namespace {
+
+class Limits : public ScriptTest {
+ protected:
+  Limits() {
+    watch_scripts();
+    folders_.emplace(std::vector<std::filesystem::path>{folder()});
+    options_.folders = &*folders_;
+    options_.max_instructions = 20'000'000;
+  }
+
+  void expect_ended(const std::string& script, const std::string& line) {
+    const Failure failure = start(script);
+    ASSERT_TRUE(failure) << script;
+    EXPECT_NE(failure->find("main.lua:" + line +
+                            ": runs more than 20 million instructions in one call"),
+              std::string::npos)
+        << *failure;
+  }
+
+  std::optional<Folders> folders_;
+};
+
+TEST_F(Limits, EndALoopWithItsLine) { expect_ended("\n\nwhile true do\nend", "3"); }
+
+TEST_F(Limits, EndALoopThatCatchesErrors) {
+  const Failure failure = start(
+      "while true do pcall(function() while true do end end) end");
+  ASSERT_TRUE(failure);
+  EXPECT_NE(failure->find("20 million instructions"), std::string::npos) << *failure;
+}
+
+TEST_F(Limits, EndALoopInACoroutine) {
+  expect_ended("\nlocal f = coroutine.wrap(function()\nwhile true do end end)\nf()", "3");
+}
+
+TEST_F(Limits, EndLoopsOverCoroutines) {
+  for (const char* script :
+       {"while true do coroutine.wrap(function() for i = 1, 1e5 do end end)() end",
+        "local c = coroutine.wrap(function() while true do coroutine.yield() end end) "
+        "while true do c() end",
+        "while true do coroutine.resume(coroutine.create(function() while true do end end)) end",
+        "local function deep() coroutine.wrap(deep)() end while true do pcall(deep) end",
+        "while true do xpcall(error, function() while true do end end) end",
+        "local t = setmetatable({}, {__index = function(t, k) return t[k + 1] end}) "
+        "while true do pcall(function() return t[1] end) end",
+        "table.sort({1, 2, 3}, function() while true do end end)",
+        "string.gsub('x', 'x', function() while true do end end)",
+        "load(function() while true do end end)"}) {
+    const Failure failure = start(script);
+    ASSERT_TRUE(failure) << script;
+    EXPECT_NE(failure->find("20 million instructions"), std::string::npos)
+        << script << "\n" << *failure;
+  }
+}
+
+TEST_F(Limits, HoldForEachCall) {
+  ASSERT_EQ(start("function step() for i = 1, 4e6 do end end"), std::nullopt);
+  for (std::uint64_t tick = 1; tick <= 20; ++tick) {
+    ASSERT_EQ(controller().step(tick), std::nullopt) << tick;
+  }
+}
+
+TEST_F(Limits, OfOneRobotDoNotAffectAnother) {
+  ASSERT_EQ(start("function step() log('here') end"), std::nullopt);
+  write("loop.lua", "function init() end function step() while true do end end");
+  OneRobot another(robot_);
+  ControllerOptions options = options_;
+  options.script = folder() / "loop.lua";
+  Controller loop(another.robot(), options);
+  ASSERT_EQ(loop.start(), std::nullopt);
+  EXPECT_TRUE(loop.step(1));
+  ASSERT_EQ(controller().step(1), std::nullopt);
+  EXPECT_EQ(controller().log().lines.at(0).text, "here");
+}
+
+TEST_F(Limits, CoroutinesWorkAsInLua) {
+  EXPECT_EQ(logged("local c = coroutine.create(function(a, b) local x = coroutine.yield(a + b) "
+                   "error('no' .. x, 0) end) "
+                   "log(coroutine.resume(c, 1, 2)) log(coroutine.resume(c, 'p')) "
+                   "log(coroutine.resume(c)) log(coroutine.status(c)) "
+                   "local g = coroutine.wrap(function() for i = 1, 2 do coroutine.yield(i) end end) "
+                   "log(g(), g(), select('#', g())) log(pcall(g)) log(pcall(coroutine.resume, 1)) "
+                   "log(coroutine.wrap(function() return coroutine.isyieldable() end)())"),
+            (Lines{"13", "0nop", "0cannot resume dead coroutine", "dead", "120",
+                   "0cannot resume dead coroutine",
+                   "0bad argument #1 to 'coroutine.resume' (coroutine expected)", "1"}));
+}
+
+TEST_F(Limits, ALibraryFunctionThatDoesNotEndNamesTheRobotAndItsLine) {
+  EXPECT_EXIT(
+      {
+        watch_scripts();  // a child process has no timer yet
+        start("\nlocal t = {}\ntable.move(t, 1, math.maxinteger - 9, 2, {})");
+      },
+      testing::ExitedWithCode(3), "robot 'r0': .*main.lua:3: calls a library function");
+}
+
+}  // namespace
+}  // namespace ziggurat::lua

@@ -1,0 +1,156 @@
+// What a script that is not trusted cannot do.
+
+#include <fstream>
+#include <iterator>
+
+#include "script_fixture.h"
+
+namespace ziggurat::lua {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A script in <test folder>/inside, which may use the files of that folder.
+class Sandbox : public ScriptTest {
+ protected:
+  Sandbox() {
+    fs::create_directory(folder() / "inside");
+    write("secret.txt", "secret");
+    write("secret.lua", "return 'secret'");
+    write("inside/data.txt", "data");
+    write("inside/part.lua", "return 'part'");
+    write("inside/.hidden", "secret");
+    fs::create_symlink(folder() / "secret.txt", folder() / "inside/link.txt");
+    fs::create_symlink(folder(), folder() / "inside/up");
+    fs::create_symlink(folder() / "new.txt", folder() / "inside/dangling.txt");
+    folders_.emplace(std::vector<fs::path>{folder() / "inside"});
+    options_.folders = &*folders_;
+  }
+
+  /// What an expression with IN and OUT, the folder and the one above, is worth in a script.
+  std::string value(const std::string& expression) {
+    const auto lines = logged("local OUT = '" + folder().string() +
+                              "/' local IN = OUT .. 'inside/' log((" + expression + "))");
+    return lines.empty() ? "(nothing)" : lines.at(0);
+  }
+  void expect_refused(const std::string& statement) {
+    const std::string text = value("(function() local ok, why = pcall(function() " + statement +
+                                   " end) return ok and 'REACHED' or why end)()");
+    EXPECT_EQ(text.find("REACHED"), std::string::npos) << statement;
+  }
+
+  std::optional<Folders> folders_;
+};
+
+TEST_F(Sandbox, StartsNoProgramAndLoadsNoLibrary) {
+  for (const char* statement :
+       {"os.execute('true')", "io.popen('true')", "package.loadlib('libc.so.6', 'system')",
+        "io.tmpfile()", "os.tmpname()", "os.exit(0)", "debug.getregistry()",
+        "debug.sethook()", "debug.getupvalue(io.open, 1)", "debug.setmetatable(1, {})",
+        "debug.upvaluejoin(print, 1, print, 1)"}) {
+    expect_refused(statement);
+  }
+  EXPECT_NE(value("select(2, pcall(os.execute, 'true'))").find("--trust-scripts"),
+            std::string::npos);
+  EXPECT_EQ(value("#package.searchers"), "2");
+  expect_refused("package.cpath = '/usr/lib/x86_64-linux-gnu/lua/5.3/?.so' require 'lfs'");
+  EXPECT_EQ(value("os.getenv('PATH')"), "nil");
+}
+
+TEST_F(Sandbox, LoadsNoByteCode) {
+  const std::string code = "local code = string.dump(function() return 1 end) ";
+  for (const char* mode : {"", ", nil, 'b'", ", nil, 'bt'", ", nil, nil", ", nil, 'x'"}) {
+    expect_refused(code + "return assert(load(code" + std::string(mode) + "))()");
+  }
+  expect_refused(code + "local n = 0 return assert(load(function() n = n + 1 "
+                        "return n == 1 and code or nil end, 'x', 'b'))()");
+  expect_refused(code + "local f = assert(io.open(IN .. 'c', 'wb')) f:write(code) f:close() "
+                        "assert(loadfile(IN .. 'c', 'b'))");
+  expect_refused(code + "local f = assert(io.open(IN .. 'c', 'wb')) f:write(code) f:close() "
+                        "dofile(IN .. 'c')");
+  expect_refused(code + "local f = assert(io.open(IN .. 'c', 'wb')) f:write(code) f:close() "
+                        "package.path = IN .. '?' require 'c'");
+  EXPECT_EQ(value("load('return 7')()"), "7");
+  EXPECT_EQ(value("load('return x', 'c', 't', {x = 8})()"), "8");
+  EXPECT_EQ(value("select('#', load('return 7', 'c', 'bt'))"), "1");
+}
+
+TEST_F(Sandbox, OpensNoFileOutsideItsFolders) {
+  for (const char* name :
+       {"OUT .. 'secret.txt'", "'/etc/passwd'", "IN .. '../secret.txt'", "IN .. 'link.txt'",
+        "IN .. 'up/secret.txt'", "IN .. '.hidden'", "'/proc/self/environ'", "'/dev/tty'", "''", "IN",
+        "IN .. 'link.txt\\0data.txt'", "IN .. 'none/../../secret.txt'"}) {
+    const std::string file = name;
+    expect_refused("assert(io.open(" + file + "))");
+    expect_refused("for line in io.lines(" + file + ") do end");
+    expect_refused("io.input(" + file + ")");
+    expect_refused("assert(loadfile(" + file + "))");
+    expect_refused("dofile(" + file + ")");
+    expect_refused("assert(os.remove(" + file + "))");
+    expect_refused("assert(os.rename(" + file + ", IN .. 'moved'))");
+  }
+  for (const char* name : {"OUT .. 'new.txt'", "IN .. 'dangling.txt'", "IN .. 'up/new.txt'"}) {
+    const std::string file = name;
+    expect_refused("assert(io.open(" + file + ", 'w'))");
+    expect_refused("io.output(" + file + ")");
+    expect_refused("assert(os.rename(IN .. 'data.txt', " + file + "))");
+  }
+  EXPECT_FALSE(fs::exists(folder() / "new.txt"));
+  expect_refused("assert(os.rename(IN .. 'up', IN .. 'elsewhere'))");
+}
+
+TEST_F(Sandbox, RequiresNoModuleOutsideItsFolders) {
+  expect_refused("package.path = OUT .. '?.lua' require 'secret'");
+  expect_refused("package.path = IN .. 'up/?.lua' require 'secret'");
+  expect_refused("assert(package.searchpath('secret', OUT .. '?.lua'))");
+  EXPECT_EQ(value("(function() package.path = IN .. '?.lua' return require 'part' end)()"), "part");
+  EXPECT_EQ(value("package.searchpath('part', IN .. '?.lua') == IN .. 'part.lua'"), "1");
+}
+
+TEST_F(Sandbox, ReadsAndWritesInItsFolders) {
+  EXPECT_EQ(value("io.open(IN .. 'data.txt'):read('a')"), "data");
+  EXPECT_EQ(value("io.lines(IN .. 'data.txt')()"), "data");
+  EXPECT_EQ(value("loadfile(IN .. 'part.lua')()"), "part");
+  EXPECT_EQ(value("dofile(IN .. 'part.lua')"), "part");
+  ASSERT_EQ(start("local IN = '" + (folder() / "inside/").string() +
+                  "' local f = assert(io.open(IN .. 'out.csv', 'w')) f:write('1,2') f:close() "
+                  "assert(os.rename(IN .. 'out.csv', IN .. 'kept.csv')) "
+                  "assert(os.remove(IN .. 'data.txt'))"),
+            std::nullopt);
+  std::ifstream kept(folder() / "inside/kept.csv");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(kept), {}), "1,2");
+  EXPECT_FALSE(fs::exists(folder() / "inside/data.txt"));
+}
+
+TEST_F(Sandbox, ChangesNoProgramsAndScripts) {
+  write("inside/drive", "#!/bin/sh");
+  fs::permissions(folder() / "inside/drive", fs::perms::owner_all);
+  for (const char* name : {"drive", "part.lua", "new.lua", "scene.argos"}) {
+    expect_refused("assert(io.open(IN .. '" + std::string(name) + "', 'a'))");
+    expect_refused("assert(os.rename(IN .. 'data.txt', IN .. '" + std::string(name) + "'))");
+  }
+  expect_refused("assert(io.open(IN .. 'part.lua', 'r+'))");
+}
+
+TEST_F(Sandbox, HidesTheMetatableOfFiles) {
+  EXPECT_EQ(value("getmetatable(io.stdout)"), "0");
+  EXPECT_EQ(value("io.stdout.__index"), "nil");
+  EXPECT_EQ(value("io.stdout.__gc"), "nil");
+  EXPECT_EQ(value("type(io.stdout.write)"), "function");
+}
+
+TEST_F(Sandbox, HasNoFinalizers) {
+  expect_refused("setmetatable({}, {__gc = function() while true do end end})");
+  EXPECT_EQ(value("setmetatable({}, {__index = {x = 5}}).x"), "5");
+  EXPECT_EQ(value("pcall(setmetatable, setmetatable({}, {__metatable = 1}), {})"), "0");
+}
+
+TEST_F(Sandbox, TrustedScriptsHaveAllOfLua) {
+  options_.folders = nullptr;
+  EXPECT_EQ(value("os.execute('true')"), "1");
+  EXPECT_EQ(value("io.open(OUT .. 'secret.txt'):read('a')"), "secret");
+  EXPECT_EQ(value("type(debug.getregistry())"), "table");
+}
+
+}  // namespace
+}  // namespace ziggurat::lua
