@@ -74,7 +74,7 @@ int execute_top(const Arguments& arguments, processes::Signals& signals) {
   do {
     const ServerStatus status = server.status();
     const std::string shown = json ? server.last_answer_json() : to_text(status);
-    console.result(redraws ? "\x1b[H\x1b[2J" + shown : shown);
+    redraws ? console.redraw(shown) : console.result(shown);
     console.flush();
   } while (!once && !sleep(signals, interval));
   return reports::exit_code::finished;

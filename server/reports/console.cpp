@@ -10,11 +10,14 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "text/printable.h"
+
 namespace ziggurat::reports {
 namespace {
 
 constexpr std::string_view dim = "\033[2m", red = "\033[31m", plain = "\033[0m";
 constexpr std::string_view erase_line = "\r\033[K";
+constexpr std::string_view clear_screen = "\033[H\033[2J";
 
 void write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
@@ -55,12 +58,20 @@ void Console::log_line(std::uint64_t tick, std::string_view robot, std::string_v
   do {
     const auto line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
-    const auto written = fmt::format("{}[{} {}]{} {}", begin, tick, robot, end, line);
-    error ? to_stderr(written) : result(written);
+    const auto written = fmt::format("{}[{} {}]{} {}", begin, tick, text::printable(robot), end,
+                                     text::printable(line));
+    error ? to_stderr(written) : append(written);
   } while (!text.empty());
 }
 
-void Console::result(std::string_view line) {
+void Console::result(std::string_view line) { append(text::printable(line)); }
+
+void Console::redraw(std::string_view text) {
+  out_ += clear_screen;
+  result(text);
+}
+
+void Console::append(std::string_view line) {
   out_.append(line);
   out_ += '\n';
 }
@@ -75,7 +86,7 @@ void Console::message(std::string_view severity, std::string_view text) {
   if (style_.json) return to_stderr(dump({{"severity", severity}, {"text", text}}));
   const bool fault = severity == "fault";
   to_stderr(fmt::format("{}ziggurat: {}{}{}", color_error_ && fault ? red : "",
-                        fault ? "" : "notice: ", text, color_error_ && fault ? plain : ""));
+                        fault ? "" : "notice: ", text::printable(text), color_error_ && fault ? plain : ""));
 }
 
 void Console::problem(const scene::Problem& problem) {
@@ -88,17 +99,18 @@ void Console::problem(const scene::Problem& problem) {
                            {"column", problem.where.column},
                            {"text", problem.text}}));
   }
-  to_stderr(fault ? to_string(problem) : "notice: " + to_string(problem));
+  to_stderr(text::printable((fault ? "" : "notice: ") + to_string(problem)));
 }
 
 void Console::report(std::string_view text) {
-  if (!style_.quiet) to_stderr(text);
+  if (!style_.quiet) to_stderr(text::printable(text));
 }
 
 void Console::progress(std::string_view text) {
   if (!shows_progress_) return;
   flush();
-  write_all(STDERR_FILENO, fmt::format("{}{}", erase_line, text.substr(0, terminal_width() - 1)));
+  write_all(STDERR_FILENO, fmt::format("{}{}", erase_line,
+                                       text::printable(text.substr(0, terminal_width() - 1))));
   progress_shown_ = true;
 }
 

@@ -35,6 +35,9 @@ class Console {
   /// A line of the result, on stdout.
   void result(std::string_view line);
 
+  /// The same in place of all that is on the terminal.
+  void redraw(std::string_view text);
+
   /// A message on stderr: the program or a controller ends.
   void fault(std::string_view text);
   /// A message on stderr that the user should know.
@@ -51,6 +54,7 @@ class Console {
   void flush();
 
  private:
+  void append(std::string_view line);
   void message(std::string_view severity, std::string_view text);
   void to_stderr(std::string_view line);
   void erase_progress();

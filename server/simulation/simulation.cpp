@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "devices/devices.h"
 #include "media/devices_index.h"
 #include "physics/ray.h"
 #include "physics/world.h"
+#include "simulation/finite.h"
 #include "simulation/layout.h"
 #include "simulation/place.h"
 
@@ -217,6 +219,12 @@ void Simulation::step() {
   p.state.time_ns =
       std::llround(static_cast<long double>(p.state.tick) * 1e9L / p.ticks_per_second);
   p.physics.read(p.state);
+  if (const auto entity = first_not_finite(p.layout, p.state)) {
+    throw std::runtime_error(fmt::format(
+        "tick {}: the pose or velocity of '{}' is not finite any more; look for forces, speeds or "
+        "stiff motors that are too large for the substep, or write more iterations on <dynamics3d>",
+        p.state.tick, p.layout.entities[*entity].id));
+  }
   p.look_around();
   p.observations.tick = p.state.tick;
   p.observations.time_ns = p.state.time_ns;

@@ -58,6 +58,7 @@ class Simulation {
   void remove(std::size_t entity);
 
   /// Advances by one tick.
+  /// @throws std::runtime_error that names the first entity whose state is not finite then
   void step();
 
   /// Of the last tick's state and observations.

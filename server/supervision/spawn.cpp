@@ -21,7 +21,34 @@ namespace {
 
 constexpr std::size_t most_spawned = 10'000;                   // since the start or a reset
 constexpr std::size_t longest_text = std::size_t{1} << 20;     // of an element [bytes]
+constexpr std::size_t most_links = 256;                        // of an entity
+constexpr double largest_mass = 1e6;                           // of an entity [kg]
 constexpr std::size_t longest_message = std::size_t{1} << 14;  // of an error [bytes]
+
+/// Faults of an entity that would make ticks too long, or push everything else away.
+void check_size(const scene::Entity& entity, std::vector<scene::Problem>& problems) {
+  const auto add = [&](std::string text) {
+    problems.push_back({scene::Problem::Severity::fault, "spawn", entity.where, std::move(text)});
+  };
+  if (entity.links.size() > most_links) {
+    add(fmt::format("'{}' has {} links; an entity that is spawned may have at most {}", entity.id,
+                    entity.links.size(), most_links));
+  }
+  double mass = 0;
+  for (const scene::Link& link : entity.links) mass += link.mass;
+  if (mass > largest_mass) {
+    add(fmt::format("'{}' has a mass of {:.3g} kg; an entity that is spawned may have at most {:.0g} kg",
+                    entity.id, mass, largest_mass));
+  }
+}
+
+/// Opens the files below the allowed folders.
+scene::OpenFile opener(const processes::AllowedFiles& allowed) {
+  return [&allowed](const std::filesystem::path& path, std::size_t max_size) {
+    return processes::is_below(allowed.folders, path) ? scene::open_file(path, max_size)
+                                                      : scene::open_no_file(path, max_size);
+  };
+}
 
 }  // namespace
 
@@ -38,7 +65,9 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
                             "spawn more.",
                             most_spawned));
   }
-  scene::Addition addition = read_addition(text);
+  scene::Addition addition = world_.additions.read(
+      text, world_.scene, spawnable_size_,
+      [this](const std::string& id) { return entity_named(id).has_value(); }, opener(allowed_));
   const scene::Entity& entity = addition.entity;
   processes::SpawnedScript script;
   try {
@@ -51,6 +80,7 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
                                      entity.params_where, *script.fault});
       }
     }
+    if (addition.ok()) check_size(entity, addition.problems);
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
     world_.simulation.spawn(world_.scene, entity);
   } catch (const std::exception& error) {  // the world is as it was
@@ -62,16 +92,6 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
   spawnable_size_ -= addition.size;
   if (entity.controller) add_controller(entity, script.path);
   return done(call);
-}
-
-/// Reads an element. Of files it may use only those below the allowed folders.
-scene::Addition Supervision::read_addition(const std::string& text) const {
-  const auto is_taken = [this](const std::string& id) { return entity_named(id).has_value(); };
-  const auto open = [this](const std::filesystem::path& path, std::size_t max_size) {
-    return processes::is_below(allowed_.folders, path) ? scene::open_file(path, max_size)
-                                                       : scene::open_no_file(path, max_size);
-  };
-  return world_.additions.read(text, world_.scene, spawnable_size_, is_taken, open);
 }
 
 /// Gives the last robot of the layout, which was just spawned, its controller: a Lua process if the

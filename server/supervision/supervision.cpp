@@ -19,10 +19,6 @@ using wire::ErrorCode;
 
 namespace {
 
-bool all_finite(const std::vector<double>& values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
-
 /// The entities that a read request asks for, in scene order, or the pattern that names none.
 struct Selection {
   std::vector<std::size_t> entities;
@@ -222,9 +218,11 @@ Supervision::Reply Supervision::move(const network::Call& call) {
   const wire::Request& request = call.request;
   const auto entity = entity_named(request.text);
   if (!entity) return fail(call, no_entity("move.entity", request.text));
-  if (request.position.size() != 3 || !all_finite(request.position)) {
+  constexpr double farthest = 1e6;  // [m], as in scenes
+  const auto is_near = [](double value) { return std::abs(value) <= farthest; };
+  if (request.position.size() != 3 || !std::ranges::all_of(request.position, is_near)) {
     return fail(call, ErrorCode::bad_value, "move.position",
-                "A position must be three finite numbers x, y, z in metres.");
+                "A position must be three numbers x, y, z from -1e6 to 1e6 metres.");
   }
   math::Pose pose = world_.simulation.state().origins[*entity];
   pose.position = {request.position[0], request.position[1], request.position[2]};

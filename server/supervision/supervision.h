@@ -80,7 +80,6 @@ class Supervision {
   Reply move(const network::Call& call);
   Reply spawn(const network::Call& call);
   Reply remove(const network::Call& call);
-  scene::Addition read_addition(const std::string& text) const;
   void add_controller(const scene::Entity& entity, const std::string& script);
   Reply fail(const network::Call& call, wire::ErrorCode code, std::string field,
              std::string message);

@@ -177,6 +177,24 @@ class Spawn(SceneTest):
             self.assertIn("may read no file; use a model of the scene", answer)
         self.end(process)
 
+    def test_a_spawned_entity_has_limits(self):
+        process = self.begin_without_controllers()
+        links = "".join(f'<link id="l{i}" geometry="box" size="0.1,0.1,0.1" mass="1" '
+                        'position="0,0,0"/>' for i in range(257))
+        joints = "".join(f'<joint id="j{i}" type="revolute" axis="0,0,1"><parent link="l{i}" '
+                         f'position="0.2,0,0"/><child link="l{i + 1}" position="0,0,0"/></joint>'
+                         for i in range(256))
+        chain = ('<prototype id="chain"><body position="0,3,0"/>'
+                 f'<links ref="l0">{links}</links><joints>{joints}</joints></prototype>')
+        self.assertIn("'chain' has 257 links; an entity that is spawned may have at most 256",
+                      self.spawn(chain, code=1))
+        self.assertIn("'heavy' has a mass of 1e+07 kg; an entity that is spawned may have at most 1e+06",
+                      self.spawn(BOX.format("heavy", "0,3,0").replace('mass="1"', 'mass="1e7"'), code=1))
+        for position in ("1e308,0,0", "0,-1.1e6,0", "nan,0,0"):
+            self.ctl("move", "box1", position, code=1)
+        self.ctl("move", "box1", "1e6,0,0")
+        self.end(process)
+
     def test_notices_about_a_spawned_entity_are_printed_by_the_server(self):
         process = self.begin_without_controllers("--lenient")
         self.spawn(BOX.format("crate", "0.05,0.08,0.2").replace("<box ", '<box flavour="oak" '))

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <stdexcept>
+#include <string>
+
 #include "small_scene.h"
 
 namespace ziggurat::simulation {
@@ -60,6 +64,20 @@ TEST(Spawn, ABoxFallsFromWhereItIsPlaced) {
   EXPECT_EQ(world.simulation.state().origins.at(1).position, math::Vector3(1, 0, 4));
   world.step();
   EXPECT_NEAR(world.simulation.state().origins[1].position.z(), 4 - 10 * 0.1 * 0.1 / 2, 1e-12);
+}
+
+TEST(Move, AStateThatIsNotFiniteIsAFaultThatNamesTheEntity) {
+  World world({"", "", box("a", "0,0,5") + box("b", "1,0,5"), gravity});
+  math::Pose pose = world.simulation.state().origins[1];
+  pose.position.x() = std::numeric_limits<double>::infinity();
+  world.simulation.move(1, pose);
+  try {
+    world.step();
+    FAIL() << "its state is not finite";
+  } catch (const std::runtime_error& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("tick 1: the pose or velocity of 'b' is not"))
+        << error.what();
+  }
 }
 
 TEST(Spawn, WhereSomethingStandsIsRefusedAndChangesNothing) {

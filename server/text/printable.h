@@ -1,0 +1,13 @@
+#pragma once
+// Texts of peers, for a terminal.
+
+#include <string>
+#include <string_view>
+
+namespace ziggurat::text {
+
+/// The text with control characters written as \u001b, other than line feeds and tabs: escape
+/// sequences have no effect on a terminal. Bytes that are not UTF-8 become U+FFFD.
+std::string printable(std::string_view text);
+
+}  // namespace ziggurat::text
