@@ -63,7 +63,8 @@ po::options_description world_options() {
       ("allow-drops", "robots that a deadline dropped do not make the exit code 3")         //
       ("insecure", "allow endpoints that other machines can reach")                         //
       ("allow-spawned-scripts", texts("DIR"),
-       "robots that a supervisor spawns may use the scripts and files below DIR, too; otherwise only "
+       "robots that a supervisor spawns may use the scripts and files below DIR, too; otherwise "
+       "only "
        "scripts that the scene names; may be repeated")  //
       ("metrics", text("HOST:PORT"),
        "serve the run's status over HTTP there: /metrics for Prometheus, /status as JSON");
@@ -112,7 +113,7 @@ po::options_description controller_options() {
        "0 is one for each robot")  //
       ("trust-scripts",
        "Lua scripts may start programs and use all of Lua and all files; otherwise they use only "
-       "files below the folders of the scene, its includes and its scripts")  //
+       "files below the folders of the scene, its includes and its scripts")              //
       ("lua-memory", text("MIB"), "largest memory of a robot's Lua script; default 256")  //
       ("lua-instructions", text("MILLIONS"),
        "most Lua instructions of a robot at one tick, in millions; default 1000")  //

@@ -30,12 +30,12 @@ struct ControllerProcess {
 
 /// How the controllers of a run are started.
 struct LaunchSettings {
-  std::string endpoint;                ///< where they connect
-  std::string folder;                  ///< for files with the ids of robots
-  std::string lua_runner;              ///< path or name of ziggurat-lua
-  unsigned lua_processes;              ///< 0 = one per robot
+  std::string endpoint;                    ///< where they connect
+  std::string folder;                      ///< for files with the ids of robots
+  std::string lua_runner;                  ///< path or name of ziggurat-lua
+  unsigned lua_processes;                  ///< 0 = one per robot
   std::vector<std::string> lua_arguments;  ///< more arguments for ziggurat-lua
-  const Guardian* guardian = nullptr;  ///< ends them if this program is killed; null: none
+  const Guardian* guardian = nullptr;      ///< ends them if this program is killed; null: none
 };
 
 /// The processes that control the scene's robots. Lua robots that have a script are shared among

@@ -1,6 +1,6 @@
 #pragma once
-// Which files a robot may use that a supervisor spawns: a supervisor must not run other code of this
-// machine, nor learn what its files contain.
+// Which files a robot may use that a supervisor spawns: a supervisor must not run other code of
+// this machine, nor learn what its files contain.
 
 #include <filesystem>
 #include <optional>
@@ -26,9 +26,9 @@ bool is_below(const std::vector<std::filesystem::path>& folders, const std::file
 
 /// The script of a spawned entity's Lua controller.
 struct SpawnedScript {
-  std::string path;                     ///< empty if it has none, or with a fault
-  std::optional<std::string> fault;     ///< for the supervisor: quotes nothing of any file
-  std::optional<std::string> details;   ///< of the fault, for the person who started the server
+  std::string path;                    ///< empty if it has none, or with a fault
+  std::optional<std::string> fault;    ///< for the supervisor: quotes nothing of any file
+  std::optional<std::string> details;  ///< of the fault, for the person who started the server
 };
 SpawnedScript spawned_script(const scene::Scene& scene, const scene::Entity& entity,
                              const std::filesystem::path& scene_file, const AllowedFiles& allowed);

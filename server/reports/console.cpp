@@ -86,7 +86,8 @@ void Console::message(std::string_view severity, std::string_view text) {
   if (style_.json) return to_stderr(dump({{"severity", severity}, {"text", text}}));
   const bool fault = severity == "fault";
   to_stderr(fmt::format("{}ziggurat: {}{}{}", color_error_ && fault ? red : "",
-                        fault ? "" : "notice: ", text::printable(text), color_error_ && fault ? plain : ""));
+                        fault ? "" : "notice: ", text::printable(text),
+                        color_error_ && fault ? plain : ""));
 }
 
 void Console::problem(const scene::Problem& problem) {
@@ -109,8 +110,8 @@ void Console::report(std::string_view text) {
 void Console::progress(std::string_view text) {
   if (!shows_progress_) return;
   flush();
-  write_all(STDERR_FILENO, fmt::format("{}{}", erase_line,
-                                       text::printable(text.substr(0, terminal_width() - 1))));
+  write_all(STDERR_FILENO,
+            fmt::format("{}{}", erase_line, text::printable(text.substr(0, terminal_width() - 1))));
   progress_shown_ = true;
 }
 

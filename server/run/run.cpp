@@ -128,9 +128,9 @@ processes::Controllers Run::start_controllers() {
 }
 
 processes::LaunchSettings Run::launch_settings() const {
-  processes::LaunchSettings settings{server_.endpoints().front(), folder_.path(),
+  processes::LaunchSettings settings{server_.endpoints().front(),  folder_.path(),
                                      processes::find_lua_runner(), options_.lua_processes,
-                                     options_.lua_arguments, signals_.guardian()};
+                                     options_.lua_arguments,       signals_.guardian()};
   const auto allow = [&](const std::string& folder) {
     settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
   };

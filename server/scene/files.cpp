@@ -120,7 +120,8 @@ std::variant<File, std::string> open_file(const fs::path& path, std::size_t max_
 }
 
 std::variant<File, std::string> open_no_file(const fs::path&, std::size_t) {
-  return "may not be read: an element that is added to a scene may read no file; use a model of the "
+  return "may not be read: an element that is added to a scene may read no file; use a model of "
+         "the "
          "scene";
 }
 

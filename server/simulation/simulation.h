@@ -49,8 +49,8 @@ class Simulation {
   /// the next tick. The observations of a new robot are those of tick 0.
   /// @param scene  the one that this was made from
   /// @param entity  its id must differ from those of all entities that are present
-  /// @throws scene::SceneError if it overlaps another entity, render::RenderError if its camera needs
-  /// pictures and there can't be any, std::bad_alloc; then nothing changes
+  /// @throws scene::SceneError if it overlaps another entity, render::RenderError if its camera
+  /// needs pictures and there can't be any, std::bad_alloc; then nothing changes
   void spawn(const scene::Scene& scene, const scene::Entity& entity);
 
   /// Takes an entity out. Its places stay in all arrays, as they are; so does its name.

@@ -37,8 +37,9 @@ void check_size(const scene::Entity& entity, std::vector<scene::Problem>& proble
   double mass = 0;
   for (const scene::Link& link : entity.links) mass += link.mass;
   if (mass > largest_mass) {
-    add(fmt::format("'{}' has a mass of {:.3g} kg; an entity that is spawned may have at most {:.0g} kg",
-                    entity.id, mass, largest_mass));
+    add(fmt::format(
+        "'{}' has a mass of {:.3g} kg; an entity that is spawned may have at most {:.0g} kg",
+        entity.id, mass, largest_mass));
   }
 }
 

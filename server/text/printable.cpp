@@ -17,14 +17,15 @@ bool is_plain(char c) {
   return (code >= 0x20 && code < 0x7f) || c == '\n' || c == '\t';
 }
 
-/// The bytes of the UTF-8 character at the beginning, as the Unicode standard's table 3-7 has them; 0
-/// if it is none.
+/// The bytes of the UTF-8 character at the beginning, as the Unicode standard's table 3-7 has them;
+/// 0 if it is none.
 std::size_t length_of_character(std::string_view text) {
   const unsigned char first = byte(text, 0), second = byte(text, 1);
   const auto between = [](unsigned char value, int low, int high) {
     return value >= low && value <= high;
   };
-  const bool third = between(byte(text, 2), 0x80, 0xbf), fourth = between(byte(text, 3), 0x80, 0xbf);
+  const bool third = between(byte(text, 2), 0x80, 0xbf),
+             fourth = between(byte(text, 3), 0x80, 0xbf);
   if (first < 0x80) return 1;
   if (between(first, 0xc2, 0xdf)) return between(second, 0x80, 0xbf) ? 2 : 0;
   if (between(first, 0xe0, 0xef)) {

@@ -49,11 +49,12 @@ po::options_description description() {
       ("script", text("FILE"), "run this script instead of those of the scene")                //
       ("name", text("NAME"), "name of this program in the server's messages")                  //
       ("script-folder", po::value<std::vector<std::string>>()->composing()->value_name("DIR"),
-       "the server may name only scripts below DIR, and scripts may use only files below it; may be "
+       "the server may name only scripts below DIR, and scripts may use only files below it; may "
+       "be "
        "repeated; default: the working directory, and the folder of --script")  //
       ("trust-scripts",
        "scripts may use all of Lua, start programs, and read and write all files; no limit of "
-       "instructions unless one is set")                                          //
+       "instructions unless one is set")                                           //
       ("max-memory", text("MIB"), "largest memory of the script of a robot; 256")  //
       ("max-instructions", text("MILLIONS"),
        "most Lua instructions of a robot at one tick, in millions; 1000")  //

@@ -23,7 +23,7 @@ struct ProgramOptions {
   bool trusts_scripts = false;                      ///< all of Lua, all files
   std::size_t max_memory = std::size_t{256} << 20;  ///< per robot [bytes]
   std::uint64_t max_instructions = 1'000'000'000;   ///< per robot and call; 0 = any number
-  bool echo = false;                              ///< print log lines here too
+  bool echo = false;                                ///< print log lines here too
   bool quiet = false;
 };
 

@@ -26,15 +26,15 @@ void Runner::run() {
 }
 
 void Runner::start(Seat& seat) {
-  const FoundScript script = options_.script
-                                 ? FoundScript{*options_.script, {}}
-                                 : find_script(seat.robot->script(), seat.robot->params(), folders_);
+  const FoundScript script =
+      options_.script ? FoundScript{*options_.script, {}}
+                      : find_script(seat.robot->script(), seat.robot->params(), folders_);
   if (script.path.empty()) return fail(seat, script.fault);
   try {
     seat.controller = std::make_unique<Controller>(
-        *seat.robot,
-        ControllerOptions{script.path, session_.seed(), options_.max_memory,
-                          options_.max_instructions, options_.trusts_scripts ? nullptr : &folders_});
+        *seat.robot, ControllerOptions{script.path, session_.seed(), options_.max_memory,
+                                       options_.max_instructions,
+                                       options_.trusts_scripts ? nullptr : &folders_});
   } catch (const std::bad_alloc&) {
     return fail(seat, "no memory for a Lua state");
   }

@@ -108,7 +108,8 @@ int push_search(lua_State* state, const char* name, const char* path, const char
 int search_path(lua_State* state) {
   const char* const name = luaL_checkstring(state, 1);
   const char* const path = luaL_checkstring(state, 2);
-  return push_search(state, name, path, luaL_optstring(state, 3, "."), luaL_optstring(state, 4, "/"));
+  return push_search(state, name, path, luaL_optstring(state, 3, "."),
+                     luaL_optstring(state, 4, "/"));
 }
 
 // Upvalue 2: the table `package`.

@@ -59,8 +59,8 @@ int open(lua_State* state) {
   const char* const file = luaL_checkstring(state, 1);
   const char* const mode = luaL_optstring(state, 2, "r");
   const bool reads_only = std::strpbrk(mode, "wa+") == nullptr;
-  const bool allowed = reads_only ? may_read(folders_of(state), file)
-                                  : may_write(folders_of(state), file);
+  const bool allowed =
+      reads_only ? may_read(folders_of(state), file) : may_write(folders_of(state), file);
   return allowed ? call_original(state) : refuse(state, file);
 }
 
@@ -117,11 +117,12 @@ bool may_read(const Folders& folders, const char* file) {
 }
 
 void push_refusal(lua_State* state, const char* file) {
-  lua_pushfstring(state,
-                  "'%s' is not a file that scripts may use this way; they may read and write files in "
-                  "the folders of the scene and its scripts, but change no programs; --trust-scripts "
-                  "allows all",
-                  file);
+  lua_pushfstring(
+      state,
+      "'%s' is not a file that scripts may use this way; they may read and write files in "
+      "the folders of the scene and its scripts, but change no programs; --trust-scripts "
+      "allows all",
+      file);
 }
 
 void confine_files(lua_State* state, const Folders& folders) {

@@ -18,7 +18,7 @@ namespace ziggurat::lua {
 
 struct ControllerOptions {
   std::filesystem::path script;
-  std::uint64_t seed = 1;                         ///< of the run
+  std::uint64_t seed = 1;                           ///< of the run
   std::size_t max_memory = std::size_t{256} << 20;  ///< of the script's Lua state [bytes]
   std::uint64_t max_instructions = 1'000'000'000;   ///< of a call (interrupt.h); 0 = any number
   /// The files that the script may use; they outlive it. Null: the script is trusted, and may use

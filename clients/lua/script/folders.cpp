@@ -32,7 +32,8 @@ bool Folders::contain(const fs::path& file) const {
   if (fs::is_symlink(fs::symlink_status(path, error))) return false;
   return std::ranges::any_of(folders_, [&](const fs::path& folder) {
     const auto [rest, parted] = std::ranges::mismatch(path, folder);
-    return parted == folder.end() && rest != path.end() && std::none_of(rest, path.end(), is_hidden);
+    return parted == folder.end() && rest != path.end() &&
+           std::none_of(rest, path.end(), is_hidden);
   });
 }
 

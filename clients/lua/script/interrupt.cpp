@@ -10,10 +10,10 @@
 namespace ziggurat::lua {
 namespace {
 
-constexpr int step = 1000;                // instructions between two looks of the hook
-constexpr long interval_us = 50'000;      // computing time between two looks of the signal
-constexpr unsigned patience = 100;        // such intervals without an instruction
-constexpr int switch_cost = 100;           // of a coroutine that is resumed [instructions]
+constexpr int step = 1000;            // instructions between two looks of the hook
+constexpr long interval_us = 50'000;  // computing time between two looks of the signal
+constexpr unsigned patience = 100;    // such intervals without an instruction
+constexpr int switch_cost = 100;      // of a coroutine that is resumed [instructions]
 constexpr int exit_failed_script = 3;
 
 std::atomic<bool> interrupted{false};
@@ -28,8 +28,8 @@ struct Watch {
   std::uint64_t instructions = 0;  // counted so far
   bool was_seen = false;           // by the signal
   bool is_counting = false;
-  bool is_over = false;  // more than max_instructions
-  unsigned quiet = 0;    // looks of the signal since an instruction was counted
+  bool is_over = false;              // more than max_instructions
+  unsigned quiet = 0;                // looks of the signal since an instruction was counted
   char place[LUA_IDSIZE + 16] = "";  // file and line where is_over began
 };
 Watch watch;

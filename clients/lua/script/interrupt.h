@@ -21,9 +21,9 @@ bool must_scripts_end() noexcept;
 void allow_scripts() noexcept;
 
 /// From now on a signal (SIGVTALRM) looks at the running call each time that this process has
-/// computed for 50 ms. A call that lasts longer counts its instructions from there on: counting all of
-/// them would make every script slower. A call that then runs no instruction for 5 s of computing
-/// is in a library function that can't be ended: the process ends with a message.
+/// computed for 50 ms. A call that lasts longer counts its instructions from there on: counting all
+/// of them would make every script slower. A call that then runs no instruction for 5 s of
+/// computing is in a library function that can't be ended: the process ends with a message.
 void watch_scripts();
 
 /// A call of a script.

@@ -11,7 +11,8 @@ namespace {
 
 // Upvalue: the function's name.
 int refuse(lua_State* state) {
-  return luaL_error(state, "%s is not allowed for scripts that are not trusted; --trust-scripts allows it",
+  return luaL_error(state,
+                    "%s is not allowed for scripts that are not trusted; --trust-scripts allows it",
                     lua_tostring(state, lua_upvalueindex(1)));
 }
 

@@ -20,7 +20,8 @@ TEST(Console, TextsOfPeersHaveNoEffectOnATerminal) {
   }
   const std::string out = testing::internal::GetCapturedStdout();
   const std::string error = testing::internal::GetCapturedStderr();
-  EXPECT_EQ(out, "[3 r\\u001b] \\u001b]52;c;aGk=\\u0007\n[3 r\\u001b] next\n{\"id\":\"\\u009b\"}\n");
+  EXPECT_EQ(out,
+            "[3 r\\u001b] \\u001b]52;c;aGk=\\u0007\n[3 r\\u001b] next\n{\"id\":\"\\u009b\"}\n");
   EXPECT_EQ(error.find_first_of("\x1b\r"), std::string::npos) << error;
 }
 

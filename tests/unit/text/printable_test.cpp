@@ -15,12 +15,17 @@ TEST(Printable, ControlCharactersAreWrittenAsNumbers) {
   EXPECT_EQ(printable("\x1b]52;c;aGk=\x07"), "\\u001b]52;c;aGk=\\u0007");
   EXPECT_EQ(printable("a\rb\x7f"), "a\\u000db\\u007f");
   EXPECT_EQ(printable(std::string("\0", 1)), "\\u0000");
-  EXPECT_EQ(printable("\xc2\x9b""31m"), "\\u009b31m") << "CSI as one character";
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "31m"),
+            "\\u009b31m")
+      << "CSI as one character";
 }
 
 TEST(Printable, OtherBytesBecomeReplacementCharacters) {
   const std::string other = "\xef\xbf\xbd";
-  EXPECT_EQ(printable("\x9b""31m"), other + "31m");
+  EXPECT_EQ(printable("\x9b"
+                      "31m"),
+            other + "31m");
   EXPECT_EQ(printable("\xc0\x9b"), other + other) << "too long";
   EXPECT_EQ(printable("\xed\xa0\x80"), other + other + other) << "half of a pair";
   EXPECT_EQ(printable("\xf0\x9f"), other + other) << "cut";

@@ -18,9 +18,9 @@ class Limits : public ScriptTest {
   void expect_ended(const std::string& script, const std::string& line) {
     const Failure failure = start(script);
     ASSERT_TRUE(failure) << script;
-    EXPECT_NE(failure->find("main.lua:" + line +
-                            ": runs more than 20 million instructions in one call"),
-              std::string::npos)
+    EXPECT_NE(
+        failure->find("main.lua:" + line + ": runs more than 20 million instructions in one call"),
+        std::string::npos)
         << *failure;
   }
 
@@ -30,8 +30,7 @@ class Limits : public ScriptTest {
 TEST_F(Limits, EndALoopWithItsLine) { expect_ended("\n\nwhile true do\nend", "3"); }
 
 TEST_F(Limits, EndALoopThatCatchesErrors) {
-  const Failure failure = start(
-      "while true do pcall(function() while true do end end) end");
+  const Failure failure = start("while true do pcall(function() while true do end end) end");
   ASSERT_TRUE(failure);
   EXPECT_NE(failure->find("20 million instructions"), std::string::npos) << *failure;
 }
@@ -55,8 +54,8 @@ TEST_F(Limits, EndLoopsOverCoroutines) {
         "load(function() while true do end end)"}) {
     const Failure failure = start(script);
     ASSERT_TRUE(failure) << script;
-    EXPECT_NE(failure->find("20 million instructions"), std::string::npos)
-        << script << "\n" << *failure;
+    EXPECT_NE(failure->find("20 million instructions"), std::string::npos) << script << "\n"
+                                                                           << *failure;
   }
 }
 
@@ -81,16 +80,17 @@ TEST_F(Limits, OfOneRobotDoNotAffectAnother) {
 }
 
 TEST_F(Limits, CoroutinesWorkAsInLua) {
-  EXPECT_EQ(logged("local c = coroutine.create(function(a, b) local x = coroutine.yield(a + b) "
-                   "error('no' .. x, 0) end) "
-                   "log(coroutine.resume(c, 1, 2)) log(coroutine.resume(c, 'p')) "
-                   "log(coroutine.resume(c)) log(coroutine.status(c)) "
-                   "local g = coroutine.wrap(function() for i = 1, 2 do coroutine.yield(i) end end) "
-                   "log(g(), g(), select('#', g())) log(pcall(g)) log(pcall(coroutine.resume, 1)) "
-                   "log(coroutine.wrap(function() return coroutine.isyieldable() end)())"),
-            (Lines{"13", "0nop", "0cannot resume dead coroutine", "dead", "120",
-                   "0cannot resume dead coroutine",
-                   "0bad argument #1 to 'coroutine.resume' (coroutine expected)", "1"}));
+  EXPECT_EQ(
+      logged("local c = coroutine.create(function(a, b) local x = coroutine.yield(a + b) "
+             "error('no' .. x, 0) end) "
+             "log(coroutine.resume(c, 1, 2)) log(coroutine.resume(c, 'p')) "
+             "log(coroutine.resume(c)) log(coroutine.status(c)) "
+             "local g = coroutine.wrap(function() for i = 1, 2 do coroutine.yield(i) end end) "
+             "log(g(), g(), select('#', g())) log(pcall(g)) log(pcall(coroutine.resume, 1)) "
+             "log(coroutine.wrap(function() return coroutine.isyieldable() end)())"),
+      (Lines{"13", "0nop", "0cannot resume dead coroutine", "dead", "120",
+             "0cannot resume dead coroutine",
+             "0bad argument #1 to 'coroutine.resume' (coroutine expected)", "1"}));
 }
 
 TEST_F(Limits, ALibraryFunctionThatDoesNotEndNamesTheRobotAndItsLine) {

@@ -108,8 +108,8 @@ TEST_F(Program, RunsNoScriptOutsideItsFoldersThoughTheServerNamesIt) {
   std::filesystem::create_directory(folder() / "inside");
   std::filesystem::create_symlink(folder() / "main.lua", folder() / "inside/link.lua");
   const Folders inside = below(folder() / "inside");
-  for (const auto path : {folder() / "main.lua", folder() / "inside/../main.lua",
-                          folder() / "inside/link.lua"}) {
+  for (const auto path :
+       {folder() / "main.lua", folder() / "inside/../main.lua", folder() / "inside/link.lua"}) {
     const auto found = find_script(path.string(), {}, inside);
     EXPECT_TRUE(found.path.empty()) << path;
     EXPECT_NE(found.fault.find("allow its folder with --script-folder DIR"), std::string::npos);
@@ -136,8 +136,10 @@ TEST_F(Program, LimitsInstructionsUnlessScriptsAreTrusted) {
 TEST_F(Program, FindsTheScriptFromTheWorkingDirectory) {
   write("main.lua", "");
   const auto relative = std::filesystem::proximate(folder() / "main.lua").string();
-  EXPECT_EQ(find_script("/elsewhere/main.lua", {{"speed", "1"}, {"script", relative}}, below(folder())).path,
-            relative);
+  EXPECT_EQ(
+      find_script("/elsewhere/main.lua", {{"speed", "1"}, {"script", relative}}, below(folder()))
+          .path,
+      relative);
 }
 
 TEST_F(Program, NamesThePathsOfAMissingScript) {
