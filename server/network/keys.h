@@ -34,7 +34,7 @@ inline constexpr Roles all_roles{true, true, true};
 /// What a connection may do, and by which key.
 struct Access {
   Roles roles = all_roles;
-  std::optional<std::size_t> key;  ///< into Curve::clients; none: not encrypted
+  std::optional<std::size_t> key = {};  ///< into Curve::clients; none: not encrypted
 };
 
 /// Who may connect.

@@ -126,7 +126,7 @@ struct Welcome {
   std::uint32_t wall_lease_ms = 0;
   std::uint32_t wall_heartbeat_ms = 0;
   std::uint64_t max_message_bytes = std::uint64_t{64} << 20;  ///< of the client's messages
-  std::vector<DeadlinePolicy> deadlines;  ///< per robot of the session; empty: all wait
+  std::vector<DeadlinePolicy> deadlines = {};  ///< per robot of the session; empty: all wait
 };
 
 enum class EndReason { finished, interrupted, failed };
