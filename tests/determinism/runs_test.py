@@ -37,8 +37,8 @@ class Runs(SceneTest):
             endpoint = json.loads(process.stdout.readline())["endpoint"]
             for i, robots in enumerate(parts):
                 self.started.append(subprocess.Popen(
-                    [str(LUA), "--connect", endpoint, "--quiet", "--robots-file",
-                     str(self.write(f"part{i}", robots))]))
+                    [str(LUA), "--connect", endpoint, "--quiet", "--script-folder",
+                     str(self.folder), "--robots-file", str(self.write(f"part{i}", robots))]))
             self.assertEqual(self.finish(process).code, FINISHED)
             self.assertEqual(path.read_text().splitlines(), self.expected)
 

@@ -150,7 +150,8 @@ class Transports(unittest.TestCase):
         signal.alarm(300)  # limits the wait
         self.addCleanup(signal.alarm, 0)
         tcp = json.loads(server.stdout.readline())["endpoint"]
-        self.start(perturb.BIN / "ziggurat-lua", "--connect", socket, "--controller", "block")
+        self.start(perturb.BIN / "ziggurat-lua", "--connect", socket, "--controller", "block",
+                   "--script-folder", perturb.ROOT / "scenes")
         self.start(perturb.BIN / "example_stacking", ZIGGURAT_ENDPOINT=tcp,
                    ZIGGURAT_CONTROLLER="robot")
         server.communicate(timeout=250)

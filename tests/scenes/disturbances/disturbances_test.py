@@ -240,7 +240,8 @@ class Disturbances(SceneTest):
     def disturb_under_policies(self, expected, roles, turn):
         """Roles: 0 waits; 1 holds and 2 zeroes while it is stopped; 3 is killed and dropped."""
         texts = (None, "hold:200", "zero:200", "drop:200:20")
-        options = [f"--deadline=c{i}={texts[role]}" for i, role in enumerate(roles) if role]
+        options = ["--allow-drops",
+                   *(f"--deadline=c{i}={texts[role]}" for i, role in enumerate(roles) if role)]
         run = Run(self, f"policies{turn}", *options, talks=False)
         begun = {}
         apart = TICKS * 8 // 10 // ROBOTS
