@@ -108,7 +108,7 @@ TEST_F(Program, RunsNoScriptOutsideItsFoldersThoughTheServerNamesIt) {
   std::filesystem::create_directory(folder() / "inside");
   std::filesystem::create_symlink(folder() / "main.lua", folder() / "inside/link.lua");
   const Folders inside = below(folder() / "inside");
-  for (const auto path :
+  for (const auto& path :
        {folder() / "main.lua", folder() / "inside/../main.lua", folder() / "inside/link.lua"}) {
     const auto found = find_script(path.string(), {}, inside);
     EXPECT_TRUE(found.path.empty()) << path;
