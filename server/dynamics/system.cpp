@@ -61,8 +61,8 @@ bool System::before(const Item& a, const Item& b) const {
   if (a.kind != contact_item) return a.index < b.index;
   const auto key = [&](const Item& item) {
     const Contact& c = contacts_[item.index];
-    return std::tuple(c.a.tree, c.b.tree, c.a.link, c.b.link, c.point.x(), c.point.y(),
-                      c.point.z(), c.gap);
+    return std::tuple(c.a.tree, c.b.tree, c.a.link, c.b.link, c.point.x(), c.point.y(), c.point.z(),
+                      c.gap);
   };
   return key(a) < key(b);
 }
@@ -213,12 +213,14 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
     compute_mass(tree);
     problem_.add(tree);
   }
-  const auto place = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0 ? place_[tree] : -1; };
+  const auto place = [&](int tree) {
+    return tree >= 0 && trees[tree].dofs > 0 ? place_[tree] : -1;
+  };
   for (int i = first_item; i < last_item; ++i) {
     const auto [island, kind, index] = item_order_[i];
     if (kind == contact_item) {
-      problem_.add(contacts_[index], place(contacts_[index].a.tree),
-                   place(contacts_[index].b.tree), index);
+      problem_.add(contacts_[index], place(contacts_[index].a.tree), place(contacts_[index].b.tree),
+                   index);
     } else if (kind == servo_item) {
       problem_.add(servos_[index], place(servos_[index].tree), index);
     } else {
@@ -246,11 +248,10 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     std::copy_n(problem_.velocity.begin() + problem_.offset[i], tree.dofs, tree.v.begin());
   }
   const bool grounded = std::any_of(
-      problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
-        return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0);
-      });
-  const bool carried = std::any_of(
-      problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
+      problem_.blocks.begin(), problem_.blocks.end(),
+      [](const Block& b) { return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0); });
+  const bool carried =
+      std::any_of(problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
         return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0) && b.impulse[0] > 0;
       });
   if (problem_.turn_into_displacement()) {
@@ -292,7 +293,8 @@ void System::push_apart(std::span<Contact> contacts, std::span<const int> chosen
       dynamics::place(tree);
       move(tree);
     }
-  }  chosen_ = {};
+  }
+  chosen_ = {};
 }
 
 /// Gives back to contacts, servos and limits what they gave, in world axes.

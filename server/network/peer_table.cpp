@@ -91,7 +91,7 @@ void PeerTable::set_standing(const std::string& name, Standing standing, Time no
   after.add(peer->number(), id_of(name), !peer->output().is_empty());
 }
 
-/// The connection is over. Its memory stays until bury().
+/// The connection is over. Its memory stays until remove_ended().
 /// @param why  a sentence for people, if there is something to tell
 void PeerTable::end(PeerSocket& peer, const char* why) {
   peer.give_up();
@@ -105,7 +105,7 @@ void PeerTable::end(PeerSocket& peer, const char* why) {
   notices_.emplace_back(why);
 }
 
-void PeerTable::bury() {
+void PeerTable::remove_ended() {
   for (const std::uint64_t id : over_) {
     const auto found = peers_.find(id);
     if (found == peers_.end()) continue;

@@ -23,7 +23,7 @@ class PeerTable {
 
   /// A client has connected.
   void add(Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now);
-  /// Null if its connection is over. Pointers hold until bury().
+  /// Null if its connection is over. Pointers hold until remove_ended().
   PeerSocket* find(std::uint64_t id) const;
   PeerSocket* find(const std::string& name) const;
 
@@ -37,7 +37,7 @@ class PeerTable {
   void set_standing(const std::string& name, Standing standing, Time now);
 
   /// Forgets connections that are over.
-  void bury();
+  void remove_ended();
   /// What forgotten connections held goes back to the system.
   void give_back_memory();
   /// Names of connections that were forgotten since the last call.

@@ -64,9 +64,9 @@ void Socket::add_private(const Config& config) {
 
 void Socket::listen(const std::string& endpoint, bool is_private, bool allows_any) {
   check_endpoint(endpoint, allows_any);
-  const Door& door = doors_.emplace_back(Door{Listener(endpoint), is_private});
-  endpoints_.push_back(door.listener.endpoint());
-  peers_.others().add(door.listener.number(), doors_.size() - 1);
+  const Entrance& entrance = entrances_.emplace_back(Entrance{Listener(endpoint), is_private});
+  endpoints_.push_back(entrance.listener.endpoint());
+  peers_.others().add(entrance.listener.number(), entrances_.size() - 1);
 }
 
 /// @param write  writes the content, `size` bytes
@@ -109,7 +109,7 @@ void Socket::handled() {
 
 bool Socket::receive(Received& received) {
   handled();
-  peers_.bury();
+  peers_.remove_ended();
   if (receive_from(controllers_, received)) return true;
   if (!may_serve_others()) return false;
   charged_since_ = ThreadClock::now();
@@ -143,7 +143,7 @@ bool Socket::take_message(Group& group, Received& received) {
 
 /// A connection that is ready becomes the current one of the group.
 void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
-  if (ready.id < PeerTable::first_id) return accept(doors_[ready.id]);
+  if (ready.id < PeerTable::first_id) return accept(entrances_[ready.id]);
   PeerSocket* peer = peers_.find(ready.id);
   if (peer == nullptr) return;
   peers_.act(*peer, [&](PeerSocket& from) {
@@ -153,21 +153,21 @@ void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
   if (!peer->is_over()) group.current = peer->name();
 }
 
-void Socket::accept(const Door& door) {
+void Socket::accept(const Entrance& entrance) {
   for (int i = 0; i < accepted_at_once; ++i) {
     const Time now = Clock::now();
     const bool is_full =
         peers_.without_session() >= most_without_session_ || peers_.size() >= most_peers_;
     if (is_full && !peers_.make_place(now)) return set_accepting(false);
-    peers_.bury();
-    Descriptor client = door.listener.accept();
+    peers_.remove_ended();
+    Descriptor client = entrance.listener.accept();
     if (!client.is_open()) {
       const bool lacks_descriptors = errno == EMFILE || errno == ENFILE;
       if (lacks_descriptors && !peers_.make_place(now)) set_accepting(false);
       return;
     }
-    peers_.add(std::move(client), keys_ && !door.is_private ? &*keys_ : nullptr, door.is_private,
-               now);
+    peers_.add(std::move(client), keys_ && !entrance.is_private ? &*keys_ : nullptr,
+               entrance.is_private, now);
   }
 }
 
@@ -175,8 +175,8 @@ void Socket::accept(const Door& door) {
 void Socket::set_accepting(bool is_accepting) {
   if (is_accepting_ == is_accepting) return;
   is_accepting_ = is_accepting;
-  for (std::size_t i = 0; i < doors_.size(); ++i) {
-    peers_.others().change(doors_[i].listener.number(), i, is_accepting, false);
+  for (std::size_t i = 0; i < entrances_.size(); ++i) {
+    peers_.others().change(entrances_[i].listener.number(), i, is_accepting, false);
   }
 }
 
@@ -185,7 +185,7 @@ void Socket::tend() {
   if (now < next_tending_) return;
   next_tending_ = now + tending;
   peers_.end_old(now);
-  peers_.bury();
+  peers_.remove_ended();
   peers_.give_back_memory();
   set_accepting(true);
 }

@@ -64,7 +64,8 @@ class Socket {
   std::vector<std::string> take_notices() { return peers_.take_notices(); }
 
  private:
-  struct Door {
+  /// An endpoint that listens.
+  struct Entrance {
     Listener listener;
     bool is_private = false;
   };
@@ -81,13 +82,13 @@ class Socket {
   bool receive_from(Group& group, Received& received);
   bool take_message(Group& group, Received& received);
   void read_from(Group& group, const ReadyList::Ready& ready);
-  void accept(const Door& door);
+  void accept(const Entrance& entrance);
   void set_accepting(bool is_accepting);
 
   const std::size_t longest_;  // message [bytes]
   const std::size_t most_peers_, most_without_session_;
   std::optional<zmtp::CurveKeys> keys_;
-  std::vector<Door> doors_;
+  std::vector<Entrance> entrances_;
   std::vector<std::string> endpoints_;
   PeerTable peers_;
   Group controllers_{peers_.controllers(), {}}, others_{peers_.others(), {}};

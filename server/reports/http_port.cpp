@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "text/trim.h"
+
 namespace ziggurat::reports {
 namespace {
 
@@ -42,12 +44,6 @@ bool starts_without_case(std::string_view text, std::string_view beginning) {
              [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); });
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 /// What the request calls this machine, without port; none if it does not say.
 std::optional<std::string> host_of(std::string_view header) {
   constexpr std::string_view name = "Host:";
@@ -56,7 +52,7 @@ std::optional<std::string> host_of(std::string_view header) {
     at += end_of_line.size();
     std::string_view line = header.substr(at, header.find(end_of_line, at) - at);
     if (!starts_without_case(line, name)) continue;
-    line = trimmed(line.substr(name.size()));
+    line = text::trimmed(line.substr(name.size()));
     const std::size_t port = line.rfind(':');
     const bool has_port = port != std::string_view::npos && line.find(']', port) == line.npos;
     return std::string(has_port ? line.substr(0, port) : line);

@@ -47,16 +47,19 @@ class Killed(SceneTest):
         self.assert_is_sentence(outcome, r"'swing'.*exit code 127")
 
 
+FAILS_AT_TICK_3 = """
+    local n = 0
+    function init() end
+    function step()
+       n = n + 1
+       if robot.id == "r1" and n == 3 then error("out of luck") end
+       log(n)
+    end"""
+
+
 class Failing(SceneTest):
     def test_lua_error_leaves_the_others_running(self):
-        self.write("swing.lua", """
-            local n = 0
-            function init() end
-            function step()
-               n = n + 1
-               if robot.id == "r1" and n == 3 then error("out of luck") end
-               log(n)
-            end""")
+        self.write("swing.lua", FAILS_AT_TICK_3)
         outcome = self.run_scene("--ticks", 6, code=CONTROLLER_FAILED)
         self.assertEqual([line for line in outcome.lines if "r1" in line],
                          ["[1 r1] 1", "[2 r1] 2"])
@@ -64,13 +67,7 @@ class Failing(SceneTest):
         self.assertRegex(outcome.err, r"(?s)r1.*tick 3.*out of luck.*r1.*tick 3.*out of luck")
 
     def test_fail_fast_ends_at_the_first_error(self):
-        self.write("swing.lua", """
-            local n = 0
-            function init() end
-            function step()
-               n = n + 1
-               if robot.id == "r1" and n == 3 then error("out of luck") end
-            end""")
+        self.write("swing.lua", FAILS_AT_TICK_3)
         outcome = self.run_scene("--fail-fast", *ENDLESS, code=CONTROLLER_FAILED)
         self.assertRegex(outcome.err, r"the run ends at tick \d+, as --fail-fast asks")
 

@@ -55,16 +55,12 @@ CASES = [
               join("controller", "*"), *observe("controller"),
               send_hello(key, "*", takeover=True), hear_refusal(key, "FORBIDDEN"), _GOES_ON)
       for key in ("supervisor", "observer")],
-    _secure("K3.token", "Nor does it take up a session whose token it has learnt",
-            join("controller", "*"), *observe("controller"), Hang("controller"),
-            send_hello("observer", "*", session_token=Token("controller")),
-            hear_refusal("observer", "FORBIDDEN"),
-            Join("controller", hello("*", session_token=Token("controller"))),
-            Hear("controller", "observation")),
-    _secure("L12.another-key", "A session goes on only with the key that it was begun with",
-            join("controller", "*"), *observe("controller"), Hang("controller"),
-            send_hello("both", "*", session_token=Token("controller")),
-            hear_refusal("both", "FORBIDDEN"),
-            Join("controller", hello("*", session_token=Token("controller"))),
-            Hear("controller", "observation")),
+    *[_secure(case, title,
+              join("controller", "*"), *observe("controller"), Hang("controller"),
+              send_hello(key, "*", session_token=Token("controller")), hear_refusal(key, "FORBIDDEN"),
+              Join("controller", hello("*", session_token=Token("controller"))),
+              Hear("controller", "observation"))
+      for case, key, title in (
+          ("K3.token", "observer", "A key for observers does not take up a session whose token it has learnt"),
+          ("L12.another-key", "both", "A session goes on only with the key that it was begun with"))],
 ]

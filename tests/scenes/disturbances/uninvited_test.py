@@ -334,7 +334,7 @@ class Uninvited(SceneTest):
         watcher = observer(self.endpoint)
         self.wait_for(lambda: self.tick(watcher), lambda tick: tick > 100, "ticks")
         alone = self.ticks_in(watcher, 3)
-        for attack in (self.ask, self.knock):
+        for attack in (self.ask, self.send_garbage):
             over = threading.Event()
             flood = [threading.Thread(target=attack, args=(over,)) for _ in range(4)]
             for thread in flood:
@@ -367,7 +367,7 @@ class Uninvited(SceneTest):
         last, ended = self.tick(watcher), time.monotonic()
         return (last - first) * seconds / (ended - begun)
 
-    def knock(self, over):
+    def send_garbage(self, over):
         """Peers without a session: each connects, sends as much garbage as it may, and goes."""
         garbage = (b"\x02" + struct.pack(">Q", 30_000) + bytes(30_000)) * 10
         while not over.is_set():
