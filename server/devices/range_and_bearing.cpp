@@ -100,7 +100,7 @@ class RangeAndBearing final : public Kind {
     }
     const media::Bearing bearing = media::bearing_of(seen);
     tick.observations.range_and_bearing.push_back(
-        {pair.receiver, bearing.range, bearing.horizontal, bearing.vertical, from.data});
+        {pair.receiver, bearing.range, bearing.horizontal, bearing.vertical, from.data, pair.sender});
   }
 
   media::RangeAndBearingMedium medium_;

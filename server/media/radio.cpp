@@ -44,7 +44,8 @@ void RadioMedium::deliver(const world::Layout& layout, const DevicesIndex& index
   for (const RadioLink& link : links_) {
     for (std::size_t i = starts_[link.sender]; i < starts_[link.sender + 1]; ++i) {
       const auto& entry = sent.entries[order_[i]];
-      received.entries[places_[link.receiver]++] = {link.receiver, entry.begin, entry.size};
+      received.entries[places_[link.receiver]++] = {link.receiver, entry.begin, entry.size,
+                                                       link.sender};
     }
   }
   std::swap(received.bytes, sent.bytes);  // the receivers share them

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "physics/contact_list.h"
 #include "physics/convert.h"
 #include "physics/core.h"
 #include "physics/magnets.h"
@@ -33,7 +34,11 @@ struct World::Parts {
                    : 1),
         length(substep / splits),
         core(physics),
-        plugins(physics, core) {}
+        plugins(physics, core) {
+    auto list = std::make_unique<ContactList>();
+    contacts = list.get();
+    plugins.add(std::move(list));
+  }
   ~Parts() {
     for (Body& body : bodies) {
       if (body.present()) core.remove(body);
@@ -50,7 +55,28 @@ struct World::Parts {
   std::vector<Body> bodies;
   Core core;
   Plugins plugins;
+  ContactList* contacts = nullptr;  // one of the plug-ins
+  std::vector<world::Contact>* listed = nullptr;
+
+  /// Writes the contacts of the last substep, if they are wanted.
+  void list_contacts() const;
 };
+
+void World::Parts::list_contacts() const {
+  if (!listed) return;
+  listed->clear();
+  const auto link_of = [&](const ContactSide& side) {
+    return bodies[side.entity].first_link + side.link;
+  };
+  for (const Contact& contact : contacts->contacts()) {
+    world::Contact& entry = listed->emplace_back();
+    entry.link = link_of(contact.a);
+    if (contact.b.entity != ContactSide::floor) entry.other = link_of(contact.b);
+    entry.point = contact.point;
+    entry.normal = contact.normal;
+    entry.force = contact.impulse / length;
+  }
+}
 
 World::World(const scene::Physics& physics, double substep)
     : parts_(std::make_unique<Parts>(physics, substep)) {}
@@ -147,6 +173,11 @@ LinkTouch World::take_touch(std::size_t entity, std::size_t link) {
   return std::exchange(body.links[link].touch.value(), LinkTouch{});
 }
 
+void World::list_contacts(std::vector<world::Contact>* to) {
+  parts_->listed = to;
+  parts_->contacts->set_wanted(to);
+}
+
 void World::move(std::size_t entity, const math::Pose& pose) {
   Body& body = parts_->bodies[entity];
   const math::Pose from_placed = pose * math::inverse(body.placed);
@@ -167,6 +198,7 @@ void World::step() {
     p.core.substep(p.bodies, p.length, p.splits, p.plugins.stiff());
     p.plugins.after_substep(p.bodies, p.length, p.core);
   }
+  p.list_contacts();
 }
 
 void World::read(world::State& state) const {

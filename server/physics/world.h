@@ -10,6 +10,7 @@
 
 #include "physics/values.h"
 #include "scene/scene.h"
+#include "world/contact.h"
 #include "world/state.h"
 
 namespace ziggurat::physics {
@@ -71,6 +72,11 @@ class World {
   /// How a watched link was touched since the last call, or since it is watched; nothing if its
   /// entity was removed.
   LinkTouch take_touch(std::size_t entity, std::size_t link);
+
+  /// From the next substep on, each lists all of its contacts, in ascending order of their links.
+  /// That costs time; no result depends on it.
+  /// @param to  its content is replaced; must outlive this; null, as at first: they are not listed
+  void list_contacts(std::vector<world::Contact>* to);
 
   /// Puts an entity to rest at a pose of its origin, joints as assembled.
   void move(std::size_t entity, const math::Pose& pose);

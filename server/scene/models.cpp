@@ -43,7 +43,7 @@ void read_model(Draft& draft, Element& element, EntityKind kind) {
   draft.report.subject.clear();
   take_id(draft, element, id);
   model.anchors = std::move(draft.anchors);
-  draft.scene.models.push_back({id, element.where()});
+  draft.scene.models.push_back({id, element.where(), kind});
   draft.models.push_back(std::move(model));
 }
 

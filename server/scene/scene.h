@@ -236,6 +236,7 @@ struct Controller {
 struct ModelName {
   std::string id;
   Location where;  ///< of its definition
+  EntityKind kind = EntityKind::prototype;
 };
 
 struct Scene {

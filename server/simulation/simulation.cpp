@@ -50,6 +50,7 @@ struct Simulation::Parts {
   world::Observations observations;
   world::Commands commands;
   std::optional<media::DevicesIndex> index;
+  std::vector<world::Contact> contacts;  // of the last substep, if they are listed
   devices::Devices devices;
   std::vector<scene::Entity> entities;      // placed, then spawned: as in the layout
   std::size_t in_physics = 0, in_rays = 0;  // entities
@@ -230,6 +231,12 @@ void Simulation::step() {
   p.observations.time_ns = p.state.time_ns;
   p.devices.sense(tick);
 }
+
+void Simulation::list_contacts(bool wanted) {
+  parts_->physics.list_contacts(wanted ? &parts_->contacts : nullptr);
+  if (!wanted) parts_->contacts.clear();
+}
+const std::vector<world::Contact>& Simulation::contacts() const { return parts_->contacts; }
 
 std::uint64_t Simulation::hash() const { return world::hash(parts_->state, parts_->observations); }
 std::vector<std::string> Simulation::notices() const {

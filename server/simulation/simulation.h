@@ -11,6 +11,7 @@
 #include "physics/values.h"
 #include "scene/scene.h"
 #include "world/commands.h"
+#include "world/contact.h"
 #include "world/layout.h"
 #include "world/state.h"
 
@@ -56,6 +57,12 @@ class Simulation {
   /// Takes an entity out. Its places stay in all arrays, as they are; so does its name.
   /// @param entity  into Layout::entities, one that is present
   void remove(std::size_t entity);
+
+  /// Whether contacts() lists contacts from the next tick on; that costs time. Not at first, and not
+  /// after a reset. No result depends on it.
+  void list_contacts(bool wanted);
+  /// Of the last substep; empty unless they are listed.
+  const std::vector<world::Contact>& contacts() const;
 
   /// Advances by one tick.
   /// @throws std::runtime_error that names the first entity whose state is not finite then

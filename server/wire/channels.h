@@ -40,10 +40,11 @@ template <class T, class Packed>
 struct CommandField {
   std::vector<T> world::Commands::*values;
   const Packed& (v1::Command::*packed)() const;
+  Packed* (v1::Command::*to_fill)();
 };
 template <class T, class Packed>
-CommandField(std::vector<T> world::Commands::*, const Packed& (v1::Command::*)() const)
-    -> CommandField<T, Packed>;
+CommandField(std::vector<T> world::Commands::*, const Packed& (v1::Command::*)() const,
+             Packed* (v1::Command::*)()) -> CommandField<T, Packed>;
 
 /// The field that carries a channel. Does not compile if there is none.
 template <const auto& fields, const auto& table, std::size_t row>
@@ -69,6 +70,36 @@ void add(const Packing& packing, const std::vector<T>& flat,
         packed.Add(values.begin(), values.end());
       }
     }
+  }
+}
+
+inline void add_value(double value, google::protobuf::RepeatedField<double>& packed) {
+  packed.Add(value);
+}
+template <world::Numbers T>
+void add_value(const T& value, google::protobuf::RepeatedField<double>& packed) {
+  const auto values = world::numbers(value);
+  packed.Add(values.begin(), values.end());
+}
+inline void add_value(world::Color value, google::protobuf::RepeatedField<std::uint32_t>& packed) {
+  packed.Add(value);
+}
+inline void add_value(const std::string& value,
+                      google::protobuf::RepeatedPtrField<std::string>& packed) {
+  *packed.Add() = value;
+}
+inline void add_value(std::uint8_t value, std::string& packed) {
+  packed += static_cast<char>(value);
+}
+inline void add_value(world::TurretMode value, google::protobuf::RepeatedField<int>& packed) {
+  packed.Add(static_cast<int>(value) + v1::TURRET_PASSIVE);
+}
+
+/// All values of a channel of Commands.
+template <class T, class Packed>
+void add_all(const Packing& packing, const std::vector<T>& flat, Packed& packed) {
+  for (const Packing::Stretch& piece : packing.stretches) {
+    for (std::size_t i = 0; i < piece.count; ++i) add_value(flat[piece.flat + i], packed);
   }
 }
 

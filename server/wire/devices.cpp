@@ -24,16 +24,26 @@ constexpr std::tuple observation_fields{
 };
 
 constexpr std::tuple command_fields{
-    CommandField{&world::Commands::joint_targets, &v1::Command::joint_targets},
-    CommandField{&world::Commands::led_colors, &v1::Command::led_colors},
-    CommandField{&world::Commands::directional_led_colors, &v1::Command::directional_led_colors},
-    CommandField{&world::Commands::tag_payloads, &v1::Command::tag_payloads},
-    CommandField{&world::Commands::magnet_currents, &v1::Command::magnet_currents},
-    CommandField{&world::Commands::range_and_bearing_data, &v1::Command::range_and_bearing_data},
-    CommandField{&world::Commands::wheels, &v1::Command::wheel_velocities},
-    CommandField{&world::Commands::turret_modes, &v1::Command::turret_modes},
-    CommandField{&world::Commands::turret_rotations, &v1::Command::turret_rotations},
-    CommandField{&world::Commands::turret_speeds, &v1::Command::turret_speeds},
+    CommandField{&world::Commands::joint_targets, &v1::Command::joint_targets,
+                 &v1::Command::mutable_joint_targets},
+    CommandField{&world::Commands::led_colors, &v1::Command::led_colors,
+                 &v1::Command::mutable_led_colors},
+    CommandField{&world::Commands::directional_led_colors, &v1::Command::directional_led_colors,
+                 &v1::Command::mutable_directional_led_colors},
+    CommandField{&world::Commands::tag_payloads, &v1::Command::tag_payloads,
+                 &v1::Command::mutable_tag_payloads},
+    CommandField{&world::Commands::magnet_currents, &v1::Command::magnet_currents,
+                 &v1::Command::mutable_magnet_currents},
+    CommandField{&world::Commands::range_and_bearing_data, &v1::Command::range_and_bearing_data,
+                 &v1::Command::mutable_range_and_bearing_data},
+    CommandField{&world::Commands::wheels, &v1::Command::wheel_velocities,
+                 &v1::Command::mutable_wheel_velocities},
+    CommandField{&world::Commands::turret_modes, &v1::Command::turret_modes,
+                 &v1::Command::mutable_turret_modes},
+    CommandField{&world::Commands::turret_rotations, &v1::Command::turret_rotations,
+                 &v1::Command::mutable_turret_rotations},
+    CommandField{&world::Commands::turret_speeds, &v1::Command::turret_speeds,
+                 &v1::Command::mutable_turret_speeds},
 };
 
 // --- descriptions in Welcome --------------------------------------------------------------------
@@ -213,6 +223,13 @@ void add_channels(const Roster& roster, const world::Observations& from, v1::Obs
   world::for_each_channel(world::sensed, [&](auto i) {
     constexpr const auto& field = field_of<observation_fields, world::sensed, i>();
     add(roster.sensed[i], from.*field.values, *(to.*field.packed)());
+  });
+}
+
+void add_channels(const Roster& roster, const world::Commands& from, v1::Command& to) {
+  world::for_each_channel(world::commanded, [&](auto i) {
+    constexpr const auto& field = field_of<command_fields, world::commanded, i>();
+    add_all(roster.commanded[i], from.*field.values, *(to.*field.to_fill)());
   });
 }
 

@@ -19,6 +19,9 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
 /// Writes what a session's robots sense.
 void add_channels(const Roster& roster, const world::Observations& from, v1::Observation& to);
 
+/// Writes all that a session's robots want, without their radio messages.
+void add_channels(const Roster& roster, const world::Commands& from, v1::Command& to);
+
 /// Lengths and values, if the command's robots are right.
 std::optional<Fault> check_channels(const v1::Command& command, const Roster& roster,
                                     const world::Layout& layout);

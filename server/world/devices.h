@@ -212,6 +212,7 @@ struct RangeAndBearingPacket {
   double vertical_bearing = 0;    ///< above its xy plane, [-pi/2, pi/2] [rad]
   Range data;                     ///< into Observations::range_and_bearing_data; the receiver's
                                   ///< own number of bytes
+  std::size_t sender = 0;         ///< into Layout::range_and_bearing; no robot is told
 };
 
 struct BatteryReading {

@@ -13,6 +13,7 @@ struct RadioMessages {
     std::size_t radio = 0;  ///< into Layout::radios
     std::size_t begin = 0;  ///< into `bytes`
     std::size_t size = 0;   ///< [bytes], may be 0
+    std::size_t sender = 0;  ///< of a message that was received: into Layout::radios
   };
   std::vector<Entry> entries;
   std::vector<std::uint8_t> bytes;

@@ -94,6 +94,19 @@ TEST(Radio, DeliversLargeManyAndNoMessagesAndKeepsNone) {
   EXPECT_TRUE(medium.links().empty());
 }
 
+TEST(Radio, AMessageNamesItsSender) {
+  Scattered world;
+  for (int i = 0; i < 4; ++i) world.add_radio({0.1 * i, 0, 0}, 10);
+  world::RadioMessages out, in;
+  send(out, 3, "c");
+  send(out, 1, "a");
+  RadioMedium medium;
+  medium.deliver(world.layout, world.index(), out, in);
+  std::vector<std::size_t> senders;
+  for (const auto& entry : in.entries) senders.push_back(entry.sender);
+  EXPECT_EQ(senders, (std::vector<std::size_t>{1, 3, 1, 3}));  // of receivers 0, 0, 2, 2
+}
+
 TEST(Radio, FollowsTheLinkItIsFixedTo) {
   Scattered world;
   world.add_radio({0, 0, 0}, 1);

@@ -148,6 +148,47 @@ TEST(Touch, FrictionHoldsABoxOnASlope) {
   EXPECT_NEAR((force - Vector3(0, 0, g)).norm(), 0, 0.03 * g) << force.transpose();
 }
 
+TEST(ContactList, HasEveryContactWithItsForce) {
+  for (const auto solver : {scene::Solver::sweeps, scene::Solver::newton}) {
+    scene::Physics physics = with_floor(g);
+    physics.solver = solver;
+    World world(physics, h);
+    world.add(box(at(0, 0, 0), 1));
+    world.add(box(at(0, 0, 0.1), 3));
+    std::vector<world::Contact> contacts;
+    for (int i = 0; i < 100; ++i) world.step();
+    world.list_contacts(&contacts);
+    world.step();
+    ASSERT_EQ(contacts.size(), 2u);
+    EXPECT_EQ(contacts[0].link, 0u);
+    EXPECT_EQ(contacts[0].other, 1u);
+    EXPECT_NEAR(contacts[0].normal.z(), -1, 1e-6) << "from the upper box down to the lower one";
+    EXPECT_NEAR(contacts[0].force.z(), -3 * g, 0.05 * 3 * g);
+    EXPECT_NEAR(contacts[0].point.z(), 0.1, 0.002);
+    EXPECT_EQ(contacts[1].link, 0u);
+    EXPECT_FALSE(contacts[1].other) << "the floor";
+    EXPECT_NEAR(contacts[1].force.z(), 4 * g, 0.05 * 4 * g);
+    EXPECT_NEAR(contacts[1].point.z(), 0, 0.002);
+    contacts.clear();
+    world.list_contacts(nullptr);
+    world.step();
+    EXPECT_TRUE(contacts.empty()) << "not wanted";
+  }
+}
+
+TEST(ContactList, ChangesNoResult) {
+  const auto fall = [](bool listed) {
+    World world(with_floor(g), h);
+    world.add(box({Vector3(0, 0, 0.3), about({1, 2, 0}, 0.4)}));
+    world.add(box({Vector3(0.02, 0, 0.5), about({1, 0, 3}, 0.7)}));
+    std::vector<world::Contact> contacts;
+    world.list_contacts(listed ? &contacts : nullptr);
+    for (int i = 0; i < 100; ++i) world.step();
+    return state_of(world).links[1].pose.position;
+  };
+  EXPECT_EQ(fall(true), fall(false));
+}
+
 TEST(Touch, OfARemovedEntityIsNone) {
   World world(with_floor(g), h);
   world.add(box(at(0, 0, 0)));

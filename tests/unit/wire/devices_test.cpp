@@ -5,6 +5,7 @@
 #include <string>
 
 #include "wire/device_wire.h"
+#include "wire/devices.h"
 #include "wire/zero.h"
 #include "world/limits.h"
 
@@ -29,6 +30,23 @@ TEST_F(DeviceWire, ValuesOfAllRobots) {
   EXPECT_EQ(commands.tag_payloads, (std::vector<std::string>{"x", "payload1", "", "z"}));
   EXPECT_EQ(commands.magnet_currents, (std::vector<double>{1, 0, -2, 0.5}));
   EXPECT_EQ(text_of(commands.range_and_bearing_data), std::string("AAAA\0\0\0\0CCC\xff", 12));
+}
+
+TEST_F(DeviceWire, WhatIsCommandedIsWrittenAsItIsRead) {
+  double number = 0.5;
+  for (auto& target : commands.joint_targets) target = number += 1;
+  for (auto& current : commands.magnet_currents) current = number += 1;
+  for (auto& color : commands.led_colors) color = static_cast<world::Color>(number += 1);
+  for (auto& payload : commands.tag_payloads) payload = std::to_string(number += 1);
+  for (auto& byte : commands.range_and_bearing_data) byte = static_cast<std::uint8_t>(number += 1);
+  add_channels(roster, commands, *command);
+  EXPECT_EQ(command->led_colors_size(), 3) << "those that robots set";
+  const std::string written = command->SerializeAsString();
+  commands = run.commands();
+  apply();
+  command->Clear();
+  add_channels(roster, commands, *command);
+  EXPECT_EQ(command->SerializeAsString(), written);
 }
 
 TEST_F(DeviceWire, ValuesOfSomeRobotsInTheOrderGiven) {
