@@ -25,30 +25,35 @@ def main():
 
     send(hello={"version": {"major": 1}, "role": "ROLE_CONTROLLER", "clientName": "json",
                 "robots": ["*"], "controller": os.environ.get("ZIGGURAT_CONTROLLER", "")})
-    targets = []
+    targets, are_told = [], False  # targets stay until changed: they are told once
     while True:
-        (kind, data), = json.loads(socket.recv()).items()
-        if kind == "welcome":
-            targets = [1.0 if motor["mode"] == "VELOCITY" else 0.0
-                       for robot in data["robots"] for motor in robot["jointActuators"]]
-        elif kind == "observation":
-            command = {"tick": data["tick"]}
-            if data["tick"] == "0":  # targets stay until changed
-                command["jointTargets"] = targets
-            elif data["jointReadings"]:
-                command["log"] = [{"robot": 0, "text": f"{data['jointReadings'][0]:.2f}"}]
-            send(command=command)
-        elif kind == "end":
-            send(leave={"reason": "DONE"})
-            return 0
-        elif kind == "refusal" or kind == "displaced":
-            print(data, file=sys.stderr)
-            return 1
-        elif kind == "error" and data["severity"] != "WARNING" and "_TICK" not in data["code"]:
-            send(leave={"reason": "FAILED", "message": data["message"]})
-            return 1
-        # "loading", "heartbeat", "paused", "reset" and messages of later versions need no answer.
-        # STALE_TICK, DUPLICATE_TICK and FUTURE_TICK mean that the answer crossed a reset.
+        # One of the names is the kind; a later version of the protocol may have more names.
+        for kind, data in json.loads(socket.recv()).items():
+            if kind == "welcome":
+                targets = [1.0 if motor["mode"] == "VELOCITY" else 0.0
+                           for robot in data["robots"] for motor in robot["jointActuators"]]
+            elif kind == "observation":
+                command = {"tick": data["tick"]}
+                if not are_told:
+                    command["jointTargets"] = targets
+                elif data["jointReadings"]:
+                    command["log"] = [{"robot": 0, "text": f"{data['jointReadings'][0]:.2f}"}]
+                send(command=command)
+                are_told = True
+            elif kind == "reset":
+                are_told = False
+            elif kind == "end":
+                send(leave={"reason": "DONE"})
+                return 0
+            elif kind == "refusal" or kind == "displaced":
+                print(data, file=sys.stderr)
+                return 1
+            elif kind == "error" and (data["severity"] == "WARNING" or "_TICK" in data["code"]):
+                are_told = False  # the answer was late, or crossed a reset: its values may be lost
+            elif kind == "error":
+                send(leave={"reason": "FAILED", "message": data["message"]})
+                return 1
+            # "loading", "heartbeat", "paused" and messages of later versions need no answer.
 
 
 if __name__ == "__main__":

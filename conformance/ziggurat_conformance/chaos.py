@@ -7,7 +7,10 @@ from typing import Callable
 
 from . import wire
 from .case import Case, Failed, Level, Outcome, Verdict
-from .client_steps import ClientStage, Tell
+from . import client_messages as words
+from .client_stage import ClientStage, Options
+from .cases.client_core import UNKNOWN_KIND
+from .client_steps import Tell
 from .messages import answer, hear_error, heartbeat, join
 from .steps import Hang, Hear, Stage, Token
 
@@ -122,14 +125,12 @@ class _Crowd:
         return names
 
 
-def play_client(command: list, seed: int, ticks: int, patience: float, on_outcome: Callable) -> list:
+def play_client(command: list, seed: int, ticks: int, options: Options, on_outcome: Callable) -> list:
     """A server that pauses, resets, sends heartbeats and unknown messages, and takes its time."""
-    from .cases import client as words
-
     draw = random.Random(seed)
     outcome = Outcome("S3.chaos", f"{ticks} ticks of chaos, seed {seed}", Level.RECONNECT, Verdict.PASS)
     start = time.monotonic()
-    with ClientStage(command, patience) as stage:
+    with ClientStage(command, Case(outcome.id, outcome.title, ()), options) as stage:
         try:
             stage.play((words.HELLO, words.welcome()))
             tick = 0
@@ -162,5 +163,5 @@ def _disturb(stage: ClientStage, draw: random.Random, tick: int) -> int:
     elif what == 3:
         time.sleep(draw.random() * 0.1)
     elif what == 4:
-        stage.tell(Tell({"loading": {"progress": 1.0}}))
+        stage.play((UNKNOWN_KIND,))
     return tick

@@ -10,6 +10,8 @@ from pathlib import Path
 from . import chaos, client_mode, report, server_mode, wire
 from .case import Level
 from .cases import SERVER_CASES
+from .client_stage import Options
+from .scene_robots import robots_of
 from .server_scene import SCENE
 
 _EXAMPLES = """\
@@ -24,6 +26,8 @@ examples:
       plays what can be played against a server that runs; it must run the kit's scene (--scene prints its path)
   ziggurat-conformance client -- ./my_controller
       plays a server: ZIGGURAT_ENDPOINT and ZIGGURAT_CONTROLLER are in the controller's environment
+  ziggurat-conformance client --scene arena.argos -- ./my_controller
+      plays the robots of a scene, for a controller that names them; a server is asked what they have
   ziggurat-conformance server --level core -- …
       the cases of one badge: core, reconnect, hil, secure
   ziggurat-conformance server --only 'S9.*' --html report.html -- …
@@ -50,12 +54,20 @@ def _parser() -> argparse.ArgumentParser:
     client = modes.add_parser("client", help="play a server against a controller program",
                               epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
     client.add_argument("target", nargs="*", metavar="-- COMMAND")
+    client.add_argument("--scene", dest="played", type=Path, metavar="SCENE",
+                        help="play the robots of this scene; without it, the kit's arms, whatever is asked for")
+    client.add_argument("--server", default=_SERVER, metavar="COMMAND",
+                        help="how to start the server that describes them (default: %(default)s)")
+    client.add_argument("--controller", default="", metavar="ID",
+                        help="whose robots the program is to drive: its ZIGGURAT_CONTROLLER (default: the "
+                             "scene's first that is no script)")
     for mode in (server, client):
         mode.add_argument("--only", action="append", default=[], metavar="GLOB",
                           help="only cases whose id matches; may be repeated")
         mode.add_argument("--level", choices=[level.value.lower() for level in Level],
                           help="only cases of this level")
-        mode.add_argument("--form", choices=("binary", "json"), help="only cases in this form")
+        mode.add_argument("--form", choices=("binary", "json"), help="only cases in this form; "
+                          "a client must use it")
         mode.add_argument("--list", action="store_true", help="list the cases, and stop")
         mode.add_argument("--known-failing", type=Path, metavar="FILE",
                           help="ids of cases that must fail, one per line; # begins a comment")
@@ -69,6 +81,9 @@ def _parser() -> argparse.ArgumentParser:
         mode.add_argument("--json", type=Path, metavar="F.json")
         mode.add_argument("--html", type=Path, metavar="F.html")
     return parser
+
+
+_SERVER = "ziggurat serve {scene} --endpoint {endpoint}"
 
 
 class _Mistake(Exception):
@@ -100,7 +115,8 @@ def _known(path) -> set:
 
 
 def _chosen(cases: list, options) -> list:
-    chosen = list(server_mode.chosen(cases, options.only, options.form, options.level))
+    form = options.form if options.mode == "server" else None  # a client chooses its form
+    chosen = list(server_mode.chosen(cases, options.only, form, options.level))
     if not chosen:
         raise _Mistake("no case is chosen; --list lists them all" if not options.only else
                        f"no case matches --only {' '.join(options.only)}; --list lists them all")
@@ -134,11 +150,23 @@ def _server(options, terminal):
 
 
 def _client(options, terminal):
+    played = _client_options(options)
     if options.chaos is not None:
-        return chaos.play_client(options.target, options.chaos, options.ticks, options.patience,
-                                 terminal.outcome)
-    cases = _chosen(client_mode.CASES, options)
-    return client_mode.play(cases, options.target, options.patience, terminal.outcome)
+        return chaos.play_client(options.target, options.chaos, options.ticks, played, terminal.outcome)
+    return client_mode.play(_chosen(client_mode.CASES, options), options.target, played, terminal.outcome)
+
+
+def _client_options(options) -> Options:
+    if options.played is None:
+        if options.controller:
+            raise _Mistake("--controller names one of a scene: give --scene too")
+        return Options(options.patience, options.form)
+    command = options.server
+    beside = Path(sys.argv[0]).resolve().parent / "ziggurat"
+    if command == _SERVER and beside.is_file():
+        command = shlex.quote(str(beside)) + command.removeprefix("ziggurat")
+    scene = robots_of(options.played, command)
+    return Options(options.patience, options.form, scene, scene.controller(options.controller))
 
 
 def _print_list(options) -> None:

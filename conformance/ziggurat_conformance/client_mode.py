@@ -3,26 +3,45 @@
 import time
 from typing import Callable
 
-from .case import Case, Failed, NonStrict, Outcome, Verdict
+from .case import Case, Failed, Level, NonStrict, Outcome, Unimplemented, Verdict
 from .cases.client import CLIENT_CASES as CASES
-from .client_steps import ClientStage
+from .client_stage import ClientStage, Options
+from .client_steps import TellWelcome
+from .server_scene import KIT
+
+_TRIES_WITH_DEADLINES = 3
 
 
-def play(cases: list, command: list, patience: float, on_outcome: Callable) -> list:
+def play(cases: list, command: list, options: Options, on_outcome: Callable) -> list:
     """Starts the program anew for each case; `on_outcome` hears of each when it is over."""
     outcomes = []
     for case in cases:
-        outcomes.append(_play_one(case, command, patience))
+        outcomes.append(_play_patiently(case, command, options))
         on_outcome(outcomes[-1])
     return outcomes
 
 
-def _play_one(case: Case, command: list, patience: float) -> Outcome:
+def _play_patiently(case: Case, command: list, options: Options) -> Outcome:
+    """Cases with deadlines up to three times: a busy machine misses some by itself."""
+    tries = _TRIES_WITH_DEADLINES if case.level is Level.HIL else 1
+    for _ in range(tries):
+        outcome = _play_one(case, command, options)
+        if outcome.verdict is not Verdict.FAIL:
+            break
+    return outcome
+
+
+def _play_one(case: Case, command: list, options: Options) -> Outcome:
     outcome = Outcome(case.id, case.title, case.level, Verdict.PASS)
+    if options.scene is not None and _has_own_robots(case):
+        outcome.verdict, outcome.reason = Verdict.NOT_RUN, "plays the kit's own robots: leave --scene out"
+        return outcome
     start = time.monotonic()
-    with ClientStage(command, patience) as stage:
+    with ClientStage(command, case, options) as stage:
         try:
             stage.play(case.steps)
+        except Unimplemented as reason:
+            outcome.verdict, outcome.reason = Verdict.UNIMPLEMENTED, str(reason)
         except NonStrict as reason:
             outcome.verdict, outcome.reason = Verdict.NON_STRICT, str(reason)
         except Failed as reason:
@@ -34,3 +53,12 @@ def _play_one(case: Case, command: list, patience: float) -> Outcome:
     if outcome.verdict is not Verdict.PASS:
         outcome.transcript = stage.transcript.text()
     return outcome
+
+
+def _has_own_robots(case: Case) -> bool:
+    return case.scene == KIT or _names_robots(case.steps)
+
+
+def _names_robots(steps: tuple) -> bool:
+    return any(_names_robots(step) if isinstance(step, (list, tuple)) else
+               isinstance(step, TellWelcome) and bool(step.robots) for step in steps)

@@ -9,6 +9,7 @@ from typing import Optional
 import zmq
 
 VARIANT = "curve"
+PLAIN_SERVER = "plain-server"  # of cases for clients: a server without keys is where one with keys should be
 
 # Peers of a case by name. A peer that is not here has the key of "controller".
 ROLES = {
@@ -54,6 +55,14 @@ class Keys:
             clients.write_text("".join(f"{self._peers[name][0].decode()} {roles} {name}\n"
                                        for name, roles in ROLES.items()))
         return {"curve_secret": str(secret), "curve_clients": str(clients)}
+
+    def client_file(self) -> str:
+        """Path of a file with the secret key of "controller", as a client program gets it."""
+        path = Path(self.files()["curve_secret"]).with_name("controller.secret")
+        if not path.exists():
+            with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT, 0o600), "w") as file:
+                file.write(self._peers["controller"][1].decode() + "\n")
+        return str(path)
 
     def close(self) -> None:
         """Removes the files."""

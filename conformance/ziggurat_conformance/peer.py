@@ -6,6 +6,11 @@ from typing import Optional
 import zmq
 
 from . import wire
+from .case import Failed
+from .rules.answers import Answers
+from .rules.fault import musts
+from .rules.session import Session
+from .rules.text_form import server_text_faults
 from .wire import protocol
 
 
@@ -36,6 +41,8 @@ class Peer:
         self.tick = 0  # of the last observation
         self.observation: Optional[protocol.Observation] = None
         self.heartbeats: list[int] = []
+        self._session = Session()
+        self._answers = Answers()
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.LINGER, 0)
         self.socket.setsockopt(zmq.MAXMSGSIZE, -1)
@@ -47,11 +54,16 @@ class Peer:
 
     def send(self, message: protocol.ClientMessage) -> None:
         self.transcript.add(self.name, "──▶", wire.text_of(message))
-        self.socket.send(wire.encode(message, self.form))
+        data = wire.encode(message, self.form)
+        if self._session.is_certain:
+            state = self._session.state
+            self._answers.said(state, message, self._session.said(message, len(data)))
+        self.socket.send(data)
 
     def send_frames(self, frames: tuple[bytes, ...]) -> None:
         shown = ", ".join(f"{len(f)} bytes {f[:24]!r}{'…' if len(f) > 24 else ''}" for f in frames)
         self.transcript.add(self.name, "──▶", f"frames: {shown}")
+        self._session.is_certain = False
         self.socket.send_multipart(frames)
 
     def hear(self, patience: float, heartbeats: bool = False) -> Optional[protocol.ServerMessage]:
@@ -79,7 +91,18 @@ class Peer:
             raise ValueError(f"the server sent {len(frames)} frames; expected one (T2)")
         message = wire.decode(protocol.ServerMessage, frames[0], self.form)
         self.transcript.add(self.name, "◀──", wire.text_of(message))
+        self._judge(message, frames[0])
         return message
+
+    def _judge(self, message: protocol.ServerMessage, data: bytes) -> None:
+        """Raises Failed for a message that breaks a rule, whatever the case expects."""
+        faults = list(server_text_faults(data, message)) if self.form == wire.JSON else []
+        if self._session.is_certain:
+            faults += self._answers.told(self._session, message)
+        broken = musts([*faults, *self._session.told(message)])
+        if broken:
+            raise Failed(f"{self.name} was told {wire.text_of(message, 300)}: "
+                         + "; ".join(map(str, broken[:5])))
 
     def _remember(self, message: protocol.ServerMessage) -> None:
         if message.HasField("welcome"):

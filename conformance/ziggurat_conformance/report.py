@@ -37,14 +37,15 @@ def good(outcomes: list) -> bool:
 
 
 def badges(outcomes: list, left_out: collections.Counter) -> dict:
-    """Level → whether all of its cases passed; None if none failed and some were not played.
+    """Level → whether all of its cases passed; None if none failed and some were not played. Of Core it
+    takes the MUSTs, of the other levels the SHOULDs too.
     left_out: how many cases of each level were not chosen."""
     result = {}
     for level in Level:
         counts = _counts(outcomes, level)
         if counts.total() + left_out[level] == 0:
             continue  # there is no case of it
-        passed = counts[Verdict.PASS] + counts[Verdict.NON_STRICT]
+        passed = counts[Verdict.PASS] + (counts[Verdict.NON_STRICT] if level is Level.CORE else 0)
         is_good = passed + counts[Verdict.NOT_RUN] == counts.total()
         is_whole = passed == counts.total() and not left_out[level]
         result[level] = is_whole or (None if is_good else False)
@@ -61,7 +62,8 @@ def _badge_text(outcomes: list, level: Level, reached, left_out: collections.Cou
         return "reached"
     counts = _counts(outcomes, level)
     reasons = [f"{counts[verdict]} {verdict.value}" for verdict in Verdict
-               if counts[verdict] and verdict not in (Verdict.PASS, Verdict.NON_STRICT)]
+               if counts[verdict] and verdict is not Verdict.PASS
+               and (verdict is not Verdict.NON_STRICT or level is not Level.CORE)]
     if left_out[level]:
         reasons.append(f"{left_out[level]} not chosen")
     return f"{'open' if reached is None else 'not reached'}: {', '.join(reasons)}"

@@ -258,7 +258,7 @@ def _heard(peer: Peer, patience: float, heartbeats: bool):
 def _complaint(step: Hear, pattern: dict, message) -> str:
     """What is wrong with a message that was heard; empty if nothing."""
     if message is None:
-        return f"{step.peer} heard nothing; expected {step.kind}"
+        return f"{step.peer} heard nothing; {step.kind} is expected"
     kind = wire.kind_of(message)
     told = getattr(message, kind) if kind else message
     error = told.error if kind in ("refusal", "response") else told if kind == "error" else None
@@ -267,7 +267,7 @@ def _complaint(step: Hear, pattern: dict, message) -> str:
         if expected != "UNIMPLEMENTED":
             raise Unimplemented(error.message)
     if kind != step.kind:
-        return f"{step.peer} was told {wire.text_of(message, 300)}; expected {step.kind}"
+        return f"{step.peer} was told {wire.text_of(message, 300)}; {step.kind} is expected"
     return "; ".join(wire.mismatches(pattern, told, kind))
 
 

@@ -1,5 +1,6 @@
 """Messages as bytes, in both forms, and patterns that messages are held against."""
 
+import json
 from dataclasses import dataclass
 from typing import Any, Iterator
 
@@ -21,6 +22,24 @@ def encode(message: Message, form: str) -> bytes:
         return json_format.MessageToJson(message, indent=0,
                                          including_default_value_fields=whole).encode()
     return message.SerializeToString()
+
+
+_LATER = b"\x80\x7d\x07"  # field 2000 of any message: 7
+
+
+def encode_as_later_version(message: Message, form: str) -> bytes:
+    """With fields that protocol 1.0 does not have, in the envelope and in what it holds."""
+    kind = kind_of(message)
+    if form == JSON:
+        fields = json.loads(encode(message, form))
+        fields[kind]["later"] = [1]
+        return json.dumps({**fields, "alsoLater": 7}).encode()
+    content = getattr(message, kind).SerializeToString() + _LATER
+    size, length = len(content), b""
+    while size > 127:
+        length, size = length + bytes([size & 127 | 128]), size >> 7
+    number = message.DESCRIPTOR.fields_by_name[kind].number
+    return bytes([number << 3 | 2]) + length + bytes([size]) + content + _LATER
 
 
 def decode(kind: type, data: bytes, form: str) -> Message:
@@ -134,8 +153,32 @@ def kind_of(message: Message) -> str:
     return message.WhichOneof("message") or ""
 
 
+_MOST_SHOWN = 40  # elements of a list, and characters or bytes of 8 times as many
+
+
 def text_of(message: Message, limit: int = 2000) -> str:
-    """For people, on one line, cut where it is long."""
+    """For people, on one line, cut where it is long. Takes bounded time whatever the message holds."""
+    if message.ByteSize() > limit:
+        message = _shortened(message)
     text = json_format.MessageToJson(message, indent=None, preserving_proto_field_name=True)
     return text if len(text) <= limit else f"{text[:limit]} … ({len(text)} characters)"
 
+
+def _shortened(message: Message) -> Message:
+    """A copy with the first elements and characters of everything."""
+    short = type(message)()
+    for field, value in message.ListFields():
+        if field.label == field.LABEL_REPEATED:
+            values = [_shortened_value(v) for v in value[:_MOST_SHOWN]]
+            getattr(short, field.name).extend(values)
+        elif field.type == field.TYPE_MESSAGE:
+            getattr(short, field.name).CopyFrom(_shortened(value))
+        else:
+            setattr(short, field.name, _shortened_value(value))
+    return short
+
+
+def _shortened_value(value: Any) -> Any:
+    if isinstance(value, Message):
+        return _shortened(value)
+    return value[:8 * _MOST_SHOWN] if isinstance(value, (str, bytes)) else value

@@ -121,7 +121,7 @@ class Reports(unittest.TestCase):
         self.assertRegex(out, r"Core +not reached: \d fail, \d+ not chosen\n")
         page = (self.folder / "r.html").read_text()
         self.assertIn("<h2>S9.stale: A Command for an earlier tick is STALE_TICK</h2>", page)
-        self.assertRegex(page, "<p>.* expected error</p><pre>")
+        self.assertRegex(page, r"<p>.*the tick went on with a message that must be refused: .* \(S9\)</p><pre>")
         suite = ElementTree.parse(self.folder / "r.xml").getroot()
         self.assertEqual(suite.get("failures"), str(len(suite.findall("testcase/failure"))))
         self.assertLess(max(map(len, out.splitlines())), 250)
@@ -131,7 +131,7 @@ class Reports(unittest.TestCase):
         code, out, report = self.play("--only", "S9.*")
         self.assertEqual(1, code, out)
         [stale] = [case for case in report["cases"] if case["id"] == "S9.stale"]
-        self.assertRegex(stale["reason"], "expected error; the server had ended, and had said:\ngoodbye")
+        self.assertRegex(stale["reason"], "error is expected; the server had ended, and had said:\ngoodbye")
         self.assertTrue(any(case["verdict"] == "pass" for case in report["cases"]), "it is started anew")
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from ziggurat_conformance import client_mode, server_mode
 from ziggurat_conformance.case import Verdict
 from ziggurat_conformance.cases import SERVER_CASES
+from ziggurat_conformance.client_stage import Options
 
 HERE = Path(__file__).resolve().parent
 PATIENCE = 10.0  # [s] for the right programs: a busy machine may take long
@@ -77,7 +78,7 @@ def _client_verdicts(bug: str, ids: set) -> dict:
     command = [sys.executable, str(HERE / "tiny_client.py"), bug]
     cases = [case for case in client_mode.CASES if case.id in ids]
     patience = SHORT if bug else PATIENCE
-    outcomes = client_mode.play(cases, command, patience, lambda outcome: None)
+    outcomes = client_mode.play(cases, command, Options(patience), lambda outcome: None)
     return {outcome.id: outcome for outcome in outcomes}
 
 

@@ -11,10 +11,8 @@ DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "protocol.md"
 
 # Rules that no case can hold, and why.
 REASONS = {
-    "T1": "the kit connects to the endpoint that it is told",
     "T10": "how the kit starts every client",
     "T8": "a matter of the server's command line",
-    "P3": "advice to clients",
     "K4": "is about the absence of keys",
     "D5": "it would take more than 1 GiB of messages at a tick",
 }

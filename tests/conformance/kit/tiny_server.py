@@ -167,7 +167,8 @@ class Server:
     def welcome(self, session):
         welcome = protocol.Welcome(version={"major": 1}, session_token=session.token, seed=7,
                                    tick_ns=100_000_000, ticks_per_second=10, scene_hash="0" * 16,
-                                   mode=protocol.MODE_LOCK_STEP, max_message_bytes=1 << 26)
+                                   mode=protocol.MODE_LOCK_STEP, max_message_bytes=1 << 26,
+                                   role=protocol.ROLE_CONTROLLER)
         for robot in session.robots:
             description = welcome.robots.add(id=ROBOTS[robot], controller="steady")
             description.joint_sensors.add(id="hinge", mode=protocol.JointDescription.POSITION)

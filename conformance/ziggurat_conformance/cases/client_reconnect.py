@@ -1,0 +1,65 @@
+"""Reconnect: resets, pauses, and connections that are really lost."""
+
+from ..case import Case, Level
+from ..client_messages import (BEGUN, HELLO, answered, end, error, heartbeat, observation, refusal, ticks, welcome)
+from ..client_steps import CheckClient, Cut, Ends, HearResume, Quiet, Tell
+from .client_core import storm
+
+_SILENCE = 6.0  # [s], much longer than the 100 ms that _WATCHED promises
+_WATCHED = {"wall_heartbeat_ms": 100}
+
+
+def _case(id: str, title: str, *steps) -> Case:
+    return Case(id, title, steps, Level.RECONNECT)
+
+
+def _resumed(tick: int) -> list:
+    """Back in the session at this tick; L9: it may have been answered before."""
+    return [HearResume(), welcome(), *ticks(tick, tick + 2)]
+
+
+_RESET = Tell({"reset": {"seed": 8}})
+_PAUSED = Tell({"paused": {"tick": 0}})
+
+CASES = [
+    _case("L6.reset", "After a reset it goes on from tick 0",
+          *BEGUN, *ticks(1, 3), _RESET, Quiet(0.2), *ticks(0, 3)),
+    _case("L6.reset-twice", "It may be reset again and again",
+          *BEGUN, *[s for seed in (8, 9, 10) for s in
+                    (*ticks(1, 2), Tell({"reset": {"seed": seed}}), *ticks(0, 0))]),
+    *[_case(f"S9.reset-crosses-{code.lower().replace('_', '-')}",
+            f"A command that met a reset on its way may be {code}: no reason to give up",
+            *BEGUN, *ticks(1, 3), _RESET, *ticks(0, 0), error(code, "DISCARD"), Quiet(0.2, should=True),
+            *ticks(1, 2))
+      for code in ("FUTURE_TICK", "STALE_TICK", "DUPLICATE_TICK")],
+    _case("L6.paused", "While the world is paused it sends nothing",
+          *BEGUN, _PAUSED, heartbeat(1), Quiet(0.5), *ticks(1, 3)),
+    _case("L6.paused-again", "It may be told twice that the world is paused",
+          *BEGUN, _PAUSED, _PAUSED, *ticks(1, 2)),
+    _case("L6.displaced", "When another client takes its robots, it ends, with another exit code than 0",
+          *BEGUN, Tell({"displaced": {"by": "another 1", "message": "takeover"}}), Ends(good=False)),
+    _case("L10.displaced", "It does not take them back",
+          *BEGUN, *ticks(1, 2), Tell({"displaced": {"by": "another 1", "message": "takeover"}}), Quiet(2.0)),
+    _case("L6.restored", "It is told that the world was restored, and goes on at that tick",
+          *BEGUN, *ticks(1, 5), Tell({"restored": {"tick": 2, "snapshot": "two"}}), *ticks(2, 4)),
+    _case("L4.lost", "A connection that is lost between ticks is made anew, and the session resumed",
+          *BEGUN, *ticks(1, 3), Cut(), _resumed(3)),
+    _case("L4.lost-in-a-tick", "… and one that is lost before the answer",
+          *BEGUN, *ticks(1, 3), observation(4), Cut(), _resumed(4)),
+    _case("L4.lost-before-tick-0", "… and one that is lost before the first tick",
+          HELLO, welcome(), Cut(), _resumed(0)),
+    _case("L4.lost-again", "… again and again",
+          *BEGUN, *[s for tick in (0, 2, 4) for s in (Cut(), *_resumed(tick))]),
+    _case("L4.other-tick", "The world may have gone on meanwhile", *BEGUN, *ticks(1, 3), Cut(), _resumed(70)),
+    _case("M3.silence", "When nothing comes for much longer than M6 says, it resumes its session",
+          HELLO, welcome(**_WATCHED), *ticks(0, 2), heartbeat(1), HearResume(_SILENCE), welcome(), *ticks(2, 4)),
+    _case("M3.beats", "As long as heartbeats come, the connection is alive",
+          HELLO, welcome(**_WATCHED), *ticks(0, 2), *[s for n in range(20) for s in (heartbeat(n), Quiet(0.1))],
+          *ticks(3, 4)),
+    _case("M3.out-of-state", "Told OUT_OF_STATE, it resumes its session",
+          *BEGUN, *ticks(1, 3), error("OUT_OF_STATE", "FATAL"), _resumed(3)),
+    _case("L4.no-such-session", "A session that can't be resumed is no reason for a storm of Hellos",
+          *BEGUN, Cut(), HearResume(), refusal("NO_SUCH_SESSION"), CheckClient("storm", storm)),
+    _case("L5.end-after-resume", "A resumed session ends as any",
+          *BEGUN, Cut(), *_resumed(0), end(2), Ends(good=True, should=True)),
+]

@@ -1,0 +1,28 @@
+"""Secure: a client that is told keys uses them, and nothing else (K1, L12, T10)."""
+
+from ..case import Case, Level
+from ..client_messages import BEGUN, LEFT, end, ticks, welcome
+from ..client_steps import CheckClient, Cut, Ends, HearResume, Mechanisms, Quiet
+from ..keys import MISLED, PLAIN_SERVER, VARIANT
+
+
+def _case(id: str, title: str, variant: str, *steps) -> Case:
+    return Case(id, title, steps, Level.SECURE, variant=variant)
+
+
+def _own_key(stage) -> str:
+    expected = stage.keys.of("controller")[1].decode()
+    return "" if stage.key == expected else f"it connects with the key {stage.key!r}; {expected!r} is its own"
+
+
+CASES = [
+    _case("K1.session", "A session over an encrypted connection is like any",
+          VARIANT, *BEGUN, *ticks(1, 5), end(5), LEFT, Ends(good=True, should=True)),
+    _case("K2.own-key", "It connects with the key in the file of ZIGGURAT_CURVE_SECRET",
+          VARIANT, *BEGUN, CheckClient("key", _own_key)),
+    _case("K1.another-server", "A server with another key than ZIGGURAT_SERVER_KEY is told nothing",
+          MISLED, Quiet(2.0)),
+    _case("K1.no-fallback", "A server without keys is told nothing, in no way", PLAIN_SERVER, Mechanisms()),
+    _case("L12.same-key", "It resumes its session with the key that it began it with",
+          VARIANT, *BEGUN, *ticks(1, 2), Cut(), HearResume(), welcome(), *ticks(2, 4)),
+]

@@ -1,0 +1,138 @@
+"""The server's socket in client mode."""
+
+import socket
+import time
+from dataclasses import dataclass
+from typing import Optional
+
+import zmq
+import zmq.auth.thread
+
+_LONGEST = 128 << 20  # [bytes]: twice a controller's limit; above, the connection is closed (T4)
+_REBINDING = 5.0  # [s] until a port is free again
+_PEER_NAMES = ("Socket-Type", "User-Id")
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """A message as it came."""
+
+    routing_id: bytes
+    frames: tuple  # zmq.Frame
+    socket_type: str
+    key: str  # of the client, Z85; empty: a plain connection
+
+
+class ServerSocket:
+    """A ROUTER at a port of its own. It may be closed and opened again there."""
+
+    def __init__(self, secret_key: Optional[bytes] = None):
+        self._context = zmq.Context()
+        self._secret_key = secret_key
+        self._authenticator = None
+        if secret_key is not None:
+            self._authenticator = zmq.auth.thread.ThreadAuthenticator(self._context)
+            self._authenticator.start()
+            self._authenticator.configure_curve_callback(credentials_provider=_AnyKey())
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        self.endpoint = f"tcp://127.0.0.1:{port}"
+        self._socket: Optional[zmq.Socket] = None
+        self.open()
+
+    def open(self) -> None:
+        self._socket = self._context.socket(zmq.ROUTER)
+        self._socket.setsockopt(zmq.LINGER, 0)
+        self._socket.setsockopt(zmq.MAXMSGSIZE, _LONGEST)
+        if self._secret_key is not None:
+            self._socket.curve_secretkey = self._secret_key
+            self._socket.curve_server = True
+        deadline = time.monotonic() + _REBINDING
+        while True:
+            try:
+                self._socket.bind(self.endpoint)
+                return
+            except zmq.ZMQError:
+                if time.monotonic() > deadline:
+                    raise
+                time.sleep(0.005)
+
+    def close(self) -> None:
+        """Ends all connections."""
+        self._socket.close()
+
+    def destroy(self) -> None:
+        self.close()
+        if self._authenticator is not None:
+            self._authenticator.stop()
+        self._context.term()
+
+    def receive(self, seconds: float) -> Optional[Arrival]:
+        if not self._socket.poll(max(0, int(1000 * seconds))):
+            return None
+        first, *frames = self._socket.recv_multipart(copy=False)
+        facts = {name: _fact(frames[-1] if frames else first, name) for name in _PEER_NAMES}
+        return Arrival(first.bytes, tuple(frames), facts["Socket-Type"], facts["User-Id"])
+
+    def send(self, routing_id: bytes, data: bytes) -> None:
+        self._socket.send_multipart([routing_id, data])
+
+
+class _AnyKey:
+    """Every client may connect; its key is told with its messages."""
+
+    def callback(self, domain: str, key: bytes) -> bool:
+        return True
+
+
+def _fact(frame: zmq.Frame, name: str) -> str:
+    try:
+        return frame.get(name) or ""
+    except zmq.ZMQError:
+        return ""
+
+
+_SIGNATURE = b"\xff" + bytes(8) + b"\x7f"
+_GREETING = _SIGNATURE + b"\x03\x00" + b"NULL".ljust(20, b"\0") + bytes(32)
+
+
+class PlainGreeter:
+    """Greets as a ZMTP server without keys would, and notes what clients ask for."""
+
+    def __init__(self) -> None:
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.endpoint = f"tcp://127.0.0.1:{self._listener.getsockname()[1]}"
+
+    def mechanisms(self, seconds: float) -> list:
+        """Of every connection within this time: "CURVE", "NULL", …"""
+        found = []
+        deadline = time.monotonic() + seconds
+        while (left := deadline - time.monotonic()) > 0:
+            self._listener.settimeout(left)
+            try:
+                connection, _ = self._listener.accept()
+            except TimeoutError:
+                break
+            with connection:
+                connection.settimeout(1.0)
+                found.append(_mechanism_of(connection))
+        return found
+
+    def destroy(self) -> None:
+        self._listener.close()
+
+
+def _mechanism_of(connection: socket.socket) -> str:
+    """Byte 12 of a greeting of 64 bytes begins the name of the mechanism, filled with zeros to 20."""
+    greeting = b""
+    try:
+        connection.sendall(_GREETING)
+        while len(greeting) < 32:
+            part = connection.recv(64)
+            if not part:
+                break
+            greeting += part
+    except OSError:
+        pass
+    return greeting[12:32].rstrip(b"\0").decode(errors="replace")

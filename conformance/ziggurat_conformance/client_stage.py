@@ -1,0 +1,389 @@
+"""Where cases for clients are played: a server's socket, and a controller program that connects to it."""
+
+import os
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from . import wire
+from .case import Case, Failed, NonStrict, Unimplemented
+from .client_robots import readings, robot
+from .client_socket import PlainGreeter, ServerSocket
+from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, HearLate, HearResume, Mechanisms,
+                           Quiet, Refuse, Tell, TellBytes, TellObservation, TellWelcome, Wait)
+from .keys import MISLED, PLAIN_SERVER, VARIANT, Keys
+from .peer import Transcript
+from .rules.fault import Fault, musts
+from .rules.observation import time_of
+from .rules.session import Session, State
+from .rules.text_form import strict_json
+from .scene_robots import SceneRobots
+from .wire import protocol
+
+_START = 10.0  # [s] until a program's first message
+_LATE = 0.3  # [s] for a Command that need not come
+_TOKEN = b"0123456789abcdef"
+_MOST_AT_ONCE, _MOST_A_SECOND = 2000, 1000  # M7
+
+
+@dataclass(frozen=True)
+class Options:
+    """How all cases of a run are played."""
+
+    patience: float  # [s]
+    form: Optional[str] = None  # the client must use it; None: it chooses
+    scene: Optional[SceneRobots] = None  # None: the kit's robots
+    controller: str = "steady"  # of these robots, in the client's environment
+
+
+class ClientStage:
+    def __init__(self, command: list, case: Case, options: Options):
+        self.options = options
+        self.patience = options.patience
+        self.transcript = Transcript()
+        self.session = Session()
+        self.form: Optional[str] = None  # of the session
+        self.routing_id: Optional[bytes] = None
+        self.key = ""  # of the client
+        self.keys: Optional[Keys] = None
+        self._played: list = []  # robots of the scene that the client has
+        self._token = _TOKEN  # of the session, also after it was lost
+        self._unkept: list[Fault] = []  # SHOULDs
+        self._allowance = float(_MOST_AT_ONCE)  # of M7
+        self._counted_at = self._observed_at = time.monotonic()
+        self._socket = self._open(case.variant)
+        self._output = tempfile.TemporaryFile()
+        try:
+            self.process = subprocess.Popen(command, env=self._environment(case.variant),
+                                            stdin=subprocess.DEVNULL, stdout=self._output,
+                                            stderr=subprocess.STDOUT)
+        except OSError as error:
+            self._close()
+            raise RuntimeError(f"{command[0]}: the controller can't be started: "
+                               f"{error.strerror}") from None
+
+    def __enter__(self) -> "ClientStage":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        size = self._output.seek(0, os.SEEK_END)
+        self._output.seek(max(0, size - 2000))
+        words = self._output.read().decode(errors="replace").strip()
+        if words:
+            self.transcript.add("client", "───", f"printed: {words}")
+        self._close()
+
+    def _open(self, variant: str):
+        if variant == PLAIN_SERVER:
+            self.keys = Keys()
+            return PlainGreeter()
+        if variant in (VARIANT, MISLED):
+            self.keys = Keys()
+            return ServerSocket(self.keys.server[1])
+        return ServerSocket()
+
+    def _close(self) -> None:
+        self._output.close()
+        self._socket.destroy()
+        if self.keys is not None:
+            self.keys.close()
+
+    def _environment(self, variant: str) -> dict:
+        names = {"ZIGGURAT_ENDPOINT": self._socket.endpoint, "ZIGGURAT_CONTROLLER": self.options.controller}
+        others = {name: value for name, value in os.environ.items()
+                  if name not in ("ZIGGURAT_SERVER_KEY", "ZIGGURAT_CURVE_SECRET")}
+        if self.keys is not None:
+            server = self.keys.of(MISLED if variant == MISLED else "controller")[0]
+            names["ZIGGURAT_SERVER_KEY"] = server.decode()
+            names["ZIGGURAT_CURVE_SECRET"] = self.keys.client_file()
+        return {**others, **names}
+
+    # ---- one function for each kind of step --------------------------------------------------------
+
+    def play(self, steps: tuple) -> None:
+        """Raises Failed, NonStrict or Unimplemented."""
+        self._play(steps)
+        if self._unkept:
+            raise NonStrict("; ".join(map(str, self._unkept[:5])))
+
+    def _play(self, steps: tuple) -> None:
+        for step in steps:
+            if isinstance(step, (list, tuple)):
+                self._play(tuple(step))
+            else:
+                _players[type(step)](self, step)
+
+    def tell(self, step: Tell) -> None:
+        self._tell(wire.from_dict(protocol.ServerMessage, step.message))
+
+    def tell_welcome(self, step: TellWelcome) -> None:
+        robots = [wire.from_dict(protocol.RobotDescription, fields) for fields in step.robots]
+        welcome = wire.from_dict(protocol.Welcome, {
+            "version": {"major": 1, "minor": 0}, "session_token": self._token, "tick_ns": 100_000_000,
+            "ticks_per_second": 10, "mode": "MODE_LOCK_STEP", "seed": 7, "scene_hash": "0123456789abcdef",
+            "max_message_bytes": 64 << 20, "server_version": "kit", "role": "ROLE_CONTROLLER",
+            **step.fields})
+        welcome.robots.extend(robots or self._wanted_robots())
+        self._tell(protocol.ServerMessage(welcome=welcome))
+
+    def tell_observation(self, step: TellObservation) -> None:
+        welcome = self.session.welcome
+        told = {"tick": step.tick, "time_ns": time_of(step.tick, welcome.ticks_per_second),
+                **readings(welcome.robots, step.tick), **step.fields}
+        message = wire.from_dict(protocol.ServerMessage, {"observation": told})
+        self._observed_at = time.monotonic()
+        self._tell(message, is_of_later_version=step.is_of_later_version)
+
+    def tell_bytes(self, step: TellBytes) -> None:
+        data = step.json if self.form == wire.JSON else step.binary
+        self.transcript.add("server", "──▶", f"{len(data)} bytes {data[:40]!r}")
+        self.session.told(wire.decode(protocol.ServerMessage, data, self.form))
+        self._send(data)
+
+    def hear(self, step: HearFrom) -> None:
+        is_first = self.routing_id is None  # the program may take a while to start
+        message = self._receive(max(self.patience, _START) if is_first else self.patience)
+        late = time.monotonic() - self._observed_at - step.within
+        if message is None:
+            complaint = f"the client said nothing; {step.kind} is expected{self._gone()}"
+            if is_first:
+                complaint += f": nothing came to {self._socket.endpoint}, its ZIGGURAT_ENDPOINT"
+                if self.keys is not None:
+                    raise Unimplemented(f"{complaint}, with the keys that it was given (T10)")
+        elif wire.kind_of(message) != step.kind:
+            complaint = f"the client said {wire.text_of(message, 300)}; {step.kind} is expected"
+        elif step.within and late > 0:
+            complaint = f"its {step.kind} came {1000 * late:.0f} ms after the deadline"
+        else:
+            complaint = "; ".join(wire.mismatches(step.pattern, getattr(message, step.kind), step.kind))
+        _judge(complaint, step.should)
+
+    def hear_late(self, step: HearLate) -> None:
+        message = self._receive(self.patience if step.tick is not None else _LATE)
+        if message is not None and message.HasField("command") and message.command.tick == step.late:
+            self._tell_error("STALE_TICK", "DISCARD", self.session.tick)
+            message = self._receive(self.patience) if step.tick is not None else None
+        said = "nothing" if message is None else wire.text_of(message, 300)
+        if step.tick is None and message is not None:
+            _judge(f"the client said {said}; nothing or the Command for tick {step.late} is expected", False)
+        if step.tick is not None and not (message and message.HasField("command")
+                                          and message.command.tick == step.tick):
+            _judge(f"the client said {said}; the Command for tick {step.tick} is expected{self._gone()}", False)
+
+    def refuse(self, step: Refuse) -> None:
+        self._tell_error(step.code, "DISCARD", self.session.tick)
+        self.session.owes = True  # S10
+
+    def hear_correction(self, step: HearCorrection) -> None:
+        message = self._receive(self.patience)
+        if message is None and self.process.poll() is None:
+            _judge(f"its Command for tick {step.tick} was refused, so it still owes one; it sends nothing", False)
+        elif message is None and self.process.poll() == 0:
+            _judge("its Command was refused, and it ended with exit code 0", True)
+        elif message is not None and wire.kind_of(message) not in ("command", "leave"):
+            _judge(f"the client said {wire.text_of(message, 300)}; a Command or a Leave is expected", False)
+
+    def cut(self, _: Cut) -> None:
+        self.transcript.add("server", "───", "closes the connection, and listens again")
+        self._socket.close()
+        self._lose()
+        self._socket.open()
+
+    def hear_resume(self, step: HearResume) -> None:
+        deadline = time.monotonic() + max(step.within, self.patience)
+        if self.session.state is not State.NEW:
+            self._lose(is_connected=True)
+        while True:
+            message = self._receive(deadline - time.monotonic(), is_new=True)
+            if message is None:
+                _judge(f"it did not resume its session within {max(step.within, self.patience):g} s (M3, L4)"
+                       f"{self._gone()}", True)
+                return
+            if message.HasField("hello"):
+                break
+            self._tell_error("OUT_OF_STATE", "FATAL", 0)  # it can't know; M3 says what it means
+        token = message.hello.session_token
+        if not token:
+            _judge("its Hello begins a new session; one with the session's token resumes it (L4)", True)
+        elif token != self._token:
+            _judge(f"its Hello has the token {token!r}; its session has {self._token!r} (L4)", False)
+
+    def quiet(self, step: Quiet) -> None:
+        message = self._receive(step.seconds)
+        if message is not None:
+            _judge(f"the client said {wire.text_of(message, 300)}; nothing is expected", step.should)
+
+    def ends(self, step: Ends) -> None:
+        limit = step.within or self.patience
+        deadline = time.monotonic() + limit
+        while self.process.poll() is None and time.monotonic() < deadline:
+            self._receive(0.02)
+        code = self.process.poll()
+        if code is None:
+            _judge(f"the program still runs after {limit:g} s", step.should)
+        elif step.good is not None and step.good != (code == 0):
+            expected = "0" if step.good else "another than 0"
+            _judge(f"the program ended with exit code {code}; {expected} is expected (L11)", step.should)
+
+    def wait(self, step: Wait) -> None:
+        time.sleep(step.seconds)
+
+    def check(self, step: CheckClient) -> None:
+        complaint = step.check(self)
+        _judge(f"{step.title}: {complaint}" if complaint else "", step.should)
+
+    def mechanisms(self, step: Mechanisms) -> None:
+        found = self._socket.mechanisms(max(step.seconds, _START if self.options.patience > 5 else step.seconds))
+        self.transcript.add("client", "──▶", f"greetings with {', '.join(found[:20]) or 'nothing'}")
+        if "NULL" in found and "CURVE" not in found:
+            raise Unimplemented("it connects without the keys that it was given (T10)")
+        others = sorted(set(found) - {"CURVE", ""})
+        if others:
+            raise Failed(f"it falls back from CURVE to {', '.join(others)} (K1)")
+        if not found:
+            raise Unimplemented("it does not connect with the keys that it was given (T10)")
+
+    # ---- messages ----------------------------------------------------------------------------------
+
+    def receive(self, seconds: float) -> Optional[protocol.ClientMessage]:
+        """For checks."""
+        return self._receive(seconds)
+
+    def _receive(self, seconds: float, is_new: bool = False) -> Optional[protocol.ClientMessage]:
+        """The next message but heartbeats, which are answered. is_new: it may come over another
+        connection, and whatever it is, it is no fault."""
+        deadline = time.monotonic() + seconds
+        while True:
+            arrival = self._arrival(deadline)
+            if arrival is None:
+                return None
+            message = self._message_of(arrival, is_new)
+            faults = self.session.said(message, sum(map(len, arrival.frames)))
+            self._unkept += [fault for fault in faults if fault.should]
+            broken = [] if is_new and self.session.state is State.NEW else musts(faults)
+            if broken:
+                raise Failed(f"the client said {wire.text_of(message, 300)}: "
+                             + "; ".join(map(str, broken[:5])))
+            self._count(message)
+            if not message.HasField("heartbeat") or is_new and self.session.state is State.NEW:
+                return message
+            self._tell(protocol.ServerMessage(heartbeat=message.heartbeat))
+
+    def _arrival(self, deadline: float):
+        while True:
+            arrival = self._socket.receive(min(0.02, max(0.0, deadline - time.monotonic())))
+            if arrival is not None:
+                return arrival
+            if time.monotonic() > deadline or self.process.poll() is not None:
+                return self._socket.receive(0.02)
+
+    def _message_of(self, arrival, is_new: bool) -> protocol.ClientMessage:
+        """Raises Failed for what is no message of the protocol."""
+        has_session = self.session.state not in (State.NEW, State.CLOSED)
+        if has_session and self.routing_id not in (None, arrival.routing_id) and not is_new:
+            raise Failed("it sends over a second connection; one connection carries one session (T1)")
+        if arrival.socket_type != "DEALER":
+            raise Failed(f"it connects with a {arrival.socket_type}; a DEALER is expected (T1)")
+        if len(arrival.frames) != 1:
+            raise Failed(f"the client sent {len(arrival.frames)} frames; one is expected (T2)")
+        if self.key not in ("", arrival.key):
+            raise Failed("it connects with another key than before (L12)")
+        size = len(arrival.frames[0])
+        limit = self.session.welcome.max_message_bytes if self.session.welcome is not None else 64 << 10
+        if size > limit:
+            raise Failed(f"the client sent {size} bytes; at most {limit} are allowed (T4)")
+        self.routing_id, self.key = arrival.routing_id, arrival.key
+        message = self._decoded(arrival.frames[0].bytes)
+        self.transcript.add("client", "──▶", wire.text_of(message))
+        return message
+
+    def _decoded(self, data: bytes) -> protocol.ClientMessage:
+        form = wire.JSON if data[:1] == b"{" else wire.BINARY
+        expected = self.options.form or self.form or form
+        if form != expected:
+            why = "--form asks for it" if self.options.form else "its session began so"
+            raise Failed(f"the client sent a message in the {form} form; {expected} is expected: {why} (T6)")
+        self.form = form
+        try:
+            if form == wire.JSON:
+                strict_json(data)
+            return wire.decode(protocol.ClientMessage, data, form)
+        except ValueError as error:
+            raise Failed(f"the client sent {error} ({'T6' if form == wire.JSON else 'T2, T5'})") from None
+
+    def _count(self, message: protocol.ClientMessage) -> None:
+        """Messages other than Commands, as M7 counts them."""
+        now = time.monotonic()
+        self._allowance = min(float(_MOST_AT_ONCE), self._allowance + _MOST_A_SECOND * (now - self._counted_at))
+        self._counted_at = now
+        self._allowance -= not message.HasField("command")
+        if self._allowance < 0:
+            raise Failed(f"it sends more than {_MOST_A_SECOND} messages a second (M7)")
+
+    def _tell(self, message: protocol.ServerMessage, is_of_later_version: bool = False) -> None:
+        self.transcript.add("server", "──▶", wire.text_of(message))
+        own_faults = musts(self.session.told(message))
+        assert not own_faults, f"the kit's own message breaks a rule: {'; '.join(map(str, own_faults))}"
+        encode = wire.encode_as_later_version if is_of_later_version else wire.encode
+        self._send(encode(message, self.form))
+
+    def _tell_error(self, code: str, severity: str, tick: int) -> None:
+        self.tell(Tell({"error": {"code": code, "severity": severity, "tick": tick,
+                                  "message": "told by the conformance kit"}}))
+
+    def _send(self, data: bytes) -> None:
+        if self.routing_id is None:
+            raise Failed("the client has not connected")
+        self._socket.send(self.routing_id, data)
+
+    def _lose(self, is_connected: bool = False) -> None:
+        """The session is lost; its connection, too, unless it is silent only."""
+        self.session = Session()
+        if not is_connected:
+            self.routing_id = None
+
+    def _wanted_robots(self) -> list:
+        if self.options.scene is None:
+            return [wire.from_dict(protocol.RobotDescription, robot(id)) for id in ("arm0", "arm1")]
+        if self.session.hello.session_token:
+            return self._played
+        try:
+            self._played = self.options.scene.chosen_by(self.session.hello)
+        except LookupError as error:
+            raise Failed(f"its Hello asks for {error} (H5)") from None
+        return self._played
+
+    def _gone(self) -> str:
+        code = self.process.poll()
+        return "" if code is None else f" (the program ended with exit code {code})"
+
+
+def _judge(complaint: str, should: bool) -> None:
+    if complaint and should:
+        raise NonStrict(complaint)
+    if complaint:
+        raise Failed(complaint)
+
+
+_players: dict = {
+    Tell: ClientStage.tell,
+    TellWelcome: ClientStage.tell_welcome,
+    TellObservation: ClientStage.tell_observation,
+    TellBytes: ClientStage.tell_bytes,
+    HearFrom: ClientStage.hear,
+    HearLate: ClientStage.hear_late,
+    Refuse: ClientStage.refuse,
+    HearCorrection: ClientStage.hear_correction,
+    HearResume: ClientStage.hear_resume,
+    Cut: ClientStage.cut,
+    Quiet: ClientStage.quiet,
+    Ends: ClientStage.ends,
+    Wait: ClientStage.wait,
+    CheckClient: ClientStage.check,
+    Mechanisms: ClientStage.mechanisms,
+}

@@ -1,0 +1,280 @@
+"""One session as both of its ends see it: every message of either direction is judged and remembered."""
+
+import enum
+from typing import Iterator, Optional
+
+from ..wire import protocol
+from .command import PER_ROBOT, command_faults, leave_faults
+from .fault import Fault, musts
+from .hello import hello_faults
+from .observation import observation_faults, welcome_faults
+
+STRANGERS_LIMIT = 64 << 10  # [bytes] of a message without a session
+_Error = protocol.Error
+
+
+class State(enum.Enum):
+    NEW = "NEW"
+    HELLO = "HELLO"
+    READY = "READY"
+    STEPPING = "STEPPING"
+    PAUSED = "PAUSED"
+    DRAINING = "DRAINING"
+    CLOSED = "CLOSED"
+
+
+_ANY_STATE = {"error", "heartbeat", "response"}
+_RUNNING = {"observation", "paused", "reset", "restored", "end", "displaced"}
+# Section 4: what a client may receive. What is on its way in DRAINING and CLOSED is not judged.
+_RECEIVED = {
+    State.NEW: {"refusal"},
+    State.HELLO: {"loading", "welcome", "refusal"},
+    State.READY: {"observation", "end", "displaced"},
+    State.STEPPING: _RUNNING,
+    State.PAUSED: _RUNNING,
+}
+
+
+class Session:
+    """`said` and `told` return the Faults of a message of the client or the server."""
+
+    def __init__(self) -> None:
+        self.state = State.NEW
+        self.hello: Optional[protocol.Hello] = None  # the last
+        self.welcome: Optional[protocol.Welcome] = None
+        self.tick: Optional[int] = None  # of the last Observation
+        self.owes = False
+        self.missed: set[int] = set()  # ticks that went on without a Command, which may still come
+        self.left: set[int] = set()  # positions
+        self.is_displaced = False
+        self.is_lost = False  # by a FATAL error: a Leave is no fault
+        self.is_refused = False  # and no retry is promised to help
+        self.is_certain = True  # False: bytes were sent that may have changed its state
+        self._is_new_world = True  # the next Observation may have any tick
+        self._used: set = set()  # (field, position) that were commanded since the start or a reset
+        self._must_repeat = False  # W6: the next Command should have them all
+        self._heartbeats: list[int] = []  # sequences that the server sent
+        self._requests: list[int] = []  # ids that wait for their Response
+
+    # ---- the client --------------------------------------------------------------------------------
+
+    def said(self, message: protocol.ClientMessage, size: int) -> list:
+        """Faults of a client's message of so many bytes; if there is a MUST, it had no effect."""
+        kind = message.WhichOneof("message")
+        if kind is None:
+            return [Fault("T2", "a message holds nothing that protocol 1.0 knows", "MALFORMED")]
+        faults = [*self._size_faults(kind, size), *_said[kind](self, getattr(message, kind))]
+        if kind == "request":
+            self._requests.append(message.request.id)
+        is_greeting = kind == "hello" and self.state in (State.NEW, State.CLOSED)  # Loading may answer it
+        if is_greeting or not musts(faults):
+            _after_said.get(kind, lambda *_: None)(self, getattr(message, kind))
+        return faults
+
+    def _size_faults(self, kind: str, size: int) -> Iterator[Fault]:
+        limit = STRANGERS_LIMIT
+        if self.welcome is not None and self.state not in (State.NEW, State.HELLO, State.CLOSED):
+            limit = self.welcome.max_message_bytes
+        if size > limit:
+            yield Fault("T4", f"a message of {size} bytes; at most {limit} are allowed", "TOO_LARGE")
+
+    def _judge_hello(self, hello: protocol.Hello) -> Iterator[Fault]:
+        if self.is_displaced:
+            yield Fault("L10", "a Hello after Displaced: it takes its robots back unasked")
+        if self.state is State.HELLO:
+            yield Fault("H1", "a second Hello before the answer to the first", "OUT_OF_STATE")
+        elif self.state not in (State.NEW, State.CLOSED):
+            yield Fault("M0", f"a Hello in {self.state.value}", "OUT_OF_STATE")
+        if self.is_refused:
+            yield Fault("H10", "a Hello after a Refusal that is not retryable", should=True)
+        yield from hello_faults(hello)
+
+    def _judge_command(self, command: protocol.Command) -> Iterator[Fault]:
+        if self.state in (State.NEW, State.HELLO, State.READY, State.CLOSED):
+            rule = "H1" if self.state is State.NEW else "M0"
+            yield Fault(rule, f"a Command in {self.state.value}", "OUT_OF_STATE")
+            return
+        if self.state is State.DRAINING and command.tick in self.missed:
+            return  # it was on its way (M1)
+        if self.state is State.DRAINING:
+            yield Fault("L5", f"a Command for tick {command.tick} after the End")
+        elif command.tick > self.tick:
+            yield Fault("S9", f"a Command for tick {command.tick}; the last Observation is of {self.tick}",
+                        "FUTURE_TICK", "tick")
+        elif command.tick < self.tick and command.tick not in self.missed:
+            yield Fault("S9", f"a Command for tick {command.tick}; the last Observation is of {self.tick}",
+                        "STALE_TICK", "tick")
+        elif command.tick == self.tick and not self.owes and command.tick not in self.missed:
+            yield Fault("S9", f"a second Command for tick {command.tick}", "DUPLICATE_TICK", "tick")
+        yield from command_faults(self.welcome.robots, self.left, command)
+        if self._must_repeat and self.owes and command.tick == self.tick:
+            lost = {field for field, _ in self._used - self._commanded(command)}
+            if lost:
+                yield Fault("W6", f"after a missed deadline the next Command has no {', '.join(sorted(lost))}, "
+                            "which were commanded before", should=True)
+
+    def _judge_leave(self, leave: protocol.Leave) -> Iterator[Fault]:
+        if self.state in (State.NEW, State.CLOSED) and not self.is_lost:
+            yield Fault("M0", f"a Leave in {self.state.value}", "OUT_OF_STATE")
+        elif self.state in (State.NEW, State.HELLO, State.CLOSED):
+            return
+        yield from leave_faults(len(self.welcome.robots) if self.welcome else 0, self.left, leave)
+
+    def _judge_heartbeat(self, heartbeat: protocol.Heartbeat) -> Iterator[Fault]:
+        if self.state in (State.NEW, State.CLOSED):
+            yield Fault("M0", f"a Heartbeat in {self.state.value}", "OUT_OF_STATE")
+        if heartbeat.sequence in self._heartbeats:
+            yield Fault("M5", f"the server's heartbeat {heartbeat.sequence} is answered")
+
+    def _judge_request(self, request: protocol.Request) -> Iterator[Fault]:
+        if self.state in (State.NEW, State.HELLO, State.CLOSED):
+            yield Fault("M0", f"a Request in {self.state.value}", "OUT_OF_STATE")
+        elif self.welcome.role == protocol.ROLE_CONTROLLER:
+            yield Fault("M8", "a Request of a controller", "FORBIDDEN")
+
+    def _commanded(self, command: protocol.Command) -> set:
+        positions = list(command.robots) or range(len(self.welcome.robots))
+        return {(field, position) for field, count_of in PER_ROBOT.items() if getattr(command, field)
+                for position in positions if count_of(self.welcome.robots[position])}
+
+    def _greeted(self, hello: protocol.Hello) -> None:
+        self.hello, self.state = hello, State.HELLO
+
+    def _answered(self, command: protocol.Command) -> None:
+        if command.tick != self.tick:
+            self.missed.discard(command.tick)
+            self._used |= self._commanded(command)  # lost (W6)
+            return
+        if not self.owes:  # late: the tick had been missed
+            self.missed.discard(command.tick)
+            self._used |= self._commanded(command)
+            return
+        self.owes = False
+        self._used |= self._commanded(command)
+        self._must_repeat = False
+
+    def _left(self, leave: protocol.Leave) -> None:
+        if self.state is State.HELLO or not leave.robots:
+            self.state = State.CLOSED
+        else:
+            self.left |= set(leave.robots)
+
+    # ---- the server --------------------------------------------------------------------------------
+
+    def told(self, message: protocol.ServerMessage) -> list:
+        """Faults of a message of the server."""
+        kind = message.WhichOneof("message")
+        if kind is None:
+            return []  # of a later version
+        faults = []
+        if self.is_certain and self.state in _RECEIVED and kind not in _RECEIVED[self.state] | _ANY_STATE:
+            faults.append(Fault("M0", f"{kind} in {self.state.value}"))
+        faults += _told.get(kind, lambda *_: ())(self, getattr(message, kind)) or ()
+        return faults
+
+    def _take_welcome(self, welcome: protocol.Welcome) -> list:
+        faults = list(welcome_faults(self.hello, welcome)) if self.hello is not None else []
+        self.welcome, self.state = welcome, State.READY
+        self.tick, self.owes, self._is_new_world = None, False, True
+        self.left, self.missed, self._used = set(), set(), set()
+        self._must_repeat = False
+        return faults
+
+    def _take_refusal(self, refusal: protocol.Refusal) -> list:
+        self.state = State.NEW
+        self.is_refused = not refusal.error.retryable
+        faults = list(_error_faults(refusal.error))
+        if refusal.error.severity != _Error.FATAL:
+            faults.append(Fault("M0", "the severity of a Refusal is not FATAL (section 6)"))
+        return faults
+
+    def _take_loading(self, loading: protocol.Loading) -> Iterator[Fault]:
+        if not 0 <= loading.progress <= 1:
+            yield Fault("H12", f"the progress is {loading.progress}; 0 to 1 is expected")
+
+    def _take_observation(self, told: protocol.Observation) -> list:
+        faults = list(observation_faults(self.welcome, told)) if self.welcome is not None else []
+        if not self._is_new_world and self.tick is not None and told.tick <= self.tick:
+            faults.append(Fault("S1", f"Observation {told.tick} follows Observation {self.tick}"))
+        if self.owes and self.tick is not None:
+            self.missed.add(self.tick)
+        self.tick, self.owes, self._is_new_world = told.tick, True, False
+        if self.state is not State.DRAINING:
+            self.state = State.STEPPING
+        return faults
+
+    def _take_error(self, error: protocol.Error) -> list:
+        faults = list(_error_faults(error))
+        if self.state in (State.NEW, State.HELLO) and error.severity != _Error.FATAL:
+            faults.append(Fault("M0", "an Error without a session is not FATAL (section 6)"))
+        if error.code == _Error.DEADLINE_MISSED:
+            self._must_repeat = True
+            if error.severity != _Error.WARNING:
+                faults.append(Fault("W5", "DEADLINE_MISSED is not a WARNING"))
+            if self.owes and error.tick == self.tick:
+                self.missed.add(error.tick)
+                self.owes = False
+        if error.severity == _Error.FATAL:
+            self.state, self.is_lost = State.NEW, True
+        if error.code == _Error.NOT_YOURS and error.severity == _Error.WARNING and self.welcome:
+            self.left |= {position for position, robot in enumerate(self.welcome.robots)
+                          if robot.id == error.robot}  # V13
+        return faults
+
+    def _take_heartbeat(self, heartbeat: protocol.Heartbeat) -> None:
+        self._heartbeats = [*self._heartbeats[-100:], heartbeat.sequence]
+
+    def _take_response(self, response: protocol.Response) -> Iterator[Fault]:
+        if response.id not in self._requests:
+            yield Fault("V2", f"a Response to the request {response.id}, which was not made or is answered")
+        elif self._requests.index(response.id):
+            yield Fault("V2", f"the request {self._requests[0]} is passed over: {response.id} is answered")
+        if response.id in self._requests:
+            self._requests.remove(response.id)
+        if response.HasField("error"):
+            yield from _error_faults(response.error)
+            if response.WhichOneof("result"):
+                yield Fault("V2", "a Response has an error and a result")
+
+    def _take_reset(self, _: protocol.Reset) -> None:
+        self.owes, self._is_new_world = False, True
+        self.missed.clear()
+        self._used.clear()
+
+    def _take_paused(self, paused: protocol.Paused) -> Iterator[Fault]:
+        if paused.tick != self.tick:
+            yield Fault("P1", f"Paused has tick {paused.tick}; the last Observation is of {self.tick}")
+        self.state = State.PAUSED
+
+    def _take_end(self, end: protocol.End) -> Iterator[Fault]:
+        if end.reason not in (protocol.End.FINISHED, protocol.End.INTERRUPTED, protocol.End.FAILED):
+            yield Fault("L5", f"the End has the reason {end.reason}")
+        if self.owes:
+            self.missed.add(self.tick)
+        self.state = State.DRAINING
+
+    def _take_displaced(self, _: protocol.Displaced) -> None:
+        self.state, self.is_displaced = State.CLOSED, True
+
+
+def _error_faults(error: protocol.Error) -> Iterator[Fault]:
+    if error.code not in _Error.Code.values() or not error.code:
+        yield Fault("M0", f"an Error has the code {error.code} (section 6)")
+    if error.severity not in (_Error.WARNING, _Error.DISCARD, _Error.FATAL):
+        yield Fault("M0", f"an Error has the severity {error.severity} (section 6)")
+    if not error.message:
+        yield Fault("M0", "an Error has no sentence (section 6)", should=True)
+
+
+_said = {
+    "hello": Session._judge_hello, "command": Session._judge_command, "leave": Session._judge_leave,
+    "heartbeat": Session._judge_heartbeat, "request": Session._judge_request,
+}
+_after_said = {"hello": Session._greeted, "command": Session._answered, "leave": Session._left}
+_told = {
+    "welcome": Session._take_welcome, "refusal": Session._take_refusal, "loading": Session._take_loading,
+    "observation": Session._take_observation, "error": Session._take_error,
+    "heartbeat": Session._take_heartbeat, "response": Session._take_response, "reset": Session._take_reset,
+    "restored": Session._take_reset, "paused": Session._take_paused, "end": Session._take_end,
+    "displaced": Session._take_displaced,
+}

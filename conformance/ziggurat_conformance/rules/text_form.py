@@ -1,0 +1,64 @@
+"""The JSON form (T6)."""
+
+import json
+from typing import Any, Iterator
+
+from google.protobuf import json_format
+from google.protobuf.message import Message
+
+from .fault import Fault
+
+
+def _no_constant(name: str) -> None:
+    raise ValueError(f"{name} is not JSON; \"{name}\" is")
+
+
+def strict_json(data: bytes) -> Any:
+    """RFC 8259 in UTF-8, each name once. Raises ValueError, saying what is wrong."""
+
+    def once(pairs: list) -> dict:
+        found = dict(pairs)
+        if len(found) != len(pairs):
+            raise ValueError("a name stands twice in one object")
+        return found
+
+    try:
+        return json.loads(data.decode(), parse_constant=_no_constant, object_pairs_hook=once)
+    except (UnicodeDecodeError, RecursionError) as error:
+        raise ValueError(str(error)) from None
+
+
+def server_text_faults(data: bytes, message: Message) -> Iterator[Fault]:
+    """Of a ServerMessage in the JSON form: it must be canonical, with every value that is not absent."""
+    try:
+        told = strict_json(data)
+    except ValueError as error:
+        yield Fault("T6", f"text that is not JSON: {error}")
+        return
+    expected = json_format.MessageToDict(message, including_default_value_fields=True)
+    for path in _differences(expected, told, ""):
+        yield Fault("T6", path)
+
+
+def _differences(expected: Any, told: Any, path: str) -> Iterator[str]:
+    """Unknown names are allowed, and numbers may be written in any way that JSON has."""
+    if isinstance(expected, dict):
+        if not isinstance(told, dict):
+            yield f"{path} is {told!r}; an object is expected"
+            return
+        for name, inner in expected.items():
+            if name in told:
+                yield from _differences(inner, told[name], f"{path}.{name}" if path else name)
+            elif inner is not None:
+                yield f"{path or 'a message'} has no {name}"
+    elif isinstance(expected, list):
+        if not isinstance(told, list) or len(told) != len(expected):
+            yield f"{path} is {told!r:.80}; an array of {len(expected)} values is expected"
+            return
+        for inner, found in zip(expected, told):
+            yield from _differences(inner, found, f"{path}[]")
+    elif isinstance(expected, str) or isinstance(expected, bool):
+        if type(told) is not type(expected) or told != expected:
+            yield f"{path} is {told!r:.80}; {expected!r:.80} is expected"
+    elif isinstance(told, bool) or not isinstance(told, (int, float)):
+        yield f"{path} is {told!r:.80}; a number is expected"
