@@ -8,7 +8,8 @@
 namespace ziggurat::wire {
 namespace {
 
-/// The robots of a message: positions in the session, of robots that have not left, each once.
+/// The robots of a message: positions in the session, of robots that have not left, each once. A
+/// client may not know yet which were taken over.
 std::optional<Fault> check_positions(const google::protobuf::RepeatedField<std::uint32_t>& robots,
                                      const Roster& roster, const world::Layout& layout) {
   std::vector<bool> named(robots.empty() ? 0 : roster.robots.size(), false);
@@ -19,7 +20,7 @@ std::optional<Fault> check_positions(const google::protobuf::RepeatedField<std::
                                     roster.robots.size(), position));
     }
     const std::string& id = layout.robots[roster.robots[position]].id;
-    if (roster.gone[position]) {
+    if (roster.gone[position] && !roster.taken[position]) {
       return make_fault(ErrorCode::not_yours, "robots",
                         fmt::format("Robot '{}' has left the run; leave it out of `robots`.", id), id);
     }
@@ -71,6 +72,7 @@ void apply(const v1::Command& command, const Roster& roster, world::Commands& co
 void append(const google::protobuf::RepeatedPtrField<v1::LogLine>& log, const Roster& roster,
             std::vector<LogLine>& lines) {
   for (const v1::LogLine& line : log) {
+    if (roster.taken[line.robot()]) continue;
     lines.push_back({roster.robots[line.robot()], line.error(), line.text()});
   }
 }

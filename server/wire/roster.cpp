@@ -51,10 +51,17 @@ void Roster::leave(std::size_t position) {
   ++gone_count;
 }
 
+void Roster::hand_over(std::size_t position) {
+  if (gone[position]) return;
+  leave(position);
+  taken[position] = true;
+}
+
 Roster make_roster(const world::Layout& layout, std::span<const std::size_t> robots) {
   Roster roster;
   roster.robots.assign(robots.begin(), robots.end());
   roster.gone.assign(robots.size(), false);
+  roster.taken.assign(robots.size(), false);
   for (const std::size_t index : robots) {
     const world::RobotLayout& robot = layout.robots[index];
     append_channels(world::sensed, layout, robot, roster.sensed);

@@ -33,7 +33,8 @@ struct Packing {
 /// Positions are fixed for the life of a session; robots may leave.
 struct Roster {
   std::vector<std::size_t> robots;  ///< into Layout::robots, in scene order
-  std::vector<bool> gone;           ///< per robot: left the barrier for good
+  std::vector<bool> gone;           ///< per robot: left the barrier for good, or taken over
+  std::vector<bool> taken;          ///< per robot: another session has taken it over
   std::size_t gone_count = 0;
   // By the row of a channel in the tables of world/; empty for fields handled by hand.
   std::array<Packing, std::tuple_size_v<decltype(world::sensed)>> sensed;
@@ -47,8 +48,9 @@ struct Roster {
   std::vector<std::size_t> tag_cameras;
   std::vector<std::size_t> image_cameras;
 
-  bool empty() const { return gone_count == robots.size(); }  ///< all have left
+  bool empty() const { return gone_count == robots.size(); }  ///< all are gone
   void leave(std::size_t position);                           ///< no effect if gone already
+  void hand_over(std::size_t position);                       ///< likewise
 };
 
 /// @param robots  into Layout::robots, ascending

@@ -20,9 +20,12 @@ void zero(const world::Layout& layout, std::size_t robot, world::Commands& comma
 
 void forget_radio_messages(const Roster& roster, world::RadioMessages& messages) {
   std::erase_if(messages.entries, [&](const world::RadioMessages::Entry& entry) {
-    return std::ranges::any_of(roster.radios.stretches, [&](const Packing::Stretch& radios) {
-      return entry.radio >= radios.flat && entry.radio < radios.flat + radios.count;
-    });
+    for (std::size_t i = 0; i < roster.radios.robots.size(); ++i) {
+      const Packing::Stretch& radios = roster.radios.robots[i];
+      const bool is_own = entry.radio >= radios.flat && entry.radio < radios.flat + radios.count;
+      if (is_own) return !roster.taken[i];
+    }
+    return false;
   });
 }
 

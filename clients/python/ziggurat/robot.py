@@ -21,7 +21,7 @@ class Robot(Sensors):
         self.id: str = given.id
         self.controller: str = given.controller
         self.params: Dict[str, str] = {p.name: p.value for p in given.params}
-        self.gone = False  # it has left the run
+        self.gone = False  # it has left the run, or another client has taken it over
         super().__init__(exchange, given)
         self._position = position
         self._tell_leave = tell_leave

@@ -194,6 +194,8 @@ class Session:
                 self._exchange.repeat()
             return
         if error.severity == v1.Error.WARNING:
+            if error.code == v1.Error.NOT_YOURS and error.robot in self.robots:
+                self.robots[error.robot].gone = True  # removed, or taken over by another client
             return
         if error.severity == v1.Error.FATAL:
             self._connection.close()

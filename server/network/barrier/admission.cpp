@@ -60,13 +60,8 @@ Granted begin_with_robots(Barrier& barrier, const wire::Hello& hello) {
   Session& session = barrier.sessions.add();
   session.token = new_token();
   session.roster = wire::make_roster(barrier.run->layout, robots);
+  take_over(barrier, robots, label_of(hello));
   for (const std::size_t robot : robots) {
-    if (Session* holder = barrier.sessions.find(barrier.seats[robot].holder)) {
-      displace(barrier, *holder, label_of(hello));
-    }
-    if (Session* claimant = barrier.sessions.find(barrier.seats[robot].claimant)) {
-      erase(barrier, *claimant);
-    }
     barrier.seats.take(robot, session.id);
     barrier.deadlines.clear_zero(robot);
   }
@@ -167,7 +162,8 @@ void admit(Barrier& barrier, const std::string& connection, const Access& access
   bind(barrier, session, connection);
   set_policies(barrier, session, hello);
   update_patience(barrier, session);
-  const bool is_welcomed = welcome(barrier, session);
+  const bool is_welcomed =
+      welcome(barrier, session) && tell_taken(barrier, session, "Another client");
   const bool has_tick = barrier.gate.tick() && !session.roster.empty();
   const bool is_there = is_welcomed && (!has_tick || observe(barrier, session));
   session.turn.is_repeated = true;

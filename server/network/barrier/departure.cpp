@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 #include "network/barrier/exchange.h"
@@ -23,6 +24,12 @@ void release(Barrier& barrier, const Session& holder, std::size_t robot, bool ma
   if (!is_skipped) expect_answer(barrier, robot);
 }
 
+/// Of a robot of the session, in Welcome.
+std::size_t position_of(const Session& session, std::size_t robot) {
+  const auto& robots = session.roster.robots;
+  return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());
+}
+
 void release_all(Barrier& barrier, const Session& holder, bool may_resume) {
   for (const std::size_t robot : holder.roster.robots) {
     if (barrier.seats[robot].holder == holder.id) release(barrier, holder, robot, may_resume);
@@ -34,6 +41,49 @@ void unbind(Barrier& barrier, const Session& session) {
   barrier.connections.unbind(session.connection);
   barrier.calls.forget(session.connection);
   if (barrier.on_standing) barrier.on_standing(session.connection, Standing::none);
+}
+
+/// The session has lost its last robots to another client.
+void displace(Barrier& barrier, Session& session, const std::string& by) {
+  if (session.state != SessionState::lost) {
+    const std::string robots = robots_of(barrier, session);
+    barrier.outbox.displaced(by, fmt::format("{} has taken over {}.", by, robots));
+    send(barrier, session);
+    barrier.journal.note(fmt::format("{} ({}) was displaced by {}", session.client, robots, by));
+  }
+  erase(barrier, session);
+}
+
+/// False if the session is lost now.
+bool tell_one_taken(Barrier& barrier, Session& session, std::size_t position,
+                    const std::string& by) {
+  const std::string& id = barrier.run->layout.robots[session.roster.robots[position]].id;
+  auto fault = wire::make_fault(wire::ErrorCode::not_yours, {},
+                                fmt::format("{} has taken over robot '{}'.", by, id), id);
+  fault.severity = wire::Severity::warning;
+  fault.tick = tick_of(barrier);
+  barrier.outbox.error(fault);
+  if (send(barrier, session) != Delivery::unreachable) return true;
+  lose(barrier, session, "its connection is gone");
+  return false;
+}
+
+/// The session, connected or lost, goes on without these of its robots.
+void take(Barrier& barrier, Session& session, std::span<const std::size_t> robots,
+          const std::string& by) {
+  for (const std::size_t robot : robots) {
+    const bool is_held = barrier.seats[robot].holder == session.id;
+    is_held ? release(barrier, session, robot, false) : barrier.seats.drop_claim(robot);
+    session.roster.hand_over(position_of(session, robot));
+  }
+  barrier.journal.note(fmt::format("{} has taken over {} from {}, which keeps {}", by,
+                                   names_of(barrier, robots), session.client,
+                                   robots_of(barrier, session)));
+  if (session.state == SessionState::lost) return;
+  update_patience(barrier, session);
+  for (const std::size_t robot : robots) {
+    if (!tell_one_taken(barrier, session, position_of(session, robot), by)) return;
+  }
 }
 
 }  // namespace
@@ -86,12 +136,25 @@ void disconnect(Barrier& barrier, const std::string& connection) {
   stand_if_paused(barrier);
 }
 
-void displace(Barrier& barrier, Session& session, const std::string& by) {
-  const std::string robots = robots_of(barrier, session);
-  barrier.outbox.displaced(by, fmt::format("{} has taken over {}.", by, robots));
-  send(barrier, session);
-  barrier.journal.note(fmt::format("{} ({}) was displaced by {}", session.client, robots, by));
-  erase(barrier, session);
+void take_over(Barrier& barrier, std::span<const std::size_t> robots, const std::string& by) {
+  std::map<SessionId, std::vector<std::size_t>> taken;
+  for (const std::size_t robot : robots) {
+    const Seats::Seat& seat = barrier.seats[robot];
+    taken[seat.holder == SessionId::none ? seat.claimant : seat.holder].push_back(robot);
+  }
+  for (const auto& [id, theirs] : taken) {
+    Session* session = barrier.sessions.find(id);
+    if (session == nullptr) continue;  // none had these
+    const bool is_whole = theirs.size() + session->roster.gone_count == session->roster.robots.size();
+    is_whole ? displace(barrier, *session, by) : take(barrier, *session, theirs, by);
+  }
+}
+
+bool tell_taken(Barrier& barrier, Session& session, const std::string& by) {
+  for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
+    if (session.roster.taken[i] && !tell_one_taken(barrier, session, i, by)) return false;
+  }
+  return true;
 }
 
 void erase(Barrier& barrier, Session& session) {
@@ -146,9 +209,7 @@ void remove_robot(Barrier& barrier, std::size_t robot) {
   const bool is_held = seat.holder != SessionId::none;
   Session* session = barrier.sessions.find(is_held ? seat.holder : seat.claimant);
   if (session == nullptr) return;
-  const auto& robots = session->roster.robots;
-  const auto found = std::lower_bound(robots.begin(), robots.end(), robot);
-  session->roster.leave(static_cast<std::size_t>(found - robots.begin()));
+  session->roster.leave(position_of(*session, robot));
   const bool is_over = session->state == SessionState::lost && session->roster.empty();
   if (is_over) return erase(barrier, *session);
   update_patience(barrier, *session);

@@ -2,6 +2,7 @@
 // How sessions end and robots leave (docs/protocol.md, section 5).
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,9 +18,14 @@ void handle_leave(Barrier& barrier, Session& session);
 void lose(Barrier& barrier, Session& session, std::string_view why);
 /// The connection is gone, and its session is lost.
 void disconnect(Barrier& barrier, const std::string& connection);
-/// The session is over, because another client takes over its robots.
+/// Another client takes over robots: the sessions that have them, or may resume with them, go on with
+/// the rest. Those without any robot left are over.
+/// @param robots  into Layout::robots, ascending; free afterwards
 /// @param by  the other client
-void displace(Barrier& barrier, Session& session, const std::string& by);
+void take_over(Barrier& barrier, std::span<const std::size_t> robots, const std::string& by);
+/// Tells a connected session which of its robots were taken over so far: also a new process that
+/// resumes it knows then. False if the session is lost now.
+bool tell_taken(Barrier& barrier, Session& session, const std::string& by);
 /// The session is over, and forgotten.
 void erase(Barrier& barrier, Session& session);
 

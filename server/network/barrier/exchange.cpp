@@ -117,7 +117,9 @@ bool handle_command(Barrier& barrier, Session& session, world::Commands* command
   session.contact.faults = 0;
   session.turn.late_commands = 0;
   if (session.turn.patience) {
-    for (const std::size_t robot : session.roster.robots) barrier.deadlines.forgive(robot);
+    for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
+      if (!session.roster.taken[i]) barrier.deadlines.forgive(session.roster.robots[i]);
+    }
   }
   if (session.turn.is_repeated) {
     wire::forget_radio_messages(session.roster, commands->radio_messages);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "network/barrier/departure.h"
 #include "wire/fault.h"
 
@@ -74,16 +77,21 @@ std::size_t longest_message(const Barrier& barrier, const Session* session) {
 
 std::uint64_t tick_of(const Barrier& barrier) { return barrier.gate.tick().value_or(0); }
 
-std::string robots_of(const Barrier& barrier, const Session& session) {
+std::string names_of(const Barrier& barrier, std::span<const std::size_t> robots) {
   std::string text;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
-    if (session.roster.gone[i] || ++count > robots_named) continue;
-    const std::size_t robot = session.roster.robots[i];
+  for (const std::size_t robot : robots.first(std::min(robots_named, robots.size()))) {
     text += (text.empty() ? "" : ", ") + barrier.run->layout.robots[robot].id;
   }
-  if (count > robots_named) text += fmt::format(" and {} more", count - robots_named);
+  if (robots.size() > robots_named) text += fmt::format(" and {} more", robots.size() - robots_named);
   return text.empty() ? "no robots" : text;
+}
+
+std::string robots_of(const Barrier& barrier, const Session& session) {
+  std::vector<std::size_t> robots;
+  for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
+    if (!session.roster.gone[i]) robots.push_back(session.roster.robots[i]);
+  }
+  return names_of(barrier, robots);
 }
 
 }  // namespace ziggurat::network

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -30,7 +31,10 @@ std::size_t longest_message(const Barrier& barrier, const Session* session);
 
 /// The tick in hand; 0 before the first.
 std::uint64_t tick_of(const Barrier& barrier);
-/// Some of a session's robots, for messages: "r0, r1, r2 and 7 more".
+/// Some of these robots, for messages: "r0, r1, r2 and 7 more".
+/// @param robots  into Layout::robots
+std::string names_of(const Barrier& barrier, std::span<const std::size_t> robots);
+/// The same of a session's robots.
 std::string robots_of(const Barrier& barrier, const Session& session);
 
 }  // namespace ziggurat::network

@@ -57,8 +57,10 @@ void miss(Barrier& barrier, Session& session) {
   barrier.gate.miss(session.turn);
   ++session.misses;
   const auto& robots = session.roster.robots;
-  const bool is_news = std::ranges::any_of(
-      robots, [&](std::size_t robot) { return barrier.deadlines.misses_in_row(robot) == 0; });
+  bool is_news = false;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    is_news |= !session.roster.taken[i] && barrier.deadlines.misses_in_row(robots[i]) == 0;
+  }
   const auto deadline_ms = session.turn.patience->count();
   if (is_news) {
     barrier.journal.note(fmt::format("{} ({}) missed its deadline of {} ms at tick {}",

@@ -47,7 +47,7 @@ struct Options {
   /// Controller, robots and lua_only are ignored then. The server keeps the values of the last
   /// commands, but the handles of the new session begin with 0: set all values again.
   std::string session_token;
-  bool takeover = false;             ///< also robots of other sessions, which receive a Displaced
+  bool takeover = false;             ///< also robots of other sessions, which keep the rest
   std::optional<Deadline> deadline;  ///< a wish; none = as the scene or the server's options say
 
   std::string name = "controller";  ///< of this program, for the server's messages
