@@ -17,17 +17,13 @@ void read_ground(Draft& draft, Element element) {
     element.fault_at("source", "is not supported; write source=\"image\" and a path");
   }
   element.optional("pixels_per_meter", positive);
-  if (!id.empty() && !draft.entity_ids.add(id)) {
-    element.fault_at("id", "is the id of an earlier entity; give each its own");
-  }
+  take_id(element, draft.entity_ids, id, "entity");
   element.done();
 }
 
 void add_entity(Draft& draft, Element& element) {
   Entity entity = read_entity(draft, element, Placement::explicit_pose);
-  if (!entity.id.empty() && !draft.entity_ids.add(entity.id)) {
-    element.fault_at("id", "is the id of an earlier entity; give each its own");
-  }
+  take_id(element, draft.entity_ids, entity.id, "entity");
   draft.scene.entities.push_back(std::move(entity));
 }
 
@@ -36,9 +32,7 @@ void read_placed(Draft& draft, Element& element) {
     add_entity(draft, element);
   } else if (element.name() == "light") {
     const std::string id = read_light(draft, element, Placement::explicit_pose);
-    if (!id.empty() && !draft.entity_ids.add(id)) {
-      element.fault_at("id", "is the id of an earlier entity; give each its own");
-    }
+    take_id(element, draft.entity_ids, id, "entity");
   } else if (element.name() == "floor") {
     read_ground(draft, element);
   } else if (element.name() != "distribute") {
@@ -63,7 +57,8 @@ void read_arena(Draft& draft, Element& root) {
   if (!draft.has_engine && !(scene.entities.empty() && scene.distributions.empty())) {
     arena->fault(
         "has entities, but <physics_engines> has no engine; write "
-        "<dynamics3d id=\"…\"/> in it");
+        "<dynamics3d id=\"…\"/> in it",
+        {"physics_engines", "dynamics3d", "dynamics2d", "pointmass3d"});
   }
 }
 

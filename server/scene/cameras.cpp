@@ -82,9 +82,7 @@ std::vector<Camera> read_cameras(Draft& draft, Element& sensor, ControllerUse& u
     const std::string& id = cameras.back().id;
     use.anchors.push_back(
         {"camera " + in_quotes(id), cameras.back().anchor, element.where("anchor")});
-    if (!id.empty() && !ids.add(id)) {
-      element.fault_at("id", "is the id of an earlier camera; give each its own");
-    }
+    take_id(element, ids, id, "camera");
   }
   return cameras;
 }

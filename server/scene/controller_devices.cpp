@@ -45,7 +45,10 @@ void read_joint_list(Element& element, Read read) {
       continue;
     }
     const std::string id = joint.required("id", identifier);
-    if (!id.empty() && !ids.add(id)) joint.fault_at("id", "is listed twice; list it once");
+    if (!id.empty() && !ids.add(id, joint.where())) {
+      joint.fault_at("id", fmt::format("is listed twice, first{}; list it once",
+                                       joint.report().place(ids.owner(id), joint.where())));
+    }
     const JointMode mode = joint.required("mode", joint_modes(), JointMode::disabled);
     read(joint, id, mode);
     joint.done();
@@ -183,9 +186,7 @@ void read_mounted(const Enabling& e, std::string_view name, std::vector<Device>&
     Device device;
     device.id = element.required("id", identifier);
     device.anchor = element.required("anchor", identifier);
-    if (!device.id.empty() && !ids.add(device.id)) {
-      element.fault_at("id", fmt::format("is the id of an earlier {}; give each its own", name));
-    }
+    take_id(element, ids, device.id, name);
     e.use.anchors.push_back(
         {fmt::format("{} {}", name, in_quotes(device.id)), device.anchor, element.where("anchor")});
     read(element, device);

@@ -42,11 +42,7 @@ void take_id(Draft& draft, const Element& element, const Controller& controller)
   const auto [earlier, fresh] =
       draft.controllers.emplace(controller.id, draft.scene.controllers.size());
   if (fresh) return;
-  const Location where = draft.scene.controllers[earlier->second].where;
-  const bool near = where.file == controller.where.file;
-  element.fault_at("id", fmt::format("is the id of {}; give each its own",
-                                     near ? "an earlier controller"
-                                          : "the controller at " + draft.report.place(where)));
+  refuse_id(element, "controller", draft.scene.controllers[earlier->second].where);
 }
 
 void read_controller(Draft& draft, Element& element, bool included,
@@ -94,17 +90,17 @@ struct Component {
 };
 
 constexpr std::array<Component, 8> components{{
-    {"radios", [](const Entity& e) { return !e.devices.radios.empty(); }, "<radios>"},
-    {"leds", [](const Entity& e) { return !e.devices.leds.empty(); }, "<leds>"},
+    {"radios", [](const Entity& e) { return !e.devices.radios.empty(); }, "radios"},
+    {"leds", [](const Entity& e) { return !e.devices.leds.empty(); }, "leds"},
     {"directional_leds", [](const Entity& e) { return !e.devices.directional_leds.empty(); },
-     "<directional_leds>"},
-    {"tags", [](const Entity& e) { return !e.devices.tags.empty(); }, "<tags>"},
-    {"magnets", [](const Entity& e) { return !e.devices.magnets.empty(); }, "<magnets>"},
+     "directional_leds"},
+    {"tags", [](const Entity& e) { return !e.devices.tags.empty(); }, "tags"},
+    {"magnets", [](const Entity& e) { return !e.devices.magnets.empty(); }, "magnets"},
     {"proximity", [](const Entity& e) { return !e.devices.proximity_sensors.empty(); },
-     "<proximity_sensors>"},
+     "proximity_sensors"},
     {"range_and_bearing", [](const Entity& e) { return e.devices.range_and_bearing.has_value(); },
-     "<range_and_bearing>"},
-    {"battery", [](const Entity& e) { return e.devices.battery.has_value(); }, "<battery>"},
+     "range_and_bearing"},
+    {"battery", [](const Entity& e) { return e.devices.battery.has_value(); }, "battery"},
 }};
 
 constexpr std::array<Component, 6> robot_components{{
@@ -136,7 +132,7 @@ std::optional<std::string> missing_for(const Entity& entity, const DeviceUse& us
   if (component != components.end()) {
     if (component->is_carried(entity)) return {};
     if (prototype || use.name == "battery") {
-      return fmt::format("has none; write {} into {}, or remove the device", component->element,
+      return fmt::format("has none; write <{}> into {}, or remove the device", component->element,
                          prototype ? "its <devices>" : "it");
     }
   } else if (!prototype && comes_with(entity, use.name)) {
@@ -152,10 +148,10 @@ struct Check {
   const Entity& entity;
   ControllerUse& use;
 
-  void blame(Location where, std::string text) const {
+  void blame(Location where, std::string text, std::vector<std::string_view> causes = {}) const {
     if (!draft.blamed.insert(where).second) return;
     ++use.faults;
-    draft.report.fault(where, std::move(text));
+    draft.report.fault(where, std::move(text), std::move(causes));
   }
 
   void check_joint(const std::string& id, Location where, bool actuated,
@@ -164,8 +160,11 @@ struct Check {
     if (found == joints.end()) {
       std::vector<std::string> known;
       for (const Joint& joint : entity.joints) known.push_back(joint.id);
-      blame(where, fmt::format("joint {} does not exist in {} {}; {}", in_quotes(id),
-                               kind_of(entity), in_quotes(entity.id), advice(id, known)));
+      blame(where,
+            fmt::format("joint {} does not exist in {} {}; {}", in_quotes(id), kind_of(entity),
+                        in_quotes(entity.id),
+                        known.empty() ? "it has none; write <joints> into it" : advice(id, known)),
+            {"joints", "joint", "links", "link", "id", duplicate});
       return;
     }
     const JointType type = found->second->type;
@@ -212,15 +211,21 @@ struct Check {
       if (anchor.empty() || anchor == "origin" || draft.anchors.contains(anchor)) continue;
       blame(device.where, fmt::format("anchor {} of {} does not exist in {} {}; {}",
                                       in_quotes(anchor), device.device, kind_of(entity),
-                                      in_quotes(entity.id), advice(anchor, anchor_names(draft))));
+                                      in_quotes(entity.id), advice(anchor, anchor_names(draft))),
+            {"links", "link", "id", duplicate});
     }
   }
 
   void check_components() const {
     for (const DeviceUse& device : use.devices) {
       if (const auto what = missing_for(entity, device)) {
-        blame(device.where, fmt::format("{} are enabled for entity {}, which {}", device.name,
-                                        in_quotes(entity.id), *what));
+        const auto component = std::ranges::find(components, device.name, &Component::device);
+        std::vector<std::string_view> causes{"devices"};
+        if (component != components.end()) causes.push_back(component->element);
+        blame(device.where,
+              fmt::format("{} are enabled for entity {}, which {}", device.name,
+                          in_quotes(entity.id), *what),
+              std::move(causes));
       }
     }
   }
@@ -232,7 +237,8 @@ void check_sections(const Draft& draft, const Controller& controller, const Enti
   const auto report = [&](const char* name) {
     draft.report.fault(controller.where,
                        fmt::format("controller {} lacks the element <{}>; write <{}/> in it",
-                                   in_quotes(controller.id), name, name));
+                                   in_quotes(controller.id), name, name),
+                       {name});
   };
   if (!use.has_actuators) report("actuators");
   if (!use.has_sensors) report("sensors");
@@ -276,7 +282,7 @@ void read_list(Draft& draft, Element& controllers, bool included) {
 
 void report_missing(Draft& draft, std::vector<PendingFault>& missing_parts) {
   for (PendingFault& fault : missing_parts) {
-    draft.report.fault(fault.where, std::move(fault.text));
+    draft.report.fault(fault.where, std::move(fault.text), std::move(fault.causes));
   }
   missing_parts.clear();
 }
@@ -308,7 +314,8 @@ std::optional<ControllerChoice> read_controller_choice(Draft& draft, Element& el
         user->where("config"),
         user->sentence("config", known.empty()
                                      ? "names no controller; write it in <controllers>"
-                                     : "names no controller; " + advice(choice.id, known))};
+                                     : "names no controller; " + advice(choice.id, known)),
+        {"controllers", "lua_controller", "external_controller", "include", "id"}};
   }
   return choice;
 }
@@ -320,7 +327,7 @@ void give_controller(Draft& draft, const ControllerChoice& choice, Entity& entit
   const auto found = draft.controllers.find(choice.id);
   if (found == draft.controllers.end()) {
     if (draft.blamed.insert(choice.unknown.where).second) {
-      draft.report.fault(choice.unknown.where, choice.unknown.text);
+      draft.report.fault(choice.unknown.where, choice.unknown.text, choice.unknown.causes);
     }
     return;
   }

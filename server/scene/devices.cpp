@@ -16,11 +16,9 @@ constexpr unsigned most_data_bytes = 65'536;            // of a range-and-bearin
 
 /// The id of a device: as written, or `<stem>_<N>`.
 std::string read_device_id(Element& device, std::string_view stem, Ids& ids) {
-  if (!device.has("id")) return ids.next(stem);
+  if (!device.has("id")) return ids.next(stem, device.where());
   std::string id = device.optional("id", identifier, "");
-  if (!id.empty() && !ids.add(id)) {
-    device.fault_at("id", fmt::format("is the id of an earlier {}; give each its own", stem));
-  }
+  take_id(device, ids, id, stem);
   return id;
 }
 
@@ -281,7 +279,8 @@ Anchor read_anchor(Draft& draft, Element& element) {
   if (id.empty() || id == "origin") return {};
   const auto found = draft.anchors.find(id);
   if (found != draft.anchors.end()) return {static_cast<int>(found->second)};
-  element.fault_at("anchor", "names no anchor; " + advice(id, anchor_names(draft)));
+  element.fault_at("anchor", "names no anchor; " + advice(id, anchor_names(draft)),
+                   {"links", "link", "id", duplicate});
   return {};
 }
 
@@ -337,8 +336,11 @@ void read_devices(Draft& draft, Element& element, Entity& entity) {
   if (!devices) return;
   Ids seen;
   for (Element& container : devices->children()) {
-    if (!seen.add(std::string(container.name()))) {
-      container.fault("is the second of its kind; write all devices of a kind into one element");
+    const std::string kind(container.name());
+    if (!seen.add(kind, container.where())) {
+      container.fault(fmt::format("is the second of its kind, after the one{}; write all devices of a "
+                                  "kind into one element",
+                                  draft.report.place(seen.owner(kind), container.where())));
       continue;
     }
     read_device_container(draft, container, entity);

@@ -92,10 +92,11 @@ void take_ids(Draft& draft, Element& pattern, const std::string& id, const Distr
   if (id.empty()) return;
   for (unsigned i = 0; i < out.quantity; ++i) {
     const std::string copy = id + std::to_string(out.base_num + i);
-    if (draft.entity_ids.add(copy)) continue;
-    pattern.fault_at("id", fmt::format("makes a copy called {}, which is the id of another entity; "
+    if (draft.entity_ids.add(copy, pattern.where())) continue;
+    pattern.fault_at("id", fmt::format("makes a copy called {}, which is the id of another entity{}; "
                                        "choose another id or base_num",
-                                       in_quotes(copy)));
+                                       in_quotes(copy),
+                                       draft.report.place(draft.entity_ids.owner(copy), pattern.where())));
     return;
   }
 }

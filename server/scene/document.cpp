@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <initializer_list>
 #include <iterator>
 #include <system_error>
 #include <utility>
+
+#include "scene/malformed.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -138,6 +141,7 @@ void report_unknown_attribute(const Document& document, std::string_view element
   document.report().fault(where,
                           fmt::format("<{}> has an unknown attribute {}={}; {}", element, name,
                                       in_quotes(attribute.value()), advice(name, known)));
+  if (const auto meant = nearest(name, known)) document.report().left_out(*meant);
 }
 
 }  // namespace
@@ -189,6 +193,10 @@ void Document::parse() {
       tree_.load_buffer_inplace(buffer_.data(), buffer_.size(), options, pugi::encoding_utf8);
   check_doctype();
   if (!result) {
+    if (const auto mistake = find_malformed(source_)) {
+      report_.fault(at(mistake->offset), "malformed XML: " + mistake->text);
+      return;
+    }
     const auto offset = std::min(
         static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)), source_.size());
     const bool at_end = trimmed(std::string_view(source_).substr(offset)).empty() &&
@@ -280,7 +288,7 @@ std::optional<Element> Element::child(const char* name) {
 
 std::optional<Element> Element::required_child(const char* name) {
   std::optional<Element> found = child(name);
-  if (!found) fault(fmt::format("lacks the element <{0}>; write <{0} …> in it", name));
+  if (!found) fault(fmt::format("lacks the element <{0}>; write <{0} …> in it", name), {name});
   return found;
 }
 
@@ -343,8 +351,20 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
     report().fault(where(), fmt::format("<{}> is not supported; {}", name(), *why));
     return;
   }
-  report().fault(where(), fmt::format("unknown element <{}> in <{}>; {}", name(), parent,
-                                      advice(name(), known)));
+  const auto meant = nearest(name(), known);
+  if (const auto home = home_of(name()); home && *home != parent && !meant) {
+    report().fault(where(), fmt::format("<{}> can't stand in <{}>; write it into <{}>", name(), parent,
+                                        *home));
+    report().left_out(*home);
+    report().left_out(name());
+    return;
+  }
+  report().fault(where(), known.empty()
+                              ? fmt::format("unknown element <{}> in <{}>, which has no elements",
+                                            name(), parent)
+                              : fmt::format("unknown element <{}> in <{}>; {}", name(), parent,
+                                            advice(name(), known)));
+  if (meant) report().left_out(*meant);
 }
 
 std::string Element::sentence(const char* attribute, std::string_view text) const {
@@ -352,16 +372,17 @@ std::string Element::sentence(const char* attribute, std::string_view text) cons
                      in_quotes(trimmed(node_.attribute(attribute).value())), name(), text);
 }
 
-void Element::fault_at(const char* attribute, std::string_view text) const {
-  report().fault(where(attribute), sentence(attribute, text));
+void Element::fault_at(const char* attribute, std::string_view text,
+                       std::vector<std::string_view> causes) const {
+  report().fault(where(attribute), sentence(attribute, text), std::move(causes));
 }
 
-void Element::fault(std::string_view text) const {
-  report().fault(where(), fmt::format("<{}> {}", name(), text));
+void Element::fault(std::string_view text, std::vector<std::string_view> causes) const {
+  report().fault(where(), fmt::format("<{}> {}", name(), text), std::move(causes));
 }
 
 void Element::missing(const char* attribute) const {
-  fault(fmt::format("lacks the attribute {0}; write {0}=\"…\"", attribute));
+  fault(fmt::format("lacks the attribute {0}; write {0}=\"…\"", attribute), {attribute});
 }
 
 std::size_t Element::size() const {

@@ -165,9 +165,12 @@ class Element {
   /// `attribute="value" of <element> <text>`.
   std::string sentence(const char* attribute, std::string_view text) const;
   /// That sentence, at the value.
-  void fault_at(const char* attribute, std::string_view text) const;
+  /// @param causes  as of Report::fault
+  void fault_at(const char* attribute, std::string_view text,
+                std::vector<std::string_view> causes = {}) const;
   /// `<element> <text>`, at the element.
-  void fault(std::string_view text) const;
+  /// @param causes  as of Report::fault
+  void fault(std::string_view text, std::vector<std::string_view> causes = {}) const;
   void missing(const char* attribute) const;
 
   /// Of the element with all that is in it, white space and comments aside [bytes].

@@ -43,6 +43,7 @@ struct AnchorUse {
 struct PendingFault {
   Location where;
   std::string text;
+  std::vector<std::string_view> causes = {};  ///< as of Report::fault
 };
 
 /// What must be known of a controller when an entity uses it.
@@ -203,6 +204,13 @@ Battery read_battery(Element& element);
 
 /// Reads <leds> of a single body or prototype.
 void read_leds(Draft& draft, Element& container, Entity& entity);
+
+/// Reports that the id of an element is that of an earlier one.
+/// @param what  has the id, for example "link"
+void refuse_id(const Element& element, std::string_view what, Location earlier);
+/// Takes the id of an element; a taken one is a fault, and false.
+/// @param what  has the id, for example "link"
+bool take_id(const Element& element, Ids& ids, const std::string& id, std::string_view what);
 
 // --- shared values ------------------------------------------------------------------------------
 

@@ -160,9 +160,7 @@ void read_engines(Draft& draft, Element& root) {
     }
     const std::string id = engine.required("id", identifier);
     const unsigned iterations = engine.optional("iterations", Whole{1, most_iterations}, 10);
-    if (!id.empty() && !ids.add(id)) {
-      engine.fault_at("id", "is the id of an earlier engine; give each its own");
-    }
+    take_id(engine, ids, id, "engine");
     if (three && has_dynamics3d) {
       engine.fault("is the second of its kind; there is one world, so write one <dynamics3d>");
       continue;

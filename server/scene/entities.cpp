@@ -79,6 +79,18 @@ bool may_have_controller(EntityKind kind) {
   return kind == EntityKind::prototype || needs_controller(kind);
 }
 
+void refuse_id(const Element& element, std::string_view what, Location earlier) {
+  element.fault_at("id", fmt::format("is the id of an earlier {}{}; give each its own", what,
+                                     element.report().place(earlier, element.where())));
+  element.report().left_out(duplicate);
+}
+
+bool take_id(const Element& element, Ids& ids, const std::string& id, std::string_view what) {
+  if (id.empty() || ids.add(id, element.where())) return true;
+  refuse_id(element, what, ids.owner(id));
+  return false;
+}
+
 math::Pose read_pose(Element& element) {
   return {element.optional("position", position, math::Vector3::Zero()),
           element.optional("orientation", orientation, math::Quaternion::Identity())};

@@ -18,13 +18,12 @@ Link read_link(Draft& draft, Element& element, Ids& ids, bool& distinct) {
   link.where = element.where();
   const bool named = element.has("id");
   link.id = element.optional("id", identifier, "");
-  if (!named) link.id = ids.next("link");
+  if (!named) link.id = ids.next("link", link.where);
   if (link.id == "origin") {
     distinct = false;
     element.fault_at("id", "is the name of the entity's own frame; choose another");
-  } else if (named && !link.id.empty() && !ids.add(link.id)) {
+  } else if (named && !take_id(element, ids, link.id, "link")) {
     distinct = false;
-    element.fault_at("id", "is the id of an earlier link; give each its own");
   }
   link.geometry = read_geometry(draft, element);
   link.mass = element.required("mass", mass, 1.0);
@@ -43,7 +42,8 @@ std::optional<std::size_t> read_link_name(Element& element, const char* attribut
   if (found != draft.anchors.end()) return found->second;
   std::vector<std::string> links = anchor_names(draft);
   links.erase(links.begin());
-  element.fault_at(attribute, "names no link; " + advice(id, links));
+  element.fault_at(attribute, "names no link; " + advice(id, links),
+                   {"links", "link", "id", duplicate});
   return std::nullopt;
 }
 
@@ -79,10 +79,8 @@ std::optional<Joint> read_joint(const Draft& draft, Element& element, Ids& ids) 
   joint.where = element.where();
   const bool named = element.has("id");
   joint.id = element.optional("id", identifier, "");
-  if (!named) joint.id = ids.next("joint");
-  if (named && !joint.id.empty() && !ids.add(joint.id)) {
-    element.fault_at("id", "is the id of an earlier joint; give each its own");
-  }
+  if (!named) joint.id = ids.next("joint", joint.where);
+  if (named) take_id(element, ids, joint.id, "joint");
   if (!element.has("type")) element.missing("type");
   const auto type = element.optional("type", OneOf<JointType>{{"fixed", JointType::fixed},
                                                               {"spherical", JointType::spherical},
@@ -151,7 +149,8 @@ void report_unreached(Report& report, const Entity& entity,
                    fmt::format("link {} is not connected to the reference link {}; add a joint "
                                "whose child it is",
                                in_quotes(entity.links[link].id),
-                               in_quotes(entity.links[entity.reference_link].id)));
+                               in_quotes(entity.links[entity.reference_link].id)),
+                   {"joints", "joint"});
     } else if (marks[link] == Mark::current) {
       const Joint& joint = entity.joints[incoming[link]];
       report.fault(
@@ -200,7 +199,7 @@ bool read_links(Draft& draft, Element& element, Entity& entity) {
       link.unknown_in("links", known);
     }
   }
-  if (entity.links.empty()) links->fault("has no link; write at least one <link …>");
+  if (entity.links.empty()) links->fault("has no link; write at least one <link …>", {"link"});
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     draft.anchors.emplace(entity.links[i].id, i);
   }
@@ -229,6 +228,7 @@ void read_joints(Draft& draft, Element& element, Entity& entity, bool rooted) {
         entity.joints.push_back(std::move(*read));
       } else {
         complete = false;
+        draft.report.left_out("joint");
       }
     }
     joints->done();

@@ -26,10 +26,8 @@ void read_medium_element(Draft& draft, Element& element, MediumKind kind) {
   }
   element.done();
   if (medium.id.empty()) return;
-  if (!draft.media.emplace(medium.id, draft.scene.media.size()).second) {
-    element.fault_at("id", "is the id of an earlier medium; give each its own");
-    return;
-  }
+  const auto [earlier, fresh] = draft.media.emplace(medium.id, draft.scene.media.size());
+  if (!fresh) return refuse_id(element, "medium", draft.scene.media[earlier->second].where);
   draft.scene.media.push_back(std::move(medium));
 }
 
@@ -55,8 +53,10 @@ std::optional<std::size_t> read_medium(Draft& draft, Element& element, MediumKin
   if (id.empty()) return std::nullopt;
   const auto found = draft.media.find(id);
   const auto fault = [&](std::string_view text) {
-    if (!draft.missing_parts) return element.fault_at("medium", text);
-    draft.missing_parts->push_back({element.where("medium"), element.sentence("medium", text)});
+    std::vector<std::string_view> causes{"media", to_string(kind), "id"};
+    if (!draft.missing_parts) return element.fault_at("medium", text, std::move(causes));
+    draft.missing_parts->push_back(
+        {element.where("medium"), element.sentence("medium", text), std::move(causes)});
   };
   if (found == draft.media.end()) {
     std::vector<std::string> candidates;

@@ -23,9 +23,7 @@ void take_id(Draft& draft, const Element& element, const std::string& id) {
   if (id.empty()) return;
   const auto [earlier, fresh] = draft.model_ids.emplace(id, draft.models.size());
   if (fresh) return;
-  const Location where = draft.scene.models[earlier->second].where;
-  element.fault_at("id", fmt::format("is the id of the model at {}; give each its own",
-                                     draft.report.place(where)));
+  refuse_id(element, "model", draft.scene.models[earlier->second].where);
 }
 
 void read_model(Draft& draft, Element& element, EntityKind kind) {
@@ -57,7 +55,8 @@ std::optional<std::size_t> find_model(const Draft& draft, const Element& element
     element.fault_at("model",
                      known.empty()
                          ? "names no model; define it in <models>, or <include> a file that does"
-                         : "names no model; " + advice(name, known));
+                         : "names no model; " + advice(name, known),
+                     {"models", "include", "id", element.name()});
     return std::nullopt;
   }
   const EntityKind kind = draft.models[found->second].entity.kind;

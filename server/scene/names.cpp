@@ -36,6 +36,29 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 17> element_
     {"buzz_controller", "use <external_controller> or <lua_controller>"},
 }};
 
+constexpr std::array<std::pair<std::string_view, std::string_view>, 20> homes{{
+    {"experiment", "framework"},
+    {"lua_controller", "controllers"},
+    {"external_controller", "controllers"},
+    {"dynamics3d", "physics_engines"},
+    {"gravity", "dynamics3d"},
+    {"magnetism", "dynamics3d"},
+    {"prototype", "arena"},
+    {"foot-bot", "arena"},
+    {"e-puck", "arena"},
+    {"link", "links"},
+    {"joint", "joints"},
+    {"parent", "joint"},
+    {"child", "joint"},
+    {"devices", "prototype"},
+    {"led", "leds"},
+    {"tag", "tags"},
+    {"radio", "radios"},
+    {"magnet", "magnets"},
+    {"camera", "cameras"},
+    {"imu", "imus"},
+}};
+
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> attribute_reasons{{
     {"default_friction", "write friction"},
     {"debug_file", "record the run instead"},
@@ -72,7 +95,7 @@ std::string advice(std::string_view name, std::span<const std::string_view> cand
   if (const auto meant = nearest(name, candidates)) {
     return fmt::format("did you mean {}?", in_quotes(*meant));
   }
-  if (candidates.empty()) return "remove it";
+  if (candidates.empty()) return "none is known here";
   std::string list;
   for (const std::string_view candidate : candidates.first(std::min(listed, candidates.size()))) {
     list += (list.empty() ? "" : ", ") + std::string(candidate.substr(0, longest_compared));
@@ -85,12 +108,14 @@ std::string advice(std::string_view name, const std::vector<std::string>& candid
   return advice(name, std::span<const std::string_view>(views));
 }
 
-std::string Ids::next(std::string_view stem) {
+std::string Ids::next(std::string_view stem, Location where) {
   for (;; ++lowest_) {
     std::string id = fmt::format("{}_{}", stem, lowest_);
-    if (add(id)) return id;
+    if (add(id, where)) return id;
   }
 }
+
+std::optional<std::string_view> home_of(std::string_view element) { return reason(element, homes); }
 
 std::optional<std::string_view> unsupported_element(std::string_view name) {
   return reason(name, element_reasons);

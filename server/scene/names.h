@@ -5,8 +5,10 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_set>
+#include <unordered_map>
 #include <vector>
+
+#include "scene/location.h"
 
 namespace ziggurat::scene {
 
@@ -14,9 +16,15 @@ namespace ziggurat::scene {
 std::optional<std::string_view> nearest(std::string_view name,
                                         std::span<const std::string_view> candidates);
 
-/// `did you mean "x"?`, otherwise `known here: a, b, c`, otherwise `remove it`.
+/// `did you mean "x"?`, otherwise `known here: a, b, c`, otherwise `none is known here`.
 std::string advice(std::string_view name, std::span<const std::string_view> candidates);
 std::string advice(std::string_view name, const std::vector<std::string>& candidates);
+
+/// The element that an element belongs in, if there is only one of that name.
+std::optional<std::string_view> home_of(std::string_view element);
+
+/// For Report::left_out: an id that is taken already, so that its element has no name.
+constexpr std::string_view duplicate = "a duplicate";
 
 /// Why an element known elsewhere is not supported here, or nothing if the name means nothing.
 std::optional<std::string_view> unsupported_element(std::string_view name);
@@ -28,14 +36,16 @@ std::optional<std::string_view> unsupported_attribute(std::string_view name);
 class Ids {
  public:
   /// False if the id is taken already.
-  bool add(const std::string& id) { return used_.insert(id).second; }
-  bool contains(const std::string& id) const { return used_.contains(id); }
+  /// @param where  of the element that has it
+  bool add(const std::string& id, Location where = {}) { return used_.emplace(id, where).second; }
+  /// The element that has a taken id.
+  Location owner(const std::string& id) const { return used_.at(id); }
 
   /// Takes and returns `<stem>_<N>` with the lowest N that is free; the same stem every time.
-  std::string next(std::string_view stem);
+  std::string next(std::string_view stem, Location where = {});
 
  private:
-  std::unordered_set<std::string> used_;
+  std::unordered_map<std::string, Location> used_;
   std::size_t lowest_ = 0;
 };
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "scene/document.h"
@@ -11,10 +13,52 @@
 namespace ziggurat::scene {
 namespace {
 
+using namespace std::string_view_literals;
+using Root = std::pair<std::string_view, std::string_view>;
+
+/// Root elements of other formats.
+constexpr std::array<Root, 4> foreign_roots{{
+    {"sdf", "an SDF file"},
+    {"robot", "a URDF file"},
+    {"mujoco", "an MJCF file"},
+    {"gazebo", "a Gazebo file"},
+}};
+
+/// Why a file without any element is no scene.
+std::string no_xml(const std::string& name) {
+  if (name.ends_with(".lua")) {
+    return "this is a Lua script, no scene; name it in a scene, <params script=\"…\"/> of a "
+           "<lua_controller>, and run that scene";
+  }
+  return "this is no XML; a scene is an XML file that begins with <argos-configuration>";
+}
+
+/// Reports a root that is no scene's; false then.
+bool check_root(const Element& root, const pugi::xml_node& node) {
+  for (const auto& [name, format] : foreign_roots) {
+    if (root.name() != name || node.child("arena")) continue;
+    root.fault(fmt::format("is the root of {}, which cannot be read; a scene begins with "
+                           "<argos-configuration>, and its robots are written as <prototype>",
+                           format));
+    return false;
+  }
+  const bool has_models = node.child("models") || root.name() == "models";
+  const bool has_scene = node.child("arena") || node.child("framework") || node.child("physics_engines");
+  if (!has_models || has_scene) return true;
+  root.fault("has models for scenes, but is no scene itself; run a scene with "
+             "<include file=\"…\"/> of this file");
+  return false;
+}
+
 void read_scene(Draft& draft, File file, const std::string& name) {
+  if (!trimmed(file.text).empty() && file.text.find_first_of("<\0"sv) == std::string::npos) {
+    draft.scene.files.push_back(name);
+    return draft.report.fault({}, no_xml(name));
+  }
   Document& document = draft.add_document(std::move(file.text), name);
   if (!document.root()) return;
   Element root(document, document.root());
+  if (!check_root(root, document.root())) return;
   Parts parts = read_includes(draft, root, file.identity);
   read_framework(draft, root);
   read_engines(draft, root);

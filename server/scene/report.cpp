@@ -12,19 +12,23 @@ constexpr std::size_t most_faults = 1000;
 
 }  // namespace
 
-void Report::fault(Location where, std::string text) {
+void Report::fault(Location where, std::string text, std::vector<std::string_view> causes) {
   if (!subject.empty()) text += fmt::format(" (in {})", subject);
   const std::string& file = files_[where.file];
-  problems_.push_back({Problem::Severity::fault, file, where, std::move(text)});
+  entries_.push_back(
+      {{Problem::Severity::fault, file, where, std::move(text)}, std::move(causes)});
   if (++faults_ < most_faults) return;
-  problems_.push_back({Problem::Severity::fault, file, where,
-                       fmt::format("{} faults; the rest of the file was not read", faults_)});
+  entries_.push_back(
+      {{Problem::Severity::fault, file, where,
+        fmt::format("{} faults; the rest of the file was not read", faults_)},
+       {}});
   throw TooManyFaults{};
 }
 
 void Report::notice(Location where, std::string text) {
   if (!noticed_.insert(text).second) return;
-  problems_.push_back({Problem::Severity::notice, files_[where.file], where, std::move(text)});
+  entries_.push_back(
+      {{Problem::Severity::notice, files_[where.file], where, std::move(text)}, {}});
 }
 
 void Report::no_effect_yet(Location where, std::string_view plural) {
@@ -35,8 +39,26 @@ std::string Report::place(Location where) const {
   return fmt::format("{}:{}:{}", files_[where.file], where.line, where.column);
 }
 
+std::string Report::place(Location where, Location reader) const {
+  if (where.line == 0) return {};
+  if (where.file != reader.file) return " at " + place(where);
+  return fmt::format(" at line {}", where.line);
+}
+
+bool Report::follows(const Entry& entry) const {
+  return std::ranges::any_of(entry.causes,
+                             [&](std::string_view cause) { return left_out_.contains(cause); });
+}
+
 std::vector<Problem> Report::problems() const {
-  std::vector<Problem> sorted = problems_;
+  // Should each fault follow from another, all of them are told.
+  const bool has_root = std::ranges::any_of(entries_, [&](const Entry& entry) {
+    return entry.problem.severity == Problem::Severity::fault && !follows(entry);
+  });
+  std::vector<Problem> sorted;
+  for (const Entry& entry : entries_) {
+    if (!has_root || !follows(entry)) sorted.push_back(entry.problem);
+  }
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Problem& a, const Problem& b) { return a.where < b.where; });
   return sorted;

@@ -2,6 +2,8 @@
 // All faults and notices about a scene and its included files, while they are read.
 
 #include <cstddef>
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -22,7 +24,11 @@ class Report {
   Report(const Report&) = delete;
   Report& operator=(const Report&) = delete;
 
-  void fault(Location where, std::string text);
+  /// @param causes  what is missing: the fault is not told if that was misspelt, or left out with
+  ///     its own faults. Of all names, static text.
+  void fault(Location where, std::string text, std::vector<std::string_view> causes = {});
+  /// A fault was reported because of which something of this name is missing.
+  void left_out(std::string_view name) { left_out_.emplace(name); }
   void notice(Location where, std::string text);  ///< each text once
 
   /// Notice that something is read and checked, and does nothing yet: each subject once.
@@ -31,16 +37,26 @@ class Report {
 
   /// `file:line:column` of a place, for a message about another.
   std::string place(Location where) const;
+  /// The same as ` at line 12` if that is in the same file; empty if it is nowhere.
+  std::string place(Location where, Location reader) const;
 
-  /// All problems so far: by file, and in document order within each.
+  /// All problems so far: by file, and in document order within each. Without what only follows
+  /// from others.
   std::vector<Problem> problems() const;
 
   /// Named in messages while it is set, for example `prototype "vehicle"`.
   std::string subject;
 
  private:
+  struct Entry {
+    Problem problem;
+    std::vector<std::string_view> causes;
+  };
+  bool follows(const Entry& entry) const;
+
   const std::vector<std::string>& files_;
-  std::vector<Problem> problems_;
+  std::vector<Entry> entries_;
+  std::set<std::string, std::less<>> left_out_;
   std::size_t faults_ = 0;
   std::unordered_set<std::string> noticed_;
 };

@@ -175,7 +175,10 @@ Value<double> length(std::string_view text) {
 }
 
 Value<double> mass(std::string_view text) {
-  Value<double> value = non_negative(text);
+  Value<double> value = number(text);
+  if (const double* v = std::get_if<double>(&value); v && *v < 0) {
+    return Wrong{"is negative; write more than 0 kg"};
+  }
   if (const double* v = std::get_if<double>(&value);
       v && *v != 0 && (*v < lightest_mass || *v > heaviest_mass)) {
     return Wrong{"is not a mass that can be simulated; write 1e-9 to 1e9 kg"};

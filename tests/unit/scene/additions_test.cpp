@@ -89,8 +89,8 @@ TEST_F(Additions, ARobotUsesAControllerOfTheScene) {
 
 TEST_F(Additions, HaveTheSameFaultsAsInTheArena) {
   EXPECT_EQ(fault("<box id="),
-            "spawn:1:9: malformed XML: the file ends too early; close every "
-            "element that was opened");
+            "spawn:1:9: malformed XML: the file ends too early, in the tag <box> of line 1; complete "
+            "it, and close every element that was opened");
   EXPECT_EQ(fault("<box id=\"x\"\n movable=\"maybe\" size=\"1,1,1\" mass=\"1\"><body "
                   "position=\"0,0,0\"/></box>"),
             "spawn:2:11: movable=\"maybe\" of <box> is not a truth value; write true or false (in "

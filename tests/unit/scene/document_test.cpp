@@ -94,13 +94,14 @@ TEST(Text, TruncatedAnywhereIsAFaultWithLineAndColumn) {
     EXPECT_GE(result.problems[0].where.column, 1u);
   }
   EXPECT_EQ(only_fault(read_text("<a>\n  <b>\n", "t")),
-            "t:2:6: malformed XML: the file ends too early; close every element that was opened");
+            "t:2:6: malformed XML: the file ends too early; close every element that was opened, "
+            "first <b> of line 2");
 }
 
 TEST(Text, MalformedXmlIsAFaultAtItsPlace) {
   EXPECT_TRUE(contains(only_fault(read_text("<a>\n  <b></c>\n</a>", "t")),
-                       "t:2:8: malformed XML: this closing tag closes nothing"));
-  EXPECT_TRUE(contains(only_fault(read_text("hello", "t")), "there is no element"));
+                       "t:2:6: malformed XML: </c> does not close <b> of line 2; write </b>"));
+  EXPECT_TRUE(contains(only_fault(read_text("hello", "t")), "t: this is no XML"));
   EXPECT_TRUE(contains(only_fault(read_text("<a b=c/>", "t")), "t:1:6: malformed XML"));
 }
 

@@ -73,9 +73,9 @@ constexpr Row rows[] = {
      include_block,
      "test.argos:5:60: config=\"blnk\" of <controller> names no controller; did you mean"},
     {"SecondModel", "", "<include file=\"parts/block.argos\"/><include file=\"again\"/>",
-     "again:1:27: id=\"block\" of <prototype> is the id of the model at parts/block.argos:6:1"},
+     "again:1:27: id=\"block\" of <prototype> is the id of an earlier model at parts/block.argos:6:1"},
     {"SecondController", "", "<include file=\"other\"/>",
-     "other:2:26: id=\"other\" of <external_controller> is the id of the controller at "
+     "other:2:26: id=\"other\" of <external_controller> is the id of an earlier controller at "
      "test.argos:3:14; give each its own"},
     {"Missing", "", "<include file=\"parts/blok.argos\"/>",
      "test.argos:8:16: file=\"parts/blok.argos\" of <include> names \"parts/blok.argos\", which "
@@ -95,7 +95,7 @@ constexpr Row rows[] = {
     {"Arena", "", "<include file=\"arena\"/>",
      "arena:2:1: <arena> can't stand in this <m>: a file that is included may have <include>, "
      "<models>"},
-    {"Malformed", "", "<include file=\"bad\"/>", "bad:2:6: malformed XML"},
+    {"Malformed", "", "<include file=\"bad\"/>", "bad:2:1: malformed XML: <b> is not closed before </a>"},
     {"Empty", "", "<include file=\"empty\"/>", "empty: the file is empty"},
     {"InTheArena", "<include file=\"parts/block.argos\"/>", "",
      "test.argos:5:1: unknown element <include> in <arena>"},

@@ -1,0 +1,186 @@
+#include "scene/malformed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ranges>
+#include <utility>
+#include <vector>
+
+#include "scene/values.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr std::string_view white = " \t\r\n";
+constexpr std::size_t npos = std::string_view::npos;
+
+/// Walks over the tags of a text until one is wrong.
+class Scanner {
+ public:
+  explicit Scanner(std::string_view source) : source_(source) {}
+
+  std::optional<Malformed> scan() {
+    while (!found_ && next_tag()) tag();
+    if (!found_ && !open_.empty()) fail(source_.find_last_not_of(white) + 1, unclosed());
+    return std::move(found_);
+  }
+
+ private:
+  struct Open {
+    std::string_view name;
+    std::size_t offset;
+  };
+
+  bool next_tag() {
+    at_ = source_.find('<', at_);
+    return at_ != npos;
+  }
+
+  void tag() {
+    const std::string_view rest = source_.substr(at_);
+    if (rest.starts_with("<!--")) return skip("-->", "this comment is not closed; end it with -->");
+    if (rest.starts_with("<?")) return skip("?>", "this <? is not closed; end it with ?>");
+    if (rest.starts_with("<![CDATA[")) {
+      return skip("]]>", "this CDATA section is not closed; end it with ]]>");
+    }
+    if (rest.starts_with("<!")) {  // a document type may have tags of its own
+      at_ = source_.size();
+      open_.clear();
+      return;
+    }
+    rest.starts_with("</") ? closing_tag() : opening_tag();
+  }
+
+  void skip(std::string_view end, const char* otherwise) {
+    const std::size_t found = source_.find(end, at_);
+    if (found == npos) return fail(at_, otherwise);
+    at_ = found + end.size();
+  }
+
+  void closing_tag() {
+    const std::size_t begin = at_;
+    const std::size_t end = source_.find_first_of("<>", begin + 1);
+    const std::string_view name = trimmed(source_.substr(begin + 2, end - begin - 2));
+    if (end == npos || source_[end] == '<' || name.empty()) {
+      return fail(begin, "this closing tag is malformed; write </name>");
+    }
+    at_ = end + 1;
+    if (open_.empty()) {
+      return fail(begin, fmt::format("</{}> closes nothing: no element is open here; remove it", name));
+    }
+    const Open last = open_.back();
+    open_.pop_back();
+    if (last.name == name) return;
+    const bool is_outer = std::ranges::find(open_, name, &Open::name) != open_.end();
+    if (is_outer) {
+      return fail(last.offset, fmt::format("<{0}> is not closed before </{1}> at line {2}; write </{0}>, "
+                                           "or /> at the end of <{0} …> if nothing is in it",
+                                           last.name, name, line_of(begin)));
+    }
+    fail(begin, fmt::format("</{}> does not close <{}> of line {}; write </{}>", name, last.name,
+                            line_of(last.offset), last.name));
+  }
+
+  void opening_tag() {
+    const std::size_t begin = at_++;
+    const std::string_view name = word();
+    if (name.empty() || std::string_view("-.0123456789").find(name[0]) != npos) {
+      return fail(begin, "this is no element; write &lt; for a literal <");
+    }
+    while (!found_) {
+      skip_white();
+      if (source_.substr(at_).starts_with("/>")) return advance(2);
+      if (next() == '>') {
+        open_.push_back({name, begin});
+        return advance(1);
+      }
+      if (next() == '\0') return fail_at_end(name, begin);
+      if (next() == '<' || next() == '/') {
+        return fail(begin, fmt::format("the tag <{}> is not finished; write > or /> behind its "
+                                       "attributes", name));
+      }
+      attribute(name);
+    }
+  }
+
+  void attribute(std::string_view element) {
+    const std::size_t begin = at_;
+    const std::string_view name = word();
+    if (name.empty()) {
+      return fail(begin, fmt::format("{} is no attribute of <{}>; write name=\"value\"",
+                                     in_quotes(source_.substr(begin, 1)), element));
+    }
+    skip_white();
+    if (next() == '\0') return fail_at_end(element, begin);
+    if (next() != '=') {
+      return fail(begin, fmt::format("the attribute {0} of <{1}> has no value; write {0}=\"…\"", name,
+                                     element));
+    }
+    advance(1);
+    skip_white();
+    value(name, element);
+  }
+
+  void value(std::string_view name, std::string_view element) {
+    const std::size_t begin = at_;
+    const char quote = next();
+    if (quote == '\0') return fail_at_end(element, begin);
+    if (quote != '"' && quote != '\'') {
+      const std::size_t end = source_.find_first_of(" \t\r\n\"'/<>", begin);
+      return fail(begin, fmt::format("the value of {0} in <{1}> has no quotes; write {0}=\"{2}\"", name,
+                                     element, source_.substr(begin, std::min(end, begin + 60) - begin)));
+    }
+    const std::size_t end = source_.find(quote, begin + 1);
+    const std::string_view text = source_.substr(begin + 1, end - begin - 1);
+    at_ = end == npos ? source_.size() : end + 1;
+    const bool ends_well = end != npos && (white.find(next()) != npos || next() == '/' ||
+                                           next() == '>' || next() == '?' || next() == '\0');
+    if (ends_well) return;
+    const bool runs_on = end == npos || text.find('<') != npos || trimmed(text).ends_with('=');
+    if (runs_on) {
+      return fail(begin, fmt::format("the value of {0} in <{1}> has no closing quote; write {2} behind "
+                                     "it, as in {0}={2}…{2}", name, element, quote));
+    }
+    fail(at_, fmt::format("{} stands directly behind the value of {} in <{}>; write a space in "
+                          "between, or one quote less",
+                          in_quotes(source_.substr(at_, 1)), name, element));
+  }
+
+  void fail_at_end(std::string_view element, std::size_t offset) {
+    fail(source_.size(), fmt::format("the file ends too early, in the tag <{}> of line {}; complete it, "
+                                     "and close every element that was opened",
+                                     element, line_of(offset)));
+  }
+
+  std::string unclosed() const {
+    const Open& last = open_.back();
+    return fmt::format("the file ends too early; close every element that was opened, first <{}> of "
+                       "line {}",
+                       last.name, line_of(last.offset));
+  }
+
+  std::string_view word() {
+    const std::size_t begin = at_;
+    at_ = std::min(source_.find_first_of(" \t\r\n=\"'/<>", at_), source_.size());
+    return source_.substr(begin, at_ - begin);
+  }
+  void skip_white() { at_ = std::min(source_.find_first_not_of(white, at_), source_.size()); }
+  char next() const { return at_ < source_.size() ? source_[at_] : '\0'; }
+  void advance(std::size_t count) { at_ += count; }
+  std::ptrdiff_t line_of(std::size_t offset) const {
+    return 1 + std::ranges::count(source_.substr(0, offset), '\n');
+  }
+  void fail(std::size_t offset, std::string text) { found_ = Malformed{offset, std::move(text)}; }
+
+  std::string_view source_;
+  std::size_t at_ = 0;
+  std::vector<Open> open_;
+  std::optional<Malformed> found_;
+};
+
+}  // namespace
+
+std::optional<Malformed> find_malformed(std::string_view source) { return Scanner(source).scan(); }
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,21 @@
+#pragma once
+// Mistakes that make a text no XML, found where they were made: a parser only notices where they
+// show, often lines later.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ziggurat::scene {
+
+struct Malformed {
+  std::size_t offset = 0;  ///< into the text
+  std::string text;        ///< what is wrong, and what to write
+};
+
+/// The first mistake among quotes, attributes and tags; nothing if these are in order.
+/// @param source  UTF-8
+std::optional<Malformed> find_malformed(std::string_view source);
+
+}  // namespace ziggurat::scene
