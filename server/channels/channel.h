@@ -1,0 +1,64 @@
+#pragma once
+// What can be shown: a topic with messages of one type.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "channels/schema.h"
+
+namespace ziggurat::channels {
+
+enum class Kind {
+  world,
+  poses,
+  rays,
+  detections,
+  radio,
+  contacts,
+  barrier,
+  phases,
+  log,
+  scene,
+  transforms,
+  observation,
+  command,
+  calibration,
+  image,
+  annotations,
+};
+
+/// When a channel has a message.
+enum class Pace {
+  latched,  ///< when it changes; a viewer that subscribes gets the newest one
+  tick,     ///< at each tick
+  answer,   ///< at each tick, when every controller has answered it
+  event,    ///< now and then, from outside of the tick
+};
+
+constexpr Pace pace_of(Kind kind) {
+  switch (kind) {
+    case Kind::world:
+    case Kind::scene:
+    case Kind::calibration:
+      return Pace::latched;
+    case Kind::command:
+      return Pace::answer;
+    case Kind::barrier:
+    case Kind::log:
+      return Pace::event;
+    default:
+      return Pace::tick;
+  }
+}
+
+struct Channel {
+  std::uint32_t id = 0;  ///< from 1 on; a topic keeps it as long as it exists
+  std::string topic;
+  Kind kind = Kind::world;
+  const Schema* schema = nullptr;
+  std::size_t place = 0;  ///< observation, command: into Layout::robots; of cameras: into
+                          ///< Layout::cameras
+};
+
+}  // namespace ziggurat::channels

@@ -1,0 +1,108 @@
+#include "channels/exchanged.h"
+
+#include <span>
+
+#include "channels/packing.h"
+
+namespace ziggurat::channels {
+namespace {
+
+template <class Message>
+Message begin(const Moment& moment) {
+  Message message;
+  message.set_tick(moment.state.tick);
+  message.set_time_ns(moment.state.time_ns);
+  return message;
+}
+
+void assign(std::string& to, std::span<const std::uint8_t> from) {
+  to.assign(reinterpret_cast<const char*>(from.data()), from.size());
+}
+
+/// The entry of a camera; readings ascend by camera within each kind.
+v1::Detections::Camera& camera_in(v1::Detections& detections, std::size_t camera) {
+  for (auto& known : *detections.mutable_cameras()) {
+    if (known.camera() == camera) return known;
+  }
+  v1::Detections::Camera& added = *detections.add_cameras();
+  added.set_camera(index(camera));
+  return added;
+}
+
+void set_light(const world::LedReading& from, v1::Detections::Light& to) {
+  to.set_color(from.color);
+  to.set_u(from.center.x());
+  to.set_v(from.center.y());
+}
+
+}  // namespace
+
+v1::Rays rays_of(const Moment& moment) {
+  auto rays = begin<v1::Rays>(moment);
+  for (const world::Ray& ray : moment.state.rays) {
+    rays.add_kinds(static_cast<v1::Rays::Kind>(ray.kind));  // the same numbers
+    rays.add_robots(index(ray.robot));
+    add(ray.start, *rays.mutable_segments());
+    add(ray.end, *rays.mutable_segments());
+    rays.add_hits(ray.hit);
+  }
+  return rays;
+}
+
+v1::Detections detections_of(const Moment& moment) {
+  auto detections = begin<v1::Detections>(moment);
+  for (const auto& led : moment.observations.leds) {
+    set_light(led, *camera_in(detections, led.camera).add_leds());
+  }
+  for (const auto& led : moment.observations.directional_leds) {
+    set_light(led, *camera_in(detections, led.camera).add_directional_leds());
+  }
+  for (const world::TagReading& tag : moment.observations.tags) {
+    v1::Detections::SeenTag& seen = *camera_in(detections, tag.camera).add_tags();
+    seen.set_tag(index(tag.tag));
+    seen.set_payload(moment.state.tag_payloads[tag.tag]);
+    seen.set_u(tag.center.x());
+    seen.set_v(tag.center.y());
+    for (const auto& corner : tag.corners) {
+      seen.add_corners(corner.x());
+      seen.add_corners(corner.y());
+    }
+  }
+  return detections;
+}
+
+v1::RadioTraffic radio_of(const Moment& moment) {
+  auto traffic = begin<v1::RadioTraffic>(moment);
+  const world::Observations& seen = moment.observations;
+  for (const auto& entry : seen.radio_messages.entries) {
+    v1::RadioTraffic::Delivery& delivery = *traffic.add_messages();
+    delivery.set_sender(index(entry.sender));
+    delivery.set_receiver(index(entry.radio));
+    assign(*delivery.mutable_payload(), seen.radio_messages.payload(entry));
+  }
+  const std::span data(seen.range_and_bearing_data);
+  for (const world::RangeAndBearingPacket& heard : seen.range_and_bearing) {
+    v1::RadioTraffic::Packet& packet = *traffic.add_packets();
+    packet.set_sender(index(heard.sender));
+    packet.set_receiver(index(heard.receiver));
+    assign(*packet.mutable_data(), data.subspan(heard.data.begin, heard.data.count));
+    packet.set_range(heard.range);
+    packet.set_horizontal_bearing(heard.horizontal_bearing);
+    packet.set_vertical_bearing(heard.vertical_bearing);
+  }
+  return traffic;
+}
+
+v1::Contacts contacts_of(const Moment& moment) {
+  auto contacts = begin<v1::Contacts>(moment);
+  for (const world::Contact& contact : moment.contacts) {
+    contacts.add_links(static_cast<std::int32_t>(contact.link));
+    contacts.add_links(contact.other ? static_cast<std::int32_t>(*contact.other) : -1);
+    add(contact.point, *contacts.mutable_points());
+    add(contact.normal, *contacts.mutable_normals());
+    add(contact.force, *contacts.mutable_forces());
+  }
+  return contacts;
+}
+
+}  // namespace ziggurat::channels

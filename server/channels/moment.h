@@ -1,0 +1,50 @@
+#pragma once
+// What channels are made of: views of a running world.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "world/commands.h"
+#include "world/contact.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::channels {
+
+/// Who is in the world since the last change.
+struct Population {
+  const scene::Scene& scene;
+  const std::string& path;  ///< of the scene file, as it was given
+  const std::string& scene_hash;
+  std::uint64_t seed = 1;
+  std::uint64_t last_tick = 0;  ///< 0: until stopped
+  const world::Layout& layout;
+  const std::vector<scene::Entity>& entities;  ///< as placed or spawned, as in the layout
+  const world::State& state;
+};
+
+/// Wall time of a tick's phases [s].
+struct PhaseTimes {
+  double exchange = 0, physics = 0, recording = 0, pacing = 0;
+};
+
+/// The world at a tick.
+struct Moment {
+  const world::State& state;
+  const world::Observations& observations;
+  const world::Commands& commands;  ///< that led to the state, until the tick is answered
+  std::span<const world::Contact> contacts;
+  PhaseTimes phases;  ///< of the tick before
+};
+
+/// What `/scene` contains besides the shapes of links.
+struct Layers {
+  bool labels = false;  ///< ids of entities
+  bool frusta = true;   ///< of cameras
+};
+
+}  // namespace ziggurat::channels

@@ -1,0 +1,20 @@
+#pragma once
+// Types of messages, as viewers and recordings need them.
+
+#include <string>
+
+namespace google::protobuf {
+class Descriptor;
+}
+
+namespace ziggurat::channels {
+
+struct Schema {
+  std::string name;         ///< of the type, with its package
+  std::string descriptors;  ///< a serialized FileDescriptorSet: the type and all that it uses
+};
+
+/// The schema of a type; stays where it is.
+const Schema& schema_of(const google::protobuf::Descriptor& type);
+
+}  // namespace ziggurat::channels
