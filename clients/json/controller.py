@@ -23,7 +23,7 @@ def main():
     def send(**message):
         socket.send_string(json.dumps(message))
 
-    send(hello={"version": {"major": 1}, "role": "ROLE_CONTROLLER", "clientName": "json",
+    send(hello={"version": {"major": 1, "minor": 1}, "role": "ROLE_CONTROLLER", "clientName": "json",
                 "robots": ["*"], "controller": os.environ.get("ZIGGURAT_CONTROLLER", "")})
     targets, are_told = [], False  # targets stay until changed: they are told once
     while True:

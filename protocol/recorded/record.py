@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Records messages of the protocol: record.py FOLDER, with the Python client on PYTHONPATH.
 
-Files that exist stay as they are: a message that was released never changes.
+Files that exist stay as they are: a message that was released never changes. A message that is the same
+in the folder of an earlier version, beside this one, is not written again.
 """
 
 import pathlib
@@ -90,6 +91,13 @@ def write(path, data):
         path.write_bytes(data)
 
 
+def is_known(folder, name, data):
+    """Whether an earlier version has the same message."""
+    earlier = (one / f"{name}.bin" for one in folder.parent.iterdir()
+               if one.is_dir() and one.name < folder.name)
+    return any(path.exists() and path.read_bytes() == data for path in earlier)
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
@@ -98,7 +106,10 @@ def main():
         name = f"exchange_{number}_{side}_{message.WhichOneof('message')}"
         messages.append((name, message))
     for name, message in messages:
-        write(folder / f"{name}.bin", message.SerializeToString(deterministic=True))
+        data = message.SerializeToString(deterministic=True)
+        if is_known(folder.resolve(), name, data):
+            continue
+        write(folder / f"{name}.bin", data)
         # As the server writes JSON: nothing left out.
         text = json_format.MessageToJson(message, including_default_value_fields=True, indent=1,
                                          ensure_ascii=False)

@@ -33,6 +33,8 @@ struct Received {
   bool is_single_frame = true;  ///< a message of the protocol is one ZeroMQ frame
   Access access;                ///< that the connection has
   std::size_t skipped = 0;  ///< size of a message that was too long to be kept: there are no bytes
+  /// Of a message of several frames, by the first of them.
+  wire::Encoding several_frames = wire::Encoding::binary;
 };
 
 }  // namespace ziggurat::network

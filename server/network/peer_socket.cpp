@@ -100,6 +100,7 @@ bool PeerSocket::end_message(bool has_more, Received& received) {
   if (has_more) return false;
   received.connection = name_;
   received.is_single_frame = is_first;
+  received.several_frames = first_frame_;
   received.access = engine_.access();
   received.skipped = std::exchange(skipped_, 0);
   if (received.skipped > 0) received.bytes = {};
@@ -130,6 +131,7 @@ bool PeerSocket::next(std::size_t limit, Received& received) {
       needed_ = 0;
       if (taken.step == Step::passed) continue;
       received.bytes = zmtp::text_of(taken.content);
+      if (!has_frames_) first_frame_ = wire::encoding_of(received.bytes);
       if (end_message(taken.has_more, received)) return true;
     }
   }

@@ -77,6 +77,7 @@ class PeerSocket {
   std::size_t begin_ = 0, end_ = 0;
   std::size_t needed_ = 0;     // of the frame that begins there
   bool has_frames_ = false;    // of the message, before the one at begin_
+  wire::Encoding first_frame_ = wire::Encoding::binary;  // its form, for the answer
   std::size_t to_skip_ = 0;    // of a frame that is too long
   std::size_t skipped_ = 0;    // bytes of the message that were not kept
   bool more_to_skip_ = false;  // the message goes on behind that frame

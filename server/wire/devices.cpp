@@ -233,6 +233,15 @@ void add_channels(const Roster& roster, const world::Commands& from, v1::Command
   });
 }
 
+std::size_t payload_bytes(const Roster& roster, const world::Commands& from) {
+  constexpr std::size_t row = world::row_of(world::commanded, &world::Commands::tag_payloads);
+  std::size_t bytes = 0;
+  for (const Packing::Stretch& piece : roster.commanded[row].stretches) {
+    for (std::size_t i = 0; i < piece.count; ++i) bytes += from.tag_payloads[piece.flat + i].size();
+  }
+  return bytes;
+}
+
 std::optional<Fault> check_channels(const v1::Command& command, const Roster& roster,
                                     const world::Layout& layout) {
   std::optional<Fault> found;

@@ -21,6 +21,8 @@ void add_channels(const Roster& roster, const world::Observations& from, v1::Obs
 
 /// Writes all that a session's robots want, without their radio messages.
 void add_channels(const Roster& roster, const world::Commands& from, v1::Command& to);
+/// Bytes of the tag payloads among that.
+std::size_t payload_bytes(const Roster& roster, const world::Commands& from);
 
 /// Lengths and values, if the command's robots are right.
 std::optional<Fault> check_channels(const v1::Command& command, const Roster& roster,

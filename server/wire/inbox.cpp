@@ -8,6 +8,7 @@
 #include "wire/command.h"
 #include "wire/cost.h"
 #include "wire/response.h"
+#include "wire/strict_json.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -72,7 +73,8 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
     return in.kind;
   }
   if (encoding_of(bytes) == Encoding::json) {
-    in.complaint = v1::from_json(bytes, in.message);
+    in.complaint = check_json(bytes, *v1::ClientMessage::descriptor());
+    if (in.complaint.empty()) in.complaint = v1::from_json(bytes, in.message);
     if (!in.complaint.empty()) return in.kind;
   } else if (!in.message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return in.kind;

@@ -11,6 +11,7 @@
 
 #include "scene/deadline.h"
 #include "scene/scene.h"
+#include "world/commands.h"
 #include "world/layout.h"
 
 namespace ziggurat::wire {
@@ -34,7 +35,10 @@ struct Version {
 };
 
 /// Version of the server. A client must have the same major version.
-inline constexpr Version version{1, 0};
+inline constexpr Version version{1, 1};
+/// From this minor version on a session is told of dropped and spawned robots, and what was commanded
+/// before it was resumed.
+inline constexpr std::uint32_t minor_with_events = 1;
 
 enum class Role { unspecified, controller, supervisor, observer };
 
@@ -92,6 +96,7 @@ enum class ErrorCode {
   no_such_session,
   deadline_missed,
   unknown_entity,
+  robots_dropped,
 };
 
 enum class Severity {
@@ -110,6 +115,7 @@ struct Fault {
   std::string robot;    ///< id, where one is concerned
   std::string field;    ///< where one is concerned
   std::string message;  ///< a sentence for people
+  std::vector<std::uint32_t> dropped = {};  ///< robots_dropped: positions in the session
 };
 
 struct Refusal {
@@ -127,6 +133,15 @@ struct Welcome {
   std::uint32_t wall_heartbeat_ms = 0;
   std::uint64_t max_message_bytes = std::uint64_t{64} << 20;  ///< of the client's messages
   std::vector<DeadlinePolicy> deadlines = {};  ///< per robot of the session; empty: all wait
+  bool is_resumed = false;  ///< and its client is told of the present state
+  const world::Commands* commands = nullptr;  ///< resumed: of all robots; null: nothing was commanded
+};
+
+/// A robot that came while the world runs.
+struct Spawned {
+  std::string_view robot;       ///< id
+  std::string_view controller;  ///< id in the scene
+  std::uint64_t tick = 0;       ///< from which on it stands there
 };
 
 enum class EndReason { finished, interrupted, failed };

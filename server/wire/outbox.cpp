@@ -21,6 +21,8 @@ void fill(const Fault& fault, v1::Error& error) {
   error.set_robot(v1::valid_utf8(fault.robot));
   error.set_field(fault.field);
   error.set_message(v1::valid_utf8(fault.message));
+  if (fault.dropped.empty()) return;
+  error.mutable_dropped()->mutable_robots()->Add(fault.dropped.begin(), fault.dropped.end());
 }
 
 void fill(const Version& from, v1::Version& to) {
@@ -43,6 +45,18 @@ void fill(const std::vector<DeadlinePolicy>& policies, v1::Welcome& welcome) {
   for (std::size_t i = 0; i < policies.size(); ++i) {
     fill(policies[i], *welcome.mutable_robots(static_cast<int>(i))->mutable_deadline_policy());
   }
+}
+
+constexpr std::size_t longest_commanded = std::size_t{1} << 20;  // [bytes]
+
+/// The present state of a session that is resumed.
+void fill(const Roster& roster, const world::Commands* commands, v1::Resumed& resumed) {
+  for (std::size_t position = 0; position < roster.gone.size(); ++position) {
+    if (roster.gone[position]) resumed.add_gone_robots(static_cast<std::uint32_t>(position));
+  }
+  if (commands == nullptr || payload_bytes(roster, *commands) > longest_commanded) return;
+  add_channels(roster, *commands, *resumed.mutable_commanded());
+  if (resumed.commanded().ByteSizeLong() > longest_commanded) resumed.clear_commanded();
 }
 
 v1::End::Reason reason_of(EndReason reason) {
@@ -134,6 +148,7 @@ void Outbox::welcome(const Run& run, const Roster& roster, const Welcome& sessio
   welcome.set_server_version(run.server_version);
   for (const std::size_t robot : roster.robots) describe(run, robot, *welcome.add_robots());
   fill(session.deadlines, welcome);
+  if (session.is_resumed) fill(roster, session.commands, *welcome.mutable_resumed());
   finish();
 }
 
@@ -192,6 +207,14 @@ void Outbox::displaced(std::string_view by, std::string_view text) {
   v1::Displaced& displaced = *message_->message.mutable_displaced();
   displaced.set_by(v1::valid_utf8(by));
   displaced.set_message(v1::valid_utf8(text));
+  finish();
+}
+
+void Outbox::spawned(const Spawned& from) {
+  v1::RobotSpawned& spawned = *message_->message.mutable_robot_spawned();
+  spawned.set_robot(v1::valid_utf8(from.robot));
+  spawned.set_controller(v1::valid_utf8(from.controller));
+  spawned.set_tick(from.tick);
   finish();
 }
 

@@ -60,6 +60,7 @@ class Outbox {
   void paused(std::uint64_t tick);
   /// @param by  name of the client that has the robots now
   void displaced(std::string_view by, std::string_view message);
+  void spawned(const Spawned& robot);
   /// A request was not done, and why.
   void response(std::uint64_t request, const Fault& fault);
 

@@ -26,7 +26,19 @@ TEST(Hello, H2_TheLowerMinorVersionCounts) {
   auto hello = Peers::hello("*");
   hello.mutable_hello()->mutable_version()->set_minor(7);
   peers.say("p", hello);
-  EXPECT_EQ(peers.told("p").welcome().version().minor(), 0U);
+  EXPECT_EQ(peers.told("p").welcome().version().minor(), wire::version.minor);
+}
+
+TEST(Hello, H16_NamesAreCutAndPrintable) {
+  const SmallRun small(1);
+  Peers peers(small);
+  auto hello = Peers::hello("*");
+  hello.mutable_hello()->set_client_name("\x1b]" + std::string(100, 'x'));
+  hello.mutable_hello()->set_client_version(std::string(100, '1'));
+  peers.say("q", hello);
+  peers.say("p", Peers::hello("*"));
+  EXPECT_EQ(peers.told("p").refusal().holder(),
+            "?]" + std::string(62, 'x') + " " + std::string(64, '1'));
 }
 
 TEST(Hello, H3_Roles) {

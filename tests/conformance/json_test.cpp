@@ -112,6 +112,85 @@ TEST_F(Twin, T6_MalformedTextIsAnsweredInJson) {
   }
 }
 
+TEST_F(Twin, T6_WhatIsNotJsonIsMalformed) {
+  const std::string start = R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER","robots":)";
+  for (const std::string& text : {
+           std::string("{'hello':{}}"),
+           std::string("{hello:{}}"),
+           start + R"(["*"],}})",
+           start + R"(["*",]}})",
+           start + R"(['*']}})",
+           start + "[*]}}",
+           start + R"(["*"]},})",
+           start + R"(["*"]}} x)",
+           start + R"(["*"]}} // no comments)",
+           start + R"(["*"]},"unknown":+1})",
+           start + R"(["*"]},"unknown":01})",
+           start + R"(["*"]},"unknown":.5})",
+           start + R"(["*"]},"unknown":True})",
+           start + R"(["*"]},"unknown":"\x41"})",
+           start + "[\"*\"]},\"unknown\":\"line\nfeed\"}",
+       }) {
+    SCOPED_TRACE(text);
+    say("unknown", text);
+    EXPECT_EQ(told("unknown")["error"]["code"], "MALFORMED");
+  }
+}
+
+TEST_F(Twin, T6_WhatDoesNotMatchTheMessageIsMalformed) {
+  const std::string start = R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER",)";
+  for (const std::string& text : {
+           start + R"("robots":"*"}})",           // a text for a list
+           start + R"("robots":[["*"]]}})",       // a list for a text
+           start + R"("robots":["*",null]}})",    // nothing for a text
+           start + R"("robots":[7]}})",           // a number for a text
+           start + R"("robots":{"0":"*"}}})",     // an object for a list
+           start + R"("robots":["*"],"takeover":"true"}})",
+           start + R"("robots":["*"],"takeover":1}})",
+           start + R"("robots":["*"],"clientName":7}})",
+           start + R"("robots":["*"],"clientName":["me"]}})",
+           start + R"("robots":["*"],"robots":["robot0"]}})",  // twice
+           start + R"("robots":["*"],"clientName":"a","client_name":"b"}})",
+           std::string(R"({"command":{"jointTargets":[true]}})"),
+           std::string(R"({"command":{"log":{"text":"one"}}})"),
+           std::string(R"({"command":[{"tick":"0"}]})"),
+           std::string(R"({"leave":"DONE"})"),
+       }) {
+    SCOPED_TRACE(text);
+    say("unknown", text);
+    EXPECT_EQ(told("unknown")["error"]["code"], "MALFORMED");
+  }
+}
+
+TEST_F(Twin, T6_UnknownNamesMayHoldAnyJson) {
+  say("p", R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER","robots":["*"],)"
+           R"("later":{"a":[1,[true,null],{"robots":"*"}],"a":"\u00e9"}}})");
+  EXPECT_TRUE(told("p").contains("welcome"));
+}
+
+TEST_F(Twin, T6_DepthIsBounded) {
+  const auto nested = [](std::size_t levels) {
+    return R"({"later":)" + std::string(levels, '[') + std::string(levels, ']') +
+           R"(,"heartbeat":{}})";
+  };
+  join("p");
+  inboxes.clear();
+  say("p", nested(63));
+  EXPECT_TRUE(told("p").contains("heartbeat"));
+  say("p", nested(64));
+  EXPECT_EQ(told("p")["error"]["code"], "MALFORMED");
+}
+
+TEST_F(Twin, T6_SeveralFramesAreAnsweredInTheFormOfTheFirst) {
+  for (const auto form : {wire::Encoding::json, wire::Encoding::binary}) {
+    receive(barrier, {"unknown", "x", false, Access{}, 0, form}, &commands);
+    EXPECT_EQ(inboxes["unknown"].back().starts_with('{'), form == wire::Encoding::json);
+  }
+  join("p");
+  receive(barrier, {"p", "x", false, Access{}, 0, wire::Encoding::binary}, &commands);
+  EXPECT_EQ(told("p")["error"]["code"], "MALFORMED") << "in the session's form";
+}
+
 TEST_F(Twin, T6_AMalformedMessageOfASessionIsDiscarded) {
   join("p");
   publish(0);

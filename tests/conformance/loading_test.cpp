@@ -66,9 +66,11 @@ TEST_F(Loading, H12_RefusedIfThereIsNoWorldInTheEnd) {
   peers.say("p", Peers::hello("*"));
   peers.inboxes.clear();
   refuse_waiting(peers.barrier);
-  const auto error = refused("p");
-  EXPECT_EQ(error.code(), v1::Error::OUT_OF_STATE);
-  EXPECT_EQ(error.severity(), v1::Error::FATAL);
+  const auto refusal = peers.told("p").refusal();
+  EXPECT_EQ(refusal.error().code(), v1::Error::OUT_OF_STATE);
+  EXPECT_EQ(refusal.error().severity(), v1::Error::FATAL);
+  EXPECT_EQ(refusal.client_version().major(), 1U);
+  EXPECT_EQ(refusal.server_version().minor(), 1U);
 }
 
 TEST_F(Loading, T9_BadMessagesInHelloAreDiscardedAndTheHelloWaits) {

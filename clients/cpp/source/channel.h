@@ -35,6 +35,7 @@ class Channel {
   virtual void sent(v1::Command&) {}   ///< after the command was sent
   virtual void repeat() {}             ///< the next command has all values
   virtual void reset() {}              ///< all values become the initial ones
+  virtual void load(v1::Command&) {}   ///< values become these, if the command has any
 };
 
 /// Sensors that read a fixed number of values each.
@@ -88,6 +89,11 @@ class Settings final : public Channel {
   }
   void sent(v1::Command&) override { changed_ = false; }
   void repeat() override { changed_ = true; }
+  void load(v1::Command& from) override {
+    const List& values = *(from.*field_)();
+    if (static_cast<std::size_t>(values.size()) != values_.size()) return;
+    std::copy(values.begin(), values.end(), values_.begin());
+  }
   void reset() override {
     std::copy(initial_.begin(), initial_.end(), values_.begin());
     changed_ = false;

@@ -2,6 +2,7 @@
 // The client's socket: one DEALER that sends and receives messages.
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,6 +12,10 @@
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat {
+
+// Of the protocol.
+inline constexpr std::uint32_t version_major = 1;
+inline constexpr std::uint32_t version_minor = 1;
 
 class Connection {
  public:

@@ -45,6 +45,18 @@ void Fleet::reset() {
   for (const auto& channel : channels_) channel->reset();
 }
 
+void Fleet::resume(const v1::Resumed& resumed) {
+  v1::Command commanded = resumed.commanded();
+  for (const auto& channel : channels_) channel->load(commanded);
+  remove(resumed.gone_robots());
+}
+
+void Fleet::remove(const google::protobuf::RepeatedField<std::uint32_t>& robots) {
+  for (const std::uint32_t position : robots) {
+    if (position < robots_.size()) robots_[position].is_gone_ = true;
+  }
+}
+
 void Fleet::move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines) {
   for (Robot::Line& from : log_.lines) {
     v1::LogLine& line = *lines.Add();

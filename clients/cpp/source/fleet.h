@@ -30,6 +30,10 @@ class Fleet {
   void repeat();
   /// All values that were set become the initial ones.
   void reset();
+  /// The session was resumed: values become those that were commanded before.
+  void resume(const v1::Resumed& resumed);
+  /// These robots (positions) have left the run. Positions that the session does not have are ignored.
+  void remove(const google::protobuf::RepeatedField<std::uint32_t>& robots);
 
   void move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines);
   /// A message for each robot that failed since the last call.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "session_state.h"
 #include "ziggurat/v1/envelope.h"
@@ -106,12 +107,16 @@ bool Session::State::wait() {
       case Connection::Kind::kError:
         if (is_harmless(message.error(), was_reset)) {
           if (message.error().code() == v1::Error::DEADLINE_MISSED) ++missed;
+          fleet->remove(message.error().dropped().robots());
           // The first answer counts, unless it was for the world before the reset.
           if (message.error().code() != v1::Error::DUPLICATE_TICK || was_reset) fleet->repeat();
           break;
         }
         is_over = message.error().severity() == v1::Error::FATAL;
         throw to_exception(message.error());
+      case Connection::Kind::kRobotSpawned:
+        read(message.robot_spawned());
+        break;
       case Connection::Kind::kDisplaced:
         is_over = true;
         throw displaced(message.displaced());
@@ -148,6 +153,15 @@ void Session::State::read(const v1::Reset& reset) {
   was_reset = true;
   fleet->reset();
 }
+
+void Session::State::read(const v1::RobotSpawned& robot) {
+  constexpr std::size_t most = 10'000;  // a client that does not ask for them keeps no more
+  if (spawned.size() < most) {
+    spawned.push_back({robot.robot(), robot.controller(), robot.tick()});
+  }
+}
+
+std::vector<SpawnedRobot> Session::take_spawned() { return std::exchange(state_->spawned, {}); }
 
 void Session::leave() { state_->leave(v1::Leave::DONE, {}); }
 

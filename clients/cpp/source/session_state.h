@@ -25,6 +25,7 @@ struct Session::State {
   void read(const v1::Observation& observation);
   void read(const v1::End& end);
   void read(const v1::Reset& reset);
+  void read(const v1::RobotSpawned& robot);
   void leave(v1::Leave::Reason reason, std::string_view message);
 
   Options options;
@@ -51,6 +52,7 @@ struct Session::State {
   std::string server_version;
   std::string token;
   std::uint64_t missed = 0;
+  std::vector<SpawnedRobot> spawned;
 };
 
 /// The error as an exception.

@@ -141,7 +141,8 @@ Connection::Kind Supervisor::State::hear(const std::optional<std::chrono::millis
 
 void Supervisor::State::open() {
   v1::Hello& hello = *outgoing.mutable_hello();
-  hello.mutable_version()->set_major(1);
+  hello.mutable_version()->set_major(version_major);
+  hello.mutable_version()->set_minor(version_minor);
   hello.set_role(options.only_observes ? v1::ROLE_OBSERVER : v1::ROLE_SUPERVISOR);
   hello.set_client_name(v1::valid_utf8(options.name));
   hello.set_client_version(v1::valid_utf8(options.version));

@@ -6,9 +6,6 @@
 namespace ziggurat {
 namespace {
 
-constexpr std::uint32_t version_major = 1;
-constexpr std::uint32_t version_minor = 0;
-
 void fill(const Options& options, v1::Hello& hello) {
   hello.mutable_version()->set_major(version_major);
   hello.mutable_version()->set_minor(version_minor);
@@ -71,6 +68,7 @@ void Session::State::read(const v1::Welcome& welcome) {
   token = welcome.session_token();
   try {
     fleet.emplace(welcome);
+    fleet->resume(welcome.resumed());
   } catch (const std::runtime_error& error) {
     throw ConnectionError(options.endpoint + ": " + error.what());
   }

@@ -84,6 +84,30 @@ int next(lua_State* state) {
   return 2;
 }
 
+/// A list of the robots that were spawned since the last call: id, controller and tick of each.
+int spawned(lua_State* state) {
+  const auto robots = upvalue<Connected>(state).session->take_spawned();
+  lua_createtable(state, static_cast<int>(robots.size()), 0);
+  lua_Integer place = 0;
+  for (const SpawnedRobot& robot : robots) {
+    lua_createtable(state, 0, 3);
+    lua_pushlstring(state, robot.id.data(), robot.id.size());
+    lua_setfield(state, -2, "id");
+    lua_pushlstring(state, robot.controller.data(), robot.controller.size());
+    lua_setfield(state, -2, "controller");
+    lua_pushinteger(state, static_cast<lua_Integer>(robot.tick));
+    lua_setfield(state, -2, "tick");
+    lua_rawseti(state, -2, ++place);
+  }
+  return 1;
+}
+
+/// Whether the server has taken the robot out of the run.
+int gone(lua_State* state) {
+  lua_pushboolean(state, upvalue<Seat>(state).robot->gone());
+  return 1;
+}
+
 /// Reason, message and tick of the end of the run; nothing before it.
 int ending(lua_State* state) {
   const auto& ending = upvalue<Connected>(state).session->ending();
@@ -122,6 +146,7 @@ void push_robots(lua_State* state, Connected& connected) {
     push_robot(state, *seat->robot);
     set_log_functions(state, seat->log);
     set_function<fail>(state, "fail", seat.get());
+    set_function<gone>(state, "gone", seat.get());
     lua_pushvalue(state, -1);
     lua_rawseti(state, -3, ++place);
     set_element(state, -2, seat->robot->id());
@@ -132,6 +157,7 @@ void push_session(lua_State* state, Connected& connected) {
   lua_newtable(state);
   set_function<next>(state, "next", &connected);
   set_function<ending>(state, "ending", &connected);
+  set_function<spawned>(state, "spawned", &connected);
   set_function<close>(state, "close", &connected);
   lua_pushnumber(state, std::chrono::duration<double>(connected.session->tick_length()).count());
   lua_setfield(state, -2, "tick_length");

@@ -18,7 +18,7 @@ void Runner::run() {
     for (Seat& seat : seats_) {
       if (are_scripts_interrupted()) return;
       if (!has_started) start(seat);
-      if (has_started && seat.controller) answer(seat);
+      if (has_started && seat.controller && !seat.robot->gone()) answer(seat);
     }
     has_started = true;
   }

@@ -20,7 +20,7 @@ from .named import Named
 from .parallel import ParallelEnv, all_readings, joint_targets, parallel_env
 from .robot import Robot
 from .server import Server
-from .session import Deadline, Ending, Event, Session, Tick, connect, resume
+from .session import Deadline, Ending, Event, Session, SpawnedRobot, Tick, connect, resume
 from .supervisor import (EntityState, LinkState, SessionStatus, SolverStatus, States, Status,
                          Supervisor, supervise)
 

@@ -12,7 +12,7 @@ import zmq.utils.monitor
 from . import protocol_pb2 as v1
 from .errors import ConnectionLost, Refused, Timeout
 
-VERSION = v1.Version(major=1, minor=0)
+VERSION = v1.Version(major=1, minor=1)
 LINGER_MS = 1000  # time to send the last messages when a session is closed
 
 

@@ -54,6 +54,17 @@ class Exchange:
         self._new.clear()
         self._used.clear()
 
+    def resume(self, commanded: v1.Command) -> None:
+        """The session was resumed: values are those that were commanded before."""
+        for field, values in self.values.items():
+            before = getattr(commanded, field)
+            if len(before) == len(values):
+                values[:] = before
+                self._used.add(field)
+        if len(commanded.range_and_bearing_data) == len(self.data):
+            self.data[:] = commanded.range_and_bearing_data
+            self._used.add("data")
+
     def repeat(self) -> None:
         """The server may have discarded the last command: the next one has all values again."""
         self._new |= self._used

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
-from typing import Any, Iterator, Optional, Sequence, Union
+from typing import Any, Iterable, Iterator, List, Optional, Sequence, Union
 
 from . import protocol_pb2 as v1
 from .connection import Connection, Curve
@@ -47,6 +47,15 @@ class Ending:
 
 
 @dataclass(frozen=True)
+class SpawnedRobot:
+    """A robot that a supervisor spawned. Another session takes it: connect(endpoint, robots=id)."""
+
+    id: str
+    controller: str  # its id in the scene
+    tick: int  # from which on it stands there
+
+
+@dataclass(frozen=True)
 class Deadline:
     """The action if this controller does not answer in time: "wait", "hold", "zero", "drop" or
     "stop". A wish, which the server may refuse."""
@@ -86,7 +95,7 @@ def resume(endpoint: str, token: bytes, *, name: str = "python", version: str = 
            takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
            wait_timeout: Optional[float] = None) -> "Session":
     """Resumes the session with this token after its connection was lost: same robots, same tick.
-    The last commands hold; the first tick's event is RESUME."""
+    The last commands hold, and the robots have their values; the first tick's event is RESUME."""
     hello = v1.Hello(role=v1.ROLE_CONTROLLER, robots=["*"], client_name=name,
                      client_version=version, session_token=token, takeover=takeover)
     return Session(endpoint, hello, curve, connect_timeout, wait_timeout)
@@ -114,12 +123,16 @@ class Session:
             [Robot(self._exchange, position, given, self._leave_one)
              for position, given in enumerate(self.welcome.robots)], "robot")
         self._exchange.begin()
+        self._exchange.resume(self.welcome.resumed.commanded)
+        self._remove(self.welcome.resumed.gone_robots)
         self.tick: Optional[Tick] = None  # the current one
         self.ending: Optional[Ending] = None
         self.paused = False
         self._was_reset = False  # at some time
         self.missed = 0  # deadlines
         self.late = 0  # commands that came too late or twice
+        # Of controllers that robots of this session have; remove those that you have handled.
+        self.spawned: List[SpawnedRobot] = []
 
     @property
     def endpoint(self) -> str:
@@ -173,6 +186,9 @@ class Session:
             self._event = Event.RESET
             self._was_reset = True
             self._owes = None
+        elif kind == "robot_spawned":
+            robot = message.robot_spawned
+            self.spawned.append(SpawnedRobot(robot.robot, robot.controller, robot.tick))
         elif kind == "paused":
             self.paused = True
         elif kind == "displaced":
@@ -181,6 +197,12 @@ class Session:
                             f"{message.displaced.message}")
         elif kind == "error":
             self._fault(message.error)
+
+    def _remove(self, positions: Iterable[int]) -> None:
+        """The server has taken these robots out of the run."""
+        for position in positions:
+            if position < len(self.robots):
+                self.robots[position].gone = True
 
     def _fault(self, error: v1.Error) -> None:
         if error.code == v1.Error.DEADLINE_MISSED:
@@ -194,6 +216,7 @@ class Session:
                 self._exchange.repeat()
             return
         if error.severity == v1.Error.WARNING:
+            self._remove(error.dropped.robots)
             if error.code == v1.Error.NOT_YOURS and error.robot in self.robots:
                 self.robots[error.robot].gone = True  # removed, or taken over by another client
             return

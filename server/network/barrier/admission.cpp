@@ -121,7 +121,10 @@ void set_policies(Barrier& barrier, const Session& session, const wire::Hello& h
   }
 }
 
-bool welcome(Barrier& barrier, Session& session) {
+/// @param is_resumed  the session was there before
+/// @param commands    of the tick that is being collected; null: nothing was commanded yet
+bool welcome(Barrier& barrier, Session& session, bool is_resumed,
+             const world::Commands* commands) {
   wire::Welcome welcome;
   welcome.token = session.token;
   welcome.minor = session.minor;
@@ -132,6 +135,8 @@ bool welcome(Barrier& barrier, Session& session) {
   for (const std::size_t robot : session.roster.robots) {
     welcome.deadlines.push_back(barrier.deadlines.policy(robot));
   }
+  welcome.is_resumed = is_resumed && session.minor >= wire::minor_with_events;
+  welcome.commands = commands;
   barrier.outbox.welcome(*barrier.run, session.roster, welcome);
   return send(barrier, session) == Delivery::sent;
 }
@@ -147,7 +152,8 @@ void refuse(Barrier& barrier, const std::string& connection, const wire::Hello& 
                                    to_string(refusal.fault.code), refusal.fault.message));
 }
 
-void admit(Barrier& barrier, const std::string& connection, const Access& access) {
+void admit(Barrier& barrier, const std::string& connection, const Access& access,
+           const world::Commands* commands) {
   const wire::Hello hello = barrier.inbox.hello();
   auto granted = begin(barrier, hello, access);
   if (auto* refusal = std::get_if<wire::Refusal>(&granted)) {
@@ -163,7 +169,8 @@ void admit(Barrier& barrier, const std::string& connection, const Access& access
   set_policies(barrier, session, hello);
   update_patience(barrier, session);
   const bool is_welcomed =
-      welcome(barrier, session) && tell_taken(barrier, session, "Another client");
+      welcome(barrier, session, !hello.session_token.empty(), commands) &&
+      tell_taken(barrier, session, "Another client");
   const bool has_tick = barrier.gate.tick() && !session.roster.empty();
   const bool is_there = is_welcomed && (!has_tick || observe(barrier, session));
   session.turn.is_repeated = true;
@@ -196,9 +203,9 @@ void keep_waiting(Barrier& barrier, const std::string& connection, const Access&
 }  // namespace
 
 void handle_hello(Barrier& barrier, const std::string& connection, const Access& access,
-                  std::string_view bytes) {
+                  std::string_view bytes, const world::Commands* commands) {
   if (!barrier.run) return keep_waiting(barrier, connection, access, bytes);
-  admit(barrier, connection, access);
+  admit(barrier, connection, access, commands);
 }
 
 void admit_waiting(Barrier& barrier) {
@@ -212,7 +219,7 @@ void admit_waiting(Barrier& barrier) {
   });
   for (const auto& [connection, application] : waiting) {
     barrier.inbox.parse(application.hello);
-    admit(barrier, connection, application.access);
+    admit(barrier, connection, application.access, nullptr);
   }
 }
 

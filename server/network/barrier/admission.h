@@ -5,6 +5,7 @@
 
 #include "network/barrier/barrier.h"
 #include "network/keys.h"
+#include "world/commands.h"
 
 namespace ziggurat::network {
 
@@ -12,8 +13,9 @@ namespace ziggurat::network {
 /// While the world is loading it waits.
 /// @param access  of the connection
 /// @param bytes  the whole message
+/// @param commands  of the tick that is being collected; null: no tick is
 void handle_hello(Barrier& barrier, const std::string& connection, const Access& access,
-                  std::string_view bytes);
+                  std::string_view bytes, const world::Commands* commands);
 
 /// The world is loaded: handles those that wait as if they had just arrived, in the order of
 /// arrival.

@@ -196,6 +196,8 @@ void refuse_waiting(Barrier& barrier) {
   refusal.fault.severity = wire::Severity::fatal;
   barrier.sessions.for_each([&](Session& session) {
     if (session.state != SessionState::hello) return;
+    barrier.inbox.parse(session.application.hello);
+    refusal.client_version = barrier.inbox.hello().version;
     barrier.outbox.refusal(refusal);
     send(barrier, session);
     erase(barrier, session);

@@ -96,7 +96,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
     session->contact.heartbeats = 0;
   }
   const auto encoding =
-      received.is_single_frame ? wire::encoding_of(received.bytes) : wire::Encoding::binary;
+      received.is_single_frame ? wire::encoding_of(received.bytes) : received.several_frames;
   if (session == nullptr) connection.encoding = encoding;
   if (!may_send(barrier, id, connection, session)) return;
   if (standing_of(session) != Standing::controller) {
@@ -119,7 +119,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
   if (session != nullptr) {
     handle(barrier, connection, *session, kind, commands);
   } else if (kind == InboxKind::hello) {
-    handle_hello(barrier, id, received.access, received.bytes);
+    handle_hello(barrier, id, received.access, received.bytes, commands);
   } else {
     answer_fault(
         barrier, id, nullptr,

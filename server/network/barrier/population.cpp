@@ -30,6 +30,25 @@ void tell_removed(Barrier& barrier, Session& session, std::size_t robot, const s
   }
 }
 
+/// Tells the sessions that have robots of its controller, also robots that left, of one that has come.
+void tell_spawned(Barrier& barrier, std::size_t robot) {
+  const auto& robots = barrier.run->layout.robots;
+  const std::size_t controller = robots[robot].controller;
+  barrier.sessions.for_each([&](Session& session) {
+    const bool is_connected =
+        session.state != SessionState::lost && session.state != SessionState::draining;
+    const bool is_concerned = std::ranges::any_of(session.roster.robots, [&](std::size_t own) {
+      return robots[own].controller == controller;
+    });
+    if (!is_connected || !is_concerned || session.minor < wire::minor_with_events) return;
+    barrier.outbox.spawned(
+        {robots[robot].id, barrier.run->controllers[controller].id, tick_of(barrier)});
+    if (send(barrier, session) == Delivery::unreachable) {
+      lose(barrier, session, "its connection is gone");
+    }
+  });
+}
+
 /// Ends a session with robots that are about to be forgotten. Its client may still send a Leave.
 void end_without_robots(Barrier& barrier, Session& session) {
   const bool is_told =
@@ -82,6 +101,7 @@ void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Se
   for (std::size_t robot = barrier.seats.size(); robot < robots.size(); ++robot) {
     barrier.seats.add(barrier.now, barrier.gate.tick().has_value());
     barrier.deadlines.add(robots[robot].controller);
+    tell_spawned(barrier, robot);
   }
 }
 

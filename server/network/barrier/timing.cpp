@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "network/barrier/departure.h"
 #include "network/barrier/exchange.h"
@@ -52,6 +54,36 @@ void miss(Barrier& barrier, std::size_t robot) {
   }
 }
 
+/// Sends a warning on the session's tick. False if the session can't be told.
+bool warn(Barrier& barrier, Session& session, wire::Fault fault) {
+  fault.severity = wire::Severity::warning;
+  fault.tick = session.turn.tick;
+  barrier.outbox.error(fault);
+  return send(barrier, session) != Delivery::unreachable;
+}
+
+bool tell_missed(Barrier& barrier, Session& session, milliseconds deadline) {
+  return warn(barrier, session,
+              wire::make_fault(wire::ErrorCode::deadline_missed, {},
+                               fmt::format("Tick {} went on without an answer after {} ms.{}",
+                                           session.turn.tick, deadline.count(),
+                                           session.roster.empty()
+                                               ? " The robots have left the barrier."
+                                               : "")));
+}
+
+/// @param robots  positions in the session
+bool tell_dropped(Barrier& barrier, Session& session, std::vector<std::uint32_t> robots) {
+  if (robots.empty() || session.minor < wire::minor_with_events) return true;
+  auto fault = wire::make_fault(
+      wire::ErrorCode::robots_dropped, {},
+      fmt::format("{} of this session's robots left the barrier for good, because too many answers "
+                  "were missing.",
+                  robots.size()));
+  fault.dropped = std::move(robots);
+  return warn(barrier, session, std::move(fault));
+}
+
 /// The tick goes on without the session's answer.
 void miss(Barrier& barrier, Session& session) {
   barrier.gate.miss(session.turn);
@@ -61,23 +93,21 @@ void miss(Barrier& barrier, Session& session) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
     is_news |= !session.roster.taken[i] && barrier.deadlines.misses_in_row(robots[i]) == 0;
   }
-  const auto deadline_ms = session.turn.patience->count();
+  const milliseconds deadline = *session.turn.patience;
   if (is_news) {
     barrier.journal.note(fmt::format("{} ({}) missed its deadline of {} ms at tick {}",
-                                     session.client, robots_of(barrier, session), deadline_ms,
+                                     session.client, robots_of(barrier, session), deadline.count(),
                                      session.turn.tick));
   }
+  std::vector<std::uint32_t> dropped;
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    if (!session.roster.gone[i]) miss(barrier, robots[i]);
+    if (session.roster.gone[i]) continue;
+    miss(barrier, robots[i]);
+    if (session.roster.gone[i]) dropped.push_back(static_cast<std::uint32_t>(i));
   }
-  auto fault = wire::make_fault(
-      wire::ErrorCode::deadline_missed, {},
-      fmt::format("Tick {} went on without an answer after {} ms.{}", session.turn.tick,
-                  deadline_ms, session.roster.empty() ? " The robots have left the barrier." : ""));
-  fault.severity = wire::Severity::warning;
-  fault.tick = session.turn.tick;
-  barrier.outbox.error(fault);
-  if (send(barrier, session) == Delivery::unreachable) {
+  const bool is_told = tell_missed(barrier, session, deadline) &&
+                       tell_dropped(barrier, session, std::move(dropped));
+  if (!is_told) {
     lose(barrier, session, "its connection is gone");
   }
 }

@@ -76,6 +76,73 @@ TEST(Session, UnknownIdsListTheKnownOnes) {
   }
 }
 
+TEST(Session, AResumedOneBeginsWithWhatWasCommanded) {
+  FakeServer server([](FakeServer& self) {
+    const v1::Hello hello = self.receive().hello();
+    EXPECT_EQ(hello.session_token(), "token");
+    EXPECT_EQ(hello.version().minor(), 1U);
+    v1::ServerMessage message;
+    for (const char* id : {"a", "b"}) {
+      v1::RobotDescription& robot = *message.mutable_welcome()->add_robots();
+      robot.set_id(id);
+      robot.add_joint_actuators()->set_id("hinge");
+    }
+    v1::Resumed& resumed = *message.mutable_welcome()->mutable_resumed();
+    resumed.mutable_commanded()->add_joint_targets(3);
+    resumed.mutable_commanded()->add_joint_targets(4);
+    resumed.add_gone_robots(1);
+    resumed.add_gone_robots(9);  // that is none of the session's
+    self.send(message);
+    self.observe(5, {});
+    const v1::Command command = self.receive().command();
+    ASSERT_EQ(command.joint_targets_size(), 2);
+    EXPECT_EQ(command.joint_targets(0), 7);
+    EXPECT_EQ(command.joint_targets(1), 4) << "not overwritten";
+    self.end();
+    self.receive();
+  });
+  Options options = options_for(server);
+  options.session_token = "token";
+  Session session(options);
+  EXPECT_EQ(session.robot("a").joint("hinge").target(), 3);
+  EXPECT_FALSE(session.robot("a").gone());
+  EXPECT_TRUE(session.robot("b").gone());
+  ASSERT_TRUE(session.next());
+  session.robot("a").joint("hinge").set_target(7);
+  EXPECT_FALSE(session.next());
+}
+
+TEST(Session, IsToldOfDroppedAndSpawnedRobots) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    v1::ServerMessage message;
+    v1::Error& error = *message.mutable_error();
+    error.set_code(v1::Error::ROBOTS_DROPPED);
+    error.set_severity(v1::Error::WARNING);
+    error.mutable_dropped()->add_robots(1);
+    self.send(message);
+    message.mutable_robot_spawned()->set_robot("c");
+    message.mutable_robot_spawned()->set_controller("swarm");
+    message.mutable_robot_spawned()->set_tick(3);
+    self.send(message);
+    self.observe(4, {0, 0, 0, 0});
+    self.end();
+    self.receive();
+    self.receive();
+  });
+  Session session(options_for(server));
+  ASSERT_TRUE(session.next());
+  EXPECT_FALSE(session.robot("a").gone());
+  EXPECT_TRUE(session.robot("b").gone());
+  const std::vector<SpawnedRobot> spawned = session.take_spawned();
+  ASSERT_EQ(spawned.size(), 1U);
+  EXPECT_EQ(spawned[0].id, "c");
+  EXPECT_EQ(spawned[0].controller, "swarm");
+  EXPECT_EQ(spawned[0].tick, 3U);
+  EXPECT_TRUE(session.take_spawned().empty());
+  EXPECT_FALSE(session.next());
+}
+
 TEST(Session, ResetIsDeliveredWithTheNextObservation) {
   FakeServer server([](FakeServer& self) {
     self.welcome();

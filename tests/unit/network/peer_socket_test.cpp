@@ -87,7 +87,7 @@ TEST_F(PeerSocketTest, OtherProtocolsEndTheConnection) {
 }
 
 TEST_F(PeerSocketTest, MessagesAreCutFromAnyPieces) {
-  const std::string all = greeting() + ready("DEALER") + frame(0, "one") + frame(1, "two") +
+  const std::string all = greeting() + ready("DEALER") + frame(0, "one") + frame(1, "{two") +
                           frame(0, "three") + frame(4, std::string("\x04PING\0\0x", 8)) +
                           frame(0, "four");
   std::vector<std::string> heard;
@@ -96,6 +96,8 @@ TEST_F(PeerSocketTest, MessagesAreCutFromAnyPieces) {
     while (next()) {
       heard.emplace_back(received.bytes);
       EXPECT_EQ(received.is_single_frame, heard.back() != "three");
+      EXPECT_EQ(received.several_frames, heard.back() == "three" ? wire::Encoding::json
+                                                                  : wire::Encoding::binary);
       EXPECT_EQ(received.connection, "peer");
     }
   }

@@ -74,6 +74,9 @@ class Robot : public Sensors {
   /// leaves the run forever and its commands become zero. The session's other robots continue.
   void fail(std::string_view message);
   bool failed() const noexcept { return failed_; }
+  /// The server has taken the robot out of the run, because answers were missing (Deadline): its values
+  /// have no effect any more. A server of protocol version 1.0 does not say so.
+  bool gone() const noexcept { return is_gone_; }
 
  private:
   friend class Fleet;
@@ -106,6 +109,7 @@ class Robot : public Sensors {
   std::optional<Turret> turret_;
   std::uint32_t position_ = 0;  // in the session
   bool failed_ = false;
+  bool is_gone_ = false;
   std::string failure_;  // not yet sent; empty if none
   Log* log_ = nullptr;   // the session's
 };

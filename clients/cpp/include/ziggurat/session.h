@@ -44,8 +44,9 @@ struct Options {
   bool lua_only = false;            ///< only robots with a Lua script as controller
 
   /// Session::token() of an earlier session: resumes it with its robots at the present tick.
-  /// Controller, robots and lua_only are ignored then. The server keeps the values of the last
-  /// commands, but the handles of the new session begin with 0: set all values again.
+  /// Controller, robots and lua_only are ignored then. The values of the last commands stay, and the
+  /// handles of the new session begin with them; a server of protocol version 1.0 does not send them,
+  /// and the handles begin with the scene's values: set all values again then.
   std::string session_token;
   bool takeover = false;             ///< also robots of other sessions, which keep the rest
   std::optional<Deadline> deadline;  ///< a wish; none = as the scene or the server's options say
@@ -87,6 +88,13 @@ struct Ending {
   std::uint64_t tick = 0;  ///< the last one
 };
 
+/// A robot that a supervisor spawned. A new session takes it: Options::robots = {id}.
+struct SpawnedRobot {
+  std::string id;
+  std::string controller;  ///< id in the scene
+  std::uint64_t tick = 0;  ///< from which on it stands there
+};
+
 /// Controls one or more robots in lock-step: the world waits for the answer of every session.
 /// Leaves the run when destroyed: as failed if an exception is the cause, otherwise as done. Not
 /// thread-safe.
@@ -113,6 +121,8 @@ class Session {
 
   const std::string& token() const noexcept;  ///< for Options::session_token; any bytes
   std::uint64_t missed() const noexcept;      ///< ticks that did not wait for this session's answer
+  /// Robots that were spawned since the last call, of controllers that robots of this session have.
+  std::vector<SpawnedRobot> take_spawned();
 
   std::span<Robot> robots() noexcept;  ///< in scene order
   /// @throws std::out_of_range, listing the ids that exist

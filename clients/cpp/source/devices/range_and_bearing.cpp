@@ -48,6 +48,10 @@ class DataChannel final : public Channel {
   }
   void sent(v1::Command&) override { changed_ = false; }
   void repeat() override { changed_ = true; }
+  void load(v1::Command& from) override {
+    const std::string& data = from.range_and_bearing_data();
+    if (data.size() == data_.size()) std::copy(data.begin(), data.end(), data_.begin());
+  }
   void reset() override {
     std::fill(data_.begin(), data_.end(), std::uint8_t{0});
     changed_ = false;

@@ -170,6 +170,7 @@ class Holding(unittest.TestCase):
             with ziggurat.resume(server.endpoint, session.token) as again:
                 tick = next(again)
                 self.assertEqual((tick.number, tick.event), (3, ziggurat.Event.RESUME))
+                self.assertEqual({robot.joints["hinge"].target for robot in again.robots}, {2.0})
                 encoder = again.robots[0].joints["hinge"].encoder
                 tick = next(again)
                 self.assertEqual((tick.number, tick.event), (4, ziggurat.Event.STEP))

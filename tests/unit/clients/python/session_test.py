@@ -50,7 +50,7 @@ class Beginning(SessionCase):
     def test_hello_has_the_options(self):
         def part(server):
             hello = open_with(server)
-            self.assertEqual((hello.version.major, hello.version.minor), (1, 0))
+            self.assertEqual((hello.version.major, hello.version.minor), (1, 1))
             self.assertEqual(hello.role, v1.ROLE_CONTROLLER)
             self.assertEqual(list(hello.robots), ["a*", "b"])
             self.assertEqual(hello.controller, "some")
@@ -369,6 +369,46 @@ class Losing(SessionCase):
             self.assertEqual((tick.number, tick.event), (3, ziggurat.Event.RESUME))
             self.assertEqual(next(again).event, ziggurat.Event.STEP)
             again.abandon()
+
+        self.play(part, client)
+
+    def test_a_resumed_one_begins_with_what_was_commanded(self):
+        def part(server):
+            hello = server.receive()
+            robots = [v1.RobotDescription(id=one, joint_actuators=[v1.JointDescription(
+                id="hinge", mode=v1.JointDescription.VELOCITY)]) for one in ("a", "b")]
+            resumed = v1.Resumed(commanded=v1.Command(joint_targets=[3, 4]), gone_robots=[1, 9])
+            server.send(welcome=welcome(*robots, resumed=resumed))
+            self.assertEqual(hello.session_token, b"token")
+            server.observe(5)
+            self.assertEqual(list(server.receive().joint_targets), [7, 4])
+            server.observe(6)
+
+        def client():
+            session = ziggurat.resume(self.server.endpoint, b"token", wait_timeout=60)
+            self.assertEqual([r.joints["hinge"].target for r in session.robots], [3, 4])
+            self.assertEqual([r.gone for r in session.robots], [False, True])
+            next(session)
+            session.robots["a"].joints["hinge"].target = 7
+            next(session)
+            session.abandon()
+
+        self.play(part, client)
+
+    def test_dropped_and_spawned_robots(self):
+        def part(server):
+            open_with(server, equipped("one"), equipped("two"))
+            server.send(error=v1.Error(code=v1.Error.ROBOTS_DROPPED, severity=v1.Error.WARNING,
+                                       dropped=v1.Dropped(robots=[1])))
+            server.send(robot_spawned=v1.RobotSpawned(robot="c", controller="swarm", tick=3))
+            server.send(end=v1.End())
+
+        def client():
+            session = self.connect()
+            self.assertEqual(list(session), [])
+            self.assertEqual([r.gone for r in session.robots], [False, True])
+            self.assertEqual(session.spawned, [ziggurat.SpawnedRobot("c", "swarm", 3)])
+            session.abandon()
 
         self.play(part, client)
 

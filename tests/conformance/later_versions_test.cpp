@@ -1,0 +1,178 @@
+// What version 1.1 of the protocol adds (docs/protocol.md: W10, L13, V15), and that sessions of version
+// 1.0 see none of it.
+
+#include <gtest/gtest.h>
+
+#include "pair.h"
+#include "rules.h"
+
+namespace ziggurat::network {
+namespace {
+
+using scene::DeadlineAction;
+using std::chrono::milliseconds;
+
+v1::ClientMessage hello(const std::string& robots, std::uint32_t minor,
+                        const std::string& token = {}) {
+  auto message = Peers::hello(robots);
+  message.mutable_hello()->mutable_version()->set_minor(minor);
+  message.mutable_hello()->set_session_token(token);
+  return message;
+}
+
+TEST(LaterVersions, H2_TheLowerMinorVersionCounts) {
+  for (const std::uint32_t minor : {0U, 1U, 7U}) {
+    const SmallRun small(1);
+    Peers peers(small);
+    peers.say("p", hello("*", minor));
+    EXPECT_EQ(peers.told("p").welcome().version().minor(), std::min(minor, 1U));
+  }
+}
+
+// ---- dropped robots -----------------------------------------------------------------------------
+
+/// "p" has robot0 to robot2, of which "lua" drops at once (0, 2), and "external" (1) holds.
+struct Dropping {
+  explicit Dropping(std::uint32_t minor) : small(3), peers(small, config()) {
+    peers.say("p", hello("*", minor));
+    peers.publish(5);
+    peers.inboxes.clear();
+    peers.pass(milliseconds{50});
+  }
+  static Config config() {
+    Config config = with_deadline(DeadlineAction::drop, 50);
+    config.deadlines[1] = {{DeadlineAction::hold, 50, 0}, true};
+    return config;
+  }
+  SmallRun small;
+  Peers peers;
+};
+
+TEST(LaterVersions, W10_ASessionIsToldWhichOfItsRobotsWereDropped) {
+  Dropping run(1);
+  const auto& told = run.peers.inboxes["p"];
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0].error().code(), v1::Error::DEADLINE_MISSED);
+  EXPECT_FALSE(told[0].error().has_dropped());
+  const v1::Error& error = told[1].error();
+  EXPECT_EQ(error.code(), v1::Error::ROBOTS_DROPPED);
+  EXPECT_EQ(error.severity(), v1::Error::WARNING);
+  EXPECT_EQ(error.tick(), 5U);
+  ASSERT_EQ(error.dropped().robots_size(), 2);
+  EXPECT_EQ(error.dropped().robots(0), 0U);
+  EXPECT_EQ(error.dropped().robots(1), 2U);
+  EXPECT_FALSE(error.message().empty());
+}
+
+TEST(LaterVersions, W10_OnceForEachRobot) {
+  Dropping run(1);
+  run.peers.publish(6);
+  run.peers.inboxes.clear();
+  run.peers.pass(milliseconds{50});
+  EXPECT_EQ(run.peers.told("p").error().code(), v1::Error::DEADLINE_MISSED) << "and nothing else";
+}
+
+TEST(LaterVersions, W10_NotInVersion10) {
+  Dropping run(0);
+  EXPECT_EQ(run.peers.told("p").error().code(), v1::Error::DEADLINE_MISSED) << "and nothing else";
+}
+
+// ---- resumed sessions ---------------------------------------------------------------------------
+
+/// "p" has commanded 3 and 4 at tick 4, and left with robot1 if asked to; "new" resumes at tick 5.
+struct Resuming {
+  explicit Resuming(std::uint32_t minor, bool leaves = false) : small(2), peers(small) {
+    const auto token = peers.join("p", "*").session_token();
+    peers.publish(4);
+    if (leaves) peers.say("p", Peers::leave({1}));
+    peers.say("p", Peers::command(4, {3, 4}));
+    zero_missing(peers.barrier, peers.commands);
+    peers.publish(5);
+    peers.inboxes.clear();
+    peers.say("new", hello("*", minor, token));
+    welcome = peers.inboxes["new"].at(0).welcome();
+  }
+  SmallRun small;
+  Peers peers;
+  v1::Welcome welcome;
+};
+
+TEST(LaterVersions, L13_TheWelcomeOfAResumedSessionHasWhatWasCommanded) {
+  Resuming run(1);
+  ASSERT_TRUE(run.welcome.resumed().has_commanded());
+  auto message = v1::ClientMessage();
+  *message.mutable_command() = run.welcome.resumed().commanded();
+  ASSERT_EQ(message.command().joint_targets_size(), 2);
+  EXPECT_EQ(message.command().joint_targets(0), 3);
+  EXPECT_EQ(message.command().joint_targets(1), 4);
+  EXPECT_EQ(run.welcome.resumed().gone_robots_size(), 0);
+  const auto before = run.peers.commands.joint_targets;
+  message.mutable_command()->set_tick(5);
+  run.peers.say("new", message);
+  EXPECT_TRUE(run.peers.is_complete()) << "it is a Command as it stands";
+  EXPECT_EQ(run.peers.commands.joint_targets, before);
+}
+
+TEST(LaterVersions, L13_AndSaysWhichRobotsHaveLeft) {
+  Resuming run(1, true);
+  ASSERT_EQ(run.welcome.resumed().gone_robots_size(), 1);
+  EXPECT_EQ(run.welcome.resumed().gone_robots(0), 1U);
+  EXPECT_EQ(run.welcome.resumed().commanded().joint_targets_size(), 2) << "S2";
+  EXPECT_EQ(run.welcome.resumed().commanded().joint_targets(1), 0) << "L1";
+}
+
+TEST(LaterVersions, L13_OnlyIfResumedAndFromVersion11On) {
+  EXPECT_FALSE(Resuming(0).welcome.has_resumed());
+  const SmallRun small(1);
+  Peers peers(small);
+  peers.say("p", hello("*", 1));
+  EXPECT_FALSE(peers.told("p").welcome().has_resumed());
+}
+
+TEST(LaterVersions, L13_BeforeTheFirstTickNothingWasCommanded) {
+  const SmallRun small(2);
+  Peers peers(small);
+  const auto token = peers.join("p", "robot0").session_token();
+  // While the server gathers, it does not collect commands.
+  receive(peers.barrier, {"new", bytes_of(hello("*", 1, token), peers.json), true, Access{}}, nullptr);
+  const auto welcome = peers.told("new").welcome();
+  EXPECT_TRUE(welcome.has_resumed());
+  EXPECT_FALSE(welcome.resumed().has_commanded());
+}
+
+// ---- spawned robots -----------------------------------------------------------------------------
+
+/// "p" has robot0 of "lua", "q" robot1 of "external"; then a robot2 of "lua" comes at tick 5.
+struct Spawning {
+  explicit Spawning(std::uint32_t minor) : small(2), peers(small) {
+    peers.say("p", hello("robot0", minor));
+    peers.say("q", hello("robot1", minor));
+    peers.publish(5);
+    peers.inboxes.clear();
+    small.add_robot();
+    peers.commands.joint_targets.resize(3);
+    peers.add_robots("/scenes/spawned.lua", small.observations(5));
+  }
+  SmallRun small;
+  Peers peers;
+};
+
+TEST(LaterVersions, V15_SessionsWithRobotsOfItsControllerAreToldOfASpawnedRobot) {
+  Spawning run(1);
+  const auto told = run.peers.told("p");
+  ASSERT_TRUE(told.has_robot_spawned());
+  EXPECT_EQ(told.robot_spawned().robot(), "robot2");
+  EXPECT_EQ(told.robot_spawned().controller(), "lua");
+  EXPECT_EQ(told.robot_spawned().tick(), 5U);
+  EXPECT_TRUE(run.peers.inboxes["q"].empty());
+  run.peers.say("fleet", hello(told.robot_spawned().robot(), 1));
+  EXPECT_TRUE(run.peers.inboxes["fleet"].front().has_welcome());
+}
+
+TEST(LaterVersions, V15_NotInVersion10) {
+  Spawning run(0);
+  EXPECT_TRUE(run.peers.inboxes["p"].empty());
+}
+
+}  // namespace
+}  // namespace ziggurat::network
