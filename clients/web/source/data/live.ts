@@ -1,0 +1,209 @@
+// A running server, over the Foxglove WebSocket protocol. It connects again by itself.
+import { FoxgloveClient, type Channel, type Service } from "@foxglove/ws-protocol";
+import { makeDecoder, type Decoder } from "./decode";
+import type { Listener, Message, Source, Status, Value } from "./source";
+
+const firstDelay = 250; // [ms] before the first new attempt; doubles up to
+const longestDelay = 2000;
+
+/** Why no connection comes into being, for users. */
+function explain(url: URL, wasOpen: boolean): string {
+  if (wasOpen) return `The server at ${url.host} closed the connection. Connecting again …`;
+  return `No connection to ${url.host}. Either no run is there (start one with: ziggurat run SCENE --view), `
+      + "or it refuses this page: then the address has a wrong token; use the address that it printed. "
+      + "Trying again …";
+}
+
+class Held implements Message {
+  constructor(readonly topic: string, readonly timeNs: bigint, private readonly data: Uint8Array,
+              private readonly decoder: Decoder) {}
+  get bytes(): number { return this.data.byteLength; }
+  read<T = Value>(): T { return this.decoder(this.data) as T; }
+}
+
+interface Pending {
+  resolve: (value: Value) => void;
+  reject: (error: Error) => void;
+}
+
+export class LiveSource implements Source {
+  readonly isLive = true;
+  readonly name: string;
+  private listener!: Listener;
+  private client: FoxgloveClient | null = null;
+  private channels = new Map<number, Channel>();
+  private decoders = new Map<string, Decoder>(); // by schema
+  private services = new Map<string, Service>();
+  private wanted: ReadonlySet<string> = new Set();
+  private subscriptions = new Map<string, { id: number; channel: number }>();
+  private bySubscription = new Map<number, { topic: string; decoder: Decoder }>();
+  private pending = new Map<number, Pending>();
+  private nextCall = 1;
+  private delay = firstDelay;
+  private timer = 0;
+  private isClosed = false;
+  private status: Status = { phase: "connecting", text: "", mayControl: false, session: "" };
+
+  /** @param url  of the WebSocket, with its token */
+  constructor(private readonly url: URL) { this.name = url.host; }
+
+  start(listener: Listener): void {
+    this.listener = listener;
+    this.connect();
+  }
+
+  close(): void {
+    this.isClosed = true;
+    clearTimeout(this.timer);
+    this.client?.close();
+  }
+
+  want(topics: ReadonlySet<string>): void {
+    this.wanted = topics;
+    this.subscribe();
+  }
+
+  call(name: string, request: Value): Promise<Value> {
+    const service = this.services.get(name);
+    if (!this.client || this.status.phase !== "open") return Promise.reject(new Error("not connected"));
+    if (!service) {
+      return Promise.reject(new Error("this page may only look: open it with the address that the server "
+        + "printed, which has the token"));
+    }
+    const callId = this.nextCall++;
+    const data = new TextEncoder().encode(JSON.stringify(request));
+    this.client.sendServiceCallRequest(
+      { serviceId: service.id, callId, encoding: "json", data: new DataView(data.buffer) });
+    return new Promise((resolve, reject) => this.pending.set(callId, { resolve, reject }));
+  }
+
+  setParameter(name: string, value: number | boolean): void {
+    this.client?.setParameters([{ name, value }]);
+  }
+
+  private connect(): void {
+    const socket = new WebSocket(this.url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
+    const client = new FoxgloveClient({ ws: socket });
+    let wasOpen = false;
+    client.on("serverInfo", (info) => {
+      wasOpen = true;
+      this.client = client;
+      this.delay = firstDelay;
+      client.subscribeParameterUpdates(["real_time_factor", "frames_per_second", "phase"]);
+      client.getParameters(["real_time_factor", "frames_per_second", "phase"]);
+      this.tell({ phase: "open", text: "", mayControl: info.metadata?.["may_steer"] === "true",
+                  session: info.sessionId ?? "" });
+    });
+    client.on("error", () => undefined); // "close" follows
+    client.on("close", () => {
+      this.forget();
+      if (this.isClosed) return;
+      this.tell({ phase: "closed", text: explain(this.url, wasOpen), mayControl: false, session: "" });
+      this.timer = setTimeout(() => this.connect(), this.delay) as unknown as number;
+      this.delay = Math.min(2 * this.delay, longestDelay);
+    });
+    this.listen(client);
+  }
+
+  private listen(client: FoxgloveClient): void {
+    client.on("advertise", (channels) => {
+      for (const channel of channels) this.channels.set(channel.id, channel);
+      this.subscribe();
+      this.tellTopics();
+    });
+    client.on("unadvertise", (ids) => {
+      for (const id of ids) {
+        const topic = this.channels.get(id)?.topic;
+        this.channels.delete(id);
+        const held = topic === undefined ? undefined : this.subscriptions.get(topic);
+        if (topic !== undefined && held?.channel === id) this.unsubscribe(topic);
+      }
+      this.subscribe();
+      this.tellTopics();
+    });
+    client.on("message", ({ subscriptionId, timestamp, data }) => {
+      const held = this.bySubscription.get(subscriptionId);
+      if (!held) return;
+      const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
+      this.listener.message(new Held(held.topic, timestamp, bytes, held.decoder));
+    });
+    client.on("advertiseServices", (services) => {
+      for (const service of services) this.services.set(service.name, service);
+    });
+    client.on("serviceCallResponse", ({ callId, data }) => {
+      const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
+      this.take(callId)?.resolve(JSON.parse(new TextDecoder().decode(bytes)) as Value);
+    });
+    client.on("serviceCallFailure", ({ callId, message }) => this.take(callId)?.reject(new Error(message)));
+    client.on("parameterValues", ({ parameters }) => {
+      for (const { name, value } of parameters) this.listener.parameter(name, value);
+    });
+    client.on("status", ({ level, message }) => {
+      this.listener.notice(level === 2 ? "error" : level === 1 ? "warning" : "info", message);
+    });
+  }
+
+  private subscribe(): void {
+    if (!this.client) return;
+    for (const topic of this.subscriptions.keys()) {
+      if (!this.wanted.has(topic)) this.unsubscribe(topic);
+    }
+    for (const channel of this.channels.values()) {
+      if (!this.wanted.has(channel.topic) || this.subscriptions.has(channel.topic)) continue;
+      const decoder = this.decoderOf(channel);
+      if (!decoder) continue;
+      const id = this.client.subscribe(channel.id);
+      this.subscriptions.set(channel.topic, { id, channel: channel.id });
+      this.bySubscription.set(id, { topic: channel.topic, decoder });
+    }
+  }
+
+  private unsubscribe(topic: string): void {
+    const held = this.subscriptions.get(topic);
+    if (!held) return;
+    if (this.channels.has(held.channel)) this.client?.unsubscribe(held.id);
+    this.subscriptions.delete(topic);
+    this.bySubscription.delete(held.id);
+  }
+
+  private decoderOf(channel: Channel): Decoder | undefined {
+    const key = `${channel.schemaName}\n${channel.schema}`;
+    let decoder = this.decoders.get(key);
+    if (decoder) return decoder;
+    try {
+      if (channel.encoding !== "protobuf") throw new Error(`encoding ${channel.encoding} is unknown`);
+      const schema = Uint8Array.from(atob(channel.schema), (letter) => letter.charCodeAt(0));
+      decoder = makeDecoder(schema, channel.schemaName);
+    } catch (error) {
+      this.listener.notice("warning", `${channel.topic} can't be read: ${(error as Error).message}`);
+      return undefined;
+    }
+    this.decoders.set(key, decoder);
+    return decoder;
+  }
+
+  private take(callId: number): Pending | undefined {
+    const pending = this.pending.get(callId);
+    this.pending.delete(callId);
+    return pending;
+  }
+
+  private forget(): void {
+    this.client = null;
+    this.channels.clear();
+    this.services.clear();
+    this.subscriptions.clear();
+    this.bySubscription.clear();
+    for (const { reject } of this.pending.values()) reject(new Error("the connection was closed"));
+    this.pending.clear();
+  }
+
+  private tell(status: Status): void {
+    this.status = status;
+    this.listener.status(status);
+  }
+
+  private tellTopics(): void {
+    this.listener.topics([...this.channels.values()].map((channel) => channel.topic).sort());
+  }
+}

@@ -1,0 +1,114 @@
+// What devices do, as lines: magnets' moments, frusta, rays, radio messages, contact forces, trails.
+import * as three from "three";
+import type { Camera, Contacts, Mount, Poses, RadioTraffic, Rays, World } from "../model/messages";
+import { compose, poseAt, transform, type Vector } from "../model/pose";
+import type { Lines } from "./lines";
+
+function at(poses: Poses, mount: Mount, offset: Vector = [0, 0, 0]): Vector {
+  return transform(compose(poseAt(poses.positions, poses.orientations, mount.link), mount), offset);
+}
+
+/** Arrows along the moments, the longest 4 cm; red with a current that adds, blue with one that opposes. */
+export function drawMagnets(world: World, poses: Poses, lines: Lines): void {
+  let most = 1e-12;
+  for (let i = 0; i < poses.magnetMoments.length; i += 3) {
+    most = Math.max(most, Math.hypot(poses.magnetMoments[i], poses.magnetMoments[i + 1], poses.magnetMoments[i + 2]));
+  }
+  world.magnets.forEach((magnet, i) => {
+    if (world.entities[magnet.entity]?.removed || poses.magnetMoments.length < 3 * i + 3) return;
+    const link = poseAt(poses.positions, poses.orientations, magnet.mount.link);
+    const moment = [0, 1, 2].map((k) => poses.magnetMoments[3 * i + k] / most * 0.04) as Vector;
+    const [x, y, z] = transform({ position: [0, 0, 0], orientation: link.orientation }, moment);
+    const way = new three.Vector3(x, y, z);
+    const current = poses.magnetCurrents[i] ?? 0;
+    const color = current > 0 ? 0xe0402c : current < 0 ? 0x2f74e0 : 0xa050c8;
+    const start = new three.Vector3(...at(poses, magnet.mount)).addScaledVector(way, -0.5);
+    if (way.length() > 1e-6) lines.arrow(start, way, color);
+  });
+}
+
+/** Corners of the image at a depth [m], in the camera's frame, from top left clockwise. */
+export function cornersAt(camera: Camera, depth: number): Vector[] {
+  const [fx, fy] = [camera.focalLength[0], camera.focalLength[1]];
+  const [cx, cy] = [camera.principalPoint[0], camera.principalPoint[1]];
+  const corner = (u: number, v: number): Vector => [(u - cx) / fx * depth, (v - cy) / fy * depth, depth];
+  return [corner(0, 0), corner(camera.width, 0), corner(camera.width, camera.height), corner(0, camera.height)];
+}
+
+export function drawFrusta(world: World, poses: Poses, lines: Lines): void {
+  for (const camera of world.cameras) {
+    if (world.entities[world.robots[camera.robot]?.entity]?.removed) continue;
+    const near = cornersAt(camera, camera.near).map((corner) => at(poses, camera.mount, corner));
+    const far = cornersAt(camera, camera.far).map((corner) => at(poses, camera.mount, corner));
+    for (let i = 0; i < 4; ++i) {
+      const next = (i + 1) % 4;
+      lines.add(near[i], near[next], 0x2a9d8f, 0.9);
+      lines.add(far[i], far[next], 0x2a9d8f, 0.35);
+      lines.add(near[i], far[i], 0x2a9d8f, 0.9, 0.35);
+    }
+  }
+}
+
+export const rayColors = [0xe6a417, 0x8e5bd0, 0x3d8bfd, 0x2a9d8f]; // by kind
+
+export function drawRays(rays: Rays, lines: Lines): void {
+  for (let i = 0; i < rays.kinds.length; ++i) {
+    const color = rays.hits[i] ? 0xe0402c : rayColors[rays.kinds[i]] ?? 0x888888;
+    const s = rays.segments, k = 6 * i;
+    lines.add([s[k], s[k + 1], s[k + 2]], [s[k + 3], s[k + 4], s[k + 5]], color, 0.85, rays.hits[i] ? 0.85 : 0.25);
+  }
+}
+
+/** Arrows of force: 10 cm for the weight of `reference` [N], and at most 15 cm. */
+export function drawContacts(contacts: Contacts, reference: number, lines: Lines): void {
+  for (let i = 0; i < contacts.links.length / 2; ++i) {
+    const k = 3 * i;
+    const force = new three.Vector3(contacts.forces[k], contacts.forces[k + 1], contacts.forces[k + 2]);
+    const start = new three.Vector3(contacts.points[k], contacts.points[k + 1], contacts.points[k + 2]);
+    const length = Math.min(0.15, 0.1 * force.length() / reference);
+    if (length > 1e-4) lines.arrow(start, force.setLength(length), 0x1fa34a);
+    for (const axis of [0, 1]) {
+      const half: Vector = axis === 0 ? [0.004, 0, 0] : [0, 0.004, 0];
+      lines.add([start.x - half[0], start.y - half[1], start.z], [start.x + half[0], start.y + half[1], start.z], 0x1fa34a);
+    }
+  }
+}
+
+interface Flash { from: Vector; to: Vector; color: number; end: number }
+
+/** Messages fly from sender to receiver for a fraction of a second of wall time. */
+export class RadioFlashes {
+  private flashes: Flash[] = [];
+  private readonly seconds = 0.45;
+  get isActive(): boolean { return this.flashes.length > 0; }
+
+  add(world: World, poses: Poses, traffic: RadioTraffic, now: number): void {
+    const end = now + this.seconds;
+    const push = (from: Mount | undefined, to: Mount | undefined, color: number): void => {
+      if (from && to && this.flashes.length < 2000) this.flashes.push({ from: at(poses, from), to: at(poses, to), color, end });
+    };
+    for (const { sender, receiver } of traffic.messages) {
+      push(world.radios[sender]?.mount, world.radios[receiver]?.mount, rayColors[1]);
+    }
+    for (const { sender, receiver } of traffic.packets) {
+      push(world.rangeAndBearing[sender]?.mount, world.rangeAndBearing[receiver]?.mount, rayColors[2]);
+    }
+  }
+
+  draw(now: number, lines: Lines): void {
+    this.flashes = this.flashes.filter(({ end }) => end > now);
+    for (const { from, to, color, end } of this.flashes) {
+      const part = 1 - (end - now) / this.seconds;
+      const along = (t: number): Vector => from.map((value, i) => value + (to[i] - value) * t) as Vector;
+      lines.add(from, to, color, 0.35 * (1 - part));
+      lines.add(along(Math.max(0, part - 0.25)), along(part), color, 0.1, 1);
+    }
+  }
+}
+
+/** Paths of entities that were chosen. */
+export function drawTrail(points: Vector[], color: number, lines: Lines): void {
+  for (let i = 1; i < points.length; ++i) {
+    lines.add(points[i - 1], points[i], color, i / points.length, (i + 1) / points.length);
+  }
+}

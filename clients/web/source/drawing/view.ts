@@ -1,0 +1,216 @@
+// The picture of one frame: everything that is drawn, layer by layer.
+import * as three from "three";
+import type { Contacts, Poses, RadioTraffic, Rays, World } from "../model/messages";
+import { compose, poseAt, type Vector } from "../model/pose";
+import type { Frame } from "../model/timeline";
+import { Bodies } from "./bodies";
+import { Lights } from "./lights";
+import { Lines } from "./lines";
+import { drawContacts, drawFrusta, drawMagnets, drawRays, drawTrail, RadioFlashes } from "./overlays";
+import { Stage } from "./stage";
+import { Tags } from "./tags";
+
+/** Layers, with the key that switches each and the topic that it needs. */
+export const layers = [
+  { name: "bodies", label: "Bodies", key: "1" },
+  { name: "shadows", label: "Shadows", key: "2" },
+  { name: "tags", label: "Tags", key: "3" },
+  { name: "lights", label: "LEDs", key: "4" },
+  { name: "magnets", label: "Magnets", key: "5" },
+  { name: "frusta", label: "Frusta", key: "6" },
+  { name: "rays", label: "Rays", key: "7", topic: "/rays" },
+  { name: "radio", label: "Radio", key: "8", topic: "/radio" },
+  { name: "contacts", label: "Contacts", key: "9", topic: "/contacts" },
+  { name: "trails", label: "Trails", key: "0" },
+] as const;
+export type Layer = (typeof layers)[number]["name"];
+export const layersAtFirst: Layer[] = ["bodies", "shadows", "tags", "lights", "rays", "radio", "trails"];
+
+export class View {
+  readonly stage: Stage;
+  private readonly bodies = new Bodies();
+  private readonly tags = new Tags();
+  private readonly lights = new Lights();
+  private readonly lines = new Lines();
+  private readonly flashes = new RadioFlashes();
+  private world: World | null = null;
+  private frame: Frame | null = null;
+  private trails = new Map<string, Vector[]>();
+  private reference = 1; // [N]
+  private flashed = -1;
+  private hasFramed = false;
+  private drawnAt = -10; // [s]
+  poses: Poses | null = null;
+  shown = new Set<Layer>(layersAtFirst);
+  trailed: string[] = []; // ids of entities
+  followed: string | null = null;
+
+  constructor(canvas: HTMLCanvasElement, keepsLook: boolean) {
+    this.stage = new Stage(canvas);
+    this.hasFramed = keepsLook;
+    this.stage.scene.add(this.bodies.group, this.tags.group, this.lights.group, this.lines.object);
+  }
+
+  /** Shows a frame; false if nothing in it is known yet. */
+  show(frame: Frame, highlighted: number[]): boolean {
+    const message = frame.messages.get("/poses");
+    const world = frame.world;
+    if (!message || !world) return false;
+    const poses = message.read<Poses>();
+    if (poses.generation !== world.generation) return false;
+    if (world !== this.world) this.setWorld(world);
+    const before = this.poses;
+    this.poses = poses;
+    this.frame = frame;
+    this.bodies.setPoses(poses);
+    this.bodies.highlight(highlighted);
+    this.tags.setPoses(poses);
+    this.lights.setPoses(poses);
+    this.follow(before);
+    this.growTrails();
+    if (!this.hasFramed) {
+      this.hasFramed = true;
+      this.frameAll();
+    }
+    this.stage.isDirty = true;
+    return true;
+  }
+
+  private setWorld(world: World): void {
+    this.world = world;
+    this.bodies.setWorld(world);
+    this.tags.setWorld(world);
+    this.lights.setWorld(world);
+    this.stage.setWorld(world);
+    const masses = world.links.map((link) => link.mass).filter((mass) => mass > 0).sort((a, b) => a - b);
+    this.reference = 9.8 * Math.max(1e-6, masses[Math.floor(masses.length / 2)] ?? 0.1);
+  }
+
+  applyLayers(): void {
+    this.bodies.group.visible = this.shown.has("bodies");
+    this.tags.group.visible = this.shown.has("tags");
+    this.lights.group.visible = this.shown.has("lights");
+    this.stage.scene.traverse((object) => {
+      if (object instanceof three.DirectionalLight) object.castShadow = this.shown.has("shadows");
+    });
+    this.stage.isDirty = true;
+  }
+
+  /** Draws if anything changed. @param now  wall time [s] */
+  render(now: number): boolean {
+    this.stage.resize();
+    if (!this.stage.isDirty && !this.flashes.isActive) return false;
+    this.drawLines(now);
+    this.stage.render();
+    // Consecutive frames only: the time between them includes what the graphics processor does.
+    if (now - this.drawnAt < 1) this.stage.noteFrame(now - this.drawnAt);
+    this.drawnAt = now;
+    return true;
+  }
+
+  private drawLines(now: number): void {
+    const { lines, frame, world, poses } = this;
+    lines.clear();
+    if (frame && world && poses) {
+      if (this.shown.has("magnets")) drawMagnets(world, poses, lines);
+      if (this.shown.has("frusta")) drawFrusta(world, poses, lines);
+      const rays = frame.messages.get("/rays");
+      if (rays && this.shown.has("rays")) drawRays(rays.read<Rays>(), lines);
+      const contacts = frame.messages.get("/contacts");
+      if (contacts && this.shown.has("contacts")) drawContacts(contacts.read<Contacts>(), this.reference, lines);
+      const radio = frame.messages.get("/radio");
+      if (radio && this.shown.has("radio") && this.flashed !== frame.sequence) {
+        this.flashed = frame.sequence;
+        this.flashes.add(world, poses, radio.read<RadioTraffic>(), now);
+      }
+      if (this.shown.has("trails")) {
+        for (const points of this.trails.values()) drawTrail(points, 0xff9d2e, lines);
+      }
+    }
+    this.flashes.draw(now, lines);
+    lines.commit();
+  }
+
+  /** Draws the world without lines from another camera; pixels are linear light, rows from the bottom. */
+  renderFrom(eye: three.Camera, target: three.WebGLRenderTarget, pixels: Uint8Array): void {
+    const { renderer, scene } = this.stage;
+    this.lines.object.visible = false;
+    renderer.setRenderTarget(target);
+    renderer.render(scene, eye);
+    renderer.readRenderTargetPixels(target, 0, 0, target.width, target.height, pixels);
+    renderer.setRenderTarget(null);
+    this.lines.object.visible = true;
+  }
+
+  /** X_WE of an entity's origin at the frame that is shown. */
+  originOf(entity: number): { position: Vector; orientation: [number, number, number, number] } | null {
+    const found = this.world?.entities[entity];
+    if (!found || !this.poses) return null;
+    return compose(poseAt(this.poses.positions, this.poses.orientations, found.referenceLink),
+                   { position: found.originPosition, orientation: found.originOrientation });
+  }
+
+  private indexOf(id: string): number {
+    return this.world?.entities.findIndex((entity) => entity.id === id && !entity.removed) ?? -1;
+  }
+
+  private follow(before: Poses | null): void {
+    const entity = this.followed === null ? undefined : this.world?.entities[this.indexOf(this.followed)];
+    if (!entity || !before || !this.poses || before.generation !== this.poses.generation) return;
+    const k = 3 * entity.referenceLink;
+    const [a, b] = [before.positions, this.poses.positions];
+    this.stage.shift([b[k] - a[k], b[k + 1] - a[k + 1], b[k + 2] - a[k + 2]]);
+  }
+
+  private growTrails(): void {
+    for (const id of [...this.trails.keys()]) if (!this.trailed.includes(id)) this.trails.delete(id);
+    for (const id of this.trailed) {
+      const origin = this.originOf(this.indexOf(id));
+      if (!origin) continue;
+      const points = this.trails.get(id) ?? [];
+      const last = points[points.length - 1];
+      const point: Vector = [origin.position[0], origin.position[1], origin.position[2] + 0.002];
+      if (!last || Math.hypot(point[0] - last[0], point[1] - last[1], point[2] - last[2]) > 0.001) points.push(point);
+      if (points.length > 1500) points.shift();
+      this.trails.set(id, points);
+    }
+  }
+
+  /** Looks at the entity with that id, or at all that moves. */
+  frameAll(id?: string): void {
+    if (!this.world || !this.poses) return;
+    const low: Vector = [Infinity, Infinity, Infinity], high: Vector = [-Infinity, -Infinity, -Infinity];
+    const isWanted = (entity: number): boolean => {
+      const { movable, removed, robot, id: name } = this.world!.entities[entity];
+      return !removed && (id === undefined ? movable || robot !== undefined : name === id);
+    };
+    this.world.links.forEach((link, index) => {
+      if (!isWanted(link.entity)) return;
+      for (let i = 0; i < 3; ++i) {
+        const value = this.poses!.positions[3 * index + i];
+        low[i] = Math.min(low[i], value - 0.05);
+        high[i] = Math.max(high[i], value + 0.05);
+      }
+    });
+    if (low[0] > high[0]) {
+      const [x, y] = [this.world.arenaSize[0] / 2 || 1, this.world.arenaSize[1] / 2 || 1];
+      this.stage.frame([-x, -y, 0], [x, y, 0.2]);
+    } else {
+      this.stage.frame(low, high);
+    }
+  }
+
+  /** The link under a place of the canvas (-1 to 1 each, y up). */
+  pick(x: number, y: number): { link: number; point: three.Vector3 } | null {
+    const ray = new three.Raycaster();
+    ray.setFromCamera(new three.Vector2(x, y), this.stage.camera);
+    return this.bodies.pick(ray);
+  }
+
+  /** Where the ray through a place of the canvas meets the plane z = height. */
+  onPlane(x: number, y: number, height: number): three.Vector3 | null {
+    const ray = new three.Raycaster();
+    ray.setFromCamera(new three.Vector2(x, y), this.stage.camera);
+    return ray.ray.intersectPlane(new three.Plane(new three.Vector3(0, 0, 1), -height), new three.Vector3());
+  }
+}

@@ -1,0 +1,137 @@
+// What one robot senses and is told, device by device, with the place of each number in its message,
+// so that it can be plotted.
+import type { Command, Description, Floats, Observation } from "./messages";
+
+export interface Reading {
+  label: string;
+  text: string;
+  value?: number;
+  range?: [number, number]; // of a bar
+  series?: { topic: string; path: string };
+}
+export interface Group { device: string; readings: Reading[] }
+
+/** Bytes as text where they are printable, and as hex. */
+export function bytesText(bytes: Uint8Array): string {
+  const hex = Array.from(bytes.slice(0, 48), (byte) => byte.toString(16).padStart(2, "0")).join(" ");
+  const more = bytes.length > 48 ? " …" : "";
+  const isPrintable = bytes.length > 0 && bytes.every((byte) => byte >= 32 && byte < 127);
+  return isPrintable ? `“${new TextDecoder().decode(bytes)}”  ${hex}${more}` : hex + more || "(empty)";
+}
+
+export function number(value: number, unit = ""): string {
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : String(value);
+  const text = Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-4) ? value.toExponential(2)
+                                                                                 : value.toFixed(4);
+  return unit ? `${text} ${unit}` : text;
+}
+
+/** Adds readings of one message; `group` collects them by device. */
+class Collector {
+  groups: Group[] = [];
+  constructor(private readonly topic: string) {}
+
+  group(device: string): Reading[] {
+    let found = this.groups.find((group) => group.device === device);
+    if (!found) this.groups.push(found = { device, readings: [] });
+    return found.readings;
+  }
+
+  add(device: string, label: string, field: string, values: Floats, index: number, unit = "",
+      range?: [number, number]): void {
+    if (index >= values.length) return;
+    const value = values[index];
+    this.group(device).push({ label, value, text: number(value, unit), range,
+                              series: { topic: this.topic, path: `${field}.${index}` } });
+  }
+}
+
+const modes = ["", "disabled", "position", "velocity"];
+const turretModes = ["", "passive", "position", "speed"];
+const axes = ["x", "y", "z"];
+
+export type Limits = (joint: string) => [number, number] | undefined;
+
+export function observed(topic: string, robot: Description, o: Observation, limits: Limits): Group[] {
+  const out = new Collector(topic);
+  robot.jointSensors.forEach(({ id, mode }, i) => {
+    out.add("Joints", `${id} ${modes[mode] ?? ""}`, "jointReadings", o.jointReadings, i,
+            "", mode === 2 ? limits(id) : undefined);
+  });
+  robot.proximitySensors.forEach((_, i) => out.add("Proximity", `${i}`, "proximity", o.proximity, i, "", [0, 1]));
+  if (robot.positioning) {
+    axes.forEach((axis, i) => out.add("Position", axis, "positioning", o.positioning, i, "m"));
+    ["w", "x", "y", "z"].forEach((axis, i) => out.add("Position", `q${axis}`, "positioning", o.positioning, 3 + i));
+  }
+  if (robot.battery) {
+    out.add("Battery", "charge", "batteries", o.batteries, 0, "", [0, 1]);
+    out.add("Battery", "time left", "batteries", o.batteries, 1, "s");
+  }
+  if (robot.wheels?.measures) {
+    ["left", "right"].forEach((side, i) => out.add("Wheels", `speed ${side}`, "wheels", o.wheels, i, "m/s"));
+    ["left", "right"].forEach((side, i) => out.add("Wheels", `distance ${side}`, "wheels", o.wheels, 2 + i, "m"));
+  }
+  if (robot.turret?.measures) out.add("Turret", "rotation", "turretRotations", o.turretRotations, 0, "rad");
+  robot.imus.forEach(({ id }, k) => {
+    axes.forEach((axis, i) => out.add(`IMU ${id}`, `acceleration ${axis}`, "imus", o.imus, 6 * k + i, "m/s²"));
+    axes.forEach((axis, i) => out.add(`IMU ${id}`, `turning ${axis}`, "imus", o.imus, 6 * k + 3 + i, "rad/s"));
+  });
+  robot.contactSensors.forEach(({ id }, k) => {
+    out.add(`Contact ${id}`, "touches", "contactSensors", o.contactSensors, 5 * k);
+    axes.forEach((axis, i) => out.add(`Contact ${id}`, `force ${axis}`, "contactSensors", o.contactSensors, 5 * k + 1 + i, "N"));
+    out.add(`Contact ${id}`, "strength", "contactSensors", o.contactSensors, 5 * k + 4, "N");
+  });
+  addCounts(out, robot, o);
+  for (const { radio, payload } of o.radioMessages) {
+    out.group("Radio").push({ label: `${robot.radios[radio]?.id ?? radio} got`, text: bytesText(payload) });
+  }
+  o.rangeAndBearing.forEach((packet, i) => out.group("Range and bearing").push({
+    label: `packet ${i}`,
+    text: `${number(packet.range, "m")}  ${number(packet.horizontalBearing, "rad")}  ${bytesText(packet.data)}`,
+  }));
+  return out.groups;
+}
+
+/** How many LEDs and tags each camera sees. */
+function addCounts(out: Collector, robot: Description, o: Observation): void {
+  let leds = 0, directional = 0, tags = 0;
+  for (const camera of robot.cameras) {
+    const device = `Camera ${camera.id}`;
+    if (camera.detectsLeds) out.add(device, "LEDs seen", "ledCounts", o.ledCounts, leds++);
+    if (camera.detectsDirectionalLeds) {
+      out.add(device, "directional LEDs seen", "directionalLedCounts", o.directionalLedCounts, directional++);
+    }
+    if (camera.detectsTags) out.add(device, "tags seen", "tagCounts", o.tagCounts, tags++);
+  }
+}
+
+export function commanded(topic: string, robot: Description, c: Command, limits: Limits): Group[] {
+  const out = new Collector(topic);
+  robot.jointActuators.forEach(({ id, mode }, i) => {
+    out.add("Joints", `${id} ${modes[mode] ?? ""}`, "jointTargets", c.jointTargets, i, "",
+            mode === 2 ? limits(id) : undefined);
+  });
+  robot.magnets.forEach(({ id }, i) => out.add("Magnets", id || `${i}`, "magnetCurrents", c.magnetCurrents, i));
+  const color = (values: Floats, i: number): string => `#${(values[i] ?? 0).toString(16).padStart(6, "0")}`;
+  robot.leds.slice(0, c.ledColors.length).forEach(({ id }, i) =>
+    out.group("LEDs").push({ label: id || `${i}`, text: color(c.ledColors, i) }));
+  robot.directionalLeds.slice(0, c.directionalLedColors.length).forEach(({ id }, i) =>
+    out.group("Directional LEDs").push({ label: id || `${i}`, text: color(c.directionalLedColors, i) }));
+  robot.tags.slice(0, c.tagPayloads.length).forEach(({ id }, i) =>
+    out.group("Tags").push({ label: id || `${i}`, text: bytesText(c.tagPayloads[i]) }));
+  if (robot.wheels?.drives) {
+    ["left", "right"].forEach((side, i) => out.add("Wheels", side, "wheelVelocities", c.wheelVelocities, i, "m/s"));
+  }
+  if (robot.turret?.drives && c.turretModes.length > 0) {
+    out.group("Turret").push({ label: "mode", text: turretModes[c.turretModes[0]] ?? "?" });
+    out.add("Turret", "rotation", "turretRotations", c.turretRotations, 0, "rad");
+    out.add("Turret", "speed", "turretSpeeds", c.turretSpeeds, 0, "rad/s");
+  }
+  if (c.rangeAndBearingData.length > 0) {
+    out.group("Range and bearing").push({ label: "data", text: bytesText(c.rangeAndBearingData) });
+  }
+  for (const { radio, payload } of c.radioMessages) {
+    out.group("Radio").push({ label: `${robot.radios[radio]?.id ?? radio} sends`, text: bytesText(payload) });
+  }
+  return out.groups;
+}

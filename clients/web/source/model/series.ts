@@ -1,0 +1,71 @@
+// Numbers over time: any number of any channel, named by its topic and its path in the decoded message,
+// for example "jointReadings.2".
+import type { Value } from "../data/source";
+import type { Frame, Timeline } from "./timeline";
+
+export interface SeriesName { topic: string; path: string }
+
+/** The number at a path, or null. */
+export function numberAt(value: unknown, path: string): number | null {
+  let found: unknown = value;
+  for (const key of path.split(".")) {
+    if (found === null || typeof found !== "object") return null;
+    found = (found as Record<string, unknown>)[key];
+  }
+  if (typeof found === "bigint") return Number(found);
+  if (typeof found === "boolean") return found ? 1 : 0;
+  return typeof found === "number" ? found : null;
+}
+
+/** Paths of all numbers in a message, at most so many, in its order. */
+export function numbersIn(value: unknown, limit = 500, prefix = ""): { path: string; value: number }[] {
+  const found: { path: string; value: number }[] = [];
+  const visit = (inner: unknown, path: string): void => {
+    if (found.length >= limit || inner === null || inner instanceof Uint8Array) return;
+    if (typeof inner === "number" || typeof inner === "bigint" || typeof inner === "boolean") {
+      found.push({ path, value: Number(inner) });
+    } else if (typeof inner === "object") {
+      for (const [key, child] of Object.entries(inner as Value)) visit(child, path ? `${path}.${key}` : key);
+    }
+  };
+  visit(value, prefix);
+  return found;
+}
+
+/** A series is "topic:path" in the address. */
+export function nameOf({ topic, path }: SeriesName): string { return `${topic}:${path}`; }
+export function parseName(text: string): SeriesName | null {
+  const at = text.lastIndexOf(":");
+  return at > 0 ? { topic: text.slice(0, at), path: text.slice(at + 1) } : null;
+}
+
+/** The values of one series in the frames of a timeline; it reads each frame once. */
+export class Series {
+  readonly sequences: number[] = [];
+  readonly times: number[] = []; // simulated [s]
+  readonly values: (number | null)[] = [];
+  private next = 0;
+
+  constructor(readonly name: SeriesName) {}
+
+  /** Takes the frames that are new, except the newest, which may still be incomplete. */
+  update(timeline: Timeline, most = 6000): void {
+    this.next = Math.max(this.next, timeline.first, timeline.last - most);
+    for (; this.next < timeline.last; ++this.next) {
+      const frame = timeline.at(this.next);
+      if (frame) this.push(frame);
+    }
+    const drop = this.sequences.findIndex((sequence) => sequence >= timeline.last - most);
+    if (drop > 500) for (const list of [this.sequences, this.times, this.values]) list.splice(0, drop);
+  }
+
+  private push(frame: Frame): void {
+    const message = frame.messages.get(this.name.topic);
+    if (!message) return;
+    this.sequences.push(frame.sequence);
+    this.times.push(Number(frame.timeNs) * 1e-9);
+    this.values.push(numberAt(message.read(), this.name.path));
+  }
+
+  get latest(): number | null { return this.values[this.values.length - 1] ?? null; }
+}

@@ -1,0 +1,68 @@
+// What the user has chosen, as it stands in the address after "#", so that a link shows the same view.
+import type { Look } from "../drawing/stage";
+import { layers, layersAtFirst, type Layer } from "../drawing/view";
+import { nameOf, parseName, type SeriesName } from "./series";
+
+export type Tab = "devices" | "plots" | "camera" | "log" | "barrier";
+export interface Settings {
+  look: Look | null; // null: the page frames the world itself
+  layers: Layer[];
+  selected: string | null; // id of an entity
+  followed: string | null;
+  trailed: string[];
+  plots: SeriesName[];
+  tab: Tab;
+  theme: "light" | "dark" | "system";
+}
+
+export function settingsAtFirst(): Settings {
+  return { look: null, layers: [...layersAtFirst], selected: null, followed: null, trailed: [], plots: [],
+           tab: "devices", theme: "system" };
+}
+
+const tabs: Tab[] = ["devices", "plots", "camera", "log", "barrier"];
+const round = (value: number): string => String(Number(value.toFixed(4)));
+
+export function toAddress(settings: Settings): string {
+  const parts = new URLSearchParams();
+  const { look } = settings;
+  if (look) {
+    parts.set("eye", look.eye.map(round).join(","));
+    parts.set("at", look.at.map(round).join(","));
+    parts.set("fov", round(look.fieldOfView));
+  }
+  if (settings.layers.join() !== layersAtFirst.join()) parts.set("layers", settings.layers.join(","));
+  if (settings.selected !== null) parts.set("selected", settings.selected);
+  if (settings.followed !== null) parts.set("follow", settings.followed);
+  for (const id of settings.trailed) parts.append("trail", id);
+  for (const plot of settings.plots) parts.append("plot", nameOf(plot));
+  if (settings.tab !== "devices") parts.set("tab", settings.tab);
+  if (settings.theme !== "system") parts.set("theme", settings.theme);
+  return parts.toString();
+}
+
+function vector(text: string | null): [number, number, number] | null {
+  const numbers = (text ?? "").split(",").map(Number);
+  return text && numbers.length === 3 && numbers.every(Number.isFinite) ? numbers as [number, number, number] : null;
+}
+
+/** What can't be understood is left out. */
+export function fromAddress(text: string): Settings {
+  const parts = new URLSearchParams(text.replace(/^#/, ""));
+  const settings = settingsAtFirst();
+  const eye = vector(parts.get("eye")), at = vector(parts.get("at"));
+  const fieldOfView = Number(parts.get("fov") ?? "45");
+  if (eye && at) {
+    settings.look = { eye, at, fieldOfView: fieldOfView > 1 && fieldOfView < 170 ? fieldOfView : 45 };
+  }
+  const named = parts.get("layers")?.split(",");
+  if (named) settings.layers = layers.map(({ name }) => name).filter((name) => named.includes(name));
+  settings.selected = parts.get("selected");
+  settings.followed = parts.get("follow");
+  settings.trailed = parts.getAll("trail");
+  settings.plots = parts.getAll("plot").map(parseName).filter((name) => name !== null);
+  settings.tab = tabs.find((tab) => tab === parts.get("tab")) ?? "devices";
+  const theme = parts.get("theme");
+  settings.theme = theme === "light" || theme === "dark" ? theme : "system";
+  return settings;
+}

@@ -1,0 +1,139 @@
+// What the page has seen: a bounded buffer of frames. A frame has the messages of one tick; they
+// stay encoded, so that an hour of a small world fits.
+import type { Message } from "../data/source";
+import type { Poses, World } from "./messages";
+
+export const mostBytes = 192 * 1024 * 1024;
+export const mostFrames = 40_000;
+
+export interface Frame {
+  readonly sequence: number; // counts frames since the page was opened
+  readonly timeNs: bigint; // simulated
+  tick: number;
+  world: World | null;
+  readonly messages: Map<string, Message>;
+}
+
+export type MarkKind = "log" | "warning" | "error" | "missed" | "reset";
+
+/** Something that happened. */
+export interface Mark {
+  sequence: number; // of the frame
+  kind: MarkKind;
+  text: string;
+}
+
+export class Timeline {
+  private frames: Frame[] = [];
+  private begin = 0; // of the frames in use; the array is cut now and then
+  private bytes = 0;
+  private next = 0;
+  private generation = -1;
+  private worlds = new Map<number, World>();
+  private lastMissed = 0;
+  marks: Mark[] = [];
+
+  constructor(private readonly byteLimit = mostBytes, private readonly frameLimit = mostFrames) {}
+
+  get length(): number { return this.frames.length - this.begin; }
+  get first(): number { return this.length > 0 ? this.frames[this.begin].sequence : 0; }
+  get last(): number { return this.length > 0 ? this.frames[this.frames.length - 1].sequence : -1; }
+  get newest(): Frame | null { return this.length > 0 ? this.frames[this.frames.length - 1] : null; }
+  get heldBytes(): number { return this.bytes; }
+
+  /** The frame, or the nearest one that is still held. */
+  at(sequence: number): Frame | null {
+    if (this.length === 0) return null;
+    const index = Math.min(Math.max(sequence - this.first, 0), this.length - 1);
+    return this.frames[this.begin + index];
+  }
+
+  clear(): void {
+    this.frames = [];
+    this.begin = this.bytes = 0;
+    this.marks = [];
+    this.worlds.clear();
+  }
+
+  /** Takes a message; true if it began a frame. */
+  take(message: Message): boolean {
+    let frame = this.newest;
+    let isNew = !frame || message.timeNs > frame.timeNs;
+    if (message.topic === "/world") {
+      const world = message.read<World>();
+      this.generation = world.generation;
+      this.worlds.set(world.generation, world);
+      if (this.worlds.size > 64) this.worlds.delete(this.worlds.keys().next().value as number);
+      if (frame && message.timeNs < frame.timeNs) {
+        this.mark("reset", "the world went back to its start");
+        isNew = true;
+      }
+    } else if (message.topic === "/log" || message.topic === "/barrier") {
+      isNew = !frame; // they have no tick of their own
+    } else if (frame && message.timeNs < frame.timeNs) {
+      frame = this.withTime(message.timeNs) ?? frame; // sent again for a new subscription
+    }
+    if (!frame || isNew) {
+      frame = { sequence: this.next++, timeNs: message.timeNs, tick: frame?.tick ?? 0, world: this.world(),
+                messages: new Map() };
+      this.frames.push(frame);
+    }
+    this.bytes += message.bytes - (frame.messages.get(message.topic)?.bytes ?? 0);
+    frame.messages.set(message.topic, message);
+    if (message.topic === "/world" && !frame.world) frame.world = this.world();
+    if (message.topic === "/poses") this.takePoses(frame, message);
+    this.forgetOld();
+    return isNew;
+  }
+
+  /** One of the newest frames. */
+  private withTime(timeNs: bigint): Frame | undefined {
+    for (let s = this.last; s >= this.first && s > this.last - 100; --s) {
+      const frame = this.at(s);
+      if (frame?.timeNs === timeNs) return frame;
+    }
+    return undefined;
+  }
+
+  private takePoses(frame: Frame, message: Message): void {
+    const poses = message.read<Poses>();
+    frame.tick = poses.tick;
+    frame.world = this.worlds.get(poses.generation) ?? frame.world;
+  }
+
+  private world(): World | null { return this.worlds.get(this.generation) ?? null; }
+
+  mark(kind: MarkKind, text: string): void {
+    this.marks.push({ sequence: Math.max(this.last, 0), kind, text });
+    if (this.marks.length > 5000) this.marks.splice(0, 1000);
+  }
+
+  /** Marks deadlines that were missed since the last call. */
+  noteMissed(total: number): void {
+    if (total > this.lastMissed) this.mark("missed", `${total - this.lastMissed} deadlines missed`);
+    this.lastMissed = total;
+  }
+
+  /** The newest message of a topic at or before a frame; it looks back so many frames. */
+  message(topic: string, sequence: number, back = 400): Message | null {
+    for (let s = Math.min(sequence, this.last); s >= this.first && s > sequence - back; --s) {
+      const found = this.at(s)?.messages.get(topic);
+      if (found) return found;
+    }
+    return null;
+  }
+
+  private forgetOld(): void {
+    while (this.length > 2 && (this.bytes > this.byteLimit || this.length > this.frameLimit)) {
+      const old = this.frames[this.begin++];
+      for (const message of old.messages.values()) this.bytes -= message.bytes;
+      old.messages.clear();
+    }
+    if (this.begin > 1024 && this.begin * 2 > this.frames.length) {
+      this.frames = this.frames.slice(this.begin);
+      this.begin = 0;
+      const first = this.first;
+      this.marks = this.marks.filter((mark) => mark.sequence >= first);
+    }
+  }
+}

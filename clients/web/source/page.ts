@@ -1,0 +1,180 @@
+// The page: makes its parts and connects them.
+import { GeneratedSource } from "./data/generated";
+import { LiveSource } from "./data/live";
+import type { Source } from "./data/source";
+import { View } from "./drawing/view";
+import { fromAddress, toAddress, type Tab } from "./model/settings";
+import { App } from "./page/app";
+import { listenToKeys } from "./page/keys";
+import { Pointer } from "./page/pointer";
+import { BarrierPanel } from "./panels/barrier";
+import { CameraPanel } from "./panels/camera";
+import { Change } from "./panels/change";
+import { Devices } from "./panels/devices";
+import { icon, make, setText } from "./panels/element";
+import { Header } from "./panels/header";
+import { fillHelp } from "./panels/help";
+import { Layers } from "./panels/layers";
+import { LogPanel } from "./panels/log";
+import type { Panel } from "./panels/panel";
+import { Plots } from "./panels/plots";
+import { TimeBar } from "./panels/time";
+import { Tree } from "./panels/tree";
+
+const query = new URLSearchParams(location.search);
+const updateEvery = 90; // [ms], of panels
+
+function part<T extends HTMLElement>(id: string): T { return document.getElementById(id) as T; }
+
+/** The server of this page, unless the address names another: `?server=HOST:PORT`, `?generated=COUNT`. */
+function makeSource(): Source {
+  const generated = Number(query.get("generated"));
+  if (generated > 0) return new GeneratedSource(Math.min(generated, 100_000));
+  const url = new URL(`${location.protocol === "https:" ? "wss" : "ws"}://${query.get("server") ?? location.host}/`);
+  const token = query.get("token");
+  if (token) url.searchParams.set("token", token);
+  return new LiveSource(url);
+}
+
+const settings = fromAddress(location.hash);
+const canvas = part<HTMLCanvasElement>("world");
+function makeView(): View {
+  try {
+    return new View(canvas, settings.look !== null);
+  } catch (error) {
+    part("overlay").className = "full";
+    setText(part("overlay"), (error as Error).message);
+    throw error;
+  }
+}
+const view = makeView();
+const app = new App(makeSource(), settings, view);
+
+// --- theme, address, notices ------------------------------------------------------------------------
+
+const prefersDark = matchMedia("(prefers-color-scheme: dark)");
+function applyTheme(): void {
+  const theme = settings.theme === "system" ? (prefersDark.matches ? "dark" : "light") : settings.theme;
+  document.documentElement.dataset.theme = theme;
+  view.stage.setTheme(theme);
+}
+function toggleTheme(): void {
+  settings.theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+  applyTheme();
+  app.onSettings();
+}
+prefersDark.addEventListener("change", applyTheme);
+applyTheme();
+
+let addressTimer = 0;
+app.onSettings = () => {
+  clearTimeout(addressTimer);
+  addressTimer = setTimeout(() => {
+    if (settings.look) settings.look = view.stage.look;
+    history.replaceState(null, "", `${location.pathname}${location.search}#${toAddress(settings)}`);
+  }, 250) as unknown as number;
+};
+view.stage.controls.addEventListener("end", () => {
+  settings.look = view.stage.look;
+  app.onSettings();
+});
+
+app.onNotice = ({ level, text }) => {
+  const notice = make(`div.notice.${level}`, { click: () => notice.remove() }, text);
+  part("notices").append(notice);
+  while (part("notices").childElementCount > 4) part("notices").firstElementChild!.remove();
+  setTimeout(() => notice.remove(), level === "error" ? 12_000 : 6_000);
+};
+
+const overlay = part("overlay");
+app.onStatus = () => {
+  const { phase, text } = app.connection;
+  const hasWorld = app.timeline.length > 0;
+  overlay.className = phase === "open" && hasWorld ? "" : hasWorld ? "banner" : "full";
+  setText(overlay, phase === "open" ? (hasWorld ? "" : "Connected. Waiting for the world …")
+                                    : text || `Connecting to ${app.source.name} …`);
+};
+
+// --- panels -------------------------------------------------------------------------------------------
+
+const help = part<HTMLDialogElement>("help");
+fillHelp(help);
+const header = new Header(app, toggleTheme, () => help.showModal());
+const tree = new Tree(app);
+const change = new Change(app);
+const time = new TimeBar(app);
+const left: Panel[] = [tree, new Layers(app), change];
+const tabs: [Tab, string, Panel][] = [
+  ["devices", "Devices", new Devices(app)], ["plots", "Plots", new Plots(app)], ["camera", "Camera", new CameraPanel(app)],
+  ["log", "Log", new LogPanel(app)], ["barrier", "Barrier", new BarrierPanel(app)],
+];
+
+part("header").append(
+  make("button.side", { title: "World and layers", click: () => document.body.classList.toggle("show-left") }, "☰"),
+  header.element,
+  make("button.side", { title: "Devices, plots, log", click: () => document.body.classList.toggle("show-right") }, "☷"));
+part("left").append(...left.map(({ element }) => element));
+part("footer").append(time.element);
+const tabButtons = new Map(tabs.map(([tab, label]) => [tab,
+  make("button", { role: "tab", "data-tab": tab, click: () => app.openTab(tab) }, label)]));
+const body = make("div.body");
+part("right").append(make("nav", { role: "tablist" }, ...tabButtons.values()), body);
+
+const tools = make("div.tools", {},
+  ...(["select", "move"] as const).map((tool) => make("button", {
+    id: `tool-${tool}`, title: tool === "select" ? "Select (v)" : "Move (m)", click: () => { app.tool = tool; } }, icon(tool))),
+  make("button", { title: "Look at all that moves (a)", click: () => view.frameAll() }, "All"),
+  make("button", { title: "From the top (o)", click: () => view.stage.top() }, "Top"));
+part("center").append(tools);
+
+function showTab(): Panel {
+  const [tab, , panel] = tabs.find(([name]) => name === settings.tab)!;
+  if (body.firstElementChild !== panel.element) body.replaceChildren(panel.element);
+  for (const [name, button] of tabButtons) button.classList.toggle("on", name === tab);
+  return panel;
+}
+
+function updatePanels(): void {
+  for (const panel of [header, time, ...left, showTab()]) panel.update();
+  for (const tool of ["select", "move"]) part(`tool-${tool}`).classList.toggle("on", app.tool === tool);
+  part("tool-move").hidden = !app.connection.mayControl;
+  canvas.dataset.tool = app.tool;
+  app.onStatus();
+}
+
+// --- input and frames -----------------------------------------------------------------------------------
+
+new Pointer(app, canvas, (x, y, z) => change.setPlace(x, y, z));
+listenToKeys(app, {
+  help: () => (help.open ? help.close() : help.showModal()), theme: toggleTheme,
+  search: () => tree.search.focus(), speed: (by) => time.changeSpeed(by),
+});
+
+let shownKey = "";
+let updated = 0;
+let frames = 0;
+function draw(now: number): void {
+  requestAnimationFrame(draw);
+  const frame = app.frame;
+  const poses = frame?.messages.get("/poses");
+  if (frame && poses) {
+    const key = `${frame.sequence}|${settings.selected}|${frame.messages.size}`;
+    if (key !== shownKey || lastPoses !== poses) {
+      shownKey = key;
+      lastPoses = poses;
+      view.show(frame, app.selectedLinks);
+    }
+  }
+  if (view.render(now * 1e-3)) ++frames;
+  if (now - updated > updateEvery) {
+    updated = now;
+    updatePanels();
+  }
+}
+let lastPoses: unknown = null;
+
+app.source.start(app);
+requestAnimationFrame(draw);
+
+/** For tests and the curious: `ziggurat` in the browser's console. */
+Object.assign(window, { ziggurat: { app, view, framesDrawn: () => frames } });

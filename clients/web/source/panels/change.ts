@@ -1,0 +1,66 @@
+// Spawns entities from the scene's models, or from XML.
+import type { App } from "../page/app";
+import { kindName, type World } from "../model/messages";
+import { make } from "./element";
+import type { Panel } from "./panel";
+
+const plain = [
+  { label: "box", xml: (id: string, body: string) => `<box id="${id}" size="0.05,0.05,0.05" movable="true" mass="0.1">${body}</box>` },
+  { label: "cylinder", xml: (id: string, body: string) => `<cylinder id="${id}" radius="0.025" height="0.05" movable="true" mass="0.1">${body}</cylinder>` },
+];
+
+function escape(text: string): string {
+  return text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
+}
+
+export class Change implements Panel {
+  readonly element: HTMLElement;
+  private readonly what = make("select", { id: "spawn-what", "aria-label": "What to spawn" }) as HTMLSelectElement;
+  private readonly name = make("input", { id: "spawn-id", placeholder: "id", "aria-label": "Id", value: "new_1" }) as HTMLInputElement;
+  private readonly place = make("input", { id: "spawn-place", title: "x, y, z [m]: shift + right click in the picture fills it in",
+                                           value: "0, 0, 0.1", "aria-label": "Position" }) as HTMLInputElement;
+  private readonly xml = make("textarea", { rows: 4, spellcheck: "false", "aria-label": "XML" }) as HTMLTextAreaElement;
+  private world: World | null = null;
+
+  constructor(private readonly app: App) {
+    for (const input of [this.what, this.name, this.place]) input.addEventListener("input", () => this.write());
+    const spawn = make("button.primary", { id: "spawn", click: () => void this.spawn() }, "Spawn");
+    this.element = make("details.change", {}, make("summary", {}, "Spawn"),
+      make("div.grid", {}, this.what, this.name, this.place, spawn), this.xml);
+  }
+
+  update(): void {
+    (this.element as HTMLDetailsElement).hidden = !this.app.connection.mayControl;
+    const { world } = this.app;
+    if (!world || world === this.world) return;
+    this.world = world;
+    const chosen = this.what.value;
+    this.what.replaceChildren(...plain.map(({ label }) => make("option", { value: label }, label)),
+      ...world.models.map(({ id, kind }, i) => make("option", { value: `model ${i}` }, `${id} (${kindName(kind)})`)));
+    if (chosen) this.what.value = chosen;
+    this.write();
+  }
+
+  setPlace(x: number, y: number, z: number): void {
+    this.place.value = [x, y, z].map((value) => value.toFixed(3)).join(", ");
+    this.write();
+  }
+
+  private write(): void {
+    const place = this.place.value.split(",").map((part) => part.trim()).join(",");
+    const body = `<body position="${escape(place)}" orientation="0,0,0"/>`;
+    const id = escape(this.name.value);
+    const model = this.what.value.startsWith("model ") ? this.world?.models[Number(this.what.value.slice(6))] : undefined;
+    this.xml.value = model
+      ? `<${kindName(model.kind)} id="${id}" model="${escape(model.id)}">${body}</${kindName(model.kind)}>`
+      : (plain.find(({ label }) => label === this.what.value) ?? plain[0]).xml(id, body);
+  }
+
+  private async spawn(): Promise<void> {
+    const done = await this.app.call("/spawn", { xml: this.xml.value });
+    if (!done) return;
+    this.app.select(this.name.value);
+    this.name.value = this.name.value.replace(/\d*$/, (digits) => String(Number(digits || "0") + 1));
+    this.write();
+  }
+}

@@ -1,0 +1,153 @@
+// Readings and commands of the selected robot, device by device; of any other entity its pose.
+import type { App } from "../page/app";
+import { kindName, type Command, type Observation, type World } from "../model/messages";
+import { commanded, number, observed, type Group, type Limits, type Reading } from "../model/readings";
+import { nameOf } from "../model/series";
+import { icon, make, setText } from "./element";
+import type { Panel } from "./panel";
+
+interface Row { text: HTMLElement; bar: HTMLElement | null; plot: HTMLElement | null; reading: Reading }
+
+export class Devices implements Panel {
+  readonly element = make("section.devices");
+  private shape = "";
+  private rows: Row[] = [];
+  private readonly pose = make("div.pose.number");
+  private readonly fan = make("canvas.fan", { width: 180, height: 180, title: "Proximity: each sensor by its direction" }) as HTMLCanvasElement;
+
+  constructor(private readonly app: App) {}
+
+  update(): void {
+    const { app } = this;
+    const selected = app.selected;
+    if (!selected) {
+      if (this.shape !== "none") {
+        this.shape = "none";
+        this.element.replaceChildren(make("p.empty", {}, "Click a robot or an object, in the picture or in the list, "
+          + "to see what it senses and does."));
+      }
+      return;
+    }
+    const groups = this.groups();
+    const shape = `${selected.entity.id}|${groups.map(([title, list]) => title + list.map(
+      ({ device, readings }) => device + readings.map(({ label }) => label).join()).join()).join()}`;
+    if (shape !== this.shape) this.rebuild(shape, groups);
+    this.fill(groups.flatMap(([, list]) => list.flatMap(({ readings }) => readings)));
+    this.showPose(selected.index);
+    this.drawFan();
+  }
+
+  private groups(): [string, Group[]][] {
+    const robot = this.app.selectedRobot?.description;
+    const frame = this.app.frame;
+    if (!robot || !frame || !this.app.world) return [];
+    const found: [string, Group[]][] = [];
+    const limits = this.limits(this.app.world);
+    const seen = frame.messages.get(`/robots/${robot.id}/observation`);
+    if (seen) found.push(["Senses", observed(seen.topic, robot, seen.read<Observation>(), limits)]);
+    const told = this.app.timeline.message(`/robots/${robot.id}/command`, frame.sequence, 60);
+    if (told) found.push(["Commands", commanded(told.topic, robot, told.read<Command>(), limits)]);
+    return found;
+  }
+
+  private limits(world: World): Limits {
+    return (id) => {
+      const joint = world.joints.find((other) => other.id === id && other.entity === this.app.selected?.index);
+      return joint?.lower !== undefined && joint.upper !== undefined ? [joint.lower, joint.upper] : undefined;
+    };
+  }
+
+  private rebuild(shape: string, groups: [string, Group[]][]): void {
+    const { app } = this;
+    const { entity } = app.selected!;
+    this.shape = shape;
+    this.rows = [];
+    const robot = app.selectedRobot?.description;
+    this.element.replaceChildren(
+      make("h2", {}, entity.id, " ", make("span.muted", {}, kindName(entity.kind)
+        + (entity.model ? ` · ${entity.model}` : "") + (robot ? ` · ${robot.controller}` : ""))),
+      make("div.actions", {},
+        make("button", { click: () => app.view.frameAll(entity.id), title: "Look at it (F)" }, "Look"),
+        make("button", { click: () => app.follow(app.settings.followed === entity.id ? null : entity.id), title: "Move with it (G)" }, "Follow"),
+        make("button", { click: () => app.toggleTrail(entity.id), title: "Draw its path (T)" }, "Trail"),
+        make("button.danger", { click: () => void app.call("/remove", { entity: entity.id }), title: "Remove it (Delete)",
+                                id: "remove" }, "Remove")),
+      this.pose);
+    for (const [title, list] of groups) {
+      if (list.length > 0) this.element.append(make("h3", {}, title));
+      for (const { device, readings } of list) this.addGroup(title, device, readings);
+    }
+    if (robot && robot.params.length > 0) {
+      this.element.append(make("h3", {}, "Params"), make("table.params", {}, ...robot.params.map(({ name, value }) =>
+        make("tr", {}, make("td", {}, name), make("td", {}, value)))));
+    }
+  }
+
+  private addGroup(title: string, device: string, readings: Reading[]): void {
+    const rows = readings.map((reading) => this.makeRow(title, device, reading));
+    this.element.append(make("details.device", { open: true }, make("summary", {}, device,
+      make("span.muted", {}, readings.length > 3 ? ` ${readings.length}` : "")),
+      device === "Proximity" && title === "Senses" ? this.fan : null, ...rows));
+  }
+
+  private makeRow(title: string, device: string, reading: Reading): HTMLElement {
+    const { app } = this;
+    const text = make("span.value.number");
+    const bar = reading.range ? make("span.bar", {}, make("i")) : null;
+    const { series } = reading;
+    const plot = series ? make("button.plot", { title: "Plot it", click: () => app.togglePlot(series) }, icon("plot")) : null;
+    this.rows.push({ text, bar, plot, reading });
+    return make("div.reading", { "data-reading": `${title}/${device}/${reading.label}` },
+                make("span.label", {}, reading.label), bar, text, plot);
+  }
+
+  private fill(readings: Reading[]): void {
+    const plotted = new Set(this.app.series.map((series) => nameOf(series.name)));
+    this.rows.forEach(({ text, bar, plot }, i) => {
+      const reading = readings[i];
+      if (!reading) return;
+      setText(text, reading.text);
+      text.dataset.value = reading.value === undefined ? "" : String(reading.value);
+      if (bar && reading.range && reading.value !== undefined) {
+        const [low, high] = reading.range;
+        const part = Math.min(1, Math.max(0, (reading.value - low) / (high - low)));
+        (bar.firstElementChild as HTMLElement).style.width = `${(100 * part).toFixed(1)}%`;
+        bar.title = `${number(low)} … ${number(high)}`;
+      }
+      if (plot && reading.series) plot.classList.toggle("on", plotted.has(nameOf(reading.series)));
+    });
+  }
+
+  private showPose(entity: number): void {
+    const pose = this.app.view.originOf(entity);
+    if (!pose) return;
+    const [w, x, y, z] = pose.orientation;
+    const yaw = Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) * 180 / Math.PI;
+    setText(this.pose, `${pose.position.map((value) => value.toFixed(4)).join("  ")} m   heading ${yaw.toFixed(1)}°`);
+  }
+
+  /** Proximity sensors from above, each by its angle. */
+  private drawFan(): void {
+    const robot = this.app.selectedRobot?.description;
+    const message = robot && this.app.frame?.messages.get(`/robots/${robot.id}/observation`);
+    if (!robot || !message || robot.proximitySensors.length === 0) return;
+    const { proximity } = message.read<Observation>();
+    const draw = this.fan.getContext("2d")!;
+    const style = getComputedStyle(this.element);
+    draw.clearRect(0, 0, 180, 180);
+    robot.proximitySensors.forEach(({ angle, direction }, i) => {
+      const way = angle ?? Math.atan2(direction[1], direction[0]);
+      const length = 30 + 55 * Math.min(1, proximity[i] ?? 0);
+      // The robot's +x is up.
+      const at = (r: number): [number, number] => [90 - r * Math.sin(way), 90 - r * Math.cos(way)];
+      for (const [end, color, width] of [[85, "--line", 2], [length, "--accent", 5]] as const) {
+        draw.strokeStyle = style.getPropertyValue(color);
+        draw.lineWidth = width;
+        draw.beginPath();
+        draw.moveTo(...at(30));
+        draw.lineTo(...at(end));
+        draw.stroke();
+      }
+    });
+  }
+}

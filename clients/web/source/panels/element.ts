@@ -1,0 +1,48 @@
+// Elements of the page, made in one expression.
+
+type Child = Node | string | null;
+interface Options {
+  class?: string;
+  title?: string;
+  click?: (event: MouseEvent) => void;
+  [attribute: string]: unknown;
+}
+
+/** make("button.primary", { title: "…", click: f }, "text") */
+export function make(what: string, options: Options = {}, ...children: Child[]): HTMLElement {
+  const [tag, ...classes] = what.split(".");
+  const element = document.createElement(tag);
+  if (classes.length > 0) element.className = classes.join(" ");
+  for (const [name, value] of Object.entries(options)) {
+    if (name === "click") element.addEventListener("click", value as EventListener);
+    else if (value !== undefined && value !== false) element.setAttribute(name, value === true ? "" : String(value));
+  }
+  element.append(...children.filter((child) => child !== null));
+  return element;
+}
+
+const paths: Record<string, string> = {
+  play: "M4 2.5v11l9-5.5z",
+  pause: "M4 2.5h3v11H4zM9 2.5h3v11H9z",
+  step: "M3 2.5v11l7-5.5zM11 2.5h2v11h-2z",
+  back: "M13 2.5v11L6 8zM3 2.5h2v11H3z",
+  reset: "M8 3a5 5 0 1 1-4.6 3l1.4.6A3.5 3.5 0 1 0 8 4.5V7L4 3.7 8 .5z",
+  select: "M3 2l10 5-4.2 1.3L7 13z",
+  move: "M8 .5l2.5 3H9V7h3.500V5.500l3 2.500-3 2.500V9H9v3.500h1.500L8 15.500 5.500 12.500H7V9H3.500v1.500l-3-2.500 3-2.500V7H7V3.500H5.500z",
+  plot: "M1.500 1.500v13h13v-1.500H3V1.500zM4 10l3-4 3 2.500 4-5.500 1 .8-4.700 6.700-3.100-2.600L5 11z",
+};
+
+export function icon(name: keyof typeof paths): SVGElement {
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  svg.setAttribute("viewBox", "0 0 16 16");
+  svg.setAttribute("aria-hidden", "true");
+  const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+  path.setAttribute("d", paths[name]);
+  svg.append(path);
+  return svg;
+}
+
+/** Sets the text if it differs: cheap for what is often the same. */
+export function setText(element: Element, text: string): void {
+  if (element.textContent !== text) element.textContent = text;
+}

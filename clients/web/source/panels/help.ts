@@ -1,0 +1,29 @@
+// Keys, mouse and touch.
+import { make } from "./element";
+
+const keys: [string, string][] = [
+  ["space", "play or pause the world"], ["n", "one tick"], ["r", "back to the start"], ["[  ]", "slower, faster"],
+  [",  .", "one frame back, ahead"], ["<  >", "fifty frames back, ahead"], ["End", "jump to the newest (live)"],
+  ["↑ ↓ ← →", "orbit; with shift: pan"], ["+  −", "zoom"], ["a", "look at all that moves"], ["f", "look at what is selected"],
+  ["g", "follow what is selected"], ["o", "from the top"], ["t", "trail of what is selected"],
+  ["v  m", "select, or move with the mouse"], ["Delete", "remove what is selected"], ["/", "search"],
+  ["1 … 9, 0", "switch a layer"], ["d p c b", "devices, plots, camera, barrier"], ["k", "log"], ["l", "light or dark"],
+  ["Esc", "select nothing"], ["?", "this list"],
+];
+
+export function fillHelp(dialog: HTMLDialogElement): void {
+  dialog.append(make("h2", {}, "Keys"), make("table.keys", {}, ...keys.map(([key, what]) =>
+    make("tr", {}, make("td", {}, make("kbd", {}, key)), make("td", {}, what)))),
+    make("h2", {}, "Mouse and touch"),
+    make("p", {}, "Drag to orbit (one finger), right drag to pan (two fingers), wheel or pinch to zoom. Click to select, double "
+      + "click to look at it. With the tool “move” (m), drag an object over the floor; with shift, up and down; shift + right click "
+      + "takes the place for “Spawn”."),
+    make("h2", {}, "Time"),
+    make("p", {}, "The line at the bottom has all frames that this page has seen. Drag it to look back; the world runs on. Marks are "
+      + "log lines (grey), warnings (yellow), errors (red), missed deadlines (pink) and resets (blue)."),
+    make("h2", {}, "Links"),
+    make("p", {}, "The address shows this view: camera, layers, selection and plots. Without the token in it, a page may look and "
+      + "not steer."),
+    make("button.primary", { click: () => dialog.close() }, "Close"));
+  dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
+}

@@ -1,0 +1,6 @@
+/** A part of the page. */
+export interface Panel {
+  readonly element: HTMLElement;
+  /** Shows what is true now; called some ten times a second. */
+  update(): void;
+}

@@ -1,0 +1,118 @@
+// Time: play, pause, step, speed, reset, and the line of all frames that the page has seen.
+import type { App } from "../page/app";
+import type { MarkKind } from "../model/timeline";
+import { icon, make, setText } from "./element";
+import type { Panel } from "./panel";
+
+const speeds = [0.1, 0.25, 0.5, 1, 2, 4, 10, 0];
+const markColors: Record<MarkKind, string> = {
+  log: "#8a919b", warning: "#e6a417", error: "#e0402c", missed: "#d6336c", reset: "#3d8bfd",
+};
+
+export class TimeBar implements Panel {
+  readonly element = make("div.time");
+  private readonly play = make("button.play", { id: "play", title: "Play or pause (space)", click: () => this.app.playOrPause() });
+  private readonly step = make("button", { id: "step", title: "One tick (n)", click: () => void this.app.call("/step", { ticks: 1 }) }, icon("step"));
+  private readonly reset = make("button", { id: "reset", title: "Back to the start (r)", click: () => void this.app.call("/reset") }, icon("reset"));
+  private readonly speed = make("select", { id: "speed", title: "Simulated seconds per second ([ and ])" }) as HTMLSelectElement;
+  private readonly line = make("canvas.line", { id: "timeline", title: "All that this page has seen: drag to look back" }) as HTMLCanvasElement;
+  private readonly clock = make("span.clock.number", { id: "clock" });
+  private readonly live = make("button.live", { id: "live", title: "Jump to the newest (End)", click: () => this.app.pin(null) }, "LIVE");
+  private wasPaused: boolean | null = null;
+
+  constructor(private readonly app: App) {
+    this.speed.append(...speeds.map((speed) => make("option", { value: speed }, speed === 0 ? "max" : `×${speed}`)));
+    this.speed.addEventListener("change", () => void app.call("/speed", { factor: Number(this.speed.value) }));
+    this.line.addEventListener("pointerdown", (event) => {
+      this.line.setPointerCapture(event.pointerId);
+      this.scrub(event);
+    });
+    this.line.addEventListener("pointermove", (event) => {
+      if (this.line.hasPointerCapture(event.pointerId)) this.scrub(event);
+      else this.hint(event);
+    });
+    this.element.append(make("div.buttons", {}, this.play, this.step, this.reset, this.speed), this.line, this.clock, this.live);
+  }
+
+  /** Frames per pixel. */
+  private get scale(): number { return Math.max(this.app.timeline.length - 1, 1) / Math.max(this.line.clientWidth, 1); }
+
+  private sequenceAt(event: PointerEvent): number {
+    return this.app.timeline.first + Math.round((event.clientX - this.line.getBoundingClientRect().left) * this.scale);
+  }
+
+  private scrub(event: PointerEvent): void { this.app.pin(this.sequenceAt(event)); }
+
+  private hint(event: PointerEvent): void {
+    const { timeline } = this.app;
+    const sequence = this.sequenceAt(event);
+    const near = timeline.marks.filter((mark) => Math.abs(mark.sequence - sequence) <= 3 * this.scale).slice(-6);
+    const frame = timeline.at(sequence);
+    this.line.title = [frame ? `tick ${frame.tick}` : "", ...near.map((mark) => mark.text)].join("\n");
+  }
+
+  changeSpeed(by: 1 | -1): void {
+    const index = Math.min(Math.max(this.speed.selectedIndex + by, 0), speeds.length - 1);
+    this.speed.selectedIndex = index;
+    void this.app.call("/speed", { factor: speeds[index] });
+  }
+
+  update(): void {
+    const { app } = this;
+    const mayControl = app.connection.mayControl;
+    for (const control of [this.play, this.step, this.reset, this.speed]) (control as HTMLButtonElement).disabled = !mayControl;
+    if (app.isPaused !== this.wasPaused) {
+      this.wasPaused = app.isPaused;
+      this.play.replaceChildren(icon(app.isPaused ? "play" : "pause"));
+    }
+    const factor = app.parameters.get("real_time_factor");
+    if (typeof factor === "number" && document.activeElement !== this.speed) this.showSpeed(factor);
+    const frame = app.frame;
+    const isLive = app.pinned === null;
+    this.live.classList.toggle("on", isLive);
+    this.element.classList.toggle("past", !isLive);
+    if (frame) {
+      const behind = isLive ? "" : `  (${(Number(frame.timeNs - app.timeline.newest!.timeNs) * 1e-9).toFixed(2)} s)`;
+      setText(this.clock, `${(Number(frame.timeNs) * 1e-9).toFixed(3)} s · tick ${frame.tick}${behind}`);
+      this.clock.dataset.tick = String(frame.tick);
+      this.clock.dataset.live = String(app.timeline.newest!.tick);
+    }
+    this.draw();
+  }
+
+  private showSpeed(factor: number): void {
+    const index = speeds.indexOf(factor);
+    if (index >= 0) {
+      this.speed.selectedIndex = index;
+      return;
+    }
+    this.speed.querySelector("[data-other]")?.remove();
+    this.speed.append(make("option", { value: factor, "data-other": "1", selected: true }, `×${factor}`));
+  }
+
+  private draw(): void {
+    const { timeline } = this.app;
+    const ratio = window.devicePixelRatio;
+    const [width, height] = [Math.round(this.line.clientWidth * ratio), Math.round(this.line.clientHeight * ratio)];
+    if (this.line.width !== width) this.line.width = width;
+    if (this.line.height !== height) this.line.height = height;
+    const draw = this.line.getContext("2d")!;
+    const style = getComputedStyle(this.element);
+    const middle = height / 2;
+    draw.clearRect(0, 0, width, height);
+    draw.fillStyle = style.getPropertyValue("--line");
+    draw.fillRect(0, middle - 2 * ratio, width, 4 * ratio);
+    const x = (sequence: number): number => (sequence - timeline.first) / Math.max(timeline.length - 1, 1) * (width - 2 * ratio);
+    const shown = this.app.pinned === null ? timeline.last : this.app.pinned;
+    draw.fillStyle = style.getPropertyValue("--accent");
+    draw.fillRect(0, middle - 2 * ratio, x(shown), 4 * ratio);
+    for (const mark of timeline.marks) {
+      if (mark.sequence < timeline.first) continue;
+      const tall = mark.kind === "log" ? 0.22 : 0.42;
+      draw.fillStyle = markColors[mark.kind];
+      draw.fillRect(x(mark.sequence) - ratio, middle - tall * height, 2 * ratio, 2 * tall * height);
+    }
+    draw.fillStyle = style.getPropertyValue("--text");
+    draw.fillRect(x(shown) - ratio, 0, 2 * ratio, height);
+  }
+}

@@ -1,0 +1,100 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { patternOf } from "../source/drawing/tags";
+import { cornersAt } from "../source/drawing/overlays";
+import { Quality } from "../source/drawing/quality";
+import { partsOf } from "../source/drawing/shapes";
+import { makeWorld } from "../source/data/generated";
+import type { Camera, Description, Observation, World } from "../source/model/messages";
+import { compose, rotate } from "../source/model/pose";
+import { bytesText, observed } from "../source/model/readings";
+import { nameOf, numberAt, numbersIn, parseName } from "../source/model/series";
+import { fromAddress, settingsAtFirst, toAddress } from "../source/model/settings";
+
+function near(a: ArrayLike<number>, b: number[], bound = 1e-12): void {
+  assert.equal(a.length, b.length);
+  b.forEach((value, i) => assert.ok(Math.abs(a[i] - value) < bound, `${Array.from(a)} is not ${b}`));
+}
+
+test("rotations are Hamilton's, w first", () => {
+  const half = Math.SQRT1_2;
+  near(rotate([half, 0, 0, half], [1, 0, 0]), [0, 1, 0]); // a quarter about z
+  const pose = compose({ position: [1, 2, 3], orientation: [half, 0, 0, half] },
+                       { position: [1, 0, 0], orientation: [half, half, 0, 0] });
+  near(pose.position, [1, 3, 3]);
+  near(rotate(pose.orientation, [0, 0, 1]), [1, 0, 0]); // about x first: -y; then about z: +x
+});
+
+test("settings come back from the address", () => {
+  const settings = { ...settingsAtFirst(), look: { eye: [1, 2, 3] as [number, number, number], at: [0, 0, 0.5] as [number, number, number], fieldOfView: 50 },
+                     selected: "a b&c#d", trailed: ["r1", "r2"], tab: "plots" as const, theme: "dark" as const,
+                     layers: ["bodies" as const, "contacts" as const], followed: "r1",
+                     plots: [{ topic: "/robots/a:b/observation", path: "jointReadings.0" }] };
+  assert.deepEqual(fromAddress(`#${toAddress(settings)}`), settings);
+  assert.deepEqual(fromAddress(""), settingsAtFirst());
+  assert.equal(fromAddress("#eye=1,2&at=x&tab=nothing").look, null);
+  assert.equal(toAddress(settingsAtFirst()), "");
+});
+
+test("numbers by their paths", () => {
+  const value = { a: [1, { b: 2n }], ok: true, text: "x", list: new Float32Array([0.5]) };
+  assert.equal(numberAt(value, "a.1.b"), 2);
+  assert.equal(numberAt(value, "ok"), 1);
+  assert.equal(numberAt(value, "text"), null);
+  assert.equal(numberAt(value, "a.9.b"), null);
+  assert.deepEqual(numbersIn(value).map(({ path }) => path), ["a.0", "a.1.b", "ok", "list.0"]);
+  assert.equal(numbersIn(value, 2).length, 2);
+  const name = { topic: "/robots/r:1/observation", path: "imus.3" };
+  assert.deepEqual(parseName(nameOf(name)), name);
+});
+
+test("readings by device have names, limits and places", () => {
+  const robot = { id: "r", jointSensors: [{ id: "lift", mode: 2 }, { id: "wheel", mode: 3 }], jointActuators: [], radios: [{ id: "wifi" }],
+    leds: [], directionalLeds: [], tags: [], magnets: [], proximitySensors: [{ range: 0.1 }], positioning: false,
+    battery: true, cameras: [], imus: [], contactSensors: [], params: [] } as unknown as Description;
+  const seen = { jointReadings: [0.02, 1], proximity: [0.5], batteries: [0.9, Infinity], rangeAndBearing: [],
+    radioMessages: [{ radio: 0, payload: new TextEncoder().encode("hi") }] } as unknown as Observation;
+  const groups = observed("/t", robot, seen, () => [0, 0.1]);
+  assert.deepEqual(groups.map(({ device }) => device), ["Joints", "Proximity", "Battery", "Radio"]);
+  assert.deepEqual(groups[0].readings[0].range, [0, 0.1]);
+  assert.equal(groups[0].readings[1].range, undefined); // a speed has no limits
+  assert.deepEqual(groups[0].readings[1].series, { topic: "/t", path: "jointReadings.1" });
+  assert.equal(groups[2].readings[1].text, "∞");
+  assert.equal(groups[3].readings[0].text, "“hi”  68 69");
+  assert.equal(bytesText(new Uint8Array([0, 255])), "00 ff");
+});
+
+test("tags: only integers below the number of patterns", () => {
+  const bytes = (text: string): Uint8Array => new TextEncoder().encode(text);
+  assert.equal(patternOf(bytes("1"), [5, 6]), 6);
+  assert.equal(patternOf(bytes("2"), [5, 6]), null);
+  assert.equal(patternOf(bytes("x"), [5, 6]), null);
+  assert.equal(patternOf(bytes(""), [5, 6]), null);
+});
+
+test("a camera's corners by its focal length and principal point", () => {
+  const camera = { focalLength: [100, 200], principalPoint: [50, 40], width: 160, height: 120 } as unknown as Camera;
+  near(cornersAt(camera, 2)[0], [-1, -0.4, 2]);
+  near(cornersAt(camera, 2)[2], [2.2, 0.8, 2]);
+});
+
+test("removed entities have no parts, foot-bots have more than their links", () => {
+  const world = makeWorld(3) as unknown as World;
+  assert.equal(partsOf(world).length, 3);
+  world.entities[0].removed = true;
+  assert.equal(partsOf(world).length, 2);
+  world.entities[1].kind = 5;
+  assert.ok(partsOf(world).length > 4);
+});
+
+test("quality falls where frames are slow and does not swing", () => {
+  const quality = new Quality(1, 1);
+  const note = (seconds: number, times: number): void => { for (let i = 0; i < times; ++i) quality.note(seconds); };
+  note(0.2, 100);
+  assert.equal(quality.level, 3);
+  for (let i = 0; i < 20; ++i) {
+    note(0.005, 12);
+    note(0.2, 12);
+  }
+  assert.equal(quality.level, 3);
+});
