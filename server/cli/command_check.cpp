@@ -8,11 +8,13 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "processes/commands.h"
 #include "processes/scripts.h"
 #include "reports/console.h"
 #include "run/loading.h"
 #include "scene/tag_pattern.h"
 #include "scene/values.h"
+#include "simulation/doubts.h"
 #include "simulation/simulation.h"
 #include "text/numbers.h"
 
@@ -138,6 +140,7 @@ Finding examine(const std::string& path, const run::Options& options) {
     finding.problems.insert(finding.problems.end(), more.begin(), more.end());
   };
   add(processes::check_scripts(read.scene, path));
+  add(processes::find_commands(read.scene, path));
   if (finding.count(Severity::fault) > 0) return finding;
   add_plain_tags(read.scene, finding.problems);
   add_impulses(read.scene, finding.problems);
@@ -145,6 +148,7 @@ Finding examine(const std::string& path, const run::Options& options) {
     const simulation::Simulation simulation(read.scene, {run::choose_seed(options, read.scene)});
     finding.entities = simulation.layout().entities.size();
     finding.robots = simulation.layout().robots.size();
+    add(simulation::doubts(read.scene, simulation));
     for (const auto& notice : simulation.notices()) {
       add({{Severity::notice, path, read.scene.physics.where, notice}});
     }
@@ -157,7 +161,7 @@ Finding examine(const std::string& path, const run::Options& options) {
 nlohmann::ordered_json to_json(const std::string& path, const Finding& finding) {
   auto problems = nlohmann::ordered_json::array();
   for (const auto& problem : finding.problems) {
-    problems.push_back({{"severity", problem.severity == Severity::fault ? "fault" : "notice"},
+    problems.push_back({{"severity", scene::to_text(problem.severity)},
                         {"file", problem.file},
                         {"line", problem.where.line},
                         {"column", problem.where.column},
@@ -182,12 +186,15 @@ nlohmann::ordered_json to_json(const std::string& path, const Finding& finding) 
 }
 
 std::string verdict(const std::string& path, const Finding& finding) {
-  const auto faults = finding.count(Severity::fault), notices = finding.count(Severity::notice);
+  const auto faults = finding.count(Severity::fault), notices = finding.count(Severity::notice),
+             warnings = finding.count(Severity::warning);
   const auto counted = [](std::size_t n, const char* what) {
     return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
   };
+  const std::string warned = warnings == 0 ? "" : ", " + counted(warnings, "warning");
   if (faults > 0) {
-    return fmt::format("{}: {}, {}", path, counted(faults, "fault"), counted(notices, "notice"));
+    return fmt::format("{}: {}{}, {}", path, counted(faults, "fault"), warned,
+                       counted(notices, "notice"));
   }
   std::string models;
   for (const auto& model : finding.models) {
@@ -202,9 +209,9 @@ std::string verdict(const std::string& path, const Finding& finding) {
   }
   if (!deadlines.empty()) deadlines += ")";
   return fmt::format(
-      "{}: good; {}{}, {} with a controller{}; solver {}; {}", path,
+      "{}: good; {}{}, {} with a controller{}; solver {}{}; {}", path,
       finding.entities == 1 ? "1 entity" : fmt::format("{} entities", finding.entities), models,
-      finding.robots, deadlines, scene::to_text(finding.solver), counted(notices, "notice"));
+      finding.robots, deadlines, scene::to_text(finding.solver), warned, counted(notices, "notice"));
 }
 
 }  // namespace
@@ -213,8 +220,9 @@ std::string help_check() {
   std::ostringstream text;
   text << R"(usage: ziggurat check SCENE... [OPTION]...
 
-Reports every fault of scene files, and everything in them that has no effect here: reads them
-completely, compiles their Lua scripts and places their entities, but starts no controller.
+Reports every fault of scene files, and everything in them that has no effect here or is probably not
+what was meant: reads them completely, compiles their Lua scripts and places their entities, but starts no
+controller.
 
   ziggurat check vehicle.argos
   ziggurat check scenes/*.argos --quiet
@@ -222,7 +230,10 @@ completely, compiles their Lua scripts and places their entities, but starts no 
   ziggurat check vehicle.argos --json
       an array with an object per scene
 
-Exit codes: 0 no scene has a fault; 1 at least one has.
+  ziggurat check vehicle.argos --strict
+      warnings count as faults
+
+Exit codes: 0 no scene has a fault; 1 at least one has, or with --strict a warning.
 
 )" << check_options();
   return text.str();
@@ -237,7 +248,8 @@ int execute_check(const Arguments& arguments) {
   bool good = true;
   for (const auto& path : options.scenes) {
     const auto finding = examine(path, options);
-    good = good && finding.count(Severity::fault) == 0;
+    good = good && finding.count(Severity::fault) == 0 &&
+           !(options.strict && finding.count(Severity::warning) > 0);
     if (options.json) {
       report.push_back(to_json(path, finding));
       continue;

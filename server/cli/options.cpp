@@ -281,7 +281,8 @@ po::options_description check_options() {
   po::options_description options("", width);
   options.add(scene_options())
       .add_options()("clock", text("nominal|beta50"), clock_help)(
-          "json", "the report as JSON on stdout")("quiet", "faults only");
+          "json", "the report as JSON on stdout")("quiet", "faults only")(
+          "strict", "exit code 1 also for warnings");
   return options;
 }
 
@@ -313,6 +314,7 @@ run::Options parse_options(const Arguments& arguments, const po::options_descrip
   if (values.has("real-time")) {
     options.real_time = to_factor(values.text("real-time"));
   }
+  options.strict = values.has("strict");
   options.hil = values.has("hil");
   if (values.has("gate")) options.gate = reports::parse_gate(values.text("gate"));
   read_controllers(values, options);

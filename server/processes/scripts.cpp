@@ -2,8 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <fstream>
+#include <iterator>
 #include <lua.hpp>
 #include <memory>
+#include <string_view>
+
+#include "processes/places.h"
 
 namespace ziggurat::processes {
 namespace {
@@ -36,14 +42,36 @@ std::vector<Use> uses(const scene::Scene& scene) {
 
 std::optional<std::string> fault(const std::string& script, const fs::path& naming_file,
                                  const fs::path& scene_file) {
-  const auto path = find_script(script, naming_file, scene_file);
+  const auto path = find_file(script, naming_file, scene_file);
   if (!path) {
-    return fmt::format(
-        "script '{}' is not found; put it in the working directory, in the folder of this file or "
-        "of the scene file, or in a folder above that",
-        script);
+    return fmt::format("script '{}' is not found{}", script, looked_for(script, naming_file, scene_file));
   }
   if (auto error = compile_error(*path)) return "script does not compile: " + *error;
+  return std::nullopt;
+}
+
+bool is_part_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+bool has_word(const std::string& text, std::string_view word) {
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    const bool begins = at == 0 || !is_part_of_name(text[at - 1]);
+    if (begins && (end == text.size() || !is_part_of_name(text[end]))) return true;
+  }
+  return false;
+}
+
+/// A function that a robot needs, of which the script does not have the name. One that loads others
+/// may have it from there.
+std::optional<std::string_view> missing_function(const fs::path& script) {
+  std::ifstream file(script, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  for (const std::string_view other : {"require", "dofile", "loadfile", "load", "_G", "_ENV"}) {
+    if (has_word(text, other)) return std::nullopt;
+  }
+  for (const std::string_view name : {"init", "step"}) {
+    if (!has_word(text, name)) return name;
+  }
   return std::nullopt;
 }
 
@@ -57,26 +85,15 @@ void check(const scene::Scene& scene, const Use& use, const fs::path& scene_file
                         "<params> names no script: the robots of this controller do nothing"});
   } else if (auto text = fault(script, file, scene_file)) {
     problems.push_back({Severity::fault, file, use.where, *text});
+  } else if (const auto name = missing_function(*find_file(script, file, scene_file))) {
+    problems.push_back({Severity::warning, file, use.where,
+                        fmt::format("script '{0}' has no function {1}(), which each robot needs; "
+                                    "write: function {1}() end",
+                                    script, *name)});
   }
 }
 
 }  // namespace
-
-std::optional<fs::path> find_script(const std::string& script, const fs::path& naming_file,
-                                    const fs::path& scene_file) {
-  std::error_code error;
-  const auto there = [&](const fs::path& path) { return fs::is_regular_file(path, error); };
-  const fs::path relative(script);
-  if (there(relative)) return fs::absolute(relative).lexically_normal();
-  if (relative.is_absolute()) return std::nullopt;
-  const auto beside = fs::absolute(naming_file).parent_path() / relative;
-  if (there(beside)) return beside.lexically_normal();
-  for (auto folder = fs::absolute(scene_file).lexically_normal().parent_path();;
-       folder = folder.parent_path()) {
-    if (there(folder / relative)) return (folder / relative).lexically_normal();
-    if (folder == folder.parent_path()) return std::nullopt;
-  }
-}
 
 std::optional<std::string> compile_error(const fs::path& script) {
   const std::unique_ptr<lua_State, decltype(&lua_close)> lua(luaL_newstate(), lua_close);
@@ -112,7 +129,7 @@ std::vector<fs::path> scripts_of(const scene::Scene& scene, const fs::path& scen
   for (const Use& use : uses(scene)) {
     const auto script = script_of(*use.params);
     if (script.empty()) continue;
-    if (auto found = find_script(script, scene::file_of(scene, use.where), scene_file)) {
+    if (auto found = find_file(script, scene::file_of(scene, use.where), scene_file)) {
       scripts.push_back(std::move(*found));
     }
   }
@@ -124,7 +141,7 @@ std::string script_path(const scene::Scene& scene, const scene::Entity& entity,
   const scene::Controller& controller = scene.controllers[*entity.controller];
   const auto script = script_of(entity.overrides_params ? entity.params : controller.params);
   if (!controller.lua || script.empty()) return {};
-  const auto found = find_script(script, file_of_params(scene, entity), scene_file);
+  const auto found = find_file(script, file_of_params(scene, entity), scene_file);
   return found ? found->string() : std::string();
 }
 

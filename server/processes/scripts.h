@@ -12,13 +12,6 @@
 
 namespace ziggurat::processes {
 
-/// Looks in the working directory, beside the file that names the script, then in the scene file's
-/// folder and its parents.
-/// @returns an absolute path
-std::optional<std::filesystem::path> find_script(const std::string& script,
-                                                 const std::filesystem::path& naming_file,
-                                                 const std::filesystem::path& scene_file);
-
 /// Lua's message `file:line: …` if the script does not compile or cannot be read; otherwise
 /// nothing.
 std::optional<std::string> compile_error(const std::filesystem::path& script);
@@ -42,7 +35,8 @@ std::string script_path(const scene::Scene& scene, const scene::Entity& entity,
                         const std::filesystem::path& scene_file);
 
 /// A fault for each script that would run and is missing or does not compile, with the line
-/// of its <params>; a notice for each that names none.
+/// of its <params>; a notice for each that names none; a warning where a function is missing that
+/// each robot needs.
 std::vector<scene::Problem> check_scripts(const scene::Scene& scene,
                                           const std::filesystem::path& scene_file);
 

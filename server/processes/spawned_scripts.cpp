@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "processes/places.h"
 #include "processes/scripts.h"
 
 namespace ziggurat::processes {
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 std::optional<fs::path> allowed_script(const std::string& script, const fs::path& scene_file,
                                        const AllowedFiles& allowed) {
   std::vector<fs::path> candidates;
-  if (const auto found = find_script(script, scene_file, scene_file)) candidates.push_back(*found);
+  if (const auto found = find_file(script, scene_file, scene_file)) candidates.push_back(*found);
   for (const fs::path& folder : allowed.folders) candidates.push_back(folder / script);
   for (const fs::path& candidate : candidates) {
     std::error_code error;

@@ -78,6 +78,10 @@ void Console::append(std::string_view line) {
 
 void Console::fault(std::string_view text) { message("fault", text); }
 
+void Console::warning(std::string_view text) {
+  if (!style_.quiet) message("warning", text);
+}
+
 void Console::notice(std::string_view text) {
   if (!style_.quiet) message("notice", text);
 }
@@ -86,7 +90,7 @@ void Console::message(std::string_view severity, std::string_view text) {
   if (style_.json) return to_stderr(dump({{"severity", severity}, {"text", text}}));
   const bool fault = severity == "fault";
   to_stderr(fmt::format("{}ziggurat: {}{}{}", color_error_ && fault ? red : "",
-                        fault ? "" : "notice: ", text::printable(text),
+                        fault ? "" : fmt::format("{}: ", severity), text::printable(text),
                         color_error_ && fault ? plain : ""));
 }
 
@@ -94,13 +98,14 @@ void Console::problem(const scene::Problem& problem) {
   const bool fault = problem.severity == scene::Problem::Severity::fault;
   if (!fault && style_.quiet) return;
   if (style_.json) {
-    return to_stderr(dump({{"severity", fault ? "fault" : "notice"},
+    return to_stderr(dump({{"severity", scene::to_text(problem.severity)},
                            {"file", problem.file},
                            {"line", problem.where.line},
                            {"column", problem.where.column},
                            {"text", problem.text}}));
   }
-  to_stderr(text::printable((fault ? "" : "notice: ") + to_string(problem)));
+  const std::string kind = fault ? "" : fmt::format("{}: ", scene::to_text(problem.severity));
+  to_stderr(text::printable(kind + to_string(problem)));
 }
 
 void Console::report(std::string_view text) {

@@ -40,6 +40,8 @@ class Console {
 
   /// A message on stderr: the program or a controller ends.
   void fault(std::string_view text);
+  /// A message on stderr: something is probably not what was meant.
+  void warning(std::string_view text);
   /// A message on stderr that the user should know.
   void notice(std::string_view text);
   void problem(const scene::Problem& problem);

@@ -68,6 +68,9 @@ void Run::print_summary() {
                                failure.robot, failure.controller, failure.tick,
                                failure.message.substr(0, failure.message.find('\n'))));
   }
+  if (const auto deaf = radio_watch_.warning(world_.simulation.layout()); !deaf.empty()) {
+    console_.warning(deaf);
+  }
   console_.report(options_.json ? to_json(summary_) : to_text(summary_));
   if (options_.hash) console_.result(recording::hash_line(summary_.ticks, summary_.hash));
   console_.flush();

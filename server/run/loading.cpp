@@ -7,6 +7,7 @@
 #include <iterator>
 #include <random>
 
+#include "processes/commands.h"
 #include "processes/scripts.h"
 #include "run/by_controller.h"
 #include "text/numbers.h"
@@ -65,12 +66,19 @@ scene::OpenScene load_scene(const std::string& path, const Options& options,
                             reports::Console& console) {
   auto result = scene::read_file(path, options.scene_file);
   auto problems = std::move(result.problems);
+  const auto add = [&](const std::vector<scene::Problem>& more) {
+    problems.insert(problems.end(), more.begin(), more.end());
+  };
+  for (const auto& [id, command] : options.controllers) {
+    const std::size_t controller = controller_named("--controller", id, result.scene);
+    result.scene.controllers[controller].command.clear();
+  }
+  add(processes::find_commands(result.scene, path));
   override_controllers(options, result.scene);
-  auto scripts = processes::check_scripts(result.scene, path);
-  problems.insert(problems.end(), scripts.begin(), scripts.end());
+  add(processes::check_scripts(result.scene, path));
   check_images(result.scene, path, problems);
   const auto faults = std::stable_partition(problems.begin(), problems.end(), [](const auto& each) {
-    return each.severity == scene::Problem::Severity::notice;
+    return each.severity != scene::Problem::Severity::fault;
   });
   std::for_each(problems.begin(), faults, [&](const auto& each) { console.problem(each); });
   if (faults != problems.end()) {

@@ -46,6 +46,7 @@ struct Options {
   bool insecure = false;                 ///< endpoints may be reached from other machines
 
   bool quiet = false;
+  bool strict = false;  ///< check: warnings count as faults
   bool json = false;
   bool hash = false;
   std::string hash_file, trace, readings, rays, images, summary;  ///< paths; empty = none

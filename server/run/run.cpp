@@ -12,6 +12,7 @@
 #include "run/loading.h"
 #include "run/setup.h"
 #include "run/version.h"
+#include "simulation/doubts.h"
 
 namespace ziggurat::run {
 
@@ -145,6 +146,7 @@ supervision::Supervision::Settings Run::supervision_settings() const {
 }
 
 void Run::print_notices() {
+  for (const auto& doubt : simulation::doubts(world_.scene, world_.simulation)) console_.problem(doubt);
   for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
   if (options_.seed.value_or(world_.scene.experiment.random_seed) == 0) {
     console_.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", world_.seed));
@@ -218,6 +220,7 @@ Ending Run::run_world() {
       timer_.end_phase(Phase::pacing, summary_);
     }
     if (stopped) return *stopped;
+    radio_watch_.tick(simulation.observations(), simulation.commands());
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands());
     timer_.end_phase(Phase::recording, summary_);
     if (is_last) return Ending::finished;

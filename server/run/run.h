@@ -17,6 +17,7 @@
 #include "reports/summary.h"
 #include "run/options.h"
 #include "run/phase_timer.h"
+#include "run/radio_watch.h"
 #include "run/recorders.h"
 #include "run/watch.h"
 #include "supervision/supervision.h"
@@ -102,6 +103,7 @@ class Run {
   reports::Summary summary_;
   PhaseTimer timer_;
   bool printed_miss_ = false;
+  RadioWatch radio_watch_;
 };
 
 }  // namespace ziggurat::run

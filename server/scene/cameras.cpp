@@ -48,6 +48,7 @@ Camera read_camera(Draft& draft, Element& element) {
   camera.anchor = element.required("anchor", identifier);
   camera.pose = {element.required("position", position),
                  element.required("orientation", orientation)};
+  doubt_angles(element, "orientation");
   const auto reach = element.required("range", positive_range, {1.0, 1.0});
   camera.near = reach.first;
   camera.far = reach.second;

@@ -212,6 +212,9 @@ void refuse_id(const Element& element, std::string_view what, Location earlier);
 /// @param what  has the id, for example "link"
 bool take_id(const Element& element, Ids& ids, const std::string& id, std::string_view what);
 
+/// Warns of angles in an attribute that look like radians.
+void doubt_angles(Element& element, const char* attribute);
+
 // --- shared values ------------------------------------------------------------------------------
 
 /// Reads `geometry` of a link with its extents.

@@ -1,5 +1,6 @@
 // The elements of an arena: <box>, <cylinder>, <sphere>, <prototype>; robots are read in robots/.
 
+#include <algorithm>
 #include <array>
 
 #include "scene/draft.h"
@@ -91,7 +92,25 @@ bool take_id(const Element& element, Ids& ids, const std::string& id, std::strin
   return false;
 }
 
+void doubt_angles(Element& element, const char* attribute) {
+  if (!element.has(attribute)) return;
+  const std::string written = element.optional(attribute, text, "");
+  for (std::size_t begin = 0; begin <= written.size();) {
+    const std::size_t end = std::min(written.find_first_of(",:", begin), written.size());
+    const std::string angle(trimmed(std::string_view(written).substr(begin, end - begin)));
+    begin = end + 1;
+    const auto degrees = degrees_of_radians(angle);
+    if (!degrees) continue;
+    element.report().warn(element.where(attribute), "radians",
+                          element.sentence(attribute, fmt::format("looks like radians, and angles are "
+                                                                  "in degrees; write {} for {}",
+                                                                  *degrees, angle)));
+    return;
+  }
+}
+
 math::Pose read_pose(Element& element) {
+  doubt_angles(element, "orientation");
   return {element.optional("position", position, math::Vector3::Zero()),
           element.optional("orientation", orientation, math::Quaternion::Identity())};
 }

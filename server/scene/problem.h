@@ -1,5 +1,5 @@
 #pragma once
-// A fault or a notice about a scene file.
+// A fault, a warning or a notice about a scene file.
 
 #include <string>
 
@@ -9,14 +9,22 @@ namespace ziggurat::scene {
 
 struct Problem {
   enum class Severity {
-    notice,  ///< accepted, and without effect here
-    fault,   ///< the scene can't be run
+    notice,   ///< accepted, and without effect here
+    warning,  ///< accepted, but probably not what was meant
+    fault,    ///< the scene can't be run
   };
   Severity severity = Severity::fault;
   std::string file;
   Location where;
   std::string text;  ///< what is wrong, with the value; what would be right
 };
+
+/// `fault`, …, as in JSON.
+constexpr const char* to_text(Problem::Severity severity) {
+  return severity == Problem::Severity::fault     ? "fault"
+         : severity == Problem::Severity::warning ? "warning"
+                                                  : "notice";
+}
 
 /// `file:line:column: text`, or `file: text` where no line is known.
 std::string to_string(const Problem& problem);

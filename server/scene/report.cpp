@@ -31,6 +31,16 @@ void Report::notice(Location where, std::string text) {
       {{Problem::Severity::notice, files_[where.file], where, std::move(text)}, {}});
 }
 
+void Report::warn(Location where, std::string_view kind, std::string text) {
+  if (!subject.empty()) text += fmt::format(" (in {})", subject);
+  Problem problem{Problem::Severity::warning, files_[where.file], where, std::move(text)};
+  const auto [known, is_first] = warnings_.try_emplace(kind, Count{entries_.size(), 0});
+  if (is_first) return entries_.push_back({std::move(problem), {}});
+  ++known->second.more;
+  Problem& first = entries_[known->second.entry].problem;
+  if (where < first.where) first = std::move(problem);
+}
+
 void Report::no_effect_yet(Location where, std::string_view plural) {
   notice(where, fmt::format("{} are checked, but have no effect yet", plural));
 }
@@ -58,6 +68,12 @@ std::vector<Problem> Report::problems() const {
   std::vector<Problem> sorted;
   for (const Entry& entry : entries_) {
     if (!has_root || !follows(entry)) sorted.push_back(entry.problem);
+    const auto index = static_cast<std::size_t>(&entry - entries_.data());
+    for (const auto& [kind, count] : warnings_) {
+      if (count.entry == index && count.more > 0) {
+        sorted.back().text += fmt::format("; and {} more like this", count.more);
+      }
+    }
   }
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Problem& a, const Problem& b) { return a.where < b.where; });

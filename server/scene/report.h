@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -30,6 +31,9 @@ class Report {
   /// A fault was reported because of which something of this name is missing.
   void left_out(std::string_view name) { left_out_.emplace(name); }
   void notice(Location where, std::string text);  ///< each text once
+  /// Only the first of each kind is told, with how many there are.
+  /// @param kind  static text
+  void warn(Location where, std::string_view kind, std::string text);
 
   /// Notice that something is read and checked, and does nothing yet: each subject once.
   /// @param plural  of what, for example "radios"
@@ -57,6 +61,11 @@ class Report {
   const std::vector<std::string>& files_;
   std::vector<Entry> entries_;
   std::set<std::string, std::less<>> left_out_;
+  struct Count {
+    std::size_t entry = 0;  ///< into entries_: the first
+    std::size_t more = 0;
+  };
+  std::map<std::string_view, Count> warnings_;  ///< by kind
   std::size_t faults_ = 0;
   std::unordered_set<std::string> noticed_;
 };

@@ -381,4 +381,22 @@ Value<std::string> Words::operator()(std::string_view text) const {
   return Wrong{"is not one of the words known here; write one of: " + list};
 }
 
+std::optional<double> degrees_of_radians(std::string_view text) {
+  const std::size_t point = text.find('.');
+  if (point == std::string_view::npos) return std::nullopt;
+  const auto digits = static_cast<int>(
+      std::ranges::count_if(text.substr(point), [](char c) { return c >= '0' && c <= '9'; }));
+  const Value<double> value = number(text);
+  if (digits < 2 || std::holds_alternative<Wrong>(value)) return std::nullopt;
+  const double size = std::abs(std::get<double>(value)), unit = std::pow(10.0, -digits);
+  // Multiples of 15 degrees; with two digits only those of 45, as 0.52 may be meant.
+  for (int angle = digits < 3 ? 45 : 15; angle <= 360; angle += digits < 3 ? 45 : 15) {
+    const double radians = angle * degree;
+    const bool is_rounded = std::abs(size - radians) <= 0.51 * unit;
+    const bool is_cut = size <= radians && radians - size < unit;
+    if (is_rounded || is_cut) return std::get<double>(value) < 0 ? -angle : angle;
+  }
+  return std::nullopt;
+}
+
 }  // namespace ziggurat::scene

@@ -111,4 +111,8 @@ class Words {
   std::vector<std::string_view> words_;
 };
 
+/// The degrees that were probably meant by an angle that looks like one in radians, such as 1.57.
+/// @param text  a number
+std::optional<double> degrees_of_radians(std::string_view text);
+
 }  // namespace ziggurat::scene

@@ -4,6 +4,8 @@
 
 #include <fstream>
 
+#include "processes/commands.h"
+#include "processes/places.h"
 #include "processes/private_folder.h"
 
 namespace ziggurat::processes {
@@ -38,12 +40,12 @@ TEST_F(Scripts, AreFoundBesideTheSceneAndAboveIt) {
   const auto scene = write("a/b/scene.argos", "");
   const auto beside = write("a/b/beside.lua", "");
   const auto above = write("scripts/above.lua", "");
-  EXPECT_EQ(find_script("beside.lua", scene, scene), beside);
-  EXPECT_EQ(find_script("scripts/above.lua", scene, scene), above);
-  EXPECT_EQ(find_script(above.string(), scene, scene), above);
-  EXPECT_EQ(find_script("nowhere.lua", scene, scene), std::nullopt);
-  EXPECT_EQ(find_script("/nowhere.lua", scene, scene), std::nullopt);
-  EXPECT_EQ(find_script("scripts", scene, scene), std::nullopt) << "a folder is no script";
+  EXPECT_EQ(find_file("beside.lua", scene, scene), beside);
+  EXPECT_EQ(find_file("scripts/above.lua", scene, scene), above);
+  EXPECT_EQ(find_file(above.string(), scene, scene), above);
+  EXPECT_EQ(find_file("nowhere.lua", scene, scene), std::nullopt);
+  EXPECT_EQ(find_file("/nowhere.lua", scene, scene), std::nullopt);
+  EXPECT_EQ(find_file("scripts", scene, scene), std::nullopt) << "a folder is no script";
 }
 
 TEST_F(Scripts, AreFoundBesideTheFileThatNamesThem) {
@@ -52,25 +54,77 @@ TEST_F(Scripts, AreFoundBesideTheFileThatNamesThem) {
   const auto beside = write("parts/block.lua", "");
   const auto nearer = write("parts/both.lua", "");
   const auto of_scene = write("a/both.lua", "");
-  EXPECT_EQ(find_script("block.lua", models, scene), beside);
-  EXPECT_EQ(find_script("block.lua", scene, scene), std::nullopt);
-  EXPECT_EQ(find_script("both.lua", models, scene), nearer);
-  EXPECT_EQ(find_script("both.lua", scene, scene), of_scene);
+  EXPECT_EQ(find_file("block.lua", models, scene), beside);
+  EXPECT_EQ(find_file("block.lua", scene, scene), std::nullopt);
+  EXPECT_EQ(find_file("both.lua", models, scene), nearer);
+  EXPECT_EQ(find_file("both.lua", scene, scene), of_scene);
 }
 
-TEST_F(Scripts, WorkingDirectoryComesFirst) {
+TEST_F(Scripts, WorkingDirectoryComesLast) {
   const auto scene = write("a/scene.argos", "");
-  write("a/drive.lua", "");
+  const auto beside = write("a/drive.lua", "");
   const auto here = write("b/drive.lua", "");
+  const auto only_here = write("b/only.lua", "");
   const auto former = fs::current_path();
   fs::current_path(here.parent_path());
-  const auto found = find_script("drive.lua", scene, scene);
+  const auto found = find_file("drive.lua", scene, scene);
+  const auto otherwise = find_file("only.lua", scene, scene);
   fs::current_path(former);
-  EXPECT_EQ(found, here);
+  EXPECT_EQ(found, beside);
+  EXPECT_EQ(otherwise, only_here);
+}
+
+TEST_F(Scripts, TheFolderAboveIsThatOfTheScene) {
+  const auto scene = write("a/b/scene.argos", "");
+  const auto above = write("a/x.lua", "");
+  write("c/x.lua", "");
+  fs::create_directories(fs::path(folder_.path()) / "c/d");
+  const auto former = fs::current_path();
+  fs::current_path(fs::path(folder_.path()) / "c/d");
+  const auto found = find_file("../x.lua", scene, scene);
+  fs::current_path(former);
+  EXPECT_EQ(found, above);
+}
+
+TEST_F(Scripts, CommandsAreLookedForInTheSamePlaces) {
+  const auto scene = write("a b/scene.argos", "");
+  const auto program = write("a b/drive", "#!/bin/sh\n");
+  const auto script = write("a b/drive.py", "");
+  fs::permissions(program, fs::perms::owner_all);
+  const auto find = [&](const char* command) { return find_command(command, scene, scene); };
+  const std::string folder = scene.parent_path().string();
+  EXPECT_EQ(find("./drive --fast").text, "'" + folder + "/drive' --fast");
+  EXPECT_EQ(find("exec ./drive").text, "exec '" + folder + "/drive'");
+  EXPECT_EQ(find("sh -e drive.py --out x.csv").text, "sh -e '" + script.string() + "' --out x.csv");
+  for (const char* command : {"./drive", "echo hello", "cd /tmp && ./nothing", "X=1 ./nothing",
+                              "\"$HOME/x\"", "sh -c 'exec ./nothing'", "sleep 1"}) {
+    EXPECT_EQ(find(command).missing, "") << command;
+  }
+  EXPECT_NE(find("./driv").missing.find("did you mean './drive'?"), std::string::npos)
+      << find("./driv").missing;
+  EXPECT_NE(find("drive").missing.find("write ./drive"), std::string::npos);
+  EXPECT_NE(find("sh nothing.py").missing.find("'nothing.py' is not there"), std::string::npos);
+  EXPECT_NE(find("/nothing/there").missing.find("is not there"), std::string::npos);
+  EXPECT_NE(find("./drive.py").missing.find("chmod +x"), std::string::npos);
+}
+
+TEST_F(Scripts, WithoutAFunctionThatRobotsNeedAreDoubted) {
+  const auto scene_file = fs::path(folder_.path()) / "a.argos";
+  const auto problems = [&](const char* text) {
+    write("s.lua", text);
+    return check_scripts(naming("s.lua"), scene_file);
+  };
+  const auto found = problems("function init() end\nfunction steps() end\n");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].severity, scene::Problem::Severity::warning);
+  EXPECT_NE(found[0].text.find("no function step()"), std::string::npos) << found[0].text;
+  EXPECT_EQ(problems("function step() end").size(), 1u);
+  EXPECT_TRUE(problems("init = function() end step = init").empty());
+  EXPECT_TRUE(problems("require 'all'").empty());
 }
 
 TEST_F(Scripts, GoodOnesAreNoProblem) {
-  write("good.lua", "function init() end");
+  write("good.lua", "function init() end function step() end");
   EXPECT_TRUE(check_scripts(naming("good.lua"), fs::path(folder_.path()) / "a.argos").empty());
 }
 

@@ -159,5 +159,29 @@ TEST(OtherFiles, AreNamed) {
             "m:1:1: <x> has models for scenes, but is no scene itsel");
 }
 
+TEST(Radians, AreDoubtedOnceWithTheirNumber) {
+  const auto warnings = [](const std::string& orientation) {
+    std::string text = slider;
+    for (const char* part : {"<body position=\"0,0,0\"/>", "<parent link=\"base\"/>"}) {
+      const std::size_t at = text.find(part) + std::string(part).size() - 2;
+      text.insert(at, " orientation=\"" + orientation + "\"");
+    }
+    const auto result = read_text(text, "t");
+    EXPECT_TRUE(result.ok());
+    return texts_of(result, Problem::Severity::warning);
+  };
+  const auto found = warnings("0, 1.57,0");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0],
+            "t:15:43: orientation=\"0, 1.57,0\" of <body> looks like radians, and angles are in "
+            "degrees; write 90 for 1.57 (in prototype \"slider\"); and 1 more like this");
+  for (const char* radians : {"-3.1416,0,0", "0.785,0,0", "0,0,0.5236", "0,2.094,0", "6.283,0,0"}) {
+    EXPECT_EQ(warnings(radians).size(), 1u) << radians;
+  }
+  for (const char* degrees : {"90,0,0", "1.5,0,0", "3.1,0,0", "0.52,0,0", "31.42,0,0", "0.25,0,0"}) {
+    EXPECT_TRUE(warnings(degrees).empty()) << degrees;
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::scene

@@ -1,0 +1,149 @@
+#include "processes/commands.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <string_view>
+#include <system_error>
+
+#include "processes/places.h"
+#include "scene/additions.h"
+#include "scene/values.h"
+
+namespace ziggurat::processes {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view white = " \t\r\n";
+
+/// What /bin/sh runs itself.
+constexpr std::array<std::string_view, 33> shell_words{
+    "!",    ".",      ":",     "[",    "alias", "bg",    "break", "case",   "cd",
+    "command", "echo", "eval",  "exec", "exit", "export", "false", "for",    "if",
+    "kill", "printf", "read",  "set",  "shift", "test",  "time",  "trap",   "true",
+    "type", "ulimit", "umask", "until", "wait", "while"};
+constexpr std::array<std::string_view, 8> script_endings{".py", ".lua", ".js", ".rb",
+                                                         ".pl", ".sh",  ".jar", ".m"};
+
+struct Word {
+  std::size_t begin = 0, size = 0;
+};
+
+/// The word at or behind a place of a command; of size 0 if it has none.
+Word word_at(std::string_view command, std::size_t place) {
+  const std::size_t begin = std::min(command.find_first_not_of(white, place), command.size());
+  const std::size_t end = std::min(command.find_first_of(white, begin), command.size());
+  return {begin, end - begin};
+}
+
+/// Whether a shell takes the word as it stands.
+bool is_plain(std::string_view word) {
+  return !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("_./+-,:@").find(static_cast<char>(c)) !=
+                                       std::string_view::npos || c >= 0x80;
+  });
+}
+
+std::string quoted(const std::string& path) {
+  if (is_plain(path)) return path;
+  std::string text = "'";
+  for (const char c : path) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+bool is_in_path(const std::string& program) {
+  const char* variable = std::getenv("PATH");
+  const std::string path = variable == nullptr ? "/usr/local/bin:/usr/bin:/bin" : variable;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find(':', begin), path.size());
+    const fs::path file = fs::path(path.substr(begin, end - begin)) / program;
+    if (::access(file.c_str(), X_OK) == 0) return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
+struct Finder {
+  const std::string& command;
+  const fs::path& naming_file;
+  const fs::path& scene_file;
+
+  std::string text(const Word& word) const { return command.substr(word.begin, word.size); }
+
+  std::string replaced(const Word& word, const fs::path& by) const {
+    return command.substr(0, word.begin) + quoted(by.string()) +
+           command.substr(word.begin + word.size);
+  }
+
+  FoundCommand program(const Word& word) const {
+    const std::string name = text(word);
+    const auto found = find_file(name, naming_file, scene_file);
+    if (!found) {
+      return {command, fmt::format("'{}' is not there{}", name,
+                                   looked_for(name, naming_file, scene_file))};
+    }
+    if (::access(found->c_str(), X_OK) != 0) {
+      return {replaced(word, *found),
+              fmt::format("{0} can't be executed; write chmod +x {0}", found->string())};
+    }
+    return {replaced(word, *found), {}};
+  }
+
+  /// The first argument that is no option, if it is a script.
+  FoundCommand script(std::size_t behind_program) const {
+    Word word = word_at(command, behind_program);
+    while (word.size > 0 && command[word.begin] == '-') {
+      word = word_at(command, word.begin + word.size);
+    }
+    const std::string name = text(word);
+    const auto ends_name = [&](std::string_view ending) { return name.ends_with(ending); };
+    if (!is_plain(name) || std::ranges::none_of(script_endings, ends_name)) return {command, {}};
+    if (const auto found = find_file(name, naming_file, scene_file)) {
+      return {replaced(word, *found), {}};
+    }
+    return {command, fmt::format("'{}' is not there{}", name,
+                                 looked_for(name, naming_file, scene_file))};
+  }
+};
+
+}  // namespace
+
+FoundCommand find_command(const std::string& command, const fs::path& naming_file,
+                          const fs::path& scene_file) {
+  const Finder finder{command, naming_file, scene_file};
+  Word first = word_at(command, 0);
+  if (finder.text(first) == "exec") first = word_at(command, first.begin + first.size);
+  const std::string program = finder.text(first);
+  if (!is_plain(program)) return {command, {}};
+  if (program.find('/') != std::string::npos) return finder.program(first);
+  if (std::ranges::find(shell_words, program) != shell_words.end()) return {command, {}};
+  if (!is_in_path(program)) {
+    const bool is_beside = find_file(program, naming_file, scene_file).has_value();
+    return {command, fmt::format("'{}' is no program in PATH; {}", program,
+                                 is_beside ? fmt::format("write ./{}, which is there", program)
+                                           : "install it, or write its path")};
+  }
+  return finder.script(first.begin + first.size);
+}
+
+std::vector<scene::Problem> find_commands(scene::Scene& scene, const fs::path& scene_file) {
+  std::vector<scene::Problem> problems;
+  for (scene::Controller& controller : scene.controllers) {
+    if (controller.command.empty()) continue;
+    const std::string file = scene::file_of(scene, controller.where);
+    FoundCommand found = find_command(controller.command, file, scene_file);
+    if (!found.missing.empty()) {
+      problems.push_back({scene::Problem::Severity::warning, file, controller.where,
+                          fmt::format("command={} of <{}>: {}", scene::in_quotes(controller.command),
+                                      controller.type, found.missing)});
+    }
+    controller.command = std::move(found.text);
+  }
+  return problems;
+}
+
+}  // namespace ziggurat::processes

@@ -1,0 +1,28 @@
+#pragma once
+// The commands of a scene's controllers: their programs are looked for where its scripts are.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/problem.h"
+#include "scene/scene.h"
+
+namespace ziggurat::processes {
+
+struct FoundCommand {
+  std::string text;     ///< for /bin/sh: with the path of the file that was found
+  std::string missing;  ///< a sentence on the file that is not there; empty if all are
+};
+
+/// Finds the program of a command, if its name has a slash, otherwise the script that is its first
+/// argument (`python3 drive.py`). Words that only a shell can read are left to it.
+FoundCommand find_command(const std::string& command, const std::filesystem::path& naming_file,
+                          const std::filesystem::path& scene_file);
+
+/// Puts the files that were found into the commands of a scene's controllers.
+/// @returns a warning for each that is not there
+std::vector<scene::Problem> find_commands(scene::Scene& scene,
+                                          const std::filesystem::path& scene_file);
+
+}  // namespace ziggurat::processes

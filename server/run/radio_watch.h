@@ -1,0 +1,36 @@
+#pragma once
+// Radios that were never silent: a radio that sends in a tick receives nothing in it.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "world/commands.h"
+#include "world/layout.h"
+#include "world/state.h"
+
+namespace ziggurat::run {
+
+class RadioWatch {
+ public:
+  /// A tick was answered: what was received at it, and what is sent next.
+  void tick(const world::Observations& observations, const world::Commands& commands);
+
+  /// A sentence if there are radios that sent at every tick and so received nothing, while others of
+  /// their medium sent, too; otherwise empty.
+  std::string warning(const world::Layout& layout) const;
+
+ private:
+  struct Radio {
+    std::uint64_t sent = 0;       ///< ticks at which it sent
+    std::uint64_t last_sent = 0;  ///< the last of them, from 1
+    bool has_received = false;
+  };
+  Radio& at(std::size_t radio);
+
+  std::vector<Radio> radios_;  // into Layout::radios; may be shorter
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace ziggurat::run

@@ -1,0 +1,17 @@
+#pragma once
+// What a person would ask about when they see a scene at its start.
+
+#include <vector>
+
+#include "scene/problem.h"
+#include "scene/scene.h"
+#include "simulation/simulation.h"
+
+namespace ziggurat::simulation {
+
+/// Warnings on bodies that overlap, that begin in the floor or outside of the arena, that fall forever,
+/// or whose size has nothing to do with the arena's. One of each kind, with how many there are.
+/// @param simulation  of the scene, at tick 0
+std::vector<scene::Problem> doubts(const scene::Scene& scene, const Simulation& simulation);
+
+}  // namespace ziggurat::simulation

@@ -1,0 +1,73 @@
+#include "simulation/doubts.h"
+
+#include <gtest/gtest.h>
+
+#include "small_scene.h"
+
+namespace ziggurat::simulation {
+namespace {
+
+using testing::ground;
+using testing::SmallScene;
+
+std::string body(const std::string& id, const std::string& position, bool movable = true,
+                const std::string& size = "1,1,1") {
+  return "<box id=\"" + id + "\" size=\"" + size + "\" movable=\"" + (movable ? "true" : "false") +
+         "\"" + (movable ? " mass=\"1\"" : "") + "><body position=\"" + position + "\"/></box>\n";
+}
+
+std::vector<std::string> found(const std::string& arena, const std::string& engine = ground) {
+  const scene::Scene scene = SmallScene{"", "", arena, engine}.read();
+  std::vector<std::string> texts;
+  for (const auto& problem : doubts(scene, Simulation(scene, {1}))) {
+    EXPECT_EQ(problem.severity, scene::Problem::Severity::warning);
+    texts.push_back(scene::to_string(problem));
+  }
+  return texts;
+}
+
+void expect_one(const std::vector<std::string>& texts, const std::string& part) {
+  ASSERT_EQ(texts.size(), 1u) << ::testing::PrintToString(texts);
+  EXPECT_NE(texts[0].find(part), std::string::npos) << texts[0];
+}
+
+TEST(Doubts, AreNotRaisedBySoundScenes) {
+  EXPECT_TRUE(found("").empty());
+  EXPECT_TRUE(found(body("a", "0,0,0") + body("b", "1,0,0") + body("c", "0,0,1")).empty());
+  EXPECT_TRUE(found(body("a", "0,0,0", false) + body("b", "0.5,0,0", false)).empty())
+      << "walls may overlap";
+  EXPECT_TRUE(found(body("a", "0,0,-0.5", false)).empty()) << "a wall may stand in the floor";
+  EXPECT_TRUE(found(body("a", "0,0,0"), "").empty()) << "without gravity nothing falls";
+  EXPECT_TRUE(found(body("table", "0,0,-1", false) + body("a", "0,0,0.5"), "<gravity g=\"9\"/>").empty());
+  EXPECT_TRUE(found(body("wall", "4.5,0,0", false)).empty()) << "half of it is inside";
+}
+
+TEST(Doubts, OverlapsAreCounted) {
+  const auto texts = found(body("a", "0,0,0") + body("b", "0.9,0,0") + body("c", "-0.9,0,0"));
+  expect_one(texts, "box \"b\" overlaps \"a\" at the start");
+  EXPECT_TRUE(texts[0].ends_with("and 1 more like this")) << texts[0];
+  EXPECT_EQ(texts[0].find("small.argos:2:1: "), 0u) << texts[0];
+  expect_one(found(body("a", "0,0,0") + body("wall", "0.9,0,0", false)), "box \"a\" overlaps \"wall\"");
+}
+
+TEST(Doubts, OfBodiesInTheFloor) {
+  expect_one(found(body("a", "0,0,-0.25")), "box \"a\" begins 0.25 m deep in the floor");
+}
+
+TEST(Doubts, OfBodiesOutsideOfTheArena) {
+  expect_one(found(body("a", "6,0,0")), "box \"a\" begins outside of the arena, at 6,0,0");
+}
+
+TEST(Doubts, OfBodiesThatFallForever) {
+  expect_one(found(body("a", "0,0,0"), "<gravity g=\"9\"/>"), "box \"a\" falls forever");
+  expect_one(found(body("side", "2,0,-1", false) + body("a", "0,0,0"), "<gravity g=\"9\"/>"),
+             "box \"a\" falls forever");
+}
+
+TEST(Doubts, OfLengthsInMillimetres) {
+  expect_one(found(body("a", "0,0,0", true, "100,100,100")), "is 100 m long, 11.1 times the arena");
+  EXPECT_TRUE(found(body("a", "0,0,-20", false, "100,100,20")).empty()) << "a ground";
+}
+
+}  // namespace
+}  // namespace ziggurat::simulation
