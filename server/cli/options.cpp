@@ -83,10 +83,11 @@ po::options_description hil_options() {
        "may be repeated")  //
       ("gate", text("CONDITIONS"),
        "exit with 4 unless every controller meets them: p99<2ms,misses<0.1% (p50, p90, "
-       "p99, p99.9, "
-       "max, misses, late)")  //
+       "p99, p99.9, max, jitter, misses, run: of misses in a row, late)")  //
       ("report-card", text("FILE"),
-       "how controllers kept up, as JSON, or as a picture if FILE ends with .svg");
+       "how controllers kept up, as JSON, as a picture if FILE ends with .svg, or tick by tick if it "
+       "ends with .csv")  //
+      ("warm-up", text("N"), "the first N ticks do not count for the gate and the report card");
   return options;
 }
 
@@ -247,6 +248,7 @@ void read_network(const Values& values, run::Options& options) {
 
 void read_outputs(const Values& values, run::Options& options) {
   options.report_card = values.text("report-card");
+  if (values.has("warm-up")) options.warm_up = text::to_integer("--warm-up", values.text("warm-up"));
   options.quiet = values.has("quiet");
   options.json = values.has("json");
   options.hash = values.has("hash");

@@ -23,6 +23,7 @@ struct Config {
   unsigned max_faults = 100;  ///< bad messages in a row before a session is closed
   Rate rate;                  ///< of a connection's messages, besides expected answers
   std::chrono::milliseconds heartbeat{1000};  ///< of wall time that a session hears nothing; > 0
+  bool keeps_reactions = false;               ///< each by itself, for a report card
   std::chrono::milliseconds lease{0};         ///< how long robots of a lost session are kept for it
 
   // What depends on the scene: counts from Server::open() on.

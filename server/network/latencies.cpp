@@ -8,12 +8,6 @@
 namespace ziggurat::network {
 namespace {
 
-std::size_t bin_of(double seconds) {
-  if (!(seconds > Latencies::least)) return 0;
-  const double bin = std::log10(seconds / Latencies::least) * 20;
-  return std::min(static_cast<std::size_t>(bin), Latencies::bins - 1);
-}
-
 /// The smallest value that at least this share of all is not above.
 double nth(std::span<const float> ascending, double share) {
   const double place = std::ceil(share * static_cast<double>(ascending.size())) - 1;
@@ -34,7 +28,7 @@ void replace(std::span<float> ascending, float old, float fresh) {
 
 }  // namespace
 
-void Latencies::add(double seconds, std::uint64_t tick) {
+void Latencies::add(double seconds) {
   const auto value = static_cast<float>(seconds);
   float& oldest = recent_[count_ % remembered];
   const bool is_full = count_ >= remembered;
@@ -44,11 +38,6 @@ void Latencies::add(double seconds, std::uint64_t tick) {
   replace({sorted_.data(), size}, is_full ? oldest : sorted_[size - 1], value);
   oldest = value;
   ++count_;
-  ++histogram_[bin_of(seconds)];
-  Worst fresh{seconds, tick};
-  for (Worst& place : worst_) {
-    if (fresh.seconds > place.seconds) std::swap(fresh, place);
-  }
 }
 
 wire::Latency Latencies::recent() const {
@@ -56,30 +45,6 @@ wire::Latency Latencies::recent() const {
   const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(count_, remembered));
   const std::span<const float> ascending(sorted_.data(), size);
   return {nth(ascending, 0.5), nth(ascending, 0.99), static_cast<double>(ascending.back())};
-}
-
-double Latencies::percentile(double share) const {
-  const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_)));
-  std::uint64_t seen = 0;
-  for (std::size_t bin = 0; bin < bins; ++bin) {
-    seen += histogram_[bin];
-    if (seen >= wanted && seen > 0) {
-      return bin + 1 == bins ? max() : std::min(begin_of(bin + 1), max());
-    }
-  }
-  return 0;
-}
-
-double Latencies::begin_of(std::size_t bin) {
-  return least * std::pow(10.0, static_cast<double>(bin) / 20);
-}
-
-std::vector<Latencies::Worst> Latencies::worst() const {
-  std::vector<Worst> result;
-  for (const Worst& place : worst_) {
-    if (place.seconds > 0) result.push_back(place);
-  }
-  return result;
 }
 
 }  // namespace ziggurat::network

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "network/delays.h"
-#include "network/latencies.h"
 #include "network/link.h"
+#include "network/reactions.h"
 #include "scene/deadline.h"
 #include "wire/messages.h"
 #include "wire/request.h"
@@ -32,11 +32,14 @@ struct RobotStatus {
   bool was_held = false;           ///< a session has had it
 };
 
-/// How well the robots of a controller were answered for.
+/// How well controllers answered.
 struct Performance {
-  Latencies latencies;             ///< wall time from observation to command
-  std::uint64_t missed_ticks = 0;  ///< at which one of them or more missed a deadline
-  Lost lost;                       ///< messages lost on purpose
+  struct Controller {
+    std::uint64_t missed_ticks = 0;  ///< at which one of its robots or more missed a deadline
+    Lost lost;                       ///< messages lost on purpose
+  };
+  std::vector<Controller> controllers;  ///< of the scene
+  const Reactions& reactions;           ///< of the server, if its config keeps them
 };
 
 /// How far the world is loaded.

@@ -230,12 +230,13 @@ void Server::fill(wire::Status& status) const {
 
 std::vector<RobotStatus> Server::status() const { return robot_status(state_->barrier); }
 
-std::vector<Performance> Server::performance() const {
+Performance Server::performance() const {
   const Barrier& barrier = state_->barrier;
-  std::vector<Performance> result;
-  for (std::size_t c = 0; c < barrier.latencies.size(); ++c) {
+  Performance result{{}, barrier.reactions};
+  const std::vector<std::uint64_t>& missed = barrier.deadlines.missed_ticks();
+  for (std::size_t c = 0; c < missed.size(); ++c) {
     const Lost lost = state_->link ? state_->link->lost_messages()[c] : Lost{};
-    result.push_back({barrier.latencies[c], barrier.deadlines.missed_ticks()[c], lost});
+    result.controllers.push_back({missed[c], lost});
   }
   return result;
 }

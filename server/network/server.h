@@ -27,7 +27,6 @@
 #include "network/config.h"
 #include "network/delays.h"
 #include "network/endpoint.h"
-#include "network/latencies.h"
 #include "network/report.h"
 #include "wire/messages.h"
 #include "wire/outbox.h"
@@ -142,7 +141,7 @@ class Server {
   /// Adds what a server knows: sessions, and robots that are free or have left.
   void fill(wire::Status& status) const;
   std::vector<RobotStatus> status() const;       ///< per robot of the layout
-  std::vector<Performance> performance() const;  ///< per controller of the scene
+  Performance performance() const;
   Report take_report();
 
  private:

@@ -17,20 +17,23 @@ namespace {
 
 using Subject = Condition::Subject;
 
-constexpr std::array<std::pair<std::string_view, Subject>, 7> subjects{{
+constexpr std::array<std::pair<std::string_view, Subject>, 9> subjects{{
     {"p50", Subject::p50},
     {"p90", Subject::p90},
     {"p99", Subject::p99},
     {"p99.9", Subject::p999},
     {"max", Subject::max},
+    {"jitter", Subject::jitter},
     {"misses", Subject::misses},
+    {"run", Subject::run},
     {"late", Subject::late},
 }};
 
 [[noreturn]] void wrong(const std::string& part) {
   throw text::UsageError(fmt::format(
       "--gate: '{}' is not a condition; write for example p99<2ms, max<20ms, misses<0.1% or late<5 "
-      "(p50, p90, p99, p99.9, max: a time in us, ms or s; misses, late: a number or a share in %)",
+      "(p50, p90, p99, p99.9, max, jitter: a time in us, ms or s; misses, run, late: a number or a "
+      "share in %)",
       part));
 }
 
@@ -49,9 +52,8 @@ Condition parse_condition(const std::string& part) {
     wrong(part);
   }
   const std::string_view unit = text::trimmed(std::string_view(limit).substr(used));
-  const bool is_time = condition.subject < Subject::misses;
   if (!std::isfinite(condition.limit) || condition.limit < 0) wrong(part);
-  if (is_time) {
+  if (is_time(condition.subject)) {
     const auto seconds = text::seconds_in(unit);
     if (!seconds) wrong(part);
     condition.limit *= *seconds;
@@ -74,30 +76,6 @@ std::vector<Condition> parse_gate(const std::string& text) {
   }
   if (conditions.empty()) wrong(text);
   return conditions;
-}
-
-double measured(const Condition& condition, const Performance& performance) {
-  const auto counted = [&](double ticks) {
-    if (!condition.is_share) return ticks;
-    return performance.ticks > 0 ? ticks / performance.ticks : 0;
-  };
-  switch (condition.subject) {
-    case Subject::p50:
-      return performance.p50;
-    case Subject::p90:
-      return performance.p90;
-    case Subject::p99:
-      return performance.p99;
-    case Subject::p999:
-      return performance.p999;
-    case Subject::max:
-      return performance.max;
-    case Subject::misses:
-      return counted(performance.misses);
-    case Subject::late:
-      return counted(performance.late);
-  }
-  return 0;
 }
 
 }  // namespace ziggurat::reports

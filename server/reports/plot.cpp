@@ -63,6 +63,45 @@ std::string grid(const Scale& x, const Scale& y, double offset) {
   return out;
 }
 
+/// Wide enough for curves and marks.
+Scale scale_of_x(const Panel& panel) {
+  double low = panel.x.front(), high = panel.x.back();
+  for (const Mark& mark : panel.marks) {
+    low = std::min(low, mark.x * 0.9);
+    high = std::max(high, mark.x * 1.1);
+  }
+  return {std::log10(low), std::log10(high), left, width - right};
+}
+
+std::string marks(const Panel& panel, const Scale& x, const Scale& y) {
+  std::string out;
+  double height = y.from - 8;  // of the name: above the axis, each above the one before
+  for (const Mark& mark : panel.marks) {
+    const double at = x(mark.x);
+    const bool is_right = at > width / 2;
+    out += fmt::format(
+        "<line class=\"mark\" x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" "
+        "stroke=\"{3}\" stroke-width=\"1.5\" stroke-dasharray=\"4 3\"/>\n",
+        at, y.from, y.to, mark.color);
+    out += label(at + (is_right ? -5 : 5), height, mark.name,
+                 fmt::format("fill=\"{}\" text-anchor=\"{}\"", mark.color,
+                             is_right ? "end" : "start")
+                     .c_str());
+    height -= 16;
+  }
+  return out;
+}
+
+std::string notes(const Panel& panel, double offset) {
+  std::string out;
+  double y = offset + top + 16;
+  for (const Note& note : panel.notes) {
+    out += label(left + 10, y, note.text, fmt::format("fill=\"{}\"", note.color).c_str());
+    y += 16;
+  }
+  return out;
+}
+
 std::string draw(const Panel& panel, double offset) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const Curve& curve : panel.curves) {
@@ -75,11 +114,13 @@ std::string draw(const Panel& panel, double offset) {
   std::string out = label(left, offset + 24, panel.title, "font-weight=\"bold\"");
   out += label((left + width - right) / 2, offset + panel_height - 10, panel.x_label,
                "text-anchor=\"middle\"");
+  out += notes(panel, offset);
   if (low > high) return out + label(left + 20, offset + top + 40, "zero everywhere");
-  const Scale x{std::log10(panel.x.front()), std::log10(panel.x.back()), left, width - right};
+  const Scale x = scale_of_x(panel);
   const Scale y{std::floor(low), std::max(std::ceil(high), std::floor(low) + 1),
                 offset + panel_height - bottom, offset + top};
   out += grid(x, y, offset) + label(8, offset + top - 8, panel.y_label);
+  out += marks(panel, x, y);
   double legend = offset + top + 16;
   for (const Curve& curve : panel.curves) {
     std::string path;
@@ -109,16 +150,19 @@ std::string draw(const Panel& panel, double offset) {
 }  // namespace
 
 std::string to_svg(const std::string& title, const std::vector<Panel>& panels) {
-  const double height = 30 + panel_height * static_cast<double>(panels.size());
+  const double head = title.find('\n') == std::string::npos ? 30 : 44;  // [px] above the panels
+  const double height = head + panel_height * static_cast<double>(panels.size());
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
       "{1}\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n<style>.grid{{stroke:#ddd}}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
       width, height);
-  out += label(left, 20, title, "font-size=\"15\"");
+  const auto line_feed = title.find('\n');
+  out += label(left, 20, title.substr(0, line_feed), "font-size=\"15\"");
+  if (line_feed != std::string::npos) out += label(left, 38, title.substr(line_feed + 1));
   for (std::size_t i = 0; i < panels.size(); ++i)
-    out += draw(panels[i], 30 + panel_height * static_cast<double>(i));
+    out += draw(panels[i], head + panel_height * static_cast<double>(i));
   return out + "</svg>\n";
 }
 

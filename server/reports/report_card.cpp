@@ -4,62 +4,34 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
-
-#include "reports/plot.h"
+#include <tuple>
 
 namespace ziggurat::reports {
 namespace {
 
-using network::Latencies;
+using network::Reaction;
 
 constexpr std::size_t bar_length = 40;  // characters
 
-Performance performance_of(const ReportCard& card, const ControllerCard& controller) {
-  const Latencies& times = controller.latencies;
-  Performance performance;
-  performance.p50 = times.percentile(0.5);
-  performance.p90 = times.percentile(0.9);
-  performance.p99 = times.percentile(0.99);
-  performance.p999 = times.percentile(0.999);
-  performance.max = times.max();
-  performance.misses = static_cast<double>(controller.misses);
-  performance.late = static_cast<double>(card.late_ticks);
-  performance.ticks = static_cast<double>(card.ticks);
-  return performance;
+double counted(const Condition& condition, std::uint64_t some, std::uint64_t all) {
+  if (!condition.is_share) return static_cast<double>(some);
+  return all > 0 ? static_cast<double>(some) / static_cast<double>(all) : 0;
 }
 
 /// The histogram as text. Five bins, a quarter of a decade, make one line.
-std::string bars(const Latencies& times) {
+std::string bars(const Statistics& statistics) {
   constexpr std::size_t together = 5;
-  std::array<std::uint64_t, Latencies::bins / together> sums{};
-  for (std::size_t bin = 0; bin < Latencies::bins; ++bin) {
-    sums[bin / together] += times.histogram()[bin];
+  std::array<std::uint64_t, bins::count / together> sums{};
+  for (std::size_t bin = 0; bin < bins::count; ++bin) {
+    sums[bin / together] += statistics.histogram[bin];
   }
   const std::uint64_t most = *std::ranges::max_element(sums);
   std::string text;
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (sums[i] == 0) continue;
     const auto length = (sums[i] * bar_length + most - 1) / most;
-    text +=
-        fmt::format("\n    from {:>8.3f} ms  {:>9}  {}", Latencies::begin_of(i * together) * 1e3,
-                    sums[i], std::string(static_cast<std::size_t>(length), '#'));
-  }
-  return text;
-}
-
-std::string shown(const Condition& condition, double value) {
-  if (condition.is_share) return fmt::format("{:.3g} %", value * 100);
-  if (condition.subject < Condition::Subject::misses) return fmt::format("{:.3g} ms", value * 1e3);
-  return fmt::format("{:g}", value);
-}
-
-std::string conditions(const ReportCard& card, const ControllerCard& controller) {
-  std::string text;
-  const Performance performance = performance_of(card, controller);
-  for (const Condition& condition : card.gate) {
-    text += fmt::format("\n    {}  {}: {}", meets(card, controller, condition) ? "met " : "MISSED",
-                        condition.text, shown(condition, measured(condition, performance)));
+    text += fmt::format("\n    from {:>8.3f} ms  {:>9}  {}", bins::begin_of(i * together) * 1e3,
+                        sums[i], std::string(static_cast<std::size_t>(length), '#'));
   }
   return text;
 }
@@ -71,14 +43,7 @@ std::string injected(const ControllerCard& controller) {
                      controller.lost.commands);
 }
 
-nlohmann::ordered_json to_json(const network::Disturbance& disturbance, std::uint64_t lost) {
-  return {{"latency_s", static_cast<double>(disturbance.latency.count()) * 1e-9},
-          {"jitter_s", static_cast<double>(disturbance.jitter.count()) * 1e-9},
-          {"loss", disturbance.loss},
-          {"lost", lost}};
-}
-
-std::string to_text(const network::Disturbance& disturbance) {
+std::string words_of(const network::Disturbance& disturbance) {
   const auto ms = [](std::chrono::nanoseconds time) {
     return static_cast<double>(time.count()) * 1e-6;
   };
@@ -89,12 +54,95 @@ std::string to_text(const network::Disturbance& disturbance) {
   return text + fmt::format("{}{:g} % lost", text.empty() ? "" : ", ", disturbance.loss * 100);
 }
 
+std::string head(const ReportCard& card) {
+  std::string text = fmt::format("report card: {}, seed {}, {}\n  {} ticks", card.scene, card.seed,
+                                 card.date, card.ticks);
+  if (card.period_s > 0) text += fmt::format(" of {:g} ms", card.period_s * 1e3);
+  if (card.warm_up > 0) text += fmt::format(", the first {} not counted", card.warm_up);
+  if (card.starts.empty()) return text;
+  return text + fmt::format("; {} of {} began late; starts were behind by p50 {:.3f} ms, p99 {:.3f} ms, max {:.3f} ms",
+                            card.late_starts, card.counted_starts, card.start_s.p50 * 1e3,
+                            card.start_s.p99 * 1e3, card.start_s.max * 1e3);
+}
+
+std::string body(const ReportCard& card, const ControllerCard& controller) {
+  const Statistics& found = controller.statistics;
+  const Percentiles& p = found.wall_s;
+  std::string text = fmt::format(
+      "\n  controller '{}', deadline {}: {} observations; {} answered in time, {} late, {} never\n"
+      "    misses at {} of {} ticks, at most {} in a row\n"
+      "    p50 {:.3f} ms, p90 {:.3f} ms, p99 {:.3f} ms, p99.9 {:.3f} ms, max {:.3f} ms, "
+      "jitter {:.3f} ms",
+      controller.controller, to_text(controller.deadlines), found.count(), found.in_time, found.late,
+      found.unanswered, found.misses, found.ticks, found.longest_run, p.p50 * 1e3, p.p90 * 1e3,
+      p.p99 * 1e3, p.p999 * 1e3, p.max * 1e3, found.jitter_s * 1e3);
+  for (std::size_t i = 0; i < found.worst.size(); ++i) {
+    const Reaction& one = found.worst[i];
+    text += fmt::format("{}{:.3f} ms at tick {}{}", i == 0 ? "\n    worst: " : ", ",
+                        one.seconds * 1e3, one.tick,
+                        one.kind == Reaction::Kind::unanswered ? " (never answered)" : "");
+  }
+  text += injected(controller) + bars(found);
+  for (const Condition& condition : card.gate) {
+    text += fmt::format("\n    {}  {}", meets(card, controller, condition) ? "met " : "MISSED",
+                        to_text(condition, measured(card, controller, condition)));
+  }
+  return text;
+}
+
 }  // namespace
 
+void complete(ReportCard& card) {
+  const auto is_counted = [&](const auto& one) { return one.tick >= card.warm_up; };
+  for (ControllerCard& controller : card.controllers) {
+    std::ranges::sort(controller.reactions, {}, [](const Reaction& one) {
+      return std::tuple(one.world, one.tick, one.robot);
+    });
+    std::vector<Reaction> those;
+    std::ranges::copy_if(controller.reactions, std::back_inserter(those), is_counted);
+    controller.statistics = measure(those);
+  }
+  std::ranges::sort(card.starts, {},
+                    [](const TickStart& one) { return std::tuple(one.world, one.tick); });
+  std::vector<double> late;
+  for (const TickStart& start : card.starts) {
+    if (!is_counted(start)) continue;
+    late.push_back(start.late_s);
+    card.late_starts += start.is_late ? 1 : 0;
+  }
+  card.counted_starts = late.size();
+  card.start_s = percentiles(late);
+}
+
+double measured(const ReportCard& card, const ControllerCard& controller,
+                const Condition& condition) {
+  const Statistics& found = controller.statistics;
+  switch (condition.subject) {
+    case Condition::Subject::p50:
+      return found.wall_s.p50;
+    case Condition::Subject::p90:
+      return found.wall_s.p90;
+    case Condition::Subject::p99:
+      return found.wall_s.p99;
+    case Condition::Subject::p999:
+      return found.wall_s.p999;
+    case Condition::Subject::max:
+      return found.wall_s.max;
+    case Condition::Subject::jitter:
+      return found.jitter_s;
+    case Condition::Subject::misses:
+      return counted(condition, found.misses, found.ticks);
+    case Condition::Subject::run:
+      return counted(condition, found.longest_run, found.ticks);
+    case Condition::Subject::late:
+      return counted(condition, card.late_starts, card.counted_starts);
+  }
+  return 0;
+}
+
 bool meets(const ReportCard& card, const ControllerCard& controller, const Condition& condition) {
-  const bool is_time = condition.subject < Condition::Subject::misses;
-  if (is_time && controller.latencies.count() == 0) return false;
-  return measured(condition, performance_of(card, controller)) < condition.limit;
+  if (is_time(condition.subject) && controller.statistics.count() == 0) return false;
+  return measured(card, controller, condition) < condition.limit;
 }
 
 bool passes(const ReportCard& card) {
@@ -106,103 +154,31 @@ bool passes(const ReportCard& card) {
 
 std::string to_text(const network::Injection& injection) {
   if (injection.observations == injection.commands) {
-    return "each way " + to_text(injection.observations);
+    return "each way " + words_of(injection.observations);
   }
   std::string text;
-  if (injection.observations.any()) text = "observations " + to_text(injection.observations);
+  if (injection.observations.any()) text = "observations " + words_of(injection.observations);
   if (!injection.commands.any()) return text;
-  return text + (text.empty() ? "" : "; ") + "commands " + to_text(injection.commands);
+  return text + (text.empty() ? "" : "; ") + "commands " + words_of(injection.commands);
+}
+
+std::string to_text(const std::vector<scene::DeadlinePolicy>& deadlines) {
+  std::string text;
+  for (const auto& policy : deadlines) text += (text.empty() ? "" : ", ") + to_text(policy);
+  return text.empty() ? "none" : text;
+}
+
+std::string to_text(const Condition& condition, double value) {
+  if (condition.is_share) return fmt::format("{}: {:.3g} %", condition.text, value * 100);
+  if (is_time(condition.subject)) return fmt::format("{}: {:.3g} ms", condition.text, value * 1e3);
+  return fmt::format("{}: {:g}", condition.text, value);
 }
 
 std::string to_text(const ReportCard& card) {
-  std::string text =
-      fmt::format("report card: {} ticks, {} of them late", card.ticks, card.late_ticks);
-  for (const ControllerCard& controller : card.controllers) {
-    const Performance p = performance_of(card, controller);
-    text += fmt::format(
-        "\n  controller '{}': {} answers in time or late, {} misses\n"
-        "    p50 {:.3f} ms, p90 {:.3f} ms, p99 {:.3f} ms, p99.9 {:.3f} ms, max {:.3f} ms",
-        controller.controller, controller.latencies.count(), controller.misses, p.p50 * 1e3,
-        p.p90 * 1e3, p.p99 * 1e3, p.p999 * 1e3, p.max * 1e3);
-    const auto worst = controller.latencies.worst();
-    for (std::size_t i = 0; i < worst.size(); ++i) {
-      text += fmt::format("{}{:.3f} ms at tick {}", i == 0 ? "\n    worst: " : ", ",
-                          worst[i].seconds * 1e3, worst[i].tick);
-    }
-    text += injected(controller) + bars(controller.latencies) + conditions(card, controller);
-  }
+  std::string text = head(card);
+  for (const ControllerCard& controller : card.controllers) text += body(card, controller);
   if (!card.gate.empty()) text += passes(card) ? "\n  gate: met" : "\n  gate: not met";
   return text;
-}
-
-std::string to_json(const ReportCard& card) {
-  auto controllers = nlohmann::ordered_json::array();
-  for (const ControllerCard& controller : card.controllers) {
-    const Performance p = performance_of(card, controller);
-    auto worst = nlohmann::ordered_json::array();
-    for (const auto& each : controller.latencies.worst()) {
-      worst.push_back({{"tick", each.tick}, {"wall_s", each.seconds}});
-    }
-    auto histogram = nlohmann::ordered_json::array();
-    for (std::size_t bin = 0; bin < Latencies::bins; ++bin) {
-      if (controller.latencies.histogram()[bin] == 0) continue;
-      histogram.push_back(
-          {{"from_s", Latencies::begin_of(bin)}, {"count", controller.latencies.histogram()[bin]}});
-    }
-    auto gate = nlohmann::ordered_json::array();
-    for (const Condition& condition : card.gate) {
-      gate.push_back({{"condition", condition.text},
-                      {"measured", measured(condition, p)},
-                      {"met", meets(card, controller, condition)}});
-    }
-    controllers.push_back(
-        {{"controller", controller.controller},
-         {"answers", controller.latencies.count()},
-         {"misses", controller.misses},
-         {"injected",
-          {{"observations",
-            to_json(controller.injected.observations, controller.lost.observations)},
-           {"commands", to_json(controller.injected.commands, controller.lost.commands)}}},
-         {"wall_latency_s",
-          {{"p50", p.p50}, {"p90", p.p90}, {"p99", p.p99}, {"p99.9", p.p999}, {"max", p.max}}},
-         {"worst", worst},
-         {"histogram", histogram},
-         {"gate", gate}});
-  }
-  const nlohmann::ordered_json json{{"ticks", card.ticks},
-                                    {"late_ticks", card.late_ticks},
-                                    {"controllers", controllers},
-                                    {"passed", passes(card)}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-std::string to_svg(const ReportCard& card) {
-  std::vector<Panel> panels;
-  for (const ControllerCard& controller : card.controllers) {
-    Panel panel{"controller " + controller.controller,
-                "from observation to command [ms]",
-                "answers",
-                {},
-                {}};
-    if (controller.injected.any()) panel.title += ", injected: " + to_text(controller.injected);
-    Curve curve{"answers per bin", "#2563a8", false, {}};
-    const auto& histogram = controller.latencies.histogram();
-    const auto is_used = [](std::uint64_t count) { return count > 0; };
-    const auto first = std::ranges::find_if(histogram, is_used);
-    if (first == histogram.end()) continue;
-    auto last = histogram.end();
-    while (!is_used(*(last - 1))) --last;
-    for (auto bin = first; bin != last; ++bin) {
-      const auto index = static_cast<std::size_t>(bin - histogram.begin());
-      // Steps: each bin from its begin to just before the next.
-      panel.x.push_back(Latencies::begin_of(index) * 1e3);
-      panel.x.push_back(Latencies::begin_of(index + 1) * 0.999e3);
-      curve.y.insert(curve.y.end(), 2, static_cast<double>(*bin));
-    }
-    panel.curves.push_back(std::move(curve));
-    panels.push_back(std::move(panel));
-  }
-  return to_svg("How controllers kept up", panels);
 }
 
 }  // namespace ziggurat::reports

@@ -1,6 +1,10 @@
 // The end of a run: what controllers are told, what is printed, and in which order.
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
 
 #include "recording/hash_file.h"
 #include "reports/report_card.h"
@@ -35,26 +39,51 @@ void Run::complete_summary() {
   summary_.dropped = watch_.dropped();
   summary_.drops_are_failures = !options_.allow_drops;
   summary_.vanished = watch_.vanished();
-  const auto performance = server_.performance();
-  for (std::size_t c = 0; c < performance.size(); ++c) {
-    const std::uint64_t missed = performance[c].missed_ticks;
+  const auto controllers = server_.performance().controllers;
+  for (std::size_t c = 0; c < controllers.size(); ++c) {
+    const std::uint64_t missed = controllers[c].missed_ticks;
     if (missed > 0) summary_.missed.push_back({world_.scene.controllers[c].id, missed});
   }
 }
 
+reports::ReportCard Run::report_card() const {
+  const world::Layout& layout = world_.simulation.layout();
+  reports::ReportCard card;
+  card.scene = path_;
+  card.seed = world_.seed;
+  card.date =
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(date_)));
+  if (plan_.real_time) card.period_s = world_.simulation.tick_length() / *plan_.real_time;
+  card.ticks = summary_.ticks;
+  card.warm_up = options_.warm_up;
+  card.gate = options_.gate;
+  card.starts = starts_;
+  for (const auto& robot : layout.robots) card.robots.push_back(robot.id);
+  const network::Performance performance = server_.performance();
+  for (std::size_t c = 0; c < performance.controllers.size(); ++c) {
+    card.controllers.push_back({world_.scene.controllers[c].id, {}});
+    card.controllers[c].injected = config_.injections[c];
+    card.controllers[c].lost = performance.controllers[c].lost;
+  }
+  for (const network::Reaction& one : performance.reactions.all) {
+    card.controllers[one.controller].reactions.push_back(one);
+  }
+  const auto status = server_.status();
+  for (std::size_t r = 0; r < status.size(); ++r) {
+    auto& deadlines = card.controllers[layout.robots[r].controller].deadlines;
+    const bool is_new = std::ranges::find(deadlines, status[r].deadline) == deadlines.end();
+    if (is_new) deadlines.push_back(status[r].deadline);
+  }
+  // Those that control no robot.
+  std::erase_if(card.controllers, [](const auto& each) { return each.reactions.empty(); });
+  complete(card);
+  return card;
+}
+
 /// Prints and writes the report card, if an option asks for it. False if the gate was missed.
 bool Run::report_hil() {
-  const bool is_wanted = options_.hil || !options_.injections.empty() || !options_.gate.empty() ||
-                         !options_.report_card.empty();
-  if (!is_wanted) return true;
-  reports::ReportCard card{{}, summary_.ticks, summary_.late_ticks, options_.gate};
-  const auto performance = server_.performance();
-  for (std::size_t c = 0; c < performance.size(); ++c) {
-    const auto& [latencies, missed, lost] = performance[c];
-    if (latencies.count() == 0 && missed == 0) continue;  // controls no robot
-    card.controllers.push_back(
-        {world_.scene.controllers[c].id, latencies, missed, config_.injections[c], lost});
-  }
+  if (!config_.keeps_reactions) return true;
+  const reports::ReportCard card = report_card();
   recorders_.write_report_card(card);
   console_.report(to_text(card));
   return passes(card);

@@ -26,7 +26,7 @@ std::vector<File> outputs_of(const Options& options) {
                           {"--rays", options.rays, {".jsonl"}},
                           {"--hash-file", options.hash_file, {}},
                           {"--summary", options.summary, {".json"}},
-                          {"--report-card", options.report_card, {".json", ".svg"}}};
+                          {"--report-card", options.report_card, {".json", ".svg", ".csv"}}};
   if (options.pictures) files.push_back({"--out", options.pictures->out, {".png"}});
   std::erase_if(files, [](const File& file) { return file.path.empty(); });
   return files;

@@ -6,6 +6,11 @@
 
 namespace ziggurat::run {
 
+bool wants_report_card(const Options& options) {
+  return options.hil || !options.injections.empty() || !options.gate.empty() ||
+         !options.report_card.empty() || options.warm_up > 0;
+}
+
 const std::string& only_scene(const Options& options) {
   if (options.scenes.empty())
     throw text::UsageError("no scene is given; write the path of a scene file");

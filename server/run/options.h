@@ -42,6 +42,7 @@ struct Options {
   bool hil = false;          ///< hardware in the loop: paced, never waits
   std::vector<reports::Condition> gate;  ///< conditions that every controller must meet
   std::string report_card;               ///< path; empty = none
+  std::uint64_t warm_up = 0;             ///< ticks that the report card does not count
   std::string metrics;                   ///< host:port; empty = none
   bool insecure = false;                 ///< endpoints may be reached from other machines
 
@@ -52,6 +53,9 @@ struct Options {
   std::string hash_file, trace, readings, rays, images, summary;  ///< paths; empty = none
   std::optional<PictureOptions> pictures;  ///< the run ends with the last of them
 };
+
+/// Whether the run ends with a report card.
+bool wants_report_card(const Options& options);
 
 /// The one scene of a run. @throws text::UsageError if there is none or more
 const std::string& only_scene(const Options& options);

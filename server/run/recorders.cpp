@@ -19,7 +19,9 @@ Recorders::Recorders(const Options& options, const supervision::World& world) {
   if (!options.readings.empty()) readings_.emplace(options.readings, layout);
   if (!options.summary.empty()) summary_.emplace(options.summary);
   if (!options.report_card.empty()) report_card_.emplace(options.report_card);
-  report_card_is_picture_ = options.report_card.ends_with(".svg");
+  report_card_text_ = &reports::to_json;
+  if (options.report_card.ends_with(".svg")) report_card_text_ = &reports::to_svg;
+  if (options.report_card.ends_with(".csv")) report_card_text_ = &reports::to_csv;
   if (!options.rays.empty()) rays_.emplace(options.rays, layout);
   if (options.pictures) {
     pictures_.emplace(*options.pictures, world.scene, world.simulation.entities(), layout);
@@ -93,7 +95,7 @@ void Recorders::write_summary(const reports::Summary& summary) {
 
 void Recorders::write_report_card(const reports::ReportCard& card) {
   if (!report_card_) return;
-  report_card_->buffer().append(report_card_is_picture_ ? to_svg(card) : to_json(card) + "\n");
+  report_card_->buffer().append(report_card_text_(card));
   report_card_->close();
 }
 

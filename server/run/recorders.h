@@ -49,7 +49,7 @@ class Recorders {
   /// @throws recording::WriteError
   void write_summary(const reports::Summary& summary);
 
-  /// As a picture if the file's name ends with .svg, otherwise as JSON.
+  /// As a picture if the file's name ends with .svg, tick by tick if with .csv, otherwise as JSON.
   /// @throws recording::WriteError
   void write_report_card(const reports::ReportCard& card);
 
@@ -65,7 +65,7 @@ class Recorders {
   std::optional<recording::Rays> rays_;
   std::optional<recording::OutputFile> summary_;
   std::optional<recording::OutputFile> report_card_;
-  bool report_card_is_picture_ = false;
+  std::string (*report_card_text_)(const reports::ReportCard& card) = nullptr;
   std::optional<recording::Images> images_;
   std::optional<Pictures> pictures_;
   std::optional<Repeating> flushing_;  ///< the last: it uses the others

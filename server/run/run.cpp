@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <utility>
@@ -264,8 +265,15 @@ std::optional<Ending> Run::pace(Watch::clock::time_point start) {
   const auto moment = start + supervision_.paused_for() +
                       std::chrono::duration_cast<Watch::clock::duration>(
                           std::chrono::duration<double>(simulated_s / *plan_.real_time));
-  if (Watch::clock::now() > moment) ++summary_.late_ticks;
-  return wait([&] { return watch_.sleep_until(moment, simulation.commands()); });
+  const bool is_late = Watch::clock::now() > moment;
+  if (is_late) ++summary_.late_ticks;
+  const auto stopped =
+      wait([&] { return watch_.sleep_until(moment, simulation.commands()); });
+  if (stopped || !config_.keeps_reactions) return stopped;
+  const std::chrono::duration<double> late = Watch::clock::now() - moment;
+  const auto next = static_cast<std::uint32_t>(simulation.state().tick + 1);
+  starts_.push_back({resets_, next, std::max(late.count(), 0.0), is_late});
+  return std::nullopt;
 }
 
 /// Does a wait of the watch, again if it was interrupted by a reset that is refused.
@@ -286,6 +294,7 @@ bool Run::reset_world() {
     return false;
   }
   server_.reset(world_.seed);
+  ++resets_;
   supervision_.reset_done();
   return true;
 }

@@ -80,6 +80,7 @@ class Run {
   void end_in_failure(const std::exception& error);
   void complete_summary();
   bool report_hil();
+  reports::ReportCard report_card() const;
   void print_summary();
 
   const Options& options_;
@@ -104,6 +105,11 @@ class Run {
   PhaseTimer timer_;
   bool printed_miss_ = false;
   RadioWatch radio_watch_;
+
+  // For the report card.
+  const std::chrono::system_clock::time_point date_ = std::chrono::system_clock::now();
+  std::vector<reports::TickStart> starts_;  ///< of paced ticks
+  std::uint32_t resets_ = 0;
 };
 
 }  // namespace ziggurat::run

@@ -53,6 +53,7 @@ network::Config network_config(const Options& options, bool is_serve) {
                     network::read_client_keys(options.curve_clients)};
   }
   config.endpoints = options.endpoints;
+  config.keeps_reactions = wants_report_card(options);
   if (is_serve && config.endpoints.empty()) config.endpoints.emplace_back(default_endpoint);
   return config;
 }

@@ -270,7 +270,7 @@ void Supervision::published() {
 }
 
 void Supervision::charge(Phase phase, double seconds) {
-  budget_.add(phase, seconds, world_.simulation.state().tick);
+  budget_.add(phase, seconds);
 }
 
 wire::Status Supervision::status() const {

@@ -7,8 +7,8 @@ constexpr std::array<const char*, phase_count> names{"exchange", "physics", "rec
 
 }  // namespace
 
-void TickBudget::add(Phase phase, double seconds, std::uint64_t tick) {
-  times_[static_cast<std::size_t>(phase)].add(seconds, tick);
+void TickBudget::add(Phase phase, double seconds) {
+  times_[static_cast<std::size_t>(phase)].add(seconds);
 }
 
 void TickBudget::fill(wire::Status& status) const {

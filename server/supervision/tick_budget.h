@@ -2,7 +2,6 @@
 // Where the wall time of recent ticks went.
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "network/latencies.h"
@@ -17,7 +16,7 @@ constexpr std::size_t phase_count = 4;
 class TickBudget {
  public:
   /// Adds the wall time of a phase of one tick.
-  void add(Phase phase, double seconds, std::uint64_t tick);
+  void add(Phase phase, double seconds);
 
   /// Appends each phase that has any time to the status.
   void fill(wire::Status& status) const;

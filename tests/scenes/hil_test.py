@@ -1,5 +1,6 @@
 """Hardware in the loop: injected delays and losses of messages, and the report cards."""
 
+import csv
 import json
 import re
 
@@ -39,10 +40,38 @@ class Injected(SceneTest):
                               "--deadline", "other=hold:20000")
         self.assertEqual(cards["swing"]["misses"], 6)  # of the ticks 0 to 5
         self.assertEqual(cards["swing"]["answers"], 0)
+        self.assertEqual(cards["swing"]["unanswered"], 12, "two sessions")
+        self.assertEqual(cards["swing"]["longest_run_of_misses"], 6)
+        self.assertGreaterEqual(cards["swing"]["wall_latency_s"]["p50"], 0.5, "the deadline at least")
         # Two sessions, each with 0.5 s for a command. The last command of each may arrive after the run;
         # then it does not count as lost.
         self.assertIn(cards["swing"]["injected"]["commands"]["lost"], range(10, 13))
         self.assertEqual((cards["other"]["misses"], cards["other"]["answers"]), (0, 6))
+
+    def test_late_commands_count_for_the_gate(self):
+        # Commands arrive 60 ms after observations, 30 ms after the deadline.
+        arguments = ("--hil", "--real-time", 2, "--ticks", 20, "--inject", "swing=commands:latency=60ms",
+                     "--deadline", "swing=hold:30", "--gate", "p99<45ms")
+        outcome = self.run_scene("--report-card", "card.csv", "--warm-up", 5, *EACH_ALONE, *arguments, code=4)
+        self.assertRegex(outcome.err, r"MISSED  p99<45ms: \d")
+        self.assertRegex(outcome.err, r"seed \d+, 20\d\d-\d\d-\d\dT")
+        self.assertLessEqual(outcome.err.count("missed its deadline of 30 ms"), 4, "summarised")
+        with open(self.folder / "card.csv") as table:
+            lines = list(csv.DictReader(table))
+        self.assertEqual({line["tick"] for line in lines}, {str(tick) for tick in range(21)})
+        self.assertEqual({line["warm_up"] for line in lines if int(line["tick"]) < 5}, {"1"})
+        self.assertEqual({line["warm_up"] for line in lines if int(line["tick"]) >= 5}, {"0"})
+        self.assertEqual({line["robot"] for line in lines if line["controller"] == "swing"}, {"r0", "r1"})
+        late = [line for line in lines if line["controller"] == "swing" and line["outcome"] == "late"]
+        self.assertGreater(len(late), 30, "all but the last few")
+        self.assertGreaterEqual(min(float(line["wall_latency_s"]) for line in late), 0.060)
+
+    def test_the_picture_has_the_deadline_and_the_verdict(self):
+        self.run_scene("--hil", "--real-time", 5, "--ticks", 10, "--deadline", "hold:5000", "--gate", "p50<4s",
+                       "--report-card", "card.svg")
+        picture = (self.folder / "card.svg").read_text()
+        for part in ("deadline hold:5000", "gate met", "period 20 ms", "seed "):
+            self.assertIn(part, picture)
 
     def test_a_seed_loses_the_same_messages_again(self):
         def lines(seed):

@@ -10,6 +10,8 @@ Barrier::Barrier(const Config& from, Send to, Time at, OnStanding told)
       on_standing(std::move(told)),
       now(at),
       connections(from.rate, 2 * from.max_sessions),
-      timers{never, at + from.heartbeat} {}
+      timers{never, at + from.heartbeat} {
+  reactions.are_kept = from.keeps_reactions;
+}
 
 }  // namespace ziggurat::network

@@ -18,9 +18,9 @@
 #include "network/barrier/sessions.h"
 #include "network/barrier/tick_gate.h"
 #include "network/config.h"
-#include "network/latencies.h"
 #include "network/limits.h"
 #include "network/link.h"
+#include "network/reactions.h"
 #include "network/report.h"
 #include "wire/inbox.h"
 #include "wire/messages.h"
@@ -62,7 +62,7 @@ struct Barrier {
   TickGate gate{seats};
   Calls calls;
   Journal journal;
-  std::vector<Latencies> latencies;  // per controller of the scene: from observation to command
+  Reactions reactions;
 
   Senses senses;
   Timers timers;

@@ -31,6 +31,7 @@ class Deadlines {
   /// Forgets robots behind the first `count`.
   void shrink(std::size_t count) { robots_.resize(count); }
 
+  std::size_t controller(std::size_t robot) const { return robots_[robot].controller; }
   const scene::DeadlinePolicy& policy(std::size_t robot) const { return robots_[robot].policy; }
   /// @param policy  none: that of the robot's controller
   void set_policy(std::size_t robot, const std::optional<scene::DeadlinePolicy>& policy);

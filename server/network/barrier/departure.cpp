@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "network/barrier/exchange.h"
+#include "network/barrier/measuring.h"
 #include "network/barrier/talk.h"
 #include "network/barrier/timing.h"
 #include "wire/fault.h"
@@ -124,6 +125,7 @@ void lose(Barrier& barrier, Session& session, std::string_view why) {
   if (!may_resume) return erase(barrier, session);
   barrier.gate.settle(session.turn);
   unbind(barrier, session);
+  give_up_answers(barrier, session);
   session.state = SessionState::lost;
   session.lease_end = barrier.now + barrier.config.lease;
   release_all(barrier, session, true);
@@ -158,6 +160,7 @@ bool tell_taken(Barrier& barrier, Session& session, const std::string& by) {
 }
 
 void erase(Barrier& barrier, Session& session) {
+  give_up_answers(barrier, session);
   barrier.gate.settle(session.turn);
   if (session.state != SessionState::lost) unbind(barrier, session);
   release_all(barrier, session, false);
@@ -178,6 +181,7 @@ void finish(Barrier& barrier, const wire::End& end) {
   barrier.gate.hold(TickGate::Hold::finished);
   barrier.sessions.for_each([&](Session& session) {
     if (session.state == SessionState::draining) return;  // it is told already
+    give_up_answers(barrier, session);
     if (session.state == SessionState::lost) return erase(barrier, session);
     barrier.gate.settle(session.turn);
     barrier.outbox.end(end);
@@ -211,6 +215,7 @@ void remove_robot(Barrier& barrier, std::size_t robot) {
   const bool is_held = seat.holder != SessionId::none;
   Session* session = barrier.sessions.find(is_held ? seat.holder : seat.claimant);
   if (session == nullptr) return;
+  give_up_answers(barrier, *session);
   session->roster.leave(position_of(*session, robot));
   const bool is_over = session->state == SessionState::lost && session->roster.empty();
   if (is_over) return erase(barrier, *session);

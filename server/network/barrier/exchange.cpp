@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "network/barrier/departure.h"
+#include "network/barrier/measuring.h"
 #include "network/barrier/talk.h"
 #include "network/barrier/timing.h"
 #include "wire/fault.h"
@@ -39,19 +40,6 @@ std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& 
   return barrier.inbox.check(session.roster, barrier.run->layout);
 }
 
-void add_latency(Barrier& barrier, Session& session) {
-  const Turn& turn = session.turn;
-  const double taken_s = std::chrono::duration<double>(barrier.now - turn.owes_since).count();
-  session.latencies.add(taken_s, turn.tick);
-  std::optional<std::size_t> last;  // robots of a controller usually stand together
-  for (const std::size_t robot : session.roster.robots) {
-    const std::size_t controller = barrier.run->layout.robots[robot].controller;
-    if (last == controller) continue;
-    barrier.latencies[controller].add(taken_s, turn.tick);
-    last = controller;
-  }
-}
-
 /// A Command that came after the End: its values have no effect, its log lines count.
 void keep_log(Barrier& barrier, const Session& session) {
   if (barrier.inbox.check(session.roster, barrier.run->layout)) return;
@@ -63,6 +51,7 @@ void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
   const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
   if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
   --session.turn.late_commands;  // it was told of its miss already: no bad message
+  measure_late_answer(barrier, session, barrier.inbox.command_tick());
   fault.tick = tick_of(barrier);
   barrier.outbox.error(fault);
   send(barrier, session);
@@ -127,7 +116,7 @@ bool handle_command(Barrier& barrier, Session& session, world::Commands* command
   barrier.inbox.apply(session.roster, *commands);
   barrier.inbox.append_log(session.roster, barrier.journal.log());
   barrier.gate.settle(session.turn);
-  add_latency(barrier, session);
+  measure_answer(barrier, session);
   return true;
 }
 

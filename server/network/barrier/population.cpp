@@ -6,6 +6,7 @@
 #include "network/barrier/admission.h"
 #include "network/barrier/departure.h"
 #include "network/barrier/exchange.h"
+#include "network/barrier/measuring.h"
 #include "network/barrier/talk.h"
 #include "wire/fault.h"
 
@@ -87,7 +88,6 @@ void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Dead
   barrier.run.emplace(run);
   barrier.progress = {1, "The world is loaded."};
   barrier.deadlines = Deadlines(deadlines, run.controllers.size());
-  barrier.latencies.resize(run.controllers.size());
   add_robots(barrier, run.scripts, {});
 }
 
@@ -119,6 +119,8 @@ void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const 
 
 void reset(Barrier& barrier, std::uint64_t seed) {
   barrier.run->seed = seed;
+  barrier.sessions.for_each([&](Session& session) { give_up_answers(barrier, session); });
+  ++barrier.reactions.world;
   forget_robots(barrier);
   barrier.gate.clear();  // a session that begins now gets no tick of the former world
   barrier.senses = {};

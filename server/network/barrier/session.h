@@ -57,6 +57,11 @@ struct Session {
   Contact contact;
   Latencies latencies;       ///< from observation to command
   std::uint64_t misses = 0;  ///< deadlines
+  struct Untold {
+    std::uint64_t misses = 0;
+    std::uint64_t first_tick = 0;
+    Time until;
+  } untold;  ///< misses that no notice has told yet
   Time lease_end;            ///< lost: until then no other session gets its robots
   wire::Outbox observation;  ///< long-lived, for the tick path
   Application application;   ///< in HELLO

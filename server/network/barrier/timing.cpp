@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "network/barrier/departure.h"
 #include "network/barrier/exchange.h"
+#include "network/barrier/measuring.h"
 #include "network/barrier/talk.h"
 #include "wire/fault.h"
 
@@ -22,6 +24,8 @@ namespace {
 // debugger: its queue must not fill with heartbeats.
 constexpr unsigned most_heartbeats = 60;
 constexpr milliseconds rare_heartbeat{60'000};
+
+constexpr milliseconds between_notices{10'000};  // on misses of one session
 
 void drop(Barrier& barrier, std::size_t robot) {
   const auto& layout = barrier.run->layout.robots[robot];
@@ -84,21 +88,28 @@ bool tell_dropped(Barrier& barrier, Session& session, std::vector<std::uint32_t>
   return warn(barrier, session, std::move(fault));
 }
 
+/// At once, unless the last notice on this session is too fresh: then with the next one.
+void note_miss(Barrier& barrier, Session& session, milliseconds deadline) {
+  Session::Untold& untold = session.untold;
+  if (untold.misses++ == 0) untold.first_tick = session.turn.tick;
+  if (barrier.now < untold.until) return;
+  const std::string ticks =
+      untold.misses == 1 ? fmt::format("at tick {}", session.turn.tick)
+                         : fmt::format("at {} of the ticks {} to {}", untold.misses,
+                                       untold.first_tick, session.turn.tick);
+  barrier.journal.note(fmt::format("{} ({}) missed its deadline of {} ms {}", session.client,
+                                   robots_of(barrier, session), deadline.count(), ticks));
+  untold = {0, 0, barrier.now + between_notices};
+}
+
 /// The tick goes on without the session's answer.
 void miss(Barrier& barrier, Session& session) {
   barrier.gate.miss(session.turn);
+  expect_late_answer(barrier, session);
   ++session.misses;
   const auto& robots = session.roster.robots;
-  bool is_news = false;
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    is_news |= !session.roster.taken[i] && barrier.deadlines.misses_in_row(robots[i]) == 0;
-  }
   const milliseconds deadline = *session.turn.patience;
-  if (is_news) {
-    barrier.journal.note(fmt::format("{} ({}) missed its deadline of {} ms at tick {}",
-                                     session.client, robots_of(barrier, session), deadline.count(),
-                                     session.turn.tick));
-  }
+  note_miss(barrier, session, deadline);
   std::vector<std::uint32_t> dropped;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (session.roster.gone[i]) continue;
@@ -126,6 +137,7 @@ void check_sessions(Barrier& barrier) {
 }
 
 void check_free_robots(Barrier& barrier) {
+  std::optional<std::size_t> controller;  // of the robot before
   for (std::size_t robot = 0; robot < barrier.seats.size() && barrier.seats.is_awaited(); ++robot) {
     const Seats::Seat& seat = barrier.seats[robot];
     if (seat.holder != SessionId::none || seat.has_left || seat.is_skipped) continue;
@@ -136,6 +148,10 @@ void check_free_robots(Barrier& barrier) {
       wake_at(barrier, deadline);
     } else {
       barrier.seats.skip(robot);
+      if (controller != barrier.deadlines.controller(robot)) {
+        controller = barrier.deadlines.controller(robot);
+        measure_absence(barrier, robot, seat.free_since);
+      }
       miss(barrier, robot);
     }
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "network/link.h"
 
@@ -16,6 +17,11 @@ struct Turn {
   bool is_repeated = false;    ///< that observation was sent before, to it or another session
   unsigned late_commands = 0;  ///< for ticks that it missed, that may still arrive
   Time owes_since;             ///< when that observation was sent
+  struct Missed {
+    std::uint64_t tick = 0;
+    Time sent;  ///< its observation
+  };
+  std::vector<Missed> missed;  ///< such ticks, ascending, if reactions are kept
   /// Its deadline; none: the tick waits for it forever.
   std::optional<std::chrono::milliseconds> patience;
 };

@@ -20,6 +20,7 @@ Config config_with(const Injection& lua, const Injection& external = {}) {
   Config config;
   config.injections = {lua, external};
   config.deadlines.resize(2);
+  config.keeps_reactions = true;
   for (auto& each : config.deadlines) each.policy = {DeadlineAction::hold, 50, 0};
   return config;
 }
@@ -54,8 +55,11 @@ TEST(Delays, CountOnTheWayThereAndOnTheWayBack) {
   peers.pass(1ms);
   EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.joint_targets[0], 1.5);
-  EXPECT_NEAR(peers.barrier.latencies[0].max(), 10e-3, 1e-9);
-  EXPECT_NEAR(peers.barrier.latencies[1].max(), 0, 1e-9);
+  const auto& reactions = peers.barrier.reactions.all;
+  ASSERT_EQ(reactions.size(), 2U);
+  EXPECT_EQ(reactions[1].controller, 0U);
+  EXPECT_NEAR(reactions[1].seconds, 10e-3, 1e-9);
+  EXPECT_NEAR(reactions[0].seconds, 0, 1e-9);
 }
 
 TEST(Delays, NothingOvertakesAnObservation) {
@@ -86,7 +90,7 @@ TEST(Delays, NothingOvertakesACommand) {
   EXPECT_FALSE(peers.is_complete());
   peers.pass(5ms);
   EXPECT_TRUE(peers.is_complete());
-  EXPECT_EQ(peers.barrier.latencies[0].count(), 1U);
+  EXPECT_EQ(peers.barrier.reactions.all.size(), 1U);
   EXPECT_EQ(peers.take_report().failures.size(), 1U);
 }
 

