@@ -54,6 +54,19 @@ bool factor_block(double* a, int size) {
   return true;
 }
 
+bool factor_block(double* a, int size) {
+  switch (size) {  // of one body, and of robots with few joints: the compiler knows their size
+    case 6:
+      return factor_block<6>(a, 6);
+    case 8:
+      return factor_block<8>(a, 8);
+    case 10:
+      return factor_block<10>(a, 10);
+    default:
+      return factor_block<0>(a, size);
+  }
+}
+
 /// B := L^-1 B, of m columns.
 template <int N, int M>
 void solve_lower(const double* lu, int rows, double* b, int columns) {
@@ -166,7 +179,7 @@ bool BlockMatrix::factor() {
   for (int step = 0; step < n; ++step) {
     const int k = order_[step], size = sizes_[k];
     double* pivot = block(k, k);
-    if (!(size == 6 ? factor_block<6>(pivot, 6) : factor_block<0>(pivot, size))) return false;
+    if (!factor_block(pivot, size)) return false;
     const int begin = first_later_[step], end = first_later_[step + 1];
     for (int e = begin; e < end; ++e) {
       const int i = later_[e];

@@ -87,16 +87,74 @@ int active_rows(const Block& block) {
   return block.law == Block::Law::contact ? block.rows : block.law == Block::Law::bounded ? 1 : 0;
 }
 
+/// A contact with friction that does not resist rolling and spinning: most are so.
+bool is_plain(const Block& block) { return block.rows == 3 && block.law == Block::Law::contact; }
+
+/// y of one row, see law.h.
+double pressed(const Block& block, const double* u, int row) {
+  return block.impulse[row] - (u[row] - block.seek[row]) / block.mobility[row];
+}
+
+void linearise_plain(const Block& block, const double* u, Linear& out) {
+  const double normal = pressed(block, u, 0);
+  out.zero = normal <= 0;
+  if (out.zero) return;
+  const double y[2] = {pressed(block, u, 1), pressed(block, u, 2)};
+  const double* seek = block.seek.data() + 1;
+  const double stiffness = 1 / (give * block.mobility[0]);
+  auto& slope = out.slope;
+  auto& constant = out.constant;
+  slope[0] = stiffness;
+  slope[1] = slope[2] = 0;
+  constant[0] = block.impulse[0] + stiffness * block.seek[0];
+  const double bound = block.friction * normal, square = y[0] * y[0] + y[1] * y[1];
+  if (square <= bound * bound) {
+    const double held = 1 / (give * block.mobility[1]);  // both tangents have the same mobility
+    slope[3] = slope[5] = slope[6] = slope[7] = 0;
+    slope[4] = slope[8] = held;
+    constant[1] = block.impulse[1] + held * seek[0];
+    constant[2] = block.impulse[2] + held * seek[1];
+    return;
+  }
+  const double length = std::sqrt(square);
+  const double direction[2] = {y[0] / length, y[1] / length};
+  // Across the slip the direction turns with the speed.
+  const double across =
+      bound > 0 ? std::min(bound / (length - bound), 1 / give) / block.mobility[1] : 0;
+  for (int r = 0; r < 2; ++r) {
+    const double share = block.friction * direction[r];
+    const double along = across * ((r == 0) - direction[r] * direction[0]);
+    const double beside = across * ((r == 1) - direction[r] * direction[1]);
+    slope[3 + 3 * r] = share * slope[0];
+    slope[4 + 3 * r] = along;
+    slope[5 + 3 * r] = beside;
+    constant[1 + r] = share * constant[0] + along * seek[0] + beside * seek[1];
+  }
+}
+
+double miss_of_plain(const Block& block, const double* u) {
+  const double normal = std::max(0.0, pressed(block, u, 0));
+  double y[2] = {pressed(block, u, 1), pressed(block, u, 2)};
+  const double bound = block.friction * normal, square = y[0] * y[0] + y[1] * y[1];
+  if (square > bound * bound) {
+    const double factor = bound / std::sqrt(square);
+    y[0] *= factor, y[1] *= factor;
+  }
+  const auto& g = block.impulse;
+  const auto& m = block.mobility;
+  const double tangent = std::max(std::abs(g[1] - y[0]) * m[1], std::abs(g[2] - y[1]) * m[2]);
+  return std::max(std::abs(g[0] - normal) * m[0], tangent);
+}
+
 }  // namespace
 
 void linearise(const Block& block, const double* u, Linear& out) {
+  if (is_plain(block)) return linearise_plain(block, u, out);
   const int rows = block.rows;
   out.zero = true;
   if (block.law == Block::Law::off) return;
   double y[Block::most_rows] = {};
-  for (int r = 0; r < active_rows(block); ++r) {
-    y[r] = block.impulse[r] - (u[r] - block.seek[r]) / block.mobility[r];
-  }
+  for (int r = 0; r < active_rows(block); ++r) y[r] = pressed(block, u, r);
   if (block.law == Block::Law::contact && y[0] <= 0) return;
   out.zero = false;
   std::fill_n(out.constant.begin(), rows, 0.0);
@@ -163,11 +221,10 @@ void soften(const Block& block, const double* u, double softness, double* impuls
 }
 
 double miss(const Block& block, const double* u) {
+  if (is_plain(block)) return miss_of_plain(block, u);
   const int rows = active_rows(block);
   double y[Block::most_rows];
-  for (int r = 0; r < rows; ++r) {
-    y[r] = block.impulse[r] - (u[r] - block.seek[r]) / block.mobility[r];
-  }
+  for (int r = 0; r < rows; ++r) y[r] = pressed(block, u, r);
   project(block, y);
   double worst = 0;
   for (int r = 0; r < rows; ++r) {

@@ -18,39 +18,77 @@ struct Side {
 
 Side side_of(const Problem& problem, int place, int first, std::span<const int> dofs) {
   const Tree& tree = *problem.trees[place];
-  return {place, tree.dofs, problem.jacobian.data() + first, dofs,
-          tree.free_root && dofs.size() >= 6 ? 6 : 0};
+  return {place, tree.dofs, problem.jacobian.data() + first, dofs, leads(dofs) ? 6 : 0};
 }
 
-/// sloped := slope times the columns of a side, row by row, one entry per touched dof.
+/// Adds J^T slope J of a block of R rows to the matrix: to its columns that belong to s, in the
+/// rows of both sides. For any tree.
 template <int R>
-void apply_slope(const double* slope, const Side& side, double* sloped) {
-  const std::size_t count = side.touched.size();
+void add_any(const Side& s, const Side (&sides)[2], const double* slope,
+             std::vector<double>& sloped, BlockMatrix& matrix) {
+  const std::size_t count = s.touched.size();
+  sloped.resize(count * R);
   for (std::size_t e = 0; e < count; ++e) {
-    const double* column = side.columns + side.touched[e] * R;
+    const double* column = s.columns + s.touched[e] * R;
     for (int r = 0; r < R; ++r) {
       double sum = 0;
       for (int c = 0; c < R; ++c) sum += slope[r * R + c] * column[c];
       sloped[r * count + e] = sum;
     }
   }
+  for (const Side& t : sides) {
+    if (t.place < 0) continue;
+    for (const int k : t.touched) {
+      const double* column = t.columns + k * R;
+      double* row = matrix.block(t.place, s.place) + k * s.dofs;
+      for (std::size_t e = 0; e < count; ++e) {
+        double sum = row[s.touched[e]];
+        for (int r = 0; r < R; ++r) sum += column[r] * sloped[r * count + e];
+        row[s.touched[e]] = sum;
+      }
+    }
+  }
 }
 
-/// A row of the matrix += column^T sloped.
-/// @param L  how many of the dofs are leading: the compiler knows their number
-template <int R, int L>
-void add_to_row(const double* column, const Side& side, const double* sloped, double* row) {
-  const std::size_t count = side.touched.size();
-  double leading[L > 0 ? L : 1];
-  for (int j = 0; j < L; ++j) leading[j] = row[j];
+/// The same where s has a free root, whose six dofs lead the touched ones, and T more of them. The
+/// compiler knows their number, and takes two at a time.
+template <int R, int T>
+void add_leading(const Side& s, const Side (&sides)[2], const double* slope, BlockMatrix& matrix) {
+  using Six = Eigen::Array<double, 6, 1>;
+  Six rows[R], sloped[R];
+  double tail_rows[R][T + 1], tail[R][T + 1];
+  int tail_dof[T + 1];
   for (int r = 0; r < R; ++r) {
-    for (int j = 0; j < L; ++j) leading[j] += column[r] * sloped[r * count + j];
+    for (int e = 0; e < 6; ++e) rows[r][e] = s.columns[e * R + r];
   }
-  for (int j = 0; j < L; ++j) row[j] = leading[j];
-  for (std::size_t e = L; e < count; ++e) {
-    double sum = row[side.touched[e]];
-    for (int r = 0; r < R; ++r) sum += column[r] * sloped[r * count + e];
-    row[side.touched[e]] = sum;
+  for (int e = 0; e < T; ++e) {
+    tail_dof[e] = s.touched[6 + e];
+    for (int r = 0; r < R; ++r) tail_rows[r][e] = s.columns[tail_dof[e] * R + r];
+  }
+  for (int r = 0; r < R; ++r) {
+    sloped[r] = slope[r * R] * rows[0];
+    for (int c = 1; c < R; ++c) sloped[r] += slope[r * R + c] * rows[c];
+    for (int e = 0; e < T; ++e) {
+      tail[r][e] = slope[r * R] * tail_rows[0][e];
+      for (int c = 1; c < R; ++c) tail[r][e] += slope[r * R + c] * tail_rows[c][e];
+    }
+  }
+  for (const Side& t : sides) {
+    if (t.place < 0) continue;
+    double* out = matrix.block(t.place, s.place);
+    for (const int k : t.touched) {
+      const double* column = t.columns + k * R;
+      double* row = out + k * s.dofs;
+      Eigen::Map<Six> leading(row);
+      Six sum = leading;
+      for (int r = 0; r < R; ++r) sum += column[r] * sloped[r];
+      leading = sum;
+      for (int e = 0; e < T; ++e) {
+        double entry = row[tail_dof[e]];
+        for (int r = 0; r < R; ++r) entry += column[r] * tail[r][e];
+        row[tail_dof[e]] = entry;
+      }
+    }
   }
 }
 
@@ -63,20 +101,78 @@ void add_slope_of(const Problem& problem, const Block& block, const double* slop
   if (block.b >= 0) sides[1] = side_of(problem, block.b, block.jb, block.dofs_b);
   for (const Side& s : sides) {
     if (s.place < 0) continue;
-    sloped.resize(s.touched.size() * R);
-    apply_slope<R>(slope, s, sloped.data());
-    for (const Side& t : sides) {
-      if (t.place < 0) continue;
-      double* out = matrix.block(t.place, s.place);
-      for (const int k : t.touched) {
-        if (s.leading == 6) {
-          add_to_row<R, 6>(t.columns + k * R, s, sloped.data(), out + k * s.dofs);
-        } else {
-          add_to_row<R, 0>(t.columns + k * R, s, sloped.data(), out + k * s.dofs);
-        }
-      }
+    const std::size_t more = s.touched.size() - s.leading;
+    if (s.leading == 6 && more == 0) {
+      add_leading<R, 0>(s, sides, slope, matrix);
+    } else if (s.leading == 6 && more == 1) {
+      add_leading<R, 1>(s, sides, slope, matrix);
+    } else {
+      add_any<R>(s, sides, slope, sloped, matrix);
     }
   }
+}
+
+/// right += the columns of a side times the impulses of R rows.
+template <int R>
+void add_impulse_of(const double* columns, std::span<const int> dofs, const double* impulse,
+                    double* right) {
+  const auto add = [&](int k) {
+    double sum = right[k];
+    for (int r = 0; r < R; ++r) sum += columns[k * R + r] * impulse[r];
+    right[k] = sum;
+  };
+  const bool leading = leads(dofs);
+  for (int k = 0; k < 6 && leading; ++k) add(k);
+  for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
+}
+
+/// out += J^T impulse of a block, row by row.
+void add_rows_of(const Problem& problem, const Block& block, const double* impulse,
+                 std::vector<double>& out) {
+  const auto add_side = [&](int place, int first, std::span<const int> dofs) {
+    if (place < 0) return;
+    by_rows(block.rows, [&](auto rows) {
+      add_impulse_of<rows()>(problem.jacobian.data() + first, dofs, impulse,
+                             out.data() + problem.offset[place]);
+    });
+  };
+  add_side(block.a, block.ja, block.dofs_a);
+  add_side(block.b, block.jb, block.dofs_b);
+}
+
+/// A block's impulses by its linearised law.
+template <int R>
+void take_impulse(const Linear& linear, const double* u, Block& block) {
+  for (int r = 0; r < R; ++r) {
+    double sum = linear.constant[r];
+    for (int c = 0; c < R; ++c) sum -= linear.slope[r * R + c] * u[c];
+    block.impulse[r] = sum;
+  }
+}
+
+/// What the linearised law changes of a block's impulses from speeds u to speeds w.
+template <int R>
+void change_impulse(const Linear& linear, const double* u, const double* w, Block& block) {
+  double change[R];
+  for (int c = 0; c < R; ++c) change[c] = w[c] - u[c];
+  for (int r = 0; r < R; ++r) {
+    double sum = block.impulse[r];
+    for (int c = 0; c < R; ++c) sum -= linear.slope[r * R + c] * change[c];
+    block.impulse[r] = sum;
+  }
+}
+
+/// The sum of a block's speeds and impulses, which is no number if one of them is none.
+/// @param scale  grows to the largest speed, or change of speed by an impulse
+template <int R>
+double add_to_scale(const Block& block, const double* u, double& scale) {
+  double sum = 0;
+  for (int r = 0; r < R; ++r) {
+    const double speed = std::abs(u[r]), impulse = std::abs(block.impulse[r]);
+    sum += speed + impulse;
+    scale = std::max(scale, std::max(speed, impulse * block.mobility[r]));
+  }
+  return sum;
 }
 
 /// Whether a contact is faster than what one substep's forces give.
@@ -98,35 +194,9 @@ bool has_strike(const Problem& problem) {
 /// Adds J^T slope J to the matrix.
 void Solver::add_slope(const Problem& problem, const Block& block, const Linear& linear) {
   if (linear.zero) return;
-  const double* slope = linear.slope.data();
-  if (block.rows == 3) return add_slope_of<3>(problem, block, slope, sloped_, matrix_);
-  if (block.rows == 1) return add_slope_of<1>(problem, block, slope, sloped_, matrix_);
-  add_slope_of<6>(problem, block, slope, sloped_, matrix_);
-}
-
-/// Adds J^T constant to the right-hand side, which is in v.
-void Solver::add_constant(Problem& problem, const Block& block, const Linear& linear) {
-  if (linear.zero) return;
-  const auto add_side = [&](int place, int first, std::span<const int> dofs) {
-    if (place < 0) return;
-    const int rows = block.rows;
-    const double* columns = problem.jacobian.data() + first;
-    const double* constant = linear.constant.data();
-    double* right = problem.velocity.data() + problem.offset[place];
-    for (const int k : dofs) {
-      const double* column = columns + k * rows;
-      double sum = right[k] + column[0] * constant[0];
-      if (rows == 3) {
-        sum += column[1] * constant[1];
-        sum += column[2] * constant[2];
-      } else {
-        for (int r = 1; r < rows; ++r) sum += column[r] * constant[r];
-      }
-      right[k] = sum;
-    }
-  };
-  add_side(block.a, block.ja, block.dofs_a);
-  add_side(block.b, block.jb, block.dofs_b);
+  by_rows(block.rows, [&](auto rows) {
+    add_slope_of<rows()>(problem, block, linear.slope.data(), sloped_, matrix_);
+  });
 }
 
 /// The mass matrices.
@@ -160,7 +230,8 @@ bool Solver::step(Problem& problem) {
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
     linearise(problem.blocks[i], speeds_[i].data(), linear_[i]);
     add_slope(problem, problem.blocks[i], linear_[i]);
-    add_constant(problem, problem.blocks[i], linear_[i]);
+    if (linear_[i].zero) continue;
+    add_rows_of(problem, problem.blocks[i], linear_[i].constant.data(), problem.velocity);
   }
   if (!matrix_.factor()) {
     problem.velocity = kept_velocity_;
@@ -175,32 +246,67 @@ bool Solver::step(Problem& problem) {
       block.impulse.fill(0);
       continue;
     }
-    const auto& u = speeds_[i];
-    for (int r = 0; r < block.rows; ++r) {
-      double sum = linear.constant[r];
-      for (int c = 0; c < block.rows; ++c) sum -= linear.slope[r * block.rows + c] * u[c];
-      block.impulse[r] = sum;
-    }
+    by_rows(block.rows,
+            [&](auto rows) { take_impulse<rows()>(linear, speeds_[i].data(), block); });
   }
   return true;
 }
 
-/// At the speeds that were taken.
-/// @param scale  out: the largest speed, or change of speed by an impulse
-/// @return       infinite if a speed or an impulse is no number
-double Solver::miss_now(const Problem& problem, double& scale) const {
-  double worst = 0, sum = 0;
+/// One more step with the factors of the last one, for what it left: near the solution the matrix
+/// hardly changes. Speeds must be taken, and are taken at the velocities that it finds.
+void Solver::correct(Problem& problem) {
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    Block& block = problem.blocks[i];
+    linearise(block, speeds_[i].data(), now_);
+    if (now_.zero) {
+      block.impulse.fill(0);
+      continue;
+    }
+    by_rows(block.rows,
+            [&](auto rows) { take_impulse<rows()>(now_, speeds_[i].data(), block); });
+  }
+  imbalance(problem, residual_);
+  kept_speeds_ = speeds_;
+  matrix_.solve(residual_.data());
+  for (std::size_t k = 0; k < residual_.size(); ++k) problem.velocity[k] += residual_[k];
+  take_speeds(problem);
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    if (linear_[i].zero) continue;
+    by_rows(problem.blocks[i].rows, [&](auto rows) {
+      change_impulse<rows()>(linear_[i], kept_speeds_[i].data(), speeds_[i].data(),
+                             problem.blocks[i]);
+    });
+  }
+}
+
+/// @param scale  out: the largest speed that was taken, or change of speed by an impulse
+/// @return       false if a speed or an impulse is no number
+bool Solver::find_scale(const Problem& problem, double& scale) const {
+  double sum = 0;
   scale = 0;
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    const Block& block = problem.blocks[i];
-    const auto& u = speeds_[i];
-    worst = std::max(worst, miss(block, u.data()));
-    for (int r = 0; r < block.rows; ++r) {
-      sum += std::abs(u[r]) + std::abs(block.impulse[r]);  // the maxima skip what is no number
-      scale = std::max({scale, std::abs(u[r]), std::abs(block.impulse[r]) * block.mobility[r]});
-    }
+    by_rows(problem.blocks[i].rows, [&](auto rows) {
+      sum += add_to_scale<rows()>(problem.blocks[i], speeds_[i].data(), scale);
+    });
   }
-  return std::isfinite(sum) ? worst : HUGE_VAL;
+  return std::isfinite(sum);  // the maxima skip what is no number
+}
+
+/// At the speeds that were taken.
+/// @param enough  a miss of more need not be exact
+double Solver::miss_beyond(const Problem& problem, double enough) const {
+  double worst = 0;
+  for (std::size_t i = 0; i < problem.blocks.size() && worst <= enough; ++i) {
+    worst = std::max(worst, miss(problem.blocks[i], speeds_[i].data()));
+  }
+  return worst;
+}
+
+/// At the speeds that were taken.
+/// @param scale  out: see find_scale()
+/// @return       infinite if a speed or an impulse is no number
+double Solver::miss_now(const Problem& problem, double& scale) const {
+  return find_scale(problem, scale) ? miss_beyond(problem, HUGE_VAL) : HUGE_VAL;
 }
 
 double Solver::worst_miss(const Problem& problem, double& scale) {
@@ -228,6 +334,10 @@ bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
     ++outcome.iterations;
     outcome.miss = miss_now(problem, scale);
     if (outcome.miss <= tolerance(scale)) return true;
+    if (outcome.miss > options.near * scale) continue;
+    correct(problem);
+    outcome.miss = miss_now(problem, scale);
+    if (outcome.miss <= tolerance(scale)) return true;
   }
   return false;
 }
@@ -247,8 +357,10 @@ double Solver::start(Problem& problem) {
 /// Whether the velocities and impulses of the last substep still solve the problem.
 bool Solver::still_solved(const Problem& problem, Outcome& outcome) {
   double scale = 0;
-  outcome.miss = worst_miss(problem, scale);
+  take_speeds(problem);
+  const bool finite = find_scale(problem, scale);
   const double enough = options.absolute_tolerance + options.still_tolerance * scale;
+  outcome.miss = finite ? miss_beyond(problem, enough) : HUGE_VAL;
   return outcome.miss <= enough && imbalance(problem, residual_) <= enough;
 }
 

@@ -29,6 +29,7 @@ struct Outcome {
 struct SolverOptions {
   double newton_work = 3e4;  ///< multiplications of a factorisation; more: not on the law itself
   int most_iterations = 16;  ///< of Newton's method on the law itself
+  double near = 1e-5;        ///< a miss of this times the largest speed needs no new factors
   int most_descents = 8;     ///< full steps of the softened problem
   double softness = 1e-3;    ///< its impulses give way by this times the mobility
   int most_interior = 25;    ///< steps of the interior point method
@@ -84,9 +85,12 @@ class Solver {
   void start_matrix(Problem& problem);
   bool iterate(Problem& problem, Outcome& outcome, int most);
   bool step(Problem& problem);
+  void correct(Problem& problem);
   double start(Problem& problem);
   bool still_solved(const Problem& problem, Outcome& outcome);
   void take_speeds(const Problem& problem);
+  bool find_scale(const Problem& problem, double& scale) const;
+  double miss_beyond(const Problem& problem, double enough) const;
   double miss_now(const Problem& problem, double& scale) const;
   bool proximal(Problem& problem, Outcome& outcome);
   bool patient_proximal(Problem& problem, Outcome& outcome, bool strikes);
@@ -98,7 +102,6 @@ class Solver {
   double product_after(const Problem& problem, double way) const;
   void advance_interior(Problem& problem, double way);
   void add_slope(const Problem& problem, const Block& block, const Linear& linear);
-  void add_constant(Problem& problem, const Block& block, const Linear& linear);
   double worst_miss(const Problem& problem, double& scale);
   bool sweep_until_converged(Problem& problem, Outcome& outcome, int most);
   bool soften_after_sweeps(Problem& problem, Outcome& outcome);
@@ -111,7 +114,9 @@ class Solver {
 
   BlockMatrix matrix_;
   std::vector<std::array<double, Block::most_rows>> speeds_;  // of each block, by take_speeds()
+  std::vector<std::array<double, Block::most_rows>> kept_speeds_;
   std::vector<Linear> linear_;
+  Linear now_;
   std::vector<int> sizes_;
   std::vector<double> sloped_;
   std::vector<double> kept_velocity_, anchored_;

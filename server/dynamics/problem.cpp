@@ -88,25 +88,21 @@ void Problem::weigh(Block& block) const {
   const auto add_side = [&](int place, int first, std::span<const int> dofs) {
     if (place < 0) return;
     const double* inverse = inverse_mass.data() + offset[place];
-    const double* columns = jacobian.data() + first;
-    const int rows = block.rows;
-    if (rows == 3) {
-      double sum0 = block.mobility[0], sum1 = block.mobility[1], sum2 = block.mobility[2];
-      for (const int k : dofs) {
-        const double* column = columns + k * 3;
-        const double factor = inverse[k];
-        sum0 += column[0] * column[0] * factor;
-        sum1 += column[1] * column[1] * factor;
-        sum2 += column[2] * column[2] * factor;
-      }
-      block.mobility[0] = sum0, block.mobility[1] = sum1, block.mobility[2] = sum2;
-      return;
-    }
-    for (const int k : dofs) {
-      const double* column = columns + k * rows;
-      const double factor = inverse[k];
-      for (int r = 0; r < rows; ++r) block.mobility[r] += column[r] * column[r] * factor;
-    }
+    by_rows(block.rows, [&](auto rows) {
+      constexpr int R = rows();
+      const double* columns = jacobian.data() + first;
+      double sum[R];
+      std::copy_n(block.mobility.data(), R, sum);
+      const auto add = [&](int k) {
+        for (int r = 0; r < R; ++r) {
+          sum[r] += columns[k * R + r] * columns[k * R + r] * inverse[k];
+        }
+      };
+      const bool leading = leads(dofs);
+      for (int k = 0; k < 6 && leading; ++k) add(k);
+      for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
+      std::copy_n(sum, R, block.mobility.data());
+    });
   };
   add_side(block.a, block.ja, block.dofs_a);
   add_side(block.b, block.jb, block.dofs_b);
@@ -127,9 +123,9 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
   block.friction = contact.friction;
   block.spinning = contact.spinning;
   block.rolling = contact.rolling;
-  const Block* before = blocks.size() > 1 ? &blocks[blocks.size() - 2] : nullptr;
-  const bool same = before && before->frame.col(0) == contact.normal;
-  block.frame = same ? before->frame : frame_about(contact.normal);
+  const Block* other = blocks.size() > 1 ? &blocks[blocks.size() - 2] : nullptr;
+  const bool same = other && other->frame.col(0) == contact.normal;
+  block.frame = same ? other->frame : frame_about(contact.normal);
   if (a >= 0) {
     block.ja = add_rows(*trees[a], contact.a.link, contact.point, block, 1);
     block.dofs_a = trees[a]->dofs_of(contact.a.link);
@@ -212,30 +208,30 @@ void Problem::add(const Limit& limit, int place, int source) {
   block.kind = Block::Source::limit;
 }
 
-void Problem::speeds(const Block& block, double* u) const {
-  const int rows = block.rows;
-  for (int r = 0; r < rows; ++r) u[r] = 0;
-  const auto add_side = [&](int place, int first, std::span<const int> dofs) {
-    if (place < 0) return;
-    const double* v = velocity.data() + offset[place];
-    const double* columns = jacobian.data() + first;
-    if (rows == 3) {
-      double sum0 = 0, sum1 = 0, sum2 = 0;
-      for (const int k : dofs) {
-        const double* column = columns + k * 3;
-        const double speed = v[k];
-        sum0 += column[0] * speed, sum1 += column[1] * speed, sum2 += column[2] * speed;
-      }
-      u[0] += sum0, u[1] += sum1, u[2] += sum2;
-      return;
-    }
-    for (const int k : dofs) {
-      const double* column = columns + k * rows;
-      for (int r = 0; r < rows; ++r) u[r] += column[r] * v[k];
-    }
+namespace {
+
+/// u += the columns of a side times the speeds of its dofs, of R rows.
+template <int R>
+void add_speeds(const double* columns, std::span<const int> dofs, const double* v, double* u) {
+  double sum[R] = {};
+  const auto add = [&](int k) {
+    for (int r = 0; r < R; ++r) sum[r] += columns[k * R + r] * v[k];
   };
-  add_side(block.a, block.ja, block.dofs_a);
-  add_side(block.b, block.jb, block.dofs_b);
+  const bool leading = leads(dofs);
+  for (int k = 0; k < 6 && leading; ++k) add(k);
+  for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
+  for (int r = 0; r < R; ++r) u[r] += sum[r];
+}
+
+}  // namespace
+
+void Problem::speeds(const Block& block, double* u) const {
+  const double *j = jacobian.data(), *v = velocity.data();
+  by_rows(block.rows, [&](auto rows) {
+    for (int r = 0; r < rows(); ++r) u[r] = 0;
+    if (block.a >= 0) add_speeds<rows()>(j + block.ja, block.dofs_a, v + offset[block.a], u);
+    if (block.b >= 0) add_speeds<rows()>(j + block.jb, block.dofs_b, v + offset[block.b], u);
+  });
 }
 
 bool Problem::turn_into_displacement() {

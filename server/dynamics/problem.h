@@ -6,6 +6,7 @@
 
 #include <array>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -76,6 +77,22 @@ struct Problem {
   int add_rows(const Tree& tree, int link, const Vector3& point, const Block& block, double sign);
   void weigh(Block& block) const;
 };
+
+/// Calls f with a block's number of rows, as a number that the compiler knows.
+template <class F>
+void by_rows(int rows, F f) {
+  switch (rows) {
+    case 1:
+      return f(std::integral_constant<int, 1>());
+    case 3:
+      return f(std::integral_constant<int, 3>());
+    default:
+      return f(std::integral_constant<int, Block::most_rows>());
+  }
+}
+
+/// Whether a side's touched dofs begin with the six of a free root.
+inline bool leads(std::span<const int> dofs) { return dofs.size() >= 6 && dofs[5] == 5; }
 
 /// Slower impacts do not bounce [m/s].
 constexpr double slowest_bounce = 0.05;

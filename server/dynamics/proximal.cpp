@@ -11,24 +11,24 @@ namespace ziggurat::dynamics {
 /// out += J^T impulse of a block.
 void add_impulse(const Problem& problem, const Block& block, const double* impulse,
                  std::vector<double>& out) {
-  const int sides[] = {block.a, block.b}, first[] = {block.ja, block.jb};
-  for (int s = 0; s < 2; ++s) {
-    if (sides[s] < 0) continue;
-    const double* column = problem.jacobian.data() + first[s];
-    double* to = out.data() + problem.offset[sides[s]];
-    const int dofs = problem.trees[sides[s]]->dofs;
-    if (block.rows == 3) {
-      for (int k = 0; k < dofs; ++k, column += 3) {
-        to[k] += column[0] * impulse[0] + column[1] * impulse[1] + column[2] * impulse[2];
-      }
-      continue;
-    }
-    for (int k = 0; k < dofs; ++k, column += block.rows) {
-      double sum = 0;
-      for (int r = 0; r < block.rows; ++r) sum += column[r] * impulse[r];
-      to[k] += sum;
-    }
-  }
+  const auto add_side = [&](int place, int first, std::span<const int> dofs) {
+    if (place < 0) return;
+    by_rows(block.rows, [&](auto rows) {
+      constexpr int R = rows();
+      const double* columns = problem.jacobian.data() + first;
+      double* to = out.data() + problem.offset[place];
+      const auto add = [&](int k) {
+        double sum = columns[k * R] * impulse[0];
+        for (int r = 1; r < R; ++r) sum += columns[k * R + r] * impulse[r];
+        to[k] += sum;
+      };
+      const bool leading = leads(dofs);
+      for (int k = 0; k < 6 && leading; ++k) add(k);
+      for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
+    });
+  };
+  add_side(block.a, block.ja, block.dofs_a);
+  add_side(block.b, block.jb, block.dofs_b);
 }
 
 /// out := p + J^T g - M v, with the joints' damping in M.

@@ -130,7 +130,7 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
 void System::find_awake() {
   awake_.clear();
   each_that_takes_part([&](int tree) {
-    if (!asleep(tree)) awake_.push_back(tree);
+    if (trees[tree].dofs > 0 && !asleep(tree)) awake_.push_back(tree);
   });
 }
 
