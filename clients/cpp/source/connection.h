@@ -1,13 +1,14 @@
 #pragma once
-// The client's socket: one DEALER that sends and receives messages.
+// The client's connection: it sends and receives messages of the protocol.
 
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
-#include <zmq.hpp>
 
+#include "transport.h"
 #include "ziggurat/session.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -32,8 +33,8 @@ class Connection {
 
   void send(const v1::ClientMessage& message);
 
-  /// From now on a closed connection is an error; before, ZeroMQ retries it.
-  void expect_open() { is_expected_open_ = true; }
+  /// From now on a closed connection is an error; before, it is tried again.
+  void expect_open();
   bool is_closed() const { return is_closed_; }
 
   /// Waits for a message; its kind, or none after the time-out. Kinds that this client does not
@@ -50,20 +51,13 @@ class Connection {
   const v1::ServerMessage& message() const { return message_; }
 
  private:
-  void set_keys(const Options& options);
-  bool receive_frame(std::chrono::milliseconds timeout);
-  bool was_closed();
   Kind parse();
   void forget(std::size_t size);
 
   std::string endpoint_;
-  zmq::context_t context_;
-  zmq::socket_t socket_;
-  zmq::socket_t monitor_;  // reports that the connection was closed
-  std::chrono::milliseconds socket_timeout_{-1};
+  std::unique_ptr<Transport> transport_;
   bool is_expected_open_ = false;
   bool is_closed_ = false;
-  zmq::message_t frame_;
   v1::Observation observation_;
   std::size_t parsed_ = 0;  // [bytes] since observation_ last released its memory
   v1::ServerMessage message_;

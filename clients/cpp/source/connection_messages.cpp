@@ -17,13 +17,13 @@ void Connection::forget(std::size_t size) {
 }
 
 Connection::Kind Connection::parse() {
-  const std::string_view bytes = frame_.to_string_view();
+  const std::string_view bytes = transport_->content();
   const auto observation = v1::sole_field(bytes, v1::ServerMessage::kObservationFieldNumber);
   const std::string_view content = observation.value_or(bytes);
   if (observation) forget(content.size());
   google::protobuf::MessageLite& message =
       observation ? static_cast<google::protobuf::MessageLite&>(observation_) : message_;
-  if (frame_.more() || !message.ParseFromArray(content.data(), static_cast<int>(content.size()))) {
+  if (transport_->has_more() || !message.ParseFromArray(content.data(), static_cast<int>(content.size()))) {
     throw ConnectionError(
         endpoint_ +
         ": the answer is not a message of ziggurat.v1; is this the endpoint of a server?");

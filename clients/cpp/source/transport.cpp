@@ -1,0 +1,156 @@
+#include "transport.h"
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <zmq.hpp>
+
+#include "local_stream.h"
+#include "ziggurat/error.h"
+
+namespace ziggurat {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds longest_linger{1000};
+constexpr const char* monitor_address = "inproc://monitor";
+
+/// False if there is none yet, or a signal arrived.
+bool receive_from(zmq::socket_t& socket, zmq::message_t& message, zmq::recv_flags flags) {
+  try {
+    return socket.recv(message, flags).has_value();
+  } catch (const zmq::error_t& error) {
+    if (error.num() == EINTR) return false;
+    throw;
+  }
+}
+
+/// A DEALER of libzmq: over networks, and encrypted.
+class ZeroMq final : public Transport {
+ public:
+  explicit ZeroMq(const Options& options);
+
+  void send(std::size_t size, const std::function<void(char*)>& write) override;
+  bool receive(milliseconds timeout) override;
+  std::string_view content() override { return frame_.to_string_view(); }
+  bool has_more() const override { return frame_.more(); }
+  bool was_closed() override;
+  void expect_open() override { is_expected_open_ = true; }
+  void linger() override;
+
+ private:
+  void set_keys(const Options& options);
+
+  std::string endpoint_;
+  zmq::context_t context_;
+  zmq::socket_t socket_;
+  zmq::socket_t monitor_;  // reports that the connection was closed
+  milliseconds socket_timeout_{-1};
+  bool is_expected_open_ = false;
+  bool is_closed_ = false;
+  zmq::message_t frame_;
+};
+
+ZeroMq::ZeroMq(const Options& options)
+    : endpoint_(options.endpoint),
+      socket_(context_, zmq::socket_type::dealer),
+      monitor_(context_, zmq::socket_type::pair) {
+  socket_.set(zmq::sockopt::ipv6, endpoint_.find('[') != std::string::npos);
+  socket_.set(zmq::sockopt::tcp_keepalive, 1);
+  socket_.set(zmq::sockopt::linger, 0);
+  monitor_.set(zmq::sockopt::linger, 0);
+  zmq_socket_monitor(socket_.handle(), monitor_address, ZMQ_EVENT_DISCONNECTED);
+  monitor_.connect(monitor_address);
+  set_keys(options);
+  try {
+    socket_.connect(endpoint_);
+  } catch (const zmq::error_t& error) {
+    throw std::invalid_argument("'" + endpoint_ + "': not an endpoint to connect to (" +
+                                error.what() + "); write ipc:///path or tcp://host:port");
+  }
+}
+
+/// Encrypts the connection, if the options name keys.
+void ZeroMq::set_keys(const Options& options) {
+  if (options.server_key.empty() && options.curve_secret.empty()) return;
+  if (options.server_key.empty() || options.curve_secret.empty()) {
+    throw std::invalid_argument(
+        "only one of server_key and curve_secret is set; an encrypted connection needs both");
+  }
+  std::ifstream file(options.curve_secret);
+  std::string secret;
+  std::array<char, 41> own;
+  if (!(file >> secret) || zmq_curve_public(own.data(), secret.c_str()) != 0) {
+    throw std::invalid_argument(
+        "'" + options.curve_secret +
+        "': not a file with a secret key; create one with 'ziggurat keygen'");
+  }
+  try {
+    if (options.server_key.size() != 40) throw zmq::error_t(EINVAL);
+    socket_.set(zmq::sockopt::curve_serverkey, options.server_key);
+  } catch (const zmq::error_t&) {
+    throw std::invalid_argument("'" + options.server_key +
+                                "': not a public key; it has 40 characters and is printed by "
+                                "'ziggurat keygen'");
+  }
+  socket_.set(zmq::sockopt::curve_publickey, own.data());
+  socket_.set(zmq::sockopt::curve_secretkey, secret);
+}
+
+void ZeroMq::linger() {
+  try {
+    socket_.set(zmq::sockopt::linger, static_cast<int>(longest_linger.count()));
+  } catch (const zmq::error_t&) {
+    // The last messages may be lost; there is nothing else to do.
+  }
+}
+
+void ZeroMq::send(std::size_t size, const std::function<void(char*)>& write) {
+  zmq::message_t frame(size);
+  write(frame.data<char>());
+  for (;;) {
+    try {
+      socket_.send(frame, zmq::send_flags::none);
+      return;
+    } catch (const zmq::error_t& error) {
+      if (error.num() == EINTR) continue;
+      throw ConnectionError(endpoint_ + ": can't send: " + error.what());
+    }
+  }
+}
+
+bool ZeroMq::receive(milliseconds timeout) {
+  if (timeout != socket_timeout_) {
+    socket_.set(zmq::sockopt::rcvtimeo, static_cast<int>(timeout.count()));
+    socket_timeout_ = timeout;
+  }
+  try {
+    return receive_from(socket_, frame_, zmq::recv_flags::none);
+  } catch (const zmq::error_t& error) {
+    throw ConnectionError(endpoint_ + ": can't receive: " + error.what());
+  }
+}
+
+bool ZeroMq::was_closed() {
+  zmq::message_t event;
+  while (receive_from(monitor_, event, zmq::recv_flags::dontwait)) {
+    std::uint16_t number = 0;
+    if (event.size() >= sizeof(number)) std::memcpy(&number, event.data(), sizeof(number));
+    while (event.more()) receive_from(monitor_, event, zmq::recv_flags::none);  // the address
+    if (number == ZMQ_EVENT_DISCONNECTED && is_expected_open_) is_closed_ = true;
+  }
+  return is_closed_;
+}
+
+}  // namespace
+
+std::unique_ptr<Transport> make_transport(const Options& options) {
+  if (LocalStream::path_of(options)) return std::make_unique<LocalStream>(options);
+  return std::make_unique<ZeroMq>(options);
+}
+
+}  // namespace ziggurat

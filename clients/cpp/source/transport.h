@@ -1,0 +1,44 @@
+#pragma once
+// How a client's messages go to the server and back. Both ways speak ZeroMQ's wire protocol.
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "ziggurat/session.h"
+
+namespace ziggurat {
+
+class Transport {
+ public:
+  virtual ~Transport() = default;
+
+  /// Sends a message, or queues it while there is no connection yet.
+  /// @param write  fills `size` bytes
+  /// @throws ConnectionError
+  virtual void send(std::size_t size, const std::function<void(char*)>& write) = 0;
+
+  /// Waits for a message.
+  /// @return  whether there is one; false after the time-out, after a signal and when closed
+  /// @throws ConnectionError
+  virtual bool receive(std::chrono::milliseconds timeout) = 0;
+  /// The last message, valid until the next is received, and whether it has more frames.
+  virtual std::string_view content() = 0;
+  virtual bool has_more() const = 0;
+
+  /// Whether the server closed a connection since the last call; before the connection is
+  /// expected to stay open that has no meaning: it is tried again.
+  virtual bool was_closed() = 0;
+  /// From now on a closed connection is not tried again.
+  virtual void expect_open() = 0;
+  /// To be called before the end if the last messages should arrive: they have a second for it.
+  virtual void linger() = 0;
+};
+
+/// @throws std::invalid_argument for an unusable endpoint or keys
+std::unique_ptr<Transport> make_transport(const Options& options);
+
+}  // namespace ziggurat
