@@ -218,10 +218,11 @@ LocalStream::Step LocalStream::take() {
   const unsigned flags = bytes[0];
   const bool is_long = (flags & long_flag) != 0, is_command = (flags & command_flag) != 0;
   const std::size_t header = is_long ? 9 : 2;
-  if (size < header) return Step::incomplete;
+  const bool is_known = flags <= (more_flag | long_flag | command_flag);
+  if (is_known && size < header) return Step::incomplete;
   std::uint64_t body = 0;
-  for (std::size_t i = 1; i < header; ++i) body = body << 8 | bytes[i];
-  const bool is_allowed = flags < 8 && body < SIZE_MAX / 4 &&
+  for (std::size_t i = 1; i < header && is_known; ++i) body = body << 8 | bytes[i];
+  const bool is_allowed = is_known && body < SIZE_MAX / 4 &&
                           (!is_command || body <= longest_command) &&
                           (stage_ == Stage::open || is_command);
   if (!is_allowed) {
