@@ -1,18 +1,19 @@
-// The interior point method for islands that strike: impulses and speeds of every contact stay inside
-// their cones, and the product of both goes to zero. The number of its steps hardly depends on how
-// many contacts there are and which of them hold, stick or slide.
+// The interior point method for islands that strike: impulses and speeds of every contact stay
+// inside their cones, and the product of both goes to zero. The number of its steps hardly depends
+// on how many contacts there are and which of them hold, stick or slide.
 //
 // A contact's impulse z = (mu g_n, g_t) and speed s = (u_n / mu + |u_t|, u_t) lie in the cone
-// x_0 >= |(x_1, x_2)| and have the product 0 where Coulomb's law holds: the term |u_t| is what keeps
-// sliders from lifting off (G. de Saxce, Z.-Q. Feng, Math. Comput. Modelling 28, 1998). Steps are those
-// of Nesterov and Todd with Mehrotra's corrector (L. Vandenberghe, The CVXOPT linear and quadratic
-// cone program solvers, 2010, sections 4 and 5), but with the derivative of |u_t|, which makes the
-// matrix unsymmetric: without it convergence is linear and slow.
+// x_0 >= |(x_1, x_2)| and have the product 0 where Coulomb's law holds: the term |u_t| is what
+// keeps sliders from lifting off (G. de Saxce, Z.-Q. Feng, Math. Comput. Modelling 28, 1998). Steps
+// are those of Nesterov and Todd with Mehrotra's corrector (L. Vandenberghe, The CVXOPT linear and
+// quadratic cone program solvers, 2010, sections 4 and 5), but with the derivative of |u_t|, which
+// makes the matrix unsymmetric: without it convergence is linear and slow.
 
 #include <algorithm>
 #include <cmath>
 
 #include "dynamics/newton.h"
+#include "dynamics/slope.h"
 
 namespace ziggurat::dynamics {
 namespace {
@@ -58,9 +59,7 @@ double way_to_border(const Vector3& x, const Vector3& d) {
 
 double way_to_zero(double x, double d) { return d < 0 ? std::min(1.0, -x / d) : 1; }
 
-bool is_cone(const Block& block) {
-  return block.law == Block::Law::contact && block.rows >= 3;
-}
+bool is_cone(const Block& block) { return block.law == Block::Law::contact && block.rows >= 3; }
 
 /// Rows that the method solves for; those of rolling and spinning friction keep their impulses.
 int solved_rows(const Block& block) {
@@ -195,7 +194,7 @@ double Solver::linearise_interior(Problem& problem) {
         linear.slope[r * rows + s] = c.unit[r] * c.slope(r, s) * c.unit[s];
       }
     }
-    add_slope(problem, block, linear);
+    add_slope(problem, block, linear, sloped_, matrix_);
   }
   return products / std::max(1, count);
 }
@@ -230,8 +229,8 @@ double Solver::interior_direction(Problem& problem, double target, bool corrects
     if (is_cone(block)) {
       c.change = c.slope * (c.constant - Vector3(c.unit[0] * u[0], u[1], u[2]));
       c.speed_change = c.aim - c.scaling * Vector3(c.scaling * c.change);
-      way = std::min({way, way_to_border(c.impulse, c.change),
-                      way_to_border(c.speed, c.speed_change)});
+      way = std::min(
+          {way, way_to_border(c.impulse, c.change), way_to_border(c.speed, c.speed_change)});
       continue;
     }
     const double change = c.slope(0, 0) * (c.constant[0] - u[0]);

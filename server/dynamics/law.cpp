@@ -192,8 +192,8 @@ void soften(const Block& block, const double* u, double softness, double* impuls
     out->slope[row * rows + column] = share / (softness * block.mobility[row]);
   };
   const double lower = block.law == Block::Law::bounded ? block.lower : 0;
-  const double upper = block.law == Block::Law::bounded ? block.upper
-                                                        : std::numeric_limits<double>::infinity();
+  const double upper =
+      block.law == Block::Law::bounded ? block.upper : std::numeric_limits<double>::infinity();
   impulse[0] = std::clamp(y[0], lower, upper);
   if (y[0] > lower && y[0] < upper) give_way(0, 0, 1);
   Disc all[3];

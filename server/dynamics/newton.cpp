@@ -4,113 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "dynamics/slope.h"
+
 namespace ziggurat::dynamics {
 namespace {
 
-/// One side of a block of R rows.
-struct Side {
-  int place = -1;                   // of its tree in the island
-  int dofs = 0;                     // of the tree
-  const double* columns = nullptr;  // R values per dof
-  std::span<const int> touched;     // dofs whose columns are not zero, ascending
-  int leading = 0;                  // so many of them are the first dofs of the tree: 6 or 0
-};
-
-Side side_of(const Problem& problem, int place, int first, std::span<const int> dofs) {
-  const Tree& tree = *problem.trees[place];
-  return {place, tree.dofs, problem.jacobian.data() + first, dofs, leads(dofs) ? 6 : 0};
-}
-
-/// Adds J^T slope J of a block of R rows to the matrix: to its columns that belong to s, in the
-/// rows of both sides. For any tree.
-template <int R>
-void add_any(const Side& s, const Side (&sides)[2], const double* slope,
-             std::vector<double>& sloped, BlockMatrix& matrix) {
-  const std::size_t count = s.touched.size();
-  sloped.resize(count * R);
-  for (std::size_t e = 0; e < count; ++e) {
-    const double* column = s.columns + s.touched[e] * R;
-    for (int r = 0; r < R; ++r) {
-      double sum = 0;
-      for (int c = 0; c < R; ++c) sum += slope[r * R + c] * column[c];
-      sloped[r * count + e] = sum;
-    }
-  }
-  for (const Side& t : sides) {
-    if (t.place < 0) continue;
-    for (const int k : t.touched) {
-      const double* column = t.columns + k * R;
-      double* row = matrix.block(t.place, s.place) + k * s.dofs;
-      for (std::size_t e = 0; e < count; ++e) {
-        double sum = row[s.touched[e]];
-        for (int r = 0; r < R; ++r) sum += column[r] * sloped[r * count + e];
-        row[s.touched[e]] = sum;
-      }
-    }
-  }
-}
-
-/// The same where s has a free root, whose six dofs lead the touched ones, and T more of them. The
-/// compiler knows their number, and takes two at a time.
-template <int R, int T>
-void add_leading(const Side& s, const Side (&sides)[2], const double* slope, BlockMatrix& matrix) {
-  using Six = Eigen::Array<double, 6, 1>;
-  Six rows[R], sloped[R];
-  double tail_rows[R][T + 1], tail[R][T + 1];
-  int tail_dof[T + 1];
-  for (int r = 0; r < R; ++r) {
-    for (int e = 0; e < 6; ++e) rows[r][e] = s.columns[e * R + r];
-  }
-  for (int e = 0; e < T; ++e) {
-    tail_dof[e] = s.touched[6 + e];
-    for (int r = 0; r < R; ++r) tail_rows[r][e] = s.columns[tail_dof[e] * R + r];
-  }
-  for (int r = 0; r < R; ++r) {
-    sloped[r] = slope[r * R] * rows[0];
-    for (int c = 1; c < R; ++c) sloped[r] += slope[r * R + c] * rows[c];
-    for (int e = 0; e < T; ++e) {
-      tail[r][e] = slope[r * R] * tail_rows[0][e];
-      for (int c = 1; c < R; ++c) tail[r][e] += slope[r * R + c] * tail_rows[c][e];
-    }
-  }
-  for (const Side& t : sides) {
-    if (t.place < 0) continue;
-    double* out = matrix.block(t.place, s.place);
-    for (const int k : t.touched) {
-      const double* column = t.columns + k * R;
-      double* row = out + k * s.dofs;
-      Eigen::Map<Six> leading(row);
-      Six sum = leading;
-      for (int r = 0; r < R; ++r) sum += column[r] * sloped[r];
-      leading = sum;
-      for (int e = 0; e < T; ++e) {
-        double entry = row[tail_dof[e]];
-        for (int r = 0; r < R; ++r) entry += column[r] * tail[r][e];
-        row[tail_dof[e]] = entry;
-      }
-    }
-  }
-}
-
-/// Adds J^T slope J of a block of R rows to the matrix.
-template <int R>
-void add_slope_of(const Problem& problem, const Block& block, const double* slope,
-                  std::vector<double>& sloped, BlockMatrix& matrix) {
-  Side sides[2];
-  if (block.a >= 0) sides[0] = side_of(problem, block.a, block.ja, block.dofs_a);
-  if (block.b >= 0) sides[1] = side_of(problem, block.b, block.jb, block.dofs_b);
-  for (const Side& s : sides) {
-    if (s.place < 0) continue;
-    const std::size_t more = s.touched.size() - s.leading;
-    if (s.leading == 6 && more == 0) {
-      add_leading<R, 0>(s, sides, slope, matrix);
-    } else if (s.leading == 6 && more == 1) {
-      add_leading<R, 1>(s, sides, slope, matrix);
-    } else {
-      add_any<R>(s, sides, slope, sloped, matrix);
-    }
-  }
-}
+using Speeds = std::vector<std::array<double, Block::most_rows>>;
 
 /// right += the columns of a side times the impulses of R rows.
 template <int R>
@@ -175,6 +74,28 @@ double add_to_scale(const Block& block, const double* u, double& scale) {
   return sum;
 }
 
+/// @param scale  out: the largest of the blocks' speeds, or change of speed by an impulse
+/// @return       false if a speed or an impulse is no number
+bool find_scale(const Problem& problem, const Speeds& speeds, double& scale) {
+  double sum = 0;
+  scale = 0;
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    by_rows(problem.blocks[i].rows, [&](auto rows) {
+      sum += add_to_scale<rows()>(problem.blocks[i], speeds[i].data(), scale);
+    });
+  }
+  return std::isfinite(sum);  // the maxima skip what is no number
+}
+
+/// @param enough  a miss of more need not be exact
+double miss_beyond(const Problem& problem, const Speeds& speeds, double enough) {
+  double worst = 0;
+  for (std::size_t i = 0; i < problem.blocks.size() && worst <= enough; ++i) {
+    worst = std::max(worst, miss(problem.blocks[i], speeds[i].data()));
+  }
+  return worst;
+}
+
 /// Whether a contact is faster than what one substep's forces give.
 bool has_strike(const Problem& problem) {
   double fastest = 0, forces = 0;
@@ -190,14 +111,6 @@ bool has_strike(const Problem& problem) {
 }
 
 }  // namespace
-
-/// Adds J^T slope J to the matrix.
-void Solver::add_slope(const Problem& problem, const Block& block, const Linear& linear) {
-  if (linear.zero) return;
-  by_rows(block.rows, [&](auto rows) {
-    add_slope_of<rows()>(problem, block, linear.slope.data(), sloped_, matrix_);
-  });
-}
 
 /// The mass matrices.
 void Solver::start_matrix(Problem& problem) {
@@ -229,7 +142,7 @@ bool Solver::step(Problem& problem) {
   problem.velocity = problem.momentum;
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
     linearise(problem.blocks[i], speeds_[i].data(), linear_[i]);
-    add_slope(problem, problem.blocks[i], linear_[i]);
+    add_slope(problem, problem.blocks[i], linear_[i], sloped_, matrix_);
     if (linear_[i].zero) continue;
     add_rows_of(problem, problem.blocks[i], linear_[i].constant.data(), problem.velocity);
   }
@@ -246,8 +159,7 @@ bool Solver::step(Problem& problem) {
       block.impulse.fill(0);
       continue;
     }
-    by_rows(block.rows,
-            [&](auto rows) { take_impulse<rows()>(linear, speeds_[i].data(), block); });
+    by_rows(block.rows, [&](auto rows) { take_impulse<rows()>(linear, speeds_[i].data(), block); });
   }
   return true;
 }
@@ -262,8 +174,7 @@ void Solver::correct(Problem& problem) {
       block.impulse.fill(0);
       continue;
     }
-    by_rows(block.rows,
-            [&](auto rows) { take_impulse<rows()>(now_, speeds_[i].data(), block); });
+    by_rows(block.rows, [&](auto rows) { take_impulse<rows()>(now_, speeds_[i].data(), block); });
   }
   imbalance(problem, residual_);
   kept_speeds_ = speeds_;
@@ -279,34 +190,11 @@ void Solver::correct(Problem& problem) {
   }
 }
 
-/// @param scale  out: the largest speed that was taken, or change of speed by an impulse
-/// @return       false if a speed or an impulse is no number
-bool Solver::find_scale(const Problem& problem, double& scale) const {
-  double sum = 0;
-  scale = 0;
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    by_rows(problem.blocks[i].rows, [&](auto rows) {
-      sum += add_to_scale<rows()>(problem.blocks[i], speeds_[i].data(), scale);
-    });
-  }
-  return std::isfinite(sum);  // the maxima skip what is no number
-}
-
-/// At the speeds that were taken.
-/// @param enough  a miss of more need not be exact
-double Solver::miss_beyond(const Problem& problem, double enough) const {
-  double worst = 0;
-  for (std::size_t i = 0; i < problem.blocks.size() && worst <= enough; ++i) {
-    worst = std::max(worst, miss(problem.blocks[i], speeds_[i].data()));
-  }
-  return worst;
-}
-
 /// At the speeds that were taken.
 /// @param scale  out: see find_scale()
 /// @return       infinite if a speed or an impulse is no number
 double Solver::miss_now(const Problem& problem, double& scale) const {
-  return find_scale(problem, scale) ? miss_beyond(problem, HUGE_VAL) : HUGE_VAL;
+  return find_scale(problem, speeds_, scale) ? miss_beyond(problem, speeds_, HUGE_VAL) : HUGE_VAL;
 }
 
 double Solver::worst_miss(const Problem& problem, double& scale) {
@@ -358,9 +246,9 @@ double Solver::start(Problem& problem) {
 bool Solver::still_solved(const Problem& problem, Outcome& outcome) {
   double scale = 0;
   take_speeds(problem);
-  const bool finite = find_scale(problem, scale);
+  const bool finite = find_scale(problem, speeds_, scale);
   const double enough = options.absolute_tolerance + options.still_tolerance * scale;
-  outcome.miss = finite ? miss_beyond(problem, enough) : HUGE_VAL;
+  outcome.miss = finite ? miss_beyond(problem, speeds_, enough) : HUGE_VAL;
   return outcome.miss <= enough && imbalance(problem, residual_) <= enough;
 }
 

@@ -89,8 +89,6 @@ class Solver {
   double start(Problem& problem);
   bool still_solved(const Problem& problem, Outcome& outcome);
   void take_speeds(const Problem& problem);
-  bool find_scale(const Problem& problem, double& scale) const;
-  double miss_beyond(const Problem& problem, double enough) const;
   double miss_now(const Problem& problem, double& scale) const;
   bool proximal(Problem& problem, Outcome& outcome);
   bool patient_proximal(Problem& problem, Outcome& outcome, bool strikes);
@@ -101,7 +99,6 @@ class Solver {
   double interior_direction(Problem& problem, double target, bool corrects);
   double product_after(const Problem& problem, double way) const;
   void advance_interior(Problem& problem, double way);
-  void add_slope(const Problem& problem, const Block& block, const Linear& linear);
   double worst_miss(const Problem& problem, double& scale);
   bool sweep_until_converged(Problem& problem, Outcome& outcome, int most);
   bool soften_after_sweeps(Problem& problem, Outcome& outcome);

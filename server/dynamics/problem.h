@@ -24,36 +24,37 @@ struct Block {
     off       ///< no impulse
   };
   Law law = Law::off;
-  int rows = 0;          ///< 1, 3 or 6
-  int a = -1, b = -1;    ///< places of the trees in the island, or -1
-  int ja = 0, jb = 0;    ///< into Problem::jacobian: per dof of the tree, a column of `rows`
+  int rows = 0;        ///< 1, 3 or 6
+  int a = -1, b = -1;  ///< places of the trees in the island, or -1
+  int ja = 0, jb = 0;  ///< into Problem::jacobian: per dof of the tree, a column of `rows`
   std::span<const int> dofs_a, dofs_b;  ///< that move each side, ascending; other columns are zero
   double friction = 0, spinning = 0, rolling = 0;  ///< bounds over the normal impulse: 1, [m], [m]
   double lower = 0, upper = 0;
-  std::array<double, most_rows> seek{};     ///< the speeds that the impulses seek [m/s], [rad/s]
-  std::array<double, most_rows> impulse{};  ///< [N s], [N m s]
-  std::array<double, most_rows> mobility{}; ///< about what a unit impulse changes of u
+  std::array<double, most_rows> seek{};      ///< the speeds that the impulses seek [m/s], [rad/s]
+  std::array<double, most_rows> impulse{};   ///< [N s], [N m s]
+  std::array<double, most_rows> mobility{};  ///< about what a unit impulse changes of u
 
   std::array<double, most_rows> anchor{};  ///< of the softened law, see law.h [N s], [N m s]
 
-  double gap = 0;         ///< of contacts and limits [m] or [rad]
-  double restitution = 0; ///< of contacts that bounce
-  double bounced = 0;     ///< > 0: speed apart after an impact, see constraint.h
+  double gap = 0;                   ///< of contacts and limits [m] or [rad]
+  double restitution = 0;           ///< of contacts that bounce
+  double bounced = 0;               ///< > 0: speed apart after an impact, see constraint.h
   Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
-  int source = 0;         ///< into the contacts, servos or limits of the system
+  int source = 0;                   ///< into the contacts, servos or limits of the system
   enum class Source : unsigned char { contact, servo, limit } kind = Source::contact;
 };
 
 struct Problem {
-  double length = 0;               ///< of the substep [s]
-  double allowed_overlap = 1e-6;   ///< that turn_into_displacement() leaves [m]
-  std::vector<Tree*> trees;        ///< by their index in the system
-  std::vector<int> offset;         ///< of each tree in p and v
+  double length = 0;              ///< of the substep [s]
+  double allowed_overlap = 1e-6;  ///< that turn_into_displacement() leaves [m]
+  std::vector<Tree*> trees;       ///< by their index in the system
+  std::vector<int> offset;        ///< of each tree in p and v
   std::vector<Block> blocks;
   std::vector<double> jacobian;
-  std::vector<double> momentum;    ///< p
-  std::vector<double> inverse_mass;  ///< of each dof as if it were alone: 1 / M_kk [1/kg] or [1/(kg m^2)]
-  std::vector<double> velocity;    ///< v: start and solution
+  std::vector<double> momentum;  ///< p
+  std::vector<double>
+      inverse_mass;  ///< of each dof as if it were alone: 1 / M_kk [1/kg] or [1/(kg m^2)]
+  std::vector<double> velocity;                ///< v: start and solution
   std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block
 
   void clear();

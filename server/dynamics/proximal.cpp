@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dynamics/newton.h"
+#include "dynamics/slope.h"
 
 namespace ziggurat::dynamics {
 
@@ -87,7 +88,7 @@ bool Solver::proximal_step(Problem& problem, double softness, double shortest, d
   start_matrix(problem);
   soften(problem, softness, linear_.data());
   for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
-    add_slope(problem, problem.blocks[k], linear_[k]);
+    add_slope(problem, problem.blocks[k], linear_[k], sloped_, matrix_);
   }
   unbalanced = imbalance(problem, residual_);
   const double before = square(problem, residual_);
