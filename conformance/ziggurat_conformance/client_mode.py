@@ -7,7 +7,6 @@ from .case import Case, Failed, Level, NonStrict, Outcome, Unimplemented, Verdic
 from .cases.client import CLIENT_CASES as CASES
 from .client_stage import ClientStage, Options
 from .client_steps import TellWelcome
-from .server_scene import KIT
 
 _TRIES_WITH_DEADLINES = 3
 
@@ -33,7 +32,7 @@ def _play_patiently(case: Case, command: list, options: Options) -> Outcome:
 
 def _play_one(case: Case, command: list, options: Options) -> Outcome:
     outcome = Outcome(case.id, case.title, case.level, Verdict.PASS)
-    if options.scene is not None and _has_own_robots(case):
+    if options.scene is not None and _names_robots(case.steps):
         outcome.verdict, outcome.reason = Verdict.NOT_RUN, "plays the kit's own robots: leave --scene out"
         return outcome
     start = time.monotonic()
@@ -53,10 +52,6 @@ def _play_one(case: Case, command: list, options: Options) -> Outcome:
     if outcome.verdict is not Verdict.PASS:
         outcome.transcript = stage.transcript.text()
     return outcome
-
-
-def _has_own_robots(case: Case) -> bool:
-    return case.scene == KIT or _names_robots(case.steps)
 
 
 def _names_robots(steps: tuple) -> bool:

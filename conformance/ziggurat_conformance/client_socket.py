@@ -26,14 +26,15 @@ class Arrival:
 class ServerSocket:
     """A ROUTER at a port of its own. It may be closed and opened again there."""
 
-    def __init__(self, secret_key: Optional[bytes] = None):
+    def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True):
+        """is_open: every key may connect; otherwise none."""
         self._context = zmq.Context()
         self._secret_key = secret_key
         self._authenticator = None
         if secret_key is not None:
             self._authenticator = zmq.auth.thread.ThreadAuthenticator(self._context)
             self._authenticator.start()
-            self._authenticator.configure_curve_callback(credentials_provider=_AnyKey())
+            self._authenticator.configure_curve_callback(credentials_provider=_Doorkeeper(is_open))
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
@@ -79,11 +80,14 @@ class ServerSocket:
         self._socket.send_multipart([routing_id, data])
 
 
-class _AnyKey:
-    """Every client may connect; its key is told with its messages."""
+@dataclass(frozen=True)
+class _Doorkeeper:
+    """Every client may connect, and its key is told with its messages; or none may."""
+
+    is_open: bool
 
     def callback(self, domain: str, key: bytes) -> bool:
-        return True
+        return self.is_open
 
 
 def _fact(frame: zmq.Frame, name: str) -> str:
@@ -94,7 +98,8 @@ def _fact(frame: zmq.Frame, name: str) -> str:
 
 
 _SIGNATURE = b"\xff" + bytes(8) + b"\x7f"
-_GREETING = _SIGNATURE + b"\x03\x00" + b"NULL".ljust(20, b"\0") + bytes(32)
+# Up to the version: a client that has read more would see that the mechanisms differ, and not tell its own.
+_GREETING = _SIGNATURE + b"\x03\x00"
 
 
 class PlainGreeter:
@@ -104,10 +109,10 @@ class PlainGreeter:
         self._listener = socket.create_server(("127.0.0.1", 0))
         self.endpoint = f"tcp://127.0.0.1:{self._listener.getsockname()[1]}"
 
-    def mechanisms(self, seconds: float) -> list:
-        """Of every connection within this time: "CURVE", "NULL", …"""
+    def mechanisms(self, first_within: float, seconds: float) -> list:
+        """Of the first connection and every later one within `seconds` of it: "CURVE", "NULL", …"""
         found = []
-        deadline = time.monotonic() + seconds
+        deadline = time.monotonic() + first_within
         while (left := deadline - time.monotonic()) > 0:
             self._listener.settimeout(left)
             try:
@@ -117,6 +122,8 @@ class PlainGreeter:
             with connection:
                 connection.settimeout(1.0)
                 found.append(_mechanism_of(connection))
+            if len(found) == 1:
+                deadline = time.monotonic() + seconds
         return found
 
     def destroy(self) -> None:

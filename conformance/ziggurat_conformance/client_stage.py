@@ -12,8 +12,8 @@ from .case import Case, Failed, NonStrict, Unimplemented
 from .client_robots import readings, robot
 from .client_socket import PlainGreeter, ServerSocket
 from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, HearLate, HearResume, Mechanisms,
-                           Quiet, Refuse, Tell, TellBytes, TellObservation, TellWelcome, Wait)
-from .keys import MISLED, PLAIN_SERVER, VARIANT, Keys
+                           Quiet, Refuse, Remove, SinceMinor, Tell, TellBytes, TellObservation, TellWelcome, Wait)
+from .keys import MISLED, PLAIN_SERVER, UNLISTED, VARIANT, Keys
 from .peer import Transcript
 from .rules.fault import Fault, musts
 from .rules.observation import time_of
@@ -23,6 +23,7 @@ from .scene_robots import SceneRobots
 from .wire import protocol
 
 _START = 10.0  # [s] until a program's first message
+_RULES = {"hello": "H1", "command": "S3", "leave": "L5"}  # that ask for these messages
 _LATE = 0.3  # [s] for a Command that need not come
 _TOKEN = b"0123456789abcdef"
 _MOST_AT_ONCE, _MOST_A_SECOND = 2000, 1000  # M7
@@ -82,9 +83,9 @@ class ClientStage:
         if variant == PLAIN_SERVER:
             self.keys = Keys()
             return PlainGreeter()
-        if variant in (VARIANT, MISLED):
+        if variant in (VARIANT, MISLED, UNLISTED):
             self.keys = Keys()
-            return ServerSocket(self.keys.server[1])
+            return ServerSocket(self.keys.server[1], is_open=variant != UNLISTED)
         return ServerSocket()
 
     def _close(self) -> None:
@@ -148,17 +149,20 @@ class ClientStage:
     def hear(self, step: HearFrom) -> None:
         is_first = self.routing_id is None  # the program may take a while to start
         message = self._receive(max(self.patience, _START) if is_first else self.patience)
+        while step.kind == "command" and message is not None and message.leave.robots:  # L2: of some robots
+            message = self._receive(self.patience)
         late = time.monotonic() - self._observed_at - step.within
+        expected = f"{step.kind} is expected ({_RULES[step.kind]})"
         if message is None:
-            complaint = f"the client said nothing; {step.kind} is expected{self._gone()}"
+            complaint = f"the client said nothing; {expected}{self._gone()}"
             if is_first:
                 complaint += f": nothing came to {self._socket.endpoint}, its ZIGGURAT_ENDPOINT"
                 if self.keys is not None:
                     raise Unimplemented(f"{complaint}, with the keys that it was given (T10)")
         elif wire.kind_of(message) != step.kind:
-            complaint = f"the client said {wire.text_of(message, 300)}; {step.kind} is expected"
+            complaint = f"the client said {wire.text_of(message, 300)}; {expected}"
         elif step.within and late > 0:
-            complaint = f"its {step.kind} came {1000 * late:.0f} ms after the deadline"
+            complaint = f"its {step.kind} came {1000 * late:.0f} ms after the deadline (W1)"
         else:
             complaint = "; ".join(wire.mismatches(step.pattern, getattr(message, step.kind), step.kind))
         _judge(complaint, step.should)
@@ -175,6 +179,12 @@ class ClientStage:
                                           and message.command.tick == step.tick):
             _judge(f"the client said {said}; the Command for tick {step.tick} is expected{self._gone()}", False)
 
+    def remove(self, step: Remove) -> None:
+        id = self.session.welcome.robots[step.position].id
+        self.tell(Tell({"error": {"code": "NOT_YOURS", "severity": "WARNING", "robot": id,
+                                  "message": "a supervisor removed it"}}))
+        self.session.left.add(step.position)
+
     def refuse(self, step: Refuse) -> None:
         self._tell_error(step.code, "DISCARD", self.session.tick)
         self.session.owes = True  # S10
@@ -187,6 +197,10 @@ class ClientStage:
             _judge("its Command was refused, and it ended with exit code 0", True)
         elif message is not None and wire.kind_of(message) not in ("command", "leave"):
             _judge(f"the client said {wire.text_of(message, 300)}; a Command or a Leave is expected", False)
+
+    def since_minor(self, step: SinceMinor) -> None:
+        if self.session.hello.version.minor >= step.minor:
+            self._play(step.steps)
 
     def cut(self, _: Cut) -> None:
         self.transcript.add("server", "───", "closes the connection, and listens again")
@@ -238,7 +252,7 @@ class ClientStage:
         _judge(f"{step.title}: {complaint}" if complaint else "", step.should)
 
     def mechanisms(self, step: Mechanisms) -> None:
-        found = self._socket.mechanisms(max(step.seconds, _START if self.options.patience > 5 else step.seconds))
+        found = self._socket.mechanisms(_START, step.seconds)
         self.transcript.add("client", "──▶", f"greetings with {', '.join(found[:20]) or 'nothing'}")
         if "NULL" in found and "CURVE" not in found:
             raise Unimplemented("it connects without the keys that it was given (T10)")
@@ -378,8 +392,10 @@ _players: dict = {
     HearFrom: ClientStage.hear,
     HearLate: ClientStage.hear_late,
     Refuse: ClientStage.refuse,
+    Remove: ClientStage.remove,
     HearCorrection: ClientStage.hear_correction,
     HearResume: ClientStage.hear_resume,
+    SinceMinor: ClientStage.since_minor,
     Cut: ClientStage.cut,
     Quiet: ClientStage.quiet,
     Ends: ClientStage.ends,

@@ -54,6 +54,13 @@ class HearLate:
 
 
 @dataclass(frozen=True)
+class Remove:
+    """A supervisor takes the robot at this position out of the world, and the session is told."""
+
+    position: int
+
+
+@dataclass(frozen=True)
 class Refuse:
     """The Command for the last tick had no effect."""
 
@@ -65,6 +72,14 @@ class HearCorrection:
     """After a Command that was refused: another one, a Leave, or the end of the program."""
 
     tick: int
+
+
+@dataclass(frozen=True)
+class SinceMinor:
+    """Steps of a later version, played with clients whose Hello has it."""
+
+    minor: int
+    steps: tuple
 
 
 @dataclass(frozen=True)

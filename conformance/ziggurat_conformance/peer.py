@@ -38,6 +38,7 @@ class Peer:
         self.form = form
         self.transcript = transcript
         self.welcome: Optional[protocol.Welcome] = None
+        self.refusal: Optional[protocol.Refusal] = None
         self.tick = 0  # of the last observation
         self.observation: Optional[protocol.Observation] = None
         self.heartbeats: list[int] = []
@@ -55,9 +56,10 @@ class Peer:
     def send(self, message: protocol.ClientMessage) -> None:
         self.transcript.add(self.name, "──▶", wire.text_of(message))
         data = wire.encode(message, self.form)
+        state = self._session.state
+        faults = self._session.said(message, len(data))
         if self._session.is_certain:
-            state = self._session.state
-            self._answers.said(state, message, self._session.said(message, len(data)))
+            self._answers.said(state, message, faults)
         self.socket.send(data)
 
     def send_frames(self, frames: tuple[bytes, ...]) -> None:
@@ -107,6 +109,8 @@ class Peer:
     def _remember(self, message: protocol.ServerMessage) -> None:
         if message.HasField("welcome"):
             self.welcome = message.welcome
+        if message.HasField("refusal"):
+            self.refusal = message.refusal
         if message.HasField("observation"):
             self.observation = message.observation
             self.tick = message.observation.tick

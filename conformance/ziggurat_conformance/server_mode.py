@@ -57,7 +57,10 @@ class Servers:
         self._vain_starts = 0
         self._commands_started.add(command)
         if scene != CROWDED:
-            _await_world(server.endpoint, self.keys.of("controller") if files else None)
+            try:
+                _await_world(server.endpoint, self.keys.of("controller") if files else None)
+            except (Failed, ValueError):
+                pass  # the cases will tell
         return server
 
     def done(self, case: Case, usable: bool) -> None:
@@ -83,8 +86,6 @@ def _await_world(endpoint: str, keys: Optional[tuple]) -> None:
         message = probe.hear(1.0)
         while message is not None and wire.kind_of(message) == "loading":
             message = probe.hear(10.0)
-    except Failed:
-        pass  # the cases will tell
     finally:
         probe.close()
 

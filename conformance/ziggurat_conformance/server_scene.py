@@ -14,4 +14,3 @@ def path_of(scene: str) -> Path:
 MAIN = "conformance"
 CROWDED = "crowded"  # takes a while to load
 SCENE = path_of(MAIN)
-KIT = "kit"  # of cases for clients that play robots of the kit, whatever scene the user names

@@ -1,6 +1,6 @@
 """All cases for servers, in the order of the document's sections."""
 
-from . import deadlines, hello, leaving, rovers, security, states, supervision, tick, transport
+from . import deadlines, hello, later_versions, leaving, rovers, security, states, supervision, tick, transport
 
 SERVER_CASES = [
     *transport.CASES,
@@ -12,4 +12,5 @@ SERVER_CASES = [
     *leaving.CASES,
     *security.CASES,
     *supervision.CASES,
+    *later_versions.CASES,
 ]

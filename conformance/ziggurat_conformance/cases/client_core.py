@@ -4,9 +4,8 @@ from ..case import Case
 from ..client_messages import (BEGUN, HELLO, LEFT, answered, end, error, heartbeat, observation, refusal, ticks,
                                welcome)
 from ..client_robots import robot, rover, sights
-from ..client_steps import (CheckClient, Ends, HearCorrection, HearFrom, Quiet, Refuse, Tell, TellBytes,
-                            TellObservation, Wait)
-from ..server_scene import KIT
+from ..client_steps import (CheckClient, Ends, HearCorrection, HearFrom, Quiet, Refuse, Remove, Tell,
+                            TellBytes, TellObservation, Wait)
 from ..wire import Some
 
 
@@ -21,7 +20,7 @@ def storm(stage) -> str:
         if stage.receive(0.01) is not None:
             stage.tell(refusal("ROBOT_TAKEN", True))
             count += 1
-    return f"it said Hello {count} times within half a second" if count > 5 else ""
+    return f"it said Hello {count} times within half a second (H10)" if count > 5 else ""
 
 
 # Field 1999 of any message: a ServerMessage of a kind that 1.0 does not have.
@@ -58,15 +57,16 @@ CASES = [
          (HELLO, Tell({"loading": {"progress": 0.2, "message": "reading"}}), Quiet(0.2),
           Tell({"loading": {"progress": 0.9}}), Quiet(0.2), welcome(), *ticks(0, 1))),
     Case("H12.refused", "A world that can't be loaded is a Refusal like any other",
-         (HELLO, Tell({"loading": {"progress": 0.2}}), refusal("OUT_OF_STATE"), Ends(good=False))),
+         (HELLO, Tell({"loading": {"progress": 0.2}}), refusal("OUT_OF_STATE"), Ends(good=False, should=True))),
     Case("H2.later-minor", "A server of a later version is no reason to give up",
          (HELLO, welcome(version={"major": 1, "minor": 0}, server_version="99"), *ticks(0, 2))),
     Case("H10.refused", "After a refusal that is not retryable it ends, with another exit code than 0",
-         (HELLO, refusal("VERSION_MISMATCH"), Ends(good=False))),
+         (HELLO, refusal("VERSION_MISMATCH"), Ends(good=False, should=True))),
     Case("H10.no-storm", "A refusal is no reason for a storm of Hellos",
-         (HELLO, refusal("ROBOT_TAKEN", True), Wait(0.1), CheckClient("storm", storm))),
+         (HELLO, refusal("ROBOT_TAKEN", True), Wait(0.1), CheckClient("storm", storm, should=True))),
     Case("H11.late", "It begins at whatever tick the world is at",
          (HELLO, welcome(), *ticks(41, 43))),
+    Case("H11.waits", "Before the first tick it waits", (HELLO, welcome(), Quiet(0.5), *ticks(0, 1))),
     Case("H14.own-policies", "Each robot may have a deadline policy of its own",
          (HELLO, welcome({**robot("arm0"), "deadline_policy": {"action": "WAIT"}},
                          {**robot("arm1"), "deadline_policy": _HOLD}), *ticks(0, 2))),
@@ -85,7 +85,7 @@ CASES = [
     Case("S2.other-order", "Robots stand in Welcome's order, whatever was asked for",
          (HELLO, welcome(robot("arm1"), robot("arm0")), *ticks(0, 3))),
     Case("S6.devices", "Values fit the devices that robots have: wheels and turrets too",
-         (HELLO, welcome(rover("rover0"), robot("arm0")), *ticks(0, 5))),
+         (HELLO, welcome(rover("rover0"), robot("arm0"), rover("rover1")), *ticks(0, 5))),
     Case("S6.poor-robots", "Robots whose devices only sense have no values",
          (HELLO, welcome(_mute("arm0"), robot("arm1")), *ticks(0, 5))),
     Case("D3.messages", "Radio messages come in any number, also empty and long ones",
@@ -102,7 +102,7 @@ CASES = [
           *ticks(1, 2, **sights(3, 2, 1)), *ticks(3, 4, **sights(0, 1, 40)),
           *ticks(5, 5, **sights(1000)), *ticks(6, 6, **sights()))),
     Case("T5.unknown-kind", "Messages of a kind that it does not know are ignored",
-         (*BEGUN, UNKNOWN_KIND, Quiet(0.2, should=True), *ticks(1, 2))),
+         (*BEGUN, UNKNOWN_KIND, Quiet(0.2, should=True), observation(1), HearFrom("command", should=True))),
     Case("T5.unknown-field", "Fields that it does not know are ignored",
          (*BEGUN, TellObservation(1, is_of_later_version=True), answered(1), *ticks(2, 2))),
     Case("M5.heartbeats-unanswered", "It does not answer heartbeats",
@@ -118,10 +118,12 @@ CASES = [
     Case("S10.refused", "After a Command that was refused it corrects it, leaves or ends",
          (*BEGUN, observation(1), answered(1), Refuse("BAD_VALUE"), HearCorrection(1))),
     Case("V13.robot-removed", "When a robot of it was removed, it goes on with the others",
-         (*BEGUN, Tell({"error": {"code": "NOT_YOURS", "severity": "WARNING", "robot": "arm1",
-                                  "message": "it was removed"}}), *ticks(1, 3)), scene=KIT),
+         (HELLO, welcome(robot("arm0"), robot("arm1")), *ticks(0, 0), Remove(1), *ticks(1, 3))),
+    Case("H13.robot-taken-over", "So it is when another client took one over",
+         (*BEGUN, Tell({"error": {"code": "NOT_YOURS", "severity": "WARNING", "robot": "arm0",
+                                  "message": "another client took it over"}}), *ticks(1, 3))),
     Case("M3.fatal", "A fatal error ends the session, and shows in the exit code",
-         (*BEGUN, error("TOO_MANY", "FATAL"), Ends(good=False))),
+         (*BEGUN, error("TOO_MANY", "FATAL"), Ends(good=False, should=True))),
     Case("L11.end", "After the end it leaves and ends well",
          (*BEGUN, *ticks(1, 3), end(3), LEFT, Ends(good=True, should=True))),
     Case("L5.end-while-it-works", "The end may come instead of the next tick, after an answer",

@@ -2,7 +2,7 @@
 
 from ..case import Case, Level
 from ..client_messages import HELLO, answered, end, error, heartbeat, observation, ticks, welcome
-from ..client_steps import Ends, HearLate, Quiet, Tell, Wait
+from ..client_steps import Ends, HearLate, Quiet, SinceMinor, Tell, Wait
 
 MS = 150  # a deadline that no idle machine misses by itself
 _PERIOD = 0.02  # [s] of the paced ticks
@@ -45,6 +45,13 @@ CASES = [
           *_held(), *ticks(1, 3), *ticks(9, 9), *ticks(20, 22)),
     _case("P3.paused", "No deadline runs while the world is paused: it waits",
           *_held(), Tell({"paused": {"tick": 0}}), Quiet(1.0), *ticks(1, 3)),
+    _case("W10.dropped", "When one of its robots was dropped, it goes on with the other",
+          HELLO, SinceMinor(1, (
+              welcome(version={"major": 1, "minor": 1},
+                      deadline_policy={"action": "DROP", "wall_deadline_ms": MS, "miss_budget": 1}),
+              *ticks(0, 2), observation(3), error("DEADLINE_MISSED", "WARNING", 3),
+              Tell({"error": {"code": "ROBOTS_DROPPED", "severity": "WARNING", "tick": 3, "message": "too late",
+                              "dropped": {"robots": [1]}}}), HearLate(3), *ticks(4, 9)))),
     _case("W1.stopped", "Under STOP the run may end because of it",
           *_held("STOP"), observation(1), error("DEADLINE_MISSED", "WARNING", 1), end(1, "FAILED"),
           Ends(should=True)),

@@ -1,8 +1,8 @@
 """Reconnect: resets, pauses, and connections that are really lost."""
 
 from ..case import Case, Level
-from ..client_messages import (BEGUN, HELLO, answered, end, error, heartbeat, observation, refusal, ticks, welcome)
-from ..client_steps import CheckClient, Cut, Ends, HearResume, Quiet, Tell
+from ..client_messages import (BEGUN, HELLO, end, error, heartbeat, observation, refusal, ticks, welcome)
+from ..client_steps import CheckClient, Cut, Ends, HearFrom, HearResume, Quiet, SinceMinor, Tell
 from .client_core import storm
 
 _SILENCE = 6.0  # [s], much longer than the 100 ms that _WATCHED promises
@@ -30,14 +30,14 @@ CASES = [
     *[_case(f"S9.reset-crosses-{code.lower().replace('_', '-')}",
             f"A command that met a reset on its way may be {code}: no reason to give up",
             *BEGUN, *ticks(1, 3), _RESET, *ticks(0, 0), error(code, "DISCARD"), Quiet(0.2, should=True),
-            *ticks(1, 2))
+            observation(1), HearFrom("command", {"tick": 1}, should=True), *ticks(2, 3))
       for code in ("FUTURE_TICK", "STALE_TICK", "DUPLICATE_TICK")],
     _case("L6.paused", "While the world is paused it sends nothing",
           *BEGUN, _PAUSED, heartbeat(1), Quiet(0.5), *ticks(1, 3)),
     _case("L6.paused-again", "It may be told twice that the world is paused",
           *BEGUN, _PAUSED, _PAUSED, *ticks(1, 2)),
     _case("L6.displaced", "When another client takes its robots, it ends, with another exit code than 0",
-          *BEGUN, Tell({"displaced": {"by": "another 1", "message": "takeover"}}), Ends(good=False)),
+          *BEGUN, Tell({"displaced": {"by": "another 1", "message": "takeover"}}), Ends(good=False, should=True)),
     _case("L10.displaced", "It does not take them back",
           *BEGUN, *ticks(1, 2), Tell({"displaced": {"by": "another 1", "message": "takeover"}}), Quiet(2.0)),
     _case("L6.restored", "It is told that the world was restored, and goes on at that tick",
@@ -59,7 +59,13 @@ CASES = [
     _case("M3.out-of-state", "Told OUT_OF_STATE, it resumes its session",
           *BEGUN, *ticks(1, 3), error("OUT_OF_STATE", "FATAL"), _resumed(3)),
     _case("L4.no-such-session", "A session that can't be resumed is no reason for a storm of Hellos",
-          *BEGUN, Cut(), HearResume(), refusal("NO_SUCH_SESSION"), CheckClient("storm", storm)),
+          *BEGUN, Cut(), HearResume(), refusal("NO_SUCH_SESSION"), CheckClient("storm", storm, should=True)),
+    _case("L13.resumed", "A Welcome of 1.1 with what was commanded is a Welcome",
+          *BEGUN, *ticks(1, 2), Cut(), HearResume(),
+          SinceMinor(1, (welcome(version={"major": 1, "minor": 1}, resumed={"gone_robots": []}), *ticks(2, 4)))),
+    _case("V15.spawned", "That a robot was spawned needs no answer",
+          HELLO, SinceMinor(1, (welcome(version={"major": 1, "minor": 1}), *ticks(0, 2), Tell(
+              {"robot_spawned": {"robot": "arm9", "controller": "steady", "tick": 2}}), Quiet(0.3), *ticks(3, 4)))),
     _case("L5.end-after-resume", "A resumed session ends as any",
           *BEGUN, Cut(), *_resumed(0), end(2), Ends(good=True, should=True)),
 ]

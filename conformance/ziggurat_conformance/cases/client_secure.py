@@ -3,7 +3,7 @@
 from ..case import Case, Level
 from ..client_messages import BEGUN, LEFT, end, ticks, welcome
 from ..client_steps import CheckClient, Cut, Ends, HearResume, Mechanisms, Quiet
-from ..keys import MISLED, PLAIN_SERVER, VARIANT
+from ..keys import MISLED, PLAIN_SERVER, UNLISTED, VARIANT
 
 
 def _case(id: str, title: str, variant: str, *steps) -> Case:
@@ -23,6 +23,10 @@ CASES = [
     _case("K1.another-server", "A server with another key than ZIGGURAT_SERVER_KEY is told nothing",
           MISLED, Quiet(2.0)),
     _case("K1.no-fallback", "A server without keys is told nothing, in no way", PLAIN_SERVER, Mechanisms()),
+    *[_case(f"K9.{name}", f"It ends, with another exit code than 0, when {title}", variant,
+            Quiet(0.5), Ends(good=False, should=True, within=8.0))
+      for name, title, variant in (("refused-key", "its key is refused", UNLISTED),
+                                   ("another-server", "the server has another key", MISLED))],
     _case("L12.same-key", "It resumes its session with the key that it began it with",
           VARIANT, *BEGUN, *ticks(1, 2), Cut(), HearResume(), welcome(), *ticks(2, 4)),
 ]

@@ -25,6 +25,12 @@ def _devices_are_described(stage) -> str:
     return f"{robot.id} has no {', '.join(missing)}" if missing else ""
 
 
+def _holder_is_short(stage) -> str:
+    holder = stage.peer("q").refusal.holder
+    is_printable = all(" " <= letter != "\x7f" for letter in holder)
+    return "" if is_printable and holder.count("x") <= 64 and holder.count("1") <= 64 else f"it is {holder!r}"
+
+
 def _robots_are(*ids: str) -> dict:
     return {"robots": [{"id": id} for id in ids]}
 
@@ -60,6 +66,7 @@ CASES = [
     Case("H4.star", "A glob with *", (Join("p", hello("arm*"), {"robots": Count(4)}),)),
     Case("H4.question", "A glob with ?", (Join("p", hello("ar?3"), _robots_are("arm3")),)),
     Case("H4.set", "A glob with [a-z]", (Join("p", hello("arm[1-2]"), _robots_are("arm1", "arm2")),)),
+    Case("H4.not-in-set", "A glob with [!a-z]", (Join("p", hello("arm[!1-3]"), _robots_are("arm0")),)),
     Case("H4.twice", "A robot that two patterns mean is given once",
          (Join("p", hello("arm0", "arm[0]"), _robots_are("arm0")),)),
     Case("H4.controller", "Robots by controller",
@@ -138,6 +145,13 @@ CASES = [
                                                 within=1.0))),
     Case("H1.long-names", "A client with a name of 30 000 bytes is treated as any other",
          (join("p", "arm0", client_name="x" * 30000, client_version="y" * 30000),)),
+    Case("H16.shown", "Names are shown cut to 64 bytes each, and without control characters",
+         (join("p", "arm0", client_name="\x1b]" + "x" * 100, client_version="1" * 100), send_hello("q", "arm0"),
+          Hear("q", "refusal", {"error": {"code": "ROBOT_TAKEN"}, "holder": Some()}),
+          Check("holder", _holder_is_short))),
+    Case("H16.unnamed", "A client without a name has one for people",
+         (join("p", "arm0", client_name="", client_version=""), send_hello("q", "arm0"),
+          Hear("q", "refusal", {"holder": "unnamed client"}))),
     Case("H1.control-characters", "A name with control characters is treated as any other",
          (join("p", "arm0", client_name="\x1b[31m\nred\x00"),)),
 ]

@@ -79,6 +79,10 @@ CASES = [
           *[s for _ in range(100) for s in (answer("p", 2**63), hear_error("p", "FUTURE_TICK"))],
           answer("p", 2**63), hear_error("p", "TOO_MANY", "FATAL"), Hang("p"), join("x", "*"),
           *observe("x"))),
+    Case("M4.in-a-row", "A good message begins their count anew",
+         (join("p", "*"), *observe("p"), *[s for _ in range(2) for s in (
+             *[t for _ in range(70) for t in (answer("p", 2**63), hear_error("p", "FUTURE_TICK"))],
+             answer("p"), *observe("p"))])),
     Case("M5.answered", "The server answers each Heartbeat with its sequence",
          (join("p", "*"), *observe("p"), heartbeat("p", 0), Hear("p", "heartbeat", {"sequence": 0}),
           heartbeat("p", 2**64 - 1), Hear("p", "heartbeat", {"sequence": 2**64 - 1}))),

@@ -87,7 +87,7 @@ def _v(name: str, title: str, *steps, level: Level = Level.RECONNECT, **more) ->
     return Case(name, title, tuple(steps), level, **more)
 
 
-def _arm(id: str) -> str:
+def arm(id: str) -> str:
     """An arm like arm0, in a place of its own."""
     arm = re.search(r'<prototype id="arm0".*?</prototype>', SCENE.read_text(), re.DOTALL)[0]
     return arm.replace('"arm0"', f'"{id}"').replace("0.3, 0.3, 0", "1, 1, 0")
@@ -165,6 +165,8 @@ CASES = [
     _v("V6.void", "What was owed before a reset is void", *ALL, _comes(), ask("s", 1, reset={}),
        Skip("p", "reset"), *observe("p"), answer("p", 5), Hear("p", "error", {"code": "FUTURE_TICK"}),
        answer("p"), *observe("p"), fresh=True),
+    _v("V6.seed-0", "A seed of 0 is BAD_VALUE", *ALL, _comes(), ask("s", 1, reset={"seed": 0}),
+       answer("p"), failed("s", 1, "BAD_VALUE"), *observe("p")),
     _v("V7.all", "Read without a name gives all entities", *ALL, _comes(), ask("s", 1, read={}),
        told("s", 1, states={"entities": Count(4)})),
     _v("V7.some", "Read by glob, in scene order", *ALL, _comes(),
@@ -181,17 +183,18 @@ CASES = [
     *[_v(f"V8.{name}", f"A pose that is {name} is BAD_VALUE", *_paused(),
          ask("s", 2, move={"entity": "arm0", **pose}), failed("s", 2, "BAD_VALUE"), *_resumed())
       for name, pose in (("short", {"position": [1.0]}), ("nan", {"position": [math.nan, 0.0, 0.0]}),
-                         ("absent", {}),
+                         ("absent", {}), ("far", {"position": [1.1e6, 0.0, 0.0]}),
+                         ("of-three-angles", {"position": [0.0] * 3, "orientation": [1.0, 0.0, 0.0]}),
                          ("turned-by-nothing", {"position": [0.0] * 3, "orientation": [0.0] * 4}))],
     _v("V9.spawn", "An entity may be spawned and read", *_paused(), *_spawned(2, _BOX),
        ask("s", 3, read={"entities": ["crate"]}),
        told("s", 3, states={"entities": [{"position": [1.5, 1.5, 0.0]}]}), *_resumed(), fresh=True),
     _v("V9.waited", "A robot that was spawned is waited for from the next tick on", *_paused(),
-       *_spawned(2, _arm("arm9")), *_resumed(), answer("p"), Silence("p"),
+       *_spawned(2, arm("arm9")), *_resumed(), answer("p"), Silence("p"),
        join("q", "arm9"), *observe("q"), Silence("p"), answer("q"), *observe("p", "q"), answer("p"),
        answer("q"), *observe("p", "q"), fresh=True),
     _v("V9.taken", "It may be taken at once, and gets the tick in hand", *_paused(),
-       *_spawned(2, _arm("arm9")), join("q", "arm9"), Hear("q", "observation", {"tick": Tick(of="p")}),
+       *_spawned(2, arm("arm9")), join("q", "arm9"), Hear("q", "observation", {"tick": Tick(of="p")}),
        answer("q"), Hear("q", "paused"), ask("s", 3, resume={}), told("s", 3), *observe("p", "q"),
        fresh=True),
     _v("V9.overlap", "A place that is taken is BAD_VALUE", *_paused(),
@@ -232,7 +235,7 @@ CASES = [
        ask("s", 3, reset={}), Skip("p", "reset"), *observe("p"), told("s", 3),
        ask("s", 4, read={}), told("s", 4, states={"entities": Count(4)}), fresh=True),
     _v("V14.session", "A session with a robot that was spawned ends with a reset", *_paused(),
-       *_spawned(2, _arm("arm9")), join("q", "arm9"), *observe("q"), ask("s", 3, reset={}),
+       *_spawned(2, arm("arm9")), join("q", "arm9"), *observe("q"), ask("s", 3, reset={}),
        Hear("q", "end", {"reason": "FINISHED"}), Hear("p", "reset"), *observe("p"), told("s", 3),
        send_hello("r", "arm9"), hear_refusal("r", "UNKNOWN_ROBOT"), fresh=True),
     _v("V13.unknown", "Removing what is not there is UNKNOWN_ENTITY", *_paused(),

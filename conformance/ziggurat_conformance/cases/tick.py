@@ -96,6 +96,18 @@ def _time_is_the_tick(stage) -> str:
     return "" if observation.time_ns == expected else f"time_ns is {observation.time_ns}; expected {expected}"
 
 
+def _note_joints(stage) -> str:
+    stage.memory["joints"] = list(stage.peer("p").observation.joint_readings)
+    return ""
+
+
+def _joints_turned(stage) -> str:
+    """In the tick since _note_joints, at 1 rad/s."""
+    after = stage.peer("p").observation.joint_readings
+    turned = [b - a for a, b in zip(stage.memory["joints"], after)]
+    return "" if all(abs(t - 0.1) < 0.03 for t in turned) else f"joints turned by {turned}; expected 0.1"
+
+
 def _joints_turn(stage) -> str:
     """At 1 rad/s for a tick of 0.1 s. Where they stood before does not matter: others moved them too."""
     stage.play((answer("p"),))
@@ -130,11 +142,16 @@ CASES = [
          (ALL, answer("p", Tick(1)), hear_error("p", "FUTURE_TICK"), Silence("p"), answer("p"),
           observe("p"))),
     Case("S4.applied-next", "A Command is applied at the start of the next tick",
-         (ALL, answer("p", joint_targets=Zeros("joint_actuators", 0, 1.0)), observe("p"),
-          Check("joints", _joints_turn), answer("p", joint_targets=Zeros("joint_actuators")),
-          observe("p"))),
+         (ALL, answer("p", joint_targets=Zeros("joint_actuators")), observe("p"), Check("joints", _note_joints),
+          answer("p", joint_targets=Zeros("joint_actuators", 0, 1.0)), observe("p"),
+          Check("joints", _joints_turned), Check("joints", _joints_turn),
+          answer("p", joint_targets=Zeros("joint_actuators")), observe("p"))),
     Case("S5.empty", "An empty Command is legal", (ALL, *[s for _ in range(3) for s in
                                                           (answer("p"), *observe("p"))])),
+    Case("S5.stays", "Values stay until changed",
+         (ALL, answer("p", joint_targets=Zeros("joint_actuators", 0, 1.0)), observe("p"),
+          Check("joints", _joints_turn), Check("joints", _joints_turn),
+          answer("p", joint_targets=Zeros("joint_actuators")), observe("p"))),
     *_lengths,
     Case("S6.some-robots", "A Command may speak for some robots",
          (ALL, answer("p", robots=[2, 0], joint_targets=[0.1, 0.2]), observe("p"))),

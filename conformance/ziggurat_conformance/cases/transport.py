@@ -2,7 +2,7 @@
 
 from ..case import Case
 from ..messages import ALL, answer, hear_error, heartbeat, hello, join, observe
-from ..steps import Frames, Hear, Join
+from ..steps import Check, Frames, Hear, Join, Send, Silence
 from ..wire import AtLeast
 
 _STRANGE = {
@@ -15,6 +15,15 @@ _STRANGE = {
     "http": b"GET / HTTP/1.1\r\nHost: x\r\n\r\n",
     "nul": b"\x00" * 64,
 }
+
+
+
+def _too_long(stage) -> str:
+    """An observer's limit is the smallest."""
+    limit = stage.peer("o").welcome.max_message_bytes
+    stage.play((Frames("o", (b"x" * (limit + limit // 2),)),))
+    return ""
+
 
 # Garbage of a peer without a session is answered, and the session beside it goes on.
 _garbage = [
@@ -38,6 +47,20 @@ _garbage_in_session = [
     for name, data in _STRANGE.items()
 ]
 
+_NOT_JSON = {
+    "single-quotes": b"{'heartbeat': {'sequence': 5}}",
+    "bare-names": b"{heartbeat: {sequence: 5}}",
+    "trailing-comma": b'{"heartbeat": {"sequence": 5},}',
+    "comma-in-a-list": b'{"command": {"tick": "0", "jointTargets": [0, 0, 0, 0,]}}',
+    "nan": b'{"command": {"tick": "0", "jointTargets": [NaN, 0, 0, 0]}}',
+    "comment": b'{"heartbeat": {"sequence": 5}} // five',
+    "text-for-a-list": b'{"leave": {"robots": "0", "reason": "DONE"}}',
+    "number-for-a-text": b'{"command": {"log": [{"text": 7}]}}',
+    "two-kinds": b'{"heartbeat": {"sequence": 5}, "command": {"tick": "0"}}',
+    "name-twice": b'{"heartbeat": {"sequence": 5, "sequence": 6}}',
+    "latin-1": b'{"command": {"log": [{"text": "\xe9"}]}}',
+}
+
 # Fields that protocol 1.0 does not have: 2000 of Command and of ClientMessage.
 _UNKNOWN_FIELD = b"\x80\x7d\x07"
 
@@ -57,6 +80,12 @@ CASES = [
           *[Hear("p", "heartbeat", {"sequence": n}) for n in range(1, 30)])),
     Case("T4.limit-is-told", "Welcome has the longest size of a message",
          (Join("p", hello("*"), {"max_message_bytes": AtLeast(2**20)}),)),
+    Case("T4.too-long", "A message longer than Welcome allows is TOO_LARGE and has no effect",
+         (Join("o", hello(role="ROLE_OBSERVER"), {"max_message_bytes": AtLeast(1)}), Check("long", _too_long),
+          hear_error("o", "TOO_LARGE"), Send("o", {"request": {"id": 1, "status": {}}}),
+          Hear("o", "response", {"id": 1}))),
+    Case("T4.too-long-hello", "A peer without a session that says more than 64 KiB is cut off; others go on",
+         (ALL, Frames("other", (b"x" * 100_000,)), Silence("other"), answer("p"), observe("p"))),
     Case("T5.unknown-field", "Unknown fields are ignored",
          (ALL, Frames("p", (b"\x22\x05\x08\x05" + _UNKNOWN_FIELD,)),
           Hear("p", "heartbeat", {"sequence": 5}), answer("p"), observe("p")),
@@ -81,6 +110,9 @@ CASES = [
     Case("T6.json-deep", "JSON nested a thousand deep is MALFORMED",
          (ALL, Frames("p", (b'{"a":' * 1000 + b"1" + b"}" * 1000,)), hear_error("p", "MALFORMED"),
           answer("p"), observe("p")), forms=("json",)),
+    *[Case(f"T6.not-json-{name}", f"What is not JSON, or not of the message's types, is MALFORMED: {name}",
+           (ALL, Frames("p", (text,)), hear_error("p", "MALFORMED"), answer("p"), observe("p")), forms=("json",))
+      for name, text in _NOT_JSON.items()],
     Case("T6.binary-in-json", "A binary message in a JSON session is MALFORMED",
          (ALL, Frames("p", (b"\x22\x02\x08\x05",)), hear_error("p", "MALFORMED"), answer("p"),
           observe("p")), forms=("json",)),

@@ -1,6 +1,7 @@
 """What a server refuses of a Command or a Leave (S6 to S8, S11, D0 to D7, L1)."""
 
 import math
+from dataclasses import replace
 from typing import Collection, Iterable, Iterator
 
 from ..wire import protocol
@@ -50,7 +51,7 @@ def command_faults(robots: list, left: Collection[int], command: protocol.Comman
 
 def leave_faults(count: int, left: Collection[int], leave: protocol.Leave) -> list:
     """Everything that is wrong with a Leave of a session with so many robots."""
-    faults = list(_position_faults(count, left, leave.robots))
+    faults = [replace(fault, rule="L1") for fault in _position_faults(count, left, leave.robots)]
     if leave.reason not in (protocol.Leave.DONE, protocol.Leave.FAILED):
         faults.append(Fault("L1", f"a Leave has the reason {leave.reason}; DONE or FAILED is expected",
                             "BAD_VALUE", "reason"))

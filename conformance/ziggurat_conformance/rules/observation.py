@@ -3,6 +3,7 @@
 from typing import Callable, Iterator
 
 from ..wire import protocol
+from .command import command_faults
 from .fault import Fault
 
 _BRIGHTEST = 0xFFFFFF
@@ -94,6 +95,23 @@ def _image_faults(robots, told: protocol.Observation) -> Iterator[Fault]:
                         f"{told.tick}; {expected} are expected, none at tick 0")
 
 
+def _resumed_faults(hello: protocol.Hello, welcome: protocol.Welcome) -> Iterator[Fault]:
+    if not welcome.HasField("resumed"):
+        if hello.session_token and welcome.version.minor >= 1:
+            yield Fault("L13", "the Welcome of a resumed session has no `resumed`")
+        return
+    if not hello.session_token:
+        yield Fault("L13", "the Welcome of a new session has `resumed`")
+    gone = list(welcome.resumed.gone_robots)
+    if gone != sorted(set(gone)) or any(position >= len(welcome.robots) for position in gone):
+        yield Fault("L13", f"gone_robots are {gone} of {len(welcome.robots)} robots")
+    commanded = welcome.resumed.commanded
+    if commanded.tick or commanded.robots or commanded.log or commanded.radio_messages:
+        yield Fault("L13", "`commanded` has a tick, robots, log lines or radio messages")
+    yield from (Fault("L13", f"`commanded` is no legal Command: {fault}")
+                for fault in command_faults(list(welcome.robots), (), commanded))
+
+
 def welcome_faults(hello: protocol.Hello, welcome: protocol.Welcome) -> Iterator[Fault]:
     """Everything that is wrong with the Welcome that answers this Hello."""
     if (welcome.version.major != hello.version.major or welcome.version.minor > hello.version.minor):
@@ -108,6 +126,9 @@ def welcome_faults(hello: protocol.Hello, welcome: protocol.Welcome) -> Iterator
         yield Fault("H9", f"the mode is {welcome.mode}")
     if len(welcome.scene_hash) != 16 or set(welcome.scene_hash) - set("0123456789abcdef"):
         yield Fault("H9", f"the scene's hash is {welcome.scene_hash!r}; 16 hexadecimal digits are expected")
+    if hello.session_token and welcome.session_token != hello.session_token:
+        yield Fault("L4", "the Welcome of a resumed session has another token")
+    yield from _resumed_faults(hello, welcome)
     ids = [robot.id for robot in welcome.robots]
     if len(set(ids)) != len(ids) or not all(ids):
         yield Fault("H9", f"the robots are {ids}; each id is expected once")

@@ -11,6 +11,7 @@ from .observation import observation_faults, welcome_faults
 
 STRANGERS_LIMIT = 64 << 10  # [bytes] of a message without a session
 _Error = protocol.Error
+_PASSING = {_Error.ROBOT_TAKEN, _Error.TOO_MANY}  # reasons of a Refusal that may pass with time
 
 
 class State(enum.Enum):
@@ -24,12 +25,12 @@ class State(enum.Enum):
 
 
 _ANY_STATE = {"error", "heartbeat", "response"}
-_RUNNING = {"observation", "paused", "reset", "restored", "end", "displaced"}
+_RUNNING = {"observation", "paused", "reset", "restored", "end", "displaced", "robot_spawned"}
 # Section 4: what a client may receive. What is on its way in DRAINING and CLOSED is not judged.
 _RECEIVED = {
     State.NEW: {"refusal"},
     State.HELLO: {"loading", "welcome", "refusal"},
-    State.READY: {"observation", "end", "displaced"},
+    State.READY: {"observation", "end", "displaced", "robot_spawned"},
     State.STEPPING: _RUNNING,
     State.PAUSED: _RUNNING,
 }
@@ -169,6 +170,9 @@ class Session:
         faults = []
         if self.is_certain and self.state in _RECEIVED and kind not in _RECEIVED[self.state] | _ANY_STATE:
             faults.append(Fault("M0", f"{kind} in {self.state.value}"))
+        welcome = message.welcome if kind == "welcome" else self.welcome
+        if _is_since_1_1(message) and welcome is not None and welcome.version.minor < 1:
+            faults.append(Fault("H2", f"{kind} has what version 1.1 brought, in a session of 1.0"))
         faults += _told.get(kind, lambda *_: ())(self, getattr(message, kind)) or ()
         return faults
 
@@ -184,6 +188,8 @@ class Session:
         self.state = State.NEW
         self.is_refused = not refusal.error.retryable
         faults = list(_error_faults(refusal.error))
+        if refusal.error.retryable != (refusal.error.code in _PASSING) and refusal.error.code != _Error.TOO_MANY:
+            faults.append(Fault("H10", f"retryable is {refusal.error.retryable} (section 6)"))
         if refusal.error.severity != _Error.FATAL:
             faults.append(Fault("M0", "the severity of a Refusal is not FATAL (section 6)"))
         return faults
@@ -205,6 +211,10 @@ class Session:
 
     def _take_error(self, error: protocol.Error) -> list:
         faults = list(_error_faults(error))
+        if error.retryable:
+            faults.append(Fault("M0", "an Error outside of a Refusal is retryable (section 6)"))
+        if error.code == _Error.ROBOTS_DROPPED:
+            faults += self._take_dropped(error)
         if self.state in (State.NEW, State.HELLO) and error.severity != _Error.FATAL:
             faults.append(Fault("M0", "an Error without a session is not FATAL (section 6)"))
         if error.code == _Error.DEADLINE_MISSED:
@@ -216,10 +226,19 @@ class Session:
                 self.owes = False
         if error.severity == _Error.FATAL:
             self.state, self.is_lost = State.NEW, True
-        if error.code == _Error.NOT_YOURS and error.severity == _Error.WARNING and self.welcome:
-            self.left |= {position for position, robot in enumerate(self.welcome.robots)
-                          if robot.id == error.robot}  # V13
         return faults
+
+    def _take_dropped(self, error: protocol.Error) -> Iterator[Fault]:
+        positions = list(error.dropped.robots)
+        count = len(self.welcome.robots) if self.welcome is not None else 0
+        if error.severity != _Error.WARNING:
+            yield Fault("W10", "ROBOTS_DROPPED is not a WARNING")
+        if not positions or positions != sorted(set(positions)) or positions[-1] >= count:
+            yield Fault("W10", f"the positions {positions} of {count} robots are dropped; ascending ones, each "
+                        "once, are expected")
+        if self.left & set(positions):
+            yield Fault("W10", f"the positions {sorted(self.left & set(positions))} have left already")
+        self.left |= set(positions)
 
     def _take_heartbeat(self, heartbeat: protocol.Heartbeat) -> None:
         self._heartbeats = [*self._heartbeats[-100:], heartbeat.sequence]
@@ -255,6 +274,11 @@ class Session:
 
     def _take_displaced(self, _: protocol.Displaced) -> None:
         self.state, self.is_displaced = State.CLOSED, True
+
+
+def _is_since_1_1(message: protocol.ServerMessage) -> bool:
+    return (message.HasField("robot_spawned") or message.welcome.HasField("resumed")
+            or message.error.code == _Error.ROBOTS_DROPPED)
 
 
 def _error_faults(error: protocol.Error) -> Iterator[Fault]:

@@ -15,7 +15,7 @@ from ziggurat_conformance import cli, report
 from ziggurat_conformance.case import Level, Verdict
 
 HERE = Path(__file__).resolve().parent
-TINY = [sys.executable, str(HERE / "tiny_server.py"), "{endpoint}"]
+TINY = [sys.executable, str(HERE / "tiny_server.py"), "{endpoint}", "{scene}"]
 
 
 def run(*arguments):

@@ -1,108 +1,123 @@
-"""The kit catches what is broken: each of these bugs fails a case that the right program passes."""
+"""The kit catches what is broken: each mutant breaks one rule, and fails the case that the table names,
+which the right program passes. Mutants are programs of their own on sockets of their own."""
 
+import concurrent.futures
+import multiprocessing
 import shlex
 import sys
 import unittest
 from pathlib import Path
 
 from ziggurat_conformance import client_mode, server_mode
-from ziggurat_conformance.case import Verdict
+from ziggurat_conformance.case import Level, Verdict
 from ziggurat_conformance.cases import SERVER_CASES
 from ziggurat_conformance.client_stage import Options
 
+import client_mutants
+import server_mutants
+
 HERE = Path(__file__).resolve().parent
 PATIENCE = 10.0  # [s] for the right programs: a busy machine may take long
-SHORT = 1.0  # for broken ones, which may never answer: to be late is as wrong
-
-# bug → the case that must catch it
-SERVER_BUGS = {
-    "any-version": "H2.major-above",
-    "any-token": "L4.unknown-token",
-    "token-waits": "L8.token-alone",
-    "asked-order": "H4.some",
-    "shares-robots": "H6.taken-twice",
-    "late-waits": "H11.late",
-    "silent-on-garbage": "T2.garbage-text",
-    "stale-counts": "S9.stale",
-    "future-counts": "S9.future",
-    "duplicate-silent": "S9.duplicate",
-    "tells-twice": "S3.waits",
-    "heartbeat-releases": "S3.heartbeat-does-not",
-    "skips-ticks": "S1.consecutive",
-    "time-drifts": "S1.time",
-    "short-readings": "S2.joint-readings",
-    "two-steps": "S4.applied-next",
-    "any-length": "S6.long-joint-targets",
-    "nan-counts": "S8.nan-joint",
-    "half-a-command": "S10.no-effect",
-    "radio-reversed": "D3.order",
-    "plain-text": "K1.plain",
-    "any-key": "K2.unlisted",
-    "any-role": "K3.controller-as-supervisor",
-}
-
-CLIENT_BUGS = {
-    "version-zero": "H2.version",
-    "asks-for-nothing": "H4.asks-for-robots",
-    "command-first": "H1.hello-first",
-    "impatient": "H1.waits-for-the-answer",
-    "tick-ahead": "S3.answers-each",
-    "skips-zero": "S1.first-tick",
-    "short-targets": "S3.answers-each",
-    "nan-targets": "S3.answers-each",
-    "answers-twice": "S3.answers-once",
-    "answers-heartbeats": "M5.heartbeats-unanswered",
-    "answers-paused": "L6.paused",
-    "answers-reset": "L6.reset",
-    "answers-end": "L5.no-command-after-end",
-    "comes-back": "L6.displaced",
-    "storm": "H10.no-storm",
-    "refusal-is-fine": "H10.refused",
-    "fatal-is-fine": "M3.fatal",
-    "ignores-end": "L11.end",
-    "dies-of-news": "T5.unknown-kind",
-}
+SIDE_BY_SIDE = 6  # mutants; most of the time they wait
 
 
-def _server_verdicts(bug: str, ids: set) -> dict:
-    patience = SHORT if bug else PATIENCE
-    command = shlex.join([sys.executable, str(HERE / "tiny_server.py"), "{endpoint}", bug])
-    curve = f"{command} {{curve_secret}} {{curve_clients}}"
-    cases = [case for case in server_mode.chosen(SERVER_CASES, list(ids), "binary")]
-    outcomes = server_mode.play(cases, server_mode.Servers(command, {"curve": curve}, patience), patience,
-                                lambda outcome: None)
-    return {outcome.id: outcome for outcome in outcomes}
+def _client(mutant) -> list:
+    """Outcomes of the mutant's case."""
+    command = [sys.executable, "-B", str(HERE / "tiny_client.py"), mutant.bug, mutant.form]
+    cases = [case for case in client_mode.CASES if case.id == mutant.case]
+    options = Options(mutant.patience, mutant.form)
+    return client_mode.play(cases, command, options, lambda outcome: None)
 
 
-def _client_verdicts(bug: str, ids: set) -> dict:
-    command = [sys.executable, str(HERE / "tiny_client.py"), bug]
-    cases = [case for case in client_mode.CASES if case.id in ids]
-    patience = SHORT if bug else PATIENCE
-    outcomes = client_mode.play(cases, command, Options(patience), lambda outcome: None)
-    return {outcome.id: outcome for outcome in outcomes}
+def _right_client(form: str, cases: list) -> list:
+    command = [sys.executable, "-B", str(HERE / "tiny_client.py"), "", form]
+    return client_mode.play(cases, command, Options(PATIENCE, form), lambda outcome: None)
 
 
-class Servers(unittest.TestCase):
-    def test_the_right_one_passes(self):
-        for outcome in _server_verdicts("", set(SERVER_BUGS.values())).values():
+def _server(mutant) -> list:
+    cases = list(server_mode.chosen(SERVER_CASES, [mutant.case], mutant.form))
+    return _play_server(cases, mutant.program, mutant.bug, mutant.patience)
+
+
+def _right_server(program: str, form: str, ids: list) -> list:
+    cases = list(server_mode.chosen(SERVER_CASES, ids, form))
+    return _play_server(cases, program, "", PATIENCE)
+
+
+def _play_server(cases: list, program: str, bug: str, patience: float) -> list:
+    command = shlex.join([sys.executable, "-B", str(HERE / program), "{endpoint}", "{scene}", bug])
+    variants = {"curve": f"{command} {{curve_secret}} {{curve_clients}}", "lease": f"{command} --lease 2"}
+    return server_mode.play(cases, server_mode.Servers(command, variants, patience), patience,
+                            lambda outcome: None)
+
+
+def _side_by_side(function, *arguments) -> list:
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(SIDE_BY_SIDE, context) as pool:
+        return list(pool.map(function, *arguments))
+
+
+def _parts(things: list, count: int) -> list:
+    return [part for i in range(count) if (part := things[i::count])]
+
+
+class Mutants(unittest.TestCase):
+    def assert_caught(self, mutant, outcomes: list):
+        self.assertEqual(1, len(outcomes), f"{mutant.case}: there is no such case in this form")
+        [outcome] = outcomes
+        expected = (Verdict.FAIL,) if mutant.is_must else (Verdict.NON_STRICT, Verdict.UNIMPLEMENTED)
+        self.assertIn(outcome.verdict, expected, f"{mutant.bug}: {outcome.id}: {outcome.reason}")
+        self.assertTrue(mutant.case.startswith(f"{mutant.rule}.") or mutant.rule in outcome.reason,
+                        f"{mutant.bug} breaks {mutant.rule}, which {outcome.id} does not name: "
+                        f"{outcome.reason}")
+
+    def assert_passes(self, outcomes: list):
+        for outcome in outcomes:
             self.assertEqual(Verdict.PASS, outcome.verdict, f"{outcome.id}: {outcome.reason}")
 
-    def test_each_bug_is_caught(self):
-        for bug, case in SERVER_BUGS.items():
-            with self.subTest(bug):
-                self.assertEqual(Verdict.FAIL, _server_verdicts(bug, {case})[case].verdict)
+
+class Clients(Mutants):
+    def test_each_is_caught(self):
+        mutants = client_mutants.MUTANTS
+        for mutant, outcomes in zip(mutants, _side_by_side(_client, mutants)):
+            with self.subTest(mutant.bug):
+                self.assert_caught(mutant, outcomes)
+
+    def test_the_right_one_passes_all_cases(self):
+        timed = [case for case in client_mode.CASES if case.level is Level.HIL]  # alone: they have deadlines
+        parts = _parts([case for case in client_mode.CASES if case not in timed], 8)
+        forms = ["binary"] * len(parts)
+        json = [case for case in client_mode.CASES
+                if case.id in {mutant.case for mutant in client_mutants.MUTANTS if mutant.form == "json"}]
+        for outcomes in _side_by_side(_right_client, [*forms, "json"], [*parts, json]):
+            self.assert_passes(outcomes)
+        self.assert_passes(_right_client("binary", timed))
+
+    def test_there_are_enough(self):
+        self.assertGreaterEqual(sum(mutant.is_must for mutant in client_mutants.MUTANTS), 60)
+        self.assertEqual(len(client_mutants.MUTANTS), len({m.bug for m in client_mutants.MUTANTS}))
 
 
-class Clients(unittest.TestCase):
-    def test_the_right_one_passes(self):
-        for outcome in _client_verdicts("", set(CLIENT_BUGS.values())).values():
-            self.assertEqual(Verdict.PASS, outcome.verdict, f"{outcome.id}: {outcome.reason}")
+class Servers(Mutants):
+    def test_each_is_caught(self):
+        mutants = server_mutants.MUTANTS
+        for mutant, outcomes in zip(mutants, _side_by_side(_server, mutants)):
+            with self.subTest(mutant.bug):
+                self.assert_caught(mutant, outcomes)
 
-    def test_each_bug_is_caught(self):
-        for bug, case in CLIENT_BUGS.items():
-            with self.subTest(bug):
-                caught = (Verdict.FAIL, Verdict.NON_STRICT)
-                self.assertIn(_client_verdicts(bug, {case})[case].verdict, caught)
+    def test_the_right_ones_pass_these_cases(self):
+        ids = {(mutant.program, mutant.form): set() for mutant in server_mutants.MUTANTS}
+        for mutant in server_mutants.MUTANTS:
+            ids[mutant.program, mutant.form].add(mutant.case)
+        parts = [(program, form, part) for (program, form), cases in ids.items()
+                 for part in _parts(sorted(cases), 4)]
+        for outcomes in _side_by_side(_right_server, *zip(*parts)):
+            self.assert_passes(outcomes)
+
+    def test_there_are_enough(self):
+        self.assertGreaterEqual(len(server_mutants.MUTANTS), 60)
+        bugs = {(mutant.program, mutant.bug) for mutant in server_mutants.MUTANTS}
+        self.assertEqual(len(server_mutants.MUTANTS), len(bugs))
 
 
 if __name__ == "__main__":

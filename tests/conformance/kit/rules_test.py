@@ -17,11 +17,6 @@ REASONS = {
     "K6": "a matter of files",
     "K7": "a matter of keys",
     "K8": "tests/unit/network/curve_test.cpp",
-    "K9": "advice to clients",
-    "H16": "tests/conformance/beginning_test.cpp",
-    "L13": "tests/conformance/later_versions_test.cpp",
-    "V15": "tests/conformance/later_versions_test.cpp",
-    "W10": "tests/conformance/later_versions_test.cpp",
     "D5": "it would take more than 1 GiB of messages at a tick",
 }
 

@@ -1,79 +1,267 @@
-"""A controller that does nothing, rightly, and broken ones: tiny_client.py [BUG]."""
+"""A controller that uses every device, rightly, and broken ones: tiny_client.py [BUG [json]].
+
+It resumes its session after a lost connection, repeats its values after a missed deadline, and uses keys.
+One BUG of client_mutants.py makes it break one rule.
+"""
 
 import os
 import sys
 import time
 
 import zmq
+import zmq.utils.monitor
+from google.protobuf import json_format
 
+import client_mutants as mutants
 import protocol_pb2 as protocol
 
+LATE = (protocol.Error.STALE_TICK, protocol.Error.DUPLICATE_TICK, protocol.Error.FUTURE_TICK)
+PER_ROBOT = {
+    "joint_targets": lambda robot: [0.5] * len(robot.joint_actuators),
+    "led_colors": lambda robot: [0x00FF00] * len(robot.leds),
+    "directional_led_colors": lambda robot: [0xFFFFFF] * len(robot.directional_leds),
+    "tag_payloads": lambda robot: [b"tag"] * len(robot.tags),
+    "magnet_currents": lambda robot: [0.1] * len(robot.magnets),
+    "wheel_velocities": lambda robot: [0.1, 0.2] * robot.wheels.drives,
+    "turret_modes": lambda robot: [protocol.TURRET_SPEED] * robot.turret.drives,
+    "turret_rotations": lambda robot: [0.0] * robot.turret.drives,
+    "turret_speeds": lambda robot: [0.5] * robot.turret.drives,
+    "range_and_bearing_data": lambda robot: bytes(robot.range_and_bearing.data_size
+                                                  if robot.range_and_bearing.sends else 0),
+}
 
-def main(bug):
-    socket = zmq.Context.instance().socket(zmq.DEALER)
-    socket.setsockopt(zmq.LINGER, 500)
-    socket.connect(os.environ["ZIGGURAT_ENDPOINT"])
 
-    def say(**fields):
-        socket.send(protocol.ClientMessage(**fields).SerializeToString())
+class Client:
+    def __init__(self, bug, form):
+        self.bug, self.form = bug, form
+        self.welcome, self.token = None, b""
+        self.tick, self.is_fresh = -1, True  # the next Command has all values
+        self.left, self.retries = set(), 3
+        self.curve = None
+        self.context = zmq.Context.instance()
+        self.connect()
 
-    def hello():
-        version = protocol.Version(major=0 if bug == "version-zero" else 1)
-        say(hello=protocol.Hello(version=version, role=protocol.ROLE_CONTROLLER, robots=[] if bug == "asks-for-nothing" else ["*"],
-                                 client_name="tiny"))
+    # ---- the connection ----
 
-    if bug == "command-first":
-        say(command=protocol.Command(tick=0))
-    hello()
-    robots, last = 0, 0
-    while True:
-        if bug == "impatient" and not socket.poll(300):
-            hello()
-            continue
-        message = protocol.ServerMessage.FromString(socket.recv())
-        kind = message.WhichOneof("message")
-        if kind == "welcome":
-            robots = len(message.welcome.robots)
-        elif kind == "observation":
-            last = message.observation.tick + (1 if bug == "tick-ahead" else 0)
-            if bug == "skips-zero" and last == 0:
+    def connect(self):
+        self.socket = self.context.socket(zmq.REQ if self.bug == "uses-req" else zmq.DEALER)
+        self.socket.setsockopt(zmq.LINGER, 500)
+        if self.bug == "sets-routing-id":
+            self.socket.setsockopt(zmq.IDENTITY, b"me")
+        self.set_keys()
+        self.monitor = self.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL
+                                                      | zmq.EVENT_HANDSHAKE_FAILED_AUTH)
+        self.socket.connect(os.environ["ZIGGURAT_ENDPOINT"])
+
+    def set_keys(self):
+        server, path = os.environ.get("ZIGGURAT_SERVER_KEY"), os.environ.get("ZIGGURAT_CURVE_SECRET")
+        if not server or self.bug == "ignores-keys":
+            return
+        secret = open(path).read().strip().encode()
+        if self.bug == "any-key" or (self.bug == "new-key" and self.token):
+            secret = zmq.curve_keypair()[1]
+        self.socket.curve_serverkey = server.encode()
+        self.socket.curve_secretkey = secret
+        self.socket.curve_publickey = zmq.curve_public(secret)
+
+    def close(self):
+        self.socket.disable_monitor()
+        self.monitor.close(linger=0)
+        self.socket.close()
+
+    def say(self, **fields):
+        self.send(self.encoded(protocol.ClientMessage(**fields)))
+
+    def send(self, *frames):
+        self.socket.send_multipart(frames)
+
+    def encoded(self, message):
+        if self.form != "json":
+            return message.SerializeToString()
+        text = json_format.MessageToJson(message, indent=None)
+        return mutants.TEXTS.get(self.bug, str.encode)(text)
+
+    def hear(self):
+        """The next message; None if the connection was lost, or nothing came for much too long."""
+        promised = self.welcome.wall_heartbeat_ms if self.welcome else 0
+        deadline = time.monotonic() + max(3.0, 3 * promised / 1000) if promised else None
+        while not self.socket.poll(20):
+            if deadline and time.monotonic() > deadline and self.bug != "no-watchdog":
+                return None
+            if self.monitor.poll(0):
+                event = zmq.utils.monitor.recv_monitor_message(self.monitor)["event"]
+                if event != zmq.EVENT_DISCONNECTED and self.bug not in ("waits-for-ever", "falls-back"):
+                    sys.exit("the keys are refused")
+                if self.token and self.bug != "no-resume":
+                    return None
+            if self.bug == "impatient" and self.welcome is None:
+                self.hello()
+            if self.bug == "falls-back" and self.welcome is None:
+                time.sleep(0.3)
+                self.close()
+                os.environ.pop("ZIGGURAT_SERVER_KEY", None)
+                self.connect()
+                self.hello()
+        data = self.socket.recv()
+        if self.form == "json":
+            return json_format.Parse(data, protocol.ServerMessage(), ignore_unknown_fields=True)
+        if self.bug == "dies-of-unknown-fields" and b"\x80\x7d\x07" in data:
+            sys.exit(1)
+        return protocol.ServerMessage.FromString(data)
+
+    # ---- what it says ----
+
+    def hello(self, token=b""):
+        hello = protocol.Hello(version={"major": 1, "minor": 1}, role=protocol.ROLE_CONTROLLER, robots=["*"],
+                               client_name="tiny", session_token=token)
+        mutants.HELLOS.get(self.bug, lambda *_: None)(hello)
+        self.say(hello=hello)
+
+    def resume(self):
+        self.close()
+        self.connect()
+        self.welcome, self.is_fresh = None, True
+        self.hello({"begins-anew": b"", "wrong-token": b"guess"}.get(self.bug, self.token))
+
+    def command(self):
+        """The right one for the last Observation."""
+        command = protocol.Command(tick=self.tick)
+        robots = self.welcome.robots
+        if self.is_fresh:
+            for field, values in PER_ROBOT.items():
+                for robot in robots:
+                    self.add(command, field, values(robot))
+        elif self.tick % 5 == 1 and 0 not in self.left:
+            command.robots.append(0)
+            command.joint_targets.extend(PER_ROBOT["joint_targets"](robots[0]))
+        elif self.tick % 5 == 2:
+            radios = [radio for robot in robots for radio in robot.radios]
+            command.radio_messages.extend(protocol.RadioMessage(radio=i, payload=b"hi")
+                                          for i, radio in enumerate(radios) if radio.sends)
+            command.log.add(robot=len(robots) - 1, text="a line")
+        self.is_fresh = False
+        return command
+
+    @staticmethod
+    def add(command, field, values):
+        if field == "range_and_bearing_data":
+            command.range_and_bearing_data += values
+        else:
+            getattr(command, field).extend(values)
+
+    def answer(self):
+        command = self.command()
+        if self.bug in mutants.COMMANDS:
+            mutants.COMMANDS[self.bug](self, command)
+        if self.bug in mutants.ANSWERS:
+            mutants.ANSWERS[self.bug](self, command)
+        else:
+            self.say(command=command)
+
+    # ---- what it is told ----
+
+    def run(self):
+        if self.bug == "command-first":
+            self.say(command=protocol.Command(tick=0))
+        if self.bug == "heartbeat-first":
+            self.say(heartbeat=protocol.Heartbeat(sequence=1))
+        self.hello()
+        while True:
+            message = self.hear()
+            if message is None:
+                self.resume()
                 continue
-            command = protocol.Command(tick=last)
-            if bug == "short-targets":
-                command.joint_targets.extend([0.0] * (robots - 1))
-            if bug == "nan-targets":
-                command.joint_targets.extend([float("nan")] * robots)
-            say(command=command)
-            if bug == "answers-twice":
-                say(command=command)
-        elif kind == "heartbeat" and bug == "answers-heartbeats":
-            say(heartbeat=message.heartbeat)
-        elif kind == "paused" and bug == "answers-paused":
-            say(command=protocol.Command(tick=last))
-        elif kind == "reset" and bug == "answers-reset":
-            say(command=protocol.Command(tick=0))
-        elif kind == "displaced":
-            if bug == "comes-back":
-                hello()
-                continue
+            kind = message.WhichOneof("message")
+            if kind is None and self.bug == "dies-of-news":
+                return 1
+            if self.bug == f"gives-up-on-{kind}":
+                return 1
+            code = getattr(self, f"take_{kind}", lambda _: None)(getattr(message, kind) if kind else None)
+            if code is not None:
+                return code
+
+    def take_loading(self, _):
+        if self.bug == "hello-on-loading":
+            self.hello()
+
+    def take_welcome(self, welcome):
+        self.welcome, self.token = welcome, welcome.session_token
+        if self.bug == "hello-twice":
+            self.hello()
+        if self.bug == "command-early":
+            self.say(command=protocol.Command(tick=0))
+
+    def take_observation(self, observation):
+        if self.bug == "only-consecutive" and self.tick >= 0 and observation.tick not in (0, self.tick + 1):
+            return
+        self.tick = observation.tick
+        self.answer()
+
+    def take_heartbeat(self, heartbeat):
+        if self.bug == "answers-heartbeats":
+            self.say(heartbeat=heartbeat)
+
+    def take_paused(self, _):
+        if self.bug == "answers-paused":
+            self.say(command=protocol.Command(tick=self.tick))
+
+    def take_reset(self, _):
+        self.tick, self.is_fresh = -1, True
+        if self.bug == "answers-reset":
+            self.say(command=protocol.Command(tick=0))
+
+    take_restored = take_reset
+
+    def take_displaced(self, _):
+        if self.bug in ("comes-back", "comes-back-by-token", "comes-back-elsewhere"):
+            if self.bug == "comes-back-elsewhere":
+                self.close()
+                self.connect()
+            self.hello(self.token if self.bug == "comes-back-by-token" else b"")
+            return None
+        return 0 if self.bug == "displaced-is-fine" else 1
+
+    def take_refusal(self, refusal):
+        if self.bug in ("storm", "storms-with-token"):
+            self.hello(self.token)
+            return None
+        if refusal.error.retryable and self.retries:
+            self.retries -= 1
+            time.sleep(1)
+            self.hello()
+            return None
+        return 0 if self.bug == "refusal-is-fine" else 1
+
+    def take_error(self, error):
+        if error.severity == protocol.Error.FATAL:
+            if error.code == protocol.Error.OUT_OF_STATE and self.token and self.bug != "no-resume":
+                return self.resume()
+            return 0 if self.bug == "fatal-is-fine" else 1
+        if self.bug == "gives-up-on-warning" or (self.bug == "gives-up-on-late" and error.code in LATE):
             return 1
-        elif kind == "refusal":
-            if bug == "storm":
-                hello()
-                continue
-            return 0 if bug == "refusal-is-fine" else 1
-        elif kind == "error" and message.error.severity == protocol.Error.FATAL:
-            return 0 if bug == "fatal-is-fine" else 1
-        elif kind == "end":
-            if bug == "answers-end":
-                say(command=protocol.Command(tick=last))
-            if bug != "ignores-end":
-                say(leave=protocol.Leave(reason=protocol.Leave.DONE))
-                time.sleep(0.05)
-                return 0
-        elif kind is None and bug == "dies-of-news":
-            return 1
+        if error.severity == protocol.Error.WARNING or error.code in LATE:
+            self.left |= set(error.dropped.robots) if self.bug != "names-dropped" else set()
+            if error.robot:
+                self.left |= {i for i, robot in enumerate(self.welcome.robots) if robot.id == error.robot}
+            self.is_fresh = self.bug != "forgets-values"
+            if self.bug == "stops-after-miss":
+                time.sleep(60)
+            return None
+        if self.bug != "keeps-quiet":  # a Command that was refused: an empty one can't be
+            self.say(command=protocol.Command(tick=self.tick))
+        return None
+
+    def take_end(self, _):
+        if self.bug == "answers-end":
+            self.say(command=protocol.Command(tick=self.tick))
+        if self.bug == "ignores-end":
+            return None
+        leave = protocol.Leave(reason=protocol.Leave.DONE)
+        mutants.LEAVES.get(self.bug, lambda *_: None)(leave)
+        self.say(leave=leave)
+        time.sleep(0.05)
+        return 1 if self.bug == "end-is-bad" else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1] if len(sys.argv) > 1 else ""))
+    sys.exit(Client(*(sys.argv[1:] + ["", "binary"][len(sys.argv[1:]):])).run())

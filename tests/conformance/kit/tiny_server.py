@@ -1,5 +1,6 @@
 """A server of the protocol's core in little space, and broken ones:
-tiny_server.py ENDPOINT [BUG [SECRET CLIENTS]], the last two as of `ziggurat serve --curve-…`.
+tiny_server.py ENDPOINT SCENE [BUG [SECRET CLIENTS]], the last two as of `ziggurat serve --curve-…`. The
+scene is not read.
 
 It has four robots of one joint, one radio and nothing else of interest, and no physics. It is there to
 show that the kit catches what is broken; nothing else should use it.
@@ -247,4 +248,4 @@ class Server:
 
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    Server(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else "", sys.argv[3:]).serve()
+    Server(sys.argv[1], sys.argv[3] if len(sys.argv) > 3 else "", sys.argv[4:]).serve()
