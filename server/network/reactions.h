@@ -13,8 +13,8 @@ struct Reaction {
     late,        ///< a command, after the deadline: its values are lost
     unanswered,  ///< a miss, and no command for that tick ever
   };
-  /// Wall time from the observation to its command. Unanswered: to the command for a later tick, or to
-  /// the end of the session or the run; the deadline at least [s].
+  /// Wall time from the observation to its command. Unanswered: to the command for a later tick, or
+  /// to the end of the session or the run; the deadline at least [s].
   double seconds = 0;
   std::uint32_t tick = 0;
   std::uint32_t world = 0;  ///< 0, and one more after each reset

@@ -83,10 +83,10 @@ std::string marks(const Panel& panel, const Scale& x, const Scale& y) {
         "<line class=\"mark\" x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" "
         "stroke=\"{3}\" stroke-width=\"1.5\" stroke-dasharray=\"4 3\"/>\n",
         at, y.from, y.to, mark.color);
-    out += label(at + (is_right ? -5 : 5), height, mark.name,
-                 fmt::format("fill=\"{}\" text-anchor=\"{}\"", mark.color,
-                             is_right ? "end" : "start")
-                     .c_str());
+    out +=
+        label(at + (is_right ? -5 : 5), height, mark.name,
+              fmt::format("fill=\"{}\" text-anchor=\"{}\"", mark.color, is_right ? "end" : "start")
+                  .c_str());
     height -= 16;
   }
   return out;

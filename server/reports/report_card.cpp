@@ -60,9 +60,11 @@ std::string head(const ReportCard& card) {
   if (card.period_s > 0) text += fmt::format(" of {:g} ms", card.period_s * 1e3);
   if (card.warm_up > 0) text += fmt::format(", the first {} not counted", card.warm_up);
   if (card.starts.empty()) return text;
-  return text + fmt::format("; {} of {} began late; starts were behind by p50 {:.3f} ms, p99 {:.3f} ms, max {:.3f} ms",
-                            card.late_starts, card.counted_starts, card.start_s.p50 * 1e3,
-                            card.start_s.p99 * 1e3, card.start_s.max * 1e3);
+  return text + fmt::format(
+                    "; {} of {} began late; starts were behind by p50 {:.3f} ms, p99 {:.3f} ms, "
+                    "max {:.3f} ms",
+                    card.late_starts, card.counted_starts, card.start_s.p50 * 1e3,
+                    card.start_s.p99 * 1e3, card.start_s.max * 1e3);
 }
 
 std::string body(const ReportCard& card, const ControllerCard& controller) {
@@ -73,14 +75,14 @@ std::string body(const ReportCard& card, const ControllerCard& controller) {
       "    misses at {} of {} ticks, at most {} in a row\n"
       "    p50 {:.3f} ms, p90 {:.3f} ms, p99 {:.3f} ms, p99.9 {:.3f} ms, max {:.3f} ms, "
       "jitter {:.3f} ms",
-      controller.controller, to_text(controller.deadlines), found.count(), found.in_time, found.late,
-      found.unanswered, found.misses, found.ticks, found.longest_run, p.p50 * 1e3, p.p90 * 1e3,
-      p.p99 * 1e3, p.p999 * 1e3, p.max * 1e3, found.jitter_s * 1e3);
+      controller.controller, to_text(controller.deadlines), found.count(), found.in_time,
+      found.late, found.unanswered, found.misses, found.ticks, found.longest_run, p.p50 * 1e3,
+      p.p90 * 1e3, p.p99 * 1e3, p.p999 * 1e3, p.max * 1e3, found.jitter_s * 1e3);
   for (std::size_t i = 0; i < found.worst.size(); ++i) {
     const Reaction& one = found.worst[i];
-    text += fmt::format("{}{:.3f} ms at tick {}{}", i == 0 ? "\n    worst: " : ", ",
-                        one.seconds * 1e3, one.tick,
-                        one.kind == Reaction::Kind::unanswered ? " (never answered)" : "");
+    text +=
+        fmt::format("{}{:.3f} ms at tick {}{}", i == 0 ? "\n    worst: " : ", ", one.seconds * 1e3,
+                    one.tick, one.kind == Reaction::Kind::unanswered ? " (never answered)" : "");
   }
   text += injected(controller) + bars(found);
   for (const Condition& condition : card.gate) {

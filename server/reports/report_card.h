@@ -1,5 +1,6 @@
 #pragma once
-// How well each controller kept up with the simulation: what runs with hardware in the loop end with.
+// How well each controller kept up with the simulation: what runs with hardware in the loop end
+// with.
 
 #include <cstdint>
 #include <string>
@@ -72,8 +73,8 @@ std::string to_text(const ReportCard& card);
 
 // Contents of files.
 std::string to_json(const ReportCard& card);
-/// A line per reaction below a line of names: world, tick, how late the tick began, whether it is of the
-/// warm-up, controller, first robot of it in its session, outcome, and wall time.
+/// A line per reaction below a line of names: world, tick, how late the tick began, whether it is
+/// of the warm-up, controller, first robot of it in its session, outcome, and wall time.
 std::string to_csv(const ReportCard& card);
 /// Histograms with the deadlines and the verdict, as a picture.
 std::string to_svg(const ReportCard& card);

@@ -57,24 +57,25 @@ ordered_json to_json(const ReportCard& card, const ControllerCard& controller) {
                     {"measured", measured(card, controller, condition)},
                     {"met", meets(card, controller, condition)}});
   }
-  return {{"controller", controller.controller},
-          {"deadlines", deadlines},
-          {"observations", found.count()},
-          {"answers", found.in_time + found.late},
-          {"in_time", found.in_time},
-          {"late", found.late},
-          {"unanswered", found.unanswered},
-          {"ticks", found.ticks},
-          {"misses", found.misses},
-          {"longest_run_of_misses", found.longest_run},
-          {"injected",
-           {{"observations", to_json(controller.injected.observations, controller.lost.observations)},
-            {"commands", to_json(controller.injected.commands, controller.lost.commands)}}},
-          {"wall_latency_s", to_json(found.wall_s)},
-          {"wall_jitter_s", found.jitter_s},
-          {"worst", worst},
-          {"histogram", histogram},
-          {"gate", gate}};
+  return {
+      {"controller", controller.controller},
+      {"deadlines", deadlines},
+      {"observations", found.count()},
+      {"answers", found.in_time + found.late},
+      {"in_time", found.in_time},
+      {"late", found.late},
+      {"unanswered", found.unanswered},
+      {"ticks", found.ticks},
+      {"misses", found.misses},
+      {"longest_run_of_misses", found.longest_run},
+      {"injected",
+       {{"observations", to_json(controller.injected.observations, controller.lost.observations)},
+        {"commands", to_json(controller.injected.commands, controller.lost.commands)}}},
+      {"wall_latency_s", to_json(found.wall_s)},
+      {"wall_jitter_s", found.jitter_s},
+      {"worst", worst},
+      {"histogram", histogram},
+      {"gate", gate}};
 }
 
 /// A field of CSV.
@@ -116,19 +117,22 @@ Curve curve_of(const Statistics& found, std::vector<double>& x) {
 
 Panel panel_of(const ReportCard& card, const ControllerCard& controller) {
   const Statistics& found = controller.statistics;
-  Panel panel{"controller " + controller.controller, "from observation to command [ms]",
-              "observations", {}, {}};
+  Panel panel{"controller " + controller.controller,
+              "from observation to command [ms]",
+              "observations",
+              {},
+              {}};
   if (controller.injected.any()) panel.title += ", injected: " + to_text(controller.injected);
   panel.curves.push_back(curve_of(found, panel.x));
   for (const auto& policy : controller.deadlines) {
     if (policy.wall_deadline_ms == 0) continue;
-    panel.marks.push_back({static_cast<double>(policy.wall_deadline_ms),
-                           "deadline " + to_text(policy), "#c2410c"});
+    panel.marks.push_back(
+        {static_cast<double>(policy.wall_deadline_ms), "deadline " + to_text(policy), "#c2410c"});
   }
-  panel.notes.push_back({fmt::format("{} in time, {} late, {} never; at most {} misses in a row",
-                                     found.in_time, found.late, found.unanswered,
-                                     found.longest_run),
-                         "black"});
+  panel.notes.push_back(
+      {fmt::format("{} in time, {} late, {} never; at most {} misses in a row", found.in_time,
+                   found.late, found.unanswered, found.longest_run),
+       "black"});
   for (const Condition& condition : card.gate) {
     const bool is_met = meets(card, controller, condition);
     panel.notes.push_back({(is_met ? "met: " : "MISSED: ") +
@@ -163,9 +167,8 @@ std::string to_csv(const ReportCard& card) {
   for (const ControllerCard& controller : card.controllers) {
     for (const Reaction& one : controller.reactions) lines.emplace_back(&one, &controller);
   }
-  std::ranges::stable_sort(lines, {}, [](const auto& line) {
-    return std::pair(line.first->world, line.first->tick);
-  });
+  std::ranges::stable_sort(
+      lines, {}, [](const auto& line) { return std::pair(line.first->world, line.first->tick); });
   for (const auto& [one, controller] : lines) {
     const TickStart* start = start_of(card, *one);
     text += fmt::format("{},{},{},{},{},{},{},{:.9f}\n", one->world, one->tick,

@@ -21,7 +21,7 @@ void count_kinds(std::span<const Reaction> reactions, Statistics& result) {
   for (const Reaction& one : reactions) {
     ++(one.kind == Reaction::Kind::in_time ? result.in_time
        : one.kind == Reaction::Kind::late  ? result.late
-                                 : result.unanswered);
+                                           : result.unanswered);
     ++result.histogram[bins::of(one.seconds)];
   }
 }

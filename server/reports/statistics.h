@@ -23,15 +23,16 @@ double begin_of(std::size_t bin);  ///< [s]
 struct Percentiles {
   double p50 = 0, p90 = 0, p99 = 0, p999 = 0, max = 0;
 };
-/// Each is the smallest of the values that at least this share of them does not exceed; 0 without values.
+/// Each is the smallest of the values that at least this share of them does not exceed; 0 without
+/// values.
 /// @param values  get sorted
 Percentiles percentiles(std::vector<double>& values);
 
 struct Statistics {
   std::uint64_t in_time = 0, late = 0, unanswered = 0;  ///< reactions
-  Percentiles wall_s;       ///< of all reactions, late and unanswered ones included
-  double jitter_s = 0;      ///< mean change of the time from an observation to the next one
-  std::uint64_t ticks = 0;  ///< at which there was any reaction
+  Percentiles wall_s;             ///< of all reactions, late and unanswered ones included
+  double jitter_s = 0;            ///< mean change of the time from an observation to the next one
+  std::uint64_t ticks = 0;        ///< at which there was any reaction
   std::uint64_t misses = 0;       ///< ticks at which a reaction was late or none
   std::uint64_t longest_run = 0;  ///< of misses at ticks in a row
   std::vector<network::Reaction> worst;                ///< the five longest, longest first

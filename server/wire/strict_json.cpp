@@ -13,8 +13,8 @@ using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using nlohmann::json;
 
-/// The events of a parser, compared with a type. What is in unknown fields is JSON, and nothing else is
-/// asked of it.
+/// The events of a parser, compared with a type. What is in unknown fields is JSON, and nothing
+/// else is asked of it.
 class Matcher final : public nlohmann::json_sax<json> {
  public:
   explicit Matcher(const Descriptor& type) : type_(&type) {}

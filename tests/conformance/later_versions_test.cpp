@@ -1,5 +1,5 @@
-// What version 1.1 of the protocol adds (docs/protocol.md: W10, L13, V15), and that sessions of version
-// 1.0 see none of it.
+// What version 1.1 of the protocol adds (docs/protocol.md: W10, L13, V15), and that sessions of
+// version 1.0 see none of it.
 
 #include <gtest/gtest.h>
 
@@ -134,7 +134,8 @@ TEST(LaterVersions, L13_BeforeTheFirstTickNothingWasCommanded) {
   Peers peers(small);
   const auto token = peers.join("p", "robot0").session_token();
   // While the server gathers, it does not collect commands.
-  receive(peers.barrier, {"new", bytes_of(hello("*", 1, token), peers.json), true, Access{}}, nullptr);
+  receive(peers.barrier, {"new", bytes_of(hello("*", 1, token), peers.json), true, Access{}},
+          nullptr);
   const auto welcome = peers.told("new").welcome();
   EXPECT_TRUE(welcome.has_resumed());
   EXPECT_FALSE(welcome.resumed().has_commanded());

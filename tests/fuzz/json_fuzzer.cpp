@@ -2,6 +2,7 @@
 // that can be read must be writable as JSON, and readable again as the same kind of message.
 
 #include "receiver.h"
+#include "wire/strict_json.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -15,7 +16,9 @@ void rewrite(std::string_view text) {
   Message message;
   if (!v1::from_json(text, message).empty()) return;
   Message again;
-  require(v1::from_json(v1::to_json(message), again).empty());
+  const std::string written = v1::to_json(message);
+  require(v1::from_json(written, again).empty());
+  require(wire::check_json(written, *Message::descriptor()).empty());
   require(again.message_case() == message.message_case());
 }
 

@@ -12,8 +12,8 @@ double seconds_since(const Barrier& barrier, Time begin) {
   return std::chrono::duration<double>(barrier.now - begin).count();
 }
 
-/// Calls visit(first robot) for each controller with robots of the session that have not left. Robots of
-/// a controller usually stand together.
+/// Calls visit(first robot) for each controller with robots of the session that have not left.
+/// Robots of a controller usually stand together.
 template <class Visit>
 void for_each_controller(const Barrier& barrier, const Session& session, Visit visit) {
   std::optional<std::size_t> last;
@@ -26,7 +26,8 @@ void for_each_controller(const Barrier& barrier, const Session& session, Visit v
   }
 }
 
-void keep(Barrier& barrier, std::size_t robot, std::uint64_t tick, double seconds, Reaction::Kind kind) {
+void keep(Barrier& barrier, std::size_t robot, std::uint64_t tick, double seconds,
+          Reaction::Kind kind) {
   const std::size_t controller = barrier.deadlines.controller(robot);
   barrier.reactions.all.push_back({seconds, static_cast<std::uint32_t>(tick),
                                    barrier.reactions.world, static_cast<std::uint32_t>(robot),
@@ -34,7 +35,8 @@ void keep(Barrier& barrier, std::size_t robot, std::uint64_t tick, double second
 }
 
 /// Settles the ticks that the session has missed, up to one of them.
-/// @param answered  the one that is answered late, if any; the others are not, as commands keep their
+/// @param answered  the one that is answered late, if any; the others are not, as commands keep
+/// their
 ///                  order
 void settle_missed(Barrier& barrier, Session& session, std::uint64_t last,
                    std::optional<std::uint64_t> answered) {
@@ -42,11 +44,9 @@ void settle_missed(Barrier& barrier, Session& session, std::uint64_t last,
   const auto end = std::ranges::find_if(missed, [&](const auto& one) { return one.tick > last; });
   for (auto one = missed.begin(); one != end; ++one) {
     const double seconds = seconds_since(barrier, one->sent);
-    const auto kind =
-        one->tick == answered ? Reaction::Kind::late : Reaction::Kind::unanswered;
-    for_each_controller(barrier, session, [&](std::size_t robot) {
-      keep(barrier, robot, one->tick, seconds, kind);
-    });
+    const auto kind = one->tick == answered ? Reaction::Kind::late : Reaction::Kind::unanswered;
+    for_each_controller(barrier, session,
+                        [&](std::size_t robot) { keep(barrier, robot, one->tick, seconds, kind); });
   }
   missed.erase(missed.begin(), end);
 }
@@ -79,8 +79,7 @@ void give_up_answers(Barrier& barrier, Session& session) {
 
 void measure_absence(Barrier& barrier, std::size_t robot, Time since) {
   if (!barrier.reactions.are_kept) return;
-  keep(barrier, robot, tick_of(barrier), seconds_since(barrier, since),
-       Reaction::Kind::unanswered);
+  keep(barrier, robot, tick_of(barrier), seconds_since(barrier, since), Reaction::Kind::unanswered);
 }
 
 }  // namespace ziggurat::network

@@ -1,5 +1,5 @@
-// What a client's ZeroMQ socket reports of a handshake: K8 of docs/protocol.md, which authors of clients
-// tell refusal from slowness by.
+// What a client's ZeroMQ socket reports of a handshake: K8 of docs/protocol.md, which authors of
+// clients tell refusal from slowness by.
 
 #include <gtest/gtest.h>
 #include <unistd.h>

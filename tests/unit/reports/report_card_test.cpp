@@ -12,12 +12,13 @@ namespace {
 
 using network::Reaction;
 
-Reaction reaction(std::uint32_t tick, double seconds, Reaction::Kind kind = Reaction::Kind::in_time) {
+Reaction reaction(std::uint32_t tick, double seconds,
+                  Reaction::Kind kind = Reaction::Kind::in_time) {
   return {seconds, tick, 0, 0, 0, kind};
 }
 
-/// A hundred ticks; "quick" answers within 0.8 ms, "slow" misses two: the answer to tick 7 comes after
-/// 30 ms, that to tick 8 never.
+/// A hundred ticks; "quick" answers within 0.8 ms, "slow" misses two: the answer to tick 7 comes
+/// after 30 ms, that to tick 8 never.
 ReportCard card(const std::string& gate, std::uint64_t warm_up = 0) {
   ReportCard result;
   result.scene = "scenes/some.argos";
@@ -114,7 +115,8 @@ TEST(ReportCard, IsATableOfTicks) {
   std::vector<std::string> lines;
   for (std::string line; std::getline(csv, line);) lines.push_back(line);
   ASSERT_EQ(lines.size(), 201U);
-  EXPECT_EQ(lines[0], "world,tick,start_lateness_s,warm_up,controller,robot,outcome,wall_latency_s");
+  EXPECT_EQ(lines[0],
+            "world,tick,start_lateness_s,warm_up,controller,robot,outcome,wall_latency_s");
   EXPECT_EQ(lines[1], "0,0,,1,quick,\"r0, the first\",in_time,0.000800000");
   EXPECT_EQ(lines[16], "0,7,0.000100000,1,slow,\"r0, the first\",late,0.030000000");
   EXPECT_EQ(lines[18], "0,8,0.000100000,0,slow,\"r0, the first\",unanswered,0.025000000");
@@ -122,9 +124,9 @@ TEST(ReportCard, IsATableOfTicks) {
 
 TEST(ReportCard, IsAPictureWithDeadlineAndVerdict) {
   const std::string svg = to_svg(card("p99<1s"));
-  for (const char* part : {"controller quick", "<path", "class=\"mark\"", "deadline hold:18",
-                           "gate met", "met: p99&lt;1s: 25 ms", "98 in time, 1 late, 1 never",
-                           "seed 42", "period 20 ms"}) {
+  for (const char* part :
+       {"controller quick", "<path", "class=\"mark\"", "deadline hold:18", "gate met",
+        "met: p99&lt;1s: 25 ms", "98 in time, 1 late, 1 never", "seed 42", "period 20 ms"}) {
     EXPECT_NE(svg.find(part), std::string::npos) << part;
   }
   EXPECT_NE(to_svg(card("p99<1ms")).find("gate NOT met"), std::string::npos);
@@ -143,10 +145,10 @@ TEST(Statistics, PercentilesAreExact) {
 
 TEST(Statistics, ARunOfMissesEndsAtAGapAndAtAReset) {
   using Kind = Reaction::Kind;
-  const std::vector<Reaction> reactions{
-      {1, 0, 0, 0, 0, Kind::late}, {1, 1, 0, 0, 0, Kind::late}, {1, 3, 0, 0, 0, Kind::late},
-      {1, 4, 1, 0, 0, Kind::late}, {1, 5, 1, 0, 0, Kind::in_time}, {1, 5, 1, 9, 0, Kind::late},
-      {1, 6, 1, 0, 0, Kind::in_time}};
+  const std::vector<Reaction> reactions{{1, 0, 0, 0, 0, Kind::late},    {1, 1, 0, 0, 0, Kind::late},
+                                        {1, 3, 0, 0, 0, Kind::late},    {1, 4, 1, 0, 0, Kind::late},
+                                        {1, 5, 1, 0, 0, Kind::in_time}, {1, 5, 1, 9, 0, Kind::late},
+                                        {1, 6, 1, 0, 0, Kind::in_time}};
   const Statistics found = measure(reactions);
   EXPECT_EQ(found.longest_run, 2U) << "ticks 0 and 1, and 4 and 5 of the second world";
   EXPECT_EQ(found.misses, 5U);

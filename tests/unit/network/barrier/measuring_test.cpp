@@ -9,8 +9,8 @@
 namespace ziggurat::network {
 namespace {
 
-using std::chrono::milliseconds;
 using scene::DeadlineAction;
+using std::chrono::milliseconds;
 
 Config keeping(DeadlineAction action, std::uint32_t budget = 0) {
   Config config;
@@ -32,7 +32,8 @@ struct Measuring : ::testing::Test {
     for (const Reaction& one : peers.barrier.reactions.all) {
       if (one.controller == 0) result.push_back(one);
     }
-    EXPECT_EQ(peers.barrier.reactions.all.size(), 2 * result.size()) << "each controller has its own";
+    EXPECT_EQ(peers.barrier.reactions.all.size(), 2 * result.size())
+        << "each controller has its own";
     return result;
   }
   static void expect(const Reaction& one, std::uint64_t tick, Reaction::Kind kind, double seconds) {
