@@ -701,6 +701,68 @@ SAID["all-left-release"] = SAID["leaves-release"]
 TOLD["names-as-they-are"] = _in("refusal", lambda _, refusal: setattr(refusal, "holder", "\x1b]" + "x" * 100))
 TOLD["always-retryable"] = _in("refusal", lambda _, refusal: setattr(refusal.error, "retryable", True))
 
+# ---- rules of several sections ---------------------------------------------------------------------
+
+
+@told("begins-early")
+def _(connection, message):
+    return [message, protocol.ServerMessage(observation={})] if message.HasField("welcome") else None
+
+
+SAID["reset-not-done"] = _done_without("reset")
+TOLD["paused-told-to-one"] = _in("paused", lambda connection, _: None if connection is connection.everyone[0] else [])
+
+
+@told("end-is-final")
+def _(connection, message):
+    connection.notes["ended"] = connection.notes.get("ended") or message.HasField("end")
+
+
+@said("end-is-final")
+def _(connection, message):
+    if message.HasField("command") and connection.notes.get("ended"):
+        connection.tell(error=E(code=E.OUT_OF_STATE, severity=E.DISCARD, message="it is over"))
+        return []
+    return None
+
+
+_hellos = []
+
+
+@said("lost-are-taken")
+def _(connection, message):
+    """The third session gets no robots."""
+    if message.HasField("hello") and message.hello.version.major:
+        _hellos.append(message)
+        if len(_hellos) > 2:
+            error = E(code=E.ROBOT_TAKEN, severity=E.FATAL, retryable=True, message="they were had before")
+            connection.tell(refusal=protocol.Refusal(error=error, holder="a ghost"))
+            return []
+    return None
+
+
+@said("no-repetition")
+def _(connection, message):
+    if message.HasField("command") and connection.hello.session_token:
+        connection.tell(error=E(code=E.STALE_TICK, severity=E.DISCARD, message="it was answered before"))
+        return []
+    return None
+
+
+_policy("dead-is-waited-for", lambda policy: (policy.Clear(), setattr(policy, "action", _P.WAIT)))
+TOLD["loading-is-silent"] = _drop("loading")
+
+
+@said("flood-is-served")
+def _(connection, message):
+    if message.HasField("heartbeat"):
+        connection.tell(heartbeat=message.heartbeat)
+        return []
+    return None
+
+
+SAID["patterns-cut"] = _in("hello", lambda _, hello: _refill(hello, "robots", hello.robots[:64]))
+
 
 # ---- the table -------------------------------------------------------------------------------------
 
@@ -909,6 +971,16 @@ MUTANTS = [
     _bent("no-free-robots", "V12.free"),
     _bent("remove-not-done", "V13.remove"),
     _bent("removed-not-told", "V13.robot"),
+    _bent("begins-early", "W3.beginning"),
+    _bent("reset-not-done", "V14.back"),
+    _bent("paused-told-to-one", "P2.late"),
+    _bent("end-is-final", "M1.command-on-its-way"),
+    _bent("lost-are-taken", "M2.lost"),
+    _bent("no-repetition", "L9.safe-to-repeat"),
+    _bent("dead-is-waited-for", "W2.hangs-up"),
+    _bent("loading-is-silent", "T9.early", is_must=False),
+    _bent("flood-is-served", "M7.flood"),
+    _bent("patterns-cut", "H4.too-many-patterns", "K5"),
     _bent("dropped-not-told", "W10.told"),
     _bent("dropped-beyond", "W10.told"),
     _bent("dropped-is-fatal", "W10.told"),
