@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -30,6 +31,8 @@ Launch lua_launch(std::string name, std::vector<std::size_t> robots, const std::
                               "--robots-file",     launch.robots_file, "--quiet"};
   launch.program.arguments.insert(launch.program.arguments.end(), settings.lua_arguments.begin(),
                                   settings.lua_arguments.end());
+  launch.place_file = launch.robots_file + "-place";
+  launch.program.arguments.insert(launch.program.arguments.end(), {"--place-file", launch.place_file});
   launch.program.environment = no_keys;
   return launch;
 }
@@ -60,7 +63,7 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout,
     file.close();
   }
   try {
-    return {launch.name, launch.robots, ChildProcess(launch.program, guardian)};
+    return {launch.name, launch.robots, ChildProcess(launch.program, guardian), launch.place_file};
   } catch (const std::system_error& error) {
     throw std::runtime_error(fmt::format("{} cannot be started ({}): {}", launch.name,
                                          launch.program.arguments[0], error.code().message()));
@@ -133,6 +136,18 @@ void Controllers::forget_robots(std::size_t first) {
     kept.push_back(std::move(each));
   }
   processes_ = std::move(kept);
+}
+
+std::optional<BusyScript> Controllers::busy_script(std::size_t robot) const {
+  for (const ControllerProcess& each : processes_) {
+    if (!std::ranges::binary_search(each.robots, robot)) continue;
+    std::ifstream file(each.place_file);
+    BusyScript script;
+    std::getline(file, script.robot);
+    std::getline(file, script.place, '\0');
+    if (!script.robot.empty() && script.robot[0] != '\0') return script;
+  }
+  return std::nullopt;
 }
 
 bool Controllers::have(std::size_t robot) const {

@@ -20,12 +20,20 @@ struct Launch {
   std::vector<std::size_t> robots;  ///< into Layout::robots, ascending
   Program program;
   std::string robots_file;  ///< written before the start, one id per line; empty = none
+  std::string place_file;   ///< written by it: which script runs, and where; empty = none
 };
 
 struct ControllerProcess {
   std::string name;
   std::vector<std::size_t> robots;  ///< into Layout::robots, ascending
   ChildProcess process;
+  std::string place_file;  ///< as Launch::place_file
+};
+
+/// A script that runs now.
+struct BusyScript {
+  std::string robot;  ///< its id
+  std::string place;  ///< `FILE:LINE`, once that takes long
 };
 
 /// How the controllers of a run are started.
@@ -75,6 +83,9 @@ class Controllers {
   /// Forgets the robots from `first` on, which a reset has removed from the layout, and the ended
   /// processes that have no other robots.
   void forget_robots(std::size_t first);
+
+  /// The script that the process of this robot runs now, of one of its robots; nothing if it runs none.
+  std::optional<BusyScript> busy_script(std::size_t robot) const;
 
   /// Whether a process was started for this robot.
   bool have(std::size_t robot) const;

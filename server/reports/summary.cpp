@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "math/hash.h"
@@ -33,6 +34,18 @@ double ratio(double numerator, double denominator) {
   return denominator > 0 ? numerator / denominator : 0;
 }
 
+/// Which robots failed; their messages were printed when they did.
+std::string failed(const std::vector<Summary::Failure>& failures) {
+  constexpr std::size_t most = 8;
+  std::string text = fmt::format("  {} robot{} failed: ", failures.size(),
+                                 failures.size() == 1 ? "" : "s");
+  for (std::size_t i = 0; i < std::min(most, failures.size()); ++i) {
+    text += fmt::format("{}{} at tick {}", i == 0 ? "" : ", ", failures[i].robot, failures[i].tick);
+  }
+  if (failures.size() > most) text += fmt::format(" and {} more", failures.size() - most);
+  return text + "\n";
+}
+
 bool is_by_controller(Ending ending) {
   return ending == Ending::controller_vanished || ending == Ending::failed_fast ||
          ending == Ending::deadline_missed;
@@ -56,6 +69,7 @@ std::string to_text(const Summary& summary) {
     text += fmt::format("  controller '{}' missed its deadline at {} tick{}\n", each.controller,
                         each.ticks, each.ticks == 1 ? "" : "s");
   }
+  if (!summary.failures.empty()) text += failed(summary.failures);
   for (const auto& each : summary.dropped) text += fmt::format("  {}\n", each);
   if (const auto& solver = summary.solver; solver.not_converged > 0) {
     text += fmt::format(

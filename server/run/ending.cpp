@@ -92,11 +92,6 @@ bool Run::report_hil() {
 /// After every process has ended. The hash is the very last line.
 void Run::print_summary() {
   if (!summary_.vanished.empty()) console_.fault(summary_.vanished);
-  for (const auto& failure : summary_.failures) {
-    console_.fault(fmt::format("robot {} (controller '{}') had failed at tick {}: {}",
-                               failure.robot, failure.controller, failure.tick,
-                               failure.message.substr(0, failure.message.find('\n'))));
-  }
   if (const auto deaf = radio_watch_.warning(world_.simulation.layout()); !deaf.empty()) {
     console_.warning(deaf);
   }

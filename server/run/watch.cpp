@@ -208,13 +208,34 @@ std::string Watch::by_controller(const std::vector<std::size_t>& robots) const {
   return text;
 }
 
+// "r3: aggregate.lua:41, r7: lift.lua:12"
+/// @param robots  awaited; those whose process runs the script of a robot are taken out
+std::string Watch::busy_scripts(std::vector<std::size_t>& robots) const {
+  std::string text, last;
+  std::erase_if(robots, [&](std::size_t robot) {
+    const auto script = controllers_.busy_script(robot);
+    if (!script || script->place.empty()) return false;
+    if (script->robot == last) return true;  // of the same process
+    last = script->robot;
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", script->robot, script->place);
+    return true;
+  });
+  return text;
+}
+
 /// Prints at once that a client must connect, where no process was started for a robot. Otherwise
 /// only after a long wait.
 void Watch::report_awaited() {
   const auto waited = clock::now() - waiting_since_;
   const auto robots = awaited_robots();
+  const auto awaited = [&] {
+    auto others = robots;
+    const auto busy = busy_scripts(others);
+    const auto rest = by_controller(others);
+    return busy.empty() || rest.empty() ? busy + rest : busy + ", " + rest;
+  };
   if (progress_.needs_update()) {
-    progress_.show(tick_, waited > noticeable ? by_controller(robots) : std::string());
+    progress_.show(tick_, waited > noticeable ? awaited() : std::string());
   }
   const bool client_must_connect = std::ranges::any_of(
       unheld_robots(), [&](std::size_t robot) { return !controllers_.have(robot); });
@@ -224,7 +245,7 @@ void Watch::report_awaited() {
   const auto where = client_must_connect
                          ? fmt::format(" to connect to {}", fmt::join(server_.endpoints(), " or "))
                          : std::string();
-  console_.notice(fmt::format("waiting for {}{}", text, where));
+  console_.notice(fmt::format("waiting for {}{}", awaited(), where));
   printed_ = std::move(text);
 }
 

@@ -6,6 +6,8 @@
 namespace ziggurat {
 namespace {
 
+const std::string usual_name = "controller";  // of a client that names neither itself nor a controller
+
 void fill(const Options& options, v1::Hello& hello) {
   hello.mutable_version()->set_major(version_major);
   hello.mutable_version()->set_minor(version_minor);
@@ -13,7 +15,9 @@ void fill(const Options& options, v1::Hello& hello) {
   for (const std::string& robot : options.robots) hello.add_robots(v1::valid_utf8(robot));
   hello.set_controller(v1::valid_utf8(options.controller));
   hello.set_lua_only(options.lua_only);
-  hello.set_client_name(v1::valid_utf8(options.name));
+  const std::string& id = options.controller;
+  const std::string& name = !options.name.empty() ? options.name : id.empty() ? usual_name : id;
+  hello.set_client_name(v1::valid_utf8(name));
   hello.set_client_version(v1::valid_utf8(options.version));
   if (options.robots.empty() && options.controller.empty() && !options.lua_only) {
     hello.add_robots("*");

@@ -10,6 +10,7 @@
 #include "program/runner.h"
 #include "program/signals.h"
 #include "script/interrupt.h"
+#include "script/place_file.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 
@@ -64,6 +65,7 @@ int main(int count, char** arguments) {
     }
     lua::handle_signals();
     lua::watch_scripts();
+    if (!request.options.place_file.empty()) lua::open_place_file(request.options.place_file);
     return run(request.options);
   } catch (const std::exception& error) {
     if (const int number = lua::arrived_signal()) return exit_signal + number;

@@ -58,6 +58,8 @@ po::options_description description() {
       ("max-memory", text("MIB"), "largest memory of the script of a robot; 256")  //
       ("max-instructions", text("MILLIONS"),
        "most Lua instructions of a robot at one tick, in millions; 1000")  //
+      ("place-file", text("FILE"),
+       "keep the robot whose script runs in FILE, with the script's line if that takes long")  //
       ("echo",
        "print log lines here too; the default on a terminal. The server always gets them")  //
       ("quiet", "print only errors and what scripts print themselves")                      //
@@ -172,6 +174,7 @@ Request read_arguments(int count, const char* const* arguments, bool is_terminal
   options.curve_secret = value("curve-secret", environment("ZIGGURAT_CURVE_SECRET"));
   if (found.count("script")) options.script = value("script");
   options.name = value("name", options.name);
+  options.place_file = value("place-file");
   read_limits(found, options);
   options.quiet = found.count("quiet") > 0;
   options.echo = found.count("echo") > 0 || (is_terminal && !options.quiet);

@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cstdio>
 
+#include "script/place_file.h"
+
 namespace ziggurat::lua {
 namespace {
 
@@ -29,8 +31,9 @@ struct Watch {
   bool was_seen = false;           // by the signal
   bool is_counting = false;
   bool is_over = false;              // more than max_instructions
+  bool place_is_old = false;         // the place file has that of an earlier look of the signal
   unsigned quiet = 0;                // looks of the signal since an instruction was counted
-  char place[LUA_IDSIZE + 16] = "";  // file and line where is_over began
+  char place[LUA_IDSIZE + 16] = "";  // file and line, noted last
 };
 Watch watch;
 
@@ -63,9 +66,12 @@ void end_script(lua_State* state) {
 void add(std::uint64_t instructions, lua_State* state) {
   watch.quiet = 0;
   watch.instructions += instructions;
-  if (watch.is_over || watch.instructions <= watch.max_instructions) return;
-  watch.is_over = true;
+  if (watch.is_over) return;
+  watch.is_over = watch.max_instructions > 0 && watch.instructions > watch.max_instructions;
+  if (!watch.is_over && !watch.place_is_old) return;
+  watch.place_is_old = false;
   note_place(state);
+  write_place(watch.robot, watch.place);
 }
 
 void count(lua_State* state, lua_Debug* what) {
@@ -97,13 +103,14 @@ void set_hook(lua_State* state) {
 
 void look(int) {
   lua_State* const state = running;
-  if (state == nullptr || watch.max_instructions == 0 || watch.is_over) return;
+  if (state == nullptr || watch.is_over) return;
+  watch.place_is_old = true;
   if (!watch.was_seen) {
     watch.was_seen = true;
   } else if (!watch.is_counting) {
     watch.is_counting = true;
     set_hook(state);
-  } else if (++watch.quiet > patience) {
+  } else if (watch.max_instructions > 0 && ++watch.quiet > patience) {
     end_process(state);
   }
 }
@@ -135,12 +142,14 @@ Running::Running(const Calling& calling) noexcept : state_(calling.state) {
   watch = {};
   watch.robot = calling.robot;
   watch.max_instructions = calling.max_instructions;
+  write_place(calling.robot, "");
   running = calling.state;
   if (interrupted) set_hook(calling.state);
 }
 
 Running::~Running() {
   running = nullptr;
+  write_place("", "");
   if (watch.is_counting) lua_sethook(state_, nullptr, 0, 0);
   watch = {};
 }

@@ -70,7 +70,7 @@ class Deadline:
 
 
 def connect(endpoint: str, robots: Union[str, Sequence[str]] = (), *, controller: str = "",
-            name: str = "python", version: str = "", deadline: Optional[Deadline] = None,
+            name: str = "", version: str = "", deadline: Optional[Deadline] = None,
             takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
             wait_timeout: Optional[float] = None) -> "Session":
     """A session with all robots that match both `robots` (ids, or globs with * ? [a-z]) and
@@ -85,7 +85,7 @@ def connect(endpoint: str, robots: Union[str, Sequence[str]] = (), *, controller
     if not wanted and not controller:
         wanted = ["*"]
     hello = v1.Hello(role=v1.ROLE_CONTROLLER, robots=wanted, controller=controller,
-                     client_name=name, client_version=version, takeover=takeover)
+                     client_name=name or controller or "python", client_version=version, takeover=takeover)
     if deadline is not None:
         hello.deadline_policy.CopyFrom(deadline._message())
     return Session(endpoint, hello, curve, connect_timeout, wait_timeout)

@@ -51,7 +51,7 @@ struct Options {
   bool takeover = false;             ///< also robots of other sessions, which keep the rest
   std::optional<Deadline> deadline;  ///< a wish; none = as the scene or the server's options say
 
-  std::string name = "controller";  ///< of this program, for the server's messages
+  std::string name;  ///< of this program, for the server's messages; empty: `controller`
   std::string version;              ///< of this program, for the server's messages
 
   std::chrono::milliseconds connect_timeout{10'000};  ///< wall time until the server's welcome
