@@ -63,6 +63,10 @@ Parsed parse(const Arguments& arguments, const po::options_description& known) {
   } catch (const po::multiple_occurrences& error) {
     throw text::UsageError(
         fmt::format("option '{}' is given more than once", error.get_option_name()));
+  } catch (const po::invalid_command_line_syntax& error) {
+    if (error.kind() != error.missing_parameter) throw text::UsageError(error.what());
+    throw text::UsageError(fmt::format("option '{0}' needs a value; write {0} VALUE",
+                                       error.get_option_name()));
   } catch (const po::error& error) {
     throw text::UsageError(error.what());
   }

@@ -31,6 +31,13 @@ std::span<const Command> commands() { return table; }
 const Command& command_named(const std::string& name) {
   const auto found = std::ranges::find(table, name, &Command::name);
   if (found != std::end(table)) return *found;
+  if (name.ends_with(".argos") || name.ends_with(".xml")) {
+    throw text::UsageError(
+        fmt::format("there is no command '{0}'; to run a scene, write: ziggurat run {0}", name));
+  }
+  if (name == "version" || name == "-v" || name == "-V") {
+    throw text::UsageError(fmt::format("there is no command '{}'; write: ziggurat --version", name));
+  }
   std::vector<std::string> names;
   for (const auto& command : table) names.emplace_back(command.name);
   throw text::UsageError(fmt::format("there is no command '{}'; {}", name,

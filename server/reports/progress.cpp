@@ -2,10 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace ziggurat::reports {
 namespace {
 
 constexpr std::chrono::milliseconds interval{200};
+constexpr double memory_s = 3;  // of the rate that the time left is computed with
+
+/// `45 s`, `3 min 20 s` or `2 h 5 min`.
+std::string duration(double seconds) {
+  const auto whole = static_cast<std::uint64_t>(std::min(std::ceil(seconds), 1e15));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+}
 
 }  // namespace
 
@@ -16,12 +28,29 @@ bool Progress::needs_update() const {
 void Progress::show(std::uint64_t tick, std::string_view waiting_for) {
   const auto now = clock::now();
   const double wall = std::chrono::duration<double>(now - shown_at_).count();
-  const double rate = static_cast<double>(tick - shown_tick_) / wall;
-  console_.progress(fmt::format("t = {:.2f} s, real-time factor {:.2f}, {:.0f} ticks/s{}{}",
-                                static_cast<double>(tick) * tick_length_, rate * tick_length_, rate,
+  const bool was_reset = tick < shown_tick_;
+  const double rate = was_reset ? 0 : static_cast<double>(tick - shown_tick_) / wall;
+  const double weight = usual_rate_ == 0 ? 1 : 1 - std::exp(-wall / memory_s);
+  usual_rate_ += weight * (rate - usual_rate_);
+  console_.progress(fmt::format("{}, real-time factor {:.2f}, {:.0f} ticks/s{}{}",
+                                reached(tick, ticks_, tick_length_, usual_rate_),
+                                rate * tick_length_, rate,
                                 waiting_for.empty() ? "" : ", waiting for ", waiting_for));
   shown_at_ = now;
   shown_tick_ = tick;
+}
+
+std::string reached(std::uint64_t tick, std::optional<std::uint64_t> ticks, double tick_length,
+                    double rate) {
+  const double time = static_cast<double>(tick) * tick_length;
+  if (!ticks || *ticks == 0) return fmt::format("t = {:.2f} s", time);
+  const double share = static_cast<double>(tick) / static_cast<double>(*ticks);
+  std::string text = fmt::format("t = {:.2f} of {:.2f} s ({:.0f} %)", time,
+                                 static_cast<double>(*ticks) * tick_length, std::floor(100 * share));
+  if (rate > 0 && tick <= *ticks) {
+    text += fmt::format(", {} left", duration(static_cast<double>(*ticks - tick) / rate));
+  }
+  return text;
 }
 
 }  // namespace ziggurat::reports

@@ -1,8 +1,10 @@
 #pragma once
-// The progress line: simulated time, real-time factor, ticks per second, awaited robots.
+// The progress line: simulated time, its share of the run and the wall time that is left,
+// real-time factor, ticks per second, awaited robots.
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,7 +15,9 @@ namespace ziggurat::reports {
 class Progress {
  public:
   /// @param tick_length  simulated [s]
-  Progress(Console& console, double tick_length) : console_(console), tick_length_(tick_length) {}
+  /// @param ticks  of the whole run; none: it has no end of its own
+  Progress(Console& console, double tick_length, std::optional<std::uint64_t> ticks = {})
+      : console_(console), tick_length_(tick_length), ticks_(ticks) {}
 
   /// Whether stderr is a terminal and the last line is old enough.
   bool needs_update() const;
@@ -26,8 +30,16 @@ class Progress {
 
   Console& console_;
   double tick_length_;
+  std::optional<std::uint64_t> ticks_;
+  double usual_rate_ = 0;  ///< [ticks/s], over some seconds
   clock::time_point shown_at_ = clock::now();
   std::uint64_t shown_tick_ = 0;
 };
+
+/// The beginning of the line: `t = 1.00 of 10.00 s (10 %), 9 s left`.
+/// @param tick_length  simulated [s]
+/// @param rate  [ticks/s of wall time]; 0: how much is left is not known
+std::string reached(std::uint64_t tick, std::optional<std::uint64_t> ticks, double tick_length,
+                    double rate);
 
 }  // namespace ziggurat::reports

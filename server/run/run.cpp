@@ -38,7 +38,8 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       recorders_(options, world_),
       controllers_(start_controllers()),
       supervision_(supervision_settings(), world_, server_, controllers_, console_),
-      watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve},
+      watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
+              plan_.ticks},
              world_, server_, controllers_, supervision_, signals, console_) {
   print_notices();
   summary_.scene = path_;
@@ -47,7 +48,11 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
 
 /// Reads the scene and builds the world, on a thread of its own.
 /// @param tell  how far that is
-supervision::World Run::read_world(const Tell& tell) {
+supervision::World Run::read_world(const Tell& tell_clients) {
+  const auto tell = [&](double share, const char* message) {
+    console_.progress(fmt::format("{:.0f} %: {}", 100 * share, message));
+    tell_clients(share, message);
+  };
   tell(0, "The scene is being read.");
   scene::OpenScene opened = load_scene(path_, options_, console_);
   tell(0.5, "The world is being built.");

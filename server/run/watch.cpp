@@ -42,7 +42,7 @@ Watch::Watch(const Settings& settings, const supervision::World& world, network:
       fails_fast_(settings.fail_fast),
       waits_for_clients_(settings.waits_for_clients),
       peers_(world, console),
-      progress_(console, world.simulation.tick_length()) {
+      progress_(console, world.simulation.tick_length(), settings.ticks) {
   if (settings.metrics.empty()) return;
   metrics_.emplace(settings.metrics, settings.insecure);
   console_.notice("metrics at " + metrics_->url());

@@ -30,6 +30,7 @@ class Watch {
     bool insecure = false;           ///< metrics: the host may be other than loopback
     bool fail_fast = false;          ///< the first failure or drop of a robot ends the run
     bool waits_for_clients = false;  ///< serve: a client that disconnected may connect again
+    std::optional<std::uint64_t> ticks;  ///< of the whole run; none: until it is stopped
   };
 
   /// Everything but the settings must outlive this.

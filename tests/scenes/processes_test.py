@@ -64,7 +64,22 @@ class Failing(SceneTest):
         self.assertEqual([line for line in outcome.lines if "r1" in line],
                          ["[1 r1] 1", "[2 r1] 2"])
         self.assertIn("[6 r0] 6", outcome.lines)
-        self.assertRegex(outcome.err, r"(?s)r1.*tick 3.*out of luck.*r1.*tick 3.*out of luck")
+        self.assertRegex(outcome.err, r"r1.*tick 3.*out of luck")
+        self.assertEqual(outcome.err.count("out of luck"), 1, "printed once")
+        self.assertIn("1 robot failed: r1 at tick 3", outcome.err)
+
+    def test_a_stuck_robot_is_named_with_file_and_line(self):
+        self.write("swing.lua", """function init() end
+function step()
+   if robot.id == "r1" then
+      while true do robot.stuck = 1 end
+   end
+end
+""")
+        process = self.start("run", self.scene, *ENDLESS, "--trust-scripts")
+        self.read_until(process.stderr, r"waiting for r1: .*swing\.lua:4$")
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
 
     def test_fail_fast_ends_at_the_first_error(self):
         self.write("swing.lua", FAILS_AT_TICK_3)

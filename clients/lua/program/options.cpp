@@ -111,6 +111,12 @@ po::variables_map parse(int count, const char* const* arguments) {
   namespace style = po::command_line_style;
   constexpr int exact = style::unix_style & ~style::allow_guessing;
   po::variables_map found;
+  for (int i = 1; i < count; ++i) {
+    const std::string word = arguments[i];
+    const bool is_value = i > 1 && arguments[i - 1][0] == '-';
+    if (is_value || word.starts_with('-') || !word.ends_with(".lua")) continue;
+    throw std::runtime_error("'" + word + "' is no option; to run this script, write --script " + word);
+  }
   try {
     // No positional arguments: boost's message names the first one.
     po::store(po::command_line_parser(count, arguments)
