@@ -1,4 +1,4 @@
-# Installs what package-lock.json names. Without the registry and a cache the build goes on without the page.
+# Installs what package-lock.json names. Without the registry and a cache the build goes on without it.
 execute_process(
   COMMAND ${NPM} ci --ignore-scripts --prefer-offline --no-audit --no-fund --loglevel=error
           --fetch-retries=1 --fetch-timeout=60000
@@ -6,6 +6,6 @@ execute_process(
 if(result EQUAL 0)
   file(TOUCH ${STAMP})
 else()
-  message(WARNING "The page of --view is not built: npm can't get its packages. Everything else is built. "
+  message(WARNING "${WHAT} is not built: npm can't get its packages. Everything else is built. "
                   "With a network, build again.\n${output}")
 endif()

@@ -116,7 +116,7 @@ export class Bodies {
       for (const { batch, index } of this.batchOfLink.get(link) ?? []) {
         const { mesh, parts } = this.batches[batch];
         color.set(parts[index].color);
-        if (links.includes(link)) color.lerp(tint, 0.45);
+        if (links.includes(link)) color.lerp(tint, 0.3);
         mesh.setColorAt(index, color);
         if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
       }

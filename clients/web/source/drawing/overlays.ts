@@ -8,8 +8,17 @@ function at(poses: Poses, mount: Mount, offset: Vector = [0, 0, 0]): Vector {
   return transform(compose(poseAt(poses.positions, poses.orientations, mount.link), mount), offset);
 }
 
-/** Arrows along the moments, the longest 4 cm; red with a current that adds, blue with one that opposes. */
-export function drawMagnets(world: World, poses: Poses, lines: Lines): void {
+/** The median of the largest extents of links that can move [m]: arrows should be about as long. */
+export function typicalSize(world: World): number {
+  const sizes = world.links.filter(({ entity }) => world.entities[entity]?.movable).map((link) =>
+    link.box ? Math.max(...Array.from(link.box.size)) : link.cylinder ? Math.max(2 * link.cylinder.radius, link.cylinder.height)
+      : link.sphere ? 2 * link.sphere.radius : link.capsule ? link.capsule.height : NaN);
+  const known = sizes.filter((size) => size > 0).sort((a, b) => a - b);
+  return known[Math.floor(known.length / 2)] ?? 0.1;
+}
+
+/** Arrows along the moments; red with a current that adds, blue with one that opposes. */
+export function drawMagnets(world: World, poses: Poses, longest: number, lines: Lines): void {
   let most = 1e-12;
   for (let i = 0; i < poses.magnetMoments.length; i += 3) {
     most = Math.max(most, Math.hypot(poses.magnetMoments[i], poses.magnetMoments[i + 1], poses.magnetMoments[i + 2]));
@@ -17,7 +26,7 @@ export function drawMagnets(world: World, poses: Poses, lines: Lines): void {
   world.magnets.forEach((magnet, i) => {
     if (world.entities[magnet.entity]?.removed || poses.magnetMoments.length < 3 * i + 3) return;
     const link = poseAt(poses.positions, poses.orientations, magnet.mount.link);
-    const moment = [0, 1, 2].map((k) => poses.magnetMoments[3 * i + k] / most * 0.04) as Vector;
+    const moment = [0, 1, 2].map((k) => poses.magnetMoments[3 * i + k] / most * longest) as Vector;
     const [x, y, z] = transform({ position: [0, 0, 0], orientation: link.orientation }, moment);
     const way = new three.Vector3(x, y, z);
     const current = poses.magnetCurrents[i] ?? 0;
@@ -59,16 +68,16 @@ export function drawRays(rays: Rays, lines: Lines): void {
   }
 }
 
-/** Arrows of force: 10 cm for the weight of `reference` [N], and at most 15 cm. */
-export function drawContacts(contacts: Contacts, reference: number, lines: Lines): void {
+/** Arrows of force: of this length [m] for `reference` [N], and at most twice as long. */
+export function drawContacts(contacts: Contacts, reference: number, arrow: number, lines: Lines): void {
   for (let i = 0; i < contacts.links.length / 2; ++i) {
     const k = 3 * i;
     const force = new three.Vector3(contacts.forces[k], contacts.forces[k + 1], contacts.forces[k + 2]);
     const start = new three.Vector3(contacts.points[k], contacts.points[k + 1], contacts.points[k + 2]);
-    const length = Math.min(0.15, 0.1 * force.length() / reference);
-    if (length > 1e-4) lines.arrow(start, force.setLength(length), 0x1fa34a);
+    const length = arrow * Math.min(2, force.length() / reference);
+    if (length > 1e-3 * arrow) lines.arrow(start, force.setLength(length), 0x1fa34a);
     for (const axis of [0, 1]) {
-      const half: Vector = axis === 0 ? [0.004, 0, 0] : [0, 0.004, 0];
+      const half: Vector = axis === 0 ? [0.05 * arrow, 0, 0] : [0, 0.05 * arrow, 0];
       lines.add([start.x - half[0], start.y - half[1], start.z], [start.x + half[0], start.y + half[1], start.z], 0x1fa34a);
     }
   }

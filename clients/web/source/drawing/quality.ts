@@ -2,7 +2,7 @@
 // processor, it takes fewer pixels and harder shadows before it drops frames.
 import * as three from "three";
 
-interface Level { pixels: number; shadowSize: number; shadows: three.ShadowMapType }
+interface Level { pixels: number; shadowSize: number; shadows: three.ShadowMapType | null }
 
 /** From best to fastest; pixels are drawn ones per pixel of the screen, along each side. */
 export const levels: Level[] = [
@@ -10,6 +10,8 @@ export const levels: Level[] = [
   { pixels: 1, shadowSize: 2048, shadows: three.PCFSoftShadowMap },
   { pixels: 1, shadowSize: 1024, shadows: three.BasicShadowMap },
   { pixels: 0.7, shadowSize: 1024, shadows: three.BasicShadowMap },
+  { pixels: 0.5, shadowSize: 512, shadows: three.BasicShadowMap },
+  { pixels: 0.5, shadowSize: 512, shadows: null },
 ];
 const slow = 0.05, quick = 0.012; // [s] a frame
 const patience = 12; // frames

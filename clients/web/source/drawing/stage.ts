@@ -38,12 +38,14 @@ export class Stage {
   private world: World | null = null;
   private theme: Theme = "light";
   private readonly quality: Quality;
+  private readonly isSlow: boolean; // no graphics processor
+  private wantsShadows = true;
   isDirty = true;
 
   constructor(readonly canvas: HTMLCanvasElement) {
     const probe = document.createElement("canvas").getContext("webgl2");
     if (!probe) throw new Error("This browser has no WebGL 2. Switch on its graphics acceleration, or use another one.");
-    const isSlow = isSoftware(probe);
+    const isSlow = this.isSlow = isSoftware(probe);
     this.renderer = new three.WebGLRenderer({ canvas, antialias: !isSlow });
     this.quality = isSlow ? new Quality(2, 1) : new Quality(window.devicePixelRatio > 1 ? 0 : 1, window.devicePixelRatio > 1 ? 0 : 1);
     this.renderer.shadowMap.enabled = true;
@@ -69,12 +71,19 @@ export class Stage {
     this.sun.shadow.mapSize.set(shadowSize, shadowSize);
     this.sun.shadow.map?.dispose();
     this.sun.shadow.map = null;
-    if (this.renderer.shadowMap.type !== shadows) {
+    this.sun.castShadow = this.wantsShadows && shadows !== null;
+    if (shadows !== null && this.renderer.shadowMap.type !== shadows) {
       this.renderer.shadowMap.type = shadows;
       this.scene.traverse((object) => {
         if (object instanceof three.Mesh) for (const one of [object.material].flat()) one.needsUpdate = true;
       });
     }
+    this.isDirty = true;
+  }
+
+  showShadows(isShown: boolean): void {
+    this.wantsShadows = isShown;
+    this.sun.castShadow = isShown && levels[this.quality.level].shadows !== null;
     this.isDirty = true;
   }
 
@@ -109,28 +118,32 @@ export class Stage {
     const tile = world.floorTile > 0 ? world.floorTile : 0.1;
     const [x, y] = [world.arenaSize[0] || 1, world.arenaSize[1] || 1];
     const center: [number, number] = [world.arenaCenter[0] || 0, world.arenaCenter[1] || 0];
-    this.addPlane(240, 240, center, -0.0006, checkers(colors.outside, colors.ground), tile * 5);
-    this.addPlane(x, y, center, 0, checkers(colors.light, colors.dark), tile);
+    const inside = this.addPlane(x, y, center, 0, { map: checkers(colors.light, colors.dark) });
+    inside.map!.repeat.set(x / (2 * tile), y / (2 * tile));
+    inside.map!.anisotropy = this.isSlow ? 1 : 4;
+    inside.map!.magFilter = three.NearestFilter;
+    this.addPlane(240, 240, center, -0.0006, { color: colors.outside }); // after it: hidden parts cost nothing
     this.isDirty = true;
   }
 
   private addPlane(x: number, y: number, [cx, cy]: [number, number], z: number,
-                   texture: three.Texture, tile: number): void {
-    texture.repeat.set(x / (2 * tile), y / (2 * tile));
-    texture.anisotropy = 4;
-    texture.magFilter = three.NearestFilter;
-    const mesh = new three.Mesh(new three.PlaneGeometry(x, y), new three.MeshLambertMaterial({ map: texture }));
+                   looks: three.MeshLambertMaterialParameters): three.MeshLambertMaterial {
+    const material = new three.MeshLambertMaterial(looks);
+    const mesh = new three.Mesh(new three.PlaneGeometry(x, y), material);
     mesh.position.set(cx, cy, z);
-    mesh.receiveShadow = true;
+    mesh.receiveShadow = z === 0 || !this.isSlow;
+    mesh.renderOrder = this.floor.length + 1;
     this.scene.add(mesh);
     this.floor.push(mesh);
+    return material;
   }
 
   /** Shows the whole of a box. */
   frame(low: Vector, high: Vector): void {
     const center = low.map((value, i) => (value + high[i]) / 2) as Vector;
     const radius = Math.max(0.05, Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2);
-    const distance = 0.95 * radius / Math.sin((this.camera.fov * Math.PI) / 360);
+    const narrow = Math.min(1, this.camera.aspect);
+    const distance = 0.95 * radius / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
     const way = new three.Vector3(0.55, -0.75, 0.55).normalize();
     this.set({ eye: [center[0] + way.x * distance, center[1] + way.y * distance, center[2] + way.z * distance],
                at: center, fieldOfView: this.camera.fov });

@@ -6,7 +6,7 @@ import type { Frame } from "../model/timeline";
 import { Bodies } from "./bodies";
 import { Lights } from "./lights";
 import { Lines } from "./lines";
-import { drawContacts, drawFrusta, drawMagnets, drawRays, drawTrail, RadioFlashes } from "./overlays";
+import { drawContacts, drawFrusta, drawMagnets, drawRays, drawTrail, RadioFlashes, typicalSize } from "./overlays";
 import { Stage } from "./stage";
 import { Tags } from "./tags";
 
@@ -36,7 +36,8 @@ export class View {
   private world: World | null = null;
   private frame: Frame | null = null;
   private trails = new Map<string, Vector[]>();
-  private reference = 1; // [N]
+  private reference = 1; // force [N] that has an arrow of this length [m]
+  private arrow = 0.1;
   private flashed = -1;
   private hasFramed = false;
   private drawnAt = -10; // [s]
@@ -84,15 +85,14 @@ export class View {
     this.stage.setWorld(world);
     const masses = world.links.map((link) => link.mass).filter((mass) => mass > 0).sort((a, b) => a - b);
     this.reference = 9.8 * Math.max(1e-6, masses[Math.floor(masses.length / 2)] ?? 0.1);
+    this.arrow = 1.2 * typicalSize(world);
   }
 
   applyLayers(): void {
     this.bodies.group.visible = this.shown.has("bodies");
     this.tags.group.visible = this.shown.has("tags");
     this.lights.group.visible = this.shown.has("lights");
-    this.stage.scene.traverse((object) => {
-      if (object instanceof three.DirectionalLight) object.castShadow = this.shown.has("shadows");
-    });
+    this.stage.showShadows(this.shown.has("shadows"));
     this.stage.isDirty = true;
   }
 
@@ -112,12 +112,12 @@ export class View {
     const { lines, frame, world, poses } = this;
     lines.clear();
     if (frame && world && poses) {
-      if (this.shown.has("magnets")) drawMagnets(world, poses, lines);
+      if (this.shown.has("magnets")) drawMagnets(world, poses, this.arrow, lines);
       if (this.shown.has("frusta")) drawFrusta(world, poses, lines);
       const rays = frame.messages.get("/rays");
       if (rays && this.shown.has("rays")) drawRays(rays.read<Rays>(), lines);
       const contacts = frame.messages.get("/contacts");
-      if (contacts && this.shown.has("contacts")) drawContacts(contacts.read<Contacts>(), this.reference, lines);
+      if (contacts && this.shown.has("contacts")) drawContacts(contacts.read<Contacts>(), this.reference, this.arrow, lines);
       const radio = frame.messages.get("/radio");
       if (radio && this.shown.has("radio") && this.flashed !== frame.sequence) {
         this.flashed = frame.sequence;

@@ -14,7 +14,8 @@ export function make(what: string, options: Options = {}, ...children: Child[]):
   const element = document.createElement(tag);
   if (classes.length > 0) element.className = classes.join(" ");
   for (const [name, value] of Object.entries(options)) {
-    if (name === "click") element.addEventListener("click", value as EventListener);
+    if (name === "style") element.style.cssText = String(value); // an attribute is against the security policy
+    else if (name === "click") element.addEventListener("click", value as EventListener);
     else if (value !== undefined && value !== false) element.setAttribute(name, value === true ? "" : String(value));
   }
   element.append(...children.filter((child) => child !== null));

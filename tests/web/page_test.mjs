@@ -1,0 +1,216 @@
+// The page in a real browser, with real runs of the program: ctest -R web/page.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { after, before, test } from "node:test";
+import { decode, liveTick, onScreen, openBrowser, openPage, picture, placeOf, root, Run, shownTick, waitFor, ziggurat }
+  from "./browser.mjs";
+
+const drop = "scenes/dynamics3d_single_body_test.argos";
+const vehicle = "scenes/dynamics3d_multi_body_test.argos";
+const tags = `${root}tests/web/tags.argos`;
+const fromTop = "eye=0,-0.001,0.9&at=0,0,0&fov=45&theme=light";
+
+let browser;
+let folder;
+before(async () => {
+  browser = await openBrowser();
+  folder = mkdtempSync(`${tmpdir()}/zw`);
+});
+after(async () => {
+  await browser?.close();
+  if (folder) rmSync(folder, { recursive: true });
+});
+
+/** Runs a scene, opens its page, and checks at the end that the page had no trouble. */
+function pageTest(name, scene, hash, body, ...options) {
+  test(name, { timeout: 90_000 }, async () => {
+    const run = await Run.start(scene, ...options);
+    try {
+      const page = await openPage(browser, run.address, hash);
+      await body(page, run);
+      assert.deepEqual(page.problems, []);
+      assert.deepEqual(page.foreign, []);
+      await page.context().close();
+    } finally {
+      await run.stop();
+    }
+  });
+}
+
+function key(page, name) { return page.locator("#world").focus().then(() => page.keyboard.press(name)); }
+function phaseIs(page, phase) {
+  return waitFor(() => page.evaluate((wanted) => window.ziggurat.app.parameters.get("phase") === wanted, phase), `phase ${phase}`);
+}
+
+/** Which pixels have a colour, as bodies have, and floor, walls and sky have not. */
+function silhouette({ width, height, data }) {
+  return Uint8Array.from({ length: width * height }, (_, i) => {
+    const rgb = data.subarray(4 * i, 4 * i + 3);
+    return Math.max(...rgb) - Math.min(...rgb) > 24 ? 1 : 0;
+  });
+}
+
+pageTest("the drop: a hundred bodies move, and the picture is that of `render`", drop,
+         "eye=0.52,-0.69,0.56&at=0,-0.04,0.04&fov=45&layers=bodies,tags&theme=light", async (page) => {
+  const first = await picture(page);
+  await waitFor(async () => (await liveTick(page)) >= 8, "tick 8");
+  const second = await picture(page);
+  assert.notDeepEqual(first, second);
+  const moved = await page.evaluate(() => {
+    const { timeline } = window.ziggurat.app;
+    const a = timeline.at(timeline.first).messages.get("/poses").read().positions;
+    const b = timeline.newest.messages.get("/poses").read().positions;
+    let count = 0;
+    for (let i = 2; i < a.length; i += 3) if (Math.abs(a[i] - b[i]) > 0.01) ++count;
+    return count;
+  });
+  assert.ok(moved >= 100, `${moved} bodies moved`);
+  await page.locator("#play").click();
+  await phaseIs(page, "paused");
+  await waitFor(async () => (await shownTick(page)) === (await liveTick(page)), "newest tick");
+  const tick = await shownTick(page);
+  const seen = await decode(page, await picture(page));
+  const file = `${folder}/drop.png`;
+  // The page's field of view is vertical, that of `render` horizontal.
+  const opening = 2 * Math.atan(Math.tan(22.5 * Math.PI / 180) * seen.width / seen.height) * 180 / Math.PI;
+  execFileSync(ziggurat, ["render", drop, "--at", `${tick / 5}`, "--size", `${seen.width}x${seen.height}`, "--quiet",
+    "--eye", "0.52,-0.69,0.56", "--look-at", "0,-0.04,0.04", "--fov", opening.toFixed(6), "--out", file], { cwd: root });
+  const [ours, theirs] = [silhouette(seen), silhouette(await decode(page, readFileSync(file)))];
+  let both = 0, any = 0;
+  ours.forEach((value, i) => {
+    both += value & theirs[i];
+    any += value | theirs[i];
+  });
+  assert.ok(any > 300, `${any} pixels show bodies`);
+  console.log(`silhouettes at tick ${tick}: ${any} pixels, ${(100 * both / any).toFixed(1)} % shared`);
+  assert.ok(both / any > 0.8, `${both} of ${any} pixels are shared`);
+}, "--real-time", "0.5");
+
+pageTest("pause stops the server, a step is one tick, resume goes on", tags, "", async (page) => {
+  await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
+  await key(page, "Space");
+  await phaseIs(page, "paused");
+  await page.waitForTimeout(300);
+  const tick = await liveTick(page);
+  await page.waitForTimeout(1000);
+  assert.equal(await liveTick(page), tick);
+  await page.locator("#step").click();
+  await waitFor(async () => (await liveTick(page)) === tick + 1, "next tick");
+  await page.waitForTimeout(300);
+  assert.equal(await liveTick(page), tick + 1);
+  await page.locator("#play").click();
+  await waitFor(async () => (await liveTick(page)) > tick + 3, "further ticks");
+});
+
+pageTest("the vehicle's wheels turn with 1 rad/s, and can be plotted", vehicle, "selected=vehicle", async (page) => {
+  await waitFor(async () => (await liveTick(page)) >= 10, "tick 10");
+  const readings = page.locator('[data-reading^="Senses/Joints/base_wheel"] .value');
+  const speeds = () => readings.evaluateAll((all) => all.map((one) => Number(one.dataset.value)));
+  await waitFor(async () => (await speeds()).length === 4 && (await speeds())[0] !== 0, "readings of four wheels");
+  for (const value of await speeds()) assert.ok(Math.abs(value - 1) < 0.05, `${value} rad/s`);
+  await page.locator('[data-reading^="Senses/Joints/base_wheel_fr"] button.plot').click();
+  await page.locator('[data-tab="plots"]').click();
+  await page.locator(".plot-box canvas").waitFor();
+  await waitFor(() => page.evaluate(() => window.ziggurat.app.series[0]?.values.length > 3), "plotted values");
+  await waitFor(() => page.evaluate(() => location.hash.includes("plot=") && location.hash.includes("selected=vehicle")), "address");
+  await page.locator('[data-tab="log"]').click();
+  await page.locator(".log .line").first().waitFor();
+  await page.locator('[data-tab="barrier"]').click();
+  await page.locator(".sessions td").first().waitFor();
+}, "--real-time", "4");
+
+pageTest("scrubbing back shows old poses while the world runs on", drop, "", async (page) => {
+  await waitFor(async () => (await liveTick(page)) >= 6, "tick 6");
+  const id = await page.evaluate(() => window.ziggurat.app.world.entities.find(({ movable }) => movable).id);
+  const line = await page.locator("#timeline").boundingBox();
+  await page.mouse.click(line.x + 1, line.y + line.height / 2);
+  await waitFor(() => page.evaluate(() => window.ziggurat.app.pinned !== null), "look back");
+  await page.waitForTimeout(500);
+  const [old, tick] = [await placeOf(page, id), await shownTick(page)];
+  const live = await liveTick(page);
+  assert.ok(tick <= 2, `tick ${tick}`);
+  await waitFor(async () => (await liveTick(page)) > live, "new ticks");
+  assert.equal(await shownTick(page), tick);
+  assert.deepEqual(await placeOf(page, id), old);
+  await page.locator("#live").click();
+  await waitFor(async () => (await shownTick(page)) > tick + 3, "live tick");
+  await waitFor(async () => Math.abs((await placeOf(page, id))[2] - old[2]) > 0.01, "the new place");
+}, "--real-time", "0.5");
+
+pageTest("a tag's pattern is found by libapriltag", tags, `${fromTop}&layers=bodies,tags`, async (page) => {
+  const { width, height, data } = await decode(page, await picture(page));
+  const grey = Buffer.from(Uint8Array.from({ length: width * height }, (_, i) => data[4 * i + 1]));
+  const file = `${folder}/tag.pgm`;
+  writeFileSync(file, Buffer.concat([Buffer.from(`P5\n${width} ${height}\n255\n`), grey]));
+  assert.equal(execFileSync(process.env.FIND_TAGS, [file]).toString(), "42\n");
+});
+
+pageTest("a block is dragged in the server", tags, fromTop, async (page) => {
+  const start = await placeOf(page, "near");
+  await key(page, "m");
+  const from = await onScreen(page, [start[0], start[1], start[2] + 0.1]);
+  const to = await onScreen(page, [start[0], start[1] - 0.2, start[2] + 0.1]);
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move((from.x + to.x) / 2, (from.y + to.y) / 2, { steps: 4 });
+  await page.mouse.move(to.x, to.y, { steps: 4 });
+  await page.mouse.up();
+  await waitFor(async () => Math.abs((await placeOf(page, "near"))[1] - (start[1] - 0.2)) < 0.01, "the new place");
+  assert.ok(Math.abs((await placeOf(page, "near"))[0] - start[0]) < 0.01);
+  assert.deepEqual((await placeOf(page, "far")).map((value) => value.toFixed(2)), ["0.25", "0.20", "0.00"]);
+});
+
+pageTest("what is spawned comes, what is removed goes", tags, "", async (page) => {
+  await page.locator(".change summary").click();
+  await page.locator("#spawn-id").fill("guest");
+  await page.locator("#spawn-place").fill("0.1, -0.3, 0.05");
+  await page.locator("#spawn").click();
+  await waitFor(() => placeOf(page, "guest"), "guest");
+  await waitFor(async () => Math.abs((await placeOf(page, "guest"))[2]) < 0.003, "guest on the floor");
+  await page.locator('[data-entity="guest"]').waitFor();
+  await page.locator("#remove").click();
+  await waitFor(async () => (await placeOf(page, "guest")) === null, "end of guest");
+  await page.locator("#spawn-id").fill("near");
+  await page.locator("#spawn").click(); // the name is taken
+  await page.locator(".notice.error").waitFor();
+});
+
+test("a server that was killed and started again is found within seconds", { timeout: 90_000 }, async () => {
+  const token = "test-token-0123456789";
+  let run = await Run.start(tags, "--view=127.0.0.1:0", "--view-token", token);
+  try {
+    const page = await openPage(browser, run.address);
+    const { port } = run.address;
+    const session = await page.evaluate(() => window.ziggurat.app.connection.session);
+    await run.stop("SIGKILL");
+    await page.locator("#overlay.banner").waitFor();
+    assert.match(await page.locator("#overlay").textContent(), /closed the connection|No connection/);
+    run = await Run.start(tags, `--view=127.0.0.1:${port}`, "--view-token", token);
+    const begin = Date.now();
+    await waitFor(() => page.evaluate((old) => {
+      const { connection, timeline } = window.ziggurat.app;
+      return connection.phase === "open" && connection.session !== old && timeline.length > 1;
+    }, session), "new session", 10);
+    console.log(`back after ${((Date.now() - begin) / 1000).toFixed(1)} s`);
+    assert.deepEqual(page.foreign, []);
+  } finally {
+    await run.stop();
+  }
+});
+
+test("without token the page looks and changes nothing", { timeout: 60_000 }, async () => {
+  const run = await Run.start(tags);
+  try {
+    const address = new URL(run.address);
+    address.search = "";
+    const page = await openPage(browser, address);
+    await waitFor(() => page.evaluate(() => document.querySelector("#play").disabled), "play that is disabled");
+    await key(page, "Space");
+    await page.locator(".notice.error").waitFor();
+    await waitFor(async () => (await liveTick(page)) > 3, "ticks");
+  } finally {
+    await run.stop();
+  }
+});
