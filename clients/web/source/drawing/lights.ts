@@ -4,7 +4,8 @@ import type { Led, Poses, World } from "../model/messages";
 import { compose, poseAt } from "../model/pose";
 
 const radius = 0.004; // [m]
-const coneLength = 0.05; // [m]
+const longestCone = 0.02; // [m]
+const widestCone = 0.9; // half-angle [rad]: wider ones would hide what they shine on
 
 function glowTexture(): three.DataTexture {
   const size = 64;
@@ -44,7 +45,7 @@ export class Lights {
     if (world.directionalLeds.length > 0) {
       const cone = new three.ConeGeometry(1, 1, 32, 1, true).rotateX(-Math.PI / 2).translate(0, 0, 0.5);
       this.cones = new three.InstancedMesh(cone, new three.MeshBasicMaterial(
-        { transparent: true, opacity: 0.28, side: three.DoubleSide, depthWrite: false }), world.directionalLeds.length);
+        { transparent: true, opacity: 0.2, side: three.DoubleSide, depthWrite: false }), world.directionalLeds.length);
       this.cones.frustumCulled = false;
       this.group.add(this.cones);
     }
@@ -56,9 +57,9 @@ export class Lights {
     this.world.directionalLeds.forEach((led, i) => {
       const color = poses.directionalLedColors[i] ?? 0;
       const matrix = this.place(led, this.world!.leds.length + i, color, poses);
-      const wide = coneLength * Math.tan(Math.min(led.observableAngle, 1.4));
+      const wide = longestCone * Math.tan(Math.min(led.observableAngle, widestCone));
       const isOn = color !== 0 && !this.world!.entities[led.entity]?.removed;
-      matrix.scale(isOn ? new three.Vector3(wide, wide, coneLength) : new three.Vector3(0, 0, 0));
+      matrix.scale(isOn ? new three.Vector3(wide, wide, longestCone) : new three.Vector3(0, 0, 0));
       this.cones!.setMatrixAt(i, matrix);
       this.cones!.setColorAt(i, new three.Color(color));
     });

@@ -5,7 +5,8 @@ import { compose, poseAt } from "../model/pose";
 
 const vertexShader = `
   attribute vec3 code;  // upper 18 bits, lower 18 bits, 1 if there is a pattern
-  varying vec2 vAt; varying vec3 vCode;
+  varying vec2 vAt;
+  flat varying vec3 vCode;
   void main() {
     vAt = uv; vCode = code;
     gl_Position = projectionMatrix * modelViewMatrix * instanceMatrix * vec4(position, 1.0);
@@ -13,7 +14,8 @@ const vertexShader = `
 
 // The tag's +x is up in the picture and -y is to the right.
 const fragmentShader = `
-  varying vec2 vAt; varying vec3 vCode;
+  varying vec2 vAt;
+  flat varying vec3 vCode;  // interpolated it would lose its last bits
   float bitOf(float number, float place) { return mod(floor(number / exp2(place)), 2.0); }
   void main() {
     vec2 module = floor(vec2((1.0 - vAt.y) * 10.0, (1.0 - vAt.x) * 10.0));
