@@ -24,7 +24,7 @@ CASES = [
           MISLED, Quiet(2.0)),
     _case("K1.no-fallback", "A server without keys is told nothing, in no way", PLAIN_SERVER, Mechanisms()),
     *[_case(f"K9.{name}", f"It ends, with another exit code than 0, when {title}", variant,
-            Quiet(0.5), Ends(good=False, should=True, within=8.0))
+            Quiet(0.5), Ends(good=False, should=True, within=20.0))
       for name, title, variant in (("refused-key", "its key is refused", UNLISTED),
                                    ("another-server", "the server has another key", MISLED))],
     _case("L12.same-key", "It resumes its session with the key that it began it with",

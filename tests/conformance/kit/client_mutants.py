@@ -245,7 +245,7 @@ def _mixes(client, command):
 
 def _floods(client, command):
     client.say(command=command)
-    for sequence in range(3000):
+    for sequence in range(20000):
         client.say(heartbeat=protocol.Heartbeat(sequence=sequence))
 
 
