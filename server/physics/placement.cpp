@@ -1,5 +1,8 @@
 #include "physics/placement.h"
 
+#include <algorithm>
+
+#include "physics/nearby.h"
 #include "physics/overlap.h"
 
 namespace ziggurat::physics {
@@ -11,6 +14,7 @@ struct Placement::Parts {
   };
   std::vector<std::string> ids;
   std::vector<Placed> placed;
+  Nearby nearby;  // of `placed`
 };
 
 Placement::Placement() : parts_(std::make_unique<Parts>()) {}
@@ -18,19 +22,24 @@ Placement::~Placement() = default;
 
 void Placement::add(const scene::Entity& entity) {
   for (const PlacedCollider& collider : placed_colliders(entity)) {
+    parts_->nearby.add(parts_->placed.size(), collider.pose.getOrigin(),
+                       contact::bounding_radius(collider.shape));
     parts_->placed.push_back({parts_->ids.size(), collider});
   }
   parts_->ids.push_back(entity.id);
 }
 
 std::string Placement::overlapped_by(const scene::Entity& entity) const {
-  const std::vector<PlacedCollider> candidates = placed_colliders(entity);
-  for (const Parts::Placed& other : parts_->placed) {
-    for (const PlacedCollider& candidate : candidates) {
-      if (overlaps(candidate, other.collider)) return parts_->ids[other.entity];
-    }
+  const std::size_t none = parts_->placed.size();
+  std::size_t first = none;
+  for (const PlacedCollider& candidate : placed_colliders(entity)) {
+    parts_->nearby.visit(candidate.pose.getOrigin(), contact::bounding_radius(candidate.shape),
+                         [&](std::size_t i) {
+                           const auto& other = parts_->placed[i];
+                           if (i < first && overlaps(candidate, other.collider)) first = i;
+                         });
   }
-  return {};
+  return first == none ? std::string() : parts_->ids[parts_->placed[first].entity];
 }
 
 }  // namespace ziggurat::physics

@@ -78,7 +78,7 @@ class Draw {
 
 void distribute(const scene::Scene& scene, const scene::Distribution& group,
                 math::RandomStream& random, physics::Placement& placement,
-                std::vector<scene::Entity>& entities) {
+                std::vector<scene::Entity>& entities, const std::function<void()>& tell) {
   Draw position(group.position, random), orientation(group.orientation, random);
   const bool grid = group.position.method == scene::DistributionMethod::grid ||
                     group.orientation.method == scene::DistributionMethod::grid;
@@ -96,20 +96,28 @@ void distribute(const scene::Scene& scene, const scene::Distribution& group,
     if (!other.empty()) no_place(scene, group, entity.id, i, other);
     placement.add(entity);
     entities.push_back(std::move(entity));
+    tell();
   }
 }
 
 }  // namespace
 
-std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed) {
+std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed,
+                                 const TellPlaced& tell) {
   std::vector<scene::Entity> entities = scene.entities;
   physics::Placement placement;
   if (!scene.distributions.empty()) {
     for (const scene::Entity& entity : entities) placement.add(entity);
   }
+  constexpr std::size_t between = 100;  // entities
+  std::size_t all = 0, placed = 0;
+  for (const scene::Distribution& group : scene.distributions) all += group.quantity;
+  const auto tell_one = [&] {
+    if (++placed % between == 0 && tell) tell(placed, all);
+  };
   math::RandomStream random(seed, "distribute");
   for (const scene::Distribution& group : scene.distributions) {
-    distribute(scene, group, random, placement, entities);
+    distribute(scene, group, random, placement, entities, tell_one);
   }
   return entities;
 }

@@ -1,7 +1,9 @@
 #pragma once
 // Puts everything where it starts: what the scene places, then what it distributes.
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "scene/reader.h"
@@ -9,9 +11,14 @@
 
 namespace ziggurat::simulation {
 
+/// How many of all entities that are to be distributed have their places.
+using TellPlaced = std::function<void(std::size_t placed, std::size_t all)>;
+
 /// All entities of the scene at their poses, in scene order: the placed ones, then the
 /// distributed ones group by group.
+/// @param tell  told now and then how many entities are distributed already
 /// @throws scene::SceneError if a distributed entity finds no free place
-std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed);
+std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed,
+                                 const TellPlaced& tell = {});
 
 }  // namespace ziggurat::simulation

@@ -108,7 +108,7 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
       physics(scene.physics, substep),
       rays(scene.physics),
       layout(made) {
-  entities = place(scene, options.seed);
+  entities = place(scene, options.seed, options.tell);
   made = make_layout(scene, entities, substep);
   for (const scene::Entity& entity : entities) {
     physics.add(entity);

@@ -10,6 +10,7 @@
 
 #include "physics/values.h"
 #include "scene/scene.h"
+#include "simulation/place.h"
 #include "world/commands.h"
 #include "world/contact.h"
 #include "world/layout.h"
@@ -19,6 +20,7 @@ namespace ziggurat::simulation {
 
 struct Options {
   std::uint64_t seed = 1;  ///< of every random stream; not 0
+  TellPlaced tell = {};    ///< while entities are distributed; may be empty
 };
 
 class Simulation {
@@ -58,8 +60,8 @@ class Simulation {
   /// @param entity  into Layout::entities, one that is present
   void remove(std::size_t entity);
 
-  /// Whether contacts() lists contacts from the next tick on; that costs time. Not at first, and not
-  /// after a reset. No result depends on it.
+  /// Whether contacts() lists contacts from the next tick on; that costs time. Not at first, and
+  /// not after a reset. No result depends on it.
   void list_contacts(bool wanted);
   /// Of the last substep; empty unless they are listed.
   const std::vector<world::Contact>& contacts() const;

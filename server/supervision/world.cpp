@@ -8,16 +8,17 @@
 
 namespace ziggurat::supervision {
 
-World::World(std::string path_given, scene::OpenScene opened, std::uint64_t seed_given)
+World::World(std::string path_given, scene::OpenScene opened, std::uint64_t seed_given,
+             const simulation::TellPlaced& tell)
     : path(std::move(path_given)),
       scene(std::move(opened.scene)),
       additions(std::move(opened.additions)),
       scene_hash(supervision::scene_hash(scene)),
       seed(seed_given),
-      simulation(scene, {seed}) {}
+      simulation(scene, {seed, tell}) {}
 
 void World::reset(std::uint64_t new_seed) {
-  simulation.reset(scene, {new_seed});
+  simulation.reset(scene, {new_seed, {}});
   seed = new_seed;
 }
 

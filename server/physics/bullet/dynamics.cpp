@@ -4,6 +4,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include "physics/contact/algorithm.h"
+#include "physics/most_contacts.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -52,6 +53,8 @@ void Dynamics::keep_in_box(btBroadphaseProxy& proxy, const btVector3& low, const
       inside(low - 3 * slack, high + 3 * slack, proxy.m_aabbMin, proxy.m_aabbMax);
   if (large_enough && small_enough) return;
   broadphase_.setAabbForceUpdate(&proxy, low - slack, high + slack, m_dispatcher1);
+  check_near_pairs(static_cast<std::size_t>(
+      getBroadphase()->getOverlappingPairCache()->getNumOverlappingPairs()));
 }
 
 void Dynamics::substep(btScalar length) {

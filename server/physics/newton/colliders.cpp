@@ -6,6 +6,7 @@
 
 #include "physics/convert.h"
 #include "physics/make_room.h"
+#include "physics/most_contacts.h"
 #include "physics/newton/tree.h"
 #include "physics/shape.h"
 
@@ -191,6 +192,8 @@ void Colliders::keep_in_box(ColliderGroup& group, double step, bool shrinks) {
                                        proxy.m_aabbMin, proxy.m_aabbMax);
   if (fits && inside(proxy.m_aabbMin, proxy.m_aabbMax, group.low, group.high)) return;
   broadphase_.setAabbForceUpdate(group.proxy, group.low - slack, group.high + slack, nullptr);
+  check_near_pairs(
+      static_cast<std::size_t>(broadphase_.getOverlappingPairCache()->getNumOverlappingPairs()));
 }
 
 void Colliders::follow(const dynamics::System& system, double length) {
@@ -246,6 +249,7 @@ void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b,
       if (!boxes_meet(one.low, one.high, all[j].low, all[j].high)) continue;
       out.push_back({std::min(i, j), std::max(i, j)});
     }
+    check_near_pairs(out.size());
   }
 }
 

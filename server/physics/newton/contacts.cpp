@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "physics/convert.h"
+#include "physics/most_contacts.h"
 #include "physics/newton/passage.h"
 
 namespace ziggurat::physics {
@@ -332,6 +333,7 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
 
 /// Appends the contacts of a pair's points to the list.
 void Contacts::emit(const Pair& pair) {
+  check_contact_points(contacts_.size());
   for (int i = 0; i < pair.count; ++i) {
     dynamics::Contact& contact = contacts_.emplace_back(pair.law);
     contact.point = pair.points[i].point;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bench_scene.h"
+#include "physics/most_contacts.h"
 #include "physics/ray.h"
 
 namespace ziggurat::physics {
@@ -31,6 +32,15 @@ scene::Entity pendulum(const Vector3& at) {
                                 {{0, 0, 0}, math::Quaternion::Identity()},
                                 {{0.1, 0, 0.01}, math::Quaternion::Identity()}));
   return entity;
+}
+
+TEST(AddEntity, TooManyInOnePlaceAreAFault) {
+  World world(with_gravity(9.8), 0.01);
+  const auto crowd = [&] {
+    for (int i = 0; i < 1500; ++i) world.add(box_at({0, 0, 5}));
+    world.step();
+  };
+  EXPECT_THROW(crowd(), TooManyContacts);
 }
 
 TEST(AddEntity, KeepsItsPoseUntilTheNextStep) {
