@@ -39,7 +39,7 @@ MODULES = {
     "cli": ["run", "reports", "processes", "network", "simulation", "physics", "magnetism", "scene",
             "text", "clients/cpp"],
     "clients/cpp": ["protocol"],
-    "clients/lua": ["clients/cpp"],
+    "clients/lua": ["text", "clients/cpp"],
 }
 
 # library -> (pattern of its headers, modules that may include them). Libraries that are not here,

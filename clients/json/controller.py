@@ -4,7 +4,7 @@
 It sets every velocity motor to 1 rad/s (or 1 m/s) and logs the first encoder.
 
     ziggurat serve scenes/dynamics3d_multi_body_test.argos &
-    controller.py tcp://127.0.0.1:5770
+    controller.py ENDPOINT        as the server prints it
 """
 
 import json

@@ -28,7 +28,9 @@ po::options_description ctl_options() {
   po::options_description options("Options", 96);
   options.add_options()("seed", po::value<std::string>()->value_name("N"),
                         "with reset: the new seed; without it the seed stays")(
-      "json", "print answers as JSON");
+      "json", "print answers as JSON")(
+      "reason", po::value<std::string>()->value_name("TEXT"),
+      "with shutdown: the end is planned; the run's exit code is 0, and its summary has TEXT");
   add_key_options(options);
   return options;
 }
@@ -127,7 +129,10 @@ void read(const Call& call) {
   }
 }
 
-void shutdown(const Call& call) { call.server.shutdown(); }
+void shutdown(const Call& call) {
+  const auto reason = call.values.find("reason");
+  call.server.shutdown(reason == call.values.end() ? "" : reason->second.as<std::string>());
+}
 
 struct Verb {
   std::string_view name;
@@ -151,7 +156,8 @@ constexpr Verb verbs[] = {
      "put it at rest there [m], with this orientation [degrees]", move},
     {"read", "[ID|GLOB]...", 0, any_number, "poses of entities: x y z, and the quaternion w x y z",
      read},
-    {"shutdown", "", 0, 0, "end the run, as Ctrl-C does", shutdown},
+    {"shutdown", "[--reason TEXT]", 0, 0, "end the run, as Ctrl-C does; with a reason as planned",
+     shutdown},
 };
 
 const Verb& verb_named(const std::string& name) {
@@ -168,10 +174,11 @@ const Verb& verb_named(const std::string& name) {
 
 std::string help_ctl() {
   std::ostringstream text;
-  text << R"(usage: ziggurat ctl URL REQUEST [ARGUMENT]...
+  text << R"(usage: ziggurat ctl [URL] REQUEST [ARGUMENT]...
 
 Controls a run of `ziggurat run --endpoint URL` or `ziggurat serve` from another terminal. Requests are
-carried out between two ticks; the command returns when its request is done.
+carried out between two ticks; the command returns when its request is done. Without URL it is that of
+ZIGGURAT_ENDPOINT, or the only server that runs here.
 
 )";
   for (const Verb& verb : verbs) {
@@ -179,11 +186,11 @@ carried out between two ticks; the command returns when its request is done.
                         verb.summary);
   }
   text << R"(
-  ziggurat ctl tcp://127.0.0.1:5770 pause
-  ziggurat ctl tcp://127.0.0.1:5770 step 10
+  ziggurat ctl pause
+  ziggurat ctl step 10
   ziggurat ctl tcp://127.0.0.1:5770 read 'block*' --json
   echo '<box id="b" size=".1,.1,.1" movable="true" mass="1"><body position="0,0,1"/></box>' |
-      ziggurat ctl tcp://127.0.0.1:5770 spawn -
+      ziggurat ctl spawn -
 
 Exit codes: 0 the request was done; 1 it was not.
 
@@ -193,21 +200,33 @@ Exit codes: 0 the request was done; 1 it was not.
 
 int execute_ctl(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, ctl_options());
-  if (parsed.positional.size() < 2) {
+  std::vector<std::string> words = parsed.positional;
+  const bool has_endpoint = !words.empty() && words.front().find("://") != std::string::npos;
+  if (words.size() < (has_endpoint ? 2 : 1)) {
     throw text::UsageError(
-        "write: ziggurat ctl URL REQUEST   ('ziggurat help ctl' lists the requests)");
+        "write: ziggurat ctl [URL] REQUEST   ('ziggurat help ctl' lists the requests)");
   }
-  const Verb& verb = verb_named(parsed.positional[1]);
-  const std::vector<std::string> words(parsed.positional.begin() + 2, parsed.positional.end());
+  const Verb& verb = verb_named(words[has_endpoint ? 1 : 0]);
+  std::vector<std::string> where(words.begin(), words.begin() + (has_endpoint ? 1 : 0));
+  words.erase(words.begin(), words.begin() + (has_endpoint ? 2 : 1));
   if (words.size() < verb.least || words.size() > verb.most) {
-    throw text::UsageError(fmt::format("write: ziggurat ctl URL {}{}{}", verb.name,
+    throw text::UsageError(fmt::format("write: ziggurat ctl [URL] {}{}{}", verb.name,
                                        verb.words.empty() ? "" : " ", verb.words));
   }
   if (parsed.values.count("seed") > 0 && verb.name != "reset") {
     throw text::UsageError(fmt::format("--seed is for reset; remove it from {}", verb.name));
   }
+  if (const auto reason = parsed.values.find("reason"); reason != parsed.values.end()) {
+    if (verb.name != "shutdown") {
+      throw text::UsageError(fmt::format("--reason is for shutdown; remove it from {}", verb.name));
+    }
+    if (reason->second.as<std::string>().empty()) {
+      throw text::UsageError("--reason is empty; write why the run ends, or leave it out");
+    }
+  }
+  const std::string endpoint = take_endpoint(where);
   reports::Console console;
-  Supervisor server(supervisor_options(parsed.positional[0], parsed.values, false, "ziggurat ctl"));
+  Supervisor server(supervisor_options(endpoint, parsed.values, false, "ziggurat ctl"));
   verb.execute({server, console, words, parsed.values});
   console.flush();
   return reports::exit_code::finished;

@@ -34,6 +34,8 @@ replaced.
   ziggurat keygen --out alice
   echo "$(cat alice.public) controller Alice's robots" > clients.txt
       keys of the server and of a client, and the list of allowed clients
+  echo "$(cat bob.public) controller robots=scout*,r7 takeover=no Bob" >> clients.txt
+      Bob drives only these robots, and takes none from others
   ziggurat serve vehicle.argos --endpoint tcp://0.0.0.0:5770 \
                 --curve-secret server.secret --curve-clients clients.txt
   ziggurat-lua --connect tcp://192.0.2.1:5770 --server-key "$(cat server.public)" \

@@ -14,13 +14,16 @@ Runs a scene for controllers that connect from outside, also Lua controllers. Th
 them forever, prints which robots it waits for, and ends after the scene's length.
 
   ziggurat serve vehicle.argos
-      listens on tcp://127.0.0.1:5770, and prints that
+      listens on a socket in $XDG_RUNTIME_DIR/ziggurat, otherwise in /tmp/ziggurat-UID, that only this user
+      can reach, and prints where
   ziggurat serve vehicle.argos --endpoint 'tcp://127.0.0.1:*' --json
       listens on any free port; the first line of stdout is {"endpoint":"tcp://127.0.0.1:40123",…}
   ziggurat serve vehicle.argos --endpoint ipc:///tmp/vehicle
       for controllers on this machine
-  ziggurat-lua --connect tcp://127.0.0.1:5770
+  ziggurat-lua
       in another terminal: the scene's Lua controllers
+  ziggurat serve vehicle.argos --endpoint tcp://127.0.0.1:5770
+      for all users of this machine
   ziggurat serve stacking.argos --real-time
       without --real-time a scene without controllers starts paused
 

@@ -39,13 +39,14 @@ bool sleep(processes::Signals& signals, double seconds) {
 
 std::string help_top() {
   std::ostringstream text;
-  text << R"(usage: ziggurat top URL [OPTION]...
+  text << R"(usage: ziggurat top [URL] [OPTION]...
 
 Shows which controllers a run of `ziggurat run --endpoint URL` or `ziggurat serve` waits for: every
 controller with its state, how long the world has waited for it, how long it takes to answer, its
 missed deadlines; and where the wall time of a tick goes. It does not slow the run. Ctrl-C ends it.
+Without URL it is that of ZIGGURAT_ENDPOINT, or the only server that runs here.
 
-  ziggurat top tcp://127.0.0.1:5770
+  ziggurat top
   ziggurat top tcp://127.0.0.1:5770 --once --json
 
 )" << top_options();
@@ -54,7 +55,9 @@ missed deadlines; and where the wall time of a tick goes. It does not slow the r
 
 int execute_top(const Arguments& arguments, processes::Signals& signals) {
   const Parsed parsed = parse(arguments, top_options());
-  if (parsed.positional.size() != 1) throw text::UsageError("write: ziggurat top URL");
+  std::vector<std::string> words = parsed.positional;
+  const std::string endpoint = take_endpoint(words);
+  if (!words.empty()) throw text::UsageError("write: ziggurat top [URL]");
   const bool once = parsed.values.count("once") > 0;
   const bool json = parsed.values.count("json") > 0;
   double interval = 1;
@@ -65,8 +68,7 @@ int execute_top(const Arguments& arguments, processes::Signals& signals) {
     }
   }
   reports::Console console;
-  SupervisorOptions options =
-      supervisor_options(parsed.positional[0], parsed.values, true, "ziggurat top");
+  SupervisorOptions options = supervisor_options(endpoint, parsed.values, true, "ziggurat top");
   bool is_interrupted = false;
   options.is_interrupted = [&] { return is_interrupted |= signals.take().interruptions > 0; };
   Supervisor server(options);

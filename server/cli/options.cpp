@@ -56,8 +56,8 @@ po::options_description world_options() {
        "when a controller disconnects, keep its robots for it for S seconds")                //
       ("curve-secret", text("FILE"), "protect endpoints with this key ('ziggurat keygen')")  //
       ("curve-clients", text("FILE"),
-       "the allowed clients: lines with a public key, roles (controller, supervisor, observer) and "
-       "a name")                                                                            //
+       "the allowed clients: lines KEY ROLE[,ROLE] [robots=GLOB,..] [controllers=GLOB,..] "
+       "[takeover=yes|no] [NAME]; a ROLE is controller, supervisor or observer")            //
       ("paused", "stand at tick 0 until a supervisor resumes ('ziggurat ctl URL resume')")  //
       ("fail-fast", "end when the first controller fails or the first robot is dropped")    //
       ("allow-drops", "robots that a deadline dropped do not make the exit code 3")         //
@@ -110,8 +110,8 @@ po::options_description controller_options() {
   po::options_description options("Controllers", width);
   options.add_options()  //
       ("lua-processes", text("N"),
-       "share the Lua robots among N processes; default 1, "
-       "0 is one for each robot")  //
+       "share the Lua robots among N processes; default 1, 0 is one for each robot; spawned Lua "
+       "robots share as many others, at most 16")  //
       ("trust-scripts",
        "Lua scripts may start programs and use all of Lua and all files; otherwise they use only "
        "files below the folders of the scene, its includes and its scripts")              //

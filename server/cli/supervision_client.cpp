@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "run/version.h"
+#include "ziggurat/session.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -48,6 +49,14 @@ void add_key_options(boost::program_options::options_description& options) {
                         "the server's public key, if its endpoint is protected")(
       "curve-secret", po::value<std::string>()->value_name("FILE"),
       "with --server-key: the secret key of this client ('ziggurat keygen')");
+}
+
+std::string take_endpoint(std::vector<std::string>& words) {
+  const bool is_given = !words.empty() && words.front().find("://") != std::string::npos;
+  if (!is_given) return ziggurat::Options::from_environment().endpoint;
+  std::string endpoint = words.front();
+  words.erase(words.begin());
+  return endpoint;
 }
 
 SupervisorOptions supervisor_options(const std::string& endpoint,

@@ -4,6 +4,7 @@
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>
 #include <string>
+#include <vector>
 
 #include "ziggurat/supervisor.h"
 
@@ -11,6 +12,10 @@ namespace ziggurat::cli {
 
 /// The options with keys, for protected servers.
 void add_key_options(boost::program_options::options_description& options);
+
+/// Takes the endpoint from the front of the words if it is one; otherwise ZIGGURAT_ENDPOINT, or the
+/// only server that runs here. @throws std::invalid_argument if there is none
+std::string take_endpoint(std::vector<std::string>& words);
 
 SupervisorOptions supervisor_options(const std::string& endpoint,
                                      const boost::program_options::variables_map& values,

@@ -7,15 +7,17 @@ namespace {
 
 constexpr std::size_t most_kept = 8;                   // different questions
 constexpr std::chrono::milliseconds longest_age{100};  // a status has times in it
+constexpr std::chrono::milliseconds longest_age_of_commands{10};
 
 }  // namespace
 
-wire::Answer& Answers::find(const wire::Request& request, std::uint64_t changes,
+wire::Answer& Answers::find(const wire::Request& request, const Version& version,
                             const Write& write) {
   const auto now = std::chrono::steady_clock::now();
-  if (changes != changes_ || now - made_ > longest_age) {
+  const auto most = version.commands == version_.commands ? longest_age : longest_age_of_commands;
+  if (version.changes != version_.changes || now - made_ > most) {
     kept_.clear();
-    changes_ = changes;
+    version_ = version;
     made_ = now;
   }
   const auto found = std::ranges::find_if(kept_, [&](const Kept& each) {

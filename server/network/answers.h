@@ -18,9 +18,14 @@ class Answers {
  public:
   using Write = std::function<void(wire::Outbox&)>;
 
-  /// @param changes  a number that is another one if anything has changed
+  /// Of what answers tell.
+  struct Version {
+    std::uint64_t changes = 0;  ///< another number: answers have changed
+    std::uint64_t commands =
+        0;  ///< another number: sessions have answered the tick, told a little later
+  };
   /// @param write  writes the answer with number 0
-  wire::Answer& find(const wire::Request& request, std::uint64_t changes, const Write& write);
+  wire::Answer& find(const wire::Request& request, const Version& version, const Write& write);
 
  private:
   struct Kept {
@@ -30,7 +35,7 @@ class Answers {
   };
 
   std::vector<Kept> kept_;
-  std::uint64_t changes_ = 0;
+  Version version_;
   std::chrono::steady_clock::time_point made_{};  // the first of them
   wire::Outbox outbox_;
 };

@@ -19,7 +19,10 @@ struct Config {
   std::optional<Curve> curve;          ///< protects the endpoints, but not the private one
   bool insecure = false;               ///< without that: allow addresses that are not loopback
   std::size_t max_message_bytes = std::size_t{64} << 20;  ///< of a client's message
-  std::size_t max_sessions = 4096;                        ///< with a connection
+  // Sessions with a connection, by role: so that no role uses up the places of another.
+  std::size_t max_sessions = 4096;  ///< of controllers
+  std::size_t max_supervisors = 64;
+  std::size_t max_observers = 256;
   unsigned max_faults = 100;  ///< bad messages in a row before a session is closed
   Rate rate;                  ///< of a connection's messages, besides expected answers
   std::chrono::milliseconds heartbeat{1000};  ///< of wall time that a session hears nothing; > 0

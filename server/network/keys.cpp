@@ -15,6 +15,8 @@
 #include <set>
 #include <sstream>
 
+#include "network/glob.h"
+
 namespace ziggurat::network {
 namespace {
 
@@ -36,11 +38,17 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');) parts.push_back(word);
+  return parts;
+}
+
 /// None if there is a word that is no role.
 std::optional<Roles> to_roles(const std::string& text) {
   Roles roles;
-  std::istringstream words(text);
-  for (std::string word; std::getline(words, word, ',');) {
+  for (const std::string& word : split(text)) {
     if (word == "controller") {
       roles.controller = true;
     } else if (word == "supervisor") {
@@ -52,6 +60,68 @@ std::optional<Roles> to_roles(const std::string& text) {
     }
   }
   return roles;
+}
+
+/// What is wrong with a list of ids and globs, if anything.
+std::optional<std::string> fault_of(const std::vector<std::string>& globs) {
+  if (globs.empty()) return "names nothing; write ids or patterns such as 'scout*'";
+  if (globs.size() > most_patterns) {
+    return fmt::format("has {} patterns; {} are allowed", globs.size(), most_patterns);
+  }
+  for (const std::string& glob : globs) {
+    if (glob.empty()) return "has an empty pattern; separate patterns by one comma";
+    if (glob.size() > longest_pattern) {
+      return fmt::format("has a pattern of {} bytes; {} are allowed", glob.size(), longest_pattern);
+    }
+  }
+  return std::nullopt;
+}
+
+/// Reads `NAME=VALUE` into the scope. @returns what is wrong with it, if anything
+std::optional<std::string> read_scope(const std::string& word, Scope& scope) {
+  const std::size_t equals = word.find('=');
+  const std::string name = word.substr(0, equals), value = word.substr(equals + 1);
+  std::optional<std::string> fault;
+  if (name == "robots") {
+    scope.robots = split(value);
+    fault = fault_of(scope.robots);
+  } else if (name == "controllers") {
+    scope.controllers = split(value);
+    fault = fault_of(scope.controllers);
+  } else if (name == "takeover") {
+    scope.may_take_over = value == "yes";
+    if (value != "yes" && value != "no") fault = fmt::format("is '{}'; write yes or no", value);
+  } else {
+    return fmt::format(
+        "'{}=' limits nothing that is known; robots=, controllers= or takeover= follow the roles",
+        name);
+  }
+  if (fault) return fmt::format("{}= {}", name, *fault);
+  return std::nullopt;
+}
+
+/// Whether a word is a limit of a key rather than the beginning of its name.
+bool is_scope(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  return equals != std::string::npos && equals > 0 &&
+         std::all_of(word.begin(), word.begin() + static_cast<std::ptrdiff_t>(equals),
+                     [](unsigned char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
+}
+
+/// The limits and the name that follow the roles. @returns what is wrong, if anything
+std::optional<std::string> read_rest(std::istringstream& words, ClientKey& client) {
+  std::string word;
+  while (words >> word && is_scope(word)) {
+    if (auto fault = read_scope(word, client.scope)) return fault;
+    word.clear();
+  }
+  std::getline(words, client.name);
+  client.name = word + client.name;
+  const Scope& scope = client.scope;
+  const bool is_limited =
+      !scope.robots.empty() || !scope.controllers.empty() || !scope.may_take_over;
+  if (!is_limited || client.roles.controller) return std::nullopt;
+  return "robots=, controllers= and takeover= are for keys with the role controller";
 }
 
 void write_text(const std::string& path, const std::string& text, mode_t mode) {
@@ -68,6 +138,15 @@ void write_text(const std::string& path, const std::string& text, mode_t mode) {
 }
 
 }  // namespace
+
+bool Scope::includes(std::string_view robot, std::string_view controller) const {
+  const auto fits = [](const std::vector<std::string>& globs, std::string_view id) {
+    return globs.empty() || std::ranges::any_of(globs, [&](const std::string& glob) {
+             return glob == id || matches(glob, id);
+           });
+  };
+  return fits(robots, robot) && fits(controllers, controller);
+}
 
 std::string read_secret_key(const std::string& path) {
   struct stat status {};
@@ -110,8 +189,8 @@ std::vector<ClientKey> parse_client_keys(const std::string& text, const std::str
     const bool is_comment = client.public_key[0] == '#' && !is_key(client.public_key);
     if (is_comment) continue;
     words >> roles;
-    std::getline(words >> std::ws, client.name);
     const auto found = to_roles(roles);
+    client.roles = found.value_or(Roles{});
     if (!is_key(client.public_key)) {
       fault("not a public key of 40 characters; 'ziggurat keygen' makes one");
     } else if (roles.empty() || !found) {
@@ -121,8 +200,9 @@ std::vector<ClientKey> parse_client_keys(const std::string& text, const std::str
                       roles.substr(0, 100)));
     } else if (!seen.insert(client.public_key).second) {
       fault("this key stands on an earlier line, too");
+    } else if (const auto wrong = read_rest(words, client)) {
+      fault(*wrong);
     } else {
-      client.roles = *found;
       clients.push_back(std::move(client));
     }
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "wire/messages.h"
@@ -37,11 +38,21 @@ struct Access {
   std::optional<std::size_t> key = {};  ///< into Curve::clients; none: not encrypted
 };
 
+/// Which robots a key may drive, in the role of a controller.
+struct Scope {
+  std::vector<std::string> robots;       ///< ids or globs; empty: all
+  std::vector<std::string> controllers;  ///< likewise, of the robots' controllers
+  bool may_take_over = true;             ///< robots that other sessions have (Hello.takeover)
+
+  bool includes(std::string_view robot, std::string_view controller) const;
+};
+
 /// Who may connect.
 struct ClientKey {
   std::string public_key;  ///< Z85
   Roles roles;
   std::string name;  ///< for people; may be empty
+  Scope scope = {};
 };
 
 /// How a server protects its endpoints.
@@ -53,7 +64,8 @@ struct Curve {
 /// A secret key from a file that no other user can read. @throws KeyError
 std::string read_secret_key(const std::string& path);
 
-/// Lines `KEY ROLE[,ROLE…] [NAME]`; `#` begins a comment. All faults of the file in one message.
+/// Lines `KEY ROLE[,ROLE…] [robots=GLOB,…] [controllers=GLOB,…] [takeover=yes|no] [NAME]`; `#`
+/// begins a comment. All faults of the file in one message.
 /// @throws KeyError
 std::vector<ClientKey> read_client_keys(const std::string& path);
 

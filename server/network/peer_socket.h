@@ -35,8 +35,8 @@ class PeerSocket {
   /// The connection is gone, or must be closed.
   bool is_over() const { return is_over_; }
   void give_up() { is_over_ = true; }
-  /// It is over because the client does not read.
-  bool is_congested() const { return output_.is_congested(); }
+  /// Why its keys were refused, for people; empty if they were not.
+  const std::string& refusal() const { return engine_.refusal(); }
 
   /// Reads once. What next() gave is not valid any more.
   void read();
@@ -75,12 +75,12 @@ class PeerSocket {
 
   Buffer input_;  // what has arrived is from begin_ to end_
   std::size_t begin_ = 0, end_ = 0;
-  std::size_t needed_ = 0;     // of the frame that begins there
-  bool has_frames_ = false;    // of the message, before the one at begin_
+  std::size_t needed_ = 0;                               // of the frame that begins there
+  bool has_frames_ = false;                              // of the message, before the one at begin_
   wire::Encoding first_frame_ = wire::Encoding::binary;  // its form, for the answer
-  std::size_t to_skip_ = 0;    // of a frame that is too long
-  std::size_t skipped_ = 0;    // bytes of the message that were not kept
-  bool more_to_skip_ = false;  // the message goes on behind that frame
+  std::size_t to_skip_ = 0;                              // of a frame that is too long
+  std::size_t skipped_ = 0;                              // bytes of the message that were not kept
+  bool more_to_skip_ = false;                            // the message goes on behind that frame
   std::string reply_;
   OutputQueue output_;
 };

@@ -47,7 +47,8 @@ void PeerTable::settle(PeerSocket& peer, const Account& before) {
   unfinished_ += after.unfinished - before.unfinished;
   waiting_ += after.waiting - before.waiting;
   if (peer.is_over()) {
-    return end(peer, peer.is_congested()
+    if (!peer.refusal().empty()) refusals_.add("A client was refused: " + peer.refusal());
+    return end(peer, peer.output().is_congested()
                          ? "A client was disconnected because it does not read what it is sent."
                          : nullptr);
   }
@@ -157,7 +158,11 @@ std::vector<int> PeerTable::flush() {
 }
 
 std::vector<std::string> PeerTable::take_notices() {
-  return notices_.empty() ? std::vector<std::string>() : std::exchange(notices_, {});
+  std::vector<std::string> notices = std::exchange(notices_, {});
+  if (auto refused = refusals_.take(std::chrono::steady_clock::now())) {
+    notices.push_back(std::move(*refused));
+  }
+  return notices;
 }
 
 }  // namespace ziggurat::network

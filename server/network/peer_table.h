@@ -11,6 +11,7 @@
 #include "network/limits.h"
 #include "network/link.h"
 #include "network/peer_socket.h"
+#include "network/rare_notice.h"
 #include "network/ready_list.h"
 
 namespace ziggurat::network {
@@ -77,6 +78,7 @@ class PeerTable {
   bool has_let_go_ = false;  // much memory, since give_back_memory()
   std::vector<std::string> notices_;
   Time next_notice_;
+  RareNotice refusals_{std::chrono::seconds{1}};  // of clients' keys
 };
 
 }  // namespace ziggurat::network

@@ -34,13 +34,21 @@ std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::
   return targets;
 }
 
+/// Observers and supervisors leave most of the connections to controllers.
+Config with_places(Config config, std::size_t connections) {
+  const auto share = [&](std::size_t part) { return std::max(std::size_t{1}, connections / part); };
+  config.max_observers = std::min(config.max_observers, share(4));
+  config.max_supervisors = std::min(config.max_supervisors, share(8));
+  return config;
+}
+
 }  // namespace
 
 struct Server::State {
   explicit State(const Config& config)
       : socket(config),
         barrier(
-            config,
+            with_places(config, socket.most_connections()),
             [this](const std::string& connection, const wire::Outbox& message) {
               return link ? link->send(connection, message, barrier.now)
                           : socket.send(connection, message);
@@ -53,7 +61,7 @@ struct Server::State {
   template <class Done>
   Outcome wait_until(Done done, const Wait& wait, world::Commands* commands);
   template <class Done>
-  bool take_messages(Done done, world::Commands* commands);
+  bool take_messages(Done done, world::Commands* into);
   void advance();
   Time next_event() const;
 
@@ -61,8 +69,10 @@ struct Server::State {
   std::optional<DisturbedLink> link;
   Barrier barrier;
   Answers answers;
-  std::uint64_t changes = 0;  // another number if anything that a status tells may have changed
-  bool is_opened = false;     // and clients that wait for the world are still to be answered
+  // Other numbers if anything that a status tells may have changed: whether a session has answered
+  // the tick, or anything else.
+  std::uint64_t commands = 0, changes = 0;
+  bool is_opened = false;  // and clients that wait for the world are still to be answered
   Received received;
 };
 
@@ -74,16 +84,20 @@ Server::~Server() { refuse_waiting(state_->barrier); }
 
 /// Takes messages that have arrived until `done` or there is none. True if done.
 template <class Done>
-bool Server::State::take_messages(Done done, world::Commands* commands) {
+bool Server::State::take_messages(Done done, world::Commands* into) {
   if (std::exchange(is_opened, false)) admit_waiting(barrier);
   while (const auto held = link ? link->next(barrier.now) : std::nullopt) {
-    receive(barrier, *held, commands);
+    receive(barrier, *held, into);
     ++changes;
   }
   for (int i = 0; i < messages_at_once && socket.receive(received); ++i) {
-    if (!link || link->arrives(received, barrier.now)) receive(barrier, received, commands);
+    if (!link || link->arrives(received, barrier.now)) receive(barrier, received, into);
     socket.handled();
-    changes += barrier.inbox.is_question() ? 0 : 1;
+    if (barrier.inbox.is_command()) {
+      ++commands;
+    } else {
+      changes += barrier.inbox.is_question() ? 0 : 1;
+    }
     if (done()) return true;
   }
   for (const std::string& connection : socket.take_gone()) {
@@ -110,6 +124,7 @@ template <class Done>
 Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* commands) {
   const bool is_bounded = wait.timeout.count() >= 0;
   const Time end = is_bounded ? Clock::now() + wait.timeout : never;
+  socket.handled();
   for (;;) {
     // What has arrived is not late, however long the server was kept from looking.
     barrier.now = Clock::now();
@@ -118,7 +133,10 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
     if (take_messages(done, commands)) return Outcome::complete;
     advance();
     if (done()) return Outcome::complete;
-    if (barrier.calls.has_news()) return Outcome::woken;
+    if (barrier.calls.has_news()) {
+      socket.begin_charge();  // the caller answers them
+      return Outcome::woken;
+    }
     const auto rest = std::chrono::ceil<milliseconds>(std::min(end, next_event()) - Clock::now());
     const auto ready = socket.poll(std::max(rest, milliseconds{0}), wait.descriptors);
     if (ready == Socket::Ready::woken) return Outcome::woken;
@@ -217,11 +235,10 @@ void Server::answer(const Call& call, const std::function<void(wire::Outbox&)>& 
 }
 
 void Server::answer_question(const Call& call, const std::function<void(wire::Outbox&)>& write) {
-  const ThreadClock::time_point begin = ThreadClock::now();
-  wire::Answer& answer = state_->answers.find(call.request, state_->changes, write);
+  const Answers::Version version{state_->changes, state_->commands};
+  wire::Answer& answer = state_->answers.find(call.request, version, write);
   network::answer(state_->barrier, call,
                   [&](wire::Outbox& outbox) { outbox.response(call.request.id, answer); });
-  state_->socket.charge_others(ThreadClock::now() - begin);
 }
 
 void Server::fill(wire::Status& status) const {

@@ -97,13 +97,13 @@ void Socket::set_standing(const std::string& connection, Standing standing) {
 
 bool Socket::may_serve_others() { return !is_ticking_ || share_.has_some(Clock::now()); }
 
-void Socket::charge_others(std::chrono::duration<double> time) {
-  if (is_ticking_) share_.charge(time);
+void Socket::begin_charge() {
+  if (!charged_since_) charged_since_ = ThreadClock::now();
 }
 
 void Socket::handled() {
   if (!charged_since_) return;
-  charge_others(ThreadClock::now() - *charged_since_);
+  if (is_ticking_) share_.charge(ThreadClock::now() - *charged_since_);
   charged_since_.reset();
 }
 
@@ -112,7 +112,7 @@ bool Socket::receive(Received& received) {
   peers_.remove_ended();
   if (receive_from(controllers_, received)) return true;
   if (!may_serve_others()) return false;
-  charged_since_ = ThreadClock::now();
+  begin_charge();
   if (receive_from(others_, received)) return true;
   handled();
   return false;

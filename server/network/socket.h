@@ -35,6 +35,8 @@ class Socket {
   void add_private(const Config& config);
 
   const std::vector<std::string>& endpoints() const { return endpoints_; }
+  /// How many connections there may be, as far as the system's limits allow.
+  std::size_t most_connections() const { return most_peers_; }
 
   // Neither waits.
   Delivery send(const std::string& connection, const wire::Outbox& message);
@@ -44,15 +46,15 @@ class Socket {
   void set_standing(const std::string& connection, Standing standing);
   /// A message that arrived, if any. Valid until the next call.
   bool receive(Received& received);
-  /// The last message was handled: its time is over.
+  /// What follows is for others than controllers, until handled().
+  void begin_charge();
+  /// The last message, or what else was charged, is handled: its time is over.
   void handled();
   /// Connections that have ended since the last call.
   std::vector<std::string> take_gone() { return peers_.take_gone(); }
 
   /// A tick runs, or does not: whether the share of others than controllers is limited.
   void set_ticking(bool is_ticking) { is_ticking_ = is_ticking; }
-  /// Others have taken so much processor time, beside that between two calls of receive().
-  void charge_others(std::chrono::duration<double> time);
   /// Disconnects those that have been without session for too long.
   void tend();
 

@@ -1,6 +1,6 @@
 #pragma once
-// A share of the wall time: who has used it up waits until more has passed. What is used is processor
-// time: a thread that other programs keep from running uses none.
+// A share of the wall time: who has used it up waits until more has passed. What is used is
+// processor time: a thread that other programs keep from running uses none.
 
 #include <time.h>
 
@@ -30,19 +30,26 @@ class TimeShare {
   using Time = std::chrono::steady_clock::time_point;
   using Seconds = std::chrono::duration<double>;
 
+  /// What was used up begins again with this much, so that few turns are taken rather than many
+  /// small ones.
+  static constexpr Seconds least{0.5e-3};
+  /// More than that is not owed, whatever was used at once.
+  static constexpr Seconds most_debt{20e-3};
+
   /// @param share  of the wall time, above 0
-  /// @param most  that can be saved up
+  /// @param most  that can be saved up, not below `least`
   TimeShare(double share, Seconds most) : share_(share), most_(most), left_(most) {}
 
   /// Times must not go back.
   bool has_some(Time now) {
     refill(now);
-    return left_.count() > 0;
+    is_used_up_ = left_.count() <= 0 || (is_used_up_ && left_ < least);
+    return !is_used_up_;
   }
   /// So much processor time was used. It may be more than there was: then that is owed.
-  void charge(Seconds used) { left_ -= used; }
-  /// Until has_some().
-  Seconds time_until_some() const { return Seconds{std::max(0.0, -left_.count()) / share_}; }
+  void charge(Seconds used) { left_ = std::max(left_ - used, -most_debt); }
+  /// Until has_some(), if it was false.
+  Seconds time_until_some() const { return std::max(Seconds{0}, least - left_) / share_; }
 
  private:
   void refill(Time now) {
@@ -52,6 +59,7 @@ class TimeShare {
 
   double share_;
   Seconds most_, left_;
+  bool is_used_up_ = false;
   Time filled_ = std::chrono::steady_clock::now();
 };
 

@@ -21,17 +21,16 @@ namespace {
 const std::vector<std::pair<std::string, std::string>> no_keys{{"ZIGGURAT_SERVER_KEY", ""},
                                                                {"ZIGGURAT_CURVE_SECRET", ""}};
 
-Launch lua_launch(std::string name, std::vector<std::size_t> robots, const std::string& list,
+/// @param option, path  where it finds its robots
+Launch lua_launch(std::string name, const char* option, const std::string& path,
                   const LaunchSettings& settings) {
   Launch launch;
   launch.name = std::move(name);
-  launch.robots = std::move(robots);
-  launch.robots_file = fmt::format("{}/{}", settings.folder, list);
-  launch.program.arguments = {settings.lua_runner, "--connect",        settings.endpoint,
-                              "--robots-file",     launch.robots_file, "--quiet"};
+  launch.program.arguments = {
+      settings.lua_runner, "--connect", settings.endpoint, option, path, "--quiet"};
   launch.program.arguments.insert(launch.program.arguments.end(), settings.lua_arguments.begin(),
                                   settings.lua_arguments.end());
-  launch.place_file = launch.robots_file + "-place";
+  launch.place_file = path + "-place";
   launch.program.arguments.insert(launch.program.arguments.end(), {"--place-file", launch.place_file});
   launch.program.environment = no_keys;
   return launch;
@@ -46,9 +45,12 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
     const auto block = [&](std::size_t n) {
       return robots.begin() + static_cast<std::ptrdiff_t>(n * robots.size() / count);
     };
-    launches.push_back(
+    const std::string file = fmt::format("{}/robots-{}", settings.folder, i);
+    auto& launch = launches.emplace_back(
         lua_launch(count == 1 ? "ziggurat-lua" : fmt::format("ziggurat-lua {} of {}", i + 1, count),
-                   {block(i), block(i + 1)}, fmt::format("robots-{}", i), settings));
+                   "--robots-file", file, settings));
+    launch.robots = {block(i), block(i + 1)};
+    launch.robots_file = file;
   }
   return launches;
 }
@@ -63,7 +65,10 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout,
     file.close();
   }
   try {
-    return {launch.name, launch.robots, ChildProcess(launch.program, guardian), launch.place_file};
+    std::optional<RobotPipe> pipe;
+    if (!launch.robot_pipe.empty()) pipe.emplace(launch.robot_pipe);
+    return {launch.name, launch.robots, ChildProcess(launch.program, guardian), launch.place_file,
+            std::move(pipe)};
   } catch (const std::system_error& error) {
     throw std::runtime_error(fmt::format("{} cannot be started ({}): {}", launch.name,
                                          launch.program.arguments[0], error.code().message()));
@@ -102,10 +107,12 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
   return launches;
 }
 
-Launch plan_spawned(std::size_t robot, std::size_t number, const world::Layout& layout,
-                    const LaunchSettings& settings) {
-  return lua_launch(fmt::format("ziggurat-lua of '{}'", layout.robots[robot].id), {robot},
-                    fmt::format("spawned-{}", number), settings);
+Launch plan_spawned(std::size_t number, const LaunchSettings& settings) {
+  const std::string pipe = fmt::format("{}/spawned-{}", settings.folder, number);
+  auto launch = lua_launch(fmt::format("ziggurat-lua {} for spawned robots", number + 1),
+                           "--robots-from", pipe, settings);
+  launch.robot_pipe = pipe;
+  return launch;
 }
 
 std::vector<ControllerProcess> start_all(const std::vector<Launch>& launches,
@@ -123,9 +130,28 @@ Controllers::Controllers(const scene::Scene& scene, const world::Layout& layout,
 
 void Controllers::start_spawned(std::size_t robot, const world::Layout& layout) {
   if (!settings_) return;
-  auto started =
-      start_all({plan_spawned(robot, spawned_++, layout, *settings_)}, layout, settings_->guardian);
-  processes_.push_back(std::move(started.front()));
+  ControllerProcess& process = process_for_spawned();
+  if (!process.pipe->send(layout.robots[robot].id)) {
+    throw std::runtime_error(
+        fmt::format("{} does not take robot '{}'", process.name, layout.robots[robot].id));
+  }
+  process.robots.push_back(robot);
+}
+
+/// The one with the fewest robots, or a new one.
+ControllerProcess& Controllers::process_for_spawned() {
+  constexpr std::size_t most = 16;
+  const std::size_t wanted = settings_->lua_processes == 0 ? most : settings_->lua_processes;
+  std::size_t count = 0;
+  ControllerProcess* fewest = nullptr;
+  for (ControllerProcess& each : processes_) {
+    if (!each.pipe || each.process.poll()) continue;
+    ++count;
+    if (fewest == nullptr || each.robots.size() < fewest->robots.size()) fewest = &each;
+  }
+  if (fewest != nullptr && count >= std::min(wanted, most)) return *fewest;
+  auto started = start_all({plan_spawned(spawned_++, *settings_)}, {}, settings_->guardian);
+  return processes_.emplace_back(std::move(started.front()));
 }
 
 void Controllers::forget_robots(std::size_t first) {
@@ -172,7 +198,10 @@ void Controllers::kill() {
 
 void Controllers::end(int patience_ms, const std::function<bool()>& hurry) {
   std::vector<ChildProcess*> children;
-  for (ControllerProcess& each : processes_) children.push_back(&each.process);
+  for (ControllerProcess& each : processes_) {
+    each.pipe.reset();  // no more robots will come
+    children.push_back(&each.process);
+  }
   end_all(children, patience_ms, hurry);
 }
 

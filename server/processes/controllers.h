@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "processes/child_process.h"
+#include "processes/robot_pipe.h"
 #include "scene/scene.h"
 #include "world/layout.h"
 
@@ -20,6 +21,7 @@ struct Launch {
   std::vector<std::size_t> robots;  ///< into Layout::robots, ascending
   Program program;
   std::string robots_file;  ///< written before the start, one id per line; empty = none
+  std::string robot_pipe;   ///< made before the start: robots that come later; empty = none
   std::string place_file;   ///< written by it: which script runs, and where; empty = none
 };
 
@@ -27,7 +29,8 @@ struct ControllerProcess {
   std::string name;
   std::vector<std::size_t> robots;  ///< into Layout::robots, ascending
   ChildProcess process;
-  std::string place_file;  ///< as Launch::place_file
+  std::string place_file;         ///< as Launch::place_file
+  std::optional<RobotPipe> pipe;  ///< for robots that come later; none: it has its robots for good
 };
 
 /// A script that runs now.
@@ -54,10 +57,9 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
                                      const std::vector<std::string>& scripts,
                                      const LaunchSettings& settings);
 
-/// A Lua process for one spawned robot.
+/// A Lua process for spawned robots, which are sent to it later.
 /// @param number  different for every call
-Launch plan_spawned(std::size_t robot, std::size_t number, const world::Layout& layout,
-                    const LaunchSettings& settings);
+Launch plan_spawned(std::size_t number, const LaunchSettings& settings);
 
 /// Starts all. If one cannot be started, those that were started are killed.
 /// @param guardian  ends them if this program is killed; null: none
@@ -76,7 +78,8 @@ class Controllers {
   Controllers(const scene::Scene& scene, const world::Layout& layout,
               const std::vector<std::string>& scripts, LaunchSettings settings);
 
-  /// Starts a Lua process for a spawned robot. Without launch settings it does nothing.
+  /// Gives a spawned robot to a Lua process. They share as many as LaunchSettings::lua_processes,
+  /// at most 16. Without launch settings it does nothing.
   /// @throws std::runtime_error, see start_all
   void start_spawned(std::size_t robot, const world::Layout& layout);
 
@@ -99,6 +102,8 @@ class Controllers {
   void end(int patience_ms, const std::function<bool()>& hurry);
 
  private:
+  ControllerProcess& process_for_spawned();
+
   std::optional<LaunchSettings> settings_;
   std::vector<ControllerProcess> processes_;
   std::size_t spawned_ = 0;  ///< processes started for spawned robots, ever

@@ -25,6 +25,7 @@ enum class Kind : std::int32_t {
   forget_group,
   remove_file,
   remove_folder,
+  remove_empty_folder,
   end_now,
   done
 };
@@ -62,7 +63,7 @@ void sleep_ms(int ms) noexcept {
 struct Left {
   std::vector<pid_t> groups;
   std::vector<Order> files;
-  std::vector<std::string> folders;
+  std::vector<std::string> folders, empty_folders;
 };
 
 void take(const Order& order, Left& left) {
@@ -78,6 +79,9 @@ void take(const Order& order, Left& left) {
       break;
     case Kind::remove_folder:
       left.folders.emplace_back(order.path);
+      break;
+    case Kind::remove_empty_folder:
+      left.empty_folders.emplace_back(order.path);
       break;
     case Kind::end_now:
     case Kind::done:
@@ -98,6 +102,7 @@ void clean_up(const Left& left) {
   }
   std::error_code ignored;
   for (const std::string& folder : left.folders) std::filesystem::remove_all(folder, ignored);
+  for (const std::string& folder : left.empty_folders) ::rmdir(folder.c_str());
 }
 
 /// The next order; at the end of the pipe Kind::end_now.
@@ -207,6 +212,12 @@ void Guardian::remove_file(const std::string& path) const noexcept {
 void Guardian::remove_folder(const std::string& path) const noexcept {
   Order order;
   order.kind = Kind::remove_folder;
+  if (set_path(order, path)) send(orders_, order);
+}
+
+void Guardian::remove_empty_folder(const std::string& path) const noexcept {
+  Order order;
+  order.kind = Kind::remove_empty_folder;
   if (set_path(order, path)) send(orders_, order);
 }
 

@@ -33,6 +33,9 @@ class Guardian {
   /// Removes this folder with everything in it.
   void remove_folder(const std::string& path) const noexcept;
 
+  /// Removes this folder if nothing is left in it then.
+  void remove_empty_folder(const std::string& path) const noexcept;
+
   /// Lets it do all that now, and waits until it is done, for 0.3 s at most.
   void end_now() noexcept;
 

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -18,18 +17,6 @@ namespace {
 constexpr std::string_view dim = "\033[2m", red = "\033[31m", plain = "\033[0m";
 constexpr std::string_view erase_line = "\r\033[K";
 constexpr std::string_view clear_screen = "\033[H\033[2J";
-
-void write_all(int descriptor, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t count = ::write(descriptor, text.data(), text.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && descriptor == STDERR_FILENO) return;  // there is no other place for a message
-    if (count < 0) {
-      throw ConsoleError(fmt::format("stdout cannot be written: {}", std::strerror(errno)));
-    }
-    text.remove_prefix(static_cast<std::size_t>(count));
-  }
-}
 
 std::size_t terminal_width() {
   winsize size{};
@@ -48,7 +35,15 @@ Console::Console(Style style)
     : style_(style),
       color_out_(::isatty(STDOUT_FILENO)),
       color_error_(::isatty(STDERR_FILENO) && !style.json),
-      shows_progress_(::isatty(STDERR_FILENO) && !style.quiet && !style.json) {}
+      shows_progress_(::isatty(STDERR_FILENO) && !style.quiet && !style.json),
+      out_(STDOUT_FILENO),
+      error_(STDERR_FILENO) {}
+
+Console::~Console() {
+  erase_progress();
+  out_.finish();
+  error_.finish();
+}
 
 void Console::log_line(std::uint64_t tick, std::string_view robot, std::string_view text,
                        bool error) {
@@ -60,20 +55,19 @@ void Console::log_line(std::uint64_t tick, std::string_view robot, std::string_v
     text.remove_prefix(std::min(line.size() + 1, text.size()));
     const auto written = fmt::format("{}[{} {}]{} {}", begin, tick, text::printable(robot), end,
                                      text::printable(line));
-    error ? to_stderr(written) : append(written);
+    if (error) {
+      to_stderr(written);
+    } else {
+      out_.add(written + '\n');
+    }
   } while (!text.empty());
 }
 
-void Console::result(std::string_view line) { append(text::printable(line)); }
+void Console::result(std::string_view line) { out_.add_always(text::printable(line) + '\n'); }
 
 void Console::redraw(std::string_view text) {
-  out_ += clear_screen;
+  out_.add_always(clear_screen);
   result(text);
-}
-
-void Console::append(std::string_view line) {
-  out_.append(line);
-  out_ += '\n';
 }
 
 void Console::fault(std::string_view text) { message("fault", text); }
@@ -87,11 +81,12 @@ void Console::notice(std::string_view text) {
 }
 
 void Console::message(std::string_view severity, std::string_view text) {
-  if (style_.json) return to_stderr(dump({{"severity", severity}, {"text", text}}));
   const bool fault = severity == "fault";
+  if (style_.json) return to_stderr(dump({{"severity", severity}, {"text", text}}), fault);
   to_stderr(fmt::format("{}ziggurat: {}{}{}", color_error_ && fault ? red : "",
                         fault ? "" : fmt::format("{}: ", severity), text::printable(text),
-                        color_error_ && fault ? plain : ""));
+                        color_error_ && fault ? plain : ""),
+            fault);
 }
 
 void Console::problem(const scene::Problem& problem) {
@@ -114,29 +109,54 @@ void Console::report(std::string_view text) {
 
 void Console::progress(std::string_view text) {
   if (!shows_progress_) return;
-  flush();
-  write_all(STDERR_FILENO,
-            fmt::format("{}{}", erase_line, text::printable(text.substr(0, terminal_width() - 1))));
+  offer();
+  if (!error_.is_empty()) return;  // the terminal stands still
+  error_.add(
+      fmt::format("{}{}", erase_line, text::printable(text.substr(0, terminal_width() - 1))));
+  error_.write();
   progress_shown_ = true;
 }
 
+void Console::check(int error) {
+  if (error == 0) return;
+  throw ConsoleError(fmt::format("stdout cannot be written: {}", std::strerror(error)));
+}
+
+void Console::tell_dropped() {
+  if (!out_.is_empty()) return;
+  if (const auto lines = out_.take_dropped(); lines > 0) {
+    message(
+        "notice",
+        fmt::format("{} lines of controllers are missing in stdout, which was not read", lines));
+  }
+}
+
+void Console::offer() {
+  if (!out_.is_empty()) erase_progress();
+  check(out_.write());
+  tell_dropped();
+  error_.write();  // for what can't be written there, there is no other place
+}
+
 void Console::flush() {
-  if (out_.empty()) return;
-  erase_progress();
-  const auto text = std::exchange(out_, {});
-  write_all(STDOUT_FILENO, text);
+  if (!out_.is_empty()) erase_progress();
+  check(out_.finish());
+  tell_dropped();
+  error_.finish();
 }
 
 // Both streams often end in one place: what was said first stands first.
-void Console::to_stderr(std::string_view line) {
-  flush();
+void Console::to_stderr(std::string_view line, bool must_stay) {
+  check(out_.write());
   erase_progress();
-  write_all(STDERR_FILENO, fmt::format("{}\n", line));
+  const std::string whole = fmt::format("{}\n", line);
+  must_stay ? error_.add_always(whole) : error_.add(whole);
+  error_.write();
 }
 
 void Console::erase_progress() {
-  if (progress_shown_) write_all(STDERR_FILENO, erase_line);
-  progress_shown_ = false;
+  if (std::exchange(progress_shown_, false)) error_.add_always(erase_line);
+  error_.write();
 }
 
 }  // namespace ziggurat::reports

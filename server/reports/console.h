@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "scene/reader.h"
+#include "text/outlet.h"
 
 namespace ziggurat::reports {
 
@@ -26,7 +27,8 @@ class Console {
   explicit Console(Style style);
 
   Console() : Console(Style{}) {}
-  ~Console() { erase_progress(); }
+  /// Waits for the readers of what was not written yet.
+  ~Console();
 
   /// A line that a controller logged: `[<tick> <robot>] <text>`, on stdout, an error on stderr.
   /// A text of several lines becomes several such lines.
@@ -52,19 +54,25 @@ class Console {
   void progress(std::string_view text);
   bool shows_progress() const { return shows_progress_; }
 
-  /// Writes all lines that are still in memory. @throws ConsoleError
+  /// Writes the lines that are still in memory as far as their readers take them now: a reader that
+  /// stops does not stop the caller. Beyond 16 MiB lines of controllers are dropped, which a notice
+  /// counts.
+  /// @throws ConsoleError
+  void offer();
+  /// Waits until all lines are written. @throws ConsoleError
   void flush();
 
  private:
-  void append(std::string_view line);
+  void check(int error);
+  void tell_dropped();
   void message(std::string_view severity, std::string_view text);
-  void to_stderr(std::string_view line);
+  void to_stderr(std::string_view line, bool must_stay = false);
   void erase_progress();
 
   Style style_;
   bool color_out_, color_error_, shows_progress_;
   bool progress_shown_ = false;
-  std::string out_;  ///< not yet written to stdout
+  text::Outlet out_, error_;
 };
 
 }  // namespace ziggurat::reports

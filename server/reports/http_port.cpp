@@ -44,7 +44,7 @@ bool starts_without_case(std::string_view text, std::string_view beginning) {
              [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); });
 }
 
-/// What the request calls this machine, without port; none if it does not say.
+/// What the request calls this machine, without port and in small letters; none if it does not say.
 std::optional<std::string> host_of(std::string_view header) {
   constexpr std::string_view name = "Host:";
   for (std::size_t at = header.find(end_of_line); at != std::string_view::npos;
@@ -55,9 +55,15 @@ std::optional<std::string> host_of(std::string_view header) {
     line = text::trimmed(line.substr(name.size()));
     const std::size_t port = line.rfind(':');
     const bool has_port = port != std::string_view::npos && line.find(']', port) == line.npos;
-    return std::string(has_port ? line.substr(0, port) : line);
+    std::string host(has_port ? line.substr(0, port) : line);
+    std::ranges::transform(host, host.begin(), [](unsigned char c) { return std::tolower(c); });
+    return host;
   }
   return std::nullopt;
+}
+
+bool is_same_name(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && starts_without_case(a, b);
 }
 
 bool is_number_of_a_machine(std::string host) {
@@ -82,8 +88,8 @@ std::string answer_to(std::string_view request, const std::string& host,
   }
   if (line.substr(0, first) != "GET") return make_error("405 Method Not Allowed");
   const auto called = host_of(header);
-  const bool is_allowed = !called || host == "*" || *called == host || *called == "localhost" ||
-                          is_number_of_a_machine(*called);
+  const bool is_allowed = !called || host == "*" || is_same_name(*called, host) ||
+                          *called == "localhost" || is_number_of_a_machine(*called);
   if (!is_allowed) return make_error("403 Forbidden");
   std::string_view path = line.substr(first + 1, last - first - 1);
   path = path.substr(0, path.find('?'));

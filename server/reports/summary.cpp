@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "math/hash.h"
 
@@ -16,6 +17,8 @@ const char* to_string(Ending ending) {
       return "finished";
     case Ending::interrupted:
       return "interrupted";
+    case Ending::shut_down:
+      return "shut_down";
     case Ending::forced:
       return "forced";
     case Ending::controller_vanished:
@@ -51,13 +54,18 @@ bool is_by_controller(Ending ending) {
          ending == Ending::deadline_missed;
 }
 
+std::string_view heading_of(Ending ending) {
+  if (is_by_controller(ending)) return "ended early";
+  return ending == Ending::shut_down ? "shut down" : to_string(ending);
+}
+
 }  // namespace
 
 std::string to_text(const Summary& summary) {
   std::string text = fmt::format(
       "{}: {} ticks, {:.3f} s simulated in {:.3f} s: real-time factor {:.2f}, {:.0f} ticks/s\n",
-      is_by_controller(summary.ending) ? "ended early" : to_string(summary.ending), summary.ticks,
-      summary.simulated_s, summary.wall_s, ratio(summary.simulated_s, summary.wall_s),
+      heading_of(summary.ending), summary.ticks, summary.simulated_s, summary.wall_s,
+      ratio(summary.simulated_s, summary.wall_s),
       ratio(static_cast<double>(summary.ticks), summary.wall_s));
   text += fmt::format("  wall time: physics {:.3f} s, exchange {:.3f} s, recording {:.3f} s",
                       summary.physics_s, summary.exchange_s, summary.recording_s);
@@ -65,6 +73,9 @@ std::string to_text(const Summary& summary) {
     text += fmt::format(", pacing {:.3f} s ({} ticks late)", summary.pacing_s, summary.late_ticks);
   }
   text += fmt::format("; before it, start-up {:.3f} s\n", summary.startup_s);
+  if (!summary.shutdown_reason.empty()) {
+    text += fmt::format("  shut down by a supervisor: {}\n", summary.shutdown_reason);
+  }
   for (const auto& each : summary.missed) {
     text += fmt::format("  controller '{}' missed its deadline at {} tick{}\n", each.controller,
                         each.ticks, each.ticks == 1 ? "" : "s");
@@ -115,6 +126,7 @@ std::string to_json(const Summary& summary) {
       {"missed_deadlines", missed},
       {"dropped", summary.dropped},
       {"vanished", summary.vanished}};
+  if (!summary.shutdown_reason.empty()) json["shutdown_reason"] = summary.shutdown_reason;
   json["solver"]["name"] = summary.solver_name;
   if (summary.solver.islands > 0) {
     json["solver"]["islands"] = summary.solver.islands;

@@ -23,6 +23,7 @@ constexpr int interrupted = 130;  ///< Ctrl-C
 enum class Ending {
   finished,
   interrupted,
+  shut_down,  ///< as a supervisor planned, with a reason
   forced,
   controller_vanished,
   failed_fast,      ///< at the first failure, as --fail-fast asks
@@ -55,6 +56,7 @@ struct Summary {
     std::string message;
   };
   std::vector<Failure> failures;     ///< robots whose controller failed, in order of time
+  std::string shutdown_reason;       ///< shut_down: why
   std::vector<std::string> dropped;  ///< a sentence on each robot that a deadline took out
   bool drops_are_failures = true;
   std::string vanished;  ///< the sentence on the controller that ended the run; empty: none did

@@ -39,6 +39,7 @@ void Run::complete_summary() {
   summary_.dropped = watch_.dropped();
   summary_.drops_are_failures = !options_.allow_drops;
   summary_.vanished = watch_.vanished();
+  summary_.shutdown_reason = supervision_.requested_shutdown().value_or("");
   const auto controllers = server_.performance().controllers;
   for (std::size_t c = 0; c < controllers.size(); ++c) {
     const std::uint64_t missed = controllers[c].missed_ticks;

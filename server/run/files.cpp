@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "processes/scripts.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -89,6 +90,23 @@ void check_files(const Options& options) {
     taken.push_back(output);
   }
   check_clients(options.curve_clients);
+}
+
+void check_outputs(const Options& options, const scene::Scene& scene) {
+  const std::string& scene_file = only_scene(options);
+  std::vector<std::string> inputs = scene.files;
+  for (const fs::path& script : processes::scripts_of(scene, scene_file)) {
+    inputs.push_back(script.string());
+  }
+  for (const File& output : outputs_of(options)) {
+    for (const std::string& input : inputs) {
+      if (!is_same(output.path, input)) continue;
+      throw text::UsageError(
+          fmt::format("{} is '{}', a file of the scene, which includes it or runs it as a script; "
+                      "name another file",
+                      output.option, output.path));
+    }
+  }
 }
 
 }  // namespace ziggurat::run

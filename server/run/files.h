@@ -3,11 +3,16 @@
 // empties it.
 
 #include "run/options.h"
+#include "scene/scene.h"
 
 namespace ziggurat::run {
 
 /// @throws text::UsageError if an output's name has a wrong ending; if an output is the scene, a
 /// key file or another output, also by another path; if others may write the list of clients' keys
 void check_files(const Options& options);
+
+/// That no output is a file that the scene was read from, or one of its scripts.
+/// @throws text::UsageError
+void check_outputs(const Options& options, const scene::Scene& scene);
 
 }  // namespace ziggurat::run

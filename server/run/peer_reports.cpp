@@ -38,7 +38,7 @@ void PeerReports::print_log(std::uint64_t tick) {
     console_.log_line(tick, robots[line.robot].id, line.text, line.error);
   }
   log_.clear();
-  console_.flush();
+  console_.offer();
 }
 
 bool PeerReports::has_failure(std::span<const std::size_t> robots) const {

@@ -10,6 +10,7 @@
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
 #include "run/background.h"
+#include "run/files.h"
 #include "run/loading.h"
 #include "run/setup.h"
 #include "run/version.h"
@@ -20,13 +21,20 @@ namespace ziggurat::run {
 using reports::Ending;
 using supervision::Phase;
 
+namespace {
+
+constexpr double before_placing = 0.1;  // how far the world is loaded then
+
+}  // namespace
+
 Run::Run(const Options& options, Service service, processes::Signals& signals)
     : options_(options),
       service_(service),
       signals_(signals),
       console_({options.quiet, options.json}),
       path_(existing_scene(options, service == Service::serve, console_)),
-      config_(network_config(options, service == Service::serve)),
+      local_(signals.guardian()),
+      config_(network_config(options, service == Service::serve, local_)),
       listening_(std::make_unique<network::Server>(config_)),
       server_(*listening_),
       loaded_(load_world()),
@@ -55,9 +63,14 @@ supervision::World Run::read_world(const Tell& tell_clients) {
   };
   tell(0, "The scene is being read.");
   scene::OpenScene opened = load_scene(path_, options_, console_);
-  tell(0.5, "The world is being built.");
+  tell(before_placing, "The world is being built.");
   const std::uint64_t seed = choose_seed(options_, opened.scene);
-  return {path_, std::move(opened), seed};
+  return {path_, std::move(opened), seed, [&](std::size_t placed, std::size_t all) {
+            const double share = static_cast<double>(placed) / static_cast<double>(all);
+            tell(before_placing + (1 - before_placing) * share,
+                 placed == all ? "The world is being built."
+                               : fmt::format("{} of {} entities are placed.", placed, all));
+          }};
 }
 
 /// A killed program cannot remove the files of its sockets.
@@ -78,10 +91,15 @@ std::unique_ptr<supervision::World> Run::load_world() {
   const std::array descriptors{signals_.descriptor(), loading.descriptor()};
   for (;;) {
     const auto news = loading.news();
-    if (news.is_done) return loading.take();
+    if (news.is_done) {
+      auto world = loading.take();
+      check_outputs(options_, world->scene);
+      return world;
+    }
     server_.attend({news.progress, news.message}, {std::chrono::milliseconds{-1}, descriptors});
     if (signals_.take().interruptions == 0) continue;
     listening_.reset();  // tells clients that wait
+    local_.release();
     end_while_loading();
   }
 }

@@ -15,6 +15,7 @@
 #include "processes/signals.h"
 #include "reports/console.h"
 #include "reports/summary.h"
+#include "run/local_endpoints.h"
 #include "run/options.h"
 #include "run/phase_timer.h"
 #include "run/radio_watch.h"
@@ -88,6 +89,7 @@ class Run {
   processes::Signals& signals_;
   reports::Console console_;
   const std::string path_;  ///< of the scene file
+  LocalEndpoints local_;
   network::Config config_;
   std::unique_ptr<network::Server> listening_;
   network::Server& server_;

@@ -1,5 +1,6 @@
 #include "run/setup.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,8 +17,6 @@
 
 namespace ziggurat::run {
 namespace {
-
-constexpr const char* default_endpoint = "tcp://127.0.0.1:5770";
 
 /// Hardware in the loop does not wait: a controller without a policy of its own holds its last
 /// command after nine tenths of a tick.
@@ -44,7 +43,7 @@ std::string existing_scene(const Options& options, bool is_serve, reports::Conso
   return path;
 }
 
-network::Config network_config(const Options& options, bool is_serve) {
+network::Config network_config(const Options& options, bool is_serve, LocalEndpoints& local) {
   network::Config config;
   config.insecure = options.insecure;
   config.lease = std::chrono::milliseconds(static_cast<std::int64_t>(options.lease * 1000));
@@ -54,7 +53,12 @@ network::Config network_config(const Options& options, bool is_serve) {
   }
   config.endpoints = options.endpoints;
   config.keeps_reactions = wants_report_card(options);
-  if (is_serve && config.endpoints.empty()) config.endpoints.emplace_back(default_endpoint);
+  for (std::string& endpoint : config.endpoints) {
+    if (endpoint == "ipc://*") endpoint = local.any();
+  }
+  if (is_serve && config.endpoints.empty()) {
+    config.endpoints.push_back(local.of_server(only_scene(options)));
+  }
   return config;
 }
 
@@ -73,7 +77,11 @@ void announce(const Options& options, const std::vector<std::string>& endpoints,
   } else {
     for (const auto& endpoint : endpoints) console.result("endpoint " + endpoint);
   }
-  console.flush();
+  console.offer();
+  const bool is_protected = !options.curve_secret.empty();
+  const std::string keys =
+      is_protected ? " --server-key \"$(cat SERVER.public)\" --curve-secret FILE" : "";
+  console.notice(fmt::format("connect with: ziggurat-lua --connect {}{}", endpoints.front(), keys));
 }
 
 wire::End end_message(const reports::Summary& summary) {
@@ -84,6 +92,10 @@ wire::End end_message(const reports::Summary& summary) {
   switch (summary.ending) {
     case Ending::finished:
       end.reason = wire::EndReason::finished;
+      break;
+    case Ending::shut_down:
+      end.reason = wire::EndReason::finished;
+      end.message = summary.shutdown_reason;
       break;
     case Ending::interrupted:
     case Ending::forced:

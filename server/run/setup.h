@@ -7,6 +7,7 @@
 #include "network/server.h"
 #include "reports/console.h"
 #include "reports/summary.h"
+#include "run/local_endpoints.h"
 #include "run/options.h"
 #include "scene/scene.h"
 
@@ -18,9 +19,10 @@ namespace ziggurat::run {
 std::string existing_scene(const Options& options, bool is_serve, reports::Console& console);
 
 /// What the options say of the network, before the scene is read.
-/// @param is_serve  listens at the default endpoint if the options name none
+/// @param is_serve  listens in a folder of this user if the options name no endpoint
+/// @param local     makes the folders of sockets
 /// @throws network::KeyError
-network::Config network_config(const Options& options, bool is_serve);
+network::Config network_config(const Options& options, bool is_serve, LocalEndpoints& local);
 
 /// Adds what the scene and the options say of each controller: deadlines and injected delays.
 /// @throws text::UsageError

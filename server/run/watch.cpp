@@ -69,7 +69,7 @@ std::optional<Ending> Watch::sleep_until(clock::time_point moment, world::Comman
     const auto left = std::chrono::floor<milliseconds>(moment - clock::now());
     if (left.count() <= 0) break;
     if (progress_.needs_update()) progress_.show(tick_, "");
-    console_.flush();
+    console_.offer();
     server_.linger(commands, {std::min(left, usual_wait), descriptors});
     take_report();
   }
@@ -113,7 +113,9 @@ std::optional<Ending> Watch::interruption() {
 }
 
 std::optional<Ending> Watch::supervisor_request() {
-  if (supervision_.shutdown_requested()) return Ending::interrupted;
+  if (const auto& reason = supervision_.requested_shutdown()) {
+    return reason->empty() ? Ending::interrupted : Ending::shut_down;
+  }
   if (supervision_.requested_reset()) return Ending::reset;
   return std::nullopt;
 }

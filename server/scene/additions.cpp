@@ -94,6 +94,12 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
   return addition;
 }
 
+std::filesystem::path folder_of(const Scene& scene, const Location& where) {
+  const std::string file = file_of(scene, where);
+  const bool is_added = file == name_of_additions && !scene.files.empty();
+  return std::filesystem::path(is_added ? scene.files.front() : file).parent_path();
+}
+
 std::string file_of(const Scene& scene, const Location& where) {
   return where.file < scene.files.size() ? scene.files[where.file] : name_of_additions;
 }

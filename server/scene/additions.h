@@ -2,6 +2,7 @@
 // Entities that are added to a scene after it was read: one element at a time, as in <arena>.
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -56,6 +57,10 @@ struct OpenScene {
   Scene scene;
   Additions additions;
 };
+
+/// The folder that paths in an element are relative to: that of the file it is written in; for an
+/// element that was added, that of the scene file.
+std::filesystem::path folder_of(const Scene& scene, const Location& where);
 
 /// The name of the file of a location, in a scene or in an element that was added to it.
 std::string file_of(const Scene& scene, const Location& where);

@@ -63,8 +63,7 @@ std::vector<math::Vector3> read_vertices(Draft& draft, Element& hull) {
                   "the file it is written in");
     return {};
   }
-  const std::filesystem::path path =
-      std::filesystem::path(file_of(draft.scene, hull.where())).parent_path() / written;
+  const std::filesystem::path path = folder_of(draft.scene, hull.where()) / written;
   auto opened = draft.options.open(path, std::min(most_mesh_bytes, draft.budget.bytes));
   if (const std::string* why = std::get_if<std::string>(&opened)) {
     hull.fault_at("file", fmt::format("names {}, which {}", in_quotes(path.string()), *why));

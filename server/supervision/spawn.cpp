@@ -43,11 +43,21 @@ void check_size(const scene::Entity& entity, std::vector<scene::Problem>& proble
   }
 }
 
-/// Opens the files below the allowed folders.
-scene::OpenFile opener(const processes::AllowedFiles& allowed) {
-  return [&allowed](const std::filesystem::path& path, std::size_t max_size) {
-    return processes::is_below(allowed.folders, path) ? scene::open_file(path, max_size)
-                                                      : scene::open_no_file(path, max_size);
+/// Opens files below the allowed folders: as an element of the scene file would name them,
+/// otherwise relative to one of these folders.
+scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string& scene_file) {
+  const auto scene_folder = std::filesystem::path(scene_file).parent_path();
+  return [&allowed, scene_folder](const std::filesystem::path& path, std::size_t max_size) {
+    std::vector<std::filesystem::path> candidates{path};
+    for (const auto& folder : allowed.folders) {
+      candidates.push_back(folder / path.lexically_relative(scene_folder));
+    }
+    for (const auto& candidate : candidates) {
+      if (processes::is_below(allowed.folders, candidate)) {
+        return scene::open_file(candidate, max_size);
+      }
+    }
+    return scene::open_no_file(path, max_size);
   };
 }
 
@@ -68,7 +78,8 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
   }
   scene::Addition addition = world_.additions.read(
       text, world_.scene, spawnable_size_,
-      [this](const std::string& id) { return entity_named(id).has_value(); }, opener(allowed_));
+      [this](const std::string& id) { return entity_named(id).has_value(); },
+      opener(allowed_, world_.path));
   const scene::Entity& entity = addition.entity;
   processes::SpawnedScript script;
   try {

@@ -49,6 +49,15 @@ Selection select(const std::vector<std::string>& patterns, const simulation::Sim
   return selection;
 }
 
+/// What is wrong with the reason of a shutdown, if anything.
+std::optional<wire::Fault> fault_of_reason(const std::string& reason) {
+  constexpr std::size_t longest = 1024;  // [bytes]
+  if (reason.size() <= longest) return std::nullopt;
+  return wire::make_fault(
+      ErrorCode::too_large, "shutdown.reason",
+      fmt::format("The reason has {} bytes; at most {} are allowed.", reason.size(), longest));
+}
+
 }  // namespace
 
 wire::Fault no_entity(std::string field, const std::string& id) {
@@ -119,7 +128,8 @@ Supervision::Reply Supervision::handle(const network::Call& call) {
     case Kind::remove:
       return remove(call);
     case Kind::shutdown:
-      shutdown_ = true;
+      if (auto fault = fault_of_reason(call.request.text)) return fail(call, std::move(*fault));
+      if (!shutdown_) shutdown_ = call.request.text;
       return done(call);
     default:
       return fail(call, ErrorCode::unimplemented, {}, "This server does not know that request.");

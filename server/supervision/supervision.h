@@ -65,7 +65,8 @@ class Supervision {
   void reset_done();
   void refuse_reset(const std::string& why);
 
-  bool shutdown_requested() const { return shutdown_; }
+  /// A supervisor ends the run. The reason is empty if the end was not planned.
+  const std::optional<std::string>& requested_shutdown() const { return shutdown_; }
   clock::duration paused_for() const { return paused_.total(); }
   wire::Status status() const;
 
@@ -98,7 +99,8 @@ class Supervision {
   std::uint64_t steps_left_ = 0;
   std::size_t spawned_ = 0;     ///< entities, since the start or the last reset
   std::size_t spawnable_size_;  ///< left for more entities [bytes]
-  bool is_gathered_ = false, is_pause_asked_ = false, shutdown_ = false;
+  bool is_gathered_ = false, is_pause_asked_ = false;
+  std::optional<std::string> shutdown_;  // the reason
   clock::time_point start_ = clock::now();
   PauseTimer paused_;
   TickBudget budget_;

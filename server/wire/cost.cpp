@@ -54,6 +54,21 @@ std::optional<std::string_view> take_value(std::string_view& bytes, unsigned wir
   return content;
 }
 
+/// Whether numbers of a list take as many bytes in the message as in memory.
+bool has_fixed_size(const FieldDescriptor& field) {
+  switch (field.type()) {
+    case FieldDescriptor::TYPE_DOUBLE:
+    case FieldDescriptor::TYPE_FLOAT:
+    case FieldDescriptor::TYPE_FIXED64:
+    case FieldDescriptor::TYPE_FIXED32:
+    case FieldDescriptor::TYPE_SFIXED64:
+    case FieldDescriptor::TYPE_SFIXED32:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// @param message  the type that the bytes are of
 std::size_t count(std::string_view bytes, const Descriptor& message) {
   constexpr std::uint64_t largest_number = (1U << 29) - 1;
@@ -70,6 +85,9 @@ std::size_t count(std::string_view bytes, const Descriptor& message) {
     const bool is_message =
         field != nullptr && field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
     if (is_message) fields += count(*content, *field->message_type());
+    // Each byte may be a number of a list, which takes four bytes of memory or more.
+    const bool has_numbers = field != nullptr && field->is_packable() && !has_fixed_size(*field);
+    if (has_numbers) fields += content->size() / numbers_per_field;
   }
   return fields;
 }

@@ -10,6 +10,9 @@ namespace ziggurat::wire {
 /// 65 536 radio messages for a robot at most, and arrays count as one.
 inline constexpr std::size_t most_fields = std::size_t{1} << 18;
 
+/// So many numbers of a list count as one field if they have no fixed size.
+inline constexpr std::size_t numbers_per_field = 16;
+
 /// How many fields a ClientMessage in binary form has; it stops counting beyond `most_fields`.
 /// Decoding takes up to about 100 bytes of memory for each.
 std::size_t count_fields(std::string_view bytes);

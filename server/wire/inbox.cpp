@@ -149,6 +149,8 @@ bool Inbox::is_question() const {
          (request == v1::Request::kStatus || request == v1::Request::kRead);
 }
 
+bool Inbox::is_command() const { return message_->kind == Kind::command; }
+
 std::uint64_t Inbox::command_tick() const { return message_->command.tick(); }
 
 std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {

@@ -45,6 +45,7 @@ class Inbox {
   std::uint64_t request_id() const;
   Request request() const;
   bool is_question() const;  ///< a Request that changes nothing
+  bool is_command() const;
 
   /// What is wrong with the current command or leave, if anything. Its tick is not checked.
   std::optional<Fault> check(const Roster& roster, const world::Layout& layout) const;

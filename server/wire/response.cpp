@@ -49,6 +49,7 @@ Request read(const v1::Request& from) {
   request.ticks = from.step().ticks();
   if (from.reset().has_seed()) request.seed = from.reset().seed();
   if (from.has_spawn()) request.text = from.spawn().xml();
+  if (from.has_shutdown()) request.text = from.shutdown().reason();
   if (from.has_remove()) request.text = from.remove().entity();
   if (from.has_move()) request.text = from.move().entity();
   request.entities.assign(from.read().entities().begin(), from.read().entities().end());

@@ -162,6 +162,29 @@ TEST(Hello, TooManySessions) {
   EXPECT_TRUE(error.retryable());
 }
 
+TEST(Hello, K5_NoRoleTakesThePlacesOfAnother) {
+  const SmallRun small(2);
+  Config config;
+  config.max_sessions = 2;
+  config.max_supervisors = config.max_observers = 1;
+  Peers peers(small, config);
+  const auto of_role = [](v1::Role role) {
+    auto hello = Peers::hello("*");
+    hello.mutable_hello()->clear_robots();
+    hello.mutable_hello()->set_role(role);
+    return hello;
+  };
+  for (const v1::Role role : {v1::ROLE_OBSERVER, v1::ROLE_SUPERVISOR}) {
+    const std::string name = v1::Role_Name(role);
+    peers.say(name, of_role(role));
+    EXPECT_TRUE(peers.told(name).has_welcome()) << name;
+    peers.say("second " + name, of_role(role));
+    EXPECT_EQ(peers.told("second " + name).refusal().error().code(), v1::Error::TOO_MANY) << name;
+  }
+  peers.join("q", "robot0");
+  peers.join("p", "robot1");
+}
+
 TEST(Hello, TooManyPatterns) {
   const SmallRun small(1);
   Peers peers(small);

@@ -140,9 +140,9 @@ class BrokenArguments(SceneTest):
         self.refuses(r"no controller 'xyzzy'; it has: swing", "run", self.scene,
                      "--deadline", "xyzzy=hold:5")
         url = "tcp://127.0.0.1:1"  # not reached: the words are wrong
-        self.refuses(r"write: ziggurat ctl URL pause$", "ctl", url, "pause", "now")
-        self.refuses(r"write: ziggurat ctl URL step \[TICKS\]", "ctl", url, "step", "3", "4")
-        self.refuses(r"write: ziggurat ctl URL remove ENTITY", "ctl", url, "remove")
+        self.refuses(r"write: ziggurat ctl \[URL\] pause$", "ctl", url, "pause", "now")
+        self.refuses(r"write: ziggurat ctl \[URL\] step \[TICKS\]", "ctl", url, "step", "3", "4")
+        self.refuses(r"write: ziggurat ctl \[URL\] remove ENTITY", "ctl", url, "remove")
         self.refuses(r"--seed is for reset", "ctl", url, "pause", "--seed", "3")
 
     def test_files_that_cannot_be_written(self):
@@ -170,6 +170,14 @@ class BrokenArguments(SceneTest):
         self.refuses(r"--hash-file is .*the file of --trace too", "run", self.scene, "--trace", "t.csv",
                      "--hash-file", f"../{self.folder.name}/t.csv")
         self.assertFalse((self.folder / "t.csv").exists())
+
+    def test_an_output_that_is_an_include_or_a_script_of_the_scene(self):
+        models = self.write("models.xml", "<models/>")
+        self.change("<arena ", '<include file="models.xml"/><arena ')
+        for path in (models, self.folder / "swing.lua"):
+            before = path.read_bytes()
+            self.refuses(r"--hash-file is .*a file of the scene", "run", self.scene, "--hash-file", path)
+            self.assertEqual(path.read_bytes(), before)
 
     def test_a_list_of_clients_that_others_can_write(self):
         for name in ("k.secret", "clients"):

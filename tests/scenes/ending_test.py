@@ -7,7 +7,7 @@ import signal
 import subprocess
 import time
 
-from harness import (CONTROLLER_FAILED, INTERRUPTED, SceneTest, main)
+from harness import (CONTROLLER_FAILED, INTERRUPTED, LUA, SceneTest, main)
 
 ENDLESS = ("--duration", "0")
 MOST = 1.5  # [s]: the program promises 1; the rest is for a busy machine
@@ -45,9 +45,19 @@ class Signals(SceneTest):
             self.assertIn("hash 0 ", hashes.read_text(), "what was written before is there")
 
     def test_output_to_a_pipe_that_is_not_read(self):
-        process = self.start("run", self.scene, *ENDLESS)
-        self.wait_until_blocked(process.pid)
-        self.assert_ends_soon(process, signal.SIGINT)
+        """The world goes on: a reader that stops stops nothing."""
+        hashes = self.folder / "hashes"
+        for command in ("run", "serve"):
+            process = self.start(command, self.scene, *ENDLESS, "--hash-file", hashes)
+            if command == "serve":
+                self.started.append(subprocess.Popen(
+                    [LUA, "--connect", self.read_until(process.stdout, "^endpoint (.*)$")[1], "--quiet"],
+                    cwd=self.folder))
+            full = 100_000  # [bytes] of hashes: what the robots log meanwhile does not fit into a pipe
+            self.wait_for(lambda: hashes.exists() and hashes.stat().st_size, lambda size: size > full,
+                          "ticks beyond what the pipe holds")
+            self.assert_ends_soon(process, signal.SIGINT)
+            hashes.unlink()
 
     def test_trace_to_a_pipe_without_reader(self):
         fifo = self.folder / "t.csv"

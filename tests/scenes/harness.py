@@ -75,7 +75,8 @@ class SceneTest(unittest.TestCase):
     def start(self, *arguments, **options):
         seconds = options.pop("limit", 2 * LIMIT)
         process = subprocess.Popen(
-            [str(ZIGGURAT), *map(str, arguments)], cwd=self.folder, env=self.environment,
+            [str(ZIGGURAT), *map(str, arguments)], cwd=options.pop("cwd", self.folder),
+            env=self.environment,
             stdin=subprocess.DEVNULL, stdout=options.pop("stdout", subprocess.PIPE),
             stderr=options.pop("stderr", subprocess.PIPE), text=True, errors="replace", **options)
         self.started.append(process)

@@ -25,6 +25,20 @@ class Log(SceneTest):
         self.assertEqual(len(outcome.lines), 3 + 3 + 3 + 1)
         self.assertRegex(outcome.lines[-1], r"^hash 1 [0-9a-f]{16}$")
 
+    def test_what_scripts_print_is_printable(self):
+        self.write("swing.lua", """function step() end
+function init()
+   print("\\27[31mred", "\\xc3\\xa9")
+   io.write("\\27]52;c;eA==\\7", 1, "\\n")
+   io.stderr:write("\\8back\\n")
+end""")
+        outcome = self.run_scene("--ticks", 1)
+        self.assertIn("\\u001b[31mred\té", outcome.lines)
+        self.assertIn("\\u001b]52;c;eA==\\u00071", outcome.lines)
+        self.assertIn("\\u0008back", outcome.err)
+        self.assertNotIn("\x1b", outcome.out + outcome.err)
+        self.assertIn("\x1b[31mred", self.run_scene("--ticks", 1, "--trust-scripts").out)
+
     def test_errors_go_to_stderr(self):
         self.write("swing.lua", "function init() end\nfunction step() logerr('oh') end\n")
         outcome = self.run_scene("--ticks", 2, "--quiet")

@@ -2,12 +2,13 @@
 
 import json
 import os
+import pathlib
 import random
 import socket
 import subprocess
 
 import zmq
-from harness import FINISHED, INTERRUPTED, LUA, SceneTest, main
+from harness import FINISHED, INTERRUPTED, LUA, ZIGGURAT, SceneTest, main
 
 
 class Serve(SceneTest):
@@ -57,6 +58,53 @@ class Serve(SceneTest):
         self.read_until(process.stdout, r"^\[\d+ r2\] step 3")  # a new process counts from 1
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_listens_where_only_this_user_can_connect(self):
+        def ctl(*words):
+            return subprocess.run([str(ZIGGURAT), "ctl", *words], env=self.environment, text=True,
+                                  capture_output=True, timeout=60)
+
+        self.assertIn("no server of this user runs here", ctl("status").stderr)
+        folder = self.runtime / "ziggurat"
+        folder.mkdir(mode=0o700)
+        (folder / "dead-4194999").touch()  # no socket: it stays
+        process = self.start("serve", self.scene, "--duration", 0)
+        endpoint = self.read_until(process.stdout, "^endpoint (ipc://.*)$")[1]
+        self.read_until(process.stderr, f"connect with: ziggurat-lua --connect {endpoint}")
+        path = pathlib.Path(endpoint.removeprefix("ipc://"))
+        self.assertEqual((path.parent, path.name), (folder, f"arms-{process.pid}"))
+        self.assertEqual(folder.stat().st_mode & 0o777, 0o700)
+        self.assertIn("arms.argos", ctl("status").stdout)
+        found = subprocess.run([str(LUA), "--quiet", "--robot", "none"], env=self.environment, text=True,
+                               capture_output=True, timeout=60)
+        self.assertIn("UNKNOWN_ROBOT", found.stderr)
+        other = self.start("serve", self.scene, "--duration", 0)
+        self.read_until(other.stdout, "^endpoint")
+        self.assertIn("2 servers run here", ctl("status").stderr)
+        self.interrupt(other)
+        self.finish(other)
+        (folder / "dead-4194999").unlink()
+        process.kill()
+        process.wait()
+        self.wait_for(folder.exists, lambda there: not there, "removal of the socket and its folder")
+
+    def test_a_folder_that_others_can_enter_is_not_used(self):
+        folder = self.runtime / "ziggurat"
+        folder.mkdir(mode=0o755)
+        process = self.start("serve", self.scene, "--duration", 0)
+        endpoint = self.read_until(process.stdout, "^endpoint (ipc://.*)$")[1]
+        self.assertNotIn(str(folder), endpoint)
+        self.interrupt(process)
+        self.finish(process)
+        folder.rmdir()
+
+    def test_the_folder_of_any_path_is_removed_when_the_server_is_killed(self):
+        process = self.start("serve", self.scene, "--duration", 0, "--endpoint", "ipc://*")
+        path = pathlib.Path(self.read_until(process.stdout, "^endpoint ipc://(.*)$")[1])
+        self.assertEqual(path.parent.stat().st_mode & 0o777, 0o700)
+        process.kill()
+        process.wait()
+        self.wait_for(path.parent.exists, lambda there: not there, "removal of the folder")
 
     def test_endpoint_is_plain_text_without_json(self):
         process = self.start("serve", self.scene, "--endpoint", f"ipc://{self.folder}/s")

@@ -58,10 +58,25 @@ class Spawn(SceneTest):
         self.assertEqual(len(self.lua_processes(2)), 2)
         self.ctl("remove", "late")
         self.read_until(process.stdout, r"^\[\d+ late\] destroy")
-        self.wait_for(self.lua_processes, lambda ids: len(ids) == 1, "end of its process")
+        self.assertEqual(len(self.lua_processes(2)), 2, "its process waits for other robots")
         tick = int(self.read_until(process.stdout, r"^\[(\d+) r0\]")[1])
         self.read_until(process.stdout, rf"^\[{tick + 20} r0\]")
         self.assertNotIn("late", self.end(process).out)
+
+    def test_spawned_robots_share_processes(self):
+        process = self.begin("run", *PACED)
+        self.read_until(process.stdout, r"^\[5 r0\]")
+        for i in range(20):
+            self.spawn(self.arm(f"late{i}", f"0,{i + 2},0"))
+        self.read_until(process.stdout, r"^\[\d+ late19\] step 3")
+        processes = self.lua_processes(2)
+        self.assertEqual(len(processes), 2, "one for the scene's robots, one for the others")
+        self.ctl("remove", "late3")
+        self.ctl("reset")
+        self.spawn(self.arm("later", "0,2,0"))
+        self.read_until(process.stdout, r"^\[\d+ later\] step 3")
+        self.assertEqual(self.lua_processes(2), processes)
+        self.end(process)
 
     def test_the_world_waits_for_a_robot_without_session(self):
         process = self.begin("serve", *PACED)
@@ -175,6 +190,29 @@ class Spawn(SceneTest):
             answer = self.spawn(hull.format(file), code=1)
             self.assertNotIn("secret ", answer)
             self.assertIn("may read no file; use a model of the scene", answer)
+        self.end(process)
+
+    def test_a_spawned_hull_is_read_below_an_allowed_folder_only(self):
+        corners = "".join(f"v {x} {y} {z}\n" for x in (0, 0.1) for y in (0, 0.1) for z in (0, 0.1))
+        (self.folder / "beside.obj").write_text(corners)
+        shapes = self.folder / "shapes"
+        shapes.mkdir()
+        (shapes / "cube.obj").write_text(corners)
+        elsewhere = self.folder / "elsewhere"  # the working directory has no effect
+        elsewhere.mkdir()
+        (elsewhere / "away.obj").write_text(corners)
+        self.change('script="swing.lua" ', "")
+        self.url = f"ipc://{self.folder}/endpoint"
+        process = self.start("serve", self.scene, "--duration", 0, "--endpoint", self.url,
+                             "--allow-spawned-scripts", shapes, cwd=elsewhere)
+        self.wait_for(lambda: (self.folder / "endpoint").exists(), bool, "endpoint")
+        self.wait_for(lambda: self.ctl("status"), lambda text: "paused" in text, "pause")
+        hull = ('<prototype id="{}" movable="true"><body position="0,{},0.3"/><links ref="a">'
+                '<link id="a" geometry="hull" mass="1"><hull file="{}"/></link></links></prototype>')
+        self.spawn(hull.format("a", 3, "shapes/cube.obj"))  # relative to the scene's folder
+        self.spawn(hull.format("b", 4, "cube.obj"))  # relative to the allowed one
+        for file in ("beside.obj", "away.obj"):
+            self.assertIn("may read no file", self.spawn(hull.format("c", 5, file), code=1))
         self.end(process)
 
     def test_a_spawned_entity_has_limits(self):

@@ -180,6 +180,18 @@ class Ctl(unittest.TestCase):
             server.ask("ctl", "shutdown")
             self.assertEqual(130, server.process.wait(60))
 
+    def test_a_planned_shutdown_is_no_interruption(self):
+        with tempfile.TemporaryDirectory() as folder:
+            summary = pathlib.Path(folder, "summary.json")
+            with Server(DROP, "--summary", summary) as server:
+                refused = server.ask("ctl", "pause", "--reason", "why", check=False)
+                self.assertIn("--reason is for shutdown", refused.stderr)
+                server.ask("ctl", "shutdown", "--reason", "the robots are home")
+                self.assertEqual(0, server.process.wait(60))
+            told = json.loads(summary.read_text())
+            self.assertEqual(("shut_down", "the robots are home"),
+                             (told["ending"], told["shutdown_reason"]))
+
 
 class Metrics(unittest.TestCase):
     def test_report_the_missing_robots(self):

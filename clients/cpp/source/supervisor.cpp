@@ -244,8 +244,9 @@ WorldStates Supervisor::read(std::span<const std::string> entities) {
   return states;
 }
 
-void Supervisor::shutdown() {
-  state_->request().mutable_shutdown();
+void Supervisor::shutdown(std::string_view reason) {
+  v1::ShutdownRequest& request = *state_->request().mutable_shutdown();
+  if (!reason.empty()) request.set_reason(v1::valid_utf8(reason));
   state_->ask();
 }
 

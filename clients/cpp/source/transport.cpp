@@ -18,6 +18,10 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds longest_linger{1000};
 constexpr const char* monitor_address = "inproc://monitor";
+constexpr int monitored = ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
+                          ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
+// A server that ends, or has no place, also breaks a handshake off: ZeroMQ tries again.
+constexpr unsigned most_failed_handshakes = 3;
 
 /// False if there is none yet, or a signal arrived.
 bool receive_from(zmq::socket_t& socket, zmq::message_t& message, zmq::recv_flags flags) {
@@ -44,14 +48,18 @@ class ZeroMq final : public Transport {
 
  private:
   void set_keys(const Options& options);
+  void hear(std::uint16_t event, std::uint32_t value);
 
   std::string endpoint_;
   zmq::context_t context_;
   zmq::socket_t socket_;
-  zmq::socket_t monitor_;  // reports that the connection was closed
+  zmq::socket_t monitor_;  // reports that the connection was closed, or refused
   milliseconds socket_timeout_{-1};
   bool is_expected_open_ = false;
   bool is_closed_ = false;
+  bool has_keys_ = false;
+  unsigned failed_handshakes_ = 0;  // without a reason
+  std::string refusal_;             // of the handshake; empty: none
   zmq::message_t frame_;
 };
 
@@ -63,7 +71,7 @@ ZeroMq::ZeroMq(const Options& options)
   socket_.set(zmq::sockopt::tcp_keepalive, 1);
   socket_.set(zmq::sockopt::linger, 0);
   monitor_.set(zmq::sockopt::linger, 0);
-  zmq_socket_monitor(socket_.handle(), monitor_address, ZMQ_EVENT_DISCONNECTED);
+  zmq_socket_monitor(socket_.handle(), monitor_address, monitored);
   monitor_.connect(monitor_address);
   set_keys(options);
   try {
@@ -97,6 +105,7 @@ void ZeroMq::set_keys(const Options& options) {
                                 "': not a public key; it has 40 characters and is printed by "
                                 "'ziggurat keygen'");
   }
+  has_keys_ = true;
   socket_.set(zmq::sockopt::curve_publickey, own.data());
   socket_.set(zmq::sockopt::curve_secretkey, secret);
 }
@@ -136,14 +145,35 @@ bool ZeroMq::receive(milliseconds timeout) {
 }
 
 bool ZeroMq::was_closed() {
+  constexpr std::size_t value_at = sizeof(std::uint16_t);
   zmq::message_t event;
   while (receive_from(monitor_, event, zmq::recv_flags::dontwait)) {
     std::uint16_t number = 0;
-    if (event.size() >= sizeof(number)) std::memcpy(&number, event.data(), sizeof(number));
+    std::uint32_t value = 0;
+    if (event.size() >= value_at + sizeof value) {
+      std::memcpy(&number, event.data(), sizeof number);
+      std::memcpy(&value, event.data<char>() + value_at, sizeof value);
+    }
     while (event.more()) receive_from(monitor_, event, zmq::recv_flags::none);  // the address
-    if (number == ZMQ_EVENT_DISCONNECTED && is_expected_open_) is_closed_ = true;
+    hear(number, value);
   }
+  if (!is_expected_open_ && !refusal_.empty()) throw ConnectionError(endpoint_ + ": " + refusal_);
   return is_closed_;
+}
+
+void ZeroMq::hear(std::uint16_t event, std::uint32_t value) {
+  if (event == ZMQ_EVENT_DISCONNECTED) {
+    is_closed_ |= is_expected_open_;
+  } else if (event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH) {
+    refusal_ = "refused key? The server does not have this client's key in its --curve-clients";
+  } else if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL &&
+             value == ZMQ_PROTOCOL_ERROR_ZMTP_MECHANISM_MISMATCH) {
+    refusal_ = has_keys_ ? "the endpoint is not protected; leave out the keys" : keys_are_missing;
+  } else if (++failed_handshakes_ >= most_failed_handshakes && has_keys_) {
+    refusal_ =
+        "refused key? The server breaks off the handshake; compare the server's public key with "
+        "the one that 'ziggurat keygen' has printed";
+  }
 }
 
 }  // namespace

@@ -31,12 +31,18 @@ class Transport {
 
   /// Whether the server closed a connection since the last call; before the connection is
   /// expected to stay open that has no meaning: it is tried again.
+  /// @throws ConnectionError if the server does not accept this client's keys, or that it has none
   virtual bool was_closed() = 0;
   /// From now on a closed connection is not tried again.
   virtual void expect_open() = 0;
   /// To be called before the end if the last messages should arrive: they have a second for it.
   virtual void linger() = 0;
 };
+
+/// What a client without keys is told at a protected endpoint.
+inline constexpr const char* keys_are_missing =
+    "refused key? The endpoint is protected, and this client has no keys; set the server's public key "
+    "and a secret key";
 
 /// @throws std::invalid_argument for an unusable endpoint or keys
 std::unique_ptr<Transport> make_transport(const Options& options);

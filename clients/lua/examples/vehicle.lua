@@ -1,7 +1,7 @@
 -- Drives the four-wheeled vehicle of scenes/dynamics3d_multi_body_test.argos from your own Lua:
 --
 --   ziggurat serve scenes/dynamics3d_multi_body_test.argos &
---   lua5.3 vehicle.lua tcp://127.0.0.1:5770
+--   lua5.3 vehicle.lua
 local ziggurat = require "ziggurat"
 
 local session = ziggurat.connect{endpoint = arg[1], name = "vehicle.lua"}

@@ -94,12 +94,6 @@ void check_options(lua_State* state) {
     if (!is_known(name)) luaL_error(state, "connect: unknown option '%s'", name);
     check_option(state, name);
   }
-  lua_getfield(state, 1, "endpoint");
-  if (lua_isnil(state, -1) && std::getenv("ZIGGURAT_ENDPOINT") == nullptr) {
-    luaL_error(state,
-               "connect: the endpoint is missing; set the option endpoint or ZIGGURAT_ENDPOINT");
-  }
-  lua_pop(state, 1);
 }
 
 Options take_options(lua_State* state) {

@@ -6,9 +6,11 @@
 #include <exception>
 #include <string>
 
+#include "program/host.h"
 #include "program/options.h"
 #include "program/runner.h"
 #include "program/signals.h"
+#include "program/terminal.h"
 #include "script/interrupt.h"
 #include "script/place_file.h"
 #include "ziggurat/error.h"
@@ -53,6 +55,21 @@ int run(const lua::ProgramOptions& options) {
   return runner.has_failures() ? exit_failed_script : exit_finished;
 }
 
+void report(const std::exception& error) {
+  std::fprintf(stderr, "ziggurat-lua: %s\n", error.what());
+}
+
+/// The same for one of several robots.
+int run_and_report(const lua::ProgramOptions& options) {
+  try {
+    return run(options);
+  } catch (const std::exception& error) {
+    if (const int number = lua::arrived_signal()) return exit_signal + number;
+    report(error);
+    return exit_fault;
+  }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -63,13 +80,20 @@ int main(int count, char** arguments) {
       std::fputs(request.text.c_str(), stdout);
       return exit_finished;
     }
+    lua::take_terminal(!request.options.trusts_scripts);
     lua::handle_signals();
     lua::watch_scripts();
-    if (!request.options.place_file.empty()) lua::open_place_file(request.options.place_file);
-    return run(request.options);
+    const auto& options = request.options;
+    if (!options.place_file.empty()) lua::open_place_file(options.place_file);
+    const int code = options.robots_from.empty()
+                         ? run(options)
+                         : lua::run_arriving_robots(options, run_and_report);
+    lua::finish_terminal();
+    return code;
   } catch (const std::exception& error) {
     if (const int number = lua::arrived_signal()) return exit_signal + number;
-    std::fprintf(stderr, "ziggurat-lua: %s\n", error.what());
+    report(error);
+    lua::finish_terminal();
     return exit_fault;
   }
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "script/trimmed.h"
+#include "ziggurat/session.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -16,13 +17,14 @@ namespace po = boost::program_options;
 constexpr const char* introduction =
     R"(Runs Lua controllers of robots against a Ziggurat server.
 
-usage: ziggurat-lua --connect URL [--robot GLOB]... [--script FILE]
+usage: ziggurat-lua [--connect URL] [--robot GLOB]... [--script FILE]
 
-  ziggurat serve vehicle.argos --endpoint tcp://127.0.0.1:5770     in one terminal, and
-  ziggurat-lua --connect tcp://127.0.0.1:5770                      in another: all robots of the
-                                                                   scene that have a Lua script
-  ziggurat-lua --connect tcp://127.0.0.1:5770 --robot 'scout*'     some of them
-  ziggurat-lua --connect tcp://127.0.0.1:5770 --script other.lua   with your own script
+  ziggurat serve vehicle.argos           in one terminal, and
+  ziggurat-lua                           in another: all robots of the scene that have a Lua script
+  ziggurat-lua --robot 'scout*'          some of them
+  ziggurat-lua --script other.lua        with your own script
+  ziggurat-lua --connect tcp://127.0.0.1:5770
+      a server that was started with --endpoint, or one of several
 
 `ziggurat run` starts this program itself. A script has robot, log and logerr, and defines init,
 step, reset and destroy: see docs/lua-api.md. A script that fails ends only its own robot.
@@ -38,11 +40,13 @@ po::options_description description() {
   po::options_description options("Options", 96);
   options.add_options()  //
       ("connect", text("URL"),
-       "endpoint of the server: tcp://host:port or ipc:///path; "
-       "ZIGGURAT_ENDPOINT if left out")  //
+       "endpoint of the server: tcp://host:port or ipc:///path; default: ZIGGURAT_ENDPOINT, then "
+       "the only server that runs here")  //
       ("robot", po::value<std::vector<std::string>>()->composing()->value_name("GLOB"),
-       "robots to run: an id or a pattern of * ? [a-z]; may be repeated")                      //
-      ("robots-file", text("FILE"), "robots to run: one id or pattern per line")               //
+       "robots to run: an id or a pattern of * ? [a-z]; may be repeated")         //
+      ("robots-file", text("FILE"), "robots to run: one id or pattern per line")  //
+      ("robots-from", text("PIPE"),
+       "run each robot whose id arrives on this named pipe, one a line, in a session of its own")  //
       ("controller", text("ID"), "robots that have this controller in the scene")              //
       ("server-key", text("KEY"), "public key of a server with an encrypted endpoint")         //
       ("curve-secret", text("FILE"), "secret key of this program for it ('ziggurat keygen')")  //
@@ -61,9 +65,10 @@ po::options_description description() {
       ("place-file", text("FILE"),
        "keep the robot whose script runs in FILE, with the script's line if that takes long")  //
       ("echo",
-       "print log lines here too; the default on a terminal. The server always gets them")  //
-      ("quiet", "print only errors and what scripts print themselves")                      //
-      ("version", "print the version")                                                      //
+       "print log lines here too; the default on a terminal. The server always gets them. Control "
+       "characters of scripts are printed as \\u001b, unless --trust-scripts")  //
+      ("quiet", "print only errors and what scripts print themselves")          //
+      ("version", "print the version")                                          //
       ("help", "print this");
   return options;
 }
@@ -165,15 +170,15 @@ Request read_arguments(int count, const char* const* arguments, bool is_terminal
 
   ProgramOptions& options = request.options;
   options.endpoint = value("connect", environment("ZIGGURAT_ENDPOINT"));
-  if (options.endpoint.empty()) {
-    throw std::runtime_error(
-        "--connect is missing; write the server's endpoint, for example "
-        "--connect tcp://127.0.0.1:5770, or set ZIGGURAT_ENDPOINT; see ziggurat-lua --help");
-  }
+  if (options.endpoint.empty()) options.endpoint = find_server();
   if (found.count("robot")) options.robots = found["robot"].as<std::vector<std::string>>();
   if (found.count("robots-file")) append_robots(value("robots-file"), options.robots);
+  options.robots_from = value("robots-from");
+  if (!options.robots_from.empty() && !options.robots.empty()) {
+    throw std::runtime_error("--robots-from and --robot or --robots-file exclude each other");
+  }
   options.controller = value("controller");
-  if (options.controller.empty() && options.robots.empty()) {
+  if (options.controller.empty() && options.robots.empty() && options.robots_from.empty()) {
     options.controller = environment("ZIGGURAT_CONTROLLER");
   }
   options.server_key = value("server-key", environment("ZIGGURAT_SERVER_KEY"));

@@ -12,8 +12,9 @@ namespace ziggurat::lua {
 
 struct ProgramOptions {
   std::string endpoint;
-  std::vector<std::string> robots;              ///< ids or globs, with those of --robots-file
-  std::string controller;                       ///< id in the scene; empty for all
+  std::vector<std::string> robots;  ///< ids or globs, with those of --robots-file
+  std::string robots_from;          ///< pipe with ids of robots that come later; empty: none
+  std::string controller;           ///< id in the scene; empty for all
   std::optional<std::filesystem::path> script;  ///< instead of the scene's
   std::string server_key, curve_secret;         ///< as in ziggurat::Options
   std::string name = "ziggurat-lua";

@@ -3,6 +3,8 @@
 #include <new>
 
 #include "program/find_script.h"
+#include "program/terminal.h"
+#include "program/turn.h"
 #include "script/interrupt.h"
 
 namespace ziggurat::lua {
@@ -15,14 +17,18 @@ Runner::Runner(ziggurat::Session& session, const ProgramOptions& options)
 void Runner::run() {
   bool has_started = false;
   while (!are_scripts_interrupted() && session_.next()) {
+    const Turn turn;
     for (Seat& seat : seats_) {
       if (are_scripts_interrupted()) return;
       if (!has_started) start(seat);
       if (has_started && seat.controller && !seat.robot->gone()) answer(seat);
     }
     has_started = true;
+    offer_to_terminal();
   }
+  const Turn turn;
   if (!are_scripts_interrupted()) finish();
+  for (Seat& seat : seats_) seat.controller.reset();
 }
 
 void Runner::start(Seat& seat) {

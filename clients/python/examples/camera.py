@@ -24,7 +24,7 @@ def write_picture(robot, camera):
 
 
 def main():
-    endpoint = sys.argv[1] if len(sys.argv) > 1 else "tcp://127.0.0.1:5770"
+    endpoint = sys.argv[1] if len(sys.argv) > 1 else ""
     with ziggurat.connect(endpoint, name="camera.py") as session:
         cameras = [(robot, camera) for robot in session.robots for camera in robot.cameras]
         for _ in session:

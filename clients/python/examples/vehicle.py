@@ -16,8 +16,7 @@ WHEELS = ("base_wheel_bl", "base_wheel_fl", "base_wheel_br", "base_wheel_fr")
 
 
 def main():
-    endpoint = os.environ.get("ZIGGURAT_ENDPOINT", "tcp://127.0.0.1:5770")
-    endpoint = sys.argv[1] if len(sys.argv) > 1 else endpoint
+    endpoint = sys.argv[1] if len(sys.argv) > 1 else ""
     with ziggurat.connect(endpoint, controller=os.environ.get("ZIGGURAT_CONTROLLER", ""),
                           name="vehicle.py") as session:
         vehicle = session.robots[0]

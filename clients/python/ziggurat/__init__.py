@@ -1,6 +1,6 @@
 """Controllers for robots of a Ziggurat simulation server. See docs/python-client.md.
 
-    with ziggurat.connect("tcp://127.0.0.1:5770", robots="*") as session:
+    with ziggurat.connect(robots="*") as session:
         for tick in session:
             for robot in session.robots:
                 robot.joints["left"].target = 1.0
@@ -16,6 +16,7 @@ except ImportError as error:
 from .connection import Curve
 from .devices import *
 from .errors import ConnectionLost, Displaced, ProtocolError, Refused, Timeout, ZigguratError
+from .find_server import find_server
 from .named import Named
 from .parallel import ParallelEnv, all_readings, joint_targets, parallel_env
 from .robot import Robot

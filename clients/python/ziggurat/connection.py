@@ -11,9 +11,14 @@ import zmq.utils.monitor
 
 from . import protocol_pb2 as v1
 from .errors import ConnectionLost, Refused, Timeout
+from .find_server import find_server
 
 VERSION = v1.Version(major=1, minor=1)
 LINGER_MS = 1000  # time to send the last messages when a session is closed
+MONITORED = (zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL
+             | zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL | zmq.EVENT_HANDSHAKE_FAILED_AUTH)
+# A server that ends, or has no place, also breaks a handshake off: ZeroMQ tries again.
+MOST_FAILED_HANDSHAKES = 3
 
 
 @dataclass(frozen=True)
@@ -26,10 +31,12 @@ class Curve:
 
 
 class Connection:
-    """Connects in the background; the server may start later."""
+    """Connects in the background; the server may start later. Without endpoint: see find_server."""
 
     def __init__(self, endpoint: str, curve: Optional[Curve] = None):
-        self.endpoint = endpoint
+        self.endpoint = endpoint = endpoint or find_server()
+        self._has_keys = curve is not None
+        self._failed_handshakes = 0
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.IPV6, endpoint.startswith("tcp://["))
         if curve is not None:
@@ -38,7 +45,7 @@ class Connection:
             self.socket.curve_secretkey = curve.secret_key.encode()
         # ZeroMQ reconnects by itself, but the server does not know the new connection:
         # detect the end of the first one.
-        self.monitor = self.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)
+        self.monitor = self.socket.get_monitor_socket(MONITORED)
         self.poller = zmq.Poller()
         self.poller.register(self.socket, zmq.POLLIN)
         self.poller.register(self.monitor, zmq.POLLIN)
@@ -76,13 +83,30 @@ class Connection:
             if self.socket in ready:
                 return v1.ServerMessage.FromString(self.socket.recv())
             if self.monitor in ready:
-                zmq.utils.monitor.recv_monitor_message(self.monitor)
-                if self.socket.poll(0):
+                why = self._why_lost(zmq.utils.monitor.recv_monitor_message(self.monitor))
+                if self.socket.poll(0) or why is None:
                     continue
                 self.close()
-                raise ConnectionLost(f"the connection to {self.endpoint} was closed")
+                raise ConnectionLost(f"{self.endpoint}: {why}")
             if end is not None and time.monotonic() >= end:
                 raise Timeout(f"{self.endpoint}: no message for {timeout:g} s")
+
+    def _why_lost(self, event: dict) -> Optional[str]:
+        """Why the connection is lost after this event of its monitor; None if it is not."""
+        if event["event"] == zmq.EVENT_DISCONNECTED:
+            return "the connection was closed"
+        if event["event"] == zmq.EVENT_HANDSHAKE_FAILED_AUTH:
+            return "refused key? The server does not have this client's key in its --curve-clients"
+        if (event["event"] == zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL
+                and event["value"] == zmq.PROTOCOL_ERROR_ZMTP_MECHANISM_MISMATCH):
+            return ("the endpoint is not protected; leave out the keys" if self._has_keys else
+                    "refused key? The endpoint is protected, and this client has no keys; "
+                    "pass curve=Curve(...)")
+        self._failed_handshakes += 1
+        if self._has_keys and self._failed_handshakes >= MOST_FAILED_HANDSHAKES:
+            return ("refused key? The server breaks off the handshake; compare the server's public "
+                    "key with the one that 'ziggurat keygen' has printed")
+        return None
 
     def begin(self, hello: v1.Hello, connect_timeout: float) -> v1.Welcome:
         """Sends Hello and waits for the Welcome. Each Loading restarts the time-out."""

@@ -69,12 +69,13 @@ class Deadline:
                                  wall_deadline_ms=self.wall_ms, miss_budget=self.miss_budget)
 
 
-def connect(endpoint: str, robots: Union[str, Sequence[str]] = (), *, controller: str = "",
+def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, controller: str = "",
             name: str = "", version: str = "", deadline: Optional[Deadline] = None,
             takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
             wait_timeout: Optional[float] = None) -> "Session":
     """A session with all robots that match both `robots` (ids, or globs with * ? [a-z]) and
-    `controller` (its id in the scene); with neither, all robots.
+    `controller` (its id in the scene); with neither, all robots. Without endpoint it is that of
+    find_server().
 
     connect_timeout  wall time to wait for the server's welcome [s]
     wait_timeout     wall time to wait for a message [s]; None: forever

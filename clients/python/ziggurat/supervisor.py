@@ -83,8 +83,9 @@ class States:
         raise KeyError(id)
 
 
-def supervise(endpoint: str, **options: Any) -> "Supervisor":
-    """A Supervisor of the server at this endpoint; options are those of the class."""
+def supervise(endpoint: str = "", **options: Any) -> "Supervisor":
+    """A Supervisor of the server at this endpoint, otherwise at that of find_server(); options are
+    those of the class."""
     return Supervisor(endpoint, **options)
 
 
@@ -168,9 +169,9 @@ class Supervisor:
         return States(response.tick, response.states.hash,
                       tuple(map(_entity, response.states.entities)))
 
-    def shutdown(self) -> int:
-        """Ends the run, as Ctrl-C does."""
-        return self._ask(shutdown=v1.ShutdownRequest()).tick
+    def shutdown(self, reason: str = "") -> int:
+        """Ends the run, as Ctrl-C does. With a reason that was planned: the run's exit code is 0."""
+        return self._ask(shutdown=v1.ShutdownRequest(reason=reason or None)).tick
 
     def close(self) -> None:
         if not self._connection.closed:

@@ -53,8 +53,8 @@ Granted begin_without_robots(Barrier& barrier, const wire::Hello& hello) {
 }
 
 /// A new session with all robots that the Hello asks for.
-Granted begin_with_robots(Barrier& barrier, const wire::Hello& hello) {
-  auto granted = grant_robots(barrier, hello);
+Granted begin_with_robots(Barrier& barrier, const wire::Hello& hello, const Access& access) {
+  auto granted = grant_robots(barrier, hello, access);
   if (auto* refusal = std::get_if<wire::Refusal>(&granted)) return std::move(*refusal);
   const auto& robots = std::get<std::vector<std::size_t>>(granted);
   Session& session = barrier.sessions.add();
@@ -99,7 +99,7 @@ Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access&
 Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) {
   if (auto refusal = check_hello(barrier, hello, access.roles)) return std::move(*refusal);
   if (hello.role != wire::Role::controller) return begin_without_robots(barrier, hello);
-  return hello.session_token.empty() ? begin_with_robots(barrier, hello)
+  return hello.session_token.empty() ? begin_with_robots(barrier, hello, access)
                                      : resume_session(barrier, hello, access);
 }
 
@@ -123,8 +123,7 @@ void set_policies(Barrier& barrier, const Session& session, const wire::Hello& h
 
 /// @param is_resumed  the session was there before
 /// @param commands    of the tick that is being collected; null: nothing was commanded yet
-bool welcome(Barrier& barrier, Session& session, bool is_resumed,
-             const world::Commands* commands) {
+bool welcome(Barrier& barrier, Session& session, bool is_resumed, const world::Commands* commands) {
   wire::Welcome welcome;
   welcome.token = session.token;
   welcome.minor = session.minor;
@@ -168,9 +167,8 @@ void admit(Barrier& barrier, const std::string& connection, const Access& access
   bind(barrier, session, connection);
   set_policies(barrier, session, hello);
   update_patience(barrier, session);
-  const bool is_welcomed =
-      welcome(barrier, session, !hello.session_token.empty(), commands) &&
-      tell_taken(barrier, session, "Another client");
+  const bool is_welcomed = welcome(barrier, session, !hello.session_token.empty(), commands) &&
+                           tell_taken(barrier, session, "Another client");
   const bool has_tick = barrier.gate.tick() && !session.roster.empty();
   const bool is_there = is_welcomed && (!has_tick || observe(barrier, session));
   session.turn.is_repeated = true;
@@ -186,14 +184,18 @@ Delivery tell_loading(Barrier& barrier, Session& session) {
 void keep_waiting(Barrier& barrier, const std::string& connection, const Access& access,
                   std::string_view bytes) {
   const wire::Hello hello = barrier.inbox.hello();
-  const bool is_full = barrier.sessions.connected() >= barrier.config.max_sessions ||
-                       barrier.sessions.waiting_bytes() + bytes.size() > max_waiting_bytes;
-  if (is_full) {
+  // A role that its key does not have, which is refused later, takes no place of that role.
+  const wire::Role role = access.roles.allow(hello.role) ? hello.role : wire::Role::observer;
+  if (auto refusal = check_places(barrier, role)) {
+    return refuse(barrier, connection, hello, std::move(*refusal));
+  }
+  if (barrier.sessions.waiting_bytes() + bytes.size() > max_waiting_bytes) {
     auto refusal = make_refusal(ErrorCode::too_many, {}, "Too many wait for the world already.");
     refusal.fault.retryable = true;
     return refuse(barrier, connection, hello, std::move(refusal));
   }
   Session& session = barrier.sessions.add();
+  session.role = role;
   session.state = SessionState::hello;
   session.application = {std::string(bytes), access};
   bind(barrier, session, connection);

@@ -4,6 +4,7 @@
 
 #include "network/barrier/departure.h"
 #include "network/barrier/talk.h"
+#include "network/keys.h"
 #include "network/selection.h"
 #include "wire/fault.h"
 
@@ -32,6 +33,44 @@ wire::Refusal refuse_taken(const std::string& id, const Session& by, std::string
   refusal.fault.retryable = true;
   refusal.holder = by.client;
   return refusal;
+}
+
+/// What the key of a connection limits; none if it has none.
+const Scope* scope_of(const Barrier& barrier, const Access& access) {
+  if (!access.key || !barrier.config.curve) return nullptr;
+  return &barrier.config.curve->clients[*access.key].scope;
+}
+
+bool is_in_scope(const Barrier& barrier, const Scope* scope, std::size_t robot) {
+  if (scope == nullptr) return true;
+  const auto& layout = barrier.run->layout.robots[robot];
+  return scope->includes(layout.id, barrier.run->controllers[layout.controller].id);
+}
+
+/// The robots of a selection that the connection may have and that have not left. Those named by id
+/// stay, whatever they are; otherwise refuses one that the key does not include.
+std::variant<std::vector<std::size_t>, wire::Refusal> allowed_robots(
+    const Barrier& barrier, const std::vector<Selected>& selection, const Scope* scope) {
+  std::vector<std::size_t> robots;
+  bool has_any = false;
+  for (const auto& [robot, by_id] : selection) {
+    if (!is_in_scope(barrier, scope, robot)) {
+      if (!by_id) continue;
+      const std::string& id = barrier.run->layout.robots[robot].id;
+      return refuse_robot(id, ErrorCode::forbidden,
+                          fmt::format("The key of this connection may not drive robot '{}'.", id));
+    }
+    has_any = true;
+    if (by_id || !barrier.seats[robot].has_left) robots.push_back(robot);
+  }
+  if (!has_any) {
+    return make_refusal(ErrorCode::forbidden, "robots",
+                        "The key of this connection may drive none of the robots asked for.");
+  }
+  if (robots.empty()) {
+    return make_refusal(ErrorCode::not_yours, "robots", "All robots asked for have left the run.");
+  }
+  return robots;
 }
 
 /// Why a robot can't be taken, if it can't.
@@ -80,15 +119,22 @@ std::optional<wire::Refusal> check_hello(const Barrier& barrier, const wire::Hel
   if (barrier.gate.is_held(TickGate::Hold::finished)) {
     return make_refusal(ErrorCode::out_of_state, {}, "The run is over.");
   }
-  const std::size_t connected = barrier.sessions.connected();
-  if (connected >= barrier.config.max_sessions) {
-    auto refusal =
-        make_refusal(ErrorCode::too_many, {},
-                     fmt::format("The server has {} sessions and takes no more.", connected));
-    refusal.fault.retryable = true;
-    return refusal;
-  }
-  return std::nullopt;
+  return check_places(barrier, hello.role);
+}
+
+std::optional<wire::Refusal> check_places(const Barrier& barrier, wire::Role role) {
+  const Config& config = barrier.config;
+  const auto [most, name] =
+      role == wire::Role::controller   ? std::pair(config.max_sessions, "controllers")
+      : role == wire::Role::supervisor ? std::pair(config.max_supervisors, "supervisors")
+                                       : std::pair(config.max_observers, "observers");
+  const std::size_t connected = barrier.sessions.connected(role);
+  if (connected < most) return std::nullopt;
+  auto refusal = make_refusal(
+      ErrorCode::too_many, {},
+      fmt::format("The server has {} sessions of {} and takes no more.", connected, name));
+  refusal.fault.retryable = true;
+  return refusal;
 }
 
 std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::Hello& hello,
@@ -118,19 +164,20 @@ std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::He
 }
 
 std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barrier,
-                                                                   const wire::Hello& hello) {
+                                                                   const wire::Hello& hello,
+                                                                   const Access& access) {
+  const Scope* scope = scope_of(barrier, access);
   auto selection = select_robots(hello, *barrier.run);
   if (auto* fault = std::get_if<wire::Fault>(&selection)) {
     return wire::Refusal{std::move(*fault), {}, {}};
   }
-  std::vector<std::size_t> robots;
-  for (const Selected& selected : std::get<std::vector<Selected>>(selection)) {
-    const bool has_left = barrier.seats[selected.robot].has_left;
-    if (!has_left || selected.by_id) robots.push_back(selected.robot);
+  auto allowed = allowed_robots(barrier, std::get<std::vector<Selected>>(selection), scope);
+  if (auto* refusal = std::get_if<wire::Refusal>(&allowed)) return std::move(*refusal);
+  if (hello.takeover && scope != nullptr && !scope->may_take_over) {
+    return make_refusal(ErrorCode::forbidden, "takeover",
+                        "The key of this connection may not take robots over.");
   }
-  if (robots.empty()) {
-    return make_refusal(ErrorCode::not_yours, "robots", "All robots asked for have left the run.");
-  }
+  const auto& robots = std::get<std::vector<std::size_t>>(allowed);
   if (auto refusal = check_policy(barrier, hello, robots)) return std::move(*refusal);
   for (const std::size_t robot : robots) {
     if (auto refusal = check_robot(barrier, robot, hello.takeover)) return std::move(*refusal);

@@ -20,13 +20,16 @@ wire::Refusal make_refusal(wire::ErrorCode code, std::string field, std::string 
 /// Because of its version or role, or for lack of room.
 std::optional<wire::Refusal> check_hello(const Barrier& barrier, const wire::Hello& hello,
                                          const Roles& roles);
+/// Because all places of this role are taken.
+std::optional<wire::Refusal> check_places(const Barrier& barrier, wire::Role role);
 /// Because of the deadline policy that it asks for.
 /// @param robots  that it is to hold for
 std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::Hello& hello,
                                           std::span<const std::size_t> robots);
-/// The robots of a new session: all that the Hello asks for. Connections of their sessions are
-/// probed, and those that are gone are lost from then on.
+/// The robots of a new session: all that the Hello asks for and that its key may have. Connections
+/// of their sessions are probed, and those that are gone are lost from then on.
 std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barrier,
-                                                                   const wire::Hello& hello);
+                                                                   const wire::Hello& hello,
+                                                                   const Access& access);
 
 }  // namespace ziggurat::network

@@ -27,9 +27,11 @@ Session* Sessions::with_token(std::string_view token) {
   return nullptr;
 }
 
-std::size_t Sessions::connected() const {
+std::size_t Sessions::connected(wire::Role role) const {
   std::size_t count = 0;
-  for (const auto& [id, session] : sessions_) count += session.state != SessionState::lost ? 1 : 0;
+  for (const auto& [id, session] : sessions_) {
+    count += session.role == role && session.state != SessionState::lost ? 1 : 0;
+  }
   return count;
 }
 

@@ -23,7 +23,7 @@ class Sessions {
   Session* with_token(std::string_view token);
 
   std::size_t size() const { return sessions_.size(); }
-  std::size_t connected() const;  ///< those that are not lost
+  std::size_t connected(wire::Role role) const;  ///< those of that role that are not lost
   /// Bytes of all Hellos that wait for the world.
   std::size_t waiting_bytes() const;
 

@@ -142,6 +142,8 @@ bool CurvePeer::initiate(Bytes body, std::string& reply) {
     append_command(reply, "ERROR",
                    "\x03"
                    "400");
+    std::array<char, 41> text{};
+    unlisted_key_ = zmq_z85_encode(text.data(), client_key.data(), client_key.size());
     return false;
   }
   client_ = *client;

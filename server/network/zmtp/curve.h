@@ -47,6 +47,8 @@ class CurvePeer {
   /// The second one, by which the client is known. @param reply  gets our READY, or an ERROR if its
   /// key is not on the list
   bool initiate(Bytes body, std::string& reply);
+  /// The client's key if that is why initiate() has failed, in Z85; otherwise empty.
+  const std::string& unlisted_key() const { return unlisted_key_; }
   /// After initiate(): whose key it is, as an index into Curve::clients.
   std::size_t client() const { return client_; }
 
@@ -72,6 +74,7 @@ class CurvePeer {
   std::uint64_t sent_ = 0;                 // numbers of boxes, none is used twice
   std::uint64_t received_ = 0;
   std::size_t client_ = 0;
+  std::string unlisted_key_;
 };
 
 }  // namespace ziggurat::network::zmtp

@@ -51,7 +51,11 @@ Taken Engine::take_greeting(Bytes input, std::string& reply) {
   const std::string_view mechanism = text_of(input.subspan(mechanism_at, mechanism_size));
   std::string ours(mechanism_of(keys_));
   ours.resize(mechanism_size);
-  if (mechanism != ours) return failed();
+  if (mechanism != ours) {
+    refusal_ = curve_ ? "it has no key, and the endpoint is protected (--curve-clients)"
+                      : "it has keys, and the endpoint is not protected";
+    return failed();
+  }
   stage_ = curve_ ? Stage::hello : Stage::ready;
   if (!curve_) append_command(reply, "READY", our_metadata());
   return {Step::passed, greeting_size, false, {}};
@@ -60,10 +64,18 @@ Taken Engine::take_greeting(Bytes input, std::string& reply) {
 bool Engine::take_handshake(Bytes body, std::string& reply) {
   if (stage_ == Stage::hello) {
     stage_ = Stage::ready;
-    return curve_->hello(body, reply);
+    const bool is_ours = curve_->hello(body, reply);
+    if (!is_ours) refusal_ = "it expects another server key";
+    return is_ours;
   }
   stage_ = Stage::open;
-  if (curve_) return curve_->initiate(body, reply);
+  if (curve_) {
+    const bool is_listed = curve_->initiate(body, reply);
+    if (const auto& key = curve_->unlisted_key(); !key.empty()) {
+      refusal_ = "its key " + key + " is not in --curve-clients";
+    }
+    return is_listed;
+  }
   const auto data = command_data(body, "READY");
   return data && is_of_client(read_metadata(*data));
 }

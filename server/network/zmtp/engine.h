@@ -45,6 +45,8 @@ class Engine {
 
   /// The handshake is over: messages can be sent.
   bool is_open() const { return stage_ == Stage::open; }
+  /// Why the client's keys were refused, for people; empty if they were not.
+  const std::string& refusal() const { return refusal_; }
   /// What the client may do. @pre is_open()
   Access access() const;
 
@@ -64,6 +66,7 @@ class Engine {
   Stage stage_ = Stage::greeting;
   const CurveKeys* keys_;
   std::optional<CurvePeer> curve_;
+  std::string refusal_;
 };
 
 }  // namespace ziggurat::network::zmtp

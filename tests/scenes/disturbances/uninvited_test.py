@@ -289,16 +289,25 @@ class Uninvited(SceneTest):
 
     def test_a_message_for_which_there_is_no_memory(self):
         """A controller's: it is its error, and neither it nor the server ends."""
-        limit = 520 * MEBIBYTE  # the server asks for 512 MiB at least
-        process = self.serve(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        process = self.serve()
         with RawPeer(self.endpoint) as peer:
             peer.send_message(hello(robots=["*"]))
             self.assertTrue(answer(peer).HasField("welcome"))
             self.assertTrue(answer(peer).HasField("observation"))
-            positions = b"\x01" * (60 * MEBIBYTE)  # 240 MiB of numbers, and as much while they grow
-            command = v1.Command(robots=[1, 1])
-            field = command.SerializeToString()[:1] + varint(len(positions)) + positions
-            peer.send_message(b"\x12" + varint(len(field)) + field)
+            # A list of 60 MiB of numbers, and memory for the message itself, but not for what it says.
+            numbers = bytes(60 * MEBIBYTE)
+            field = v1.Command(joint_targets=[1]).SerializeToString()[:1] + varint(len(numbers)) + numbers
+            message = b"\x12" + varint(len(field)) + field
+            peer.socket.sendall(struct.pack(">BQ", 2, len(message)) + message[:-1])
+
+            def taken():
+                return int(re.search(r"VmSize:\s*(\d+)", pathlib.Path(
+                    f"/proc/{process.pid}/status").read_text())[1]) * 1024
+
+            time.sleep(0.5)  # until all of it is there
+            limit = taken() + 20 * MEBIBYTE
+            resource.prlimit(process.pid, resource.RLIMIT_AS, (limit, limit))
+            peer.socket.sendall(message[-1:])
             error = answer(peer).error
             self.assertEqual(v1.Error.Code.Name(error.code), "MALFORMED", error)
             self.assertIn("memory", error.message)

@@ -91,6 +91,34 @@ TEST_F(Keys, EveryFaultOfTheListIsNamedWithItsLine) {
   EXPECT_NE(complaint([&] { read_client_keys(write("none", "# no key\n")); }), "");
 }
 
+TEST_F(Keys, ALineLimitsWhatAKeyMayDrive) {
+  const std::string a = write_key_pair(path("a"));
+  const auto clients = read_client_keys(write(
+      "list", a + " controller,observer robots=r1,scout* controllers=wander takeover=no A = B\n"));
+  ASSERT_EQ(clients.size(), 1U);
+  const Scope& scope = clients[0].scope;
+  EXPECT_TRUE(scope.includes("scout7", "wander"));
+  EXPECT_TRUE(scope.includes("r1", "wander"));
+  EXPECT_FALSE(scope.includes("r11", "wander"));
+  EXPECT_FALSE(scope.includes("r1", "wanderer"));
+  EXPECT_FALSE(scope.may_take_over);
+  EXPECT_EQ(clients[0].name, "A = B");
+  EXPECT_TRUE(Scope{}.includes("any", "thing"));
+}
+
+TEST_F(Keys, FaultsOfLimitsAreNamed) {
+  const std::string a = write_key_pair(path("a"));
+  for (const auto& [line, part] : {std::pair(" controller robot=r1", "'robot=' limits nothing"),
+                                   std::pair(" controller robots=", "robots= names nothing"),
+                                   std::pair(" controller robots=a,,b", "empty pattern"),
+                                   std::pair(" controller takeover=maybe", "write yes or no"),
+                                   std::pair(" observer robots=r1", "role controller")}) {
+    const std::string file = write("list", a + line + "\n");
+    const auto text = complaint([&] { read_client_keys(file); });
+    EXPECT_NE(text.find(part), std::string::npos) << line << ": " << text;
+  }
+}
+
 struct Protected : Keys {
   Protected() {
     server_key = write_key_pair(path("server"));
@@ -175,7 +203,92 @@ TEST_F(Protected, OthersGetNoAnswerToAnything) {
     wrong.server_key = public_key_of(read_secret_key(path("unlisted.secret")));
     EXPECT_THROW(ziggurat::Session{wrong}, ConnectionError) << "another server's key";
   });
-  EXPECT_TRUE(server.take_report().notices.empty());
+}
+
+std::string complaint_of(const Options& options) {
+  try {
+    ziggurat::Session session(options);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(Protected, ARefusedKeyIsToldOnBothSides) {
+  const SmallRun small(1);
+  Server server(config, small.run());
+  std::string unlisted, none, other;
+  meanwhile(server, [&] {
+    Options from = options(server, "unlisted");
+    from.connect_timeout = milliseconds{20'000};
+    unlisted = complaint_of(from);
+    Options wrong = options(server, "friend");
+    wrong.connect_timeout = milliseconds{20'000};
+    wrong.server_key = public_key_of(read_secret_key(path("unlisted.secret")));
+    other = complaint_of(wrong);
+    Options without = options(server, "");
+    without.connect_timeout = milliseconds{20'000};
+    none = complaint_of(without);
+  });
+  EXPECT_NE(unlisted.find("refused key? The server does not have"), std::string::npos) << unlisted;
+  EXPECT_NE(other.find("refused key? The server breaks off"), std::string::npos) << other;
+  EXPECT_NE(none.find("refused key? The endpoint is protected"), std::string::npos) << none;
+  const auto notices = server.take_report().notices;
+  ASSERT_EQ(notices.size(), 1U) << "one line a second, with the number of the others";
+  EXPECT_NE(notices[0].find("A client was refused: "), std::string::npos) << notices[0];
+  EXPECT_NE(notices[0].find(" more like this."), std::string::npos) << notices[0];
+}
+
+TEST_F(Protected, TheLineOnARefusedKeyHasTheKey) {
+  const SmallRun small(1);
+  Server server(config, small.run());
+  meanwhile(server, [&] { complaint_of(options(server, "unlisted")); });
+  const auto notices = server.take_report().notices;
+  ASSERT_EQ(notices.size(), 1U);
+  const std::string key = public_key_of(read_secret_key(path("unlisted.secret")));
+  EXPECT_NE(notices[0].find(key), std::string::npos) << notices[0];
+}
+
+TEST_F(Protected, K6_AKeyDrivesOnlyRobotsOfItsScope) {
+  const SmallRun small(3);
+  config.curve->clients[0].scope = {{"robot1", "robot2"}, {}, true};
+  config.curve->clients[1] = {
+      config.curve->clients[1].public_key, {true, false, false}, "", {{}, {"nothing*"}, true}};
+  Server server(config, small.run());
+  meanwhile(server, [&] {
+    Options from = options(server, "friend");
+    from.connect_timeout = milliseconds{20'000};
+    from.robots = {"robot0"};
+    EXPECT_NE(complaint_of(from).find("FORBIDDEN"), std::string::npos) << "named by its id";
+    from.robots = {"*"};
+    ziggurat::Session session(from);
+    ASSERT_EQ(session.robots().size(), 2U) << "a pattern means those of the scope";
+    EXPECT_EQ(session.robots()[0].id(), "robot1");
+    Options other = options(server, "viewer");
+    other.connect_timeout = milliseconds{20'000};
+    other.robots = {"*"};
+    EXPECT_NE(complaint_of(other).find("FORBIDDEN"), std::string::npos) << "no robot is left";
+  });
+}
+
+TEST_F(Protected, K6_AKeyTakesOverOnlyIfItMay) {
+  const SmallRun small(1);
+  config.curve->clients[0].scope.may_take_over = false;
+  config.curve->clients[1].roles.controller = true;
+  Server server(config, small.run());
+  meanwhile(server, [&] {
+    Options from = options(server, "viewer");
+    from.connect_timeout = milliseconds{20'000};
+    from.robots = {"*"};
+    ziggurat::Session session(from);
+    Options other = options(server, "friend");
+    other.connect_timeout = milliseconds{20'000};
+    other.robots = {"*"};
+    other.takeover = true;
+    EXPECT_NE(complaint_of(other).find("FORBIDDEN"), std::string::npos);
+    from.takeover = true;
+    EXPECT_EQ(complaint_of(from), "");
+  });
 }
 
 TEST_F(Protected, K3_ARoleThatTheKeyDoesNotHaveIsForbidden) {

@@ -137,7 +137,7 @@ TEST(Loading, ThePrivateEndpointComesWithTheWorldAndFirst) {
   Config config = config_with_heartbeat(out_of_the_way);
   Server server(config);
   const std::string endpoint = server.endpoints().at(0);
-  config.private_endpoint = "ipc:///tmp/ziggurat-loading-" + std::to_string(::getpid());
+  config.private_endpoint = "ipc://@ziggurat-loading-" + std::to_string(::getpid());
   server.open(small.run(), config);
   ASSERT_EQ(server.endpoints().size(), 2U);
   EXPECT_EQ(server.endpoints()[0], config.private_endpoint);

@@ -30,7 +30,29 @@ TEST(TimeShare, LittleIsSavedUp) {
   EXPECT_TRUE(share.has_some(later));
   share.charge(6ms);
   EXPECT_FALSE(share.has_some(later));
-  EXPECT_NEAR(share.time_until_some().count(), 0.02, 1e-6);
+  EXPECT_NEAR(share.time_until_some().count(), (0.001 + TimeShare::least.count()) / 0.05, 1e-6);
+}
+
+TEST(TimeShare, ItsTurnsAreNotShorterThanWorthwhile) {
+  TimeShare share(0.05, 5ms);
+  auto now = std::chrono::steady_clock::now();
+  share.charge(5ms);
+  int turns = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    now += 100us;
+    if (!share.has_some(now)) continue;
+    ++turns;
+    share.charge(TimeShare::least);
+  }
+  EXPECT_NEAR(turns, 100, 5) << "5 % of a second, in turns of half a millisecond";
+}
+
+TEST(TimeShare, WhatIsOwedIsBounded) {
+  TimeShare share(0.05, 5ms);
+  const auto now = std::chrono::steady_clock::now();
+  share.charge(1h);
+  EXPECT_FALSE(share.has_some(now));
+  EXPECT_TRUE(share.has_some(now + 500ms));
 }
 
 }  // namespace

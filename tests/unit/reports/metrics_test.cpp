@@ -130,7 +130,7 @@ TEST(Metrics, AnswersAreWholeForThisMachineAndForGetOnly) {
   const std::string ranges = "Range: bytes=0-1,0-1,0-1,0-1\r\n";
   const auto whole = answer_to("GET / HTTP/1.1\r\nHost: [::1]:80\r\n" + ranges + "\r\n", "x", read);
   EXPECT_TRUE(whole.starts_with("HTTP/1.1 200") && whole.ends_with("\r\n\r\n0123456789")) << whole;
-  for (const auto* host : {"localhost:1", "127.0.0.1", "[::1]", " 10.0.0.1:9464 "}) {
+  for (const auto* host : {"localhost:1", "LocalHost", "127.0.0.1", "[::1]", " 10.0.0.1:9464 "}) {
     EXPECT_EQ(code(std::string("GET / HTTP/1.1\r\nhost:") + host + "\r\n\r\n"), "200") << host;
   }
   EXPECT_EQ(code("GET / HTTP/1.1\r\nHost: rebound.example:9464\r\n\r\n"), "403");

@@ -16,7 +16,10 @@ TEST(Summary, ExitCodeFollowsTheEnding) {
   EXPECT_EQ(exit_code_of(summary), 130);
   summary.ending = Ending::forced;
   EXPECT_EQ(exit_code_of(summary), 130);
+  summary.ending = Ending::shut_down;
+  EXPECT_EQ(exit_code_of(summary), 3);
   summary.failures.clear();
+  EXPECT_EQ(exit_code_of(summary), 0);
   summary.ending = Ending::controller_vanished;
   EXPECT_EQ(exit_code_of(summary), 3);
 }

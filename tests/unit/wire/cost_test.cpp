@@ -39,6 +39,13 @@ TEST(Cost, AMessageOfEmptyPartsIsNotDecoded) {
   EXPECT_EQ(inbox.parse(json + "\"\"]}}"), Inbox::Kind::malformed);
 }
 
+TEST(Cost, ListsOfNumbersCountByTheirLength) {
+  v1::ClientMessage message;
+  for (int i = 0; i < 1600; ++i) message.mutable_command()->add_led_colors(1);
+  for (int i = 0; i < 1600; ++i) message.mutable_command()->add_joint_targets(1);
+  EXPECT_EQ(count_fields(message.SerializeAsString()), 1U + 2U + 1600 / numbers_per_field);
+}
+
 TEST(Cost, AnyBytesEnd) {
   EXPECT_EQ(count_fields("\xff\xff\xff"), 0U);
   EXPECT_EQ(count_fields(std::string("\x0a\x7f", 2)), 0U);

@@ -44,9 +44,9 @@ struct Options {
   bool lua_only = false;            ///< only robots with a Lua script as controller
 
   /// Session::token() of an earlier session: resumes it with its robots at the present tick.
-  /// Controller, robots and lua_only are ignored then. The values of the last commands stay, and the
-  /// handles of the new session begin with them; a server of protocol version 1.0 does not send them,
-  /// and the handles begin with the scene's values: set all values again then.
+  /// Controller, robots and lua_only are ignored then. The values of the last commands stay, and
+  /// the handles of the new session begin with them; a server of protocol version 1.0 does not send
+  /// them, and the handles begin with the scene's values: set all values again then.
   std::string session_token;
   bool takeover = false;             ///< also robots of other sessions, which keep the rest
   std::optional<Deadline> deadline;  ///< a wish; none = as the scene or the server's options say
@@ -62,12 +62,16 @@ struct Options {
   /// constructor throws ConnectionError. None = no interruption.
   std::function<bool()> is_interrupted;
 
-  /// The endpoint is ZIGGURAT_ENDPOINT, the controller ZIGGURAT_CONTROLLER: `ziggurat run` sets
-  /// both for the controllers that it starts. Keys are ZIGGURAT_SERVER_KEY and
-  /// ZIGGURAT_CURVE_SECRET.
-  /// @throws std::invalid_argument without ZIGGURAT_ENDPOINT
+  /// The endpoint is ZIGGURAT_ENDPOINT, otherwise that of find_server(), the controller
+  /// ZIGGURAT_CONTROLLER: `ziggurat run` sets both for the controllers that it starts. Keys are
+  /// ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET.
+  /// @throws std::invalid_argument, see find_server()
   static Options from_environment();
 };
+
+/// The endpoint of the only server of this user that `ziggurat serve` has started on this machine
+/// without --endpoint. @throws std::invalid_argument if there is none, or more than one
+std::string find_server();
 
 /// What an observation is for.
 enum class Event {

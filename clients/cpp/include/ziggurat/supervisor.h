@@ -128,8 +128,8 @@ class Supervisor {
                      const std::optional<std::array<double, 4>>& orientation = std::nullopt);
   /// @param entities  ids or globs; none = all
   WorldStates read(std::span<const std::string> entities = {});
-  /// Ends the run, as Ctrl-C does.
-  void shutdown();
+  /// Ends the run, as Ctrl-C does. With a reason that was planned: the run's exit code is 0.
+  void shutdown(std::string_view reason = {});
 
   /// The last answer to status() or read() as protobuf's JSON, for programs.
   std::string last_answer_json() const;

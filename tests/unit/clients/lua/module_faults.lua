@@ -12,7 +12,7 @@ fails("unknown option 'foo'", ziggurat.connect, {endpoint = "tcp://127.0.0.1:1",
 fails("options must have names", ziggurat.connect, {"tcp://127.0.0.1:1"})
 fails("robots[2] must be a string", ziggurat.connect, {endpoint = "tcp://127.0.0.1:1", robots = {"a", 1}})
 fails("connect_timeout must be a number", ziggurat.connect, {endpoint = "x", connect_timeout = -1})
-fails("ZIGGURAT_ENDPOINT", ziggurat.connect)
+fails("no server of this user", ziggurat.connect)
 fails("not an endpoint", ziggurat.connect, {endpoint = "nonsense"})
 fails("no-server", ziggurat.connect, {endpoint = "ipc://@no-server", connect_timeout = 0.05})
 fails("unknown", ziggurat.connect, {endpoint = arg[1], robots = "unknown"})

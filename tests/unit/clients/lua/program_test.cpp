@@ -17,7 +17,7 @@ Request read(std::vector<const char*> arguments, bool is_terminal = false) {
 std::string fault_of(std::vector<const char*> arguments) {
   try {
     read(std::move(arguments));
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     return error.what();
   }
   return "";
@@ -80,7 +80,7 @@ TEST_F(Program, ReadsRobotsFromAFile) {
 }
 
 TEST_F(Program, ReportsWrongArguments) {
-  EXPECT_NE(fault_of({}).find("--connect is missing"), std::string::npos);
+  EXPECT_NE(fault_of({}).find("server"), std::string::npos);
   EXPECT_NE(fault_of({"--connect", "x", "--bogus"}).find("bogus"), std::string::npos);
   EXPECT_NE(fault_of({"--connect", "x", "stray"}).find("--help"), std::string::npos);
   for (const char* memory : {"0", "-1", "x", "1x", "", "99999999999999999999"}) {

@@ -141,15 +141,13 @@ class Holding(unittest.TestCase):
         with serve() as server:
             first = ziggurat.connect(server.endpoint, name="first")
             tick = next(first)
-            with ziggurat.connect(server.endpoint, "arm1", name="second", takeover=True) as second:
+            with ziggurat.connect(server.endpoint, name="second", takeover=True) as second:
                 with self.assertRaises(ziggurat.Displaced) as caught:
                     for tick in first:
                         pass
                 self.assertIn("second", str(caught.exception))
-                self.assertEqual([robot.id for robot in second.robots], ["arm1"])
-                with ziggurat.connect(server.endpoint, ["arm0", "arm2", "arm3"]) as third:
-                    # Both get the tick that stands.
-                    self.assertEqual(next(second).number, next(third).number)
+                self.assertEqual(len(second.robots), 4)
+                self.assertGreaterEqual(next(second).number, tick.number)  # the tick that stands
 
     def test_a_lease_keeps_robots_for_their_token(self):
         with serve("--lease", "60") as server:
@@ -239,9 +237,10 @@ class Keys(unittest.TestCase):
                 self.assertEqual(caught.exception.code, "FORBIDDEN")
             unlisted = ziggurat.Curve(server_key.decode(),
                                       *(key.decode() for key in zmq.curve_keypair()))
-            for keys in (unlisted, None):
-                with self.assertRaises(ziggurat.ConnectionLost):
-                    ziggurat.connect(server.endpoint, curve=keys, connect_timeout=0.5)
+            for keys, why in ((unlisted, "does not have this client's key"),
+                              (None, "this client has no keys")):
+                with self.assertRaisesRegex(ziggurat.ConnectionLost, f"refused key.*{why}"):
+                    ziggurat.connect(server.endpoint, curve=keys)
 
 
 if __name__ == "__main__":

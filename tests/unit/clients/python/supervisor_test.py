@@ -34,6 +34,7 @@ class Supervision(SessionCase):
                  (lambda w: w.step(3), "step", {"ticks": 3}),
                  (lambda w: w.spawn("<box/>"), "spawn", {"xml": "<box/>"}),
                  (lambda w: w.remove("box"), "remove", {"entity": "box"}),
+                 (lambda w: w.shutdown("done"), "shutdown", {"reason": "done"}),
                  (lambda w: w.shutdown(), "shutdown", {})]
         for call, kind, fields in calls:
             with self.subTest(kind):

@@ -55,7 +55,7 @@ TEST(Sessions, LostOnesAreNotConnected) {
   Sessions sessions;
   sessions.add().state = SessionState::lost;
   sessions.add().application.hello = "hello";
-  EXPECT_EQ(sessions.connected(), 1U);
+  EXPECT_EQ(sessions.connected(wire::Role::controller), 1U);
   EXPECT_EQ(sessions.waiting_bytes(), 5U);
 }
 

@@ -1,0 +1,40 @@
+#pragma once
+// Sockets in folders that only this user can enter.
+
+#include <list>
+#include <string>
+
+#include "network/descriptor.h"
+#include "processes/guardian.h"
+#include "processes/private_folder.h"
+
+namespace ziggurat::run {
+
+class LocalEndpoints {
+ public:
+  /// @param guardian  removes what is left if this program is killed; null: none
+  explicit LocalEndpoints(const processes::Guardian* guardian) : guardian_(guardian) {}
+  /// Removes what is empty. The server has removed its sockets by then.
+  ~LocalEndpoints() { release(); }
+  LocalEndpoints(const LocalEndpoints&) = delete;
+  LocalEndpoints& operator=(const LocalEndpoints&) = delete;
+
+  /// The same as the destructor, for a program that ends without it.
+  void release();
+
+  /// For `ipc://*`: anywhere.
+  std::string any();
+  /// Where `serve` listens by itself, and clients of this user find it: in
+  /// $XDG_RUNTIME_DIR/ziggurat, otherwise in /tmp/ziggurat-UID, both with mode 0700; if another
+  /// user has taken that name, anywhere. Removes there the sockets of servers that were killed.
+  /// @param scene  path of the scene file, whose name is part of the socket's
+  std::string of_server(const std::string& scene);
+
+ private:
+  const processes::Guardian* guardian_;
+  std::list<processes::PrivateFolder> folders_;
+  std::string shared_;          ///< the folder of of_server()
+  network::Descriptor opened_;  ///< the same
+};
+
+}  // namespace ziggurat::run
