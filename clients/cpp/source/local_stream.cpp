@@ -178,12 +178,18 @@ bool LocalStream::fill() {
   }
 }
 
+bool LocalStream::was_closed() {
+  if (is_protected_) throw ConnectionError("ipc://" + path_ + ": " + keys_are_missing);
+  return is_expected_open_ && stage_ == Stage::closed;
+}
+
 LocalStream::Step LocalStream::take_greeting() {
   if (filled_ - taken_ < greeting_size) return Step::incomplete;
   const std::string_view greeting(input_.data() + taken_, greeting_size);
   taken_ += greeting_size;
   if (greeting[0] != '\xff' || greeting[10] < 3 ||
       greeting.substr(12, 5) != std::string_view("NULL", 5)) {
+    is_protected_ = greeting.substr(12, 5) == "CURVE";
     close();
     return Step::incomplete;
   }

@@ -27,7 +27,7 @@ class LocalStream final : public Transport {
   bool receive(std::chrono::milliseconds timeout) override;
   std::string_view content() override { return content_; }
   bool has_more() const override { return has_more_; }
-  bool was_closed() override { return is_expected_open_ && stage_ == Stage::closed; }
+  bool was_closed() override;
   void expect_open() override { is_expected_open_ = true; }
   void linger() override { lingers_ = true; }
 
@@ -57,6 +57,7 @@ class LocalStream final : public Transport {
   std::size_t filled_ = 0, taken_ = 0;
   std::string_view content_;  // into input_
   bool has_more_ = false;
+  bool is_protected_ = false;  // the server asks for keys
 };
 
 }  // namespace ziggurat
