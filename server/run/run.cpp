@@ -57,7 +57,7 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
 /// Reads the scene and builds the world, on a thread of its own.
 /// @param tell  how far that is
 supervision::World Run::read_world(const Tell& tell_clients) {
-  const auto tell = [&](double share, const char* message) {
+  const auto tell = [&](double share, const std::string& message) {
     console_.progress(fmt::format("{:.0f} %: {}", 100 * share, message));
     tell_clients(share, message);
   };
