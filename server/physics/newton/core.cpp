@@ -172,6 +172,13 @@ void NewtonCore::set_servos_and_limits(std::span<Body> bodies, const Share& shar
   });
 }
 
+/// Leaves out those of all other trees.
+void NewtonCore::keep_servos_and_limits(const TreeSet& chosen) {
+  const auto is_other = [&](const auto& item) { return !chosen.holds[item.tree]; };
+  std::erase_if(servos_, is_other);
+  std::erase_if(limits_, is_other);
+}
+
 /// The impulses of this substep are where the next one begins. Those of a part without forces are
 /// not: the ones of the substep before are nearer to what comes.
 void NewtonCore::remember(const Share& share) {
@@ -199,6 +206,7 @@ void NewtonCore::push_apart_what_turned(const Share& share) {
 }
 
 void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
+  system_.allowed_overlap = share.allowed_overlap;
   const dynamics::Report report =
       system_.step(share.length, contacts, servos_, limits_, share.trees());
   remember(share);
@@ -219,10 +227,12 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   woke |= system_.wake_disturbed(length, contacts, servos_);
   if (woke) contacts = contacts_.add_resting();
   if (!stiff) return step(contacts, whole);
-  division_.find(stiff->stiff_pairs(), contacts_.near(), contacts, colliders_.all, system_.trees);
+  if (woke) {  // what has just woken may touch others
+    division_.find(stiff->stiff_pairs(), contacts_.near(), contacts, colliders_.all, system_.trees);
+  }
   whole.chosen = &division_.with(0);
   if (!whole.chosen->trees.empty()) {
-    set_servos_and_limits(bodies, whole);
+    keep_servos_and_limits(*whole.chosen);
     step(contacts_.keep(*whole.chosen), whole);
   }
   for (const int count : division_.counts()) {
@@ -279,11 +289,11 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
   Share share;
   share.chosen = &chosen;
   share.splits = splits;
+  share.allowed_overlap = overlap_of_magnets;
   contacts_.choose(chosen);
   stiff.choose_stiff(chosen.holds);
   stiff.push_stiff(bodies, -1);
   hold_back(chosen);
-  const double allowed_overlap = std::exchange(system_.allowed_overlap, overlap_of_magnets);
   for (int i = 0; i <= count; ++i) {
     const bool half = i == 0 || i == count;
     const double kick = i == 0 ? 0 : half ? 2 : 1;  // of the forces over this length
@@ -298,7 +308,6 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
     set_servos_and_limits(bodies, share);
     step(contacts_.find(share.length, chosen, share.of_impulses), share);
   }
-  system_.allowed_overlap = allowed_overlap;
   auto gravity = gravity_.begin();
   for (const int number : chosen.trees) system_.trees[number].gravity = *gravity++;
 }

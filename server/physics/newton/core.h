@@ -56,9 +56,11 @@ class NewtonCore {
     int splits = 1;                   // of the scene's substep, see substep()
     double of_impulses = 1;           // of the substep's forces and impulses, that act in it
     bool more = false;                // other parts follow
+    double allowed_overlap = 1e-6;    // that remains [m]
     std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
   };
   void set_servos_and_limits(std::span<Body> bodies, const Share& share);
+  void keep_servos_and_limits(const TreeSet& chosen);
   void step(std::span<dynamics::Contact> contacts, const Share& share);
   bool wake_stiff(const Plugin& stiff);
   void remember(const Share& share);
