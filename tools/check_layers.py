@@ -31,10 +31,11 @@ MODULES = {
     "recording": ["world", "protocol", "math"],
     "channels": ["scene", "world", "wire", "recording", "render", "magnetism", "protocol", "math"],
     "network": ["scene", "world", "wire", "protocol", "math"],
+    "view": ["channels", "wire", "network", "text", "math"],
     "reports": ["text", "scene", "wire", "network", "math"],
     "processes": ["scene", "world", "recording"],
     "supervision": ["reports", "processes", "network", "simulation", "wire", "scene", "math"],
-    "run": ["supervision", "reports", "processes", "network", "recording", "simulation", "render",
+    "run": ["supervision", "view", "channels", "reports", "processes", "network", "recording", "simulation", "render",
             "scene", "world", "math", "text"],
     "cli": ["run", "reports", "processes", "network", "simulation", "physics", "magnetism", "scene",
             "text", "clients/cpp"],
@@ -54,6 +55,7 @@ LIBRARIES = {
     "libsodium": (r"sodium\.h$", ["network"]),
     "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
     "libpng": (r"png\.h$", ["recording"]),
+    "Boost.Beast": (r"boost/(beast|asio)", ["view"]),
     "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua", "processes"]),
 }
 

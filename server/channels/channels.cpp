@@ -149,7 +149,8 @@ void Channels::encode(const Moment& moment, Pace pace, std::span<const std::uint
     } else if (std::optional<std::string> bytes = bytes_of(*channel, moment)) {
       content = content_of(*std::move(bytes));
     }
-    if (content) to.push_back({id, moment.state.time_ns, std::move(content)});
+    const bool must_arrive = pace == Pace::latched;
+    if (content) to.push_back({id, moment.state.time_ns, std::move(content), must_arrive});
   }
 }
 
@@ -206,7 +207,7 @@ Message Channels::log(std::int64_t time_ns, Severity severity, std::string_view 
                                                  : Log::INFO);
   line.set_name(v1::valid_utf8(name));
   line.set_message(v1::valid_utf8(text));
-  return {id_of(Kind::log), time_ns, content_of(line.SerializeAsString())};
+  return {id_of(Kind::log), time_ns, content_of(line.SerializeAsString()), true};
 }
 
 Message Channels::barrier(const wire::Status& status, std::span<const Histogram> histograms) const {

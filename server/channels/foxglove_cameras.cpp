@@ -100,7 +100,7 @@ std::shared_ptr<const Content> picture_of(const v1::World& world, std::size_t ca
     picture.set_data(recording::to_png(width, height, rgb, true));
     return picture.SerializeAsString();
   };
-  return std::make_shared<const Content>(std::function<std::string()>(encode));
+  return std::make_shared<const Content>(encode, image->rgb.size());
 }
 
 }  // namespace ziggurat::channels

@@ -1,6 +1,7 @@
 #pragma once
 // Messages of channels, encoded.
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,8 +15,10 @@ namespace ziggurat::channels {
 /// that asks, so that pictures that no viewer gets cost nothing.
 class Content {
  public:
-  explicit Content(std::string bytes) : bytes_(std::move(bytes)) {}
-  explicit Content(std::function<std::string()> make) : make_(std::move(make)) {}
+  explicit Content(std::string bytes) : held_(bytes.size()), bytes_(std::move(bytes)) {}
+  /// @param held  what `make` keeps in memory until then [bytes]
+  Content(std::function<std::string()> make, std::size_t held)
+      : held_(held), make_(std::move(make)) {}
   Content(const Content&) = delete;
   Content& operator=(const Content&) = delete;
 
@@ -26,8 +29,11 @@ class Content {
     });
     return bytes_;
   }
+  /// How much memory it takes, about [bytes].
+  std::size_t held() const { return held_; }
 
  private:
+  std::size_t held_;
   mutable std::once_flag once_;
   mutable std::function<std::string()> make_;
   mutable std::string bytes_;
@@ -37,6 +43,7 @@ struct Message {
   std::uint32_t channel = 0;  ///< Channel::id
   std::int64_t time_ns = 0;   ///< simulated
   std::shared_ptr<const Content> content;
+  bool must_arrive = false;  ///< latched, or an event: no later message replaces it at each tick
 };
 
 }  // namespace ziggurat::channels

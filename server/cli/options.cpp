@@ -67,7 +67,12 @@ po::options_description world_options() {
        "only "
        "scripts that the scene names; may be repeated")  //
       ("metrics", text("HOST:PORT"),
-       "serve the run's status over HTTP there: /metrics for Prometheus, /status as JSON");
+       "serve the run's status over HTTP there: /metrics for Prometheus, /status as JSON")  //
+      ("view", po::value<std::string>()->implicit_value("")->value_name("HOST:PORT"),
+       "show the run in a browser, Foxglove or Lichtblick: prints the address (default "
+       "127.0.0.1:8765, or a free port)")  //
+      ("view-token", text("TOKEN"),
+       "the token of that address instead of a random one: 16 characters or more");
   return options;
 }
 
@@ -244,6 +249,11 @@ void read_network(const Values& values, run::Options& options) {
   options.paused = values.has("paused");
   options.spawned_script_folders = values.texts("allow-spawned-scripts");
   options.metrics = values.text("metrics");
+  if (values.has("view")) options.view = values.text("view");
+  options.view_token = values.text("view-token");
+  if (!options.view_token.empty() && !options.view) {
+    throw text::UsageError("--view-token needs --view");
+  }
 }
 
 void read_outputs(const Values& values, run::Options& options) {

@@ -71,6 +71,7 @@ struct Report {
 struct Call {
   std::string peer;  ///< its connection
   wire::Request request;
+  bool is_local = false;  ///< of this process, which answers it itself: no connection has sent it
 };
 
 }  // namespace ziggurat::network

@@ -44,6 +44,8 @@ struct Options {
   std::string report_card;               ///< path; empty = none
   std::uint64_t warm_up = 0;             ///< ticks that the report card does not count
   std::string metrics;                   ///< host:port; empty = none
+  std::optional<std::string> view;       ///< serve viewers: host:port, or empty for the usual one
+  std::string view_token;                ///< the user's own; empty = a random one
   bool insecure = false;                 ///< endpoints may be reached from other machines
 
   bool quiet = false;

@@ -13,19 +13,26 @@ constexpr int most_notices = 1000;  // so that a hostile peer cannot fill a log
 
 }  // namespace
 
+void PeerReports::notice(const std::string& text) {
+  console_.notice(text);
+  if (showing_) showing_->log(channels::Severity::warning, "ziggurat", text);
+}
+
 void PeerReports::take(network::Report report, std::uint64_t tick) {
-  for (const auto& notice : report.dropped) console_.notice(notice);
-  for (const auto& notice : report.notices) {
-    if (++notices_ <= most_notices) console_.notice(notice);
-    if (notices_ == most_notices) console_.notice("further notices on peers are not printed");
+  for (const auto& text : report.dropped) notice(text);
+  for (const auto& text : report.notices) {
+    if (++notices_ <= most_notices) notice(text);
+    if (notices_ == most_notices) notice("further notices on peers are not printed");
   }
   std::ranges::move(report.log, std::back_inserter(log_));
   for (auto& failure : report.failures) {
     const auto& robot = world_.simulation.layout().robots[failure.robot];
     const auto& controller = world_.scene.controllers[robot.controller].id;
     print_log(tick);
-    console_.fault(fmt::format("robot {} (controller '{}') failed at tick {}: {}", robot.id,
-                               controller, failure.tick, failure.message));
+    const auto text = fmt::format("robot {} (controller '{}') failed at tick {}: {}", robot.id,
+                                  controller, failure.tick, failure.message);
+    console_.fault(text);
+    if (showing_) showing_->log(channels::Severity::error, robot.id, text);
     failures_.push_back(
         {failure.robot, {robot.id, controller, failure.tick, std::move(failure.message)}});
   }
@@ -35,7 +42,11 @@ void PeerReports::print_log(std::uint64_t tick) {
   const auto& robots = world_.simulation.layout().robots;
   std::ranges::stable_sort(log_, {}, &wire::LogLine::robot);
   for (const auto& line : log_) {
-    console_.log_line(tick, robots[line.robot].id, line.text, line.error);
+    const std::string& robot = robots[line.robot].id;
+    console_.log_line(tick, robot, line.text, line.error);
+    if (!showing_) continue;
+    showing_->log(line.error ? channels::Severity::error : channels::Severity::info, robot,
+                  line.text);
   }
   log_.clear();
   console_.offer();

@@ -10,15 +10,16 @@
 #include "network/server.h"
 #include "reports/console.h"
 #include "reports/summary.h"
+#include "run/showing.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {
 
 class PeerReports {
  public:
-  /// Both must outlive this.
-  PeerReports(const supervision::World& world, reports::Console& console)
-      : world_(world), console_(console) {}
+  /// All must outlive this. @param showing  whose viewers are told, too; may be null
+  PeerReports(const supervision::World& world, reports::Console& console, Showing* showing)
+      : world_(world), console_(console), showing_(showing) {}
 
   /// Prints failures and notices at once. Log lines wait for print_log(), so that their order does
   /// not depend on which controller is faster.
@@ -34,8 +35,11 @@ class PeerReports {
   std::vector<reports::Summary::Failure> failures() const;
 
  private:
+  void notice(const std::string& text);
+
   const supervision::World& world_;
   reports::Console& console_;
+  Showing* const showing_;
   std::vector<wire::LogLine> log_;  ///< of the present tick
   std::vector<std::pair<std::size_t, reports::Summary::Failure>> failures_;  ///< with the robot
   int notices_ = 0;                                                          ///< printed so far

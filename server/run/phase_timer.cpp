@@ -29,6 +29,7 @@ void PhaseTimer::end_phase(Phase phase, reports::Summary& summary) {
 }
 
 void PhaseTimer::end_tick(supervision::Supervision& supervision, bool is_paced) {
+  last_tick_ = tick_;
   for (const Phase phase : {Phase::exchange, Phase::physics, Phase::recording, Phase::pacing}) {
     double& taken = tick_[static_cast<std::size_t>(phase)];
     if (phase != Phase::pacing || is_paced) supervision.charge(phase, taken);

@@ -22,12 +22,15 @@ class PhaseTimer {
   /// @param is_paced  otherwise a tick has no pacing
   void end_tick(supervision::Supervision& supervision, bool is_paced);
 
+  /// Of the last tick that ended, by Phase [s].
+  const std::array<double, supervision::phase_count>& last_tick() const { return last_tick_; }
+
  private:
   using clock = std::chrono::steady_clock;
   double restart();  ///< [s] since the last call
 
   clock::time_point last_ = clock::now();
-  std::array<double, supervision::phase_count> tick_{};  ///< by Phase [s]
+  std::array<double, supervision::phase_count> tick_{}, last_tick_{};  ///< by Phase [s]
 };
 
 }  // namespace ziggurat::run

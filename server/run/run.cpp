@@ -45,10 +45,15 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       folder_(signals.guardian()),
       recorders_(options, world_),
       controllers_(start_controllers()),
-      supervision_(supervision_settings(), world_, server_, controllers_, console_),
+      callers_(server_),
+      supervision_(supervision_settings(), world_, server_, callers_, controllers_, console_),
+      schedule_(plan_.real_time, world_.simulation.tick_length()),
+      showing_(make_showing(
+          options, {world_, server_, callers_, supervision_, schedule_, plan_.ticks.value_or(0)})),
       watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
               plan_.ticks},
-             world_, server_, controllers_, supervision_, signals, console_) {
+             world_, server_, controllers_, supervision_, signals, console_, showing_.get()),
+      waits_for_viewer_(showing_ && !options.paused) {
   print_notices();
   summary_.scene = path_;
   summary_.robots = world_.simulation.layout().robots.size();
@@ -110,7 +115,8 @@ Plan Run::make_plan() const {
   plan.ticks = options_.pictures ? last_tick(*options_.pictures, experiment)
                                  : tick_count(options_, world_.scene);
   plan.real_time = options_.real_time;
-  const bool is_paced = options_.hil || (!options_.pictures && experiment.real_time);
+  const bool is_paced =
+      options_.hil || options_.view.has_value() || (!options_.pictures && experiment.real_time);
   if (!plan.real_time && is_paced) plan.real_time = 1;
   return plan;
 }
@@ -205,6 +211,13 @@ int Run::execute() {
   print_summary();
   int code = exit_code_of(summary_);
   if (code == reports::exit_code::finished && !has_passed) code = reports::exit_code::gate_missed;
+  const bool is_stopped =
+      summary_.ending == Ending::interrupted || summary_.ending == Ending::forced;
+  if (showing_ && !is_stopped) {
+    console_.notice("the run is over; its last state is shown until Ctrl-C");
+    console_.flush();
+    watch_.show_end();
+  }
   signals_.completed(code);
   return code;
 }
@@ -226,32 +239,35 @@ Ending Run::run_to_end() {
 /// One world, from tick 0 on.
 Ending Run::run_world() {
   simulation::Simulation& simulation = world_.simulation;
-  const auto start = Watch::clock::now() - supervision_.paused_for();
+  schedule_.begin(0, supervision_.paused_for());
   for (;;) {
     // Controllers compute while the files are written.
     server_.publish(simulation.observations(), simulation.state().tag_payloads);
     supervision_.published();
     timer_.end_phase(Phase::exchange, summary_);
     recorders_.tick(simulation);
+    if (showing_) showing_->tick(timer_.last_tick());
     timer_.end_phase(Phase::recording, summary_);
 
     auto stopped = collect();
     timer_.end_phase(Phase::exchange, summary_);
     const bool is_last = simulation.state().tick == plan_.ticks;
-    if (plan_.real_time && !stopped && !is_last) {
-      stopped = pace(start);
+    if (!stopped && !is_last && (schedule_.is_paced() || waits_for_viewer_)) {
+      stopped = pace();
       if (!stopped) stopped = collect();
       timer_.end_phase(Phase::pacing, summary_);
     }
     if (stopped) return *stopped;
     radio_watch_.tick(simulation.observations(), simulation.commands());
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands());
+    if (showing_) showing_->answered();
     timer_.end_phase(Phase::recording, summary_);
     if (is_last) return Ending::finished;
+    if (showing_) showing_->before_step();
     simulation.step();
     timer_.end_phase(Phase::physics, summary_);
     if (!printed_miss_) print_first_miss();
-    timer_.end_tick(supervision_, plan_.real_time.has_value());
+    timer_.end_tick(supervision_, schedule_.is_paced());
   }
 }
 
@@ -279,22 +295,24 @@ std::optional<Ending> Run::collect() {
   return std::nullopt;
 }
 
-/// Until the tick's time on the wall clock. The schedule is absolute: a late tick does not delay
-/// those after it, a pause does.
-std::optional<Ending> Run::pace(Watch::clock::time_point start) {
-  simulation::Simulation& simulation = world_.simulation;
-  const double simulated_s =
-      static_cast<double>(simulation.state().tick + 1) * simulation.tick_length();
-  const auto moment = start + supervision_.paused_for() +
-                      std::chrono::duration_cast<Watch::clock::duration>(
-                          std::chrono::duration<double>(simulated_s / *plan_.real_time));
-  const bool is_late = Watch::clock::now() > moment;
+/// Until the tick's time on the wall clock; at first until a viewer is there, if the run is shown.
+std::optional<Ending> Run::pace() {
+  const std::uint64_t tick = world_.simulation.state().tick;
+  if (std::exchange(waits_for_viewer_, false)) {
+    const auto stopped =
+        wait([&] { return watch_.wait_for_viewer(world_.simulation.commands()); });
+    if (stopped) return stopped;
+    schedule_.begin(tick, supervision_.paused_for());
+  }
+  const auto moment = [&] { return schedule_.end_of(tick, supervision_.paused_for()); };
+  if (!schedule_.is_paced()) return std::nullopt;
+  const bool is_late = Watch::clock::now() > moment();
   if (is_late) ++summary_.late_ticks;
   const auto stopped =
-      wait([&] { return watch_.sleep_until(moment, simulation.commands()); });
+      wait([&] { return watch_.sleep_until(moment, world_.simulation.commands()); });
   if (stopped || !config_.keeps_reactions) return stopped;
-  const std::chrono::duration<double> late = Watch::clock::now() - moment;
-  const auto next = static_cast<std::uint32_t>(simulation.state().tick + 1);
+  const std::chrono::duration<double> late = Watch::clock::now() - moment();
+  const auto next = static_cast<std::uint32_t>(tick + 1);
   starts_.push_back({resets_, next, std::max(late.count(), 0.0), is_late});
   return std::nullopt;
 }
@@ -319,6 +337,7 @@ bool Run::reset_world() {
   server_.reset(world_.seed);
   ++resets_;
   supervision_.reset_done();
+  if (showing_) showing_->restarted();
   return true;
 }
 

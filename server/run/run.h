@@ -20,6 +20,8 @@
 #include "run/phase_timer.h"
 #include "run/radio_watch.h"
 #include "run/recorders.h"
+#include "run/schedule.h"
+#include "run/showing.h"
 #include "run/watch.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
@@ -72,7 +74,7 @@ class Run {
   Ending run_to_end();
   Ending run_world();
   std::optional<Ending> collect();
-  std::optional<Ending> pace(Watch::clock::time_point start);
+  std::optional<Ending> pace();
   std::optional<Ending> wait(const Wait& step);
   bool reset_world();
   void print_first_miss();
@@ -101,11 +103,15 @@ class Run {
   const processes::PrivateFolder folder_;
   Recorders recorders_;
   processes::Controllers controllers_;
+  supervision::Callers callers_;
   supervision::Supervision supervision_;
+  Schedule schedule_;
+  const std::unique_ptr<Showing> showing_;  ///< null: not shown
   Watch watch_;
   reports::Summary summary_;
   PhaseTimer timer_;
   bool printed_miss_ = false;
+  bool waits_for_viewer_ = false;
   RadioWatch radio_watch_;
 
   // For the report card.

@@ -111,6 +111,18 @@ wire::End end_message(const reports::Summary& summary) {
   return end;
 }
 
+std::unique_ptr<Showing> make_showing(const Options& options, const Showing::Run& run) {
+  if (!options.view) return nullptr;
+  auto showing = std::make_unique<Showing>(options, run);
+  const std::string page = showing->page_address(), viewer = showing->viewer_address();
+  const std::string text =
+      options.json ? nlohmann::ordered_json{{"view", page}, {"viewer", viewer}}.dump() + "\n"
+                   : "ziggurat: watch this run at " + page +
+                         "\nziggurat: or open a Foxglove WebSocket connection to " + viewer + "\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+  return showing;
+}
+
 void end_while_loading() {
   constexpr std::string_view text = "ziggurat: interrupted while loading\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());

@@ -1,6 +1,7 @@
 #pragma once
 // What a run needs before it has a world, and what it tells clients at the start and at the end.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "reports/summary.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
+#include "run/showing.h"
 #include "scene/scene.h"
 
 namespace ziggurat::run {
@@ -38,5 +40,9 @@ wire::End end_message(const reports::Summary& summary);
 /// Ends the program on Ctrl-C before there is a world. The thread that loads it has nothing to
 /// clean up, and ends with the process.
 [[noreturn]] void end_while_loading();
+
+/// Serves viewers, if the options ask for that. Prints the addresses on stderr also if the run is
+/// to be quiet: without them nothing can be seen.
+std::unique_ptr<Showing> make_showing(const Options& options, const Showing::Run& run);
 
 }  // namespace ziggurat::run

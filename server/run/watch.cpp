@@ -1,6 +1,7 @@
 #include "run/watch.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <array>
@@ -32,16 +33,19 @@ constexpr Patience interrupted{milliseconds{400}, 100};
 
 Watch::Watch(const Settings& settings, const supervision::World& world, network::Server& server,
              processes::Controllers& controllers, supervision::Supervision& supervision,
-             processes::Signals& signals, reports::Console& console)
+             processes::Signals& signals, reports::Console& console, Showing* showing)
     : world_(world),
       server_(server),
       controllers_(controllers),
       supervision_(supervision),
       signals_(signals),
       console_(console),
+      showing_(showing),
+      descriptors_(showing ? std::vector{signals.descriptor(), showing->descriptor()}
+                           : std::vector{signals.descriptor()}),
       fails_fast_(settings.fail_fast),
       waits_for_clients_(settings.waits_for_clients),
-      peers_(world, console),
+      peers_(world, console, showing),
       progress_(console, world.simulation.tick_length(), settings.ticks) {
   if (settings.metrics.empty()) return;
   metrics_.emplace(settings.metrics, settings.insecure);
@@ -60,28 +64,44 @@ std::optional<Ending> Watch::collect(world::Commands& commands, std::uint64_t ti
   return until([&](const auto& wait) { return server_.collect(commands, wait); });
 }
 
-std::optional<Ending> Watch::sleep_until(clock::time_point moment, world::Commands& commands) {
-  const std::array descriptors{signals_.descriptor()};
+std::optional<Ending> Watch::sleep_until(const std::function<clock::time_point()>& moment,
+                                         world::Commands& commands) {
   for (;;) {
     serve();
     if (auto ending = interruption()) return ending;
     if (auto ending = supervisor_request()) return ending;
-    const auto left = std::chrono::floor<milliseconds>(moment - clock::now());
+    const auto left = std::chrono::floor<milliseconds>(moment() - clock::now());
     if (left.count() <= 0) break;
     if (progress_.needs_update()) progress_.show(tick_, "");
     console_.offer();
-    server_.linger(commands, {std::min(left, usual_wait), descriptors});
+    server_.linger(commands, {std::min(left, usual_wait), descriptors_});
     take_report();
   }
-  std::this_thread::sleep_until(moment);
+  std::this_thread::sleep_until(moment());
   return std::nullopt;
+}
+
+std::optional<Ending> Watch::wait_for_viewer(world::Commands& commands) {
+  constexpr std::chrono::seconds longest{5};
+  const auto end = clock::now() + longest;
+  return sleep_until([&] { return showing_->is_watched() ? clock::time_point() : end; }, commands);
+}
+
+void Watch::show_end() {
+  showing_->end();
+  std::vector<pollfd> items;
+  for (const int descriptor : descriptors_) items.push_back({descriptor, POLLIN, 0});
+  while (!showing_->shutdown_requested() && signals_.take().interruptions == 0) {
+    showing_->serve();
+    showing_->update();
+    ::poll(items.data(), items.size(), static_cast<int>(usual_wait.count()));
+  }
 }
 
 std::optional<Ending> Watch::until(const Step& step) {
   waiting_since_ = clock::now();
-  const std::array descriptors{signals_.descriptor()};
   for (;;) {
-    const auto outcome = step({missed_since_ ? short_wait : usual_wait, descriptors});
+    const auto outcome = step({missed_since_ ? short_wait : usual_wait, descriptors_});
     serve();
     take_report();
     auto ending = interruption();
@@ -101,7 +121,9 @@ std::optional<Ending> Watch::until(const Step& step) {
 }
 
 void Watch::serve() {
+  if (showing_) showing_->serve();
   supervision_.serve();
+  if (showing_) showing_->update();
   if (metrics_ && metrics_->needs_update()) metrics_->publish(supervision_.status());
 }
 

@@ -16,6 +16,7 @@
 #include "reports/progress.h"
 #include "reports/summary.h"
 #include "run/peer_reports.h"
+#include "run/showing.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
 
@@ -34,10 +35,11 @@ class Watch {
   };
 
   /// Everything but the settings must outlive this.
+  /// @param showing  serves viewers meanwhile; may be null
   /// @throws text::UsageError or std::runtime_error if metrics cannot be served
   Watch(const Settings& settings, const supervision::World& world, network::Server& server,
         processes::Controllers& controllers, supervision::Supervision& supervision,
-        processes::Signals& signals, reports::Console& console);
+        processes::Signals& signals, reports::Console& console, Showing* showing);
 
   // Each of the three waits for something and prints what controllers and peers report meanwhile.
   // Each returns nothing if it was completed, otherwise how the run ends.
@@ -46,8 +48,13 @@ class Watch {
   std::optional<reports::Ending> gather();
   /// Until every controller has answered `tick`.
   std::optional<reports::Ending> collect(world::Commands& commands, std::uint64_t tick);
-  /// Until that moment. A client that connects meanwhile may answer the tick.
-  std::optional<reports::Ending> sleep_until(clock::time_point moment, world::Commands& commands);
+  /// Until that moment, which may change. A client that connects meanwhile may answer the tick.
+  std::optional<reports::Ending> sleep_until(const std::function<clock::time_point()>& moment,
+                                             world::Commands& commands);
+  /// Until the first viewer is there, so that it sees the beginning; for 5 s at most.
+  std::optional<reports::Ending> wait_for_viewer(world::Commands& commands);
+  /// Shows the last state to viewers until an interruption, or until one of them ends it.
+  void show_end();
 
   /// Ends the run: tells the controllers, prints their last lines, and waits until every process
   /// has ended. An interruption meanwhile kills the processes that still run.
@@ -82,6 +89,8 @@ class Watch {
   supervision::Supervision& supervision_;
   processes::Signals& signals_;
   reports::Console& console_;
+  Showing* const showing_;
+  const std::vector<int> descriptors_;  ///< that end a wait: of signals, and of viewers
   const bool fails_fast_, waits_for_clients_;
   std::optional<reports::MetricsPort> metrics_;
   PeerReports peers_;

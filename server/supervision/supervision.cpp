@@ -81,11 +81,13 @@ PauseTimer::clock::duration PauseTimer::total() const {
 }
 
 Supervision::Supervision(const Settings& settings, World& world, network::Server& server,
-                         processes::Controllers& controllers, reports::Console& console)
+                         Callers& callers, processes::Controllers& controllers,
+                         reports::Console& console)
     : settings_(settings),
       allowed_(processes::allowed_files(world.scene, world.path, settings.spawned_script_folders)),
       world_(world),
       server_(server),
+      callers_(callers),
       controllers_(controllers),
       console_(console),
       spawnable_size_(settings.max_spawned_size) {}
@@ -94,11 +96,11 @@ Supervision::Supervision(const Settings& settings, World& world, network::Server
 /// each other.
 void Supervision::serve() {
   paused_.update(server_.paused());
-  if (stepping_ && !server_.can_hear(*stepping_)) stepping_.reset();  // its steps continue
-  for (network::Call& call : server_.take_calls()) waiting_.push_back(std::move(call));
+  if (stepping_ && !callers_.can_hear(*stepping_)) stepping_.reset();  // its steps continue
+  for (network::Call& call : callers_.take()) waiting_.push_back(std::move(call));
   std::vector<std::string> busy;  // connections with an earlier request that still waits
   std::erase_if(waiting_, [&](const network::Call& call) {
-    if (!server_.can_hear(call)) return true;
+    if (!callers_.can_hear(call)) return true;
     if (std::ranges::find(busy, call.peer) != busy.end()) return false;
     if (handle(call) == Reply::given) return true;
     busy.push_back(call.peer);
@@ -251,7 +253,7 @@ Supervision::Reply Supervision::move(const network::Call& call) {
 
 Supervision::Reply Supervision::fail(const network::Call& call, wire::Fault fault) {
   fault.tick = world_.simulation.state().tick;
-  server_.answer(call, [&](wire::Outbox& outbox) { outbox.response(call.request.id, fault); });
+  callers_.refused(call, fault);
   return Reply::given;
 }
 
@@ -261,8 +263,7 @@ Supervision::Reply Supervision::fail(const network::Call& call, ErrorCode code, 
 }
 
 Supervision::Reply Supervision::done(const network::Call& call) {
-  const std::uint64_t tick = world_.simulation.state().tick;
-  server_.answer(call, [&](wire::Outbox& outbox) { outbox.response(call.request.id, tick); });
+  callers_.done(call, world_.simulation.state().tick);
   return Reply::given;
 }
 

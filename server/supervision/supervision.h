@@ -12,6 +12,7 @@
 #include "processes/controllers.h"
 #include "processes/spawned_scripts.h"
 #include "reports/console.h"
+#include "supervision/callers.h"
 #include "supervision/tick_budget.h"
 #include "supervision/world.h"
 
@@ -47,7 +48,7 @@ class Supervision {
 
   /// Everything but the settings must outlive this. Notices on spawned entities go to the console.
   /// @throws std::runtime_error if a folder of the settings is none
-  Supervision(const Settings& settings, World& world, network::Server& server,
+  Supervision(const Settings& settings, World& world, network::Server& server, Callers& callers,
               processes::Controllers& controllers, reports::Console& console);
 
   /// Answers the requests that can be answered now; the others wait for their tick. Call it
@@ -92,6 +93,7 @@ class Supervision {
   const processes::AllowedFiles allowed_;  ///< for spawned entities
   World& world_;
   network::Server& server_;
+  Callers& callers_;
   processes::Controllers& controllers_;
   reports::Console& console_;
   std::vector<network::Call> waiting_;  ///< unanswered, in order of arrival

@@ -256,10 +256,12 @@ TEST(Channels, LinesAndLatenciesOfTheRun) {
 
 TEST(Content, IsMadeOnceAndOnlyIfItIsAskedFor) {
   int made = 0;
-  const Content content([&made]() -> std::string {
-    ++made;
-    return "picture";
-  });
+  const Content content(
+      [&made]() -> std::string {
+        ++made;
+        return "picture";
+      },
+      3);
   EXPECT_EQ(made, 0);
   EXPECT_EQ(content.bytes(), "picture");
   EXPECT_EQ(content.bytes(), "picture");

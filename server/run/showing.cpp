@@ -1,0 +1,246 @@
+#include "run/showing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "run/version.h"
+
+namespace ziggurat::run {
+namespace {
+
+using channels::Kind;
+using channels::Pace;
+
+constexpr std::chrono::milliseconds barrier_interval{250};
+constexpr std::array every_tick{Pace::latched, Pace::tick, Pace::answer};
+
+/// The page's files are installed, and built, beside the program.
+std::string page_folder() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return (program.parent_path().parent_path() / "share/ziggurat/web").string();
+}
+
+view::Settings settings_of(const Options& options, const Showing::Run& run) {
+  view::Settings settings;
+  if (!options.view->empty()) settings.address = view::to_address("--view", *options.view);
+  settings.insecure = options.insecure;
+  settings.token = options.view_token;
+  settings.folder = page_folder();
+  settings.version = version;
+  settings.scene = run.world.path;
+  settings.parameters = {{"real_time_factor", run.schedule.factor().value_or(0)},
+                         {"frames_per_second", 60.0},
+                         {"draw_labels", false},
+                         {"draw_frusta", true},
+                         {"phase", std::string("gathering")}};
+  return settings;
+}
+
+const char* name_of(wire::Status::Phase phase) {
+  switch (phase) {
+    case wire::Status::Phase::running:
+      return "running";
+    case wire::Status::Phase::paused:
+      return "paused";
+    case wire::Status::Phase::ending:
+      return "over";
+    default:
+      return "gathering";
+  }
+}
+
+}  // namespace
+
+Showing::Showing(const Options& options, Run run) : run_(run), server_(settings_of(options, run)) {
+  connect_callers();
+  populate();
+}
+
+void Showing::connect_callers() {
+  run_.callers.add({[this] { return take_calls(); },
+                    [this](const network::Call& call) {
+                      const auto found = unanswered_.find(call.request.id);
+                      return found != unanswered_.end() &&
+                             server_.desk().is_there(found->second.viewer);
+                    },
+                    [this](const network::Call& call, std::uint64_t tick) {
+                      server_.answer(unanswered_.at(call.request.id), tick);
+                      unanswered_.erase(call.request.id);
+                    },
+                    [this](const network::Call& call, const std::string& why) {
+                      server_.refuse(unanswered_.at(call.request.id), why);
+                      unanswered_.erase(call.request.id);
+                    }});
+}
+
+std::vector<network::Call> Showing::take_calls() {
+  std::erase_if(unanswered_,
+                [&](const auto& entry) { return !server_.desk().is_there(entry.second.viewer); });
+  std::vector<network::Call> calls;
+  for (view::Call& call : std::exchange(calls_, {})) {
+    network::Call& taken = calls.emplace_back();
+    taken.peer = fmt::format("viewer {}", call.viewer);
+    taken.request = call.request;
+    taken.request.id = next_call_++;
+    taken.is_local = true;
+    unanswered_.emplace(taken.request.id, std::move(call));
+  }
+  return calls;
+}
+
+channels::Moment Showing::moment() const {
+  simulation::Simulation& simulation = run_.world.simulation;
+  return {simulation.state(), simulation.observations(), simulation.commands(),
+          simulation.contacts(), phases_};
+}
+
+bool Showing::wants(Kind kind) const {
+  return std::ranges::binary_search(wanted_, channels::Channels::id_of(kind));
+}
+
+void Showing::populate() {
+  const supervision::World& world = run_.world;
+  channels_.populate({world.scene, world.path, world.scene_hash, world.seed, run_.last_tick,
+                      world.simulation.layout(), world.simulation.entities(),
+                      world.simulation.state()});
+  server_.set_channels(channels_.list());
+}
+
+void Showing::show(std::span<const std::uint32_t> wanted, std::span<const Pace> paces) {
+  std::vector<channels::Message> messages;
+  for (const Pace pace : paces) channels_.encode(moment(), pace, wanted, messages);
+  if (!messages.empty()) {
+    server_.show(run_.world.simulation.state().time_ns, std::move(messages));
+  }
+}
+
+void Showing::tick(const std::array<double, supervision::phase_count>& phases) {
+  is_current_ = false;
+  is_gathered_ = true;
+  if (!has_viewers() || wanted_.empty()) return;
+  phases_ = {phases[0], phases[1], phases[2], phases[3]};
+  const auto now = clock::now();
+  const std::chrono::duration<double> least(0.9 / frames_per_second_);
+  if (now - last_frame_ < least) return;
+  last_frame_ = now;
+  is_current_ = true;
+  show(wanted_, std::array{Pace::tick});
+}
+
+void Showing::answered() {
+  if (is_current_ && !wanted_.empty()) show(wanted_, std::array{Pace::answer});
+}
+
+void Showing::before_step() { run_.world.simulation.list_contacts(wants(Kind::contacts)); }
+
+void Showing::restarted() {
+  is_gathered_ = false;
+  populate();
+  seen_changes_ = run_.callers.changes();
+  is_current_ = true;
+  show(wanted_, every_tick);
+}
+
+void Showing::log(channels::Severity severity, std::string_view name, std::string_view text) {
+  if (!wants(Kind::log)) return;
+  const std::int64_t time_ns = run_.world.simulation.state().time_ns;
+  server_.show(time_ns, {channels_.log(time_ns, severity, name, text)});
+}
+
+void Showing::serve() {
+  if (!server_.desk().has_news()) return;
+  view::Desk::News news = server_.desk().take();
+  wanted_ = std::move(news.wanted);
+  for (const view::Parameter& wish : news.wishes) apply(wish);
+  for (view::Call& call : news.calls) {
+    if (call.speed) {
+      set_speed(*call.speed);
+      server_.answer(call, run_.world.simulation.state().tick);
+    } else if (is_over_ && call.request.kind != wire::Request::Kind::shutdown) {
+      server_.refuse(call, "The run is over.");
+    } else if (is_over_) {
+      server_.answer(call, run_.world.simulation.state().tick);
+      shutdown_ = true;
+    } else {
+      calls_.push_back(std::move(call));
+    }
+  }
+  if (!news.fresh.empty()) {
+    show(news.fresh, every_tick);
+    last_barrier_ = {};
+  }
+}
+
+void Showing::apply(const view::Parameter& wish) {
+  if (wish.name == "real_time_factor") return set_speed(std::get<double>(wish.value));
+  if (wish.name == "frames_per_second") {
+    frames_per_second_ = std::get<double>(wish.value);
+    return;
+  }
+  channels::Layers layers = channels_.layers();
+  (wish.name == "draw_labels" ? layers.labels : layers.frusta) = std::get<bool>(wish.value);
+  channels_.set_layers(layers);
+  show(wanted_, std::array{Pace::latched});
+}
+
+void Showing::set_speed(double factor) {
+  run_.schedule.set_factor(factor > 0 ? std::optional(factor) : std::nullopt,
+                           run_.world.simulation.state().tick, run_.supervision.paused_for());
+  server_.set_parameter({"real_time_factor", factor});
+}
+
+void Showing::update() {
+  if (seen_changes_ != run_.callers.changes()) {
+    seen_changes_ = run_.callers.changes();
+    populate();
+    is_current_ = true;
+    show(wanted_, every_tick);
+  }
+  if (!has_viewers()) return;
+  const auto now = clock::now();
+  const std::chrono::duration<double> least(0.9 / frames_per_second_);
+  if (!is_current_ && !wanted_.empty() && now - last_frame_ >= least) {  // while the world waits
+    last_frame_ = now;
+    is_current_ = true;
+    show(wanted_, std::array{Pace::tick});
+  }
+  const auto phase = is_over_               ? wire::Status::Phase::ending
+                     : run_.server.paused() ? wire::Status::Phase::paused
+                     : is_gathered_         ? wire::Status::Phase::running
+                                            : wire::Status::Phase::gathering;
+  if (phase != phase_) {
+    phase_ = phase;
+    server_.set_parameter({"phase", std::string(name_of(phase))});
+    last_barrier_ = {};
+  }
+  if (wants(Kind::barrier) && now - last_barrier_ >= barrier_interval) {
+    last_barrier_ = now;
+    show_barrier();
+  }
+}
+
+void Showing::show_barrier() {
+  wire::Status status = run_.supervision.status();
+  if (is_over_) status.phase = wire::Status::Phase::ending;
+  const auto controllers = run_.server.performance().controllers;
+  std::vector<channels::Histogram> histograms;
+  for (std::size_t c = 0; c < controllers.size(); ++c) {
+    histograms.push_back(
+        {run_.world.scene.controllers[c].id, 0, 1, {}, controllers[c].missed_ticks});
+  }
+  server_.show(status.time_ns, {channels_.barrier(status, histograms)});
+}
+
+void Showing::end() {
+  is_over_ = true;
+  for (const auto& [id, call] : unanswered_) server_.refuse(call, "The run is over.");
+  unanswered_.clear();
+  update();
+}
+
+}  // namespace ziggurat::run

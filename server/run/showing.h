@@ -1,0 +1,94 @@
+#pragma once
+// A run that can be watched: what its viewers see, and what they ask for.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "channels/channels.h"
+#include "network/server.h"
+#include "run/options.h"
+#include "run/schedule.h"
+#include "supervision/callers.h"
+#include "supervision/supervision.h"
+#include "supervision/world.h"
+#include "view/server.h"
+
+namespace ziggurat::run {
+
+class Showing {
+ public:
+  using clock = std::chrono::steady_clock;
+
+  /// What it shows, and what viewers change; all must outlive it.
+  struct Run {
+    supervision::World& world;
+    const network::Server& server;
+    supervision::Callers& callers;
+    supervision::Supervision& supervision;
+    Schedule& schedule;
+    std::uint64_t last_tick;  ///< 0: until stopped
+  };
+
+  /// Listens. @throws text::UsageError, std::runtime_error
+  Showing(const Options& options, Run run);
+
+  std::string page_address() const { return server_.page_address(); }
+  std::string viewer_address() const { return server_.viewer_address(); }
+
+  /// Readable when a viewer wants something.
+  int descriptor() { return server_.desk().descriptor(); }
+  bool has_viewers() { return server_.desk().has_viewers(); }
+  bool is_watched() { return !wanted_.empty(); }  ///< a viewer has subscribed to something
+
+  /// A tick was published. Not all of them are shown: so many in a second of wall time at most.
+  /// @param phases  wall time of the tick before, as supervision::Phase [s]
+  void tick(const std::array<double, supervision::phase_count>& phases);
+  /// The tick was answered: its commands are known.
+  void answered();
+  /// The next tick is to be computed.
+  void before_step();
+  /// The world began anew.
+  void restarted();
+  void log(channels::Severity severity, std::string_view name, std::string_view text);
+
+  /// Takes what viewers want. Call it whenever the run waits, before requests are answered.
+  void serve();
+  /// Shows what was changed by requests, and who is waited for.
+  void update();
+  /// The run is over: requests are refused from now on, but for the end.
+  void end();
+  bool shutdown_requested() const { return shutdown_; }
+
+ private:
+  void connect_callers();
+  std::vector<network::Call> take_calls();
+  void apply(const view::Parameter& wish);
+  void set_speed(double factor);
+  void populate();
+  void show(std::span<const std::uint32_t> wanted, std::span<const channels::Pace> paces);
+  void show_barrier();
+  bool wants(channels::Kind kind) const;
+  channels::Moment moment() const;
+
+  const Run run_;
+  channels::Channels channels_;
+  view::Server server_;
+  std::vector<std::uint32_t> wanted_;               ///< ids of channels, ascending
+  std::vector<view::Call> calls_;                   ///< not taken yet
+  std::map<std::uint64_t, view::Call> unanswered_;  ///< by Request::id
+  std::uint64_t next_call_ = 1, seen_changes_ = 0;
+  channels::PhaseTimes phases_;
+  double frames_per_second_ = 60;
+  clock::time_point last_frame_{}, last_barrier_{};
+  bool is_current_ = false;  ///< the present tick was shown
+  bool is_gathered_ = false, is_over_ = false, shutdown_ = false;
+  std::optional<wire::Status::Phase> phase_;
+};
+
+}  // namespace ziggurat::run

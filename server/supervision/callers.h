@@ -1,0 +1,45 @@
+#pragma once
+// Where requests come from: sessions of the network, and others that this process serves itself, as
+// the viewers of a live server.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "network/server.h"
+
+namespace ziggurat::supervision {
+
+/// Requests that do not come over the network. Their calls are marked as local.
+struct LocalCalls {
+  std::function<std::vector<network::Call>()> take;
+  std::function<bool(const network::Call&)> can_hear;
+  std::function<void(const network::Call&, std::uint64_t tick)> done;
+  std::function<void(const network::Call&, const std::string& why)> refused;
+};
+
+class Callers {
+ public:
+  /// @param server  must outlive this
+  explicit Callers(network::Server& server) : server_(server) {}
+
+  void add(LocalCalls local) { local_ = std::move(local); }
+
+  /// Requests that arrived since the last call.
+  std::vector<network::Call> take();
+  bool can_hear(const network::Call& call) const;
+  /// Every call is answered once: it was done at a tick, or it was refused.
+  void done(const network::Call& call, std::uint64_t tick);
+  void refused(const network::Call& call, const wire::Fault& fault);
+
+  /// How many calls have changed the world beside a tick: moves, spawns, removals.
+  std::uint64_t changes() const { return changes_; }
+
+ private:
+  network::Server& server_;
+  LocalCalls local_;
+  std::uint64_t changes_ = 0;
+};
+
+}  // namespace ziggurat::supervision

@@ -1,0 +1,54 @@
+#pragma once
+// Who may connect to a viewer's port, and what they may do (docs/viewing.md, docs/security.md).
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ziggurat::view {
+
+struct Address {
+  std::string host;
+  std::uint16_t port = 0;  ///< 0: any free one
+};
+
+/// @param value  HOST:PORT; HOST may be in brackets
+/// @throws text::UsageError that names the option
+Address to_address(std::string_view option, const std::string& value);
+
+/// Only programs of this machine can reach it.
+bool is_loopback(std::string_view host);
+
+/// 128 random bits as 22 characters. @throws std::system_error
+std::string random_token();
+
+/// @throws text::UsageError if a token of the user is too short, or has other characters
+void check_token(const std::string& token);
+
+struct Rules {
+  std::string host;              ///< of the option: a name that clients may call the port
+  bool any_host = false;         ///< any name
+  bool look_needs_token = false; ///< also programs and pages of this server need it
+  std::string token;
+};
+
+/// The parts of a request that decide. Of HTTP, `origin` does not matter.
+struct Asker {
+  std::string_view host;                   ///< of `Host`; empty: there is none
+  std::optional<std::string_view> origin;  ///< of `Origin`
+  std::string_view target;                 ///< path and query
+};
+
+enum class Access { refused, look, steer };
+
+/// Whether `Host` is a name that no website can make mean this machine.
+bool allows_host(const Rules& rules, std::string_view host);
+
+/// Of a WebSocket handshake.
+Access access_of(const Rules& rules, const Asker& asker);
+
+/// The value of `token` in a query; nothing: it has none.
+std::optional<std::string> token_in(std::string_view target);
+
+}  // namespace ziggurat::view

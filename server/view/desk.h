@@ -1,0 +1,58 @@
+#pragma once
+// What viewers want, passed from the thread that serves them to the thread of the run.
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "network/descriptor.h"
+#include "view/call.h"
+
+namespace ziggurat::view {
+
+class Desk {
+ public:
+  /// @throws std::system_error
+  Desk();
+
+  // On the thread that serves viewers.
+
+  void viewer_came(std::uint64_t viewer);
+  void viewer_left(std::uint64_t viewer);
+  /// @param wanted  ids of channels that any viewer subscribes to, ascending
+  /// @param fresh  of these: without subscriber before
+  void set_wanted(std::vector<std::uint32_t> wanted, std::vector<std::uint32_t> fresh);
+  void add_call(Call call);
+  void add_wish(Parameter wish);
+
+  // On the thread of the run.
+
+  /// Readable when there is something new that was not taken.
+  int descriptor() const { return wake_.number(); }
+  bool has_viewers() const { return viewer_count_ > 0; }
+  bool has_news() const { return has_news_; }
+
+  struct News {
+    std::vector<std::uint32_t> wanted;  ///< all of now
+    std::vector<std::uint32_t> fresh;   ///< since the last call
+    std::vector<Call> calls;
+    std::vector<Parameter> wishes;
+  };
+  News take();
+  bool is_there(std::uint64_t viewer) const;
+
+ private:
+  void wake();
+
+  network::Descriptor wake_;
+  std::atomic<std::size_t> viewer_count_ = 0;
+  std::atomic<bool> has_news_ = false;
+  mutable std::mutex mutex_;  // of all below
+  News news_;
+  std::set<std::uint64_t> viewers_;
+};
+
+}  // namespace ziggurat::view

@@ -1,0 +1,277 @@
+#include "view/hub.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace ziggurat::view {
+namespace {
+
+Keep keep_of(const channels::Channel& channel) {
+  if (channel.kind == channels::Kind::log) return Keep::all;
+  return channels::pace_of(channel.kind) == channels::Pace::latched ? Keep::newest : Keep::nothing;
+}
+
+/// Whether a viewer that subscribes gets the newest message.
+bool is_kept(channels::Kind kind) {
+  return kind != channels::Kind::log && kind != channels::Kind::radio;
+}
+
+/// Names of parameters that viewers may set, and their values; what is wrong with a value.
+std::string check(const Parameter& wish) {
+  const auto* number = std::get_if<double>(&wish.value);
+  if (wish.name == "real_time_factor") {
+    const bool is_valid = number && (*number == 0 || (*number >= 1e-6 && *number <= 1e6));
+    return is_valid ? "" : "real_time_factor must be 1e-6 to 1e6, or 0 for as fast as it goes";
+  }
+  if (wish.name == "frames_per_second") {
+    const bool is_valid = number && *number >= 1 && *number <= 1000;
+    return is_valid ? "" : "frames_per_second must be 1 to 1000";
+  }
+  if (wish.name == "draw_labels" || wish.name == "draw_frusta") {
+    const bool is_valid = std::holds_alternative<bool>(wish.value);
+    return is_valid ? "" : wish.name + " must be true or false";
+  }
+  return fmt::format("The parameter \"{}\" can't be set.", wish.name.substr(0, 64));
+}
+
+}  // namespace
+
+Hub::Hub(Introduction introduction, std::vector<Parameter> parameters, Desk& desk)
+    : introduction_(std::move(introduction)), parameters_(std::move(parameters)), desk_(desk) {}
+
+Viewer& Hub::add(bool may_steer) {
+  auto viewer = std::make_unique<Viewer>();
+  viewer->id = next_viewer_++;
+  viewer->may_steer = may_steer;
+  Viewer& added = *viewer;
+  viewers_.emplace(added.id, std::move(viewer));
+  Introduction introduction = introduction_;
+  introduction.may_steer = may_steer;
+  std::vector<Item> first;  // as a tick: they may be longer than answers
+  first.push_back(server_info(introduction));
+  if (!channels_.empty()) first.push_back(advertise(channels_));
+  if (may_steer) first.push_back(advertise_services());
+  for (Item& item : first) item.keep = Keep::always;
+  added.output.add_frame(std::move(first));
+  desk_.viewer_came(added.id);
+  return added;
+}
+
+void Hub::remove(std::uint64_t id) {
+  Viewer* viewer = find(id);
+  if (!viewer) return;
+  for (const auto& [subscription, channel] : viewer->channels) --subscribers_[channel];
+  viewers_.erase(id);
+  desk_.viewer_left(id);
+  count_subscribers({});
+}
+
+Viewer* Hub::find(std::uint64_t viewer) {
+  const auto found = viewers_.find(viewer);
+  return found == viewers_.end() ? nullptr : found->second.get();
+}
+
+const channels::Channel* Hub::channel(std::uint32_t id) const {
+  const auto found = std::ranges::lower_bound(channels_, id, {}, &channels::Channel::id);
+  return found != channels_.end() && found->id == id ? &*found : nullptr;
+}
+
+void Hub::send(Viewer& viewer, Item item) {
+  if (!viewer.output.add_answer(std::move(item))) viewer.is_over = true;
+}
+
+void Hub::receive(Viewer& viewer, std::string_view message, bool is_text) {
+  const Incoming incoming = is_text ? read_text(message) : read_binary(message);
+  if (!std::holds_alternative<Wrong>(incoming)) viewer.faults = 0;
+  std::visit([&](const auto& each) { handle(viewer, each); }, incoming);
+}
+
+void Hub::handle(Viewer& viewer, const Wrong& message) {
+  if (++viewer.faults >= most_faults) viewer.is_over = true;
+  send(viewer, warning(message.why));
+}
+
+void Hub::handle(Viewer& viewer, const Subscribe& message) {
+  std::vector<std::uint32_t> fresh;
+  std::vector<Item> known;
+  for (const auto& [id, wanted] : message.entries) {
+    const channels::Channel* found = channel(wanted);
+    if (!found || viewer.channels.contains(id) || viewer.subscriptions.contains(wanted)) {
+      handle(viewer, Wrong{fmt::format(
+          "subscription {} of channel {}: {}", id, wanted,
+          found ? "that subscription is there already" : "there is no such channel")});
+      continue;
+    }
+    viewer.channels.emplace(id, wanted);
+    viewer.subscriptions.emplace(wanted, id);
+    const auto newest = newest_.find(wanted);
+    if (newest != newest_.end()) {
+      known.push_back(view::message(id, newest->second, keep_of(*found)));
+    }
+    if (++subscribers_[wanted] == 1) fresh.push_back(wanted);
+  }
+  viewer.output.add_frame(std::move(known));
+  count_subscribers(std::move(fresh));
+}
+
+void Hub::handle(Viewer& viewer, const Unsubscribe& message) {
+  for (const std::uint32_t id : message.ids) {
+    const auto found = viewer.channels.find(id);
+    if (found == viewer.channels.end()) continue;
+    --subscribers_[found->second];
+    viewer.subscriptions.erase(found->second);
+    viewer.channels.erase(found);
+  }
+  count_subscribers({});
+}
+
+/// Tells the run which channels are wanted. What no viewer wants is not kept either.
+void Hub::count_subscribers(std::vector<std::uint32_t> fresh) {
+  std::erase_if(subscribers_, [](const auto& entry) { return entry.second == 0; });
+  std::erase_if(newest_, [&](const auto& entry) { return !subscribers_.contains(entry.first); });
+  std::vector<std::uint32_t> wanted;
+  for (const auto& [id, count] : subscribers_) wanted.push_back(id);
+  desk_.set_wanted(std::move(wanted), std::move(fresh));
+}
+
+std::vector<Parameter> Hub::values_of(std::span<const std::string> names) const {
+  if (names.empty()) return parameters_;
+  std::vector<Parameter> values;
+  for (const Parameter& parameter : parameters_) {
+    if (std::ranges::find(names, parameter.name) != names.end()) values.push_back(parameter);
+  }
+  return values;
+}
+
+void Hub::handle(Viewer& viewer, const GetParameters& message) {
+  send(viewer, parameter_values(values_of(message.names), message.id));
+}
+
+/// What is wrong with it; empty: it holds now.
+std::string Hub::set(const Parameter& wish) {
+  if (std::string why = check(wish); !why.empty()) return why;
+  desk_.add_wish(wish);
+  set_parameter(wish);
+  return {};
+}
+
+void Hub::handle(Viewer& viewer, const SetParameters& message) {
+  std::vector<std::string> names;
+  for (const Parameter& wish : message.parameters) {
+    names.push_back(wish.name);
+    const std::string why =
+        viewer.may_steer ? set(wish) : "Parameters are set with the token in the address only.";
+    if (!why.empty()) send(viewer, warning(why));
+  }
+  if (!names.empty()) send(viewer, parameter_values(values_of(names), message.id));
+}
+
+void Hub::handle(Viewer& viewer, const SubscribeParameters& message) {
+  viewer.wants_parameters = message.wanted;
+}
+
+void Hub::handle(Viewer& viewer, const SubscribeGraph& message) {
+  viewer.wants_graph = message.wanted;
+  if (message.wanted) viewer.output.add_frame({graph()});
+}
+
+Item Hub::graph() const {
+  std::vector<std::string> subscribed;
+  for (const auto& [id, count] : subscribers_) {
+    if (const auto* found = channel(id)) subscribed.push_back(found->topic);
+  }
+  return connection_graph(channels_, subscribed);
+}
+
+void Hub::handle(Viewer& viewer, const CallService& message) {
+  const auto refuse = [&](const std::string& why) {
+    send(viewer, service_failure(message.service, message.call, why));
+  };
+  if (!viewer.may_steer) {
+    return refuse("Services need the token: open the address that the program printed.");
+  }
+  auto call = read_call(message);
+  if (const auto* why = std::get_if<std::string>(&call)) return refuse(*why);
+  if (viewer.unanswered >= most_unanswered) {
+    return refuse(fmt::format("{} calls wait for their answers already.", most_unanswered));
+  }
+  ++viewer.unanswered;
+  std::get<Call>(call).viewer = viewer.id;
+  desk_.add_call(std::move(std::get<Call>(call)));
+}
+
+void Hub::set_channels(std::vector<channels::Channel> list) {
+  std::vector<std::uint32_t> gone;
+  std::vector<channels::Channel> added;
+  for (const auto& old : channels_) {
+    if (!std::ranges::binary_search(list, old.id, {}, &channels::Channel::id)) {
+      gone.push_back(old.id);
+    }
+  }
+  for (const auto& fresh : list) {
+    if (!channel(fresh.id)) added.push_back(fresh);
+  }
+  channels_ = std::move(list);
+  for (auto& [id, viewer] : viewers_) {
+    for (const std::uint32_t channel : gone) {
+      const auto found = viewer->subscriptions.find(channel);
+      if (found == viewer->subscriptions.end()) continue;
+      viewer->channels.erase(found->second);
+      viewer->subscriptions.erase(found);
+      --subscribers_[channel];
+    }
+    std::vector<Item> news;
+    if (!gone.empty()) news.push_back(unadvertise(gone));
+    if (!added.empty()) news.push_back(advertise(added));
+    for (Item& item : news) item.keep = Keep::always;
+    if (viewer->wants_graph && !news.empty()) news.push_back(graph());
+    viewer->output.add_frame(std::move(news));
+    viewer->is_over |= viewer->output.is_too_much();
+  }
+  if (!gone.empty()) count_subscribers({});
+}
+
+void Hub::show(std::int64_t time_ns, std::span<const channels::Message> messages) {
+  for (const channels::Message& each : messages) {
+    const channels::Channel* found = channel(each.channel);
+    if (found && is_kept(found->kind) && subscribers_.contains(each.channel)) {
+      newest_.insert_or_assign(each.channel, each);
+    }
+  }
+  const bool is_later = std::exchange(time_ns_, time_ns) != time_ns;
+  for (auto& [id, viewer] : viewers_) {
+    std::vector<Item> items;
+    if (is_later && !viewer->channels.empty()) items.push_back(time(time_ns));
+    for (const channels::Message& each : messages) {
+      const auto subscription = viewer->subscriptions.find(each.channel);
+      const channels::Channel* found = channel(each.channel);
+      if (!found || subscription == viewer->subscriptions.end()) continue;
+      items.push_back(view::message(subscription->second, each, keep_of(*found)));
+    }
+    viewer->output.add_frame(std::move(items));
+    viewer->is_over |= viewer->output.is_too_much();
+  }
+}
+
+void Hub::set_parameter(const Parameter& parameter) {
+  const auto found = std::ranges::find(parameters_, parameter.name, &Parameter::name);
+  if (found == parameters_.end() || found->value == parameter.value) return;
+  found->value = parameter.value;
+  for (auto& [id, viewer] : viewers_) {
+    if (viewer->wants_parameters) {
+      send(*viewer, parameter_values(std::span(&parameter, 1), std::nullopt));
+    }
+  }
+}
+
+void Hub::answer(const Call& call, bool is_done, const std::string& text) {
+  Viewer* viewer = find(call.viewer);
+  if (!viewer) return;
+  --viewer->unanswered;
+  send(*viewer, is_done ? service_answer(call.service, call.number, text)
+                        : service_failure(call.service, call.number, text));
+}
+
+}  // namespace ziggurat::view

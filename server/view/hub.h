@@ -1,0 +1,90 @@
+#pragma once
+// The viewers: what each subscribes to, and what waits for it. No sockets here.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "channels/channel.h"
+#include "channels/message.h"
+#include "view/desk.h"
+#include "view/messages.h"
+#include "view/output.h"
+
+namespace ziggurat::view {
+
+struct Viewer {
+  std::uint64_t id = 0;
+  bool may_steer = false;
+  Output output;
+  std::unordered_map<std::uint32_t, std::uint32_t> channels;  ///< subscription -> channel
+  std::unordered_map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel -> subscription
+  bool wants_parameters = false, wants_graph = false;
+  unsigned faults = 0;      ///< messages in a row that are none of the protocol
+  unsigned unanswered = 0;  ///< calls
+  bool is_over = false;     ///< to be disconnected: it sends nonsense, or does not read
+};
+
+class Hub {
+ public:
+  static constexpr unsigned most_faults = 100;
+  static constexpr unsigned most_unanswered = 64;
+
+  /// @param parameters  at the start
+  /// @param desk  must outlive this
+  Hub(Introduction introduction, std::vector<Parameter> parameters, Desk& desk);
+
+  Viewer& add(bool may_steer);
+  void remove(std::uint64_t viewer);
+  Viewer* find(std::uint64_t viewer);
+  std::size_t size() const { return viewers_.size(); }
+
+  void receive(Viewer& viewer, std::string_view message, bool is_text);
+
+  /// @param list  all channels of now, ascending by id
+  void set_channels(std::vector<channels::Channel> list);
+  /// The messages of a tick, to those who subscribe to them.
+  void show(std::int64_t time_ns, std::span<const channels::Message> messages);
+  void set_parameter(const Parameter& parameter);
+  /// @param text  JSON of an answer, or a sentence why it was refused
+  void answer(const Call& call, bool is_done, const std::string& text);
+
+  /// Calls visit(viewer) for each.
+  template <class Visit>
+  void for_each(Visit visit) {
+    for (auto& [id, viewer] : viewers_) visit(*viewer);
+  }
+
+ private:
+  void handle(Viewer& viewer, const Subscribe& message);
+  void handle(Viewer& viewer, const Unsubscribe& message);
+  void handle(Viewer& viewer, const GetParameters& message);
+  void handle(Viewer& viewer, const SetParameters& message);
+  void handle(Viewer& viewer, const SubscribeParameters& message);
+  void handle(Viewer& viewer, const SubscribeGraph& message);
+  void handle(Viewer& viewer, const CallService& message);
+  void handle(Viewer& viewer, const Wrong& message);
+  void send(Viewer& viewer, Item item);
+  std::string set(const Parameter& wish);
+  const channels::Channel* channel(std::uint32_t id) const;
+  void count_subscribers(std::vector<std::uint32_t> fresh);
+  Item graph() const;
+  std::vector<Parameter> values_of(std::span<const std::string> names) const;
+
+  Introduction introduction_;
+  std::vector<Parameter> parameters_;
+  Desk& desk_;
+  std::uint64_t next_viewer_ = 1;
+  std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_;
+  std::vector<channels::Channel> channels_;
+  std::map<std::uint32_t, std::size_t> subscribers_;                    // by channel
+  std::unordered_map<std::uint32_t, channels::Message> newest_;         // of these
+  std::int64_t time_ns_ = -1;
+};
+
+}  // namespace ziggurat::view

@@ -1,0 +1,69 @@
+#pragma once
+// What waits to be sent to a viewer: bounded, whatever the viewer does. Answers are kept, or the
+// viewer is disconnected; of ticks the oldest are dropped, whole, but for what must not be lost.
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "channels/message.h"
+
+namespace ziggurat::view {
+
+/// What is dropped with a tick.
+enum class Keep {
+  nothing,  ///< the next tick replaces it
+  newest,   ///< the newest one of its channel is sent
+  all,      ///< each is sent, as long as they are few
+  always,   ///< each is sent: what later messages build on
+};
+
+/// A WebSocket message: `head`, then the content.
+struct Item {
+  bool is_text = false;
+  Keep keep = Keep::nothing;
+  std::uint32_t channel = 0;  ///< 0: of none
+  std::string head;
+  std::shared_ptr<const channels::Content> content;  ///< may be null
+
+  std::size_t size() const { return head.size() + (content ? content->held() : 0); }
+};
+
+class Output {
+ public:
+  static constexpr std::size_t most_answers = std::size_t{1} << 20;  ///< [bytes]
+  static constexpr std::size_t most_frames = std::size_t{4} << 20;   ///< [bytes]
+  static constexpr std::size_t most_kept = std::size_t{256} << 10;   ///< of Keep::all [bytes]
+
+  /// False: too much waits; the viewer is to be disconnected.
+  bool add_answer(Item item);
+  /// The messages of a tick. If too much waits, earlier ticks are dropped that were not begun.
+  void add_frame(std::vector<Item> items);
+
+  /// The next message to be sent: answers first, then ticks in their order.
+  std::optional<Item> next();
+  /// More waits than any viewer that reads leaves: it is to be disconnected.
+  bool is_too_much() const { return size() > std::size_t{64} << 20; }
+  bool empty() const { return answers_.empty() && frames_.empty(); }
+  std::size_t size() const { return answer_bytes_ + frame_bytes_; }  ///< [bytes]
+  std::uint64_t dropped() const { return dropped_; }                 ///< ticks
+
+ private:
+  struct Frame {
+    std::deque<Item> items;
+    std::size_t bytes = 0;
+    bool is_begun = false;
+  };
+  void drop(std::size_t frame);
+
+  std::deque<Item> answers_;
+  std::deque<Frame> frames_;  // none is empty
+  std::size_t answer_bytes_ = 0, frame_bytes_ = 0;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace ziggurat::view

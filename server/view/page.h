@@ -1,0 +1,33 @@
+#pragma once
+// The files of the page, over HTTP.
+
+#include <string>
+#include <string_view>
+
+namespace ziggurat::view {
+
+struct Answer {
+  unsigned status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  std::string etag;  ///< empty: the answer is not to be kept
+  std::string body;
+};
+
+class Page {
+ public:
+  /// @param folder  where the files are; if it has no index.html, a text says so
+  explicit Page(std::string folder) : folder_(std::move(folder)) {}
+
+  /// @param target  path and query
+  /// @param known_etag  of `If-None-Match`; empty: none
+  Answer get(std::string_view target, std::string_view known_etag) const;
+
+ private:
+  std::string folder_;
+};
+
+/// What pages of this server may load: only files of it, and its WebSocket.
+/// @param host  of the request
+std::string content_security_policy(std::string_view host);
+
+}  // namespace ziggurat::view

@@ -1,0 +1,61 @@
+#pragma once
+// The live server: the page over HTTP, and viewers over WebSocket, on one port and a thread of its
+// own. The run is never held up: it leaves messages and takes what viewers want.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "channels/channel.h"
+#include "channels/message.h"
+#include "view/access.h"
+#include "view/desk.h"
+
+namespace ziggurat::view {
+
+struct Settings {
+  std::optional<Address> address;  ///< nothing: 127.0.0.1:8765, or another port if that is taken
+  bool insecure = false;           ///< other machines may look without token
+  std::string token;               ///< the user's own; empty: a random one
+  std::string folder;              ///< of the page's files
+  std::string version, scene;      ///< that viewers are told
+  std::vector<Parameter> parameters;
+};
+
+class Server {
+ public:
+  static constexpr std::size_t most_viewers = 64;
+  static constexpr std::size_t most_connections = 128;
+
+  /// Listens at once. @throws text::UsageError; std::runtime_error if it can't listen
+  explicit Server(const Settings& settings);
+  /// Viewers are told that the server goes away.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// With the token: "http://127.0.0.1:8765/?token=…", "ws://…".
+  std::string page_address() const;
+  std::string viewer_address() const;
+
+  /// What viewers want.
+  Desk& desk();
+
+  // Each of these returns at once.
+
+  /// All channels of now, ascending by id.
+  void set_channels(std::vector<channels::Channel> list);
+  /// Messages of a tick.
+  void show(std::int64_t time_ns, std::vector<channels::Message> messages);
+  void set_parameter(Parameter parameter);
+  void answer(const Call& call, std::uint64_t tick);
+  void refuse(const Call& call, const std::string& why);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace ziggurat::view
