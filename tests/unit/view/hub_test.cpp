@@ -1,0 +1,123 @@
+// Viewers without sockets: what they send, and what waits for them.
+
+#include "view/hub.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+namespace ziggurat::view {
+namespace {
+
+using channels::Kind;
+
+const channels::Schema schema{"ziggurat.v1.Poses", "descriptors"};
+
+channels::Message message_of(std::uint32_t channel, const std::string& bytes) {
+  return {channel, 5, std::make_shared<const channels::Content>(bytes)};
+}
+
+struct Bench {
+  Bench() {
+    hub.set_channels(
+        {{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
+  }
+  void say(Viewer& viewer, const std::string& text) { hub.receive(viewer, text, true); }
+  /// All that waits: operations of texts, contents of messages.
+  std::vector<std::string> sent(Viewer& viewer) {
+    std::vector<std::string> all;
+    while (auto item = viewer.output.next()) {
+      if (item->is_text)
+        all.push_back(nlohmann::json::parse(item->head).at("op"));
+      else if (item->content)
+        all.push_back(item->content->bytes());
+    }
+    return all;
+  }
+  Desk desk;
+  Hub hub{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, desk};
+};
+
+using Sent = std::vector<std::string>;
+
+TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(true);
+  EXPECT_EQ(bench.sent(viewer), (Sent{"serverInfo", "advertise", "advertiseServices"}));
+  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":2}]})");
+  const auto news = bench.desk.take();
+  EXPECT_EQ(news.wanted, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(news.fresh, std::vector<std::uint32_t>{2});
+  bench.hub.show(5, std::vector{message_of(1, "world"), message_of(2, "poses")});
+  EXPECT_EQ(bench.sent(viewer), Sent{"poses"});
+  Viewer& second = bench.hub.add(false);
+  EXPECT_EQ(bench.sent(second), (Sent{"serverInfo", "advertise"}));
+  bench.say(second, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
+  EXPECT_EQ(bench.sent(second), Sent{"poses"}) << "the newest at once";
+  bench.say(viewer, R"({"op":"unsubscribe","subscriptionIds":[9]})");
+  bench.hub.remove(second.id);
+  EXPECT_TRUE(bench.desk.take().wanted.empty());
+}
+
+TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(true);
+  bench.sent(viewer);
+  for (const char* text :
+       {"", "x", "[]", "{}", R"({"op":7})", R"({"op":"subscribe"})",
+        R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":2}]})",
+        R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":77}]})",
+        R"({"op":"subscribe","subscriptions":[3]})", R"({"op":"fetchAsset","uri":"file:///etc"})",
+        R"({"op":"setParameters","parameters":[{"name":3}]})"}) {
+    bench.say(viewer, text);
+    EXPECT_EQ(bench.sent(viewer), Sent{"status"}) << text;
+  }
+  std::mt19937 random(1);
+  for (int i = 0; i < 1000 && !viewer.is_over; ++i) {
+    std::string bytes(random() % 64, '\0');
+    for (char& byte : bytes) byte = static_cast<char>(random());
+    bench.hub.receive(viewer, bytes, false);
+    bench.sent(viewer);
+  }
+  EXPECT_TRUE(viewer.is_over);
+  EXPECT_TRUE(bench.desk.take().calls.empty());
+}
+
+TEST(Hub, CallsNeedTheTokenAndAreAnsweredOnce) {
+  Bench bench;
+  std::string call{2, 6, 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0};
+  call += R"(json{"entity":"b","position":[1,2,3]})";
+  Viewer& looker = bench.hub.add(false);
+  bench.sent(looker);
+  bench.hub.receive(looker, call, false);
+  EXPECT_EQ(bench.sent(looker), Sent{"serviceCallFailure"});
+  Viewer& viewer = bench.hub.add(true);
+  bench.hub.receive(viewer, call, false);
+  const auto calls = bench.desk.take().calls;
+  ASSERT_EQ(calls.size(), 1u);
+  EXPECT_EQ(calls[0].request.kind, wire::Request::Kind::move);
+  EXPECT_EQ(calls[0].request.text, "b");
+  EXPECT_EQ(calls[0].request.position, (std::vector<double>{1, 2, 3}));
+  bench.sent(viewer);
+  bench.hub.answer(calls[0], false, "no");
+  EXPECT_EQ(bench.sent(viewer), Sent{"serviceCallFailure"});
+  for (int i = 0; i < 100; ++i) bench.hub.receive(viewer, call, false);
+  EXPECT_EQ(bench.desk.take().calls.size(), Hub::most_unanswered);
+}
+
+TEST(Hub, ChannelsComeAndGo) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(false);
+  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
+  bench.sent(viewer);
+  bench.hub.set_channels(
+      {{1, "/world", Kind::world, &schema, 0}, {3, "/tf", Kind::transforms, &schema, 0}});
+  EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "advertise"}));
+  EXPECT_TRUE(bench.desk.take().wanted.empty());
+  bench.hub.show(6, std::vector{message_of(2, "poses")});
+  EXPECT_TRUE(bench.sent(viewer).empty());
+}
+
+}  // namespace
+}  // namespace ziggurat::view

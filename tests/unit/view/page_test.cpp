@@ -1,0 +1,62 @@
+// Files of the page's folder, and no others.
+
+#include "view/page.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace ziggurat::view {
+namespace {
+
+class Folder : public ::testing::Test {
+ protected:
+  Folder() {
+    std::filesystem::create_directories(path_ / "web/assets");
+    write("web/index.html", "<html>");
+    write("web/assets/page.js", "run()");
+    write("web/.hidden", "no");
+    write("secret", "no");
+  }
+  ~Folder() override { std::filesystem::remove_all(path_); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+  }
+  const std::filesystem::path path_ = ::testing::TempDir() + "/page_test";
+  const Page page_{(path_ / "web").string()};
+};
+
+TEST_F(Folder, HasTypesAndTags) {
+  const Answer page = page_.get("/?token=x", {});
+  EXPECT_EQ(page.status, 200u);
+  EXPECT_EQ(page.type, "text/html; charset=utf-8");
+  EXPECT_EQ(page.body, "<html>");
+  const Answer script = page_.get("/assets/page.js", {});
+  EXPECT_EQ(script.type, "text/javascript; charset=utf-8");
+  const Answer again = page_.get("/assets/page.js", script.etag);
+  EXPECT_EQ(again.status, 304u);
+  EXPECT_TRUE(again.body.empty());
+  write("web/assets/page.js", "walk()");
+  EXPECT_EQ(page_.get("/assets/page.js", script.etag).body, "walk()");
+}
+
+TEST_F(Folder, IsNotLeft) {
+  for (const char* target :
+       {"/../secret", "/assets/../../secret", "/..", "//secret", "/.hidden", "/%2e%2e/secret",
+        "/assets", "/assets/", "/nothing", "secret", "", "/\\..\\secret"}) {
+    const Answer answer = page_.get(target, {});
+    EXPECT_EQ(answer.status, 404u) << target;
+    EXPECT_EQ(answer.body.find("no\n"), std::string::npos);
+  }
+}
+
+TEST(Page, ThatWasNotBuiltIsAText) {
+  const Answer answer = Page("/nowhere").get("/", {});
+  EXPECT_EQ(answer.status, 200u);
+  EXPECT_NE(answer.body.find("not built"), std::string::npos);
+  EXPECT_NE(content_security_policy("h:1").find("connect-src 'self' ws://h:1;"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ziggurat::view
