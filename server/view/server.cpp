@@ -69,7 +69,7 @@ struct Shared {
   Hub hub;
   std::size_t connections = 0;
   bool is_closing = false;
-  std::set<class ViewerConnection*> open;
+  std::set<class ViewerConnection*> open{};
 };
 
 // --- viewers --------------------------------------------------------------------------------------
