@@ -21,8 +21,10 @@ class Deadlines(SceneTest):
         self.change(r1, r1.replace('config="swing"', 'config="frail"'))
 
     def disturb(self, number, *arguments):
-        """An endless run with one process per robot. The process of r1 gets the signal after tick 20."""
-        process = self.start("run", self.scene, "--duration", 0, "--lua-processes", 0, *arguments)
+        """An endless run with one process per robot. The process of r1 gets the signal after tick 20. It is
+        paced: a run does not wait for those who read its output."""
+        process = self.start("run", self.scene, "--duration", 0, "--lua-processes", 0, "--real-time", 20,
+                             *arguments)
         self.read_until(process.stdout, r"^\[20 r2\]")
         [(self.victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
         os.kill(self.victim, number)
