@@ -42,14 +42,6 @@ def read_request(number, *entities):
                             ).SerializeToString()
 
 
-def varint(value):
-    encoded = b""
-    while value >= 0x80:
-        encoded += bytes([value & 0x7F | 0x80])
-        value >>= 7
-    return encoded + bytes([value])
-
-
 def observer(endpoint):
     peer = RawPeer(endpoint)
     peer.send_message(hello(v1.ROLE_OBSERVER))
@@ -285,34 +277,6 @@ class Uninvited(SceneTest):
                 code = told.response.error.code or told.error.code
                 self.assertEqual(v1.Error.Code.Name(code) if code else None, expected)
         self.assertLess(self.most_memory(process), 300 * MEBIBYTE)
-        self.end(process)
-
-    def test_a_message_for_which_there_is_no_memory(self):
-        """A controller's: it is its error, and neither it nor the server ends."""
-        process = self.serve()
-        with RawPeer(self.endpoint) as peer:
-            peer.send_message(hello(robots=["*"]))
-            self.assertTrue(answer(peer).HasField("welcome"))
-            self.assertTrue(answer(peer).HasField("observation"))
-            # A list of 60 MiB of numbers, and memory for the message itself, but not for what it says.
-            numbers = bytes(60 * MEBIBYTE)
-            field = v1.Command(joint_targets=[1]).SerializeToString()[:1] + varint(len(numbers)) + numbers
-            message = b"\x12" + varint(len(field)) + field
-            peer.socket.sendall(struct.pack(">BQ", 2, len(message)) + message[:-1])
-
-            def taken():
-                return int(re.search(r"VmSize:\s*(\d+)", pathlib.Path(
-                    f"/proc/{process.pid}/status").read_text())[1]) * 1024
-
-            time.sleep(0.5)  # until all of it is there
-            limit = taken() + 20 * MEBIBYTE
-            resource.prlimit(process.pid, resource.RLIMIT_AS, (limit, limit))
-            peer.socket.sendall(message[-1:])
-            error = answer(peer).error
-            self.assertEqual(v1.Error.Code.Name(error.code), "MALFORMED", error)
-            self.assertIn("memory", error.message)
-            peer.send_message(v1.ClientMessage(heartbeat=v1.Heartbeat(sequence=7)).SerializeToString())
-        observer(self.endpoint).socket.close()
         self.end(process)
 
     # ---- descriptors ----
