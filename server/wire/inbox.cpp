@@ -1,5 +1,6 @@
 #include "wire/inbox.h"
 
+#include <google/protobuf/arena.h>
 #include <google/protobuf/stubs/logging.h>
 
 #include <limits>
@@ -17,9 +18,25 @@ namespace ziggurat::wire {
 
 struct Inbox::Message {
   Kind kind = Kind::malformed;
-  v1::Command command;        // the tick path: long-lived
-  v1::ClientMessage message;  // everything else
+  v1::Command command;  // the tick path: long-lived
+  // Everything else, in an arena: a message whose decoding ran out of memory must not be destroyed,
+  // because protobuf marks a part as being there before it has made it.
+  google::protobuf::Arena arena;
+  v1::ClientMessage* in_arena = nullptr;
   std::string complaint;
+
+  const v1::ClientMessage& message() const {
+    return in_arena == nullptr ? v1::ClientMessage::default_instance() : *in_arena;
+  }
+  v1::ClientMessage& make_message() {
+    drop_message();
+    in_arena = google::protobuf::Arena::CreateMessage<v1::ClientMessage>(&arena);
+    return *in_arena;
+  }
+  void drop_message() {
+    in_arena = nullptr;
+    arena.Reset();
+  }
 
   // What protobuf keeps for reuse is as large as the largest of each part ever was. Peers decide
   // on that, so now and then both messages begin anew.
@@ -34,7 +51,7 @@ struct Inbox::Message {
   void forget() {
     parsed = 0;
     v1::Command().Swap(&command);
-    v1::ClientMessage().Swap(&message);
+    drop_message();
   }
 };
 
@@ -49,12 +66,12 @@ Inbox::Kind Inbox::parse(std::string_view bytes) {
   in.kind = Kind::malformed;
   in.complaint.clear();
   if (bytes.size() > std::numeric_limits<int>::max()) return in.kind;
-  const bool is_json = encoding_of(bytes) == Encoding::json;
-  if ((is_json ? count_json_values(bytes) : count_fields(bytes)) > most_fields) {
-    in.complaint = "it has more fields than any message needs";
-    return in.kind;
-  }
   try {
+    const bool is_json = encoding_of(bytes) == Encoding::json;
+    if ((is_json ? count_json_values(bytes) : count_fields(bytes)) > most_fields) {
+      in.complaint = "it has more fields than any message needs";
+      return in.kind;
+    }
     in.forget(bytes.size());
     return decode(bytes);
   } catch (const std::bad_alloc&) {
@@ -72,14 +89,15 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
     }
     return in.kind;
   }
+  v1::ClientMessage& message = in.make_message();
   if (encoding_of(bytes) == Encoding::json) {
     in.complaint = check_json(bytes, *v1::ClientMessage::descriptor());
-    if (in.complaint.empty()) in.complaint = v1::from_json(bytes, in.message);
+    if (in.complaint.empty()) in.complaint = v1::from_json(bytes, message);
     if (!in.complaint.empty()) return in.kind;
-  } else if (!in.message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+  } else if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return in.kind;
   }
-  switch (in.message.message_case()) {
+  switch (message.message_case()) {
     case v1::ClientMessage::kHello:
       in.kind = Kind::hello;
       break;
@@ -94,7 +112,7 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
       break;
     case v1::ClientMessage::kCommand:
       in.kind = Kind::command;
-      in.command.Swap(in.message.mutable_command());
+      in.command.Swap(message.mutable_command());
       break;
     case v1::ClientMessage::MESSAGE_NOT_SET:
       break;
@@ -105,7 +123,7 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
 const std::string& Inbox::complaint() const { return message_->complaint; }
 
 Hello Inbox::hello() const {
-  const v1::Hello& from = message_->message.hello();
+  const v1::Hello& from = message_->message().hello();
   Hello hello;
   hello.version = {from.version().major(), from.version().minor()};
   hello.role = static_cast<Role>(from.role());
@@ -129,7 +147,7 @@ Hello Inbox::hello() const {
 }
 
 Leave Inbox::leave() const {
-  const v1::Leave& from = message_->message.leave();
+  const v1::Leave& from = message_->message().leave();
   Leave leave;
   leave.robots.assign(from.robots().begin(), from.robots().end());
   leave.reason = static_cast<LeaveReason>(from.reason());
@@ -137,14 +155,14 @@ Leave Inbox::leave() const {
   return leave;
 }
 
-std::uint64_t Inbox::heartbeat() const { return message_->message.heartbeat().sequence(); }
+std::uint64_t Inbox::heartbeat() const { return message_->message().heartbeat().sequence(); }
 
-std::uint64_t Inbox::request_id() const { return message_->message.request().id(); }
+std::uint64_t Inbox::request_id() const { return message_->message().request().id(); }
 
-Request Inbox::request() const { return read(message_->message.request()); }
+Request Inbox::request() const { return read(message_->message().request()); }
 
 bool Inbox::is_question() const {
-  const auto request = message_->message.request().request_case();
+  const auto request = message_->message().request().request_case();
   return message_->kind == Kind::request &&
          (request == v1::Request::kStatus || request == v1::Request::kRead);
 }
@@ -155,7 +173,7 @@ std::uint64_t Inbox::command_tick() const { return message_->command.tick(); }
 
 std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {
   if (message_->kind == Kind::command) return wire::check(message_->command, roster, layout);
-  return wire::check(message_->message.leave(), roster, layout);
+  return wire::check(message_->message().leave(), roster, layout);
 }
 
 void Inbox::apply(const Roster& roster, world::Commands& commands) const {
@@ -164,7 +182,7 @@ void Inbox::apply(const Roster& roster, world::Commands& commands) const {
 
 void Inbox::append_log(const Roster& roster, std::vector<LogLine>& lines) const {
   const auto& log =
-      message_->kind == Kind::command ? message_->command.log() : message_->message.leave().log();
+      message_->kind == Kind::command ? message_->command.log() : message_->message().leave().log();
   append(log, roster, lines);
 }
 

@@ -1,4 +1,5 @@
-// A message for which there is no memory is its sender's error: each allocation is made to fail once.
+// A message for which there is no memory is its sender's error: each allocation is made to fail
+// once.
 
 #include <gtest/gtest.h>
 
@@ -28,8 +29,8 @@ std::string read_request() {
 }
 
 TEST(Inbox, AMessageForWhichThereIsNoMemoryIsItsSendersError) {
-  const std::string json = R"({"command":{"jointTargets":[1,2,3],"tagPayloads":["eHh4eHh4eHh4"]}})";
-  for (const std::string& message : {command(), read_request(), json}) {
+  for (const std::string& message : {command(), read_request()}) {
+    EXPECT_NE(Inbox().parse(message), Inbox::Kind::malformed);  // protobuf has made its tables then
     std::size_t failures = 0;
     for (std::size_t index = 0;; ++index) {
       Inbox inbox;
