@@ -11,7 +11,8 @@ export const ziggurat = `${bin}/ziggurat`;
 const skipped = 77; // ctest's sign
 
 function chromiumPath() {
-  for (const path of ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]) {
+  const named = process.env.CHROMIUM; // another one than Debian's
+  for (const path of named ? [named] : ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]) {
     try {
       accessSync(path);
       return path;
