@@ -26,14 +26,14 @@ _PR_SET_PDEATHSIG = 1
 class Connection:
     """Of one client."""
 
-    everyone = []  # all connections, oldest first
+    connections = []  # all connections, oldest first
 
     def __init__(self, bug, to_client, to_server):
         self.bug, self.to_client, self.to_server = bug, to_client, to_server
         self.hello = self.welcome = None
         self.tick = -1
         self.notes = {}  # of bugs
-        self.everyone.append(self)
+        self.connections.append(self)
 
     def tell(self, **fields):
         """A message to the client that the server did not send."""
@@ -126,7 +126,7 @@ async def main(endpoint, scene, bug="", *options):
         far_reader, far_writer = await asyncio.open_connection(*address)
         connection = Connection(bug, writer, far_writer)
         await asyncio.gather(pump(reader, far_writer, connection.said), pump(far_reader, writer, connection.told))
-        Connection.everyone.remove(connection)
+        Connection.connections.remove(connection)
 
     host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
     loop = asyncio.get_running_loop()

@@ -192,7 +192,7 @@ TOLD["holder-not-named"] = _clear("refusal", "holder")
 @told("disturbs-the-holder")
 def _(connection, message):
     if message.HasField("refusal"):
-        for other in connection.everyone:
+        for other in connection.connections:
             if other is not connection and other.welcome is not None:
                 other.tell(error=E(code=E.ROBOT_TAKEN, severity=E.WARNING, message="another client asks"))
 
@@ -251,7 +251,7 @@ def _(connection, message):
     """A session that begins after another has answered never gets its first Observation."""
     if message.HasField("observation") and not connection.notes.get("begun"):
         connection.notes["begun"] = True
-        return [] if any(other.notes.get("answered") for other in connection.everyone) else None
+        return [] if any(other.notes.get("answered") for other in connection.connections) else None
     return None
 
 
@@ -667,7 +667,7 @@ TOLD["spawned-not-told"] = _drop("robot_spawned")
 @told("spawned-told-to-all")
 def _(connection, message):
     if message.HasField("response") and not message.response.HasField("error"):
-        for other in connection.everyone:
+        for other in connection.connections:
             if other.hello is not None and other.hello.version.minor and other is not connection:
                 other.tell(robot_spawned=protocol.RobotSpawned(robot="arm9", controller="steady"))
 
@@ -710,7 +710,7 @@ def _(connection, message):
 
 
 SAID["reset-not-done"] = _done_without("reset")
-TOLD["paused-told-to-one"] = _in("paused", lambda connection, _: None if connection is connection.everyone[0] else [])
+TOLD["paused-told-to-one"] = _in("paused", lambda connection, _: None if connection is connection.connections[0] else [])
 
 
 @told("end-is-final")
