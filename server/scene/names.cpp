@@ -15,9 +15,10 @@ namespace {
 constexpr std::size_t longest_compared = 64;  // characters of a name
 constexpr std::size_t most_compared = 256;    // candidates
 
-using Reasons = std::span<const std::pair<std::string_view, std::string_view>>;
+using Reason = std::pair<std::string_view, std::string_view>;
+using Reasons = std::span<const Reason>;
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 17> element_reasons{{
+constexpr auto element_reasons = std::to_array<Reason>({
     {"loop_functions", "user libraries are not loaded into the server; connect a controller"},
     {"eye-bot", "its flight model does not exist here; model it as a <prototype>"},
     {"spiri", "its flight model does not exist here; model it as a <prototype>"},
@@ -34,9 +35,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 17> element_
     {"simple_radios", "use <radios>"},
     {"boundaries", "the world is one and unbounded; remove it"},
     {"buzz_controller", "use <external_controller> or <lua_controller>"},
-}};
+});
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 20> homes{{
+constexpr auto homes = std::to_array<Reason>({
     {"experiment", "framework"},
     {"lua_controller", "controllers"},
     {"external_controller", "controllers"},
@@ -56,13 +57,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 20> homes{{
     {"radio", "radios"},
     {"magnet", "magnets"},
     {"camera", "cameras"},
-    {"imu", "imus"},
-}};
+});
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 2> attribute_reasons{{
+constexpr auto attribute_reasons = std::to_array<Reason>({
     {"default_friction", "write friction"},
     {"debug_file", "record the run instead"},
-}};
+});
 
 std::optional<std::string_view> reason(std::string_view name, Reasons reasons) {
   for (const auto& [known, why] : reasons) {

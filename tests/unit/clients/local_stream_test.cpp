@@ -101,7 +101,7 @@ TEST_F(LocalStreams, AreForPathsWithoutKeys) {
   options_.server_key = std::string(40, 'x');
   EXPECT_FALSE(LocalStream::path_of(options_));
   options_ = {};
-  for (const std::string other :
+  for (const std::string& other :
        {std::string("ipc://"), std::string("ipc://@abstract"), std::string("tcp://127.0.0.1:1"),
         "ipc:///" + std::string(200, 'x')}) {
     options_.endpoint = other;
