@@ -13,6 +13,7 @@ DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "protocol.md"
 REASONS = {
     "T10": "how the kit starts every client",
     "T8": "a matter of the server's command line",
+    "T11": "a matter of the command line, too: tests/unit/processes/private_folder_test.cpp",
     "K4": "is about the absence of keys",
     "K6": "a matter of files",
     "K7": "a matter of keys",
