@@ -39,6 +39,17 @@ class Serve(SceneTest):
         self.assertIn("[20 r2] step 20", outcome.lines)
         client.wait(timeout=60)
 
+    def test_without_endpoint_it_listens_for_its_user_and_is_found(self):  # T11
+        process = self.start("serve", self.scene, "--json")
+        endpoint = json.loads(process.stdout.readline())["endpoint"]
+        self.assertTrue(endpoint.startswith(f"ipc://{self.runtime}/ziggurat/"), endpoint)
+        folder = pathlib.Path(endpoint.removeprefix("ipc://")).parent
+        self.assertEqual(folder.stat().st_mode & 0o777, 0o700)
+        outcome = self.finish(self.start("ctl", "status"))
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
     def test_reports_the_robots_it_waits_for(self):
         process, endpoint = self.serve()
         self.read_until(process.stderr, r"waiting for robots r0, r1, r2")
