@@ -16,27 +16,39 @@
 
 namespace ziggurat::wire {
 
+namespace {
+
+/// A message in an arena: if decoding runs out of memory, it must not be destroyed, because
+/// protobuf marks a part as being there before it has made it, and forgets one that it can't put in
+/// its place.
+template <class Content>
+class InArena {
+ public:
+  const Content& content() const {
+    return content_ == nullptr ? Content::default_instance() : *content_;
+  }
+  /// What it holds stays, for reuse. @throws std::bad_alloc
+  Content& made() {
+    if (content_ == nullptr) content_ = google::protobuf::Arena::CreateMessage<Content>(&arena_);
+    return *content_;
+  }
+  void drop() {
+    content_ = nullptr;
+    arena_.Reset();
+  }
+
+ private:
+  google::protobuf::Arena arena_;
+  Content* content_ = nullptr;
+};
+
+}  // namespace
+
 struct Inbox::Message {
   Kind kind = Kind::malformed;
-  v1::Command command;  // the tick path: long-lived
-  // Everything else, in an arena: a message whose decoding ran out of memory must not be destroyed,
-  // because protobuf marks a part as being there before it has made it.
-  google::protobuf::Arena arena;
-  v1::ClientMessage* in_arena = nullptr;
+  InArena<v1::Command> command;  // the tick path: long-lived
+  InArena<v1::ClientMessage> other;
   std::string complaint;
-
-  const v1::ClientMessage& message() const {
-    return in_arena == nullptr ? v1::ClientMessage::default_instance() : *in_arena;
-  }
-  v1::ClientMessage& make_message() {
-    drop_message();
-    in_arena = google::protobuf::Arena::CreateMessage<v1::ClientMessage>(&arena);
-    return *in_arena;
-  }
-  void drop_message() {
-    in_arena = nullptr;
-    arena.Reset();
-  }
 
   // What protobuf keeps for reuse is as large as the largest of each part ever was. Peers decide
   // on that, so now and then both messages begin anew.
@@ -50,8 +62,8 @@ struct Inbox::Message {
   }
   void forget() {
     parsed = 0;
-    v1::Command().Swap(&command);
-    drop_message();
+    command.drop();
+    other.drop();
   }
 };
 
@@ -84,12 +96,13 @@ Inbox::Kind Inbox::parse(std::string_view bytes) {
 Inbox::Kind Inbox::decode(std::string_view bytes) {
   Message& in = *message_;
   if (const auto content = v1::sole_field(bytes, v1::ClientMessage::kCommandFieldNumber)) {
-    if (in.command.ParseFromArray(content->data(), static_cast<int>(content->size()))) {
+    if (in.command.made().ParseFromArray(content->data(), static_cast<int>(content->size()))) {
       in.kind = Kind::command;
     }
     return in.kind;
   }
-  v1::ClientMessage& message = in.make_message();
+  in.other.drop();
+  v1::ClientMessage& message = in.other.made();
   if (encoding_of(bytes) == Encoding::json) {
     in.complaint = check_json(bytes, *v1::ClientMessage::descriptor());
     if (in.complaint.empty()) in.complaint = v1::from_json(bytes, message);
@@ -112,7 +125,7 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
       break;
     case v1::ClientMessage::kCommand:
       in.kind = Kind::command;
-      in.command.Swap(message.mutable_command());
+      in.command.made().CopyFrom(message.command());
       break;
     case v1::ClientMessage::MESSAGE_NOT_SET:
       break;
@@ -123,7 +136,7 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
 const std::string& Inbox::complaint() const { return message_->complaint; }
 
 Hello Inbox::hello() const {
-  const v1::Hello& from = message_->message().hello();
+  const v1::Hello& from = message_->other.content().hello();
   Hello hello;
   hello.version = {from.version().major(), from.version().minor()};
   hello.role = static_cast<Role>(from.role());
@@ -147,7 +160,7 @@ Hello Inbox::hello() const {
 }
 
 Leave Inbox::leave() const {
-  const v1::Leave& from = message_->message().leave();
+  const v1::Leave& from = message_->other.content().leave();
   Leave leave;
   leave.robots.assign(from.robots().begin(), from.robots().end());
   leave.reason = static_cast<LeaveReason>(from.reason());
@@ -155,34 +168,35 @@ Leave Inbox::leave() const {
   return leave;
 }
 
-std::uint64_t Inbox::heartbeat() const { return message_->message().heartbeat().sequence(); }
+std::uint64_t Inbox::heartbeat() const { return message_->other.content().heartbeat().sequence(); }
 
-std::uint64_t Inbox::request_id() const { return message_->message().request().id(); }
+std::uint64_t Inbox::request_id() const { return message_->other.content().request().id(); }
 
-Request Inbox::request() const { return read(message_->message().request()); }
+Request Inbox::request() const { return read(message_->other.content().request()); }
 
 bool Inbox::is_question() const {
-  const auto request = message_->message().request().request_case();
+  const auto request = message_->other.content().request().request_case();
   return message_->kind == Kind::request &&
          (request == v1::Request::kStatus || request == v1::Request::kRead);
 }
 
 bool Inbox::is_command() const { return message_->kind == Kind::command; }
 
-std::uint64_t Inbox::command_tick() const { return message_->command.tick(); }
+std::uint64_t Inbox::command_tick() const { return message_->command.content().tick(); }
 
 std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {
-  if (message_->kind == Kind::command) return wire::check(message_->command, roster, layout);
-  return wire::check(message_->message().leave(), roster, layout);
+  if (message_->kind == Kind::command)
+    return wire::check(message_->command.content(), roster, layout);
+  return wire::check(message_->other.content().leave(), roster, layout);
 }
 
 void Inbox::apply(const Roster& roster, world::Commands& commands) const {
-  wire::apply(message_->command, roster, commands);
+  wire::apply(message_->command.content(), roster, commands);
 }
 
 void Inbox::append_log(const Roster& roster, std::vector<LogLine>& lines) const {
-  const auto& log =
-      message_->kind == Kind::command ? message_->command.log() : message_->message().leave().log();
+  const auto& log = message_->kind == Kind::command ? message_->command.content().log()
+                                                    : message_->other.content().leave().log();
   append(log, roster, lines);
 }
 
