@@ -1,7 +1,7 @@
 """`ziggurat serve` behind a relay that bends what is said: bent_server.py ENDPOINT SCENE BUG [OPTION…]
 
 The relay is a server of its own to its clients: it speaks ZMTP, a connection to the real server for each
-of its own, and BUG of server_mutants.py changes, adds or drops messages on their way. Without BUG it changes
+of its own, and BUG of server_bends.py changes, adds or drops messages on their way. Without BUG it changes
 nothing. The environment's ZIGGURAT is the real program; OPTIONs are those of `ziggurat serve`.
 """
 
@@ -16,7 +16,7 @@ import sys
 from google.protobuf.message import DecodeError
 
 import protocol_pb2 as protocol
-import server_mutants as mutants
+import server_bends as bends
 
 _MORE, _LONG, _COMMAND = 1, 2, 4  # flags of a ZMTP frame
 _GREETING = 64  # [bytes]
@@ -45,16 +45,16 @@ class Connection:
 
     def said(self, data):
         """What goes to the server instead of a client's message."""
-        return self._bent(data, protocol.ClientMessage, mutants.SAID)
+        return self._bent(data, protocol.ClientMessage, bends.SAID)
 
     def told(self, data):
-        if self.bug in mutants.RAW:
-            return mutants.RAW[self.bug](data)
-        return self._bent(data, protocol.ServerMessage, mutants.TOLD)
+        if self.bug in bends.RAW:
+            return bends.RAW[self.bug](data)
+        return self._bent(data, protocol.ServerMessage, bends.TOLD)
 
     def _bent(self, data, kind, bends):
         """A bend returns None for the message as it changed it, or the messages that take its place."""
-        if data[:1] == b"{" or not (self.bug in mutants.SAID or self.bug in mutants.TOLD):
+        if data[:1] == b"{" or not (self.bug in bends.SAID or self.bug in bends.TOLD):
             return [data]
         try:
             message = kind.FromString(data)
@@ -111,7 +111,7 @@ async def pump(reader, writer, bend):
 
 def start(scene, bug, options):
     """The real server; it ends with this process."""
-    options = mutants.OPTIONS.get(bug, lambda given: given)(options)
+    options = bends.OPTIONS.get(bug, lambda given: given)(options)
     server = subprocess.Popen(
         [os.environ["ZIGGURAT"], "serve", scene, "--endpoint", "tcp://127.0.0.1:*", "--json", *options],
         stdout=subprocess.PIPE, text=True,
