@@ -52,7 +52,7 @@ class Connection:
             return bends.RAW[self.bug](data)
         return self._bent(data, protocol.ServerMessage, bends.TOLD)
 
-    def _bent(self, data, kind, bends):
+    def _bent(self, data, kind, table):
         """A bend returns None for the message as it changed it, or the messages that take its place."""
         if data[:1] == b"{" or not (self.bug in bends.SAID or self.bug in bends.TOLD):
             return [data]
@@ -64,7 +64,7 @@ class Connection:
             self._remember(message)
         elif message.HasField("hello"):
             self.hello = protocol.Hello.FromString(message.hello.SerializeToString())
-        instead = bends.get(self.bug, lambda *_: None)(self, message)
+        instead = table.get(self.bug, lambda *_: None)(self, message)
         return [m.SerializeToString() for m in ([message] if instead is None else instead)]
 
     def _remember(self, message):
