@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <tuple>
 
 namespace ziggurat::run {
@@ -24,9 +23,10 @@ void PeerReports::take(network::Report report, std::uint64_t tick) {
     if (++notices_ <= most_notices) notice(text);
     if (notices_ == most_notices) notice("further notices on peers are not printed");
   }
-  std::ranges::move(report.log, std::back_inserter(log_));
+  const auto& robots = world_.simulation.layout().robots;
+  for (wire::LogLine& line : report.log) log_.push_back({std::move(line), robots[line.robot].id});
   for (auto& failure : report.failures) {
-    const auto& robot = world_.simulation.layout().robots[failure.robot];
+    const auto& robot = robots[failure.robot];
     const auto& controller = world_.scene.controllers[robot.controller].id;
     print_log(tick);
     const auto text = fmt::format("robot {} (controller '{}') failed at tick {}: {}", robot.id,
@@ -39,10 +39,8 @@ void PeerReports::take(network::Report report, std::uint64_t tick) {
 }
 
 void PeerReports::print_log(std::uint64_t tick) {
-  const auto& robots = world_.simulation.layout().robots;
-  std::ranges::stable_sort(log_, {}, &wire::LogLine::robot);
-  for (const auto& line : log_) {
-    const std::string& robot = robots[line.robot].id;
+  std::ranges::stable_sort(log_, {}, [](const Line& each) { return each.line.robot; });
+  for (const auto& [line, robot] : log_) {
     console_.log_line(tick, robot, line.text, line.error);
     if (!showing_) continue;
     showing_->log(line.error ? channels::Severity::error : channels::Severity::info, robot,

@@ -35,12 +35,18 @@ class PeerReports {
   std::vector<reports::Summary::Failure> failures() const;
 
  private:
+  /// A line of the present tick. The robot may be gone, by a reset, before it is printed.
+  struct Line {
+    wire::LogLine line;
+    std::string robot;  ///< its id
+  };
+
   void notice(const std::string& text);
 
   const supervision::World& world_;
   reports::Console& console_;
   Showing* const showing_;
-  std::vector<wire::LogLine> log_;  ///< of the present tick
+  std::vector<Line> log_;
   std::vector<std::pair<std::size_t, reports::Summary::Failure>> failures_;  ///< with the robot
   int notices_ = 0;                                                          ///< printed so far
 };

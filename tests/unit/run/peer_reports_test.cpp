@@ -1,0 +1,43 @@
+#include "run/peer_reports.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "scene/reader.h"
+
+namespace ziggurat::run {
+namespace {
+
+constexpr const char* scene_text = R"(<a><framework><experiment ticks_per_second="10"/></framework>
+<controllers><external_controller id="c"><actuators/><sensors/></external_controller></controllers>
+<media/><physics_engines><dynamics3d id="d"/></physics_engines>
+<arena size="9,9,9"/></a>)";
+constexpr const char* robot_text =
+    R"(<foot-bot id="late"><body/><controller config="c"/></foot-bot>)";
+
+TEST(PeerReports, LinesOfARobotThatAResetTookAreStillItsOwn) {
+  auto read = scene::read_text(scene_text, "a.argos");
+  for (const auto& problem : read.problems) ADD_FAILURE() << scene::to_string(problem);
+  supervision::World world("a.argos", {std::move(read.scene), std::move(read.additions)}, 1);
+  const scene::Addition robot = world.additions.read(robot_text, world.scene, 10000,
+                                                     [](const std::string&) { return false; });
+  ASSERT_TRUE(robot.ok());
+  world.simulation.spawn(world.scene, robot.entity);
+  testing::internal::CaptureStdout();
+  {
+    reports::Console console;
+    PeerReports reports(world, console, nullptr);
+    network::Report report;
+    report.log.push_back({0, false, "hello"});
+    reports.take(std::move(report), 7);
+    world.reset(1);
+    ASSERT_TRUE(world.simulation.layout().robots.empty());
+    reports.print_log(7);
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "[7 late] hello\n");
+}
+
+}  // namespace
+}  // namespace ziggurat::run
