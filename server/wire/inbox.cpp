@@ -16,35 +16,31 @@
 
 namespace ziggurat::wire {
 
-namespace {
-
-/// A message in an arena: if decoding runs out of memory, it must not be destroyed, because
-/// protobuf marks a part as being there before it has made it, and forgets one that it can't put in
-/// its place.
-template <class Content>
-class InArena {
- public:
-  const Content& content() const {
-    return content_ == nullptr ? Content::default_instance() : *content_;
-  }
-  /// What it holds stays, for reuse. @throws std::bad_alloc
-  Content& made() {
-    if (content_ == nullptr) content_ = google::protobuf::Arena::CreateMessage<Content>(&arena_);
-    return *content_;
-  }
-  void drop() {
-    content_ = nullptr;
-    arena_.Reset();
-  }
-
- private:
-  google::protobuf::Arena arena_;
-  Content* content_ = nullptr;
-};
-
-}  // namespace
-
 struct Inbox::Message {
+  /// A message in an arena: if decoding runs out of memory, it must not be destroyed, because
+  /// protobuf marks a part as being there before it has made it, and forgets one that it can't put
+  /// in its place.
+  template <class Content>
+  class InArena {
+   public:
+    const Content& content() const {
+      return content_ == nullptr ? Content::default_instance() : *content_;
+    }
+    /// What it holds stays, for reuse. @throws std::bad_alloc
+    Content& made() {
+      if (content_ == nullptr) content_ = google::protobuf::Arena::CreateMessage<Content>(&arena_);
+      return *content_;
+    }
+    void drop() {
+      content_ = nullptr;
+      arena_.Reset();
+    }
+
+   private:
+    google::protobuf::Arena arena_;
+    Content* content_ = nullptr;
+  };
+
   Kind kind = Kind::malformed;
   InArena<v1::Command> command;  // the tick path: long-lived
   InArena<v1::ClientMessage> other;
