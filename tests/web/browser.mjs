@@ -79,7 +79,12 @@ export async function openPage(browser, address, hash = "", size = { width: 1100
   const url = new URL(address);
   url.hash = hash;
   await page.goto(url.href);
-  await waitFor(() => page.evaluate(() => window.ziggurat?.app.frame?.messages.has("/poses") ?? false), "world in the page");
+  await waitFor(() => page.evaluate(() => {
+    const { app, view } = window.ziggurat ?? {};
+    if (!app?.frame?.messages.has("/poses")) return false;
+    const index = app.world?.entities.findIndex((entity) => !entity.removed) ?? -1;
+    return index < 0 || view.originOf(index) !== undefined; // its first frame is drawn
+  }), "world in the page");
   return page;
 }
 
