@@ -15,6 +15,9 @@ if(ZIGGURAT_TESTS)
 endif()
 pkg_check_modules(lua REQUIRED IMPORTED_TARGET GLOBAL lua5.3)
 pkg_check_modules(png REQUIRED IMPORTED_TARGET GLOBAL libpng)
+pkg_check_modules(zstd REQUIRED IMPORTED_TARGET GLOBAL libzstd)
+pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET GLOBAL liblz4)
+find_package(ZLIB REQUIRED)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET GLOBAL libxxhash)
 find_path(tinyobjloader_include tiny_obj_loader.h REQUIRED)  # a header and no more
 set(ZIGGURAT_PYTHON /usr/bin/python3 CACHE FILEPATH

@@ -17,6 +17,7 @@ MODULES = {
     "protocol": [],
     "text": [],
     "math": [],
+    "mcap": [],
     "scene": ["text", "math"],
     "world": ["math"],
     "magnetism": ["math"],
@@ -55,6 +56,9 @@ LIBRARIES = {
     "libsodium": (r"sodium\.h$", ["network"]),
     "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
     "libpng": (r"png\.h$", ["recording"]),
+    "libzstd": (r"zstd\.h$", ["mcap"]),
+    "liblz4": (r"lz4\w*\.h$", ["mcap"]),
+    "zlib": (r"zlib\.h$", ["mcap"]),
     "Boost.Beast": (r"boost/(beast|asio)", ["view"]),
     "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua", "processes"]),
 }
