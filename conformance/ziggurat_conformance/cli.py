@@ -33,7 +33,7 @@ examples:
   ziggurat-conformance server --only 'S9.*' --html report.html -- …
       some cases, and a page with the exchange of every failure
 
-Exit code: 0 if no case failed, also if some were not run; 1 if one did; 2 for a mistake on this line, or
+Exit code: 0 if no case failed, also if some were not run; 1 if one did, or a --badge is not reached; 2 for a mistake on this line, or
 a program that does not start.
 docs/conformance.md explains verdicts, levels, and how to add a case."""
 
@@ -66,6 +66,9 @@ def _parser() -> argparse.ArgumentParser:
                           help="only cases whose id matches; may be repeated")
         mode.add_argument("--level", choices=[level.value.lower() for level in Level],
                           help="only cases of this level")
+        mode.add_argument("--badge", action="append", default=[],
+                          choices=[level.value.lower() for level in Level],
+                          help="exit with 1 unless this badge is reached, too; may be repeated")
         mode.add_argument("--form", choices=("binary", "json"), help="only cases in this form; "
                           "a client must use it")
         mode.add_argument("--list", action="store_true", help="list the cases, and stop")
@@ -212,4 +215,7 @@ def main(arguments=None) -> int:
         report.write_json(options.json, outcomes, left_out)
     if options.html:
         report.write_html(options.html, outcomes, left_out, title)
-    return 0 if report.good(outcomes) else 1
+    missing = report.missing_badges(outcomes, left_out, options.badge)
+    if missing:
+        print(f"ziggurat-conformance: not reached: {', '.join(missing)}", file=sys.stderr)
+    return 0 if report.good(outcomes) and not missing else 1

@@ -26,8 +26,9 @@ class Arrival:
 class ServerSocket:
     """A ROUTER at a port of its own. It may be closed and opened again there."""
 
-    def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True):
-        """is_open: every key may connect; otherwise none."""
+    def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True,
+                 listens: bool = True):
+        """is_open: every key may connect; otherwise none. listens: at once, or from open() on."""
         self._context = zmq.Context()
         self._secret_key = secret_key
         self._authenticator = None
@@ -40,7 +41,8 @@ class ServerSocket:
             port = probe.getsockname()[1]
         self.endpoint = f"tcp://127.0.0.1:{port}"
         self._socket: Optional[zmq.Socket] = None
-        self.open()
+        if listens:
+            self.open()
 
     def open(self) -> None:
         self._socket = self._context.socket(zmq.ROUTER)
@@ -61,7 +63,8 @@ class ServerSocket:
 
     def close(self) -> None:
         """Ends all connections."""
-        self._socket.close()
+        if self._socket is not None:
+            self._socket.close()
 
     def destroy(self) -> None:
         self.close()
@@ -70,6 +73,9 @@ class ServerSocket:
         self._context.term()
 
     def receive(self, seconds: float) -> Optional[Arrival]:
+        if self._socket is None:
+            time.sleep(max(0.0, seconds))
+            return None
         if not self._socket.poll(max(0, int(1000 * seconds))):
             return None
         first, *frames = self._socket.recv_multipart(copy=False)

@@ -11,9 +11,9 @@ from . import wire
 from .case import Case, Failed, NonStrict, Unimplemented
 from .client_robots import readings, robot
 from .client_socket import PlainGreeter, ServerSocket
-from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, HearLate, HearResume, Mechanisms,
-                           Quiet, Refuse, Remove, SinceMinor, Tell, TellBytes, TellObservation, TellWelcome, Wait)
-from .keys import MISLED, PLAIN_SERVER, UNLISTED, VARIANT, Keys
+from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, HearLate, HearResume, Listen,
+                           Mechanisms, Quiet, Refuse, Remove, SinceMinor, Tell, TellBytes, TellObservation, TellWelcome, Wait)
+from .keys import LATE_SERVER, MISLED, PLAIN_SERVER, RESTARTED, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE, Keys
 from .peer import Transcript
 from .rules.fault import Fault, musts
 from .rules.observation import time_of
@@ -83,9 +83,9 @@ class ClientStage:
         if variant == PLAIN_SERVER:
             self.keys = Keys()
             return PlainGreeter()
-        if variant in (VARIANT, MISLED, UNLISTED):
+        if variant in (VARIANT, MISLED, UNLISTED, SPACED_FILE, WRONG_FILE, LATE_SERVER):
             self.keys = Keys()
-            return ServerSocket(self.keys.server[1], is_open=variant != UNLISTED)
+            return ServerSocket(self.keys.server[1], is_open=variant != UNLISTED, listens=variant != LATE_SERVER)
         return ServerSocket()
 
     def _close(self) -> None:
@@ -96,12 +96,13 @@ class ClientStage:
 
     def _environment(self, variant: str) -> dict:
         names = {"ZIGGURAT_ENDPOINT": self._socket.endpoint, "ZIGGURAT_CONTROLLER": self.options.controller}
-        others = {name: value for name, value in os.environ.items()
-                  if name not in ("ZIGGURAT_SERVER_KEY", "ZIGGURAT_CURVE_SECRET")}
+        others = {name: value for name, value in os.environ.items() if not name.startswith("ZIGGURAT_")}
         if self.keys is not None:
             server = self.keys.of(MISLED if variant == MISLED else "controller")[0]
             names["ZIGGURAT_SERVER_KEY"] = server.decode()
-            names["ZIGGURAT_CURVE_SECRET"] = self.keys.client_file()
+            names["ZIGGURAT_CURVE_SECRET"] = self.keys.client_file(variant)
+        if variant == RESTARTED:
+            names["ZIGGURAT_SESSION_TOKEN"] = _TOKEN.hex()
         return {**others, **names}
 
     # ---- one function for each kind of step --------------------------------------------------------
@@ -206,6 +207,10 @@ class ClientStage:
         self.transcript.add("server", "───", "closes the connection, and listens again")
         self._socket.close()
         self._lose()
+        self._socket.open()
+
+    def listen(self, _: Listen) -> None:
+        self.transcript.add("server", "───", "listens from now on")
         self._socket.open()
 
     def hear_resume(self, step: HearResume) -> None:
@@ -397,6 +402,7 @@ _players: dict = {
     HearResume: ClientStage.hear_resume,
     SinceMinor: ClientStage.since_minor,
     Cut: ClientStage.cut,
+    Listen: ClientStage.listen,
     Quiet: ClientStage.quiet,
     Ends: ClientStage.ends,
     Wait: ClientStage.wait,

@@ -88,6 +88,11 @@ class Cut:
 
 
 @dataclass(frozen=True)
+class Listen:
+    """The server listens from now on."""
+
+
+@dataclass(frozen=True)
 class HearResume:
     """A Hello with the session's token; until it comes, the client may send over the restored connection."""
 

@@ -9,6 +9,11 @@ from typing import Optional
 import zmq
 
 VARIANT = "curve"
+# Variants of cases for clients: what the file with their key is like, and when a server listens.
+SPACED_FILE = "spaced-file"
+WRONG_FILE = "wrong-file"
+LATE_SERVER = "late-server"
+RESTARTED = "restarted"  # the program finds the token of its session in its environment
 PLAIN_SERVER = "plain-server"  # of cases for clients: a server without keys is where one with keys should be
 
 # Peers of a case by name. A peer that is not here has the key of "controller".
@@ -56,12 +61,14 @@ class Keys:
                                        for name, roles in ROLES.items()))
         return {"curve_secret": str(secret), "curve_clients": str(clients)}
 
-    def client_file(self) -> str:
+    def client_file(self, variant: str = "") -> str:
         """Path of a file with the secret key of "controller", as a client program gets it."""
         path = Path(self.files()["curve_secret"]).with_name("controller.secret")
         if not path.exists():
+            key = self._peers["controller"][1].decode()
+            text = {SPACED_FILE: f"\n \t{key} \n\n", WRONG_FILE: f"{key}\n{key}\n"}.get(variant, f"{key}\n")
             with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT, 0o600), "w") as file:
-                file.write(self._peers["controller"][1].decode() + "\n")
+                file.write(text)
         return str(path)
 
     def close(self) -> None:

@@ -52,6 +52,12 @@ def badges(outcomes: list, left_out: collections.Counter) -> dict:
     return result
 
 
+def missing_badges(outcomes: list, left_out: collections.Counter, wanted: list) -> list:
+    """Names of those levels that were not reached."""
+    reached = badges(outcomes, left_out)
+    return [level.value for level in Level if level.value.lower() in wanted and not reached.get(level)]
+
+
 def _counts(outcomes: list, level: Level) -> collections.Counter:
     return collections.Counter(outcome.verdict for outcome in outcomes if outcome.level is level)
 

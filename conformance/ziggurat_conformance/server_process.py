@@ -14,9 +14,9 @@ class ServerProcess:
     """Starts the command and waits until something listens at its endpoint."""
 
     def __init__(self, command: str, scene: Path, patience: float, extra: Optional[dict] = None):
-        self.endpoint = f"tcp://127.0.0.1:{_free_port()}"
-        values = {"scene": str(scene), "endpoint": self.endpoint, **(extra or {})}
-        self._arguments = [_filled(word, values) for word in shlex.split(command)]
+        self.endpoint = f"tcp://127.0.0.1:{free_port()}"
+        self._command, self._values = command, {"scene": str(scene), **(extra or {})}
+        self._arguments = self._arguments_for(self.endpoint)
         self._output = tempfile.TemporaryFile()
         try:
             self._process = subprocess.Popen(
@@ -26,6 +26,25 @@ class ServerProcess:
             raise RuntimeError(f"{self._arguments[0]}: the server can't be started: "
                                f"{error.strerror}") from None
         self._wait_until_it_listens(patience)
+
+    def _arguments_for(self, endpoint: str) -> list:
+        values = {**self._values, "endpoint": endpoint}
+        return [_filled(word, values) for word in shlex.split(self._command)]
+
+    def refuses_to_listen(self, endpoint: str, patience: float) -> str:
+        """What is wrong with another server of this command that is to listen there and must not: it has to
+        end by itself, with another exit code than 0. Empty if nothing is."""
+        other = subprocess.Popen(self._arguments_for(endpoint), stdin=subprocess.DEVNULL,
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            code = other.wait(max(patience, 10))
+            return "" if code != 0 else "it ended with exit code 0"
+        except subprocess.TimeoutExpired:
+            return "it runs"
+        finally:
+            if other.poll() is None:
+                other.kill()
+            other.wait()
 
     def interrupt(self) -> None:
         self._process.send_signal(signal.SIGINT)
@@ -99,7 +118,7 @@ def _filled(word: str, values: dict) -> str:
     return word
 
 
-def _free_port() -> int:
+def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]

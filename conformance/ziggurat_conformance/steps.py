@@ -10,6 +10,7 @@ from typing import Any, Callable
 from . import wire
 from .case import Failed, NonStrict, Unimplemented
 from .peer import Peer, Transcript
+from .server_process import free_port
 from .wire import protocol
 
 # ---- values that are known only in play ----------------------------------------------------------
@@ -105,6 +106,13 @@ class Pause:
 @dataclass(frozen=True)
 class Interrupt:
     """The server is told to stop, as by Ctrl-C."""
+
+
+@dataclass(frozen=True)
+class RefusesToListen:
+    """Started with this endpoint, the server's command ends with an error. {port} is a free one."""
+
+    endpoint: str
 
 
 @dataclass(frozen=True)
@@ -207,6 +215,13 @@ class Stage:
         self.transcript.add("server", "───", "is interrupted")
         self.server.interrupt()
 
+    def refuses_to_listen(self, step: RefusesToListen) -> None:
+        endpoint = step.endpoint.replace("{port}", str(free_port()))
+        self.transcript.add("server", "───", f"another one is started at {endpoint}")
+        complaint = self.server.refuses_to_listen(endpoint, self.patience)
+        if complaint:
+            raise Failed(f"the server is to listen at {endpoint}, unprotected, and must refuse (T8): {complaint}")
+
     def join(self, step: Join) -> None:
         deadline = time.monotonic() + self.patience
         peer = self.peer(step.peer)
@@ -243,6 +258,7 @@ _players: dict = {
     Hang: Stage.hang,
     Pause: Stage.pause,
     Interrupt: Stage.interrupt,
+    RefusesToListen: Stage.refuses_to_listen,
     Join: Stage.join,
     Check: Stage.check,
 }

@@ -32,7 +32,7 @@ class Channel {
   /// Of a checked message, which stays unchanged until the next is read: handles may point into it.
   virtual void read(const v1::Observation&) {}
   virtual void write(v1::Command&) {}  ///< adds the values that were set after sent()
-  virtual void sent(v1::Command&) {}   ///< after the command was sent
+  virtual void sent() {}               ///< after the command was sent
   virtual void repeat() {}             ///< the next command has all values
   virtual void reset() {}              ///< all values become the initial ones
   virtual void load(v1::Command&) {}   ///< values become these, if the command has any
@@ -87,7 +87,7 @@ class Settings final : public Channel {
   void write(v1::Command& to) override {
     if (changed_) (to.*field_)()->Add(values_.begin(), values_.end());
   }
-  void sent(v1::Command&) override { changed_ = false; }
+  void sent() override { changed_ = false; }
   void repeat() override { changed_ = true; }
   void load(v1::Command& from) override {
     const List& values = *(from.*field_)();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "ziggurat/error.h"
 
@@ -16,15 +17,22 @@ constexpr milliseconds slice{500};  // between checks of whether the connection 
 }  // namespace
 
 Connection::Connection(const Options& options)
-    : endpoint_(options.endpoint), transport_(make_transport(options)) {}
+    : options_(options), transport_(make_transport(options)) {}
 
 Connection::~Connection() {
-  if (is_expected_open_ && !is_closed_) transport_->linger();
+  if (!is_lost_) transport_->linger();
 }
 
-void Connection::expect_open() {
-  is_expected_open_ = true;
-  transport_->expect_open();
+void Connection::reconnect() {
+  if (!lost_transport_) lost_transport_ = std::move(transport_);
+  transport_ = make_transport(options_);
+  is_lost_ = false;
+  longest_silence_ = silence_ = milliseconds{0};
+}
+
+void Connection::begin_session(milliseconds silence) {
+  lost_transport_.reset();
+  longest_silence_ = silence;
 }
 
 void Connection::send(const v1::ClientMessage& message) {
@@ -38,18 +46,32 @@ std::optional<Connection::Kind> Connection::receive(std::optional<milliseconds> 
   const auto end = Clock::now() + timeout.value_or(milliseconds{0});
   milliseconds rest = timeout.value_or(slice);
   for (;;) {
-    if (transport_->receive(std::clamp(rest, milliseconds{0}, slice))) return parse();
+    const auto before = Clock::now();
+    const milliseconds longest = std::clamp(rest, milliseconds{0}, slice);
+    if (transport_->receive(longest)) return parse();
+    // A program that was stopped meanwhile has not waited.
+    check_alive(std::min(longest, std::chrono::ceil<milliseconds>(Clock::now() - before)));
     if (transport_->was_closed()) {
-      is_closed_ = true;
       // Messages that the server sent before may still be in the queue.
       if (transport_->receive(milliseconds{0})) return parse();
-      throw ConnectionError(endpoint_ + ": the server closed the connection");
+      lose("the server closed the connection");
     }
     if (is_interrupted && is_interrupted()) return std::nullopt;
     if (!timeout) continue;
     rest = std::chrono::ceil<milliseconds>(end - Clock::now());
     if (rest.count() <= 0) return std::nullopt;
   }
+}
+
+void Connection::check_alive(milliseconds waited) {
+  silence_ += waited;
+  if (longest_silence_.count() == 0 || silence_ < longest_silence_) return;
+  lose("the server has been silent for " + std::to_string(silence_.count()) + " ms");
+}
+
+void Connection::lose(const std::string& why) {
+  is_lost_ = true;
+  throw ConnectionError(options_.endpoint + ": " + why);
 }
 
 }  // namespace ziggurat

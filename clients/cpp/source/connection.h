@@ -29,19 +29,26 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  const std::string& endpoint() const { return endpoint_; }
-
   void send(const v1::ClientMessage& message);
 
-  /// From now on a closed connection is an error; before, it is tried again.
-  void expect_open();
-  bool is_closed() const { return is_closed_; }
+  /// Whether it was closed, or silent for longer than the server promised: it is of no use any more.
+  bool is_lost() const { return is_lost_; }
+  /// Whether the server has accepted the connection: if it does not answer then, it is slow.
+  bool is_accepted() { return transport_->is_accepted(); }
+  /// @throws ConnectionError that it is lost, and why
+  [[noreturn]] void lose(const std::string& why);
+  /// Starts to connect again, beside the lost connection.
+  void reconnect();
+  /// A session has begun over this connection. A lost one before it is closed now: earlier, the server would
+  /// take the session's robots for free.
+  /// @param silence  wall time after which a connection without messages is lost; 0 = never
+  void begin_session(std::chrono::milliseconds silence);
 
   /// Waits for a message; its kind, or none after the time-out. Kinds that this client does not
   /// know are MESSAGE_NOT_SET.
   /// @param timeout  wall time; none = forever
   /// @param is_interrupted  if given, called regularly: true ends the wait without a message
-  /// @throws ConnectionError if the server closed the connection or sent invalid bytes
+  /// @throws ConnectionError if the connection is lost, or the server sent invalid bytes
   std::optional<Kind> receive(std::optional<std::chrono::milliseconds> timeout,
                               const std::function<bool()>& is_interrupted);
 
@@ -53,11 +60,14 @@ class Connection {
  private:
   Kind parse();
   void forget(std::size_t size);
+  void check_alive(std::chrono::milliseconds waited);
 
-  std::string endpoint_;
+  Options options_;  // where to connect
   std::unique_ptr<Transport> transport_;
-  bool is_expected_open_ = false;
-  bool is_closed_ = false;
+  std::unique_ptr<Transport> lost_transport_;  // until the session goes on
+  bool is_lost_ = false;
+  std::chrono::milliseconds longest_silence_{0};
+  std::chrono::milliseconds silence_{0};  // waited without a message
   v1::Observation observation_;
   std::size_t parsed_ = 0;  // [bytes] since observation_ last released its memory
   v1::ServerMessage message_;

@@ -17,6 +17,7 @@ void Connection::forget(std::size_t size) {
 }
 
 Connection::Kind Connection::parse() {
+  silence_ = std::chrono::milliseconds{0};
   const std::string_view bytes = transport_->content();
   const auto observation = v1::sole_field(bytes, v1::ServerMessage::kObservationFieldNumber);
   const std::string_view content = observation.value_or(bytes);
@@ -25,7 +26,7 @@ Connection::Kind Connection::parse() {
       observation ? static_cast<google::protobuf::MessageLite&>(observation_) : message_;
   if (transport_->has_more() || !message.ParseFromArray(content.data(), static_cast<int>(content.size()))) {
     throw ConnectionError(
-        endpoint_ +
+        options_.endpoint +
         ": the answer is not a message of ziggurat.v1; is this the endpoint of a server?");
   }
   if (observation) return Kind::kObservation;

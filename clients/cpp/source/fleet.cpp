@@ -33,8 +33,8 @@ void Fleet::write(v1::Command& command) {
   move_log_to(*command.mutable_log());
 }
 
-void Fleet::sent(v1::Command& command) {
-  for (const auto& channel : channels_) channel->sent(command);
+void Fleet::sent() {
+  for (const auto& channel : channels_) channel->sent();
 }
 
 void Fleet::repeat() {

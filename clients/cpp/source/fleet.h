@@ -25,7 +25,7 @@ class Fleet {
   /// Adds what was set, and moves what was logged, since the last call.
   void write(v1::Command& command);
   /// After the command was sent.
-  void sent(v1::Command& command);
+  void sent();
   /// The next command has all values: the server may have discarded the last.
   void repeat();
   /// All values that were set become the initial ones.

@@ -180,7 +180,7 @@ bool LocalStream::fill() {
 
 bool LocalStream::was_closed() {
   if (is_protected_) throw ConnectionError("ipc://" + path_ + ": " + keys_are_missing);
-  return is_expected_open_ && stage_ == Stage::closed;
+  return was_open_ && stage_ == Stage::closed;
 }
 
 LocalStream::Step LocalStream::take_greeting() {
@@ -206,6 +206,7 @@ bool LocalStream::take_command(std::string_view body) {
   if (stage_ == Stage::ready) {
     if (!is("READY")) return false;
     stage_ = Stage::open;
+    was_open_ = true;
     flush();
   } else if (is("PING") && body.size() >= 7) {  // its name, a time to live, a context
     if (sent_ == output_.size()) output_.clear(), sent_ = 0;
@@ -271,7 +272,7 @@ bool LocalStream::receive(milliseconds timeout) {
       if (step == Step::incomplete && (stage_ == Stage::closed || !fill())) break;
     }
     if (stage_ == Stage::closed) {
-      if (is_expected_open_) return false;
+      if (was_open_) return false;
       filled_ = taken_ = 0;
       if (Clock::now() >= next_try_) connect();
     }

@@ -28,7 +28,7 @@ class LocalStream final : public Transport {
   std::string_view content() override { return content_; }
   bool has_more() const override { return has_more_; }
   bool was_closed() override;
-  void expect_open() override { is_expected_open_ = true; }
+  bool is_accepted() override { return stage_ != Stage::closed; }
   void linger() override { lingers_ = true; }
 
  private:
@@ -49,7 +49,7 @@ class LocalStream final : public Transport {
   int socket_ = -1;
   Stage stage_ = Stage::closed;
   Clock::time_point next_try_{};
-  bool is_expected_open_ = false, lingers_ = false;
+  bool was_open_ = false, lingers_ = false;
   std::string handshake_;  // of our end, what is not sent yet
   std::string output_;     // messages; sent when the connection is open
   std::size_t sent_ = 0;   // of output_ [bytes]

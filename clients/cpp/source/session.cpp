@@ -18,13 +18,13 @@ ProtocolError displaced(const v1::Displaced& by) {
 }
 
 /// The tick did not wait for our answer, or already had it: the next observation arrives anyway.
-/// @param was_reset  the world was reset at some time: an answer that was sent before the Reset
-///                   arrived may have a future tick
-bool is_harmless(const v1::Error& error, bool was_reset) {
+/// @param may_have_jumped  the world was reset, or the session resumed: an answer that was sent before may have
+///                         a future tick
+bool is_harmless(const v1::Error& error, bool may_have_jumped) {
   if (error.severity() == v1::Error::FATAL) return false;
   return error.severity() == v1::Error::WARNING || error.code() == v1::Error::STALE_TICK ||
          error.code() == v1::Error::DUPLICATE_TICK ||
-         (error.code() == v1::Error::FUTURE_TICK && was_reset);
+         (error.code() == v1::Error::FUTURE_TICK && may_have_jumped);
 }
 
 }  // namespace
@@ -48,37 +48,39 @@ Session::~Session() {
 bool Session::next() {
   State& state = *state_;
   if (state.ending || state.is_over) return false;
-  try {
-    if (state.owes) state.answer();
-    return state.wait();
-  } catch (const ConnectionError&) {
-    state.is_over = state.connection.is_closed();
-    throw;
+  if (state.owes) state.answer();
+  for (;;) {
+    try {
+      return state.wait();
+    } catch (const ConnectionError& loss) {
+      if (!state.connection.is_lost()) throw;
+      if (!state.resume(loss.what())) return false;
+    }
   }
 }
 
 void Session::State::answer() {
-  send_failures();
+  failures = fleet->take_failures();
   v1::Command& command = *outgoing.mutable_command();
   command.Clear();
   command.set_tick(tick);
   fleet->write(command);
   owes = false;
-  connection.send(outgoing);
-  fleet->sent(command);
+  send_answer();
+  fleet->sent();
 }
 
-void Session::State::send_failures() {
-  for (v1::Leave& leave : fleet->take_failures()) {
+void Session::State::send_answer() {
+  for (const v1::Leave& leave : failures) {
     v1::ClientMessage message;
-    message.mutable_leave()->Swap(&leave);
+    *message.mutable_leave() = leave;
     connection.send(message);
   }
+  connection.send(outgoing);
 }
 
 bool Session::State::wait() {
   // Heartbeats come in between: they do not extend the time-out.
-  using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + options.wait_timeout.value_or(std::chrono::milliseconds{0});
   auto rest = options.wait_timeout;
   for (;;) {
@@ -96,6 +98,7 @@ bool Session::State::wait() {
     const v1::ServerMessage& message = connection.message();
     switch (*kind) {
       case Connection::Kind::kObservation:
+        if (repeats_answer(connection.observation())) break;
         read(connection.observation());
         return true;
       case Connection::Kind::kEnd:
@@ -105,15 +108,8 @@ bool Session::State::wait() {
         read(message.reset());
         break;
       case Connection::Kind::kError:
-        if (is_harmless(message.error(), was_reset)) {
-          if (message.error().code() == v1::Error::DEADLINE_MISSED) ++missed;
-          fleet->remove(message.error().dropped().robots());
-          // The first answer counts, unless it was for the world before the reset.
-          if (message.error().code() != v1::Error::DUPLICATE_TICK || was_reset) fleet->repeat();
-          break;
-        }
-        is_over = message.error().severity() == v1::Error::FATAL;
-        throw to_exception(message.error());
+        take(message.error());
+        break;
       case Connection::Kind::kRobotSpawned:
         read(message.robot_spawned());
         break;
@@ -126,6 +122,22 @@ bool Session::State::wait() {
   }
 }
 
+void Session::State::take(const v1::Error& error) {
+  if (is_harmless(error, was_reset || resumes > 0)) {
+    if (error.code() == v1::Error::DEADLINE_MISSED) ++missed;
+    fleet->remove(error.dropped().robots());
+    // The first answer counts, unless it was for the world before the reset.
+    if (error.code() != v1::Error::DUPLICATE_TICK || was_reset) fleet->repeat();
+    return;
+  }
+  const bool is_fatal = error.severity() == v1::Error::FATAL;
+  if (is_fatal && error.code() == v1::Error::OUT_OF_STATE) {
+    connection.lose("the server does not know the connection");
+  }
+  is_over = is_fatal;
+  throw to_exception(error);
+}
+
 void Session::State::read(const v1::Observation& observation) {
   try {
     fleet->read(observation);
@@ -136,7 +148,8 @@ void Session::State::read(const v1::Observation& observation) {
   time = std::chrono::nanoseconds(observation.time_ns());
   event = !has_begun ? Event::init : is_reset ? Event::reset : Event::step;
   has_begun = true;
-  is_reset = false;
+  is_reset = is_resumed = false;
+  resumes_in_vain = 0;
   owes = true;
 }
 
@@ -149,8 +162,12 @@ void Session::State::read(const v1::End& end) {
 
 void Session::State::read(const v1::Reset& reset) {
   seed = reset.seed();
-  is_reset = true;
-  was_reset = true;
+  read_reset();
+}
+
+void Session::State::read_reset() {
+  is_reset = was_reset = true;
+  is_resumed = false;
   fleet->reset();
 }
 
@@ -168,11 +185,14 @@ void Session::leave() { state_->leave(v1::Leave::DONE, {}); }
 void Session::leave_failed(std::string_view message) { state_->leave(v1::Leave::FAILED, message); }
 
 void Session::State::leave(v1::Leave::Reason reason, std::string_view message) {
-  if (is_over) return;
+  if (is_over || connection.is_lost()) return;
   is_over = true;
-  send_failures();
+  for (v1::Leave& failed : fleet->take_failures()) {
+    v1::ClientMessage last;
+    last.mutable_leave()->Swap(&failed);
+    connection.send(last);
+  }
   v1::Leave& leave = *outgoing.mutable_leave();
-  leave.Clear();
   leave.set_reason(reason);
   leave.set_message(v1::valid_utf8(message));
   fleet->move_log_to(*leave.mutable_log());
@@ -191,6 +211,7 @@ const std::string& Session::scene_hash() const noexcept { return state_->scene_h
 const std::string& Session::server_version() const noexcept { return state_->server_version; }
 const std::string& Session::token() const noexcept { return state_->token; }
 std::uint64_t Session::missed() const noexcept { return state_->missed; }
+std::uint64_t Session::resumes() const noexcept { return state_->resumes; }
 
 Robot& Session::robot(std::string_view id) {
   for (Robot& robot : robots()) {

@@ -11,20 +11,34 @@
 namespace ziggurat {
 
 struct Session::State {
+  using Clock = std::chrono::steady_clock;
+
   explicit State(const Options& from) : options(from), connection(from) {}
 
   // welcome.cpp
   void open();  // Hello … Welcome
+  void begin(const v1::Welcome& welcome);
   void read(const v1::Welcome& welcome);
+  void say_hello();
+
+  // resume.cpp
+  bool resume(const std::string& loss);  // false: interrupted; @throws if that is not possible
+  std::chrono::milliseconds patience() const;
+  bool hear_welcome(Clock::time_point end);
+  void go_on(const v1::Welcome& welcome);
+  bool pause(std::chrono::milliseconds length);
+  bool repeats_answer(const v1::Observation& observation);
 
   // session.cpp
   void answer();  // with a Command, after the Leaves of robots that failed
-  void send_failures();
+  void send_answer();
   bool wait();  // for the next observation; false if there is none
+  void take(const v1::Error& error);
   bool is_interrupted() const { return options.is_interrupted && options.is_interrupted(); }
   void read(const v1::Observation& observation);
   void read(const v1::End& end);
   void read(const v1::Reset& reset);
+  void read_reset();
   void read(const v1::RobotSpawned& robot);
   void leave(v1::Leave::Reason reason, std::string_view message);
 
@@ -33,7 +47,8 @@ struct Session::State {
   int exceptions = std::uncaught_exceptions();  // when the session began
 
   std::optional<Fleet> fleet;  // from Welcome on
-  v1::ClientMessage outgoing;  // long-lived: keeps its memory
+  v1::ClientMessage outgoing;  // the last Command; long-lived: keeps its memory
+  std::vector<v1::Leave> failures;  // that were sent before it
 
   Event event = Event::init;
   bool has_begun = false;  // an observation was delivered
@@ -51,9 +66,16 @@ struct Session::State {
   std::string scene_hash;
   std::string server_version;
   std::string token;
+  std::chrono::milliseconds lease{0};
   std::uint64_t missed = 0;
+  std::uint64_t resumes = 0;
+  unsigned resumes_in_vain = 0;  // without an observation that is new
+  bool is_resumed = false;       // the next observation may be the last one again
   std::vector<SpawnedRobot> spawned;
 };
+
+/// @throws ProtocolError if the message is a Refusal or an Error
+void check_not_refused(Connection::Kind kind, const v1::ServerMessage& message);
 
 /// The error as an exception.
 /// @param holder  of a refusal: the client that owns the robot

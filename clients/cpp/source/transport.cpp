@@ -18,8 +18,9 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds longest_linger{1000};
 constexpr const char* monitor_address = "inproc://monitor";
-constexpr int monitored = ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
-                          ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
+constexpr int monitored = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
+                          ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
+                          ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
 // A server that ends, or has no place, also breaks a handshake off: ZeroMQ tries again.
 constexpr unsigned most_failed_handshakes = 3;
 
@@ -43,19 +44,21 @@ class ZeroMq final : public Transport {
   std::string_view content() override { return frame_.to_string_view(); }
   bool has_more() const override { return frame_.more(); }
   bool was_closed() override;
-  void expect_open() override { is_expected_open_ = true; }
+  bool is_accepted() override;
   void linger() override;
 
  private:
   void set_keys(const Options& options);
-  void hear(std::uint16_t event, std::uint32_t value);
+  void take_events();
+  void take_event(std::uint16_t event, std::uint32_t value);
 
   std::string endpoint_;
   zmq::context_t context_;
   zmq::socket_t socket_;
   zmq::socket_t monitor_;  // reports that the connection was closed, or refused
   milliseconds socket_timeout_{-1};
-  bool is_expected_open_ = false;
+  bool is_accepted_ = false;
+  bool is_open_ = false;  // the handshake has succeeded
   bool is_closed_ = false;
   bool has_keys_ = false;
   unsigned failed_handshakes_ = 0;  // without a reason
@@ -90,12 +93,12 @@ void ZeroMq::set_keys(const Options& options) {
         "only one of server_key and curve_secret is set; an encrypted connection needs both");
   }
   std::ifstream file(options.curve_secret);
-  std::string secret;
+  std::string secret, more;
   std::array<char, 41> own;
-  if (!(file >> secret) || zmq_curve_public(own.data(), secret.c_str()) != 0) {
+  if (!(file >> secret) || file >> more || zmq_curve_public(own.data(), secret.c_str()) != 0) {
     throw std::invalid_argument(
         "'" + options.curve_secret +
-        "': not a file with a secret key; create one with 'ziggurat keygen'");
+        "': not a file with one secret key and nothing else; create one with 'ziggurat keygen'");
   }
   try {
     if (options.server_key.size() != 40) throw zmq::error_t(EINVAL);
@@ -112,6 +115,8 @@ void ZeroMq::set_keys(const Options& options) {
 
 void ZeroMq::linger() {
   try {
+    take_events();
+    if (!is_open_ || is_closed_) return;
     socket_.set(zmq::sockopt::linger, static_cast<int>(longest_linger.count()));
   } catch (const zmq::error_t&) {
     // The last messages may be lost; there is nothing else to do.
@@ -145,6 +150,17 @@ bool ZeroMq::receive(milliseconds timeout) {
 }
 
 bool ZeroMq::was_closed() {
+  take_events();
+  if (!is_open_ && !refusal_.empty()) throw ConnectionError(endpoint_ + ": " + refusal_);
+  return is_closed_;
+}
+
+bool ZeroMq::is_accepted() {
+  take_events();
+  return is_accepted_;
+}
+
+void ZeroMq::take_events() {
   constexpr std::size_t value_at = sizeof(std::uint16_t);
   zmq::message_t event;
   while (receive_from(monitor_, event, zmq::recv_flags::dontwait)) {
@@ -155,15 +171,18 @@ bool ZeroMq::was_closed() {
       std::memcpy(&value, event.data<char>() + value_at, sizeof value);
     }
     while (event.more()) receive_from(monitor_, event, zmq::recv_flags::none);  // the address
-    hear(number, value);
+    take_event(number, value);
   }
-  if (!is_expected_open_ && !refusal_.empty()) throw ConnectionError(endpoint_ + ": " + refusal_);
-  return is_closed_;
 }
 
-void ZeroMq::hear(std::uint16_t event, std::uint32_t value) {
-  if (event == ZMQ_EVENT_DISCONNECTED) {
-    is_closed_ |= is_expected_open_;
+void ZeroMq::take_event(std::uint16_t event, std::uint32_t value) {
+  if (event == ZMQ_EVENT_CONNECTED) {
+    is_accepted_ = true;
+  } else if (event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED) {
+    is_open_ = true;
+  } else if (event == ZMQ_EVENT_DISCONNECTED) {
+    is_accepted_ = false;
+    is_closed_ |= is_open_;
   } else if (event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH) {
     refusal_ = "refused key? The server does not have this client's key in its --curve-clients";
   } else if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL &&

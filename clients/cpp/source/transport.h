@@ -29,12 +29,12 @@ class Transport {
   virtual std::string_view content() = 0;
   virtual bool has_more() const = 0;
 
-  /// Whether the server closed a connection since the last call; before the connection is
-  /// expected to stay open that has no meaning: it is tried again.
+  /// Whether the connection was closed after it had been open. It is not opened again, and messages may be
+  /// lost. Until it is open, connecting is retried.
   /// @throws ConnectionError if the server does not accept this client's keys, or that it has none
   virtual bool was_closed() = 0;
-  /// From now on a closed connection is not tried again.
-  virtual void expect_open() = 0;
+  /// Whether the server has accepted the connection: if nothing arrives then, the server is slow.
+  virtual bool is_accepted() = 0;
   /// To be called before the end if the last messages should arrive: they have a second for it.
   virtual void linger() = 0;
 };

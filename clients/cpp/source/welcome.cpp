@@ -1,5 +1,7 @@
 // The start of a session: Hello and Welcome.
 
+#include <algorithm>
+
 #include "session_state.h"
 #include "ziggurat/v1/envelope.h"
 
@@ -32,11 +34,24 @@ void fill(const Options& options, v1::Hello& hello) {
   }
 }
 
+/// How long a connection is silent at most unless it is lost (docs/protocol.md, M3); 0 = any time.
+std::chrono::milliseconds longest_silence(const v1::Welcome& welcome, const Options& options) {
+  // The end of a local connection is always told, so a server that is silent there is slow.
+  if (welcome.wall_heartbeat_ms() == 0 || options.endpoint.starts_with("ipc://")) return {};
+  return std::max(std::chrono::milliseconds(3000),
+                  3 * std::chrono::milliseconds(welcome.wall_heartbeat_ms()));
+}
+
 }  // namespace
 
+void Session::State::say_hello() {
+  v1::ClientMessage message;
+  fill(options, *message.mutable_hello());
+  connection.send(message);
+}
+
 void Session::State::open() {
-  fill(options, *outgoing.mutable_hello());
-  connection.send(outgoing);
+  say_hello();
   for (;;) {
     const auto kind = connection.receive(options.connect_timeout, options.is_interrupted);
     if (!kind && is_interrupted()) {
@@ -46,20 +61,22 @@ void Session::State::open() {
       throw ConnectionError("no welcome from a server at " + options.endpoint + " within " +
                             std::to_string(options.connect_timeout.count()) + " ms");
     }
-    switch (*kind) {
-      case Connection::Kind::kWelcome:
-        read(connection.message().welcome());
-        connection.expect_open();
-        return;
-      case Connection::Kind::kRefusal: {
-        const v1::Refusal& refusal = connection.message().refusal();
-        throw to_exception(refusal.error(), refusal.holder());
-      }
-      case Connection::Kind::kError:
-        throw to_exception(connection.message().error());
-      default:
-        break;  // still loading, or a message of a later version
+    if (*kind != Connection::Kind::kWelcome) {
+      check_not_refused(*kind, connection.message());
+      continue;  // still loading, or a message of a later version
     }
+    begin(connection.message().welcome());
+    return;
+  }
+}
+
+void Session::State::begin(const v1::Welcome& welcome) {
+  read(welcome);
+  try {
+    fleet.emplace(welcome);
+    fleet->resume(welcome.resumed());
+  } catch (const std::runtime_error& error) {
+    throw ConnectionError(options.endpoint + ": " + error.what());
   }
 }
 
@@ -70,12 +87,15 @@ void Session::State::read(const v1::Welcome& welcome) {
   scene_hash = welcome.scene_hash();
   server_version = welcome.server_version();
   token = welcome.session_token();
-  try {
-    fleet.emplace(welcome);
-    fleet->resume(welcome.resumed());
-  } catch (const std::runtime_error& error) {
-    throw ConnectionError(options.endpoint + ": " + error.what());
+  lease = std::chrono::milliseconds(welcome.wall_lease_ms());
+  connection.begin_session(longest_silence(welcome, options));
+}
+
+void check_not_refused(Connection::Kind kind, const v1::ServerMessage& message) {
+  if (kind == Connection::Kind::kRefusal) {
+    throw to_exception(message.refusal().error(), message.refusal().holder());
   }
+  if (kind == Connection::Kind::kError) throw to_exception(message.error());
 }
 
 ProtocolError to_exception(const v1::Error& error, const std::string& holder) {

@@ -103,6 +103,7 @@ Options take_options(lua_State* state) {
   if (options.endpoint.empty()) {
     const Options environment = Options::from_environment();
     options.endpoint = environment.endpoint;
+    options.session_token = environment.session_token;
     if (options.controller.empty()) options.controller = environment.controller;
   }
   options.robots = robots_of(state);

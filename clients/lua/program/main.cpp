@@ -27,6 +27,7 @@ Options session_options(const lua::ProgramOptions& from) {
   options.endpoint = from.endpoint;
   options.server_key = from.server_key;
   options.curve_secret = from.curve_secret;
+  options.session_token = from.session_token;
   options.controller = from.controller;
   options.robots = from.robots;
   options.lua_only = !from.script;  // --script runs robots with any controller

@@ -183,6 +183,7 @@ Request read_arguments(int count, const char* const* arguments, bool is_terminal
   }
   options.server_key = value("server-key", environment("ZIGGURAT_SERVER_KEY"));
   options.curve_secret = value("curve-secret", environment("ZIGGURAT_CURVE_SECRET"));
+  if (options.robots_from.empty()) options.session_token = take_session_token();
   if (found.count("script")) options.script = value("script");
   options.name = value("name", options.name);
   options.place_file = value("place-file");

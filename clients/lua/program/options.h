@@ -17,6 +17,7 @@ struct ProgramOptions {
   std::string controller;           ///< id in the scene; empty for all
   std::optional<std::filesystem::path> script;  ///< instead of the scene's
   std::string server_key, curve_secret;         ///< as in ziggurat::Options
+  std::string session_token;                    ///< the same; empty with robots_from
   std::string name = "ziggurat-lua";
   /// Scripts that the server names must be below these, and so must the files that scripts use;
   /// never empty.
@@ -35,8 +36,8 @@ struct Request {
   std::string text;  ///< of --help or --version; empty otherwise
 };
 
-/// Reads the arguments, and ZIGGURAT_ENDPOINT, ZIGGURAT_CONTROLLER, ZIGGURAT_SERVER_KEY and
-/// ZIGGURAT_CURVE_SECRET for those that are missing.
+/// Reads the arguments, and ZIGGURAT_ENDPOINT, ZIGGURAT_CONTROLLER, ZIGGURAT_SERVER_KEY,
+/// ZIGGURAT_CURVE_SECRET and ZIGGURAT_SESSION_TOKEN for those that are missing.
 /// @param is_terminal  stdout is a terminal: log lines are printed here unless quiet
 /// @throws std::runtime_error, naming the wrong argument and the allowed values
 Request read_arguments(int count, const char* const* arguments, bool is_terminal);

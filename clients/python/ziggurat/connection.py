@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from dataclasses import dataclass
 from typing import Optional
@@ -14,8 +15,9 @@ from .errors import ConnectionLost, Refused, Timeout
 from .find_server import find_server
 
 VERSION = v1.Version(major=1, minor=1)
+SLICE = 0.5  # [s] of a wait
 LINGER_MS = 1000  # time to send the last messages when a session is closed
-MONITORED = (zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL
+MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL
              | zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL | zmq.EVENT_HANDSHAKE_FAILED_AUTH)
 # A server that ends, or has no place, also breaks a handshake off: ZeroMQ tries again.
 MOST_FAILED_HANDSHAKES = 3
@@ -29,6 +31,25 @@ class Curve:
     public_key: str
     secret_key: str
 
+    @staticmethod
+    def from_environment() -> Optional["Curve"]:
+        """The keys in ZIGGURAT_SERVER_KEY and in the file that ZIGGURAT_CURVE_SECRET names; None if neither
+        is there. Raises ValueError if only one is, or the file has no secret key."""
+        server_key = os.environ.get("ZIGGURAT_SERVER_KEY", "")
+        path = os.environ.get("ZIGGURAT_CURVE_SECRET", "")
+        if not server_key and not path:
+            return None
+        if not server_key or not path:
+            raise ValueError("only one of ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET is set; "
+                             "an encrypted connection needs both")
+        try:
+            with open(path, encoding="ascii") as file:
+                secret_key = file.read().strip()
+            return Curve(server_key, zmq.curve_public(secret_key.encode()).decode(), secret_key)
+        except (OSError, ValueError, zmq.ZMQError):
+            raise ValueError(f"{path!r}: not a file with one secret key and nothing else; create one with "
+                             "'ziggurat keygen'") from None
+
 
 class Connection:
     """Connects in the background; the server may start later. Without endpoint: see find_server."""
@@ -36,6 +57,8 @@ class Connection:
     def __init__(self, endpoint: str, curve: Optional[Curve] = None):
         self.endpoint = endpoint = endpoint or find_server()
         self._has_keys = curve is not None
+        self.is_accepted = False  # by the server: if nothing arrives then, it is slow
+        self.longest_silence: Optional[float] = None  # [s] of wall time; longer, and the connection is lost
         self._failed_handshakes = 0
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.IPV6, endpoint.startswith("tcp://["))
@@ -77,9 +100,12 @@ class Connection:
         if self.closed:
             raise ConnectionLost("the session is closed")
         end = None if timeout is None else time.monotonic() + timeout
+        silence = 0.0  # in pieces: a program that was stopped has not waited
         while True:
-            rest = None if end is None else max(0, int(1000 * (end - time.monotonic())))
-            ready = dict(self.poller.poll(rest))
+            rest = SLICE if end is None else min(SLICE, max(0.0, end - time.monotonic()))
+            began = time.monotonic()
+            ready = dict(self.poller.poll(int(1000 * rest)))
+            silence += min(rest, time.monotonic() - began)
             if self.socket in ready:
                 return v1.ServerMessage.FromString(self.socket.recv())
             if self.monitor in ready:
@@ -88,11 +114,16 @@ class Connection:
                     continue
                 self.close()
                 raise ConnectionLost(f"{self.endpoint}: {why}")
+            if self.longest_silence is not None and silence >= self.longest_silence:
+                raise ConnectionLost(f"{self.endpoint}: the server has been silent for {silence:.1f} s")
             if end is not None and time.monotonic() >= end:
                 raise Timeout(f"{self.endpoint}: no message for {timeout:g} s")
 
     def _why_lost(self, event: dict) -> Optional[str]:
         """Why the connection is lost after this event of its monitor; None if it is not."""
+        if event["event"] == zmq.EVENT_CONNECTED:
+            self.is_accepted = True
+            return None
         if event["event"] == zmq.EVENT_DISCONNECTED:
             return "the connection was closed"
         if event["event"] == zmq.EVENT_HANDSHAKE_FAILED_AUTH:
@@ -108,14 +139,19 @@ class Connection:
                     "key with the one that 'ziggurat keygen' has printed")
         return None
 
-    def begin(self, hello: v1.Hello, connect_timeout: float) -> v1.Welcome:
-        """Sends Hello and waits for the Welcome. Each Loading restarts the time-out."""
+    def begin(self, hello: v1.Hello, connect_timeout: float, is_patient: bool = False) -> v1.Welcome:
+        """Sends Hello and waits for the Welcome. Each Loading restarts the time-out.
+
+        is_patient  it does not count while the server has accepted the connection
+        """
         hello.version.CopyFrom(VERSION)
         self.send(v1.ClientMessage(hello=hello))
         while True:
             try:
                 message = self.receive(connect_timeout)
             except Timeout:
+                if is_patient and self.is_accepted:
+                    continue
                 raise ConnectionLost(
                     f"no welcome at {self.endpoint} within {connect_timeout:g} s") from None
             kind = message.WhichOneof("message")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import enum
+import os
+import time
 from dataclasses import dataclass
-from typing import Any, Iterable, Iterator, List, Optional, Sequence, Union
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Union
 
 from . import protocol_pb2 as v1
 from .connection import Connection, Curve
-from .errors import Displaced, ProtocolError, name_of
+from .errors import ConnectionLost, Displaced, ProtocolError, Refused, name_of
 from .exchange import Exchange
 from .named import Named
 from .robot import Robot
@@ -16,6 +18,14 @@ from .robot import Robot
 # Errors for a command that came too late or twice: harmless, as the next observation arrives anyway.
 # A command that was sent before a Reset arrived may have a future tick.
 _LATE = (v1.Error.STALE_TICK, v1.Error.DUPLICATE_TICK)
+
+_TOKEN = "ZIGGURAT_SESSION_TOKEN"
+# Wall times [s] of a session whose connection was lost.
+_SILENCE = 3.0  # of a server, at least
+_PATIENCE = 10.0  # as connect_timeout
+_BETWEEN_ATTEMPTS = 0.1  # while there is no server
+_BETWEEN_HELLOS = 1.0  # to a server that answers
+_MOST_IN_VAIN = 3
 
 
 class Event(enum.Enum):
@@ -72,34 +82,55 @@ class Deadline:
 def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, controller: str = "",
             name: str = "", version: str = "", deadline: Optional[Deadline] = None,
             takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
-            wait_timeout: Optional[float] = None) -> "Session":
+            wait_timeout: Optional[float] = None,
+            resume_timeout: Optional[float] = None) -> "Session":
     """A session with all robots that match both `robots` (ids, or globs with * ? [a-z]) and
     `controller` (its id in the scene); with neither, all robots. Without endpoint it is that of
-    find_server().
+    find_server(), the keys are those of Curve.from_environment(), and a token in ZIGGURAT_SESSION_TOKEN (in
+    hexadecimal) resumes its session; that is removed from the environment.
 
     connect_timeout  wall time to wait for the server's welcome [s]
     wait_timeout     wall time to wait for a message [s]; None: forever
+    resume_timeout   wall time for which a session whose connection was lost is tried to resume [s]; None: as
+                     long as the server reserves the robots, at least 10 s; 0: never
 
     Raises ConnectionLost if no server answers, and Refused if the server refuses the session.
     """
+    token = b""
+    if not endpoint:
+        curve = curve or Curve.from_environment()
+        token = _take_token()
     wanted = [robots] if isinstance(robots, str) else list(robots)
     if not wanted and not controller:
         wanted = ["*"]
     hello = v1.Hello(role=v1.ROLE_CONTROLLER, robots=wanted, controller=controller,
-                     client_name=name or controller or "python", client_version=version, takeover=takeover)
+                     client_name=name or controller or "python", client_version=version, takeover=takeover,
+                     session_token=token)
     if deadline is not None:
         hello.deadline_policy.CopyFrom(deadline._message())
-    return Session(endpoint, hello, curve, connect_timeout, wait_timeout)
+    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout)
+
+
+def _take_token() -> bytes:
+    """Of the session that this program is started to resume. A secret, and for one session only."""
+    text = os.environ.get(_TOKEN, "")
+    try:
+        token = bytes.fromhex(text)
+    except ValueError:
+        raise ValueError(f"{_TOKEN} is not hexadecimal; it has two digits for each byte of the "
+                         "token") from None
+    os.environ.pop(_TOKEN, None)
+    return token
 
 
 def resume(endpoint: str, token: bytes, *, name: str = "python", version: str = "",
            takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
-           wait_timeout: Optional[float] = None) -> "Session":
+           wait_timeout: Optional[float] = None, resume_timeout: Optional[float] = None) -> "Session":
     """Resumes the session with this token after its connection was lost: same robots, same tick.
     The last commands hold, and the robots have their values; the first tick's event is RESUME."""
     hello = v1.Hello(role=v1.ROLE_CONTROLLER, robots=["*"], client_name=name,
                      client_version=version, session_token=token, takeover=takeover)
-    return Session(endpoint, hello, curve, connect_timeout, wait_timeout)
+    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout)
 
 
 class Session:
@@ -109,8 +140,12 @@ class Session:
     """
 
     def __init__(self, endpoint: str, hello: v1.Hello, curve: Optional[Curve],
-                 connect_timeout: float, wait_timeout: Optional[float]):
+                 connect_timeout: float, wait_timeout: Optional[float],
+                 resume_timeout: Optional[float]):
         self._connection = Connection(endpoint, curve)
+        self._curve = curve
+        self._hello = hello
+        self._resume_timeout = resume_timeout
         self._exchange = Exchange()
         self._wait_timeout = wait_timeout
         self._event = Event.RESUME if hello.session_token else Event.INIT
@@ -126,11 +161,18 @@ class Session:
         self._exchange.begin()
         self._exchange.resume(self.welcome.resumed.commanded)
         self._remove(self.welcome.resumed.gone_robots)
+        self._leaves: Dict[int, v1.ClientMessage] = {}  # of robots that left, by position
+        self._answered: Optional[v1.ClientMessage] = None  # with this; the last one
+        self._is_resumed = False  # the next observation may be the last one again
+        self._resumed_in_vain = 0  # times without a new observation
+        self._is_over = False  # it is not resumed
+        self._watch()
         self.tick: Optional[Tick] = None  # the current one
         self.ending: Optional[Ending] = None
         self.paused = False
         self._was_reset = False  # at some time
         self.missed = 0  # deadlines
+        self.resumed = 0  # lost connections that were replaced
         self.late = 0  # commands that came too late or twice
         # Of controllers that robots of this session have; remove those that you have handled.
         self.spawned: List[SpawnedRobot] = []
@@ -160,14 +202,25 @@ class Session:
         return self
 
     def __next__(self) -> Tick:
-        """Answers the last tick and waits for the next; StopIteration after the End."""
+        """Answers the last tick and waits for the next; StopIteration after the End.
+
+        A lost connection is replaced meanwhile: no tick comes twice, and a lost answer is sent again.
+        """
         if self.ending is not None:
             raise StopIteration
+        if self._is_over:
+            raise ConnectionLost("the session is closed")
         if self._owes is not None:
             self._answer()
         while True:
-            message = self._connection.receive(self._wait_timeout)
+            try:
+                message = self._connection.receive(self._wait_timeout)
+            except ConnectionLost as loss:
+                self._resume(loss)
+                continue
             kind = message.WhichOneof("message")
+            if kind == "observation" and self._repeats_answer(message.observation):
+                continue
             if kind == "observation":
                 return self._observe(message.observation)
             if kind == "end":
@@ -183,21 +236,107 @@ class Session:
     def _take(self, kind: Optional[str], message: v1.ServerMessage) -> None:
         """Handles messages other than ticks and the end; ignores unknown kinds."""
         if kind == "reset":
-            self._exchange.reset()
-            self._event = Event.RESET
-            self._was_reset = True
-            self._owes = None
+            self._begin_anew()
         elif kind == "robot_spawned":
             robot = message.robot_spawned
             self.spawned.append(SpawnedRobot(robot.robot, robot.controller, robot.tick))
         elif kind == "paused":
             self.paused = True
         elif kind == "displaced":
-            self._connection.close()
+            self._end()
             raise Displaced(f"{message.displaced.by} took robots of this session: "
                             f"{message.displaced.message}")
+        elif kind == "error" and (message.error.severity == v1.Error.FATAL
+                                  and message.error.code == v1.Error.OUT_OF_STATE):
+            self._resume(ConnectionLost(f"{self.endpoint}: the server does not know the connection"))
         elif kind == "error":
             self._fault(message.error)
+
+    def _begin_anew(self) -> None:
+        """The world was reset."""
+        self._exchange.reset()
+        self._event = Event.RESET
+        self._was_reset = True
+        self._is_resumed = False
+        self._owes = None
+
+    def _watch(self) -> None:
+        """A connection is lost, too, if the server is silent for longer than it promised. The end of a local
+        connection is always told, so a server that is silent there is slow."""
+        beat = self.welcome.wall_heartbeat_ms / 1000
+        if beat and not self.endpoint.startswith("ipc://"):
+            self._connection.longest_silence = max(_SILENCE, 3 * beat)
+
+    def _resume(self, loss: ConnectionLost) -> None:
+        """Over another connection. The first one stays until then: if it was closed earlier, the server would
+        take the session's robots for free."""
+        patience = self._resume_timeout
+        if patience is None:
+            patience = max(self.welcome.wall_lease_ms / 1000, _PATIENCE)
+        self._resumed_in_vain += 1  # the answer itself may be why the server closes the connection
+        if not self.token or not patience or self._resumed_in_vain > _MOST_IN_VAIN:
+            self._end()
+            raise loss
+        end = time.monotonic() + patience
+        hello = v1.Hello()
+        hello.CopyFrom(self._hello)
+        hello.session_token = self.token
+        pause = _BETWEEN_HELLOS if self._resumed_in_vain > 1 else 0.0
+        while True:
+            time.sleep(pause)
+            connection = Connection(self.endpoint, self._curve)
+            try:
+                welcome = connection.begin(hello, max(0.1, end - time.monotonic()), is_patient=True)
+                return self._go_on(connection, welcome)
+            except (ConnectionLost, Refused) as error:
+                connection.close(linger_ms=0)
+                is_refused = isinstance(error, Refused)
+                if time.monotonic() < end and (not is_refused or error.retryable):
+                    pause = _BETWEEN_HELLOS if is_refused else _BETWEEN_ATTEMPTS
+                    continue
+                self._end()
+                if is_refused:
+                    raise error from loss
+                raise ConnectionLost(f"{loss}; the session was not resumed within {patience:g} s") from error
+            except BaseException:
+                connection.close(linger_ms=0)
+                raise
+
+    def _go_on(self, connection: Connection, welcome: v1.Welcome) -> None:
+        """The session has the robots that it had, in their order."""
+        self._connection.close(linger_ms=0)
+        self._connection = connection
+        if [robot.id for robot in welcome.robots] != [robot.id for robot in self.robots]:
+            self._end()
+            raise ConnectionLost(f"{self.endpoint}: the resumed session has other robots than before")
+        was_reset, self.welcome = welcome.seed != self.welcome.seed, welcome
+        self._watch()
+        self.resumed += 1
+        self._is_resumed = self.tick is not None and self._event is not Event.RESET
+        if was_reset:
+            self._begin_anew()
+        self._remove(welcome.resumed.gone_robots)
+        self._exchange.repeat()
+        for position, leave in self._leaves.items():
+            if welcome.HasField("resumed") and position not in welcome.resumed.gone_robots:
+                self._connection.send(leave)
+
+    def _repeats_answer(self, observation: v1.Observation) -> bool:
+        """The first observation of a resumed session may be the one that was answered before: it is not a tick
+        again, and the answer may have been lost. The server takes it or ignores it."""
+        if not self._is_resumed:
+            return False
+        self._is_resumed = False
+        if observation.tick < self.tick.number:
+            self._begin_anew()  # while there was no connection
+        if observation.tick != self.tick.number or self._answered is None:
+            return False
+        self._connection.send(self._answered)
+        return True
+
+    def _end(self) -> None:
+        self._is_over = True
+        self._connection.close()
 
     def _remove(self, positions: Iterable[int]) -> None:
         """The server has taken these robots out of the run."""
@@ -210,7 +349,7 @@ class Session:
             self.missed += 1
             self._exchange.repeat()
             return
-        met_reset = error.code == v1.Error.FUTURE_TICK and self._was_reset
+        met_reset = error.code == v1.Error.FUTURE_TICK and (self._was_reset or self.resumed > 0)
         if (error.code in _LATE or met_reset) and error.severity != v1.Error.FATAL:
             self.late += 1
             if self._was_reset:  # an answer from before the reset may have been taken instead
@@ -222,7 +361,7 @@ class Session:
                 self.robots[error.robot].gone = True  # removed, or taken over by another client
             return
         if error.severity == v1.Error.FATAL:
-            self._connection.close()
+            self._end()
         elif self.tick is not None:
             self._owes = self.tick.number  # the command was discarded; send another
             self._exchange.repeat()
@@ -231,7 +370,8 @@ class Session:
     def _observe(self, observation: v1.Observation) -> Tick:
         self._exchange.observe(observation)
         self._owes = observation.tick
-        self.paused = False
+        self.paused = self._is_resumed = False
+        self._resumed_in_vain = 0
         self.tick = Tick(observation.tick, observation.time_ns, self._event)
         self._event = Event.STEP
         return self.tick
@@ -243,6 +383,7 @@ class Session:
             raise ValueError(f"the command has {size} bytes; the server accepts at most "
                              f"{self.welcome.max_message_bytes}")
         self._connection.send(message)
+        self._answered = message
         self._exchange.sent()
         self._owes = None
 
@@ -252,8 +393,10 @@ class Session:
         reason = v1.Leave.FAILED if failure else v1.Leave.DONE
         lines = [line for line in self._exchange.log if line.robot == robot._position]
         self._exchange.log = [line for line in self._exchange.log if line.robot != robot._position]
-        self._connection.send(v1.ClientMessage(leave=v1.Leave(
-            robots=[robot._position], reason=reason, message=failure, log=lines)))
+        leave = v1.ClientMessage(leave=v1.Leave(
+            robots=[robot._position], reason=reason, message=failure, log=lines))
+        self._leaves[robot._position] = leave
+        self._connection.send(leave)
         robot.gone = True
 
     def close(self, failure: str = "") -> None:
@@ -264,10 +407,11 @@ class Session:
         self._connection.send(v1.ClientMessage(leave=v1.Leave(
             reason=reason, message=failure, log=self._exchange.log)))
         self._exchange.log = []
-        self._connection.close()
+        self._end()
 
     def abandon(self) -> None:
-        """Closes the connection without a Leave, as in a crash: the session can be resumed."""
+        """Closes the connection without a Leave, as in a crash: ziggurat.resume resumes the session."""
+        self._is_over = True
         self._connection.close(linger_ms=0)
 
     def __enter__(self) -> "Session":

@@ -1,6 +1,7 @@
 """All cases for servers, in the order of the document's sections."""
 
-from . import deadlines, hello, later_versions, leaving, rovers, security, states, supervision, tick, transport
+from . import (deadlines, hello, later_versions, leaving, results, rovers, security, states, supervision, tick,
+               transport)
 
 SERVER_CASES = [
     *transport.CASES,
@@ -8,6 +9,7 @@ SERVER_CASES = [
     *tick.CASES,
     *rovers.CASES,
     *deadlines.CASES,
+    *results.CASES,
     *states.CASES,
     *leaving.CASES,
     *security.CASES,

@@ -2,6 +2,7 @@
 
 from ..case import Case, Level
 from ..client_messages import (BEGUN, HELLO, end, error, heartbeat, observation, refusal, ticks, welcome)
+from ..keys import RESTARTED
 from ..client_steps import CheckClient, Cut, Ends, HearFrom, HearResume, Quiet, SinceMinor, Tell
 from .client_core import storm
 
@@ -58,6 +59,8 @@ CASES = [
           *ticks(3, 4)),
     _case("M3.out-of-state", "Told OUT_OF_STATE, it resumes its session",
           *BEGUN, *ticks(1, 3), error("OUT_OF_STATE", "FATAL"), _resumed(3)),
+    Case("T10.token", "A program that finds the token of a session in its environment resumes that session",
+         (HearResume(), welcome(), *ticks(5, 7)), Level.RECONNECT, variant=RESTARTED),
     _case("L4.no-such-session", "A session that can't be resumed is no reason for a storm of Hellos",
           *BEGUN, Cut(), HearResume(), refusal("NO_SUCH_SESSION"), CheckClient("storm", storm, should=True)),
     _case("L13.resumed", "A Welcome of 1.1 with what was commanded is a Welcome",

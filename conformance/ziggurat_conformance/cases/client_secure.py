@@ -2,8 +2,8 @@
 
 from ..case import Case, Level
 from ..client_messages import BEGUN, LEFT, end, ticks, welcome
-from ..client_steps import CheckClient, Cut, Ends, HearResume, Mechanisms, Quiet
-from ..keys import MISLED, PLAIN_SERVER, UNLISTED, VARIANT
+from ..client_steps import CheckClient, Cut, Ends, HearFrom, HearResume, Listen, Mechanisms, Quiet
+from ..keys import LATE_SERVER, MISLED, PLAIN_SERVER, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE
 
 
 def _case(id: str, title: str, variant: str, *steps) -> Case:
@@ -27,6 +27,14 @@ CASES = [
             Quiet(0.5), Ends(good=False, should=True, within=20.0))
       for name, title, variant in (("refused-key", "its key is refused", UNLISTED),
                                    ("another-server", "the server has another key", MISLED))],
+    _case("K6.white-space", "White space around the key in its file is skipped", SPACED_FILE,
+          HearFrom("hello", should=True), CheckClient("key", _own_key)),
+    _case("K6.other-file", "A file that has more than one key is refused", WRONG_FILE,
+          Quiet(1.0, should=True), Ends(good=False, should=True, within=20.0)),
+    _case("K7.one-file", "Its public key follows from the secret one: it needs no other file", VARIANT,
+          *BEGUN, CheckClient("key", _own_key)),
+    _case("K8.late-server", "It waits while no server listens yet: its keys are not refused", LATE_SERVER,
+          Quiet(3.0), Listen(), HearFrom("hello", should=True), CheckClient("key", _own_key)),
     _case("L12.same-key", "It resumes its session with the key that it began it with",
           VARIANT, *BEGUN, *ticks(1, 2), Cut(), HearResume(), welcome(), *ticks(2, 4)),
 ]

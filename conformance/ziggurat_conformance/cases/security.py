@@ -32,6 +32,9 @@ def _unanswered(id: str, title: str, peer: str) -> Case:
 
 
 CASES = [
+    Case("K4.any-role", "Without keys any peer may have any role",
+         (_comes("s", "ROLE_SUPERVISOR"), _comes("o", "ROLE_OBSERVER"), Join("p", hello("*"),
+          {"role": "ROLE_CONTROLLER"}), *observe("p"), answer("p"), *observe("p")), Level.SECURE),
     _secure("K1.listed", "A session over an encrypted connection goes as any",
             join("controller", "*"), *observe("controller"), _GOES_ON, _GOES_ON),
     _unanswered("K1.plain", "A connection without encryption gets no answer", PLAIN),

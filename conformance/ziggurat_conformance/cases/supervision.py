@@ -59,7 +59,7 @@ def _ask_status(stage) -> str:
     return ""
 
 
-def _read(id: int, name: str):
+def read_hash(id: int, name: str):
     def read(stage) -> str:
         stage.play((ask("s", id, read={"entities": ["arm0"]}),))
         message = stage.peer("s").hear(stage.patience)
@@ -71,7 +71,7 @@ def _read(id: int, name: str):
     return Check("read", read)
 
 
-def _same(first: str, second: str) -> Check:
+def same_hash(first: str, second: str) -> Check:
     return Check("hash", lambda stage: "" if stage.memory[first] == stage.memory[second]
                  else "the two states are not the same")
 
@@ -158,9 +158,9 @@ CASES = [
        Hear("p", "reset", {"seed": 99}), Hear("p", "observation", {"tick": 0}), told("s", 1),
        fresh=True),
     _v("V6.same", "States after a reset are those of before, bit for bit",
-       *ALL, answer("p"), *observe("p"), answer("p"), *observe("p"), _comes(), _read(1, "before"),
+       *ALL, answer("p"), *observe("p"), answer("p"), *observe("p"), _comes(), read_hash(1, "before"),
        ask("s", 2, reset={}), Skip("p", "reset"), *observe("p"), Skip("s", "response"), answer("p"),
-       *observe("p"), answer("p"), *observe("p"), _read(3, "after"), _same("before", "after"),
+       *observe("p"), answer("p"), *observe("p"), read_hash(3, "after"), same_hash("before", "after"),
        fresh=True),
     _v("V6.void", "What was owed before a reset is void", *ALL, _comes(), ask("s", 1, reset={}),
        Skip("p", "reset"), *observe("p"), answer("p", 5), Hear("p", "error", {"code": "FUTURE_TICK"}),

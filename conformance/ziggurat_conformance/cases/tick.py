@@ -229,6 +229,15 @@ CASES = [
           Hear("p", "observation", {"radio_messages": Count(3)}))),
     _bad("D2", "too-many-messages", "TOO_LARGE", "65 537 messages of one robot", radio_messages=[
         _message(0, b"")] * 65537),
+    # Two arms send 16 MiB each, so each arm of the other session hears half of what may become JSON.
+    Case("D5.too-much-to-hear", "Of an Observation that is too long its session is told, and lost; others go on",
+         (join("binary", "arm0", "arm1"), join("json", "arm2", "arm3"), *observe("binary", "json"),
+          answer("json"), answer("binary", radio_messages=[_message(i, b"x" * 2**20) for i in (0, 1)
+                                                           for _ in range(16)]),
+          hear_error("json", "TOO_LARGE", "FATAL"),
+          Hear("binary", "observation", {"radio_messages": Count(32)}, within=20.0),
+          answer("binary"), join("p", "arm2", "arm3"), *observe("p"), answer("p"), *observe("binary", "p")),
+         forms=("binary",)),
     Case("D3.order", "Messages come by receiving radio, then by sender, then as sent",
          (ALL, answer("p", radio_messages=[_message(1, b"c"), _message(0, b"a"), _message(0, b"b")]),
           observe("p"), Check("order", _heard_in_order))),

@@ -2,7 +2,7 @@
 
 from ..case import Case
 from ..messages import ALL, answer, hear_error, heartbeat, hello, join, observe
-from ..steps import Check, Frames, Hear, Join, Send, Silence
+from ..steps import Check, Frames, Hear, Join, RefusesToListen, Send, Silence
 from ..wire import AtLeast
 
 _STRANGE = {
@@ -65,6 +65,8 @@ _NOT_JSON = {
 _UNKNOWN_FIELD = b"\x80\x7d\x07"
 
 CASES = [
+    Case("T8.any-address", "Without keys it does not listen at an address that others can reach",
+         (RefusesToListen("tcp://0.0.0.0:{port}"),), fresh=True, forms=("binary",)),
     *_garbage,
     *_garbage_in_session,
     Case("T2.two-frames", "A message of two frames is MALFORMED",

@@ -9,6 +9,7 @@
 #include <functional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "ziggurat/session.h"
@@ -20,24 +21,29 @@ namespace ziggurat {
 class FakeServer {
  public:
   explicit FakeServer(std::function<void(FakeServer&)> script)
-      : context_(zmq_ctx_new()), router_(zmq_socket(context_, ZMQ_ROUTER)) {
-    constexpr int patience_ms = 60'000;  // also on a busy machine
-    constexpr int linger_ms = 500;
-    zmq_setsockopt(router_, ZMQ_RCVTIMEO, &patience_ms, sizeof(patience_ms));
-    zmq_setsockopt(router_, ZMQ_LINGER, &linger_ms, sizeof(linger_ms));
-    zmq_bind(router_, "tcp://127.0.0.1:*");
+      : context_(zmq_ctx_new()) {
+    listen("tcp://127.0.0.1:*");
     std::array<char, 100> address{};
     std::size_t size = address.size();
     zmq_getsockopt(router_, ZMQ_LAST_ENDPOINT, address.data(), &size);
     endpoint = address.data();
     thread_ = std::thread([this, script] {
       script(*this);
-      zmq_close(router_);
+      stop_listening();
     });
   }
   ~FakeServer() {
     thread_.join();
     zmq_ctx_term(context_);
+  }
+
+  /// Closes all connections.
+  void stop_listening() {
+    if (router_ != nullptr) zmq_close(std::exchange(router_, nullptr));
+  }
+  void cut() {
+    stop_listening();
+    listen(endpoint);
   }
 
   /// The client's next message; empty if none comes.
@@ -68,13 +74,13 @@ class FakeServer {
   }
 
   /// Two robots "a" and "b", each with joint "slide" (encoder) and "hinge" (encoder and motor).
-  void welcome() {
-    EXPECT_TRUE(receive().has_hello());
+  static v1::ServerMessage two_robots() {
     v1::ServerMessage message;
     v1::Welcome& welcome = *message.mutable_welcome();
     welcome.set_seed(7);
     welcome.set_tick_ns(50'000'000);
     welcome.set_max_message_bytes(1 << 20);
+    welcome.set_session_token("token");
     for (const char* id : {"a", "b"}) {
       v1::RobotDescription& robot = *welcome.add_robots();
       robot.set_id(id);
@@ -90,8 +96,9 @@ class FakeServer {
       actuator.set_mode(v1::JointDescription::VELOCITY);
       actuator.set_max_impulse(0.5);
     }
-    send(message);
+    return message;
   }
+  void welcome() { welcome(two_robots()); }
   void observe(std::uint64_t tick, std::vector<double> readings) {
     v1::ServerMessage message;
     message.mutable_observation()->set_tick(tick);
@@ -108,8 +115,20 @@ class FakeServer {
   std::string endpoint;
 
  private:
+  void listen(const std::string& address) {
+    constexpr int patience_ms = 60'000;  // also on a busy machine
+    constexpr int linger_ms = 500;
+    router_ = zmq_socket(context_, ZMQ_ROUTER);
+    zmq_setsockopt(router_, ZMQ_RCVTIMEO, &patience_ms, sizeof(patience_ms));
+    zmq_setsockopt(router_, ZMQ_LINGER, &linger_ms, sizeof(linger_ms));
+    // The port is free when the connections before are closed.
+    for (int tries = 0; zmq_bind(router_, address.c_str()) != 0 && tries < 500; ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+
   void* context_;
-  void* router_;
+  void* router_ = nullptr;
   std::string peer_;
   std::thread thread_;
 };

@@ -37,9 +37,8 @@ class OneRobot {
   v1::Command command() {
     v1::Command command;
     fleet_.write(command);
-    v1::Command taken = command;
-    fleet_.sent(command);
-    return taken;
+    fleet_.sent();
+    return command;
   }
 
  private:

@@ -249,7 +249,7 @@ TEST_F(Protected, TheLineOnARefusedKeyHasTheKey) {
   EXPECT_NE(notices[0].find(key), std::string::npos) << notices[0];
 }
 
-TEST_F(Protected, K6_AKeyDrivesOnlyRobotsOfItsScope) {
+TEST_F(Protected, K10_AKeyDrivesOnlyRobotsOfItsScope) {
   const SmallRun small(3);
   config.curve->clients[0].scope = {{"robot1", "robot2"}, {}, true};
   config.curve->clients[1] = {
@@ -271,7 +271,7 @@ TEST_F(Protected, K6_AKeyDrivesOnlyRobotsOfItsScope) {
   });
 }
 
-TEST_F(Protected, K6_AKeyTakesOverOnlyIfItMay) {
+TEST_F(Protected, K10_AKeyTakesOverOnlyIfItMay) {
   const SmallRun small(1);
   config.curve->clients[0].scope.may_take_over = false;
   config.curve->clients[1].roles.controller = true;

@@ -55,6 +55,12 @@ struct Options {
   std::string version;              ///< of this program, for the server's messages
 
   std::chrono::milliseconds connect_timeout{10'000};  ///< wall time until the server's welcome
+  /// Wall time for which next() tries to resume the session after a lost connection: it connects again, says
+  /// who it is by the session's token, and goes on as if nothing had happened. None = as long as the server
+  /// reserves the robots (`ziggurat serve --lease`), at least 10 s; 0 = never. A server that accepts the
+  /// connection and is slow to answer is waited for. Over tcp a connection is lost, too, if the server is
+  /// silent for three times its heartbeat (3 s).
+  std::optional<std::chrono::milliseconds> resume_timeout;
   /// Wall time that next() waits for an observation; none = forever, as other sessions may be slow.
   std::optional<std::chrono::milliseconds> wait_timeout;
   /// Called while waiting, after each signal and at least every half second of wall time: true ends
@@ -64,14 +70,19 @@ struct Options {
 
   /// The endpoint is ZIGGURAT_ENDPOINT, otherwise that of find_server(), the controller
   /// ZIGGURAT_CONTROLLER: `ziggurat run` sets both for the controllers that it starts. Keys are
-  /// ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET.
-  /// @throws std::invalid_argument, see find_server()
+  /// ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET, the token is that of take_session_token().
+  /// @throws std::invalid_argument, see find_server() and take_session_token()
   static Options from_environment();
 };
 
 /// The endpoint of the only server of this user that `ziggurat serve` has started on this machine
 /// without --endpoint. @throws std::invalid_argument if there is none, or more than one
 std::string find_server();
+
+/// The token of the session that a program is started to resume: ZIGGURAT_SESSION_TOKEN, two hexadecimal digits
+/// for each byte. Removed from the environment, because it is a secret and for one session only. Empty if
+/// there is none. @throws std::invalid_argument if it is not hexadecimal
+std::string take_session_token();
 
 /// What an observation is for.
 enum class Event {
@@ -112,9 +123,10 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Answers the current observation with all values that were set, and waits for the next. False
-  /// after the last tick. The first call delivers Event::init.
+  /// after the last tick. The first call delivers Event::init. If the connection is lost meanwhile, the session
+  /// is resumed (Options::resume_timeout): no tick is delivered twice, and an answer that was lost is sent again.
   /// @throws ConnectionError; after a time-out, another call waits again
-  /// @throws ProtocolError
+  /// @throws ProtocolError, also if the server does not resume the session
   bool next();
 
   Event event() const noexcept;                    ///< of the current observation
@@ -125,6 +137,7 @@ class Session {
 
   const std::string& token() const noexcept;  ///< for Options::session_token; any bytes
   std::uint64_t missed() const noexcept;      ///< ticks that did not wait for this session's answer
+  std::uint64_t resumes() const noexcept;     ///< how often a lost connection was replaced
   /// Robots that were spawned since the last call, of controllers that robots of this session have.
   std::vector<SpawnedRobot> take_spawned();
 

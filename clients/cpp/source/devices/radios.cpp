@@ -20,10 +20,7 @@ class RadioTraffic final : public Channel {
   void check(const v1::Observation& from) const override;
   void read(const v1::Observation& from) override;
   void write(v1::Command& to) override { to.mutable_radio_messages()->Swap(&sent_); }
-  void sent(v1::Command& command) override {
-    command.mutable_radio_messages()->Swap(&sent_);
-    reset();
-  }
+  void sent() override { reset(); }
   void reset() override;
 
  private:
@@ -37,6 +34,7 @@ class RadioTraffic final : public Channel {
   std::size_t bytes_ = 0;  // sent by the session, with the overhead of messages
   std::size_t max_bytes_;
   std::size_t cleared_ = 0;  // [bytes] since `sent_` last gave its memory back
+  unsigned to_release_ = 0;  // of `sent_` and the list of the last command, which take turns
 };
 
 namespace {
@@ -96,9 +94,13 @@ void RadioTraffic::reset() {
   std::fill(totals_.begin(), totals_.end(), Total{});
   cleared_ += bytes_;
   bytes_ = 0;
-  if (cleared_ < max_kept) return;
+  if (cleared_ >= max_kept) {
+    to_release_ = 2;
+    cleared_ = 0;
+  }
+  if (to_release_ == 0) return;
+  --to_release_;
   google::protobuf::RepeatedPtrField<v1::RadioMessage>().Swap(&sent_);
-  cleared_ = 0;
 }
 
 void Layout::add_radios() {

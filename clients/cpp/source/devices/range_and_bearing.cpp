@@ -46,7 +46,7 @@ class DataChannel final : public Channel {
   void write(v1::Command& to) override {
     if (changed_) to.mutable_range_and_bearing_data()->assign(data_.begin(), data_.end());
   }
-  void sent(v1::Command&) override { changed_ = false; }
+  void sent() override { changed_ = false; }
   void repeat() override { changed_ = true; }
   void load(v1::Command& from) override {
     const std::string& data = from.range_and_bearing_data();

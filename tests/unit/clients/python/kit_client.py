@@ -24,8 +24,7 @@ def use(robot, number):
 
 
 def main():
-    with ziggurat.connect(os.environ["ZIGGURAT_ENDPOINT"],
-                          controller=os.environ.get("ZIGGURAT_CONTROLLER", "")) as session:
+    with ziggurat.connect(controller=os.environ.get("ZIGGURAT_CONTROLLER", "")) as session:
         for tick in session:
             for robot in session.robots:
                 use(robot, tick.number)
