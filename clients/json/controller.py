@@ -70,6 +70,7 @@ class Controller:
         self.token = base64.b64encode(bytes.fromhex(os.environ.get("ZIGGURAT_SESSION_TOKEN", ""))).decode()
         self.silence = PATIENCE  # [s] after which a connection is lost
         self.targets, self.are_told = [], False  # targets stay until changed: they are told once
+        self.command, self.is_resumed = {"tick": ""}, False  # the last one, which may have been lost
         self.is_over_at = None  # wall time at which a session that is not resumed is given up
 
     def hello(self):
@@ -86,7 +87,7 @@ class Controller:
             time.sleep(1)
         self.is_over_at, self.silence = self.is_over_at or now + PATIENCE, PATIENCE
         self.connection.close()
-        self.connection, self.are_told = Connection(self.endpoint), False
+        self.connection, self.are_told, self.is_resumed = Connection(self.endpoint), False, True
         self.hello()
         return None
 
@@ -114,16 +115,23 @@ class Controller:
                         for robot in welcome["robots"] for motor in robot["jointActuators"]]
 
     def take_observation(self, observation):
+        is_again, self.is_resumed = self.is_resumed and self.command["tick"] == observation["tick"], False
+        if not is_again:
+            self.command = self.answer_to(observation)
+            self.is_over_at = None
+        self.connection.send(command=self.command)
+
+    def answer_to(self, observation):
         command = {"tick": observation["tick"]}
         if not self.are_told:
             command["jointTargets"] = self.targets
         elif observation["jointReadings"]:
             command["log"] = [{"robot": 0, "text": f"{observation['jointReadings'][0]:.2f}"}]
-        self.connection.send(command=command)
-        self.are_told, self.is_over_at = True, None
+        self.are_told = True
+        return command
 
     def take_reset(self, _):
-        self.are_told = False
+        self.are_told = self.is_resumed = False
 
     take_restored = take_reset
 

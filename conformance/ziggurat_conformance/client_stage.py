@@ -51,6 +51,7 @@ class ClientStage:
         self.keys: Optional[Keys] = None
         self._played: list = []  # robots of the scene that the client has
         self._token = _TOKEN  # of the session, also after it was lost
+        self.last_commands: list = []  # at most two
         self._unkept: list[Fault] = []  # SHOULDs
         self._allowance = float(_MOST_AT_ONCE)  # of M7
         self._counted_at = self._observed_at = time.monotonic()
@@ -289,6 +290,8 @@ class ClientStage:
                 raise Failed(f"the client said {wire.text_of(message, 300)}: "
                              + "; ".join(map(str, broken[:5])))
             self._count(message)
+            if message.HasField("command"):
+                self.last_commands = [*self.last_commands[-1:], message.command]
             if not message.HasField("heartbeat") or is_new and self.session.state is State.NEW:
                 return message
             self._tell(protocol.ServerMessage(heartbeat=message.heartbeat))

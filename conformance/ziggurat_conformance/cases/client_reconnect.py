@@ -4,6 +4,7 @@ from ..case import Case, Level
 from ..client_messages import (BEGUN, HELLO, end, error, heartbeat, observation, refusal, ticks, welcome)
 from ..keys import RESTARTED
 from ..client_steps import CheckClient, Cut, Ends, HearFrom, HearResume, Quiet, SinceMinor, Tell
+from ..wire import text_of
 from .client_core import storm
 
 _SILENCE = 6.0  # [s], much longer than the 100 ms that _WATCHED promises
@@ -17,6 +18,11 @@ def _case(id: str, title: str, *steps) -> Case:
 def _resumed(tick: int) -> list:
     """Back in the session at this tick; L9: it may have been answered before."""
     return [HearResume(), welcome(), *ticks(tick, tick + 2)]
+
+
+def _same_answer(stage) -> str:
+    first, second = stage.last_commands
+    return "" if first == second else f"first {text_of(first, 200)}; then {text_of(second, 200)}"
 
 
 _RESET = Tell({"reset": {"seed": 8}})
@@ -51,6 +57,9 @@ CASES = [
           HELLO, welcome(), Cut(), _resumed(0)),
     _case("L4.lost-again", "… again and again",
           *BEGUN, *[s for tick in (0, 2, 4) for s in (Cut(), *_resumed(tick))]),
+    _case("L9.same-answer", "To a tick that it had answered it gives the same answer: nothing is done twice",
+          *BEGUN, *ticks(1, 3), Cut(), HearResume(), welcome(), *ticks(3, 3),
+          CheckClient("answer", _same_answer, should=True), *ticks(4, 5)),
     _case("L4.other-tick", "The world may have gone on meanwhile", *BEGUN, *ticks(1, 3), Cut(), _resumed(70)),
     _case("M3.silence", "When nothing comes for much longer than M6 says, it resumes its session",
           HELLO, welcome(**_WATCHED), *ticks(0, 2), heartbeat(1), HearResume(_SILENCE), welcome(), *ticks(2, 4)),

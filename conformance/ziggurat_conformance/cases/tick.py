@@ -235,7 +235,7 @@ CASES = [
           answer("json"), answer("binary", radio_messages=[_message(i, b"x" * 2**20) for i in (0, 1)
                                                            for _ in range(16)]),
           hear_error("json", "TOO_LARGE", "FATAL"),
-          Hear("binary", "observation", {"radio_messages": Count(32)}, within=20.0),
+          Hear("binary", "observation", within=20.0),
           answer("binary"), join("p", "arm2", "arm3"), *observe("p"), answer("p"), *observe("binary", "p")),
          forms=("binary",)),
     Case("D3.order", "Messages come by receiving radio, then by sender, then as sent",

@@ -120,6 +120,9 @@ def start(scene, bug, options):
 
 
 async def main(endpoint, scene, bug="", *options):
+    host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
+    if host != "127.0.0.1" and bug != "listens-anywhere":
+        sys.exit(f"{endpoint}: others can reach that (T8)")
     server, address = start(scene, bug, list(options))
 
     async def serve(reader, writer):
@@ -128,7 +131,6 @@ async def main(endpoint, scene, bug="", *options):
         await asyncio.gather(pump(reader, far_writer, connection.said), pump(far_reader, writer, connection.told))
         Connection.connections.remove(connection)
 
-    host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
     loop = asyncio.get_running_loop()
     loop.add_signal_handler(signal.SIGINT, lambda: server.send_signal(signal.SIGINT))
     await asyncio.start_server(serve, host, int(port), limit=1 << 20)

@@ -429,6 +429,12 @@ MUTANTS = [
     Mutant("new-key", "L12", "L12.same-key"),
     Mutant("names-dropped", "S7", "W10.dropped"),
     Mutant("gives-up-on-robot_spawned", "V15", "V15.spawned"),
+    _should("reads-spaces", "K6", "K6.white-space"),
+    _should("reads-the-first-word", "K6", "K6.other-file"),
+    _should("wants-the-public-file", "K7", "K7.one-file"),
+    _should("impatient-with-keys", "K8", "K8.late-server"),
     _should("waits-for-ever", "K9", "K9.refused-key"),
+    _should("forgets-its-past", "T10", "T10.token"),
+    _should("sees-ticks-twice", "L9", "L9.same-answer"),
     _should("ignores-keys", "T10", "K1.session"),
 ]

@@ -11,14 +11,8 @@ DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "protocol.md"
 
 # Rules that no case can hold, and why.
 REASONS = {
-    "T10": "how the kit starts every client",
-    "T8": "a matter of the server's command line",
     "T11": "a matter of the command line, too: tests/unit/processes/private_folder_test.cpp",
-    "K4": "is about the absence of keys",
-    "K6": "a matter of files",
-    "K7": "a matter of keys",
-    "K8": "tests/unit/network/curve_test.cpp",
-    "D5": "it would take more than 1 GiB of messages at a tick",
+    "K10": "a matter of the file of --curve-clients: tests/unit/network/curve_test.cpp",
 }
 
 

@@ -234,4 +234,9 @@ MUTANTS = [
     _bent("all-left-release", "L3.still-owes"),
     _bent("names-as-they-are", "H16.shown"),
     _bent("always-retryable", "H5.unknown-id", "H10"),
+    _bent("order-counts", "S12.same-results", patience=10),
+    _bent("policy-counts", "W9.same-results", patience=10),
+    _bent("much-to-hear-is-survived", "D5.too-much-to-hear", patience=10),
+    _bent("listens-anywhere", "T8.any-address"),
+    _bent("supervisors-need-keys", "K4.any-role"),
 ]

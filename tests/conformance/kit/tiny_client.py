@@ -34,7 +34,10 @@ PER_ROBOT = {
 class Client:
     def __init__(self, bug, form):
         self.bug, self.form = bug, form
-        self.welcome, self.token = None, b""
+        self.welcome = None
+        self.token = bytes.fromhex(os.environ.get("ZIGGURAT_SESSION_TOKEN", "") if bug != "forgets-its-past" else "")
+        self.answered, self.is_resumed = None, False  # the last Command
+        self.started_at = time.monotonic()
         self.tick, self.is_fresh = -1, True  # the next Command has all values
         self.left, self.retries = set(), 3
         self.curve = None
@@ -57,7 +60,14 @@ class Client:
         server, path = os.environ.get("ZIGGURAT_SERVER_KEY"), os.environ.get("ZIGGURAT_CURVE_SECRET")
         if not server or self.bug == "ignores-keys":
             return
-        secret = open(path).read().strip().encode()
+        text = open(path).read()
+        secret = (text.split()[0] if self.bug == "reads-the-first-word" else
+                  text if self.bug == "reads-spaces" else text.strip()).encode()
+        if len(secret.rstrip(b"\n")) != 40:
+            sys.exit(f"{path}: not one secret key")
+        if self.bug == "wants-the-public-file":
+            open(path.replace("secret", "public"))
+        secret = secret.rstrip(b"\n")
         if self.bug == "any-key" or (self.bug == "new-key" and self.token):
             secret = zmq.curve_keypair()[1]
         self.socket.curve_serverkey = server.encode()
@@ -94,6 +104,8 @@ class Client:
                     sys.exit("the keys are refused")
                 if self.token and self.bug != "no-resume":
                     return None
+            if self.bug == "impatient-with-keys" and not self.welcome and time.monotonic() - self.started_at > 2:
+                sys.exit("no server has accepted the keys")
             if self.bug == "impatient" and self.welcome is None:
                 self.hello()
             if self.bug == "falls-back" and self.welcome is None:
@@ -120,7 +132,7 @@ class Client:
     def resume(self):
         self.close()
         self.connect()
-        self.welcome, self.is_fresh = None, True
+        self.welcome, self.is_fresh, self.is_resumed = None, True, self.answered is not None
         self.hello({"begins-anew": b"", "wrong-token": b"guess"}.get(self.bug, self.token))
 
     def command(self):
@@ -140,6 +152,7 @@ class Client:
                                           for i, radio in enumerate(radios) if radio.sends)
             command.log.add(robot=len(robots) - 1, text="a line")
         self.is_fresh = False
+        self.answered = command
         return command
 
     @staticmethod
@@ -165,7 +178,7 @@ class Client:
             self.say(command=protocol.Command(tick=0))
         if self.bug == "heartbeat-first":
             self.say(heartbeat=protocol.Heartbeat(sequence=1))
-        self.hello()
+        self.hello(self.token)
         while True:
             message = self.hear()
             if message is None:
@@ -194,8 +207,12 @@ class Client:
     def take_observation(self, observation):
         if self.bug == "only-consecutive" and self.tick >= 0 and observation.tick not in (0, self.tick + 1):
             return
-        self.tick = observation.tick
-        self.answer()
+        if self.is_resumed and observation.tick == self.tick and self.bug != "sees-ticks-twice":
+            self.say(command=self.answered)
+        else:
+            self.tick = observation.tick
+            self.answer()
+        self.is_resumed = False
 
     def take_heartbeat(self, heartbeat):
         if self.bug == "answers-heartbeats":
@@ -206,7 +223,7 @@ class Client:
             self.say(command=protocol.Command(tick=self.tick))
 
     def take_reset(self, _):
-        self.tick, self.is_fresh = -1, True
+        self.tick, self.is_fresh, self.is_resumed = -1, True, False
         if self.bug == "answers-reset":
             self.say(command=protocol.Command(tick=0))
 
