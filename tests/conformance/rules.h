@@ -30,6 +30,22 @@ inline v1::Error faulted(Peers& peers, const v1::ClientMessage& message) {
   return told.error();
 }
 
+/// A Hello that resumes a session.
+inline v1::ClientMessage with_token(const std::string& token, bool takeover = false) {
+  auto hello = Peers::hello("*");
+  hello.mutable_hello()->set_session_token(token);
+  hello.mutable_hello()->set_takeover(takeover);
+  return hello;
+}
+
+/// A Hello of another client for these robots, which sessions may hold.
+inline v1::ClientMessage takeover(const std::string& robots) {
+  auto hello = Peers::hello(robots);
+  hello.mutable_hello()->set_client_name("usurper");
+  hello.mutable_hello()->set_takeover(true);
+  return hello;
+}
+
 /// Four robots; "p" holds robot0, robot1 and robot3 and owes tick 5, "q" holds robot2 and has
 /// answered.
 struct Stepping : ::testing::Test {

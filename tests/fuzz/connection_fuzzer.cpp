@@ -94,7 +94,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool is_curve = data[0] % 4 == 1;
   if (data[0] % 4 == 2) {  // a client that has said who it is
     bytes = Engine(nullptr).greeting();
-    network::zmtp::append_command(bytes, "READY", network::zmtp::our_metadata());
+    network::zmtp::append_command(bytes, "READY", network::zmtp::metadata_of("DEALER"));
   } else if (data[0] % 4 == 3 || is_curve) {
     bytes = Engine(is_curve ? &keys() : nullptr).greeting().substr(0, data[1] % 65);
   }

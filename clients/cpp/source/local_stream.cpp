@@ -18,56 +18,8 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds between_tries{50};
 constexpr milliseconds longest_linger{1000};
-constexpr std::size_t greeting_size = 64;
 constexpr std::size_t least_free = 4096;    // of the input before a read [bytes]
 constexpr std::size_t most_kept = 1 << 20;  // of a buffer that is empty [bytes]
-constexpr std::size_t short_body = 255;     // the longest with its size in one byte
-constexpr std::size_t longest_command = 2048;
-constexpr unsigned more_flag = 1, long_flag = 2, command_flag = 4;
-
-std::string our_greeting() {
-  std::string greeting(greeting_size, '\0');
-  greeting[0] = '\xff';
-  greeting[8] = 1;  // what older versions take for a length
-  greeting[9] = '\x7f';
-  greeting[10] = 3;
-  greeting[11] = 1;
-  greeting.replace(12, 4, "NULL");
-  return greeting;
-}
-
-/// Appends a frame's header.
-void append_header(std::string& to, unsigned flags, std::size_t body) {
-  if (body <= short_body) {
-    to += static_cast<char>(flags);
-    to += static_cast<char>(body);
-    return;
-  }
-  to += static_cast<char>(flags | long_flag);
-  for (int shift = 56; shift >= 0; shift -= 8) to += static_cast<char>(body >> shift & 0xff);
-}
-
-std::string command(std::string_view name, std::string_view data) {
-  std::string out;
-  append_header(out, command_flag, 1 + name.size() + data.size());
-  out += static_cast<char>(name.size());
-  out += name;
-  out += data;
-  return out;
-}
-
-std::string our_ready() {
-  std::string data;
-  const auto property = [&](std::string_view name, std::string_view value) {
-    data += static_cast<char>(name.size());
-    data += name;
-    data += {0, 0, 0, static_cast<char>(value.size())};
-    data += value;
-  };
-  property("Socket-Type", "DEALER");
-  property("Identity", "");
-  return command("READY", data);
-}
 
 }  // namespace
 
@@ -106,7 +58,8 @@ void LocalStream::connect() {
     return close();
   }
   stage_ = Stage::greeting;
-  handshake_ = our_greeting() + our_ready();
+  handshake_ = zmtp::greeting("NULL", false);
+  zmtp::append_command(handshake_, "READY", zmtp::metadata_of("DEALER"));
   flush();
 }
 
@@ -143,9 +96,10 @@ void LocalStream::flush() {
 }
 
 void LocalStream::send(std::size_t size, const std::function<void(char*)>& write) {
-  append_header(output_, 0, size);
-  const std::size_t at = output_.size();
+  const std::size_t header_at = output_.size();
+  const std::size_t at = header_at + zmtp::header_length(size);
   output_.resize(at + size);
+  zmtp::write_header(size, reinterpret_cast<std::uint8_t*>(output_.data()) + header_at);
   write(output_.data() + at);
   flush();
 }
@@ -183,34 +137,30 @@ bool LocalStream::was_closed() {
   return was_open_ && stage_ == Stage::closed;
 }
 
-LocalStream::Step LocalStream::take_greeting() {
-  if (filled_ - taken_ < greeting_size) return Step::incomplete;
-  const std::string_view greeting(input_.data() + taken_, greeting_size);
-  taken_ += greeting_size;
-  if (greeting[0] != '\xff' || greeting[10] < 3 ||
-      greeting.substr(12, 5) != std::string_view("NULL", 5)) {
-    is_protected_ = greeting.substr(12, 5) == "CURVE";
+LocalStream::Step LocalStream::take_greeting(zmtp::Bytes input) {
+  const zmtp::Greeting found = zmtp::check_greeting(input);
+  if (found == zmtp::Greeting::incomplete) return Step::incomplete;
+  const bool is_whole = found == zmtp::Greeting::whole;
+  is_protected_ = is_whole && zmtp::mechanism_of(input) == "CURVE";
+  if (!is_whole || zmtp::mechanism_of(input) != "NULL") {
     close();
     return Step::incomplete;
   }
+  taken_ += zmtp::greeting_size;
   stage_ = Stage::ready;
   return Step::passed;
 }
 
 /// @return  false if the connection must be closed
-bool LocalStream::take_command(std::string_view body) {
-  const auto is = [&](std::string_view name) {
-    return body.size() > name.size() && static_cast<unsigned char>(body[0]) == name.size() &&
-           body.substr(1, name.size()) == name;
-  };
+bool LocalStream::take_command(zmtp::Bytes body) {
   if (stage_ == Stage::ready) {
-    if (!is("READY")) return false;
+    if (!zmtp::command_data(body, "READY")) return false;
     stage_ = Stage::open;
     was_open_ = true;
     flush();
-  } else if (is("PING") && body.size() >= 7) {  // its name, a time to live, a context
+  } else if (const auto context = zmtp::ping_context(body)) {
     if (sent_ == output_.size()) output_.clear(), sent_ = 0;
-    output_ += command("PONG", body.substr(7).substr(0, 16));
+    zmtp::append_command(output_, "PONG", zmtp::text_of(*context));
     flush();
   }
   return true;
@@ -218,33 +168,28 @@ bool LocalStream::take_command(std::string_view body) {
 
 /// Takes the first frame of the input.
 LocalStream::Step LocalStream::take() {
-  if (stage_ == Stage::greeting) return take_greeting();
-  const auto* bytes = reinterpret_cast<const unsigned char*>(input_.data()) + taken_;
-  const std::size_t size = filled_ - taken_;
-  if (size < 2) return Step::incomplete;
-  const unsigned flags = bytes[0];
-  const bool is_long = (flags & long_flag) != 0, is_command = (flags & command_flag) != 0;
-  const std::size_t header = is_long ? 9 : 2;
-  const bool is_known = flags <= (more_flag | long_flag | command_flag);
-  if (is_known && size < header) return Step::incomplete;
-  std::uint64_t body = 0;
-  for (std::size_t i = 1; i < header && is_known; ++i) body = body << 8 | bytes[i];
-  const bool is_allowed = is_known && body < SIZE_MAX / 4 &&
-                          (!is_command || body <= longest_command) &&
-                          (stage_ == Stage::open || is_command);
+  const zmtp::Bytes input =
+      zmtp::bytes_of(std::string_view(input_).substr(taken_, filled_ - taken_));
+  if (stage_ == Stage::greeting) return take_greeting(input);
+  const auto header = zmtp::read_header(input);
+  if (!header) return Step::incomplete;
+  const bool is_allowed = header->is_valid && header->body < SIZE_MAX / 4 &&
+                          (!header->is_command || header->body <= zmtp::longest_command) &&
+                          (stage_ == Stage::open || header->is_command);
   if (!is_allowed) {
     close();
     return Step::incomplete;
   }
-  if (size - header < body) return Step::incomplete;
-  const std::string_view content(input_.data() + taken_ + header, static_cast<std::size_t>(body));
-  taken_ += header + content.size();
-  if (!is_command) {
-    content_ = content;
-    has_more_ = (flags & more_flag) != 0;
+  const auto size = static_cast<std::size_t>(header->body);
+  if (input.size() - header->length < size) return Step::incomplete;
+  const zmtp::Bytes body = input.subspan(header->length, size);
+  taken_ += header->length + size;
+  if (!header->is_command) {
+    content_ = zmtp::text_of(body);
+    has_more_ = header->has_more;
     return Step::message;
   }
-  if (!take_command(content)) close();
+  if (!take_command(body)) close();
   return Step::passed;
 }
 

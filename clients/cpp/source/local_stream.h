@@ -9,6 +9,7 @@
 #include <string>
 
 #include "transport.h"
+#include "zmtp/frame.h"
 
 namespace ziggurat {
 
@@ -42,8 +43,8 @@ class LocalStream final : public Transport {
   void flush();
   bool fill();
   Step take();
-  Step take_greeting();
-  bool take_command(std::string_view body);
+  Step take_greeting(zmtp::Bytes input);
+  bool take_command(zmtp::Bytes body);
 
   std::string path_;
   int socket_ = -1;

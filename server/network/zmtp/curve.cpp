@@ -152,7 +152,7 @@ bool CurvePeer::initiate(Bytes body, std::string& reply) {
       ::crypto_box_beforenm(shared_.data(), client_transient_.data(), our_transient_secret_.data());
   if (result != 0) return false;
   const auto our_number = bytes_of_number(++sent_);
-  const std::string ours = our_metadata();
+  const std::string ours = metadata_of("ROUTER");
   std::string box(ours.size() + mac_size, '\0');
   ::crypto_box_easy_afternm(reinterpret_cast<std::uint8_t*>(box.data()), bytes_of(ours).data(),
                             ours.size(), make_nonce("CurveZMQREADY---", our_number).data(),

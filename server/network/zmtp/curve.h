@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "network/keys.h"
-#include "network/zmtp/frame.h"
+#include "zmtp/frame.h"
 
 namespace ziggurat::network::zmtp {
+
+using namespace ziggurat::zmtp;
 
 using Key = std::array<std::uint8_t, 32>;
 

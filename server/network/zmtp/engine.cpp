@@ -1,20 +1,13 @@
 #include "network/zmtp/engine.h"
 
 #include <algorithm>
-#include <array>
 
 namespace ziggurat::network::zmtp {
 namespace {
 
 using Step = Taken::Step;
 
-constexpr std::size_t greeting_size = 64;
-constexpr std::size_t signature_size = 10, mechanism_at = 12, mechanism_size = 20;
-constexpr std::uint8_t major_version = 3, minor_version = 1;
-constexpr std::size_t longest_command = 2048;  // [bytes] of the handshake, properties included
-constexpr std::size_t longest_ping_context = 16;
-
-std::string_view mechanism_of(const CurveKeys* keys) { return keys == nullptr ? "NULL" : "CURVE"; }
+std::string_view mechanism_for(const CurveKeys* keys) { return keys == nullptr ? "NULL" : "CURVE"; }
 
 Taken failed() { return {Step::failed, 0, false, {}}; }
 
@@ -24,17 +17,7 @@ Engine::Engine(const CurveKeys* keys) : keys_(keys) {
   if (keys != nullptr) curve_.emplace(*keys);
 }
 
-std::string Engine::greeting() const {
-  std::string greeting(greeting_size, '\0');
-  greeting[0] = '\xff';
-  greeting[8] = 1;  // what older versions take for a length
-  greeting[9] = '\x7f';
-  greeting[10] = major_version;
-  greeting[11] = minor_version;
-  std::ranges::copy(mechanism_of(keys_), greeting.begin() + mechanism_at);
-  greeting[mechanism_at + mechanism_size] = keys_ == nullptr ? 0 : 1;  // we are the server
-  return greeting;
-}
+std::string Engine::greeting() const { return zmtp::greeting(mechanism_for(keys_), true); }
 
 Access Engine::access() const {
   if (!curve_) return {};
@@ -43,21 +26,16 @@ Access Engine::access() const {
 
 /// Refuses early what begins otherwise, such as HTTP.
 Taken Engine::take_greeting(Bytes input, std::string& reply) {
-  const bool begins_well = input.empty() || input[0] == 0xff;
-  const bool is_signed = input.size() < signature_size || (input[signature_size - 1] & 1) != 0;
-  const bool is_new = input.size() <= signature_size || input[signature_size] >= major_version;
-  if (!begins_well || !is_signed || !is_new) return failed();
-  if (input.size() < greeting_size) return {Step::incomplete, greeting_size, false, {}};
-  const std::string_view mechanism = text_of(input.subspan(mechanism_at, mechanism_size));
-  std::string ours(mechanism_of(keys_));
-  ours.resize(mechanism_size);
-  if (mechanism != ours) {
+  const Greeting found = check_greeting(input);
+  if (found == Greeting::wrong) return failed();
+  if (found == Greeting::incomplete) return {Step::incomplete, greeting_size, false, {}};
+  if (mechanism_of(input) != mechanism_for(keys_)) {
     refusal_ = curve_ ? "it has no key, and the endpoint is protected (--curve-clients)"
                       : "it has keys, and the endpoint is not protected";
     return failed();
   }
   stage_ = curve_ ? Stage::hello : Stage::ready;
-  if (!curve_) append_command(reply, "READY", our_metadata());
+  if (!curve_) append_command(reply, "READY", metadata_of("ROUTER"));
   return {Step::passed, greeting_size, false, {}};
 }
 
@@ -119,14 +97,11 @@ Taken Engine::take_traffic(const Header& header, std::span<std::uint8_t> body, s
 
 /// A PING is answered, the others say nothing to a ROUTER.
 void Engine::take_command(Bytes body, std::string& reply) {
-  constexpr std::size_t time_to_live = 2;
-  const auto ping = command_data(body, "PING");
-  if (!ping || ping->size() < time_to_live) return;
-  const Bytes context = ping->subspan(time_to_live);
-  const auto echoed = text_of(context.first(std::min(context.size(), longest_ping_context)));
-  if (!curve_) return append_command(reply, "PONG", echoed);
+  const auto context = ping_context(body);
+  if (!context) return;
+  if (!curve_) return append_command(reply, "PONG", text_of(*context));
   std::string pong = "\x04PONG";
-  pong += echoed;
+  pong += text_of(*context);
   const std::size_t at = content_at(pong.size());
   std::string frame(at + pong.size(), '\0');
   std::ranges::copy(pong, frame.begin() + static_cast<std::ptrdiff_t>(at));

@@ -10,9 +10,11 @@
 
 #include "network/keys.h"
 #include "network/zmtp/curve.h"
-#include "network/zmtp/frame.h"
+#include "zmtp/frame.h"
 
 namespace ziggurat::network::zmtp {
+
+using namespace ziggurat::zmtp;
 
 /// What the bytes at the front of the input are.
 struct Taken {

@@ -1,12 +1,14 @@
-#include "network/zmtp/frame.h"
+#include "zmtp/frame.h"
 
 #include <algorithm>
 #include <cctype>
 
-namespace ziggurat::network::zmtp {
+namespace ziggurat::zmtp {
 namespace {
 
 constexpr std::uint8_t more_flag = 1, long_flag = 2, command_flag = 4;
+constexpr std::size_t signature_size = 10, mechanism_at = 12, mechanism_size = 20;
+constexpr std::uint8_t major_version = 3, minor_version = 1;
 constexpr std::size_t short_body = 255;  // [bytes] and less: the size has one byte
 
 /// A number whose highest byte comes first.
@@ -43,6 +45,31 @@ std::string_view text_of(Bytes bytes) {
 
 Bytes bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+std::string greeting(std::string_view mechanism, bool is_server) {
+  std::string greeting(greeting_size, '\0');
+  greeting[0] = '\xff';
+  greeting[8] = 1;  // what older versions take for a length
+  greeting[9] = '\x7f';
+  greeting[10] = major_version;
+  greeting[11] = minor_version;
+  std::ranges::copy(mechanism, greeting.begin() + mechanism_at);
+  greeting[mechanism_at + mechanism_size] = is_server && mechanism != "NULL" ? 1 : 0;
+  return greeting;
+}
+
+Greeting check_greeting(Bytes input) {
+  const bool begins_well = input.empty() || input[0] == 0xff;
+  const bool is_signed = input.size() < signature_size || (input[signature_size - 1] & 1) != 0;
+  const bool is_new = input.size() <= signature_size || input[signature_size] >= major_version;
+  if (!begins_well || !is_signed || !is_new) return Greeting::wrong;
+  return input.size() < greeting_size ? Greeting::incomplete : Greeting::whole;
+}
+
+std::string_view mechanism_of(Bytes greeting) {
+  const std::string_view padded = text_of(greeting.subspan(mechanism_at, mechanism_size));
+  return padded.substr(0, padded.find_last_not_of('\0') + 1);
 }
 
 std::optional<Header> read_header(Bytes input) {
@@ -107,11 +134,18 @@ bool is_of_client(const Metadata& metadata) {
   return metadata.is_valid && (type == "DEALER" || type == "REQ" || type == "ROUTER");
 }
 
-std::string our_metadata() {
+std::string metadata_of(std::string_view socket_type) {
   std::string data;
-  append_property(data, "Socket-Type", "ROUTER");
+  append_property(data, "Socket-Type", socket_type);
   append_property(data, "Identity", "");
   return data;
 }
 
-}  // namespace ziggurat::network::zmtp
+std::optional<Bytes> ping_context(Bytes body) {
+  constexpr std::size_t time_to_live = 2, longest_context = 16;  // [bytes]
+  const auto ping = command_data(body, "PING");
+  if (!ping || ping->size() < time_to_live) return std::nullopt;
+  return ping->subspan(time_to_live, std::min(longest_context, ping->size() - time_to_live));
+}
+
+}  // namespace ziggurat::zmtp

@@ -1,6 +1,6 @@
 #pragma once
-// Frames of ZMTP, ZeroMQ's wire protocol (RFC 37): a byte of flags, the size in one byte or eight,
-// the body.
+// ZMTP, ZeroMQ's wire protocol (RFC 37), as both of its ends need it: a greeting of 64 bytes, then frames: a byte
+// of flags, the size in one byte or eight, the body. Bytes only: no socket, no state.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,11 +9,25 @@
 #include <string>
 #include <string_view>
 
-namespace ziggurat::network::zmtp {
+namespace ziggurat::zmtp {
 
 using Bytes = std::span<const std::uint8_t>;
 
-inline constexpr std::size_t longest_header = 9;  // [bytes]
+// [bytes]
+inline constexpr std::size_t greeting_size = 64;
+inline constexpr std::size_t longest_header = 9;
+inline constexpr std::size_t longest_command = 2048;  // that either end takes
+
+/// What each end sends first. @param mechanism  "NULL" or "CURVE"
+std::string greeting(std::string_view mechanism, bool is_server);
+enum class Greeting {
+  incomplete,
+  wrong,  ///< of something else, such as HTTP, or of a version before 3; found before all of it is there
+  whole,
+};
+Greeting check_greeting(Bytes input);
+/// The mechanism of a whole greeting, without the zeros behind it.
+std::string_view mechanism_of(Bytes greeting);
 
 struct Header {
   bool has_more = false;    ///< the message goes on with another frame
@@ -45,10 +59,13 @@ struct Metadata {
 Metadata read_metadata(Bytes data);
 /// Whether they are those of a client that can talk with a ROUTER.
 bool is_of_client(const Metadata& metadata);
-/// Those of our end: a ROUTER.
-std::string our_metadata();
+/// Those of an end of ours. @param socket_type  "ROUTER" or "DEALER"
+std::string metadata_of(std::string_view socket_type);
+
+/// What a PONG has to send back if the body is that of a PING.
+std::optional<Bytes> ping_context(Bytes body);
 
 std::string_view text_of(Bytes bytes);
 Bytes bytes_of(std::string_view text);
 
-}  // namespace ziggurat::network::zmtp
+}  // namespace ziggurat::zmtp

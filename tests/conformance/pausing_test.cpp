@@ -1,0 +1,104 @@
+// The rules of docs/protocol.md on pausing (section 3.3) and reset (L6). A test is named after the rule it
+// holds.
+
+#include <gtest/gtest.h>
+
+#include "pair.h"
+#include "rules.h"
+
+namespace ziggurat::network {
+namespace {
+
+using scene::DeadlineAction;
+using std::chrono::milliseconds;
+using Membership = RobotStatus::Membership;
+
+TEST(Pause, P1_TakesEffectWhenTheTickIsAnswered) {
+  Pair pair{Config{}};
+  pause(pair.peers.barrier);
+  EXPECT_TRUE(pair.peers.inboxes.empty());
+  EXPECT_FALSE(pair.peers.barrier.gate.is_standing());
+  pair.peers.say("p", Peers::command(5, {1}));
+  EXPECT_FALSE(pair.peers.is_complete());
+  EXPECT_TRUE(pair.peers.barrier.gate.is_standing());
+  EXPECT_EQ(pair.peers.commands.joint_targets[0], 1);
+  for (const auto* peer : {"p", "q"}) {
+    const auto told = pair.peers.told(peer);
+    ASSERT_TRUE(told.has_paused());
+    EXPECT_EQ(told.paused().tick(), 5U);
+  }
+  resume(pair.peers.barrier);
+  EXPECT_TRUE(pair.peers.is_complete());
+  pair.tick(6);
+  EXPECT_TRUE(pair.peers.is_complete());
+}
+
+TEST(Pause, P2_ASessionThatBeginsMeanwhileIsToldAfterItsAnswer) {
+  Pair pair{Config{}};
+  pair.peers.say("p", Peers::command(5));
+  pause(pair.peers.barrier);
+  pair.peers.say("p", Peers::leave({}));
+  pair.peers.unreachable.insert("q");
+  pair.peers.probe();
+  pair.peers.unreachable.clear();
+  pair.peers.inboxes.clear();
+  pair.peers.say("late", Peers::hello("robot1"));
+  ASSERT_EQ(pair.peers.inboxes["late"].size(), 2U);
+  EXPECT_EQ(pair.peers.inboxes["late"][1].observation().tick(), 5U);
+  pair.peers.inboxes.clear();
+  pair.peers.say("late", Peers::command(5, {8}));
+  EXPECT_EQ(pair.peers.told("late").paused().tick(), 5U);
+  EXPECT_EQ(pair.peers.commands.joint_targets[1], 8);
+  resume(pair.peers.barrier);
+  EXPECT_TRUE(pair.peers.is_complete());
+}
+
+TEST(Pause, P2_BeforeTheFirstTickNoSessionIsTold) {
+  const SmallRun small(1);
+  Peers peers(small);
+  pause(peers.barrier);
+  peers.join("p", "*");
+  EXPECT_TRUE(peers.inboxes["p"].empty());
+  EXPECT_TRUE(peers.is_gathered());
+  peers.publish(0);
+  peers.inboxes.clear();
+  peers.say("p", Peers::command(0));
+  EXPECT_TRUE(peers.told("p").has_paused());
+}
+
+TEST(Pause, P3_NoDeadlineRunsAndHeartbeatsGoOn) {
+  Config config = with_deadline(DeadlineAction::drop, 50);
+  config.heartbeat = milliseconds{1000};
+  Pair pair(config);
+  pause(pair.peers.barrier);
+  pair.peers.say("p", Peers::command(5));
+  pair.peers.unreachable.insert("q");
+  pair.peers.probe();  // robot1 is free
+  pair.peers.inboxes.clear();
+  for (int i = 0; i < 20; ++i) pair.peers.pass(milliseconds{1000});
+  EXPECT_EQ(pair.peers.inboxes["p"].size(), 20U);
+  EXPECT_TRUE(pair.peers.inboxes["p"].front().has_heartbeat());
+  EXPECT_EQ(pair.peers.status()[1].membership, Membership::free);
+  resume(pair.peers.barrier);
+  pair.peers.pass(milliseconds{49});
+  EXPECT_FALSE(pair.peers.is_complete()) << "it has its whole deadline from here";
+  pair.peers.pass(milliseconds{1});
+  EXPECT_EQ(pair.peers.status()[1].membership, Membership::gone);
+  EXPECT_TRUE(pair.peers.is_complete());
+}
+
+TEST(Reset, L6_ASessionBeforeTick0GetsNoTickOfTheFormerWorld) {
+  Pair pair({});
+  reset(pair.peers.barrier, 7);
+  pair.peers.say("r", takeover("robot0"));
+  EXPECT_TRUE(pair.peers.told("r").has_welcome());  // and nothing else
+  EXPECT_EQ(pair.peers.inboxes["p"].back().message_case(), v1::ServerMessage::kDisplaced);
+  pair.peers.publish(0);
+  EXPECT_EQ(pair.peers.told("r").observation().tick(), 0U);
+  pair.peers.say("r", Peers::command(0, {1}));
+  pair.peers.say("q", Peers::command(0));
+  EXPECT_TRUE(pair.peers.is_complete());
+}
+
+}  // namespace
+}  // namespace ziggurat::network
