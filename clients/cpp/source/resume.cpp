@@ -34,7 +34,7 @@ bool Session::State::resume(const std::string& loss) {
     if (!pause(rest)) return false;
     try {
       connection.reconnect();
-      say_hello();
+      send_hello();
       return hear_welcome(end);
     } catch (const ConnectionError& error) {
       is_over = Clock::now() >= end;

@@ -19,7 +19,7 @@ struct Session::State {
   void open();  // Hello … Welcome
   void begin(const v1::Welcome& welcome);
   void read(const v1::Welcome& welcome);
-  void say_hello();
+  void send_hello();
 
   // resume.cpp
   bool resume(const std::string& loss);  // false: interrupted; @throws if that is not possible

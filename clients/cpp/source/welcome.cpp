@@ -44,14 +44,14 @@ std::chrono::milliseconds longest_silence(const v1::Welcome& welcome, const Opti
 
 }  // namespace
 
-void Session::State::say_hello() {
+void Session::State::send_hello() {
   v1::ClientMessage message;
   fill(options, *message.mutable_hello());
   connection.send(message);
 }
 
 void Session::State::open() {
-  say_hello();
+  send_hello();
   for (;;) {
     const auto kind = connection.receive(options.connect_timeout, options.is_interrupted);
     if (!kind && is_interrupted()) {

@@ -26,7 +26,7 @@ def _driven(*peers: str) -> list:
 _SUPERVISOR = Join("s", hello(role="ROLE_SUPERVISOR"))
 
 CASES = [
-    Case("S12.same-results", "The state is the same, whoever answers first",
+    Case("S12.same-results", "The state is the same, in whichever order sessions answer",
          (join("p", "arm0", "arm1"), join("q", "arm2", "arm3"), *observe("p", "q"), _SUPERVISOR,
           _begun_anew(1, "p", "q"), _driven("p", "q"), read_hash(2, "first"),
           _begun_anew(3, "p", "q"), _driven("q", "p"), read_hash(4, "second"), same_hash("first", "second")),
