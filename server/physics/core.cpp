@@ -36,6 +36,15 @@ void Core::remove(Body& body) {
   with(core_, [&](auto& core) { core.remove(body); });
 }
 
+/// Newton's core ends with its bodies in it: they are places in its lists.
+void Core::take_apart(std::span<Body> bodies) {
+  const auto* sweeps = std::get_if<std::unique_ptr<SweepsCore>>(&core_);
+  if (!sweeps) return;
+  for (Body& body : bodies) {
+    if (body.present()) (*sweeps)->remove(body);
+  }
+}
+
 void Core::take_back(Body& body) {
   with(core_, [&](auto& core) { core.take_back(body); });
 }

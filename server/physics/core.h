@@ -23,7 +23,7 @@ class SweepsCore;
 class Core {
  public:
   explicit Core(const scene::Physics& physics);
-  ~Core();  ///< Bodies in it must be removed before.
+  ~Core();  ///< Its bodies must be gone before: see take_apart().
 
   /// Adds the half-space z <= 0.
   void add_floor(const scene::Surface& surface);
@@ -34,6 +34,8 @@ class Core {
   Body add(const scene::Entity& entity, std::size_t number);
   /// Takes a body out; what rested on it falls. Its joints stay, without a coordinate.
   void remove(Body& body);
+  /// Takes all bodies out before the end, in linear time; nothing may be asked of them afterwards.
+  void take_apart(std::span<Body> bodies);
   /// Undoes the last add().
   void take_back(Body& body);
   /// Puts a body to rest where `placed` says, joints as assembled; it remembers no contact.

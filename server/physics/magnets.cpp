@@ -174,6 +174,9 @@ void Magnets::before_substep(std::span<Body> bodies, double substep) {
     field_->evaluate(substep, poses_, currents_, wrenches_);
     evaluated_ = true;
     if (divides_) find_close_pairs(bodies, substep);
+    quiet_ = false;
+  } else {
+    quiet_ = true;
   }
   for (std::size_t i = 0; i < carriers_.size(); ++i) push(bodies, i, 1);
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
@@ -213,6 +216,10 @@ void Magnets::note_motion(Carrier& carrier, const Body& body) {
   carrier.seen_before = carrier.seen;
   carrier.velocity_before = carrier.velocity;
   carrier.turning_before = carrier.turning;
+  if (quiet_) {  // what does not change its place has no speed
+    carrier.velocity_before.setZero();
+    carrier.turning_before.setZero();
+  }
   carrier.seen = substeps_;
   carrier.need = {};
   carrier.centre = poses_[&carrier - carriers_.data()].position;

@@ -58,7 +58,8 @@ class Magnets final : public Plugin {
 
   // Pairs for which a substep is divided.
   bool divides_;
-  std::uint64_t substeps_ = 0;  // without those in which nothing had changed
+  std::uint64_t substeps_ = 0;  // without quiet ones
+  bool quiet_ = false;          // nothing had changed in the substep before
   double felt_inverse_mass_ = 0, inverse_inertia_ = 0;  // the largest of the carriers
   std::vector<magnetism::MagnetPair> near_, chosen_pairs_;
   std::vector<ClosePair> close_;  // of the last one of these

@@ -39,11 +39,7 @@ struct World::Parts {
     contacts = list.get();
     plugins.add(std::move(list));
   }
-  ~Parts() {
-    for (Body& body : bodies) {
-      if (body.present()) core.remove(body);
-    }
-  }
+  ~Parts() { core.take_apart(bodies); }
 
   scene::Physics settings;
   int splits;               // internal substeps per substep

@@ -87,7 +87,12 @@ Colliders::Colliders() : filter_(std::make_unique<Filter>(groups)) {
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(filter_.get());
 }
 
+/// Takes all pairs out first, at once: a box without pairs is gone in logarithmic time.
 Colliders::~Colliders() {
+  struct All final : btOverlapCallback {
+    bool processOverlap(btBroadphasePair&) override { return true; }
+  } all_pairs;
+  broadphase_.getOverlappingPairCache()->processAllOverlappingPairs(&all_pairs, nullptr);
   for (ColliderGroup& group : groups) {
     if (group.proxy) broadphase_.destroyProxy(group.proxy, nullptr);
   }
@@ -141,9 +146,16 @@ void Colliders::insert(ColliderGroup& group, std::size_t index) {
                                         1, nullptr);
 }
 
+/// The groups of an entity, which stand together: groups are in the order of their entities.
+std::span<ColliderGroup> Colliders::groups_of(std::size_t entity) {
+  const auto first = std::ranges::lower_bound(groups, entity, {}, &ColliderGroup::entity);
+  const auto last = std::ranges::upper_bound(groups, entity, {}, &ColliderGroup::entity);
+  return {first, last};
+}
+
 void Colliders::remove(std::size_t entity) {
-  for (ColliderGroup& group : groups) {
-    if (group.entity != entity || !group.proxy) continue;
+  for (ColliderGroup& group : groups_of(entity)) {
+    if (!group.proxy) continue;
     broadphase_.destroyProxy(group.proxy, nullptr);
     for (std::size_t i = group.first; i < group.first + group.count; ++i) all[i] = {};
     group = {};
@@ -154,13 +166,12 @@ void Colliders::remove(std::size_t entity) {
 }
 
 void Colliders::moved(std::size_t entity, const dynamics::Tree& tree) {
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    ColliderGroup& group = groups[g];
-    if (group.entity != entity || !group.proxy) continue;
+  for (ColliderGroup& group : groups_of(entity)) {
+    if (!group.proxy) continue;
     group.rests = false;
     for (std::size_t i = group.first; i < group.first + group.count; ++i) place(all[i], tree);
     broadphase_.destroyProxy(group.proxy, nullptr);
-    insert(group, g);
+    insert(group, static_cast<std::size_t>(&group - groups.data()));
   }
 }
 

@@ -103,6 +103,7 @@ class Colliders {
  private:
   struct Filter;
   struct Hits;
+  std::span<ColliderGroup> groups_of(std::size_t entity);
   void place(Collider& collider, const dynamics::Tree& tree) const;
   double follow(ColliderGroup& group, const dynamics::System& system, double length);
   void enclose(ColliderGroup& group);

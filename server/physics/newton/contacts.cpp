@@ -162,13 +162,12 @@ std::span<dynamics::Contact> Contacts::keep(const TreeSet& chosen) {
   return contacts_;
 }
 
-/// Whether the contacts of a body with `hidden` lie in a seam that its contacts with `seen` cover:
-/// `hidden` is nowhere above the surface of `seen`, which goes on where they touch. All belong to
-/// one body that moves, the others stand.
-bool Contacts::covers(const Pair& seen, const Pair& hidden) const {
+/// Whether contacts of a collider with `hidden` lie in a seam that its contacts with `seen` cover:
+/// `hidden` is nowhere above the surface of `seen`, which goes on where they touch. Both are of one
+/// body, or stand.
+bool Contacts::covers(const Pair& seen, const Pair& hidden, std::size_t mover) const {
   constexpr btScalar flush = 1e-5, slack = 1e-4;  // [m]
-  const bool seen_first = !colliders_.all[seen.a].moves,
-             hidden_first = !colliders_.all[hidden.a].moves;
+  const bool seen_first = seen.b == mover, hidden_first = hidden.b == mover;
   const Collider& cover = colliders_.all[seen_first ? seen.a : seen.b];
   const Collider& other = colliders_.all[hidden_first ? hidden.a : hidden.b];
   const btVector3 up = to_bullet(seen_first ? math::Vector3(-seen.normal) : seen.normal);
@@ -185,27 +184,43 @@ bool Contacts::covers(const Pair& seen, const Pair& hidden) const {
   return true;
 }
 
-/// Drops contacts with inner edges: those between bodies that stand flush beside each other.
+/// Whether a collider's body has others, which may stand flush beside it.
+bool Contacts::is_compound(const Collider& collider) const {
+  return collider.moves && colliders_.groups[collider.group].count > 1;
+}
+
+/// Drops contacts with inner edges: those between colliders that stand flush beside each other, in
+/// the world or in one body.
 void Contacts::drop_hidden() {
-  standing_.clear();
+  on_bases_.clear();
   for (std::size_t i = 0; i < owner_.size(); ++i) {
     const Pair& pair = pairs_[owner_[i]];
     if (pair.first != i) continue;
-    const bool a_moves = colliders_.all[pair.a].moves;
-    if (a_moves && colliders_.all[pair.b].moves) continue;
-    standing_.push_back({a_moves ? pair.a : pair.b, owner_[i]});
+    const auto add = [&](std::size_t mover, const Collider& base) {
+      if (!base.moves) {
+        on_bases_.push_back({mover, Collider::floor, 0, owner_[i]});
+      } else if (is_compound(base)) {
+        on_bases_.push_back({mover, base.entity, base.part, owner_[i]});
+      }
+    };
+    const Collider &a = colliders_.all[pair.a], &b = colliders_.all[pair.b];
+    if (a.moves) add(pair.a, b);
+    if (b.moves) add(pair.b, a);
   }
-  std::sort(standing_.begin(), standing_.end());
+  std::sort(on_bases_.begin(), on_bases_.end());
+  const auto same_base = [](const OnBase& a, const OnBase& b) {
+    return a.mover == b.mover && a.entity == b.entity && a.part == b.part;
+  };
   bool dropped = false;
-  for (std::size_t i = 0; i < standing_.size(); ++i) {
-    const auto [mover, number] = standing_[i];
-    Pair& pair = pairs_[number];
-    for (std::size_t j = i; j-- > 0 && standing_[j].first == mover && pair.count > 0;) {
-      Pair& other = pairs_[standing_[j].second];
+  for (std::size_t i = 0; i < on_bases_.size(); ++i) {
+    const OnBase& one = on_bases_[i];
+    Pair& pair = pairs_[one.pair];
+    for (std::size_t j = i; j-- > 0 && same_base(on_bases_[j], one) && pair.count > 0;) {
+      Pair& other = pairs_[on_bases_[j].pair];
       if (other.count == 0) continue;
-      if (covers(other, pair)) {
+      if (covers(other, pair, one.mover)) {
         pair.count = 0, dropped = true;
-      } else if (covers(pair, other)) {
+      } else if (covers(pair, other, one.mover)) {
         other.count = 0, dropped = true;
       }
     }

@@ -73,7 +73,8 @@ class Contacts {
   bool is_among(const Pair& pair, const TreeSet& chosen) const;
   void add(const contact::Contacts& found, Pair& pair);
   void emit(const Pair& pair);
-  bool covers(const Pair& seen, const Pair& hidden) const;
+  bool covers(const Pair& seen, const Pair& hidden, std::size_t mover) const;
+  bool is_compound(const Collider& collider) const;
   void drop_hidden();
   template <class IsKept>
   void keep_if(IsKept is_kept);
@@ -96,7 +97,15 @@ class Contacts {
   std::array<Remembered, most_points> before_;  // of the pair under way, a substep ago
   std::vector<std::size_t> turned_;             // pairs of the substep, one side of which stands
   std::vector<dynamics::Contact> overlaps_;     // of these
-  std::vector<std::pair<std::size_t, int>> standing_;  // a mover and its pair with what stands
+  /// A pair of a collider that moves and one of a body that has, or may have, others beside it.
+  struct OnBase {
+    std::size_t mover = 0;                   // a collider
+    std::size_t entity = 0;                  // of the base; Collider::floor: all that stands
+    std::size_t part = 0;                    // of it
+    int pair = 0;
+    auto operator<=>(const OnBase&) const = default;
+  };
+  std::vector<OnBase> on_bases_;
 };
 
 }  // namespace ziggurat::physics

@@ -44,6 +44,19 @@ void each_of(std::vector<Item>& items, const TreeSet* chosen, Visit visit) {
   std::for_each(items.begin(), items.end(), visit);
 }
 
+/// Gives trees back their gravity at its end, also where something throws.
+struct GravityComesBack {
+  dynamics::System& system;
+  const TreeSet& chosen;
+  const std::vector<math::Vector3>& gravity;  ///< that was taken: of the first trees, or of all
+
+  ~GravityComesBack() {
+    for (std::size_t i = 0; i < gravity.size(); ++i) {
+      system.trees[chosen.trees[i]].gravity = gravity[i];
+    }
+  }
+};
+
 }  // namespace
 
 NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) {}
@@ -67,7 +80,8 @@ Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
 void NewtonCore::detach(std::size_t entity) {
   contacts_.forget(entity, system_);
   colliders_.remove(entity);
-  std::erase_if(held_, [&](const Held& held) { return held.entity == entity; });
+  held_.erase(std::ranges::lower_bound(held_, entity, {}, &Held::entity),
+              std::ranges::upper_bound(held_, entity, {}, &Held::entity));
 }
 
 void NewtonCore::remove(Body& body) {
@@ -258,13 +272,15 @@ bool NewtonCore::wake_stiff(const Plugin& stiff) {
 void NewtonCore::hold_back(const TreeSet& chosen) {
   constant_.clear();
   gravity_.clear();
+  gravity_.reserve(chosen.trees.size());
+  for (const int number : chosen.trees) gravity_.push_back(system_.trees[number].gravity);
   for (const int number : chosen.trees) {
     dynamics::Tree& tree = system_.trees[number];
     for (std::size_t k = 0; k < tree.links.size(); ++k) {
       constant_.push_back(std::exchange(tree.external[k], dynamics::Wrench{}));
       constant_.back().force += tree.links[k].mass * tree.gravity;
     }
-    gravity_.push_back(std::exchange(tree.gravity, math::Vector3(0, 0, 0)));
+    tree.gravity.setZero();
   }
 }
 
@@ -293,6 +309,8 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
   contacts_.choose(chosen);
   stiff.choose_stiff(chosen.holds);
   stiff.push_stiff(bodies, -1);
+  gravity_.clear();
+  const GravityComesBack at_the_end{system_, chosen, gravity_};
   hold_back(chosen);
   for (int i = 0; i <= count; ++i) {
     const bool half = i == 0 || i == count;
@@ -308,8 +326,6 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
     set_servos_and_limits(bodies, share);
     step(contacts_.find(share.length, chosen, share.of_impulses), share);
   }
-  auto gravity = gravity_.begin();
-  for (const int number : chosen.trees) system_.trees[number].gravity = *gravity++;
 }
 
 }  // namespace ziggurat::physics

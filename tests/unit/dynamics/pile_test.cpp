@@ -27,5 +27,10 @@ TEST(Pile, CubesInABinComeToRestWithinTheContactLaw) {
   for (const Tree& tree : world.system.trees) EXPECT_LT(tree.velocity(0).norm(), 1e-6);
 }
 
+TEST(Pile, FiftyCubesThatStrikeMissTheContactLawByLessThanAMillimetrePerSecond) {
+  testing::Touching world = testing::pile(50);
+  for (int i = 0; i < 60; ++i) EXPECT_LT(world.step(0.01).miss, 1e-3) << i;
+}
+
 }  // namespace
 }  // namespace ziggurat::dynamics

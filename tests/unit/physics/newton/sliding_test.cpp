@@ -97,6 +97,41 @@ TEST_P(NewtonAt, ATileFloorIsAsSmoothAsOne) {
   EXPECT_NEAR(way, expected, 0.002 * expected + 1.02 * a * seconds * h / 2);
 }
 
+/// Four flush tiles of 0.5 x 1 x 0.1 m in one body, in a row along x.
+scene::Entity platform(const Pose& pose, double friction) {
+  std::vector<scene::Link> tiles;
+  for (int i = 0; i < 4; ++i) {
+    tiles.push_back(link("tile" + std::to_string(i), scene::Box{{0.5, 1, 0.1}}, 10));
+  }
+  scene::Entity entity = prototype("platform", pose, true, std::move(tiles));
+  for (std::size_t i = 1; i < 4; ++i) {
+    entity.joints.push_back(
+        joint(scene::JointType::fixed, Vector3::UnitZ(), at(0.25, 0, 0), at(-0.25, 0, 0)));
+    entity.joints.back().parent = i - 1;
+    entity.joints.back().child = i;
+  }
+  return with_friction(std::move(entity), friction);
+}
+
+TEST_P(NewtonAt, TilesOfABodyThatIsFreeAreAsSmoothAsOne) {
+  // A box without friction slides over a platform that stays on a slope, or slides slower.
+  const double angle = 0.15, seconds = 1.4;
+  const math::Quaternion tilt = about({0, 1, 0}, angle);
+  const Vector3 up = tilt * Vector3::UnitZ(), downhill = tilt * Vector3::UnitX();
+  for (const double friction : {1.0, 0.05}) {
+    World world(newton(), h);
+    world.add(standing({-1 * up, tilt}, scene::Box{{20, 4, 1}}, 1));
+    world.add(platform({{0, 0, 0}, tilt}, friction));
+    const Vector3 start = 0.1 * up;
+    world.add(loose({start, tilt}, cube, 0.1, 0));
+    run(world, seconds, h);
+    const double a = earth * std::sin(angle), expected = a * seconds * seconds / 2;
+    const Vector3 moved = origin(world, 2).position - start;
+    EXPECT_NEAR(moved.dot(downhill), expected, 0.002 * expected + 1.02 * a * seconds * h / 2);
+    EXPECT_NEAR(moved.dot(up), 0, 1e-4);
+  }
+}
+
 TEST_P(NewtonAt, ASlowCylinderRollsOverSeams) {
   // 1 degree down: slow at the first seams.
   const double angle = 0.0175, seconds = 3;
