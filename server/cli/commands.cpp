@@ -18,6 +18,7 @@ constexpr Command table[] = {
     {"render", "draw a scene at given times", help_render, execute_render},
     {"magnetism", "plot force and torque between two magnets of a scene", help_magnetism,
      execute_magnetism},
+    {"info", "tell what a recording has, and whether it is whole", help_info, execute_info},
     {"keygen", "make a pair of keys that protect connections", help_keygen, execute_keygen},
     {"top", "show which controllers a run waits for", help_top, execute_top},
     {"ctl", "control a run: pause, step, reset, move, …", help_ctl, execute_ctl},

@@ -111,6 +111,20 @@ po::options_description output_options() {
   return options;
 }
 
+po::options_description record_options() {
+  po::options_description options("Recording", width);
+  options.add_options()  //
+      ("record", text("FILE.mcap"),
+       "everything: to replay the run to the bit, to look at it again (MCAP, as Foxglove reads it)")  //
+      ("record-topics", texts("PATTERN"),
+       "only topics that match, as '/poses' or '/robots/r1*/*'; may be repeated; what a replay needs "
+       "is always there")  //
+      ("record-every", text("N"), "pictures of every Nth tick only")  //
+      ("record-compression", text("zstd|lz4|none"), "default zstd; lz4 is faster and larger")  //
+      ("record-strict", "end the run if the recording can't be written, as when the disk is full");
+  return options;
+}
+
 po::options_description controller_options() {
   po::options_description options("Controllers", width);
   options.add_options()  //
@@ -270,6 +284,48 @@ void read_outputs(const Values& values, run::Options& options) {
   options.summary = values.text("summary");
 }
 
+mcap::Compression to_compression(const std::string& value) {
+  if (value == "zstd") return mcap::Compression::zstd;
+  if (value == "lz4") return mcap::Compression::lz4;
+  if (value == "none") return mcap::Compression::none;
+  throw text::UsageError(
+      fmt::format("--record-compression is '{}'; write zstd, lz4 or none", value));
+}
+
+void read_recording(const Values& values, run::Options& options) {
+  options.record = values.text("record");
+  for (const char* name : {"record-topics", "record-every", "record-compression", "record-strict"}) {
+    if (values.has(name) && options.record.empty()) {
+      throw text::UsageError(fmt::format("--{} needs --record FILE.mcap", name));
+    }
+  }
+  options.record_topics = values.texts("record-topics");
+  options.record_strict = values.has("record-strict");
+  if (values.has("record-compression")) {
+    options.record_compression = to_compression(values.text("record-compression"));
+  }
+  if (values.has("record-every")) {
+    options.record_every = text::to_integer("--record-every", values.text("record-every"));
+    if (options.record_every == 0) throw text::UsageError("--record-every is 0; write 1 or more");
+  }
+}
+
+/// Without keys and tokens, and the paths of keys.
+Arguments without_secrets(const Arguments& arguments) {
+  Arguments kept;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string name = arguments[i].substr(0, arguments[i].find('='));
+    const bool is_secret =
+        name == "--view-token" || name == "--curve-secret" || name == "--curve-clients";
+    if (!is_secret) {
+      kept.push_back(arguments[i]);
+    } else if (name == arguments[i]) {
+      ++i;  // its value
+    }
+  }
+  return kept;
+}
+
 }  // namespace
 
 po::options_description run_options() {
@@ -279,13 +335,15 @@ po::options_description run_options() {
       .add(hil_options())
       .add(processes)
       .add(output_options())
+      .add(record_options())
       .add(scene_options());
   return options;
 }
 
 po::options_description serve_options() {
   po::options_description options("", width);
-  options.add(world_options()).add(hil_options()).add(output_options()).add(scene_options());
+  options.add(world_options()).add(hil_options()).add(output_options()).add(record_options()).add(
+      scene_options());
   return options;
 }
 
@@ -332,6 +390,8 @@ run::Options parse_options(const Arguments& arguments, const po::options_descrip
   read_controllers(values, options);
   read_network(values, options);
   read_outputs(values, options);
+  read_recording(values, options);
+  options.arguments = without_secrets(arguments);
   return options;
 }
 

@@ -26,6 +26,7 @@ std::vector<File> outputs_of(const Options& options) {
                           {"--readings", options.readings, {".jsonl"}},
                           {"--rays", options.rays, {".jsonl"}},
                           {"--hash-file", options.hash_file, {}},
+                          {"--record", options.record, {".mcap"}},
                           {"--summary", options.summary, {".json"}},
                           {"--report-card", options.report_card, {".json", ".svg", ".csv"}}};
   if (options.pictures) files.push_back({"--out", options.pictures->out, {".png"}});
@@ -92,9 +93,11 @@ void check_files(const Options& options) {
   check_clients(options.curve_clients);
 }
 
-void check_outputs(const Options& options, const scene::Scene& scene) {
+void check_outputs(const Options& options, const scene::Scene& scene,
+                   const std::vector<std::string>& read) {
   const std::string& scene_file = only_scene(options);
   std::vector<std::string> inputs = scene.files;
+  inputs.insert(inputs.end(), read.begin(), read.end());
   for (const fs::path& script : processes::scripts_of(scene, scene_file)) {
     inputs.push_back(script.string());
   }

@@ -2,6 +2,9 @@
 // The files that options name: checked before any of them is opened, because opening an output
 // empties it.
 
+#include <string>
+#include <vector>
+
 #include "run/options.h"
 #include "scene/scene.h"
 
@@ -12,7 +15,9 @@ namespace ziggurat::run {
 void check_files(const Options& options);
 
 /// That no output is a file that the scene was read from, or one of its scripts.
+/// @param read  other files that were read for the scene
 /// @throws text::UsageError
-void check_outputs(const Options& options, const scene::Scene& scene);
+void check_outputs(const Options& options, const scene::Scene& scene,
+                   const std::vector<std::string>& read = {});
 
 }  // namespace ziggurat::run

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "mcap/records.h"
 #include "reports/gate.h"
 #include "run/deadline_option.h"
 #include "run/inject_option.h"
@@ -53,6 +54,12 @@ struct Options {
   bool json = false;
   bool hash = false;
   std::string hash_file, trace, readings, rays, images, summary;  ///< paths; empty = none
+  std::string record;                      ///< path of the recording; empty = none
+  mcap::Compression record_compression = mcap::Compression::zstd;
+  std::vector<std::string> record_topics;  ///< patterns; empty = all
+  std::uint64_t record_every = 1;          ///< pictures of each Nth tick
+  bool record_strict = false;              ///< the run ends if the recording can't be written
+  std::vector<std::string> arguments;      ///< of the command line, without keys and tokens
   std::optional<PictureOptions> pictures;  ///< the run ends with the last of them
 };
 

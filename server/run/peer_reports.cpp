@@ -14,7 +14,7 @@ constexpr int most_notices = 1000;  // so that a hostile peer cannot fill a log
 
 void PeerReports::notice(const std::string& text) {
   console_.notice(text);
-  if (showing_) showing_->log(channels::Severity::warning, "ziggurat", text);
+  tell_(channels::Severity::warning, "ziggurat", text);
 }
 
 void PeerReports::take(network::Report report, std::uint64_t tick) {
@@ -32,7 +32,7 @@ void PeerReports::take(network::Report report, std::uint64_t tick) {
     const auto text = fmt::format("robot {} (controller '{}') failed at tick {}: {}", robot.id,
                                   controller, failure.tick, failure.message);
     console_.fault(text);
-    if (showing_) showing_->log(channels::Severity::error, robot.id, text);
+    tell_(channels::Severity::error, robot.id, text);
     failures_.push_back(
         {failure.robot, {robot.id, controller, failure.tick, std::move(failure.message)}});
   }
@@ -42,9 +42,7 @@ void PeerReports::print_log(std::uint64_t tick) {
   std::ranges::stable_sort(log_, {}, [](const Line& each) { return each.line.robot; });
   for (const auto& [line, robot] : log_) {
     console_.log_line(tick, robot, line.text, line.error);
-    if (!showing_) continue;
-    showing_->log(line.error ? channels::Severity::error : channels::Severity::info, robot,
-                  line.text);
+    tell_(line.error ? channels::Severity::error : channels::Severity::info, robot, line.text);
   }
   log_.clear();
   console_.offer();

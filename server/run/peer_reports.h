@@ -2,24 +2,30 @@
 // Prints what the server reports of controllers and other peers.
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "channels/channels.h"
 #include "network/server.h"
 #include "reports/console.h"
 #include "reports/summary.h"
-#include "run/showing.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {
 
+/// Takes each line that is printed, too. @param name  of the robot, or `ziggurat`
+using TellLine =
+    std::function<void(channels::Severity, std::string_view name, std::string_view text)>;
+
 class PeerReports {
  public:
-  /// All must outlive this. @param showing  whose viewers are told, too; may be null
-  PeerReports(const supervision::World& world, reports::Console& console, Showing* showing)
-      : world_(world), console_(console), showing_(showing) {}
+  /// All must outlive this. @param tell  viewers and recordings
+  PeerReports(const supervision::World& world, reports::Console& console, TellLine tell)
+      : world_(world), console_(console), tell_(std::move(tell)) {}
 
   /// Prints failures and notices at once. Log lines wait for print_log(), so that their order does
   /// not depend on which controller is faster.
@@ -45,7 +51,7 @@ class PeerReports {
 
   const supervision::World& world_;
   reports::Console& console_;
-  Showing* const showing_;
+  const TellLine tell_;
   std::vector<Line> log_;
   std::vector<std::pair<std::size_t, reports::Summary::Failure>> failures_;  ///< with the robot
   int notices_ = 0;                                                          ///< printed so far

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <utility>
+#include <variant>
 
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
@@ -44,6 +45,8 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       scripts_(script_paths(world_.scene, world_.simulation.layout(), path_)),
       folder_(signals.guardian()),
       recorders_(options, world_),
+      recorder_(make_recorder(options, world_, files_, plan_.ticks.value_or(0),
+                              robots_without_controller())),
       controllers_(start_controllers()),
       callers_(server_),
       supervision_(supervision_settings(), world_, server_, callers_, controllers_, console_),
@@ -52,8 +55,17 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
           options, {world_, server_, callers_, supervision_, schedule_, plan_.ticks.value_or(0)})),
       watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
               plan_.ticks},
-             world_, server_, controllers_, supervision_, signals, console_, showing_.get()),
+             world_, server_, controllers_, supervision_, signals, console_, showing_.get(),
+             [this](auto... line) { tell_line(line...); }),
       waits_for_viewer_(showing_ && !options.paused) {
+  if (recorder_) {
+    supervision_.tell_acts([this](const supervision::Act& act) {
+      record(act, *recorder_);
+      is_population_new_ |= std::holds_alternative<supervision::Spawned>(act) ||
+                            std::holds_alternative<supervision::Removed>(act) ||
+                            std::holds_alternative<supervision::WasReset>(act);
+    });
+  }
   print_notices();
   summary_.scene = path_;
   summary_.robots = world_.simulation.layout().robots.size();
@@ -67,7 +79,9 @@ supervision::World Run::read_world(const Tell& tell_clients) {
     tell_clients(share, message);
   };
   tell(0, "The scene is being read.");
-  scene::OpenScene opened = load_scene(path_, options_, console_);
+  Options options = options_;
+  if (!options.record.empty()) options.scene_file.open = files_.keep(options.scene_file.open);
+  scene::OpenScene opened = load_scene(path_, options, console_);
   tell(before_placing, "The world is being built.");
   const std::uint64_t seed = choose_seed(options_, opened.scene);
   return {path_, std::move(opened), seed, [&](std::size_t placed, std::size_t all) {
@@ -98,7 +112,7 @@ std::unique_ptr<supervision::World> Run::load_world() {
     const auto news = loading.news();
     if (news.is_done) {
       auto world = loading.take();
-      check_outputs(options_, world->scene);
+      check_outputs(options_, world->scene, files_.names());
       return world;
     }
     server_.attend({news.progress, news.message}, {std::chrono::milliseconds{-1}, descriptors});
@@ -204,6 +218,7 @@ int Run::execute() {
   }
   complete_summary();
   watch_.end_run(end_message(summary_));
+  close_recording();
   summary_.failures = watch_.failures();
   recorders_.write_summary(summary_);
   for (const auto& picture : recorders_.pictures()) console_.result(picture);
@@ -246,6 +261,7 @@ Ending Run::run_world() {
     supervision_.published();
     timer_.end_phase(Phase::exchange, summary_);
     recorders_.tick(simulation);
+    if (recorder_) record_tick();
     if (showing_) showing_->tick(timer_.last_tick());
     timer_.end_phase(Phase::recording, summary_);
 
@@ -263,12 +279,39 @@ Ending Run::run_world() {
     if (showing_) showing_->answered();
     timer_.end_phase(Phase::recording, summary_);
     if (is_last) return Ending::finished;
-    if (showing_) showing_->before_step();
+    if (recorder_) record_answer();
+    simulation.list_contacts((showing_ && showing_->wants_contacts()) ||
+                             (recorder_ && recorder_->wants("/contacts")));
     simulation.step();
     timer_.end_phase(Phase::physics, summary_);
     if (!printed_miss_) print_first_miss();
     timer_.end_tick(supervision_, schedule_.is_paced());
   }
+}
+
+channels::Moment Run::moment() {
+  simulation::Simulation& simulation = world_.simulation;
+  return {simulation.state(), simulation.observations(), simulation.commands(),
+          simulation.contacts(), {}};
+}
+
+void Run::record_tick() {
+  if (std::exchange(is_population_new_, false)) {
+    recorder_->populate(population_of(world_, plan_.ticks.value_or(0)));
+  }
+  recorder_->tick(moment());
+  if (const auto why = recorder_->take_failure()) {
+    if (options_.record_strict) throw recording::WriteError(*why);
+    console_.fault(fmt::format("{}; the recording ends before tick {}, the run goes on", *why,
+                               world_.simulation.state().tick));
+  }
+}
+
+void Run::record_answer() { recorder_->step(world_.simulation.commands()); }
+
+void Run::tell_line(channels::Severity severity, std::string_view name, std::string_view text) {
+  if (showing_) showing_->log(severity, name, text);
+  if (recorder_) recorder_->log(severity, name, text);
 }
 
 /// A notice when the physics' solver has not converged for the first time.

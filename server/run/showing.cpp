@@ -136,8 +136,6 @@ void Showing::answered() {
   if (is_current_ && !wanted_.empty()) show(wanted_, std::array{Pace::answer});
 }
 
-void Showing::before_step() { run_.world.simulation.list_contacts(wants(Kind::contacts)); }
-
 void Showing::restarted() {
   is_gathered_ = false;
   populate();

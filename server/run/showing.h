@@ -51,8 +51,8 @@ class Showing {
   void tick(const std::array<double, supervision::phase_count>& phases);
   /// The tick was answered: its commands are known.
   void answered();
-  /// The next tick is to be computed.
-  void before_step();
+  /// A viewer wants contacts, which the next tick must list.
+  bool wants_contacts() const { return wants(channels::Kind::contacts); }
   /// The world began anew.
   void restarted();
   void log(channels::Severity severity, std::string_view name, std::string_view text);

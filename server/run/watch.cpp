@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <thread>
+#include <utility>
 
 namespace ziggurat::run {
 namespace {
@@ -33,7 +34,8 @@ constexpr Patience interrupted{milliseconds{400}, 100};
 
 Watch::Watch(const Settings& settings, const supervision::World& world, network::Server& server,
              processes::Controllers& controllers, supervision::Supervision& supervision,
-             processes::Signals& signals, reports::Console& console, Showing* showing)
+             processes::Signals& signals, reports::Console& console, Showing* showing,
+             TellLine tell)
     : world_(world),
       server_(server),
       controllers_(controllers),
@@ -45,7 +47,7 @@ Watch::Watch(const Settings& settings, const supervision::World& world, network:
                            : std::vector{signals.descriptor()}),
       fails_fast_(settings.fail_fast),
       waits_for_clients_(settings.waits_for_clients),
-      peers_(world, console, showing),
+      peers_(world, console, std::move(tell)),
       progress_(console, world.simulation.tick_length(), settings.ticks) {
   if (settings.metrics.empty()) return;
   metrics_.emplace(settings.metrics, settings.insecure);

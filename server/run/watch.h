@@ -36,10 +36,11 @@ class Watch {
 
   /// Everything but the settings must outlive this.
   /// @param showing  serves viewers meanwhile; may be null
+  /// @param tell     takes the lines of controllers, too
   /// @throws text::UsageError or std::runtime_error if metrics cannot be served
   Watch(const Settings& settings, const supervision::World& world, network::Server& server,
         processes::Controllers& controllers, supervision::Supervision& supervision,
-        processes::Signals& signals, reports::Console& console, Showing* showing);
+        processes::Signals& signals, reports::Console& console, Showing* showing, TellLine tell);
 
   // Each of the three waits for something and prints what controllers and peers report meanwhile.
   // Each returns nothing if it was completed, otherwise how the run ends.

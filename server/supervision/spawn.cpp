@@ -45,16 +45,22 @@ void check_size(const scene::Entity& entity, std::vector<scene::Problem>& proble
 
 /// Opens files below the allowed folders: as an element of the scene file would name them,
 /// otherwise relative to one of these folders.
-scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string& scene_file) {
+/// @param act  gets the files
+scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string& scene_file,
+                       Spawned& act) {
   const auto scene_folder = std::filesystem::path(scene_file).parent_path();
-  return [&allowed, scene_folder](const std::filesystem::path& path, std::size_t max_size) {
+  return [&allowed, &act, scene_folder](const std::filesystem::path& path, std::size_t max_size) {
     std::vector<std::filesystem::path> candidates{path};
     for (const auto& folder : allowed.folders) {
       candidates.push_back(folder / path.lexically_relative(scene_folder));
     }
     for (const auto& candidate : candidates) {
       if (processes::is_below(allowed.folders, candidate)) {
-        return scene::open_file(candidate, max_size);
+        auto opened = scene::open_file(candidate, max_size);
+        if (const auto* file = std::get_if<scene::File>(&opened)) {
+          act.files.emplace_back(path.string(), file->text);
+        }
+        return opened;
       }
     }
     return scene::open_no_file(path, max_size);
@@ -76,10 +82,11 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
                             "spawn more.",
                             most_spawned));
   }
+  Spawned act{text, {}};
   scene::Addition addition = world_.additions.read(
       text, world_.scene, spawnable_size_,
       [this](const std::string& id) { return entity_named(id).has_value(); },
-      opener(allowed_, world_.path));
+      opener(allowed_, world_.path, act));
   const scene::Entity& entity = addition.entity;
   processes::SpawnedScript script;
   try {
@@ -100,6 +107,7 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
                 std::string(error.what()).substr(0, longest_message));
   }
   for (const scene::Problem& notice : addition.problems) console_.problem(notice);
+  tell(act);
   ++spawned_;
   spawnable_size_ -= addition.size;
   if (entity.controller) add_controller(entity, script.path);
@@ -136,6 +144,7 @@ Supervision::Reply Supervision::remove(const network::Call& call) {
     if (all[i].entity == *entity) robots.push_back(i);
   }
   world_.simulation.remove(*entity);
+  tell(Removed{id});
   server_.remove_robots(robots, fmt::format("'{}' was removed from the world.", id));
   return done(call);
 }

@@ -28,7 +28,7 @@ TEST(PeerReports, LinesOfARobotThatAResetTookAreStillItsOwn) {
   testing::internal::CaptureStdout();
   {
     reports::Console console;
-    PeerReports reports(world, console, nullptr);
+    PeerReports reports(world, console, [](auto...) {});
     network::Report report;
     report.log.push_back({0, false, "hello"});
     reports.take(std::move(report), 7);

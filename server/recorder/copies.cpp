@@ -1,0 +1,36 @@
+#include "recorder/copies.h"
+
+#include <type_traits>
+
+namespace ziggurat::recorder {
+
+void copy(const channels::Moment& from, bool with_images, TickCopy& to) {
+  to.state = from.state;
+  world::for_each_row(world::sensed, [&](auto i) {
+    constexpr auto& row = std::get<i>(world::sensed);
+    using Field = std::remove_cvref_t<decltype(to.observations.*row.values)>;
+    if (std::is_same_v<Field, std::vector<world::Image>> && !with_images) {
+      (to.observations.*row.values) = {};
+    } else {
+      to.observations.*row.values = from.observations.*row.values;
+    }
+  });
+  to.commands = from.commands;
+  to.contacts.assign(from.contacts.begin(), from.contacts.end());
+}
+
+std::size_t size_of(const TickCopy& copy) {
+  const world::Observations& sensed = copy.observations;
+  std::size_t size = sizeof copy;
+  for (const world::Image& image : sensed.images) size += image.rgb.size();
+  for (const std::string& payload : copy.state.tag_payloads) size += payload.size();
+  size += copy.state.links.size() * sizeof(world::LinkState);
+  size += copy.state.origins.size() * sizeof(math::Pose);
+  size += copy.state.rays.size() * sizeof(world::Ray);
+  size += sensed.radio_messages.bytes.size() + copy.commands.radio_messages.bytes.size();
+  size += sensed.range_and_bearing_data.size();
+  size += copy.contacts.size() * sizeof(world::Contact);
+  return size;
+}
+
+}  // namespace ziggurat::recorder

@@ -1,0 +1,46 @@
+#pragma once
+// The world at a tick, copied for another thread.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "channels/moment.h"
+
+namespace ziggurat::recorder {
+
+/// Who is in the world since the last change.
+struct PopulationCopy {
+  const scene::Scene& scene;
+  std::string path, scene_hash;
+  std::uint64_t seed, last_tick;
+  world::Layout layout;
+  std::vector<scene::Entity> entities;
+  world::State state;
+
+  explicit PopulationCopy(const channels::Population& from)
+      : scene(from.scene),
+        path(from.path),
+        scene_hash(from.scene_hash),
+        seed(from.seed),
+        last_tick(from.last_tick),
+        layout(from.layout),
+        entities(from.entities),
+        state(from.state) {}
+};
+
+struct TickCopy {
+  world::State state;
+  world::Observations observations;
+  world::Commands commands;
+  std::vector<world::Contact> contacts;
+};
+
+/// Pictures are left out unless they are wanted.
+/// @param to  keeps its memory
+void copy(const channels::Moment& from, bool with_images, TickCopy& to);
+
+/// How much memory it takes, about [bytes].
+std::size_t size_of(const TickCopy& copy);
+
+}  // namespace ziggurat::recorder

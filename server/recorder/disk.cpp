@@ -1,0 +1,49 @@
+#include "recorder/disk.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "recording/output_file.h"
+
+namespace ziggurat::recorder {
+
+Disk::Disk(std::string path) : path_(std::move(path)) {
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail(errno);
+}
+
+Disk::~Disk() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void Disk::fail(int error) {
+  throw recording::WriteError(fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
+}
+
+void Disk::write(std::string_view bytes) {
+  for (std::string_view left = bytes; !left.empty();) {
+    const ssize_t count = ::write(descriptor_, left.data(), left.size());
+    if (count >= 0) {
+      left.remove_prefix(static_cast<std::size_t>(count));
+    } else if (errno != EINTR) {
+      const int error = errno;
+      // Of a pipe nothing can be taken back; its reader sees the end of the file.
+      [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(size_));
+      fail(error);
+    }
+  }
+  size_ += bytes.size();
+}
+
+void Disk::close() {
+  if (descriptor_ < 0) return;
+  // Some file systems report a full disk only here.
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+}
+
+}  // namespace ziggurat::recorder

@@ -1,0 +1,206 @@
+#include "recorder/recorder.h"
+
+#include <exception>
+#include <memory>
+#include <utility>
+
+#include "ziggurat/v1/envelope.h"
+
+namespace ziggurat::recorder {
+namespace {
+
+// What may wait for the disk: more than that, and the run waits.
+constexpr std::size_t most_waiting = std::size_t{64} << 20;  // [bytes]
+constexpr std::size_t most_tasks = 1024;
+
+}  // namespace
+
+Recorder::Recorder(Settings settings, Start start)
+    : wants_(settings.contents.wants),
+      picture_interval_(settings.contents.picture_interval),
+      disk_(settings.path),
+      thread_([this, begun = std::move(start), with = std::move(settings)]() mutable {
+        work(std::move(begun), std::move(with));
+      }) {}
+
+Recorder::~Recorder() { close(); }
+
+// --- the run's thread -----------------------------------------------------------------------------
+
+void Recorder::add(std::function<void(Recording&)> run, std::size_t size) {
+  std::unique_lock lock(mutex_);
+  has_room_.wait(lock, [&] {
+    return has_failed_ || tasks_.empty() ||
+           (waiting_ + size <= most_waiting && tasks_.size() < most_tasks);
+  });
+  if (has_failed_ || is_closing_) return;
+  waiting_ += size;
+  tasks_.push_back({std::move(run), size});
+  lock.unlock();
+  has_task_.notify_one();
+}
+
+TickCopy Recorder::take_copy() {
+  const std::lock_guard lock(mutex_);
+  if (copies_.empty()) return {};
+  TickCopy copy = std::move(copies_.back());
+  copies_.pop_back();
+  return copy;
+}
+
+void Recorder::give_back(TickCopy copy) {
+  const std::lock_guard lock(mutex_);
+  copies_.push_back(std::move(copy));
+}
+
+void Recorder::populate(const channels::Population& population) {
+  auto copy = std::make_shared<const PopulationCopy>(population);
+  add([copy = std::move(copy)](Recording& to) { to.populate(copy); }, 0);
+}
+
+void Recorder::tick(const channels::Moment& moment) {
+  auto copied = std::make_shared<TickCopy>(take_copy());
+  copy(moment, moment.state.tick % picture_interval_ == 0, *copied);
+  const std::size_t size = size_of(*copied);
+  add(
+      [this, copied = std::move(copied)](Recording& to) {
+        to.tick(*copied);
+        give_back(std::move(*copied));
+      },
+      size);
+}
+
+void Recorder::step(const world::Commands& commands) {
+  auto copied = std::make_shared<TickCopy>(take_copy());
+  copied->commands = commands;
+  add(
+      [this, copied = std::move(copied)](Recording& to) {
+        to.step(copied->commands);
+        give_back(std::move(*copied));
+      },
+      sizeof(TickCopy) + commands.radio_messages.bytes.size());
+}
+
+void Recorder::add(v1::Act act) {
+  const std::chrono::nanoseconds wall = clock::now() - begin_;
+  act.set_wall_ns(wall.count());
+  const std::size_t size = sizeof act + act.spawn().xml().size();
+  add([act = std::move(act)](Recording& to) { to.add(act); }, size);
+}
+
+void Recorder::moved(const std::string& entity, const math::Pose& pose) {
+  v1::Act act;
+  v1::Act::Move& move = *act.mutable_move();
+  move.set_entity(v1::valid_utf8(entity));
+  for (const double value : pose.position) move.add_position(value);
+  const math::Quaternion& q = pose.orientation;
+  for (const double value : {q.w(), q.x(), q.y(), q.z()}) move.add_orientation(value);
+  add(std::move(act));
+}
+
+void Recorder::spawned(const std::string& xml, std::vector<EmbeddedFile> files) {
+  for (EmbeddedFile& file : files) {
+    const std::size_t size = file.text.size();
+    add([file = std::move(file)](Recording& to) { to.attach(file); }, size);
+  }
+  v1::Act act;
+  act.mutable_spawn()->set_xml(v1::valid_utf8(xml));
+  add(std::move(act));
+}
+
+void Recorder::removed(const std::string& entity) {
+  v1::Act act;
+  act.mutable_remove()->set_entity(v1::valid_utf8(entity));
+  add(std::move(act));
+}
+
+void Recorder::reset(std::uint64_t seed) {
+  v1::Act act;
+  act.mutable_reset()->set_seed(seed);
+  add(std::move(act));
+  add([](Recording& to) { to.end_epoch(); }, 0);
+}
+
+void Recorder::paused() {
+  v1::Act act;
+  act.mutable_pause();
+  add(std::move(act));
+}
+
+void Recorder::resumed() {
+  v1::Act act;
+  act.mutable_resume();
+  add(std::move(act));
+}
+
+void Recorder::log(channels::Severity severity, std::string_view name, std::string_view text) {
+  add([severity, name = std::string(name),
+       text = std::string(text)](Recording& to) { to.log(severity, name, text); },
+      name.size() + text.size());
+}
+
+void Recorder::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_closing_ = true;
+  }
+  has_task_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::optional<std::string> Recorder::take_failure() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(failure_, std::nullopt);
+}
+
+// --- the recorder's thread ------------------------------------------------------------------------
+
+void Recorder::fail(std::string why) {
+  {
+    const std::lock_guard lock(mutex_);
+    has_failed_ = true;
+    failure_ = std::move(why);
+    tasks_.clear();
+  }
+  has_room_.notify_all();
+}
+
+/// The next task; nothing: a moment has passed, or all is done.
+std::optional<Recorder::Task> Recorder::next(std::optional<clock::time_point> end) {
+  std::unique_lock lock(mutex_);
+  const auto is_ready = [this] { return !tasks_.empty() || is_closing_; };
+  if (end) {
+    has_task_.wait_until(lock, *end, is_ready);
+  } else {
+    has_task_.wait(lock, is_ready);
+  }
+  if (tasks_.empty()) return std::nullopt;
+  Task task = std::move(tasks_.front());
+  tasks_.pop_front();
+  waiting_ -= task.size;
+  lock.unlock();
+  has_room_.notify_one();
+  return task;
+}
+
+void Recorder::work(Start start, Settings settings) {
+  try {
+    Recording recording([this](std::string_view bytes) { disk_.write(bytes); },
+                        settings.compression, std::move(settings.contents), start);
+    for (;;) {
+      const auto task = next(recording.end_old_chunk());
+      if (task) {
+        task->run(recording);
+        continue;
+      }
+      const std::lock_guard lock(mutex_);
+      if (is_closing_ && tasks_.empty()) break;
+    }
+    recording.close();
+    disk_.close();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+}  // namespace ziggurat::recorder

@@ -1,0 +1,84 @@
+#pragma once
+// A run on its way into a recording, on a thread of its own. The run's thread only copies. If the
+// disk is slower than the run, the run waits: a recording is whole.
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "recorder/disk.h"
+#include "recorder/recording.h"
+
+namespace ziggurat::recorder {
+
+struct Settings {
+  std::string path;
+  mcap::Compression compression = mcap::Compression::zstd;
+  Contents contents;
+};
+
+class Recorder {
+ public:
+  /// Creates the file. @throws recording::WriteError
+  Recorder(Settings settings, Start start);
+  /// Without close() the recording has no end.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  bool wants(std::string_view topic) const { return !wants_ || wants_(topic); }
+
+  // The methods of Recording, which says what they mean. What they are given is copied.
+  void populate(const channels::Population& population);
+  void tick(const channels::Moment& moment);
+  void moved(const std::string& entity, const math::Pose& pose);
+  /// @param files  that were read for it
+  void spawned(const std::string& xml, std::vector<EmbeddedFile> files);
+  void removed(const std::string& entity);
+  void reset(std::uint64_t seed);
+  void paused();
+  void resumed();
+  void log(channels::Severity severity, std::string_view name, std::string_view text);
+  void step(const world::Commands& commands);
+
+  /// Completes the file, and waits for that.
+  void close();
+  /// Why the recording has ended too early; once.
+  std::optional<std::string> take_failure();
+
+ private:
+  using clock = std::chrono::steady_clock;
+  struct Task {
+    std::function<void(Recording&)> run;
+    std::size_t size = 0;  // memory that it holds, about [bytes]
+  };
+
+  void add(std::function<void(Recording&)> run, std::size_t size);
+  void add(v1::Act act);
+  TickCopy take_copy();
+  void give_back(TickCopy copy);
+  void work(Start start, Settings settings);
+  void fail(std::string why);
+  std::optional<Task> next(std::optional<clock::time_point> end);
+
+  const std::function<bool(std::string_view)> wants_;
+  const std::uint64_t picture_interval_;
+  const clock::time_point begin_ = clock::now();
+  Disk disk_;
+  std::mutex mutex_;  // of all below
+  std::condition_variable has_task_, has_room_;
+  std::deque<Task> tasks_;
+  std::vector<TickCopy> copies_;  // free ones, whose memory is used again
+  std::size_t waiting_ = 0;       // of all tasks [bytes]
+  bool is_closing_ = false, has_failed_ = false;
+  std::optional<std::string> failure_;
+  std::thread thread_;  // the last: it uses the others
+};
+
+}  // namespace ziggurat::recorder

@@ -1,0 +1,88 @@
+#pragma once
+// A run as an MCAP file (docs/recordings.md): which messages it has, in which order and chunks. No
+// threads here.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "channels/channels.h"
+#include "mcap/writer.h"
+#include "recorder/copies.h"
+#include "recorder/exact_state.h"
+#include "recorder/inputs.h"
+#include "recorder/start.h"
+
+namespace ziggurat::recorder {
+
+/// What of a run is kept. `/run` and `/inputs` always are.
+struct Contents {
+  std::function<bool(std::string_view topic)> wants;  ///< of the other topics; empty: all
+  std::uint64_t picture_interval = 1;                 ///< pictures of each Nth tick
+};
+
+class Recording {
+ public:
+  using clock = std::chrono::steady_clock;
+
+  /// Writes the start, with the embedded files.
+  Recording(mcap::Sink sink, mcap::Compression compression, Contents contents, const Start& start);
+
+  /// Who is in the world from the next tick on.
+  void populate(std::shared_ptr<const PopulationCopy> population);
+  /// A state was published. @param copy  gets memory that is not needed any more
+  void tick(TickCopy& copy);
+  /// Between the last tick and the next.
+  void add(v1::Act act);
+  void log(channels::Severity severity, const std::string& name, const std::string& text);
+  void attach(const EmbeddedFile& file);
+  /// The world is stepped with these commands.
+  void step(const world::Commands& commands);
+  /// A new epoch begins: after a reset, for example.
+  void end_epoch();
+
+  /// Ends the chunk if it has lasted so long. Nothing: there is no chunk that will have to end.
+  std::optional<clock::time_point> end_old_chunk();
+  void close();
+
+ private:
+  void write(std::uint16_t channel, std::string_view bytes);
+  std::uint16_t add_channel(const google::protobuf::Descriptor& type, const std::string& topic);
+  std::uint16_t add_channel(const channels::Schema& schema, const std::string& topic);
+  void write_messages(channels::Pace pace);
+  void write_inputs();
+  void end_chunk();
+  bool takes_pictures() const;
+  channels::Moment moment() const {
+    return {tick_.state, tick_.observations, tick_.commands, tick_.contacts, {}};
+  }
+
+  mcap::Writer writer_;
+  const Contents contents_;
+  std::map<std::string, std::uint16_t> schemas_;        // by the name of the type
+  std::map<std::string, std::uint16_t> topics_;         // channels in the file
+  std::map<std::uint32_t, std::uint16_t> channels_of_;  // by Channel::id
+  std::uint16_t run_ = 0, inputs_channel_ = 0, state_channel_ = 0;  // 0: not wanted
+  std::shared_ptr<const PopulationCopy> population_;  // that channels_ refers to
+  channels::Channels channels_;
+  std::vector<std::uint32_t> wanted_, without_pictures_;  // Channel::id, ascending
+  bool is_population_new_ = false;
+  TickCopy tick_;  // the last one
+  v1::Inputs inputs_;
+  bool has_inputs_ = false;  // of the last tick, not written yet
+  CommandChanges commands_;
+  StateChanges links_;
+  v1::ExactState exact_;
+  std::uint64_t epoch_ = 0;
+  std::int64_t offset_ns_ = 0;    // of log times from simulated time
+  std::int64_t log_time_ns_ = 0;  // of the last tick
+  bool begins_epoch_ = true;
+  clock::time_point chunk_begin_{};
+};
+
+}  // namespace ziggurat::recorder

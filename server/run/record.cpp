@@ -1,0 +1,157 @@
+#include "run/record.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "network/glob.h"
+#include "processes/places.h"
+#include "processes/scripts.h"
+#include "run/build.h"
+#include "run/required_scripts.h"
+
+namespace ziggurat::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The path as seen from where the scene file was named, so that recordings do not tell the folders
+/// of their author.
+std::string name_of_script(const fs::path& script, const std::string& scene_file) {
+  const fs::path folder = fs::path(scene_file).parent_path();
+  std::error_code error;
+  const fs::path relative = fs::relative(script, folder.empty() ? fs::path(".") : folder, error);
+  if (error || relative.empty()) return script.string();
+  return (folder / relative).lexically_normal().string();
+}
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Each script of the scene, and what it loads from its folders, once.
+void add_scripts(const supervision::World& world, recorder::Start& start) {
+  std::vector<fs::path> scripts = processes::scripts_of(world.scene, world.path);
+  add_required(scripts);
+  for (const fs::path& script : scripts) {
+    start.files.push_back({name_of_script(script, world.path), read(script)});
+  }
+}
+
+std::string clock_of(const Options& options) {
+  if (!options.scene_file.clock) return {};
+  return *options.scene_file.clock == scene::Clock::beta50 ? "beta50" : "nominal";
+}
+
+std::vector<recorder::Start::Controller> controllers_of(const supervision::World& world) {
+  std::vector<recorder::Start::Controller> controllers;
+  for (const scene::Controller& from : world.scene.controllers) {
+    recorder::Start::Controller& to = controllers.emplace_back();
+    to.id = from.id;
+    to.command = from.command;
+    const std::string script = processes::script_of(from.params);
+    if (!processes::runs_script(from) || script.empty()) continue;
+    const std::string file = scene::file_of(world.scene, from.params_where);
+    const auto found = processes::find_file(script, file, world.path);
+    to.script = found ? name_of_script(*found, world.path) : script;
+  }
+  return controllers;
+}
+
+std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& patterns) {
+  if (patterns.empty()) return {};
+  return [patterns](std::string_view topic) {
+    return std::ranges::any_of(
+        patterns, [&](const std::string& each) { return network::matches(each, topic); });
+  };
+}
+
+}  // namespace
+
+scene::OpenFile ReadFiles::keep(scene::OpenFile open) {
+  return [this, open = std::move(open)](const fs::path& path, std::size_t max_size) {
+    auto opened = open(path, max_size);
+    const auto* file = std::get_if<scene::File>(&opened);
+    const auto is_same = [&](const auto& each) { return each.name == path.string(); };
+    if (file && std::ranges::none_of(files_, is_same)) {
+      files_.push_back({path.string(), file->text});
+    }
+    return opened;
+  };
+}
+
+std::vector<std::string> ReadFiles::names() const {
+  std::vector<std::string> names;
+  for (const auto& file : files_) names.push_back(file.name);
+  return names;
+}
+
+channels::Population population_of(const supervision::World& world, std::uint64_t last_tick) {
+  const simulation::Simulation& simulation = world.simulation;
+  return {world.scene,           world.path,           world.scene_hash, world.seed, last_tick,
+          simulation.layout(), simulation.entities(), simulation.state()};
+}
+
+std::unique_ptr<recorder::Recorder> make_recorder(const Options& options,
+                                                  const supervision::World& world,
+                                                  const ReadFiles& files, std::uint64_t last_tick,
+                                                  const std::vector<std::size_t>& idle) {
+  if (options.record.empty()) return nullptr;
+  recorder::Start start;
+  start.scene = world.path;
+  start.scene_hash = world.scene_hash;
+  start.seed = world.seed;
+  start.lenient = options.scene_file.lenient;
+  start.clock = clock_of(options);
+  start.last_tick = last_tick;
+  start.controllers = controllers_of(world);
+  start.robots_without_controller = idle;
+  start.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(
+                                                        std::chrono::system_clock::now())));
+  start.build = this_build();
+  start.arguments = options.arguments;
+  start.files = files.all();
+  add_scripts(world, start);
+  auto made = std::make_unique<recorder::Recorder>(
+      recorder::Settings{options.record,
+                         options.record_compression,
+                         {wish_of(options.record_topics), options.record_every}},
+      std::move(start));
+  made->populate(population_of(world, last_tick));
+  return made;
+}
+
+void record(const supervision::Act& done, recorder::Recorder& to) {
+  std::visit(
+      [&](const auto& act) {
+        using Type = std::decay_t<decltype(act)>;
+        if constexpr (std::is_same_v<Type, supervision::Moved>) {
+          to.moved(act.entity, act.pose);
+        } else if constexpr (std::is_same_v<Type, supervision::Spawned>) {
+          std::vector<recorder::EmbeddedFile> files;
+          for (const auto& [name, text] : act.files) files.push_back({name, text});
+          to.spawned(act.xml, std::move(files));
+        } else if constexpr (std::is_same_v<Type, supervision::Removed>) {
+          to.removed(act.entity);
+        } else if constexpr (std::is_same_v<Type, supervision::WasReset>) {
+          to.reset(act.seed);
+        } else if constexpr (std::is_same_v<Type, supervision::Paused>) {
+          to.paused();
+        } else {
+          static_assert(std::is_same_v<Type, supervision::Resumed>);
+          to.resumed();
+        }
+      },
+      done);
+}
+
+}  // namespace ziggurat::run

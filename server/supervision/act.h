@@ -1,0 +1,37 @@
+#pragma once
+// What supervisors and viewers have done to the world, as a recording needs it to do it again.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "math/pose.h"
+
+namespace ziggurat::supervision {
+
+struct Moved {
+  std::string entity;
+  math::Pose pose;  ///< X_WE, as it was applied
+};
+struct Spawned {
+  std::string xml;
+  /// Path, as it was asked for, and text of each file that was read for it.
+  std::vector<std::pair<std::string, std::string>> files;
+};
+struct Removed {
+  std::string entity;
+};
+/// The world was built again.
+struct WasReset {
+  std::uint64_t seed = 1;
+};
+struct Paused {};
+struct Resumed {};
+
+using Act = std::variant<Moved, Spawned, Removed, WasReset, Paused, Resumed>;
+using TellAct = std::function<void(const Act&)>;
+
+}  // namespace ziggurat::supervision
