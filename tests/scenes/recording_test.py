@@ -1,0 +1,189 @@
+"""Recordings of real runs: whole, harmless when the disk is full, readable after kill -9, without secrets.
+
+ZIGGURAT_KILLS is the number of runs that are killed (20).
+"""
+
+import json
+import os
+import pathlib
+import random
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import FAULT, FINISHED, INTERRUPTED, ZIGGURAT, SceneTest
+
+KILLS = int(os.environ.get("ZIGGURAT_KILLS", "20"))
+
+
+class RecordingTest(SceneTest):
+    def info(self, path, *options, code=None):
+        done = subprocess.run([str(ZIGGURAT), "info", str(path), "--json", *map(str, options)],
+                              capture_output=True, text=True, timeout=60)
+        if code is not None:
+            self.assertEqual(done.returncode, code, done.stderr)
+        return json.loads(done.stdout)
+
+    def counts(self, info):
+        return {each["topic"]: each["messages"] for each in info["topics"]}
+
+    def outcome(self, *arguments, **options):
+        process = self.start(*arguments, **options)
+        out, err = process.communicate(timeout=120)
+        return process.returncode, out, err
+
+    def test_a_run_is_recorded_whole(self):
+        self.write("part.lua", "part = 1\n")
+        (self.folder / "swing.lua").write_text('require "part"\n' + (self.folder / "swing.lua").read_text())
+        code, _, err = self.outcome("run", "arms.argos", "--ticks", 20, "--record", "a.mcap", "--trust-scripts")
+        self.assertEqual(code, FINISHED, err)
+        info = self.info(self.folder / "a.mcap", code=FINISHED)
+        self.assertTrue(info["is_whole"])
+        self.assertEqual(info["states"], 21)
+        self.assertEqual(info["last_tick"], 20)
+        self.assertEqual(info["run"]["scene"], "arms.argos")
+        counts = self.counts(info)
+        for topic in ("/poses", "/state", "/inputs", "/tf", "/contacts"):
+            self.assertEqual(counts[topic], 21, topic)
+        self.assertEqual(counts["/world"], 1)
+        self.assertNotIn("/barrier", counts)
+        self.assertNotIn("/phases", counts)
+        names = [each["name"] for each in info["attachments"]]
+        self.assertEqual(names, ["arms.argos", "swing.lua", "part.lua"])
+
+    def test_the_hash_does_not_depend_on_it(self):
+        hashes = []
+        for options in ([], ["--record", "a.mcap"], ["--record", "a.mcap", "--record-compression", "none"]):
+            code, out, _ = self.outcome("run", "arms.argos", "--ticks", 30, "--hash", *options)
+            self.assertEqual(code, FINISHED)
+            hashes.append(out.splitlines()[-1])
+        self.assertEqual(len(set(hashes)), 1)
+
+    def test_topics_are_chosen(self):
+        self.outcome("run", "arms.argos", "--ticks", 5, "--record", "a.mcap", "--record-topics", "/poses",
+                     "--record-topics", "/robots/*/command", "--record-compression", "lz4")
+        topics = set(self.counts(self.info(self.folder / "a.mcap", code=FINISHED)))
+        self.assertTrue({"/run", "/inputs", "/poses"} <= topics)
+        self.assertTrue(any(topic.endswith("/command") for topic in topics))
+        self.assertFalse({"/state", "/tf", "/world"} & topics)
+
+    def test_wrong_options_are_refused(self):
+        for options, word in ((["--record", "a.csv"], ".mcap"), (["--record-strict"], "--record FILE.mcap"),
+                              (["--record", "a.mcap", "--record-compression", "gzip"], "zstd, lz4 or none"),
+                              (["--record", "a.mcap", "--record-every", "0"], "1 or more")):
+            code, _, err = self.outcome("run", "arms.argos", *options)
+            self.assertEqual(code, FAULT)
+            self.assertIn(word, err)
+
+    def test_it_never_destroys_its_scene(self):
+        scene = self.folder / "scene.mcap"
+        scene.write_text(self.text)
+        code, _, err = self.outcome("run", "scene.mcap", "--record", "scene.mcap")
+        self.assertEqual(code, FAULT)
+        self.assertIn("scene", err)
+        self.assertEqual(scene.read_text(), self.text)
+        (self.folder / "more.mcap").write_text("<include/>")
+        self.change("</framework>", '</framework><include file="more.mcap"/>')
+        code, _, err = self.outcome("run", "arms.argos", "--record", "more.mcap")
+        self.assertEqual(code, FAULT)
+        self.assertEqual((self.folder / "more.mcap").read_text(), "<include/>")
+
+    def test_ctrl_c_completes_it(self):
+        process = self.start("run", "arms.argos", "--duration", 0, "--record", "a.mcap")
+        self.wait_for_size("a.mcap", 20_000)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, INTERRUPTED)
+        self.assertTrue(self.info(self.folder / "a.mcap", code=FINISHED)["is_whole"])
+
+    def wait_for_size(self, name, size):
+        path = self.folder / name
+        end = time.monotonic() + 60
+        while not path.exists() or path.stat().st_size < size:
+            self.assertLess(time.monotonic(), end, f"{name} does not grow")
+            time.sleep(0.01)
+
+    def test_a_full_disk_ends_the_recording_and_not_the_run(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
+
+        arguments = ("run", "arms.argos", "--ticks", 300, "--record-compression", "none", "--record", "a.mcap")
+        code, _, err = self.outcome(*arguments, preexec_fn=limit)
+        self.assertEqual(code, FINISHED, err)
+        self.assertIn("a.mcap: cannot be written: File too large", err)
+        self.assertIn("finished: 300 ticks", err)
+        self.assertLessEqual((self.folder / "a.mcap").stat().st_size, 60_000)
+        info = self.info(self.folder / "a.mcap", code=FAULT)
+        self.assertEqual(info["damaged_chunks"], 0)
+        self.assertEqual(info["run"]["scene"], "arms.argos")
+        code, _, err = self.outcome(*arguments, "--record-strict", preexec_fn=limit)
+        self.assertEqual(code, FAULT, err)
+        self.assertIn("File too large", err)
+
+    def test_a_killed_run_loses_a_chunk_at_most(self):
+        """Against the hash file of the same run: what is missing is less than 2 s of wall time."""
+        choose = random.Random(1)
+        for number in range(KILLS):
+            path = self.folder / f"{number}.mcap"
+            process = self.start("run", "arms.argos", "--duration", 0, "--quiet", "--real-time", "20",
+                                 "--record", path, "--hash-file", f"{number}.hash")
+            self.wait_for_size(path.name, 1)
+            time.sleep(choose.uniform(0, 2.5))
+            process.kill()
+            process.communicate()
+            info = self.info(path, code=FAULT)
+            self.assertEqual(info["damaged_chunks"], 0, info["faults"])
+            self.assertFalse(info["has_end"])
+            hashes = [line.split() for line in (self.folder / f"{number}.hash").read_text().splitlines()]
+            full = [line for line in hashes if len(line) == 3 and len(line[2]) == 16]
+            lost = len(full) - info["states"]
+            self.assertLessEqual(lost, 20 * 10 * 4, f"run {number}: {info['states']} of {len(full)} states")
+            saved = self.folder / "saved.mcap"
+            done = subprocess.run([str(ZIGGURAT), "info", str(path), "--repair", str(saved)], capture_output=True)
+            self.assertEqual(done.returncode, FINISHED, done.stderr)
+            self.assertEqual(self.info(saved, code=FINISHED)["states"], info["states"])
+            path.unlink()
+
+    def test_secrets_are_not_recorded(self):
+        keys = [self.folder / "server", self.folder / "client"]
+        for key in keys:
+            subprocess.run([str(ZIGGURAT), "keygen", "--out", str(key)], check=True, capture_output=True)
+        secret = pathlib.Path(f"{keys[0]}.secret").read_text().split()[-1]
+        public = pathlib.Path(f"{keys[1]}.public").read_text().split()[-1]
+        self.write("clients", f"{public} supervisor\n").chmod(0o600)
+        token = "a-token-that-is-secret"
+        process = self.start(
+            "run", "arms.argos", "--duration", 0, "--curve-secret", "server.secret", "--curve-clients=clients",
+            "--endpoint", "tcp://127.0.0.1:*", "--view", "--view-token", token, "--record", "a.mcap",
+            "--record-compression", "none", "--real-time", "100")
+        self.wait_for_size("a.mcap", 50_000)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        bytes_of_it = (self.folder / "a.mcap").read_bytes()
+        self.assertIn(b"/inputs", bytes_of_it)
+        for what in (secret, token, public, "server.secret"):
+            self.assertNotIn(what.encode(), bytes_of_it)
+
+    def test_texts_of_a_recording_are_escaped(self):
+        name = "evil\x1b]0;title\x07.argos"
+        (self.folder / name).write_text(self.text)
+        self.outcome("run", name, "--ticks", 2, "--record", "a.mcap")
+        done = subprocess.run([str(ZIGGURAT), "info", str(self.folder / "a.mcap")], capture_output=True)
+        self.assertEqual(done.returncode, FINISHED)
+        self.assertNotIn(b"\x1b]", done.stdout)
+        self.assertIn(b"evil\\u001b", done.stdout)
+
+    def test_what_is_no_recording_gets_one_error(self):
+        for text in (b"", b"\x89MCAP0\r", self.text.encode()):
+            path = self.folder / "x.mcap"
+            path.write_bytes(text)
+            done = subprocess.run([str(ZIGGURAT), "info", str(path)], capture_output=True, text=True)
+            self.assertEqual(done.returncode, FAULT)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertIn("no MCAP file", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
