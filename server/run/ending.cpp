@@ -13,16 +13,6 @@
 
 namespace ziggurat::run {
 
-/// After the last lines of controllers. @throws recording::WriteError
-void Run::close_recording() {
-  if (!recorder_) return;
-  recorder_->close();
-  const auto why = recorder_->take_failure();
-  if (!why) return;
-  if (options_.record_strict) throw recording::WriteError(*why);
-  console_.fault(fmt::format("{}; the recording is not complete", *why));
-}
-
 /// The error is reported by the caller. Before that controllers are told, and the other files are
 /// completed; errors on the way are of no interest any more.
 void Run::end_in_failure(const std::exception& error) {
@@ -34,7 +24,10 @@ void Run::end_in_failure(const std::exception& error) {
     watch_.end_run({wire::EndReason::failed, error.what(), world_.simulation.state().tick});
   } catch (const reports::ConsoleError&) {
   }
-  if (recorder_) recorder_->close();
+  try {
+    if (recorded_) recorded_->close();
+  } catch (const recording::WriteError&) {
+  }
 }
 
 void Run::complete_summary() {

@@ -15,6 +15,7 @@
 #include "network/glob.h"
 #include "processes/places.h"
 #include "processes/scripts.h"
+#include "recording/output_file.h"
 #include "run/build.h"
 #include "run/required_scripts.h"
 
@@ -75,6 +76,27 @@ std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& pa
   };
 }
 
+recorder::Start start_of(const Options& options, const supervision::World& world,
+                         const ReadFiles& files, std::uint64_t last_tick,
+                         const std::vector<std::size_t>& idle) {
+  recorder::Start start;
+  start.scene = world.path;
+  start.scene_hash = world.scene_hash;
+  start.seed = world.seed;
+  start.lenient = options.scene_file.lenient;
+  start.clock = clock_of(options);
+  start.last_tick = last_tick;
+  start.controllers = controllers_of(world);
+  start.robots_without_controller = idle;
+  start.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(
+                                                        std::chrono::system_clock::now())));
+  start.build = this_build();
+  start.arguments = options.arguments;
+  start.files = files.all();
+  add_scripts(world, start);
+  return start;
+}
+
 }  // namespace
 
 scene::OpenFile ReadFiles::keep(scene::OpenFile open) {
@@ -95,42 +117,44 @@ std::vector<std::string> ReadFiles::names() const {
   return names;
 }
 
-channels::Population population_of(const supervision::World& world, std::uint64_t last_tick) {
-  const simulation::Simulation& simulation = world.simulation;
-  return {world.scene,           world.path,           world.scene_hash, world.seed, last_tick,
-          simulation.layout(), simulation.entities(), simulation.state()};
+RecordedRun::RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
+                         std::uint64_t last_tick, const std::vector<std::size_t>& idle,
+                         reports::Console& console)
+    : world_(world),
+      console_(console),
+      last_tick_(last_tick),
+      is_strict_(options.record_strict),
+      recorder_({options.record,
+                 options.record_compression,
+                 {wish_of(options.record_topics), options.record_every}},
+                start_of(options, world, files, last_tick, idle)) {}
+
+void RecordedRun::tick() {
+  simulation::Simulation& simulation = world_.simulation;
+  if (std::exchange(is_population_new_, false)) {
+    recorder_.populate({world_.scene, world_.path, world_.scene_hash, world_.seed, last_tick_,
+                        simulation.layout(), simulation.entities(), simulation.state()});
+  }
+  recorder_.tick({simulation.state(), simulation.observations(), simulation.commands(),
+                  simulation.contacts(), {}});
+  report_failure(
+      fmt::format("the recording ends before tick {}, the run goes on", simulation.state().tick));
 }
 
-std::unique_ptr<recorder::Recorder> make_recorder(const Options& options,
-                                                  const supervision::World& world,
-                                                  const ReadFiles& files, std::uint64_t last_tick,
-                                                  const std::vector<std::size_t>& idle) {
-  if (options.record.empty()) return nullptr;
-  recorder::Start start;
-  start.scene = world.path;
-  start.scene_hash = world.scene_hash;
-  start.seed = world.seed;
-  start.lenient = options.scene_file.lenient;
-  start.clock = clock_of(options);
-  start.last_tick = last_tick;
-  start.controllers = controllers_of(world);
-  start.robots_without_controller = idle;
-  start.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(
-                                                        std::chrono::system_clock::now())));
-  start.build = this_build();
-  start.arguments = options.arguments;
-  start.files = files.all();
-  add_scripts(world, start);
-  auto made = std::make_unique<recorder::Recorder>(
-      recorder::Settings{options.record,
-                         options.record_compression,
-                         {wish_of(options.record_topics), options.record_every}},
-      std::move(start));
-  made->populate(population_of(world, last_tick));
-  return made;
+void RecordedRun::close() {
+  recorder_.close();
+  report_failure("the recording is not complete");
 }
 
-void record(const supervision::Act& done, recorder::Recorder& to) {
+void RecordedRun::report_failure(const std::string& consequence) {
+  const auto why = recorder_.take_failure();
+  if (!why) return;
+  if (is_strict_) throw recording::WriteError(*why);
+  console_.fault(fmt::format("{}; {}", *why, consequence));
+}
+
+void RecordedRun::act(const supervision::Act& done) {
+  recorder::Recorder& to = recorder_;
   std::visit(
       [&](const auto& act) {
         using Type = std::decay_t<decltype(act)>;
@@ -140,10 +164,13 @@ void record(const supervision::Act& done, recorder::Recorder& to) {
           std::vector<recorder::EmbeddedFile> files;
           for (const auto& [name, text] : act.files) files.push_back({name, text});
           to.spawned(act.xml, std::move(files));
+          is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Removed>) {
           to.removed(act.entity);
+          is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::WasReset>) {
           to.reset(act.seed);
+          is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Paused>) {
           to.paused();
         } else {

@@ -1,11 +1,13 @@
 #pragma once
 // --record: what a recording is told of its run.
 
-#include <memory>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "recorder/recorder.h"
+#include "reports/console.h"
 #include "run/options.h"
 #include "scene/files.h"
 #include "supervision/act.h"
@@ -26,19 +28,39 @@ class ReadFiles {
   std::vector<recorder::EmbeddedFile> files_;
 };
 
-/// Begins the recording that the options ask for; null if they do not.
-/// @param last_tick  0: until stopped
-/// @param idle       robots without controller: into Layout::robots
-/// @throws recording::WriteError
-std::unique_ptr<recorder::Recorder> make_recorder(const Options& options,
-                                                  const supervision::World& world,
-                                                  const ReadFiles& files, std::uint64_t last_tick,
-                                                  const std::vector<std::size_t>& idle);
+/// A run on its way into a recording.
+class RecordedRun {
+ public:
+  /// Begins the recording that the options ask for. All but the options must outlive this.
+  /// @param last_tick  0: until stopped
+  /// @param idle       robots without controller: into Layout::robots
+  /// @throws recording::WriteError
+  RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
+              std::uint64_t last_tick, const std::vector<std::size_t>& idle,
+              reports::Console& console);
 
-/// @param last_tick  0: until stopped
-channels::Population population_of(const supervision::World& world, std::uint64_t last_tick);
+  bool wants_contacts() const { return recorder_.wants("/contacts"); }
+  /// A tick was published. If the recording can't be written any more, a message is printed, once.
+  /// @throws recording::WriteError instead, if the run is to end then
+  void tick();
+  void act(const supervision::Act& act);
+  void log(channels::Severity severity, std::string_view name, std::string_view text) {
+    recorder_.log(severity, name, text);
+  }
+  /// The world is about to be stepped.
+  void step() { recorder_.step(world_.simulation.commands()); }
+  /// After the last lines of controllers. @throws as tick()
+  void close();
 
-/// Tells the recorder.
-void record(const supervision::Act& act, recorder::Recorder& to);
+ private:
+  void report_failure(const std::string& consequence);
+
+  supervision::World& world_;
+  reports::Console& console_;
+  const std::uint64_t last_tick_;
+  const bool is_strict_;
+  recorder::Recorder recorder_;
+  bool is_population_new_ = true;
+};
 
 }  // namespace ziggurat::run

@@ -6,7 +6,6 @@
 #include <array>
 #include <chrono>
 #include <utility>
-#include <variant>
 
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
@@ -45,8 +44,10 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       scripts_(script_paths(world_.scene, world_.simulation.layout(), path_)),
       folder_(signals.guardian()),
       recorders_(options, world_),
-      recorder_(make_recorder(options, world_, files_, plan_.ticks.value_or(0),
-                              robots_without_controller())),
+      recorded_(options.record.empty()
+                    ? nullptr
+                    : std::make_unique<RecordedRun>(options, world_, files_, plan_.ticks.value_or(0),
+                                                    robots_without_controller(), console_)),
       controllers_(start_controllers()),
       callers_(server_),
       supervision_(supervision_settings(), world_, server_, callers_, controllers_, console_),
@@ -56,15 +57,13 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
               plan_.ticks},
              world_, server_, controllers_, supervision_, signals, console_, showing_.get(),
-             [this](auto... line) { tell_line(line...); }),
+             [this](auto severity, auto name, auto text) {
+               if (showing_) showing_->log(severity, name, text);
+               if (recorded_) recorded_->log(severity, name, text);
+             }),
       waits_for_viewer_(showing_ && !options.paused) {
-  if (recorder_) {
-    supervision_.tell_acts([this](const supervision::Act& act) {
-      record(act, *recorder_);
-      is_population_new_ |= std::holds_alternative<supervision::Spawned>(act) ||
-                            std::holds_alternative<supervision::Removed>(act) ||
-                            std::holds_alternative<supervision::WasReset>(act);
-    });
+  if (recorded_) {
+    callers_.tell_acts([this](const supervision::Act& act) { recorded_->act(act); });
   }
   print_notices();
   summary_.scene = path_;
@@ -218,7 +217,7 @@ int Run::execute() {
   }
   complete_summary();
   watch_.end_run(end_message(summary_));
-  close_recording();
+  if (recorded_) recorded_->close();
   summary_.failures = watch_.failures();
   recorders_.write_summary(summary_);
   for (const auto& picture : recorders_.pictures()) console_.result(picture);
@@ -261,7 +260,7 @@ Ending Run::run_world() {
     supervision_.published();
     timer_.end_phase(Phase::exchange, summary_);
     recorders_.tick(simulation);
-    if (recorder_) record_tick();
+    if (recorded_) recorded_->tick();
     if (showing_) showing_->tick(timer_.last_tick());
     timer_.end_phase(Phase::recording, summary_);
 
@@ -279,39 +278,14 @@ Ending Run::run_world() {
     if (showing_) showing_->answered();
     timer_.end_phase(Phase::recording, summary_);
     if (is_last) return Ending::finished;
-    if (recorder_) record_answer();
+    if (recorded_) recorded_->step();
     simulation.list_contacts((showing_ && showing_->wants_contacts()) ||
-                             (recorder_ && recorder_->wants("/contacts")));
+                             (recorded_ && recorded_->wants_contacts()));
     simulation.step();
     timer_.end_phase(Phase::physics, summary_);
     if (!printed_miss_) print_first_miss();
     timer_.end_tick(supervision_, schedule_.is_paced());
   }
-}
-
-channels::Moment Run::moment() {
-  simulation::Simulation& simulation = world_.simulation;
-  return {simulation.state(), simulation.observations(), simulation.commands(),
-          simulation.contacts(), {}};
-}
-
-void Run::record_tick() {
-  if (std::exchange(is_population_new_, false)) {
-    recorder_->populate(population_of(world_, plan_.ticks.value_or(0)));
-  }
-  recorder_->tick(moment());
-  if (const auto why = recorder_->take_failure()) {
-    if (options_.record_strict) throw recording::WriteError(*why);
-    console_.fault(fmt::format("{}; the recording ends before tick {}, the run goes on", *why,
-                               world_.simulation.state().tick));
-  }
-}
-
-void Run::record_answer() { recorder_->step(world_.simulation.commands()); }
-
-void Run::tell_line(channels::Severity severity, std::string_view name, std::string_view text) {
-  if (showing_) showing_->log(severity, name, text);
-  if (recorder_) recorder_->log(severity, name, text);
 }
 
 /// A notice when the physics' solver has not converged for the first time.

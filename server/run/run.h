@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "network/server.h"
@@ -80,13 +79,8 @@ class Run {
   std::optional<Ending> wait(const Wait& step);
   bool reset_world();
   void print_first_miss();
-  void record_tick();
-  void record_answer();
-  void tell_line(channels::Severity severity, std::string_view name, std::string_view text);
-  channels::Moment moment();
 
   // Ending.
-  void close_recording();
   void end_in_failure(const std::exception& error);
   void complete_summary();
   bool report_hil();
@@ -110,7 +104,7 @@ class Run {
   const std::vector<std::string> scripts_;  ///< per robot of the scene; empty = none
   const processes::PrivateFolder folder_;
   Recorders recorders_;
-  const std::unique_ptr<recorder::Recorder> recorder_;  ///< null: not recorded
+  const std::unique_ptr<RecordedRun> recorded_;  ///< null: not recorded
   processes::Controllers controllers_;
   supervision::Callers callers_;
   supervision::Supervision supervision_;
@@ -120,7 +114,6 @@ class Run {
   reports::Summary summary_;
   PhaseTimer timer_;
   bool printed_miss_ = false;
-  bool is_population_new_ = false;  ///< for the recorder
   bool waits_for_viewer_ = false;
   RadioWatch radio_watch_;
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "network/server.h"
+#include "supervision/act.h"
 
 namespace ziggurat::supervision {
 
@@ -33,12 +34,19 @@ class Callers {
   void done(const network::Call& call, std::uint64_t tick);
   void refused(const network::Call& call, const wire::Fault& fault);
 
+  /// From now on each act is told when it is done, in order.
+  void tell_acts(TellAct tell) { tell_act_ = std::move(tell); }
+  void tell(const Act& act) const {
+    if (tell_act_) tell_act_(act);
+  }
+
   /// How many calls have changed the world beside a tick: moves, spawns, removals.
   std::uint64_t changes() const { return changes_; }
 
  private:
   network::Server& server_;
   LocalCalls local_;
+  TellAct tell_act_;
   std::uint64_t changes_ = 0;
 };
 

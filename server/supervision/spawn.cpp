@@ -107,7 +107,7 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
                 std::string(error.what()).substr(0, longest_message));
   }
   for (const scene::Problem& notice : addition.problems) console_.problem(notice);
-  tell(act);
+  callers_.tell(act);
   ++spawned_;
   spawnable_size_ -= addition.size;
   if (entity.controller) add_controller(entity, script.path);
@@ -144,7 +144,7 @@ Supervision::Reply Supervision::remove(const network::Call& call) {
     if (all[i].entity == *entity) robots.push_back(i);
   }
   world_.simulation.remove(*entity);
-  tell(Removed{id});
+  callers_.tell(Removed{id});
   server_.remove_robots(robots, fmt::format("'{}' was removed from the world.", id));
   return done(call);
 }

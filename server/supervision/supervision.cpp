@@ -143,7 +143,7 @@ Supervision::Reply Supervision::pause(const network::Call& call) {
   steps_left_ = 0;
   server_.set_paused(true);
   is_pause_asked_ = true;
-  if (!was_asked) tell(Paused{});  // it may be handled again until the world stands
+  if (!was_asked) callers_.tell(Paused{});  // it may be handled again until the world stands
   paused_.update(server_.paused());
   // Before tick 0 nothing moves: the world will stand there.
   return server_.paused() || !is_gathered_ ? done(call) : Reply::later;
@@ -155,7 +155,7 @@ Supervision::Reply Supervision::resume(const network::Call& call) {
   steps_left_ = 0;
   server_.set_paused(false);
   is_pause_asked_ = false;
-  tell(Resumed{});
+  callers_.tell(Resumed{});
   paused_.update(server_.paused());
   return done(call);
 }
@@ -205,7 +205,7 @@ void Supervision::reset_done() {
   spawned_ = 0;
   spawnable_size_ = settings_.max_spawned_size;
   controllers_.forget_robots(world_.simulation.layout().robots.size());
-  tell(WasReset{world_.seed});
+  callers_.tell(WasReset{world_.seed});
   done(*resetting_);
   resetting_.reset();
 }
@@ -252,7 +252,7 @@ Supervision::Reply Supervision::move(const network::Call& call) {
     pose.orientation = math::Quaternion(q[0], q[1], q[2], q[3]).normalized();
   }
   world_.simulation.move(*entity, pose);
-  tell(Moved{request.text, pose});
+  callers_.tell(Moved{request.text, pose});
   return done(call);
 }
 

@@ -6,14 +6,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "network/server.h"
 #include "processes/controllers.h"
 #include "processes/spawned_scripts.h"
 #include "reports/console.h"
-#include "supervision/act.h"
 #include "supervision/callers.h"
 #include "supervision/tick_budget.h"
 #include "supervision/world.h"
@@ -53,9 +51,6 @@ class Supervision {
   Supervision(const Settings& settings, World& world, network::Server& server, Callers& callers,
               processes::Controllers& controllers, reports::Console& console);
 
-  /// From now on each act is told when it is done, in order.
-  void tell_acts(TellAct tell) { tell_act_ = std::move(tell); }
-
   /// Answers the requests that can be answered now; the others wait for their tick. Call it
   /// whenever the server wakes, never while physics runs.
   void serve();
@@ -88,9 +83,6 @@ class Supervision {
   Reply spawn(const network::Call& call);
   Reply remove(const network::Call& call);
   void add_controller(const scene::Entity& entity, const std::string& script);
-  void tell(const Act& act) const {
-    if (tell_act_) tell_act_(act);
-  }
   Reply fail(const network::Call& call, wire::ErrorCode code, std::string field,
              std::string message);
   Reply fail(const network::Call& call, wire::Fault fault);
@@ -113,7 +105,6 @@ class Supervision {
   std::optional<std::string> shutdown_;  // the reason
   clock::time_point start_ = clock::now();
   PauseTimer paused_;
-  TellAct tell_act_;
   TickBudget budget_;
 };
 
