@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "devices/kind.h"
+#include "math/archive.h"
 
 namespace ziggurat::devices {
 namespace {
@@ -49,6 +50,13 @@ class Batteries final : public Kind {
       cell.charge = std::max(0.0, cell.charge - used);
       cell.pose = pose;
       tick.observations.batteries[i] = read(cell, used);
+    }
+  }
+
+  void archive(math::Archive& archive) override {
+    for (Cell& cell : cells_) {
+      archive("charge", cell.charge);
+      archive("pose", cell.pose);
     }
   }
 

@@ -1,4 +1,5 @@
 #include "devices/devices.h"
+#include "math/archive.h"
 
 #include <algorithm>
 #include <array>
@@ -56,6 +57,10 @@ void Devices::after_substep(Tick& tick) {
 
 void Devices::sense(Tick& tick) {
   for (const auto& kind : kinds_) kind->sense(tick);
+}
+
+void Devices::archive(math::Archive& archive) {
+  for (const auto& kind : kinds_) kind->archive(archive);
 }
 
 bool Devices::casts_rays() const {

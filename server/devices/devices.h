@@ -24,6 +24,7 @@ class Devices {
   void apply(Tick& tick);
   void after_substep(Tick& tick);
   void sense(Tick& tick);
+  void archive(math::Archive& archive);
   bool casts_rays() const;
   bool needs_index() const;
 

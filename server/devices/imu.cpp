@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "devices/kind.h"
+#include "math/archive.h"
 #include "math/random.h"
 
 namespace ziggurat::devices {
@@ -109,6 +110,15 @@ class Imus final : public Kind {
       tick.observations.imus[i] = {
           array_of(force + draw(sensor.random, imu.acceleration_noise)),
           array_of(turning + draw(sensor.random, imu.angular_velocity_noise))};
+    }
+  }
+
+  /// The samples of a tick begin anew in each.
+  void archive(math::Archive& archive) override {
+    for (Sensor& sensor : sensors_) {
+      archive("random", sensor.random);
+      archive("force_bias", sensor.force_bias);
+      archive("turning_bias", sensor.turning_bias);
     }
   }
 

@@ -6,6 +6,10 @@
 #include "devices/carrier.h"
 #include "devices/tick.h"
 
+namespace ziggurat::math {
+class Archive;
+}
+
 namespace ziggurat::devices {
 
 /// Every function may do nothing. None of those of a tick allocates once sizes repeat.
@@ -38,6 +42,9 @@ class Kind {
 
   /// After physics, with rays and index at the new poses.
   virtual void sense(Tick& /*tick*/) {}
+
+  /// What the next tick reads beyond the world: charges, random streams.
+  virtual void archive(math::Archive& /*archive*/) {}
 
   virtual bool casts_rays() const { return false; }   ///< then Tick::rays has the current poses
   virtual bool needs_index() const { return false; }  ///< likewise Tick::index

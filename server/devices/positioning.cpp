@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "devices/kind.h"
+#include "math/archive.h"
 #include "math/random.h"
 
 namespace ziggurat::devices {
@@ -42,6 +43,10 @@ class Positioning final : public Kind {
   }
 
   void sense(Tick& tick) override { sense(tick, 0); }
+
+  void archive(math::Archive& archive) override {
+    for (Sensor& sensor : sensors_) archive("random", sensor.random);
+  }
 
  private:
   void sense(Tick& tick, std::size_t first) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "devices/kind.h"
+#include "math/archive.h"
 #include "math/random.h"
 
 namespace ziggurat::devices {
@@ -81,6 +82,10 @@ class Proximity final : public Kind {
   }
 
   bool casts_rays() const override { return !sensors_.empty(); }
+
+  void archive(math::Archive& archive) override {
+    for (Robot& robot : robots_) archive("random", robot.random);
+  }
 
  private:
   struct Sensor {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "devices/kind.h"
+#include "math/archive.h"
 #include "math/random.h"
 
 namespace ziggurat::devices {
@@ -56,6 +57,12 @@ class RangeAndBearing final : public Kind {
     tick.observations.range_and_bearing_data = tick.state.range_and_bearing_data;
     for (const media::Sighting& pair : medium_.sight(tick.layout, tick.index)) {
       receive(tick, pair, *receivers_[pair.receiver]);
+    }
+  }
+
+  void archive(math::Archive& archive) override {
+    for (auto& receiver : receivers_) {
+      if (receiver) archive("random", receiver->random);
     }
   }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "devices/kind.h"
+#include "math/archive.h"
 
 namespace ziggurat::devices {
 namespace {
@@ -68,6 +69,8 @@ class Turrets final : public Kind {
       tick.observations.turrets[i] = tick.physics.turret(layout.entity);
     }
   }
+
+  void archive(math::Archive& archive) override { archive("last_errors", last_errors_); }
 
  private:
   /// The dialect's control of the angle, once per tick.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "devices/kind.h"
+#include "math/archive.h"
 #include "math/random.h"
 
 namespace ziggurat::devices {
@@ -82,6 +83,15 @@ class Wheels final : public Kind {
       reading.velocity_right = right + draw(axle.measuring, axle.use.velocity_noise);
       reading.distance_left = left * tick_length_ + draw(axle.measuring, axle.use.distance_noise);
       reading.distance_right = right * tick_length_ + draw(axle.measuring, axle.use.distance_noise);
+    }
+  }
+
+  void archive(math::Archive& archive) override {
+    for (Axle& axle : axles_) {
+      archive("driving", axle.driving);
+      archive("measuring", axle.measuring);
+      archive("bias", axle.bias);
+      archive("velocity", axle.velocity);
     }
   }
 

@@ -5,6 +5,10 @@
 
 #include "math/pose.h"
 
+namespace ziggurat::math {
+class Archive;
+}
+
 namespace ziggurat::dynamics {
 
 using math::Quaternion;

@@ -77,6 +77,9 @@ class System {
 
   Solver& solver() { return solver_; }
 
+  /// The state of all trees, and which sleep. Between two substeps, when nothing pushes.
+  void archive(math::Archive& archive);
+
  private:
   struct Item {
     int island;
@@ -108,6 +111,7 @@ class System {
     double command_asleep = 0;
     double force_bound = 0;                   // of changes [N], [N m] per radius of 1 m
     Vector3 force{0, 0, 0}, moment{0, 0, 0};  // when it fell asleep
+    void archive(math::Archive& archive);
   };
   std::vector<Sleeper> sleepers_;
   std::vector<int>

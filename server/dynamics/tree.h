@@ -96,6 +96,9 @@ class Tree {
   std::vector<double> before;     ///< q and v, kept while a flight is tried
   double flight_step = 0;         ///< the step that the integrator would take next [s]
 
+  /// The state: what the next substep reads.
+  void archive(math::Archive& archive);
+
   /// Leaves one link that is fixed to the world: nothing that moves. Takes no memory.
   void take_apart() noexcept;
 

@@ -10,6 +10,8 @@
 
 namespace ziggurat::math {
 
+class Archive;
+
 class RandomStream {
  public:
   /// @param seed     the run's seed
@@ -21,6 +23,9 @@ class RandomStream {
 
   /// Normal with the given mean and standard deviation (>= 0).
   double gaussian(double mean, double standard_deviation);
+
+  /// Where the stream has got to.
+  void archive(Archive& archive);
 
  private:
   std::mt19937_64 engine_;

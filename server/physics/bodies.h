@@ -16,6 +16,10 @@
 #include "physics/values.h"
 #include "scene/scene.h"
 
+namespace ziggurat::math {
+class Archive;
+}
+
 namespace ziggurat::physics {
 
 /// What moves as one. Its frame is at the centre of mass, along principal axes.
@@ -27,6 +31,8 @@ struct Part {
 
 /// A link of the scene, and where it sits in its part: alone, welded to others, or carried.
 struct LinkBody {
+  void archive(math::Archive& archive);  ///< what changes
+
   bool moves = false;
   double mass = 0;
   math::Vector3 inertia{0, 0, 0};  ///< principal [kg m^2]
@@ -102,6 +108,8 @@ struct Body {
 
   std::unique_ptr<Mechanism> mechanism;      ///< in the core that sweeps
   std::optional<Articulation> articulation;  ///< in the core by Newton's method
+
+  void archive(math::Archive& archive);  ///< what changes, but for what a core moves
 
   /// Whether a core moves it.
   bool present() const { return mechanism || articulation; }

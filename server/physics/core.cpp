@@ -1,5 +1,7 @@
 #include "physics/core.h"
 
+#include "math/archive.h"
+
 #include "physics/bullet/core.h"
 #include "physics/newton/core.h"
 
@@ -91,6 +93,10 @@ void Core::contacts(std::vector<Contact>& out) const {
 
 Convergence Core::convergence() const {
   return with(core_, [](const auto& core) { return core.convergence(); });
+}
+
+void Core::archive(math::Archive& archive) {
+  archive("newton", *std::get<std::unique_ptr<NewtonCore>>(core_));
 }
 
 }  // namespace ziggurat::physics

@@ -62,6 +62,9 @@ class Core {
 
   Convergence convergence() const;
 
+  /// The state. @pre it is not Bullet's core, which keeps some to itself
+  void archive(math::Archive& archive);
+
  private:
   std::variant<std::unique_ptr<SweepsCore>, std::unique_ptr<NewtonCore>> core_;
 };

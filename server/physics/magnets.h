@@ -34,6 +34,7 @@ class Magnets final : public Plugin {
   std::span<const StiffPair> stiff_pairs() const override { return stiff_; }
   void choose_stiff(std::span<const std::uint8_t> entities) override;
   void push_stiff(std::span<Body> bodies, double share) override;
+  void archive(math::Archive& archive, std::span<const Body> bodies) override;
 
  private:
   void give_up_field();

@@ -10,6 +10,10 @@
 
 #include "physics/bodies.h"
 
+namespace ziggurat::math {
+class Archive;
+}
+
 namespace ziggurat::physics {
 
 /// One of the two that touch.
@@ -76,6 +80,9 @@ class Plugin {
 
   /// Called with the poses at the substep's end, after its contacts.
   virtual void after_substep(std::span<Body> /*bodies*/, double /*substep*/) {}
+
+  /// What the next substep reads beyond the bodies. @param bodies  as they are then
+  virtual void archive(math::Archive& /*archive*/, std::span<const Body> /*bodies*/) {}
 };
 
 }  // namespace ziggurat::physics

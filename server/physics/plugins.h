@@ -26,6 +26,7 @@ class Plugins {
   Plugin* stiff() const;
   /// Tells of contacts, then of the end.
   void after_substep(std::span<Body> bodies, double substep, const Core& core);
+  void archive(math::Archive& archive, std::span<const Body> bodies);
 
  private:
   void tell_contacts(std::span<Body> bodies);

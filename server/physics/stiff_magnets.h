@@ -21,6 +21,7 @@ struct Need {
   double fewest_parts = 0;   ///< and never into fewer
 
   Need& operator+=(const Need& other);
+  void archive(math::Archive& archive);
 };
 
 /// What moves with some magnets.
@@ -41,6 +42,9 @@ struct Carrier {
   std::uint64_t seen_before = 0;           ///< the substep of these:
   math::Vector3 velocity_before{0, 0, 0};  ///< [m/s]
   math::Vector3 turning_before{0, 0, 0};   ///< [rad/s]
+
+  /// All but what it is made of.
+  void archive(math::Archive& archive);
 };
 
 /// A pair of fixed magnets of different carriers that are close enough to matter.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "physics/archive.h"
 #include "physics/contact_list.h"
 #include "physics/convert.h"
 #include "physics/core.h"
@@ -223,6 +224,15 @@ void World::read(std::size_t entity, world::State& state) const {
   }
   const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
   state.origins[entity] = stepped ? reference * body.origin_from_reference : body.placed;
+}
+
+void archive_fields(math::Archive& archive, World& world) {
+  World::Parts& p = *world.parts_;
+  archive("bodies", p.bodies);
+  archive("stepped", p.stepped);
+  archive.require(p.stepped <= p.bodies.size(), "is more than there are bodies");
+  archive("core", p.core);
+  p.plugins.archive(archive, p.bodies);
 }
 
 Convergence World::convergence() const { return parts_->core.convergence(); }

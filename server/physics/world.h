@@ -13,6 +13,10 @@
 #include "world/contact.h"
 #include "world/state.h"
 
+namespace ziggurat::math {
+class Archive;
+}
+
 namespace ziggurat::physics {
 
 class World {
@@ -102,6 +106,12 @@ class World {
   Stiffness stiffest_bond() const;
 
   Convergence convergence() const;
+
+  /// All that the next substep reads, between two substeps. What is read must come from a world in
+  /// which the same was added and removed in the same order.
+  /// @pre the solver is newton: Bullet keeps state to itself
+  /// @throws math::ArchiveError; then the state is undefined
+  friend void archive_fields(math::Archive& archive, World& world);
 
   /// Kinetic plus gravitational energy of everything that moves [J].
   double energy() const;

@@ -4,16 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "devices/devices.h"
-#include "media/devices_index.h"
-#include "physics/ray.h"
-#include "physics/world.h"
 #include "simulation/finite.h"
 #include "simulation/layout.h"
+#include "simulation/parts.h"
 #include "simulation/place.h"
 
 namespace ziggurat::simulation {
@@ -28,33 +24,6 @@ double substep_length(const scene::Scene& scene) {
 }
 
 }  // namespace
-
-struct Simulation::Parts {
-  Parts(const scene::Scene& scene, const Options& options, world::Layout& layout);
-
-  /// All or nothing.
-  void spawn(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
-  void grow(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
-  void remove(std::size_t entity);
-  devices::Tick tick() { return {layout, state, observations, commands, physics, rays, *index}; }
-  void look_around();  // rays and index take the poses of the state
-
-  std::uint64_t seed;
-  unsigned ticks_per_second;
-  unsigned substeps;
-  double substep;  // [s]
-  physics::World physics;
-  physics::Rays rays;
-  const world::Layout& layout;
-  world::State state;
-  world::Observations observations;
-  world::Commands commands;
-  std::optional<media::DevicesIndex> index;
-  std::vector<world::Contact> contacts;  // of the last substep, if they are listed
-  devices::Devices devices;
-  std::vector<scene::Entity> entities;      // placed, then spawned: as in the layout
-  std::size_t in_physics = 0, in_rays = 0;  // entities
-};
 
 /// The world before an entity is added to it; puts it back unless told to keep the new one. Putting
 /// back moves and shrinks only, so that it can't fail.
@@ -102,6 +71,7 @@ class Simulation::Growing {
 
 Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& made)
     : seed(options.seed),
+      has_archive(scene.physics.solver == scene::Solver::newton),
       ticks_per_second(scene.experiment.ticks_per_second),
       substeps(scene.physics.iterations),
       substep(substep_length(scene)),
@@ -180,13 +150,19 @@ void Simulation::reset(const scene::Scene& scene, const Options& options) {
   }
 }
 
-void Simulation::move(std::size_t entity, const math::Pose& pose) {
-  parts_->physics.move(entity, pose);
-  parts_->physics.read(parts_->state);
-  parts_->look_around();
+void Simulation::Parts::move(std::size_t entity, const math::Pose& pose) {
+  physics.move(entity, pose);
+  physics.read(state);
+  look_around();
 }
 
-void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity) {
+void Simulation::move(std::size_t entity, const math::Pose& pose) {
+  parts_->move(entity, pose);
+  if (parts_->has_archive) return;
+  parts_->history.acts.push_back({Act::Kind::move, parts_->state.tick, entity, pose, {}, {}});
+}
+
+void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, std::string xml) {
   if (const auto other = parts_->physics.overlapped_by(entity)) {
     scene::Problem problem;
     problem.file = scene::file_of(scene, entity.where);
@@ -195,10 +171,18 @@ void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity) {
                                entity.id, layout_->entities[*other].id);
     throw scene::SceneError({problem});
   }
+  Act act{Act::Kind::spawn, parts_->state.tick, layout_->entities.size(), {},
+          std::make_shared<const scene::Entity>(entity), std::move(xml)};
+  auto& acts = parts_->history.acts;
+  acts.reserve(acts.size() + 1);  // what is done can be written down
   parts_->spawn(scene, entity, *layout_);
+  acts.push_back(std::move(act));
 }
 
-void Simulation::remove(std::size_t entity) { parts_->remove(entity); }
+void Simulation::remove(std::size_t entity) {
+  parts_->remove(entity);
+  parts_->history.acts.push_back({Act::Kind::remove, parts_->state.tick, entity, {}, {}, {}});
+}
 
 const world::Layout& Simulation::layout() const { return *layout_; }
 const std::vector<scene::Entity>& Simulation::entities() const { return parts_->entities; }
@@ -207,33 +191,37 @@ const world::Observations& Simulation::observations() const { return parts_->obs
 world::Commands& Simulation::commands() { return parts_->commands; }
 
 void Simulation::step() {
-  Parts& p = *parts_;
-  devices::Tick tick = p.tick();
-  p.state.rays.clear();
-  p.state.frusta.clear();
-  p.devices.apply(tick);
-  for (unsigned i = 0; i < p.substeps; ++i) {
-    p.physics.step();
-    p.devices.after_substep(tick);
+  parts_->note_commands();
+  parts_->step();
+}
+
+void Simulation::Parts::step() {
+  devices::Tick now = tick();
+  state.rays.clear();
+  state.frusta.clear();
+  devices.apply(now);
+  for (unsigned i = 0; i < substeps; ++i) {
+    physics.step();
+    devices.after_substep(now);
   }
-  p.state.tick += 1;
-  p.state.time_ns =
-      std::llround(static_cast<long double>(p.state.tick) * 1e9L / p.ticks_per_second);
-  p.physics.read(p.state);
-  if (const auto entity = first_not_finite(p.layout, p.state)) {
+  state.tick += 1;
+  state.time_ns = std::llround(static_cast<long double>(state.tick) * 1e9L / ticks_per_second);
+  physics.read(state);
+  if (const auto entity = first_not_finite(layout, state)) {
     throw std::runtime_error(fmt::format(
         "tick {}: the pose or velocity of '{}' is not finite any more; look for forces, speeds or "
         "stiff motors that are too large for the substep, or write more iterations on <dynamics3d>",
-        p.state.tick, p.layout.entities[*entity].id));
+        state.tick, layout.entities[*entity].id));
   }
-  p.look_around();
-  p.observations.tick = p.state.tick;
-  p.observations.time_ns = p.state.time_ns;
-  p.devices.sense(tick);
+  look_around();
+  observations.tick = state.tick;
+  observations.time_ns = state.time_ns;
+  devices.sense(now);
 }
 
 void Simulation::list_contacts(bool wanted) {
   parts_->physics.list_contacts(wanted ? &parts_->contacts : nullptr);
+  parts_->lists_contacts = wanted;
   if (!wanted) parts_->contacts.clear();
 }
 const std::vector<world::Contact>& Simulation::contacts() const { return parts_->contacts; }

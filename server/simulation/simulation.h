@@ -11,6 +11,7 @@
 #include "physics/values.h"
 #include "scene/scene.h"
 #include "simulation/place.h"
+#include "simulation/snapshot.h"
 #include "world/commands.h"
 #include "world/contact.h"
 #include "world/layout.h"
@@ -52,9 +53,10 @@ class Simulation {
   /// the next tick. The observations of a new robot are those of tick 0.
   /// @param scene  the one that this was made from
   /// @param entity  its id must differ from those of all entities that are present
+  /// @param xml    the element, for snapshots that are written to files; may be empty
   /// @throws scene::SceneError if it overlaps another entity, render::RenderError if its camera
   /// needs pictures and there can't be any, std::bad_alloc; then nothing changes
-  void spawn(const scene::Scene& scene, const scene::Entity& entity);
+  void spawn(const scene::Scene& scene, const scene::Entity& entity, std::string xml = {});
 
   /// Takes an entity out. Its places stay in all arrays, as they are; so does its name.
   /// @param entity  into Layout::entities, one that is present
@@ -72,6 +74,19 @@ class Simulation {
 
   /// Of the last tick's state and observations.
   std::uint64_t hash() const;
+
+  /// The world as it is, commands included. @throws SnapshotError if that can't be had
+  Snapshot snapshot() const;
+  /// Puts the world back: what follows is what followed the snapshot, bit for bit, with the same
+  /// commands. Entities that came since are gone, those that went are back.
+  /// @param scene  the one that both were made from
+  /// @throws SnapshotError, if it is none of this scene; then nothing changes
+  void restore(const scene::Scene& scene, const Snapshot& snapshot);
+  /// What was done to the world since the start, as far as snapshots need it.
+  const History& history() const;
+  /// The first field in which the state differs from that of a snapshot: empty if none does, or if
+  /// the state can't be copied.
+  std::string first_difference(const Snapshot& snapshot) const;
 
   /// What the author of the scene should know before the run: sentences, usually none.
   std::vector<std::string> notices() const;

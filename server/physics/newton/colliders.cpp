@@ -3,6 +3,7 @@
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "physics/convert.h"
 #include "physics/make_room.h"
@@ -274,6 +275,8 @@ void Colliders::find_near(std::vector<Near>& out) {
     const ColliderGroup& b = groups[index_of(*pairs[i].m_pProxy1)];
     if (!(a.unchanged() && b.unchanged())) find_near(a, b, out);
   }
+  // Bullet's order depends on all that the broad phase has seen, which no snapshot has.
+  std::ranges::sort(out, {}, [](const Near& near) { return std::tie(near.a, near.b); });
 }
 
 void Colliders::find_near(std::vector<Near>& out, const TreeSet& chosen) {

@@ -42,6 +42,8 @@ struct Collider {
   btVector3 low{0, 0, 0}, high{0, 0, 0};          ///< corners of the box about it and its reach [m]
 
   std::unique_ptr<btCollisionShape> outline;  ///< for the box about it
+
+  void archive(math::Archive& archive);
 };
 
 /// What the broad phase sees as one box: all colliders of an entity that moves, or one that stands.
@@ -85,6 +87,9 @@ class Colliders {
   void remove(std::size_t entity);
   /// Where a body was put, with all its pairs forgotten.
   void moved(std::size_t entity, const dynamics::Tree& tree);
+
+  /// Where they were in the last substep.
+  void archive(math::Archive& archive);
 
   /// Takes the poses and motions of all trees that are awake.
   void follow(const dynamics::System& system, double length);

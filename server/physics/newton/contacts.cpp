@@ -59,8 +59,6 @@ bool tumbles(const Collider& a, const Collider& b, const Approach& approach, dou
   return length * (turning + approach.fastest / std::min(a.smallest, b.smallest)) > far;
 }
 
-std::uint64_t key(std::size_t a, std::size_t b) { return std::uint64_t{a} << 32 | b; }
-
 }  // namespace
 
 /// The pair of a place that remembers it; a new one if it is new.
@@ -116,7 +114,7 @@ void Contacts::meet_all(double length) {
   turned_.clear();
   met_.clear();
   for (const Near& near : near_) {
-    meet(pair_of(near.a, near.b, places_[key(near.a, near.b)]), length);
+    meet(pair_of(near.a, near.b, places_[key_of(near.a, near.b)]), length);
   }
   if (!colliders_.floor) return;
   floor_pairs_.resize(colliders_.all.size(), 0);
@@ -252,7 +250,7 @@ void Contacts::drop(std::size_t number) {
   resting_ -= pair.rests;
   unused_.push_back(static_cast<int>(number));
   if (colliders_.floor != pair.b) {
-    places_.erase(key(pair.a, pair.b));
+    places_.erase(key_of(pair.a, pair.b));
   } else if (pair.a < floor_pairs_.size()) {
     floor_pairs_[pair.a] = 0;
   }

@@ -13,6 +13,9 @@
 
 namespace ziggurat::physics {
 
+/// Of a pair of colliders.
+inline std::uint64_t key_of(std::size_t a, std::size_t b) { return std::uint64_t{a} << 32 | b; }
+
 class Contacts {
  public:
   explicit Contacts(Colliders& colliders) : colliders_(colliders) {}
@@ -44,6 +47,9 @@ class Contacts {
   /// What touches, in ascending order.
   void tell(std::vector<Contact>& out) const;
 
+  /// What is remembered. @pre the colliders have been read
+  friend void archive_fields(math::Archive& archive, Contacts& contacts);
+
  private:
   static constexpr int most_points = 8;  // of a pair; 4 unless it tumbles
   struct Remembered {
@@ -51,6 +57,7 @@ class Contacts {
     math::Vector3 point{0, 0, 0};
     math::Vector3 impulse{0, 0, 0}, angular_impulse{0, 0, 0};  // for all forces of a substep
     double gap = 0;
+    void archive(math::Archive& archive);
   };
   struct Pair {
     std::size_t a = 0, b = 0;  // colliders
@@ -65,6 +72,7 @@ class Contacts {
     int count = 0;
     std::array<Remembered, most_points> points;
     std::size_t first = 0;  // of its contacts in the list
+    void archive(math::Archive& archive);
   };
 
   Pair& pair_of(std::size_t a, std::size_t b, int& place);
@@ -80,6 +88,7 @@ class Contacts {
   void keep_if(IsKept is_kept);
   void drop(std::size_t number);
   void drop_unseen();
+  void check_pairs(const math::Archive& archive) const;
 
   Colliders& colliders_;
   std::vector<Pair> pairs_;  // [0] is none

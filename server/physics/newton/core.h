@@ -40,6 +40,7 @@ class NewtonCore {
   void substep(std::span<Body> bodies, double length, int splits, Plugin* stiff);
   void contacts(std::vector<Contact>& out) const { contacts_.tell(out); }
   Convergence convergence() const { return convergence_; }
+  friend void archive_fields(math::Archive& archive, NewtonCore& core);
 
  private:
   /// A body that is held to a motion over the ground.

@@ -1,0 +1,158 @@
+// The state of the core: what its next substep reads. Boxes of the broad phase are not in it: what
+// is near does not depend on them.
+
+#include "physics/archive.h"
+
+#include "physics/newton/core.h"
+
+namespace ziggurat::physics {
+
+void Collider::archive(math::Archive& archive) {
+  archive("pose", pose);
+  archive("velocity", velocity);
+  archive("angular_velocity", angular_velocity);
+  archive("reach", reach);
+  archive("low", low);
+  archive("high", high);
+}
+
+void Colliders::archive(math::Archive& archive) {
+  archive("all", all);
+  archive("woke", woke);
+  for (ColliderGroup& group : groups) {
+    archive("rests", group.rests);
+    archive("rested", group.rested);
+    archive("low", group.low);
+    archive("high", group.high);
+    // A follow() leaves out the boxes of what rests.
+    if (archive.reads() && group.proxy) keep_in_box(group, 0, true);
+  }
+}
+
+void Contacts::Remembered::archive(math::Archive& archive) {
+  archive("on_a", on_a);
+  archive("on_b", on_b);
+  archive("point", point);
+  archive("impulse", impulse);
+  archive("angular_impulse", angular_impulse);
+  archive("gap", gap);
+}
+
+namespace {
+
+void archive_law(math::Archive& archive, dynamics::Contact& law) {
+  archive("a.tree", law.a.tree);
+  archive("a.link", law.a.link);
+  archive("b.tree", law.b.tree);
+  archive("b.link", law.b.link);
+  archive("normal", law.normal);
+  archive("friction", law.friction);
+  archive("rolling", law.rolling);
+  archive("spinning", law.spinning);
+  archive("restitution", law.restitution);
+}
+
+}  // namespace
+
+void Contacts::Pair::archive(math::Archive& archive) {
+  archive("live", live);
+  if (!live) {
+    if (archive.reads()) *this = {};
+    return;
+  }
+  archive("a", a);
+  archive("b", b);
+  archive("seen", seen);
+  archive("met", met);
+  archive("rests", rests);
+  archive_law(archive, law);
+  archive("normal", normal);
+  archive("earlier", earlier);
+  archive("share", share);
+  archive("count", count);
+  archive.require(count >= 0 && count <= most_points, "is too large");
+  for (int i = 0; i < count; ++i) archive("point", points[static_cast<std::size_t>(i)]);
+}
+
+void archive_fields(math::Archive& archive, Contacts& contacts) {
+  archive("substep", contacts.substep_);
+  archive("part", contacts.part_);
+  archive("resting", contacts.resting_);
+  archive("live", contacts.live_);
+  try {
+    archive.list("pairs", contacts.pairs_);
+    archive.list("unused", contacts.unused_);
+    contacts.check_pairs(archive);
+  } catch (...) {  // what is half read still gets destroyed
+    contacts.pairs_.clear();
+    contacts.unused_.clear();
+    throw;
+  }
+  if (!archive.reads()) return;
+  contacts.places_.clear();
+  contacts.floor_pairs_.assign(contacts.colliders_.all.size(), 0);
+  for (std::size_t i = 1; i < contacts.pairs_.size(); ++i) {
+    const Contacts::Pair& pair = contacts.pairs_[i];
+    if (!pair.live) continue;
+    const bool is_floor = contacts.colliders_.floor == pair.b;
+    (is_floor ? contacts.floor_pairs_[pair.a] : contacts.places_[key_of(pair.a, pair.b)]) =
+        static_cast<int>(i);
+  }
+  contacts.near_.clear();
+  contacts.contacts_.clear();
+  contacts.owner_.clear();
+  contacts.met_.clear();
+  contacts.turned_.clear();
+}
+
+/// What was read may index lists.
+void Contacts::check_pairs(const math::Archive& archive) const {
+  if (!archive.reads()) return;
+  std::size_t live = 0, resting = 0;
+  for (const Pair& pair : pairs_) {
+    if (!pair.live) continue;
+    ++live;
+    resting += pair.rests;
+    const std::size_t most = colliders_.all.size();
+    archive.require(&pair != pairs_.data() && pair.a < most && pair.b < most, "is beyond its list");
+    const Collider& a = colliders_.all[pair.a];
+    const Collider& b = colliders_.all[pair.b];
+    const auto is_that = [](const dynamics::LinkIndex& side, const Collider& collider) {
+      if (collider.entity == Collider::floor) return side.tree == -1;
+      return side.tree == static_cast<int>(collider.entity) &&
+             side.link == static_cast<int>(collider.part);
+    };
+    const bool is_floor = pair.b == colliders_.floor;
+    archive.require(a.present && (b.present || is_floor), "touches what is not there");
+    // Its law is unset before it has been met.
+    const bool unmet = pair.law.a.tree == -1 && pair.law.b.tree == -1 && pair.count == 0;
+    archive.require(unmet || (is_that(pair.law.a, a) && is_that(pair.law.b, b)),
+                    "joins links that its colliders do not have");
+  }
+  archive.require(live == live_ && resting == resting_, "counts wrongly");
+  std::vector<bool> is_unused(pairs_.size());
+  for (const int place : unused_) {
+    const bool is_place = place > 0 && static_cast<std::size_t>(place) < pairs_.size();
+    archive.require(is_place && !pairs_[static_cast<std::size_t>(place)].live &&
+                        !is_unused[static_cast<std::size_t>(place)],
+                    "is in use");
+    is_unused[static_cast<std::size_t>(place)] = true;
+  }
+}
+
+void archive_fields(math::Archive& archive, NewtonCore& core) {
+  archive("system", core.system_);
+  archive("colliders", core.colliders_);
+  archive("contacts", core.contacts_);
+  for (CoordinateJoint& joint : core.joints_) {
+    archive("target", joint.target);
+    archive("limit_impulse", joint.limit_impulse);
+    archive("motor_impulse", joint.motor_impulse);
+  }
+  for (NewtonCore::Held& held : core.held_) archive("held", held.impulses);
+  archive("islands", core.convergence_.islands);
+  archive("not_converged", core.convergence_.not_converged);
+  archive("worst", core.convergence_.worst);
+}
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,61 @@
+#pragma once
+// What a simulation is made of.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "devices/devices.h"
+#include "math/archive.h"
+#include "media/devices_index.h"
+#include "physics/ray.h"
+#include "physics/world.h"
+#include "simulation/simulation.h"
+
+namespace ziggurat::simulation {
+
+struct Simulation::Parts {
+  Parts(const scene::Scene& scene, const Options& options, world::Layout& layout);
+
+  /// All or nothing.
+  void spawn(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
+  void grow(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
+  void remove(std::size_t entity);
+  devices::Tick tick() { return {layout, state, observations, commands, physics, rays, *index}; }
+  void look_around();  // rays and index take the poses of the state
+  /// @throws std::runtime_error that names the first entity whose state is not finite then
+  void step();
+  void move(std::size_t entity, const math::Pose& pose);
+
+  /// All that the next step reads. @pre has_archive; @throws math::ArchiveError
+  void archive(math::Archive& archive);
+  /// Does again what was done to a world that began as this one did.
+  void repeat(const scene::Scene& scene, const Snapshot& snapshot, world::Layout& grown);
+  void repeat_act(const scene::Scene& scene, const Act& act, world::Layout& grown);
+  /// Writes down what the coming step takes, if only repeating gives the state again.
+  void note_commands();
+
+  std::uint64_t seed;
+  bool has_archive;  // otherwise only the same steps again give the same state
+  unsigned ticks_per_second;
+  unsigned substeps;
+  double substep;  // [s]
+  physics::World physics;
+  physics::Rays rays;
+  const world::Layout& layout;
+  world::State state;
+  world::Observations observations;
+  world::Commands commands;
+  std::optional<media::DevicesIndex> index;
+  std::vector<world::Contact> contacts;  // of the last substep, if they are listed
+  bool lists_contacts = false;
+  devices::Devices devices;
+  std::vector<scene::Entity> entities;      // placed, then spawned: as in the layout
+  std::size_t in_physics = 0, in_rays = 0;  // entities
+  History history;
+  std::size_t archive_size = 0;  // of the last snapshot [bytes]
+  std::vector<std::byte> commanded;  // of the last step that was written down
+};
+
+}  // namespace ziggurat::simulation

@@ -1,0 +1,177 @@
+#include "simulation/snapshot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "simulation/parts.h"
+#include "world/archive.h"
+
+namespace ziggurat::simulation {
+namespace {
+
+/// Of all commands that are kept to repeat a run [bytes].
+constexpr std::size_t longest_history = std::size_t{256} << 20;
+
+/// Whether two worlds of one scene and seed have the same entities in the same places.
+bool same_entities(const History& one, const History& other) {
+  return std::ranges::equal(one.acts, other.acts, [](const Act& a, const Act& b) {
+    return a.kind == b.kind && a.entity == b.entity && a.spawned == b.spawned;
+  });
+}
+
+std::vector<std::byte> bytes_of(const world::Layout& layout, world::Commands& commands) {
+  std::vector<std::byte> bytes;
+  auto archive = math::Archive::writer(bytes);
+  world::archive(archive, layout, commands);
+  return bytes;
+}
+
+void read_commands(std::span<const std::byte> bytes, const world::Layout& layout,
+                   world::Commands& commands) {
+  auto archive = math::Archive::reader(bytes);
+  world::archive(archive, layout, commands);
+}
+
+}  // namespace
+
+std::size_t Snapshot::size() const {
+  std::size_t size = state.size() + commands.size() + history.size;
+  for (const Act& act : history.acts) size += sizeof act + act.xml.size();
+  return size + history.commands.size() * sizeof(Commanded);
+}
+
+void Simulation::Parts::archive(math::Archive& archive) {
+  archive("physics", physics);
+  world::archive(archive, layout, state);
+  world::archive(archive, layout, state, observations);
+  world::archive(archive, layout, commands);
+  archive("devices", devices);
+  if (!archive.reads()) return;
+  archive.require(archive.left() == 0, "is followed by more bytes");
+  contacts.clear();
+  look_around();
+}
+
+/// A run that goes on for longer than there is room for can't go back.
+void Simulation::Parts::note_commands() {
+  if (has_archive || history.size > longest_history) return;
+  std::vector<std::byte> now = bytes_of(layout, commands);
+  if (now == commanded) return;
+  history.commands.push_back({state.tick, now});
+  history.size += now.size();
+  commanded = std::move(now);
+}
+
+const History& Simulation::history() const { return parts_->history; }
+
+Snapshot Simulation::snapshot() const {
+  Parts& p = *parts_;
+  if (p.history.size > longest_history) {
+    throw SnapshotError(fmt::format(
+        "There are too many commands since the start to repeat them: more than {} MiB. Snapshots of "
+        "long runs need solver=\"newton\".",
+        longest_history >> 20));
+  }
+  Snapshot snapshot;
+  snapshot.seed = p.seed;
+  snapshot.tick = p.state.tick;
+  snapshot.hash = hash();
+  snapshot.history = p.history;
+  snapshot.is_checked = true;
+  if (p.has_archive) {
+    snapshot.state.reserve(p.archive_size);
+    auto archive = math::Archive::writer(snapshot.state);
+    p.archive(archive);
+    p.archive_size = snapshot.state.size();
+  } else {
+    snapshot.commands = bytes_of(p.layout, p.commands);
+  }
+  return snapshot;
+}
+
+void Simulation::Parts::repeat_act(const scene::Scene& scene, const Act& act,
+                                   world::Layout& grown) {
+  const std::size_t entities = grown.entities.size();
+  const bool spawns = act.kind == Act::Kind::spawn;
+  if (spawns ? act.entity != entities || !act.spawned
+             : act.entity >= entities || state.is_absent(act.entity)) {
+    throw SnapshotError("An entity of the snapshot is not in the scene.");
+  }
+  switch (act.kind) {
+    case Act::Kind::spawn:
+      return grow(scene, *act.spawned, grown);
+    case Act::Kind::remove:
+      return remove(act.entity);
+    case Act::Kind::move:
+      return move(act.entity, act.pose);
+  }
+}
+
+void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapshot,
+                               world::Layout& grown) {
+  auto act = snapshot.history.acts.begin();
+  const auto end = snapshot.history.acts.end();
+  if (has_archive) {
+    for (; act != end; ++act) repeat_act(scene, *act, grown);
+    auto archive = math::Archive::reader(snapshot.state);
+    this->archive(archive);
+  } else {
+    auto change = snapshot.history.commands.begin();
+    for (;; step()) {
+      for (; act != end && act->tick == state.tick; ++act) repeat_act(scene, *act, grown);
+      if (state.tick == snapshot.tick) break;
+      const bool changes =
+          change != snapshot.history.commands.end() && change->tick == state.tick;
+      if (changes) read_commands((change++)->bytes, layout, commands);
+    }
+    read_commands(snapshot.commands, layout, commands);
+  }
+  history = snapshot.history;
+  commanded = history.commands.empty() ? std::vector<std::byte>() : history.commands.back().bytes;
+}
+
+void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot) {
+  Parts& p = *parts_;
+  const bool copies = p.has_archive;
+  if (copies != snapshot.commands.empty() || copies == snapshot.state.empty()) {
+    throw SnapshotError("The snapshot is of a scene with another solver.");
+  }
+  if (copies && snapshot.is_checked && p.seed == snapshot.seed &&
+      same_entities(p.history, snapshot.history)) {
+    auto archive = math::Archive::reader(snapshot.state);
+    p.archive(archive);
+    p.history = snapshot.history;
+    return;
+  }
+  world::Layout before = *layout_;
+  try {
+    auto fresh = std::make_unique<Parts>(scene, Options{snapshot.seed, {}}, *layout_);
+    fresh->repeat(scene, snapshot, *layout_);
+    if (world::hash(fresh->state, fresh->observations) != snapshot.hash) {
+      throw SnapshotError("The snapshot's state is not the one that its hash is of.");
+    }
+    fresh->lists_contacts = p.lists_contacts;
+    parts_ = std::move(fresh);
+    list_contacts(parts_->lists_contacts);
+  } catch (const math::ArchiveError& error) {
+    *layout_ = std::move(before);
+    throw SnapshotError(std::string("The snapshot can't be read: ") + error.what());
+  } catch (...) {
+    *layout_ = std::move(before);
+    throw;
+  }
+}
+
+std::string Simulation::first_difference(const Snapshot& snapshot) const {
+  if (!parts_->has_archive) return {};
+  std::vector<std::byte> now;
+  std::vector<math::Archive::Place> places;
+  auto archive = math::Archive::writer(now, &places);
+  parts_->archive(archive);
+  const auto [here, there] = std::ranges::mismatch(now, snapshot.state);
+  if (here == now.end() && there == snapshot.state.end()) return {};
+  return math::field_at(places, static_cast<std::size_t>(here - now.begin()));
+}
+
+}  // namespace ziggurat::simulation

@@ -1,0 +1,75 @@
+#pragma once
+// A world at one moment, to go back to. docs/recordings.md, section Snapshots.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "math/pose.h"
+#include "scene/scene.h"
+
+namespace ziggurat::simulation {
+
+/// Something that was done to a world between two ticks.
+struct Act {
+  enum class Kind : std::uint8_t { spawn, remove, move };
+  Kind kind = Kind::spawn;
+  std::uint64_t tick = 0;  ///< of the state that it was done to
+  std::size_t entity = 0;  ///< into Layout::entities
+  math::Pose pose = {};    ///< of a move
+  std::shared_ptr<const scene::Entity> spawned = {};
+  std::string xml = {};  ///< of a spawn, if it is known
+};
+
+/// All commands at the begin of a step, as bytes.
+struct Commanded {
+  std::uint64_t tick = 0;  ///< of the state before the step
+  std::vector<std::byte> bytes;
+};
+
+/// What made a world out of a new one.
+struct History {
+  std::vector<Act> acts;  ///< in order; moves only where the world must be repeated
+  /// Only where it must be repeated: those that differ from the last step's, ascending.
+  std::vector<Commanded> commands;
+  std::size_t size = 0;  ///< of all commands [bytes]
+};
+
+struct SnapshotError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A value: it stays what it is whatever becomes of the world.
+struct Snapshot {
+  std::uint64_t seed = 1;
+  std::uint64_t tick = 0;
+  std::uint64_t hash = 0;  ///< as Simulation::hash()
+  History history;
+  std::vector<std::byte> state;     ///< empty: the world must be repeated up to this tick
+  std::vector<std::byte> commands;  ///< then: as they were
+  bool is_checked = false;          ///< made by snapshot(), not read from bytes
+
+  std::size_t size() const;  ///< about what it takes [bytes]
+};
+
+/// What a file of a snapshot belongs to.
+struct Origin {
+  std::string scene_hash;
+  std::string build;
+};
+
+/// @throws SnapshotError if something was spawned whose element is not known
+std::vector<std::byte> to_bytes(const Snapshot& snapshot, const Origin& origin);
+
+/// @param origin  must be that of the bytes
+/// @param read    reads the element of an entity that was spawned; may throw scene::SceneError
+/// @throws SnapshotError if the bytes are no snapshot, damaged, or from elsewhere
+Snapshot from_bytes(std::span<const std::byte> bytes, const Origin& origin,
+                    const std::function<scene::Entity(const std::string& xml)>& read);
+
+}  // namespace ziggurat::simulation

@@ -1,0 +1,127 @@
+// A snapshot as bytes: a line for people, what it belongs to, what was done to the world, its state,
+// and a checksum.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "math/archive.h"
+#include "math/hash.h"
+#include "simulation/snapshot.h"
+
+namespace ziggurat::simulation {
+namespace {
+
+constexpr std::string_view mark = "ziggurat snapshot, version 1\n";
+
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+  math::Hash hash;
+  hash.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  return hash.digest();
+}
+
+void archive_act(math::Archive& archive, Act& act) {
+  math::archive_choice(archive, "kind", act.kind, Act::Kind::move);
+  archive("tick", act.tick);
+  archive("entity", act.entity);
+  archive("pose", act.pose);
+  archive("xml", act.xml);
+}
+
+void archive_content(math::Archive& archive, Snapshot& snapshot) {
+  archive("seed", snapshot.seed);
+  archive.require(snapshot.seed != 0, "is 0");
+  archive("tick", snapshot.tick);
+  archive("hash", snapshot.hash);
+  archive.list("acts", snapshot.history.acts, [&](Act& act) { archive_act(archive, act); });
+  archive.list("history", snapshot.history.commands, [&](Commanded& commanded) {
+    archive("tick", commanded.tick);
+    archive.list("bytes", commanded.bytes);
+    snapshot.history.size += archive.reads() ? commanded.bytes.size() : 0;
+  });
+  archive.list("state", snapshot.state);
+  archive.list("commands", snapshot.commands);
+}
+
+/// Repeating must end in a time that a user waits for.
+constexpr std::uint64_t most_repeated = 10'000'000;  // ticks
+
+void check_order(const Snapshot& snapshot) {
+  if (snapshot.state.empty() && snapshot.tick > most_repeated) {
+    throw SnapshotError(fmt::format("The snapshot is of tick {}, and at most {} can be repeated.",
+                                    snapshot.tick, most_repeated));
+  }
+  std::uint64_t tick = 0;
+  for (const Act& act : snapshot.history.acts) {
+    if (act.tick < tick || act.tick > snapshot.tick) {
+      throw SnapshotError("The snapshot's acts are not in the order of time.");
+    }
+    tick = act.tick;
+  }
+}
+
+}  // namespace
+
+std::vector<std::byte> to_bytes(const Snapshot& snapshot, const Origin& origin) {
+  for (const Act& act : snapshot.history.acts) {
+    if (act.kind != Act::Kind::spawn || !act.xml.empty()) continue;
+    throw SnapshotError(
+        fmt::format("'{}' was spawned without its element, so it can't be written to a file.",
+                    act.spawned->id));
+  }
+  std::vector<std::byte> bytes;
+  auto archive = math::Archive::writer(bytes);
+  std::string text(mark);
+  archive.raw(text.data(), text.size());
+  Origin from = origin;
+  archive("scene_hash", from.scene_hash);
+  archive("build", from.build);
+  Snapshot copy = snapshot;
+  archive_content(archive, copy);
+  std::uint64_t sum = checksum(bytes);
+  archive.raw(&sum, sizeof sum);
+  return bytes;
+}
+
+Snapshot from_bytes(std::span<const std::byte> bytes, const Origin& origin,
+                    const std::function<scene::Entity(const std::string& xml)>& read) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!text.starts_with(mark)) {
+    throw SnapshotError(text.starts_with("ziggurat snapshot")
+                            ? "The file is a snapshot of another version of this format."
+                            : "The file is no snapshot.");
+  }
+  const std::size_t content = bytes.size() - std::min(bytes.size(), sizeof(std::uint64_t));
+  std::uint64_t sum = 0;
+  std::memcpy(&sum, bytes.data() + content, bytes.size() - content);
+  if (sum != checksum(bytes.first(content))) {
+    throw SnapshotError("The snapshot is damaged: its checksum is wrong.");
+  }
+  Snapshot snapshot;
+  Origin from;
+  try {
+    auto archive = math::Archive::reader(bytes.first(content).subspan(mark.size()));
+    archive("scene_hash", from.scene_hash);
+    archive("build", from.build);
+    if (from.scene_hash != origin.scene_hash) {
+      throw SnapshotError(fmt::format("The snapshot is of another scene: its hash is {}, this one's {}.",
+                                      from.scene_hash, origin.scene_hash));
+    }
+    if (from.build != origin.build) {
+      throw SnapshotError(fmt::format("The snapshot was made by another build: {}; this is {}.",
+                                      from.build, origin.build));
+    }
+    archive_content(archive, snapshot);
+  } catch (const math::ArchiveError& error) {
+    throw SnapshotError(std::string("The snapshot can't be read: ") + error.what());
+  }
+  check_order(snapshot);
+  for (Act& act : snapshot.history.acts) {
+    if (act.kind != Act::Kind::spawn) continue;
+    act.spawned = std::make_shared<const scene::Entity>(read(act.xml));
+  }
+  return snapshot;
+}
+
+}  // namespace ziggurat::simulation

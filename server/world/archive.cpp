@@ -1,0 +1,147 @@
+#include "world/archive.h"
+
+#include <algorithm>
+
+namespace ziggurat::world {
+
+namespace {
+
+void archive_links(math::Archive& archive, std::vector<LinkState>& links) {
+  for (LinkState& link : links) {
+    archive("pose", link.pose);
+    archive("velocity", link.velocity);
+    archive("angular_velocity", link.angular_velocity);
+  }
+}
+
+/// A part of a list.
+template <class Number>
+void archive_range(math::Archive& archive, Number& begin, Number& size, std::size_t of) {
+  archive("begin", begin);
+  archive("size", size);
+  archive.require(begin <= of && size <= of - begin, "is beyond its list");
+}
+
+void archive_messages(math::Archive& archive, const Layout& layout, RadioMessages& messages) {
+  archive.list("bytes", messages.bytes);
+  archive.list("entries", messages.entries, [&](RadioMessages::Entry& entry) {
+    math::archive_index(archive, "radio", entry.radio, layout.radios.size());
+    math::archive_index(archive, "sender", entry.sender, std::max<std::size_t>(layout.radios.size(), 1));
+    archive_range(archive, entry.begin, entry.size, messages.bytes.size());
+  });
+}
+
+/// Values that follow each other are those of the devices of a list.
+template <Numbers T>
+void archive_numbers(math::Archive& archive, std::string_view name, std::vector<T>& values) {
+  for (T& value : values) {
+    auto copy = numbers(value);
+    archive(name, copy);
+    value = std::bit_cast<T>(copy);
+  }
+}
+
+}  // namespace
+
+void archive(math::Archive& archive, const Layout& layout, State& state) {
+  static_assert(field_count<State>() == 12);
+  archive("tick", state.tick);
+  archive("time_ns", state.time_ns);
+  archive("origins", state.origins);
+  archive_links(archive, state.links);
+  archive.list("absent", state.absent);
+  archive.require(state.absent.size() <= layout.entities.size(), "is too long");
+  archive("led_colors", state.led_colors);
+  archive("directional_led_colors", state.directional_led_colors);
+  archive("tag_payloads", state.tag_payloads);
+  archive("magnet_fields", state.magnet_fields);
+  archive("range_and_bearing_data", state.range_and_bearing_data);
+  archive.list("rays", state.rays, [&](Ray& ray) {
+    math::archive_choice(archive, "kind", ray.kind, Ray::Kind::camera);
+    math::archive_index(archive, "robot", ray.robot, layout.robots.size());
+    archive("start", ray.start);
+    archive("end", ray.end);
+    archive("hit", ray.hit);
+  });
+  archive.list("frusta", state.frusta, [&](Frustum& frustum) {
+    math::archive_index(archive, "camera", frustum.camera, layout.cameras.size());
+    archive("corners", frustum.corners);
+  });
+}
+
+namespace {
+
+void archive_packets(math::Archive& archive, const Layout& layout, Observations& observations) {
+  archive.list("range_and_bearing_data", observations.range_and_bearing_data);
+  const std::size_t devices = layout.range_and_bearing.size();
+  archive.list("range_and_bearing", observations.range_and_bearing,
+               [&](RangeAndBearingPacket& packet) {
+                 math::archive_index(archive, "receiver", packet.receiver, devices);
+                 math::archive_index(archive, "sender", packet.sender, devices);
+                 archive("range", packet.range);
+                 archive("horizontal_bearing", packet.horizontal_bearing);
+                 archive("vertical_bearing", packet.vertical_bearing);
+                 archive_range(archive, packet.data.begin, packet.data.count,
+                               observations.range_and_bearing_data.size());
+               });
+}
+
+void archive_sights(math::Archive& archive, const Layout& layout, const State& state,
+                    Observations& observations) {
+  const auto led = [&](LedReading& reading) {
+    math::archive_index(archive, "camera", reading.camera, layout.cameras.size());
+    archive("color", reading.color);
+    archive("center", reading.center);
+  };
+  archive.list("leds", observations.leds, led);
+  archive.list("directional_leds", observations.directional_leds, led);
+  archive.list("tags", observations.tags, [&](TagReading& reading) {
+    math::archive_index(archive, "camera", reading.camera, layout.cameras.size());
+    math::archive_index(archive, "tag", reading.tag, state.tag_payloads.size());
+    archive("center", reading.center);
+    archive("corners", reading.corners);
+  });
+  for (Image& image : observations.images) archive.list("image", image.rgb);
+}
+
+}  // namespace
+
+void archive(math::Archive& archive, const Layout& layout, const State& state,
+             Observations& observations) {
+  static_assert(field_count<Observations>() == 17);
+  archive("tick", observations.tick);
+  archive("time_ns", observations.time_ns);
+  archive("joint_readings", observations.joint_readings);
+  archive_messages(archive, layout, observations.radio_messages);
+  archive("proximity", observations.proximity);
+  archive_packets(archive, layout, observations);
+  archive("positioning", observations.positioning);
+  for (BatteryReading& reading : observations.batteries) {
+    archive("available_charge", reading.available_charge);
+    archive.any_number("time_left", reading.time_left);  // infinite, if nothing is drawn
+  }
+  archive_sights(archive, layout, state, observations);
+  archive_numbers(archive, "wheels", observations.wheels);
+  archive("turrets", observations.turrets);
+  archive_numbers(archive, "imus", observations.imus);
+  archive_numbers(archive, "contact_sensors", observations.contact_sensors);
+}
+
+void archive(math::Archive& archive, const Layout& layout, Commands& commands) {
+  static_assert(field_count<Commands>() == 11);
+  archive("joint_targets", commands.joint_targets);
+  archive("led_colors", commands.led_colors);
+  archive("directional_led_colors", commands.directional_led_colors);
+  archive("tag_payloads", commands.tag_payloads);
+  archive("magnet_currents", commands.magnet_currents);
+  archive("range_and_bearing_data", commands.range_and_bearing_data);
+  archive_numbers(archive, "wheels", commands.wheels);
+  for (TurretMode& mode : commands.turret_modes) {
+    math::archive_choice(archive, "turret_mode", mode, TurretMode::speed);
+  }
+  archive("turret_rotations", commands.turret_rotations);
+  archive("turret_speeds", commands.turret_speeds);
+  archive_messages(archive, layout, commands.radio_messages);
+}
+
+}  // namespace ziggurat::world

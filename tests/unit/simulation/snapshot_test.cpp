@@ -1,0 +1,184 @@
+// What a snapshot must carry beyond a scene's own entities, snapshots as files, and bytes of others.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "small_scene.h"
+
+namespace ziggurat::simulation {
+namespace {
+
+using testing::ground;
+using testing::robot;
+using testing::SmallScene;
+
+std::string loose_box(const std::string& id, const std::string& position) {
+  return R"(<box id=")" + id + R"(" size=".1,.1,.1" movable="true" mass="1"><body position=")" +
+         position + R"("/></box>)";
+}
+
+struct Case {
+  explicit Case(std::string solver = {})
+      : read(SmallScene{"", "",
+                        loose_box("a", "0,0,.3") + loose_box("b", ".02,0,.5") + robot("r", "1,0,.1", ""),
+                        ground, std::move(solver)}
+                 .read_all()),
+        simulation(read.scene, {1}) {}
+
+  scene::Entity entity(const std::string& xml) const {
+    scene::Addition addition = read.additions.read(xml, read.scene, 1 << 20,
+                                                   [](const std::string&) { return false; });
+    if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
+    return std::move(addition.entity);
+  }
+  void spawn(const std::string& id, const std::string& position) {
+    const std::string xml = loose_box(id, position);
+    simulation.spawn(read.scene, entity(xml), xml);
+  }
+  void run(int ticks) {
+    for (int i = 0; i < ticks; ++i) simulation.step();
+  }
+  std::vector<std::uint64_t> future(int ticks) {
+    std::vector<std::uint64_t> hashes;
+    for (int i = 0; i < ticks; ++i) {
+      simulation.step();
+      hashes.push_back(simulation.hash());
+    }
+    return hashes;
+  }
+  /// A past with everything that supervisors can do.
+  void live() {
+    run(3);
+    spawn("c", "0,0,.9");
+    run(2);
+    simulation.remove(simulation.layout().entities.size() - 1);
+    spawn("d", "0,0,.7");
+    run(4);
+    simulation.move(0, {math::Vector3(1, 1, 0.4), math::Quaternion::Identity()});
+    run(1);
+    simulation.remove(1);
+    spawn("e", "2,0,.3");
+    simulation.move(0, {math::Vector3(1, 1, 0.2), math::Quaternion::Identity()});
+  }
+
+  scene::ReadResult read;
+  Simulation simulation;
+};
+
+class Snapshots : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Snapshots, CarryWhatCameAndWentAndWasMoved) {
+  Case world(GetParam());
+  world.live();
+  const Snapshot snapshot = world.simulation.snapshot();
+  const auto expected = world.future(30);
+  const world::Layout* layout = &world.simulation.layout();
+  world.simulation.restore(world.read.scene, snapshot);
+  EXPECT_EQ(&world.simulation.layout(), layout) << "others keep references to it";
+  EXPECT_EQ(world.simulation.hash(), snapshot.hash);
+  EXPECT_EQ(world.future(30), expected);
+}
+
+TEST_P(Snapshots, TakeBackWhatCameAndWentSince) {
+  Case world(GetParam());
+  world.live();
+  const Snapshot snapshot = world.simulation.snapshot();
+  const auto expected = world.future(30);
+  world.simulation.remove(0);
+  world.spawn("f", "3,0,.3");
+  world.run(5);
+  world.simulation.restore(world.read.scene, snapshot);
+  EXPECT_EQ(world.future(30), expected);
+  world.simulation.reset(world.read.scene, {5, {}});
+  world.simulation.restore(world.read.scene, snapshot);
+  EXPECT_EQ(world.future(30), expected);
+}
+
+TEST_P(Snapshots, GoThroughAFile) {
+  Case world(GetParam());
+  world.live();
+  const Snapshot snapshot = world.simulation.snapshot();
+  const std::vector<std::byte> bytes = to_bytes(snapshot, {"scene", "build"});
+  const auto expected = world.future(30);
+  Case other(GetParam());
+  const auto read = [&](const std::string& xml) { return other.entity(xml); };
+  other.simulation.restore(other.read.scene, from_bytes(bytes, {"scene", "build"}, read));
+  EXPECT_EQ(other.simulation.hash(), snapshot.hash);
+  EXPECT_EQ(other.future(30), expected);
+  EXPECT_THROW(from_bytes(bytes, {"other", "build"}, read), SnapshotError);
+  EXPECT_THROW(from_bytes(bytes, {"scene", "other"}, read), SnapshotError);
+}
+
+TEST_P(Snapshots, OfAFileThatIsDamagedAreRefused) {
+  Case world(GetParam());
+  world.live();
+  const std::vector<std::byte> bytes = to_bytes(world.simulation.snapshot(), {"scene", "build"});
+  const auto read = [&](const std::string& xml) { return world.entity(xml); };
+  std::mt19937 random(1);
+  for (int i = 0; i < 200; ++i) {
+    std::vector<std::byte> damaged = bytes;
+    damaged[random() % damaged.size()] ^= static_cast<std::byte>(1U << random() % 8);
+    EXPECT_THROW(from_bytes(damaged, {"scene", "build"}, read), SnapshotError);
+    damaged.resize(random() % bytes.size());
+    EXPECT_THROW(from_bytes(damaged, {"scene", "build"}, read), SnapshotError);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, Snapshots, ::testing::Values("newton", "sweeps"),
+                         [](const auto& solver) { return std::string(solver.param); });
+
+/// Past the checksum there are still the state's own checks: whatever the bytes are, the world is
+/// restored to some state or stays as it is, and goes on.
+TEST(Snapshot, OfWrongStateLeavesTheWorldAsItIs) {
+  Case world;
+  world.live();
+  const Snapshot snapshot = world.simulation.snapshot();
+  std::mt19937_64 random(1);
+  int refused = 0;
+  for (int i = 0; i < 600; ++i) {
+    Snapshot wrong = snapshot;
+    wrong.is_checked = false;
+    if (i % 6 == 0) {
+      wrong.state.resize(random() % wrong.state.size());
+    } else {
+      // The low bytes are those of numbers, high ones those of sizes and exponents.
+      for (std::size_t k = 0; k <= i % 3; ++k) {
+        wrong.state[random() % wrong.state.size()] = static_cast<std::byte>(random());
+      }
+    }
+    const std::uint64_t before = world.simulation.hash();
+    try {
+      world.simulation.restore(world.read.scene, wrong);
+    } catch (const SnapshotError&) {
+      ++refused;
+      ASSERT_EQ(world.simulation.hash(), before);
+    }
+    try {
+      world.simulation.step();
+    } catch (const std::runtime_error&) {  // no number is finite for ever
+      world.simulation.restore(world.read.scene, snapshot);
+    }
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST(Snapshot, NamesTheFieldThatDiffers) {
+  Case world;
+  world.run(3);
+  const Snapshot snapshot = world.simulation.snapshot();
+  EXPECT_EQ(world.simulation.first_difference(snapshot), "");
+  world.simulation.commands().led_colors.size();
+  world.run(1);
+  EXPECT_NE(world.simulation.first_difference(snapshot), "");
+}
+
+TEST(Snapshot, OfAnotherSolverIsRefused) {
+  Case newton("newton"), sweeps("sweeps");
+  const Snapshot one = newton.simulation.snapshot(), other = sweeps.simulation.snapshot();
+  EXPECT_THROW(newton.simulation.restore(newton.read.scene, other), SnapshotError);
+  EXPECT_THROW(sweeps.simulation.restore(sweeps.read.scene, one), SnapshotError);
+}
+
+}  // namespace
+}  // namespace ziggurat::simulation
