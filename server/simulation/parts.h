@@ -55,7 +55,8 @@ struct Simulation::Parts {
   std::size_t in_physics = 0, in_rays = 0;  // entities
   History history;
   std::size_t archive_size = 0;  // of the last snapshot [bytes]
-  std::vector<std::byte> commanded;  // of the last step that was written down
+  std::vector<std::byte> commanded;   // of the last step that was written down
+  std::vector<std::byte> commanding;  // of the coming one; its memory is kept
 };
 
 }  // namespace ziggurat::simulation

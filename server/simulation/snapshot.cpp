@@ -20,11 +20,11 @@ bool same_entities(const History& one, const History& other) {
   });
 }
 
-std::vector<std::byte> bytes_of(const world::Layout& layout, world::Commands& commands) {
-  std::vector<std::byte> bytes;
+void write_commands(const world::Layout& layout, world::Commands& commands,
+                    std::vector<std::byte>& bytes) {
+  bytes.clear();
   auto archive = math::Archive::writer(bytes);
   world::archive(archive, layout, commands);
-  return bytes;
 }
 
 void read_commands(std::span<const std::byte> bytes, const world::Layout& layout,
@@ -56,11 +56,11 @@ void Simulation::Parts::archive(math::Archive& archive) {
 /// A run that goes on for longer than there is room for can't go back.
 void Simulation::Parts::note_commands() {
   if (has_archive || history.size > longest_history) return;
-  std::vector<std::byte> now = bytes_of(layout, commands);
-  if (now == commanded) return;
-  history.commands.push_back({state.tick, now});
-  history.size += now.size();
-  commanded = std::move(now);
+  write_commands(layout, commands, commanding);
+  if (commanding == commanded) return;
+  history.commands.push_back({state.tick, commanding});
+  history.size += commanding.size();
+  std::swap(commanded, commanding);
 }
 
 const History& Simulation::history() const { return parts_->history; }
@@ -85,7 +85,7 @@ Snapshot Simulation::snapshot() const {
     p.archive(archive);
     p.archive_size = snapshot.state.size();
   } else {
-    snapshot.commands = bytes_of(p.layout, p.commands);
+    write_commands(p.layout, p.commands, snapshot.commands);
   }
   return snapshot;
 }
