@@ -78,6 +78,7 @@ void Magnets::archive(math::Archive& archive, std::span<const Body> bodies) {
   archive("currents", currents_);
   for (PlacedMagnet& magnet : magnets_) archive("turn", magnet.turn);
   archive("substeps", substeps_);
+  archive("quiet", quiet_);
   bool has_field = field_.has_value();
   archive("has_field", has_field);
   if (archive.reads()) {
