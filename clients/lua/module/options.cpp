@@ -7,8 +7,8 @@
 namespace ziggurat::lua {
 namespace {
 
-constexpr const char* known[] = {"endpoint", "controller",      "robots",      "name",
-                                 "version",  "connect_timeout", "wait_timeout"};
+constexpr const char* known[] = {"endpoint", "controller",      "robots",       "name",
+                                 "version",  "connect_timeout", "wait_timeout", "resume_timeout"};
 
 bool is_known(const char* name) {
   for (const char* const one : known) {
@@ -114,6 +114,7 @@ Options take_options(lua_State* state) {
     options.connect_timeout = *duration;
   }
   options.wait_timeout = duration_of(state, "wait_timeout");
+  options.resume_timeout = duration_of(state, "resume_timeout");
   return options;
 }
 
