@@ -10,6 +10,9 @@ from pathlib import Path
 from typing import Optional
 
 
+_START = 30.0  # [s] until a server listens, on a busy machine too
+
+
 class ServerProcess:
     """Starts the command and waits until something listens at its endpoint."""
 
@@ -37,7 +40,7 @@ class ServerProcess:
         other = subprocess.Popen(self._arguments_for(endpoint), stdin=subprocess.DEVNULL,
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            code = other.wait(max(patience, 10))
+            code = other.wait(max(patience, 10.0))
             return "" if code != 0 else "it ended with exit code 0"
         except subprocess.TimeoutExpired:
             return "it runs"
@@ -73,7 +76,7 @@ class ServerProcess:
 
     def _wait_until_it_listens(self, patience: float) -> None:
         host, port = self.endpoint.removeprefix("tcp://").rsplit(":", 1)
-        limit = max(patience, 10)
+        limit = max(patience, _START)
         deadline = time.monotonic() + limit
         while time.monotonic() < deadline:
             if not self.runs():

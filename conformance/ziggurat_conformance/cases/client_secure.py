@@ -34,7 +34,7 @@ CASES = [
     _case("K7.one-file", "Its public key follows from the secret one: it needs no other file", VARIANT,
           *BEGUN, CheckClient("key", _own_key)),
     _case("K8.late-server", "It waits while no server listens yet: its keys are not refused", LATE_SERVER,
-          Quiet(3.0), Listen(), HearFrom("hello", should=True), CheckClient("key", _own_key)),
+          Quiet(4.0), Listen(), HearFrom("hello", should=True), CheckClient("key", _own_key)),
     _case("L12.same-key", "It resumes its session with the key that it began it with",
           VARIANT, *BEGUN, *ticks(1, 2), Cut(), HearResume(), welcome(), *ticks(2, 4)),
 ]

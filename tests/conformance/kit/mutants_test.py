@@ -17,7 +17,7 @@ import client_mutants
 import server_mutants
 
 HERE = Path(__file__).resolve().parent
-PATIENCE = 10.0  # [s] for the right programs: a busy machine may take long
+PATIENCE = 30.0  # [s] for the right programs: a busy machine may take long
 SIDE_BY_SIDE = 6  # mutants; most of the time they wait
 
 
