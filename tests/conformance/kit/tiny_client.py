@@ -1,7 +1,7 @@
 """A controller that uses every device, rightly, and broken ones: tiny_client.py [BUG [json]].
 
 It resumes its session after a lost connection, repeats its values after a missed deadline, and uses keys.
-One BUG of client_mutants.py makes it break one rule.
+One BUG of client_bugs.py makes it break one rule.
 """
 
 import os
@@ -12,7 +12,7 @@ import zmq
 import zmq.utils.monitor
 from google.protobuf import json_format
 
-import client_mutants as mutants
+import client_bugs as bugs
 import protocol_pb2 as protocol
 
 LATE = (protocol.Error.STALE_TICK, protocol.Error.DUPLICATE_TICK, protocol.Error.FUTURE_TICK)
@@ -89,7 +89,7 @@ class Client:
         if self.form != "json":
             return message.SerializeToString()
         text = json_format.MessageToJson(message, indent=None)
-        return mutants.TEXTS.get(self.bug, str.encode)(text)
+        return bugs.TEXTS.get(self.bug, str.encode)(text)
 
     def hear(self):
         """The next message; None if the connection was lost, or nothing came for much too long."""
@@ -126,7 +126,7 @@ class Client:
     def hello(self, token=b""):
         hello = protocol.Hello(version={"major": 1, "minor": 1}, role=protocol.ROLE_CONTROLLER, robots=["*"],
                                client_name="tiny", session_token=token)
-        mutants.HELLOS.get(self.bug, lambda *_: None)(hello)
+        bugs.HELLOS.get(self.bug, lambda *_: None)(hello)
         self.say(hello=hello)
 
     def resume(self):
@@ -164,10 +164,10 @@ class Client:
 
     def answer(self):
         command = self.command()
-        if self.bug in mutants.COMMANDS:
-            mutants.COMMANDS[self.bug](self, command)
-        if self.bug in mutants.ANSWERS:
-            mutants.ANSWERS[self.bug](self, command)
+        if self.bug in bugs.COMMANDS:
+            bugs.COMMANDS[self.bug](self, command)
+        if self.bug in bugs.ANSWERS:
+            bugs.ANSWERS[self.bug](self, command)
         else:
             self.say(command=command)
 
@@ -274,7 +274,7 @@ class Client:
         if self.bug == "ignores-end":
             return None
         leave = protocol.Leave(reason=protocol.Leave.DONE)
-        mutants.LEAVES.get(self.bug, lambda *_: None)(leave)
+        bugs.LEAVES.get(self.bug, lambda *_: None)(leave)
         self.say(leave=leave)
         time.sleep(0.05)
         return 1 if self.bug == "end-is-bad" else 0
