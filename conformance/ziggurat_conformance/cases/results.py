@@ -5,13 +5,12 @@ from ..messages import answer, hello, join, observe
 from ..steps import Hang, Hear, Join, Pause, Zeros
 from .supervision import ask, read_hash, same_hash, told
 
-_SEED = 5
 _TICKS = 3
 _IN_TIME = {"action": "HOLD", "wall_deadline_ms": 30_000, "miss_budget": 0}
 
 
 def _begun_anew(id: int, *peers: str) -> list:
-    return [ask("s", id, reset={"seed": _SEED}), told("s", id),
+    return [ask("s", id, reset={}), told("s", id),
             *[step for peer in peers for step in (Hear(peer, "reset"), *observe(peer))]]
 
 
