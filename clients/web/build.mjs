@@ -1,9 +1,10 @@
 // Bundles the page, or its unit tests.
 //
-// usage: node build.mjs FOLDER          the page: index.html, page.js, page.css
+// usage: node build.mjs FOLDER          the page: index.html, page.js, page.css; and player.html, the same in one file
 //        node build.mjs --tests FOLDER  one program for `node --test` per file of tests/
 import { build } from "esbuild";
-import { copyFile, mkdir, readdir } from "node:fs/promises";
+import { createHash } from "node:crypto";
+import { copyFile, mkdir, readFile, readdir, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -29,15 +30,56 @@ if (isTests) {
     logLevel: "warning",
   });
 } else {
-  await build({
+  const { metafile } = await build({
     entryPoints: [join(here, "source/page.ts"), join(here, "source/page.css")],
     outdir: folder,
     bundle: true,
     minify: true,
     format: "esm",
     target: "es2022",
-    legalComments: "linked", // licences of the libraries: page.js.LEGAL.txt
+    legalComments: "none", // see licences.txt
+    metafile: true,
     logLevel: "warning",
   });
+  await writeFile(join(folder, "licences.txt"), await licencesOf(metafile));
   await copyFile(join(here, "source/index.html"), join(folder, "index.html"));
+  await writeFile(join(folder, "player.html"), await makePlayer(folder));
+}
+
+/** The licences of all libraries that are in the bundle. */
+async function licencesOf({ inputs }) {
+  const names = new Set(Object.keys(inputs).map((path) => /.*node_modules\/((?:@[^/]+\/)?[^/]+)/.exec(path)?.[1]).filter(Boolean));
+  const texts = [...names].sort().map(async (name) => {
+    const library = join(here, "node_modules", name);
+    const { version, license, author } = JSON.parse(await readFile(join(library, "package.json"), "utf8"));
+    const file = (await readdir(library)).find((entry) => /^licen[cs]e/i.test(entry));
+    const text = file ? await readFile(join(library, file), "utf8") : `Copyright ${author?.name ?? author ?? ""}`;
+    return `${name} ${version}, ${license}\n\n${text.trim()}\n`;
+  });
+  return (await Promise.all(texts)).join(`\n${"-".repeat(72)}\n\n`);
+}
+
+/**
+ * The page in one file, which plays a recording without a server: `ziggurat export --html` puts the recording in the
+ * place of @RECORDING@, and its name in that of @NAME@. Its security policy allows its own script and style, by their
+ * hashes, and no network.
+ */
+async function makePlayer(folder) {
+  // In a script element, only "</script" and "<!--" end or change it.
+  const script = (await readFile(join(folder, "page.js"), "utf8")).replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+  const style = await readFile(join(folder, "page.css"), "utf8");
+  const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
+  const policy = `default-src 'none'; script-src ${hash(script)}; style-src ${hash(style)}; img-src data: blob:; `
+    + "base-uri 'none'; form-action 'none'";
+  const page = await readFile(join(here, "source/index.html"), "utf8");
+  const replaced = (text, from, to) => {
+    if (!from.test(text)) throw new Error(`index.html has no ${from}`);
+    return text.replace(from, () => to);
+  };
+  let player = replaced(page, /(?<=Security-Policy" content=")[^"]*/, policy);
+  player = replaced(player, /<link rel="stylesheet"[^>]*>/, `<style>${style}</style>`);
+  return replaced(player, /<script type="module"[^>]*><\/script>/,
+    '<script type="application/octet-stream" id="recording" data-name="@NAME@">@RECORDING@</script>\n'
+    + `<script type="module">${script}</script>\n`
+    + `<!--\n${(await readFile(join(folder, "licences.txt"), "utf8")).replaceAll(/-{2,}|[<>]/g, " ")}-->`);
 }

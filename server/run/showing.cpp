@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
+#include "run/page_folder.h"
 #include "run/version.h"
 
 namespace ziggurat::run {
@@ -17,13 +16,6 @@ using channels::Pace;
 
 constexpr std::chrono::milliseconds barrier_interval{250};
 constexpr std::array every_tick{Pace::latched, Pace::tick, Pace::answer};
-
-/// The page's files are installed, and built, beside the program.
-std::string page_folder() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return (program.parent_path().parent_path() / "share/ziggurat/web").string();
-}
 
 view::Settings settings_of(const Options& options, const Showing::Run& run) {
   view::Settings settings;

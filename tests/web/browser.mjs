@@ -8,6 +8,7 @@ import { fileURLToPath } from "node:url";
 export const root = fileURLToPath(new URL("../../", import.meta.url));
 const bin = process.env.ZIGGURAT_BIN ?? `${root}build/release/bin`;
 export const ziggurat = `${bin}/ziggurat`;
+export const playerFile = `${bin}/../share/ziggurat/web/player.html`;
 const skipped = 77; // ctest's sign
 
 function chromiumPath() {
@@ -59,8 +60,8 @@ export class Run {
   }
 }
 
-/** A page at a run. What went wrong in it is in `problems`, requests to other machines in `foreign`. */
-export async function openPage(browser, address, hash = "", size = { width: 1100, height: 560 }) {
+/** An empty page. What goes wrong in it is in `problems`, requests to other machines in `foreign`. */
+export async function newPage(browser, size = { width: 1100, height: 560 }) {
   const context = await browser.newContext({ viewport: size });
   const page = await context.newPage();
   page.problems = [];
@@ -76,14 +77,21 @@ export async function openPage(browser, address, hash = "", size = { width: 1100
   page.on("websocket", (socket) => {
     if (new URL(socket.url()).hostname !== "127.0.0.1") page.foreign.push(socket.url());
   });
+  return page;
+}
+
+/** A page at a run. */
+export async function openPage(browser, address, hash = "") {
+  const page = await newPage(browser);
   const url = new URL(address);
   url.hash = hash;
   await page.goto(url.href);
   await waitFor(() => page.evaluate(() => {
     const { app, view } = window.ziggurat ?? {};
     if (!app?.frame?.messages.has("/poses")) return false;
-    const index = app.world?.entities.findIndex((entity) => !entity.removed) ?? -1;
-    return index < 0 || view.originOf(index) !== undefined; // its first frame is drawn
+    if (!view.poses) return false; // its first frame is not drawn yet
+    const index = app.world.entities.findIndex((entity) => !entity.removed);
+    return index < 0 || view.originOf(index) !== null;
   }), "world in the page");
   return page;
 }
@@ -127,6 +135,12 @@ export async function decode(page, png) {
     return { width: image.width, height: image.height, text: btoa(text) };
   }, png.toString("base64"));
   return { width, height, data: Buffer.from(text, "base64") };
+}
+
+/** The picture of a world that stands: drawn as well as the page can. */
+export async function pictureAtRest(page) {
+  await waitFor(() => page.evaluate(() => window.ziggurat.view.isAtRest), "picture at rest");
+  return picture(page);
 }
 
 /** The picture of the world, without what lies over it. */

@@ -1,11 +1,13 @@
 // The page: makes its parts and connects them.
 import { GeneratedSource } from "./data/generated";
 import { LiveSource } from "./data/live";
+import { NoSource } from "./data/nothing";
 import type { Source } from "./data/source";
 import { View } from "./drawing/view";
 import { fromAddress, toAddress, type Tab } from "./model/settings";
 import { App } from "./page/app";
 import { listenToKeys } from "./page/keys";
+import { embedded, listenToFiles, openRecording } from "./page/open";
 import { Pointer } from "./page/pointer";
 import { BarrierPanel } from "./panels/barrier";
 import { CameraPanel } from "./panels/camera";
@@ -30,6 +32,7 @@ function part<T extends HTMLElement>(id: string): T { return document.getElement
 function makeSource(): Source {
   const generated = Number(query.get("generated"));
   if (generated > 0) return new GeneratedSource(Math.min(generated, 100_000));
+  if (location.protocol === "file:") return new NoSource("Drop a recording here, a file .mcap, or press “Open”.");
   const url = new URL(`${location.protocol === "https:" ? "wss" : "ws"}://${query.get("server") ?? location.host}/`);
   const token = query.get("token");
   if (token) url.searchParams.set("token", token);
@@ -89,17 +92,18 @@ app.onNotice = ({ level, text }) => {
 const overlay = part("overlay");
 app.onStatus = () => {
   const { phase, text } = app.connection;
-  const hasWorld = app.timeline.length > 0;
+  const hasWorld = app.frame !== null;
   overlay.className = phase === "open" && hasWorld ? "" : hasWorld ? "banner" : "full";
-  setText(overlay, phase === "open" ? (hasWorld ? "" : "Connected. Waiting for the world …")
+  setText(overlay, phase === "open" ? (hasWorld ? "" : app.recorded ? "Reading …" : "Connected. Waiting for the world …")
                                     : text || `Connecting to ${app.source.name} …`);
 };
 
 // --- panels -------------------------------------------------------------------------------------------
 
+const chooseFile = listenToFiles(app);
 const help = part<HTMLDialogElement>("help");
 fillHelp(help);
-const header = new Header(app, toggleTheme, () => help.showModal());
+const header = new Header(app, chooseFile, toggleTheme, () => help.showModal());
 const tree = new Tree(app);
 const change = new Change(app);
 const time = new TimeBar(app);
@@ -146,15 +150,16 @@ function updatePanels(): void {
 
 new Pointer(app, canvas, (x, y, z) => change.setPlace(x, y, z));
 listenToKeys(app, {
-  help: () => (help.open ? help.close() : help.showModal()), theme: toggleTheme,
+  open: chooseFile, help: () => (help.open ? help.close() : help.showModal()), theme: toggleTheme,
   search: () => tree.search.focus(), speed: (by) => time.changeSpeed(by),
 });
 
 let shownKey = "";
 let updated = 0;
 let frames = 0;
-function draw(now: number): void {
-  requestAnimationFrame(draw);
+let lastPoses: unknown = null;
+function drawFrame(now: number): void {
+  app.play(now * 1e-3);
   const frame = app.frame;
   const poses = frame?.messages.get("/poses");
   if (frame && poses) {
@@ -171,9 +176,23 @@ function draw(now: number): void {
     updatePanels();
   }
 }
-let lastPoses: unknown = null;
 
-app.source.start(app);
+function draw(now: number): void {
+  requestAnimationFrame(draw);
+  try {
+    drawFrame(now);
+  } catch (error) {
+    if (!app.recorded) throw error;
+    // A file may contain anything: what can't be drawn is not shown any longer.
+    const text = `${app.source.name} can't be shown: its messages are damaged (${(error as Error).message}).`;
+    app.open(new NoSource(text));
+    app.notice("error", text);
+  }
+}
+
+const inside = embedded();
+if (inside) void openRecording(app, inside.file, inside.name);
+else app.source.start(app);
 requestAnimationFrame(draw);
 
 /** For tests and the curious: `ziggurat` in the browser's console. */

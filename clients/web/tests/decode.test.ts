@@ -1,22 +1,9 @@
 // Messages written by @bufbuild/protobuf itself, by the schemas that the server advertises.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { create, createFileRegistry, fromBinary, toBinary } from "@bufbuild/protobuf";
-import { FileDescriptorSetSchema } from "@bufbuild/protobuf/wkt";
 import { makeDecoder } from "../source/data/decode";
 import type { Barrier, Poses, World } from "../source/model/messages";
-
-const path = process.env["ZIGGURAT_SCHEMAS"];
-if (!path) throw new Error("ZIGGURAT_SCHEMAS names no file; run ctest -R web/unit");
-const schema = new Uint8Array(readFileSync(path));
-const registry = createFileRegistry(fromBinary(FileDescriptorSetSchema, schema));
-
-function encode(name: string, value: Record<string, unknown>): Uint8Array {
-  const type = registry.getMessage(name);
-  assert.ok(type, name);
-  return toBinary(type, create(type, value));
-}
+import { encode, schema } from "./encode";
 
 test("poses have typed arrays", () => {
   const bytes = encode("ziggurat.v1.Poses", {

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { patternOf } from "../source/drawing/tags";
 import { cornersAt } from "../source/drawing/overlays";
-import { levels, Quality } from "../source/drawing/quality";
+import { levels, Quality, roundness } from "../source/drawing/quality";
 import { partsOf } from "../source/drawing/shapes";
 import { makeWorld } from "../source/data/generated";
 import type { Camera, Description, Observation, World } from "../source/model/messages";
@@ -97,4 +97,14 @@ test("quality falls where frames are slow and does not swing", () => {
     note(0.2, 12);
   }
   assert.equal(quality.level, levels.length - 1);
+});
+
+test("frames that take seconds lower the quality at once, and many round shapes get fewer pieces", () => {
+  const quality = new Quality(2, 1);
+  quality.note(1.3);
+  assert.equal(quality.note(1.3), true);
+  assert.equal(quality.level, 3);
+  assert.equal(roundness(100, 1_000_000), 36);
+  assert.ok(334 * roundness(334, 50_000) ** 2 <= 50_000);
+  assert.equal(roundness(100_000, 1000), 8);
 });

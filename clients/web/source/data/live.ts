@@ -6,9 +6,12 @@ import type { Listener, Message, Source, Status, Value } from "./source";
 const firstDelay = 250; // [ms] before the first new attempt; doubles up to
 const longestDelay = 2000;
 
-/** Why no connection comes into being, for users. */
-function explain(url: URL, wasOpen: boolean): string {
-  if (wasOpen) return `The server at ${url.host} closed the connection. Connecting again …`;
+/** Why there is no connection, and what to do, for users. */
+function explain(url: URL, hadWorld: boolean): string {
+  if (hadWorld) {
+    return `The server at ${url.host} closed the connection: the run was ended, or it crashed. What this page has seen can still be `
+        + "looked at. It connects again by itself when the server is back …";
+  }
   return `No connection to ${url.host}. Either no run is there (start one with: ziggurat run SCENE --view), `
       + "or it refuses this page: then the address has a wrong token; use the address that it printed. "
       + "Trying again …";
@@ -42,6 +45,7 @@ export class LiveSource implements Source {
   private delay = firstDelay;
   private timer = 0;
   private isClosed = false;
+  private wasOpen = false;
   private status: Status = { phase: "connecting", text: "", mayControl: false, session: "" };
 
   /** @param url  of the WebSocket, with its token */
@@ -84,9 +88,8 @@ export class LiveSource implements Source {
   private connect(): void {
     const socket = new WebSocket(this.url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
     const client = new FoxgloveClient({ ws: socket });
-    let wasOpen = false;
     client.on("serverInfo", (info) => {
-      wasOpen = true;
+      this.wasOpen = true;
       this.client = client;
       this.delay = firstDelay;
       client.subscribeParameterUpdates(["real_time_factor", "frames_per_second", "phase"]);
@@ -98,7 +101,7 @@ export class LiveSource implements Source {
     client.on("close", () => {
       this.forget();
       if (this.isClosed) return;
-      this.tell({ phase: "closed", text: explain(this.url, wasOpen), mayControl: false, session: "" });
+      this.tell({ phase: "closed", text: explain(this.url, this.wasOpen), mayControl: false, session: "" });
       this.timer = setTimeout(() => this.connect(), this.delay) as unknown as number;
       this.delay = Math.min(2 * this.delay, longestDelay);
     });

@@ -1,5 +1,5 @@
-// Where the page's data come from: a running server (live.ts), a world made in the page (generated.ts),
-// later a recording. The rest of the page knows this interface only.
+// Where the page's data come from: a running server (live.ts), a world made in the page (generated.ts), or a recording
+// (../model/recorded.ts). The rest of the page knows this interface only.
 
 /** A decoded message: fields by their names in camelCase; packed numbers are typed arrays. */
 export type Value = Record<string, unknown>;
@@ -27,6 +27,8 @@ export interface Listener {
   topics(topics: string[]): void;
   message(message: Message): void;
   parameter(name: string, value: unknown): void;
+  /** A log line of a recording. @param sequence  of its frame, @param seconds  simulated */
+  logged?(line: { level: number; message: string; name: string }, sequence: number, seconds: number): void;
   /** A sentence for the user. */
   notice(level: "info" | "warning" | "error", text: string): void;
 }

@@ -3,7 +3,7 @@ import * as three from "three";
 import type { Poses, World } from "../model/messages";
 import { multiply, rotate } from "../model/pose";
 import { roundness } from "./quality";
-import { makeGeometry, partsOf, type Part } from "./shapes";
+import { isRound, makeGeometry, partsOf, type Part } from "./shapes";
 
 interface Batch { mesh: three.InstancedMesh; parts: Part[] }
 
@@ -49,8 +49,10 @@ export class Bodies {
   private batches: Batch[] = [];
   private batchOfLink = new Map<number, { batch: number; index: number }[]>();
   private highlighted: number[] = [];
+  private around = 0; // pieces of round shapes
 
-  setWorld(world: World): void {
+  /** @param triangles  of all round shapes, about */
+  setWorld(world: World, triangles: number): void {
     for (const { mesh } of this.batches) {
       this.group.remove(mesh);
       mesh.geometry.dispose();
@@ -58,7 +60,9 @@ export class Bodies {
       mesh.dispose();
     }
     const byShape = new Map<string, Part[]>();
-    for (const part of partsOf(world)) {
+    const all = partsOf(world);
+    this.around = roundness(all.filter(({ shape }) => isRound(shape)).length, triangles);
+    for (const part of all) {
       const list = byShape.get(part.shape);
       if (list) list.push(part);
       else byShape.set(part.shape, [part]);
@@ -69,10 +73,23 @@ export class Bodies {
     this.highlight(this.highlighted);
   }
 
+  /** Draws round shapes with about so many triangles from now on; true if that differs. */
+  setDetail(world: World, triangles: number): boolean {
+    const round = this.batches.filter(({ parts }) => isRound(parts[0].shape));
+    const around = roundness(round.reduce((sum, { parts }) => sum + parts.length, 0), triangles);
+    if (around === this.around) return false;
+    this.around = around;
+    for (const { mesh, parts } of round) {
+      mesh.geometry.dispose();
+      mesh.geometry = makeGeometry(parts[0].shape, world.hulls, around);
+    }
+    return true;
+  }
+
   private addBatch(shape: string, parts: Part[], world: World): void {
     const material = new three.MeshLambertMaterial();
     if (shape === "box") addEdges(material);
-    const mesh = new three.InstancedMesh(makeGeometry(shape, world.hulls, roundness(parts.length)), material, parts.length);
+    const mesh = new three.InstancedMesh(makeGeometry(shape, world.hulls, this.around), material, parts.length);
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.frustumCulled = false;
     mesh.instanceMatrix.setUsage(three.DynamicDrawUsage);

@@ -2,19 +2,25 @@
 // processor, it takes fewer pixels and harder shadows before it drops frames.
 import * as three from "three";
 
-interface Level { pixels: number; shadowSize: number; shadows: three.ShadowMapType | null }
+interface Level {
+  pixels: number; // drawn ones per pixel of the screen, along each side
+  shadowSize: number; // of the shadow map, along each side
+  shadows: three.ShadowMapType | null;
+  triangles: number; // of all round shapes, about: processors take a microsecond or two for each
+}
 
-/** From best to fastest; pixels are drawn ones per pixel of the screen, along each side. */
+/** From best to fastest. */
 export const levels: Level[] = [
-  { pixels: 2, shadowSize: 2048, shadows: three.PCFSoftShadowMap },
-  { pixels: 1, shadowSize: 2048, shadows: three.PCFSoftShadowMap },
-  { pixels: 1, shadowSize: 1024, shadows: three.BasicShadowMap },
-  { pixels: 0.7, shadowSize: 1024, shadows: three.BasicShadowMap },
-  { pixels: 0.5, shadowSize: 512, shadows: three.BasicShadowMap },
-  { pixels: 0.5, shadowSize: 512, shadows: null },
+  { pixels: 2, shadowSize: 2048, shadows: three.PCFSoftShadowMap, triangles: 1_000_000 },
+  { pixels: 1, shadowSize: 2048, shadows: three.PCFSoftShadowMap, triangles: 1_000_000 },
+  { pixels: 1, shadowSize: 1024, shadows: three.BasicShadowMap, triangles: 30_000 },
+  { pixels: 0.7, shadowSize: 1024, shadows: three.BasicShadowMap, triangles: 15_000 },
+  { pixels: 0.5, shadowSize: 512, shadows: three.BasicShadowMap, triangles: 10_000 },
+  { pixels: 0.5, shadowSize: 512, shadows: null, triangles: 10_000 },
 ];
 const slow = 0.05, quick = 0.012; // [s] a frame
 const patience = 12; // frames
+const longestPatience = 1.5; // [s]
 
 /** Whether frames are drawn by the processor. */
 export function isSoftware(context: WebGLRenderingContext | WebGL2RenderingContext): boolean {
@@ -34,7 +40,7 @@ export class Quality {
   /** Notes a frame; true if the level changed. */
   note(seconds: number): boolean {
     this.seconds += Math.min(seconds, 1);
-    if (++this.count < patience) return false;
+    if (++this.count < patience && this.seconds < longestPatience) return false;
     const mean = this.seconds / this.count;
     this.seconds = this.count = 0;
     if (mean > slow && this.level < levels.length - 1) {
@@ -50,7 +56,9 @@ export class Quality {
   }
 }
 
-/** Pieces around a round shape, with so many shapes in the world. */
-export function roundness(count: number): number {
-  return count > 2000 ? 12 : count > 300 ? 20 : 36;
+/** Pieces around a round shape: as many as give no more than so many triangles with so many shapes. */
+export function roundness(shapes: number, triangles: number): number {
+  const pieces = [36, 28, 20, 16, 12];
+  // A ball of n pieces has n * n triangles, a cylinder 4 n.
+  return pieces.find((n) => shapes * n * n <= triangles) ?? 8;
 }

@@ -14,6 +14,9 @@ export interface Part {
   color: number; // sRGB
 }
 
+/** Whether a shape takes more triangles to look round. */
+export function isRound(shape: string): boolean { return /^(cylinder|sphere|capsule)/.test(shape); }
+
 const upright: Quaternion = [1, 0, 0, 0];
 
 /** The geometry with that key. @param around  pieces around what is round */

@@ -40,6 +40,8 @@ export class Stage {
   private readonly quality: Quality;
   private readonly isSlow: boolean; // no graphics processor
   private wantsShadows = true;
+  private readonly sunAt = new three.Vector3(NaN, NaN, NaN); // where it was aimed
+  private isFine = false; // the last frame was drawn with all pixels
   isDirty = true;
 
   constructor(readonly canvas: HTMLCanvasElement) {
@@ -49,6 +51,7 @@ export class Stage {
     this.renderer = new three.WebGLRenderer({ canvas, antialias: !isSlow });
     this.quality = isSlow ? new Quality(2, 1) : new Quality(window.devicePixelRatio > 1 ? 0 : 1, window.devicePixelRatio > 1 ? 0 : 1);
     this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.autoUpdate = false;
     this.applyQuality();
     this.camera.up.set(0, 0, 1);
     this.camera.position.set(1.2, -1.6, 1.2);
@@ -67,11 +70,12 @@ export class Stage {
 
   private applyQuality(): void {
     const { pixels, shadowSize, shadows } = levels[this.quality.level];
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, pixels));
+    this.setPixels(pixels);
     this.sun.shadow.mapSize.set(shadowSize, shadowSize);
     this.sun.shadow.map?.dispose();
     this.sun.shadow.map = null;
     this.sun.castShadow = this.wantsShadows && shadows !== null;
+    this.shadowsChange();
     if (shadows !== null && this.renderer.shadowMap.type !== shadows) {
       this.renderer.shadowMap.type = shadows;
       this.scene.traverse((object) => {
@@ -81,9 +85,21 @@ export class Stage {
     this.isDirty = true;
   }
 
+  /** About how many triangles round shapes may have. */
+  triangles(isFine: boolean): number { return levels[isFine ? 1 : this.quality.level].triangles; }
+
+  private setPixels(perPixel: number): void { this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, perPixel)); }
+
+  /** Drawn pixels per pixel of the screen of a picture that stays; without graphics processor they smooth its edges. */
+  private get finePixels(): number { return this.isSlow ? 2 : Math.min(window.devicePixelRatio, 2); }
+
+  /** What casts shadows has moved. */
+  shadowsChange(): void { this.renderer.shadowMap.needsUpdate = true; }
+
   showShadows(isShown: boolean): void {
     this.wantsShadows = isShown;
     this.sun.castShadow = isShown && levels[this.quality.level].shadows !== null;
+    this.shadowsChange();
     this.isDirty = true;
   }
 
@@ -118,24 +134,32 @@ export class Stage {
     const tile = world.floorTile > 0 ? world.floorTile : 0.1;
     const [x, y] = [world.arenaSize[0] || 1, world.arenaSize[1] || 1];
     const center: [number, number] = [world.arenaCenter[0] || 0, world.arenaCenter[1] || 0];
-    const inside = this.addPlane(x, y, center, 0, { map: checkers(colors.light, colors.dark) });
-    inside.map!.repeat.set(x / (2 * tile), y / (2 * tile));
-    inside.map!.anisotropy = this.isSlow ? 1 : 4;
-    inside.map!.magFilter = three.NearestFilter;
-    this.addPlane(240, 240, center, -0.0006, { color: colors.outside }); // after it: hidden parts cost nothing
+    const map = checkers(colors.light, colors.dark);
+    map.repeat.set(x / (2 * tile), y / (2 * tile));
+    map.anisotropy = this.isSlow ? 1 : 4;
+    map.magFilter = three.NearestFilter;
+    this.addPlane(x, y, center, 0, new three.MeshLambertMaterial({ map }));
+    // After it: what is hidden costs nothing. Without graphics processor light is not computed for each pixel. The offset
+    // and the many pieces keep it behind: depths within one huge triangle are not exact.
+    const behind = { color: colors.outside, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 8 };
+    this.addPlane(240, 240, center, -0.0006, this.isSlow
+      ? new three.MeshBasicMaterial({ ...behind, color: this.litFromAbove(colors.outside) })
+      : new three.MeshLambertMaterial(behind), 16);
     this.isDirty = true;
   }
 
-  private addPlane(x: number, y: number, [cx, cy]: [number, number], z: number,
-                   looks: three.MeshLambertMaterialParameters): three.MeshLambertMaterial {
-    const material = new three.MeshLambertMaterial(looks);
-    const mesh = new three.Mesh(new three.PlaneGeometry(x, y), material);
+  /** What a matt surface that faces up looks like in the light of sun and sky. */
+  private litFromAbove(color: number): three.Color {
+    return new three.Color(color).multiplyScalar((this.sun.intensity * sunDirection.z + this.sky.intensity) / Math.PI);
+  }
+
+  private addPlane(x: number, y: number, [cx, cy]: [number, number], z: number, material: three.Material, pieces = 1): void {
+    const mesh = new three.Mesh(new three.PlaneGeometry(x, y, pieces, pieces), material);
     mesh.position.set(cx, cy, z);
-    mesh.receiveShadow = z === 0 || !this.isSlow;
+    mesh.receiveShadow = material instanceof three.MeshLambertMaterial;
     mesh.renderOrder = this.floor.length + 1;
     this.scene.add(mesh);
     this.floor.push(mesh);
-    return material;
   }
 
   /** Shows the whole of a box. */
@@ -190,7 +214,13 @@ export class Stage {
     this.isDirty = true;
   }
 
-  render(): void {
+  /** Draws. @param isFine  as well as it can, whatever it takes: for a picture that stays */
+  render(isFine = false): void {
+    if (isFine !== this.isFine) {
+      this.isFine = isFine;
+      if (isFine) this.renderer.setPixelRatio(this.finePixels);
+      else this.setPixels(levels[this.quality.level].pixels);
+    }
     const distance = this.camera.position.distanceTo(this.controls.target);
     this.camera.near = Math.max(0.0005, distance / 200);
     this.camera.far = Math.max(20, distance * 60);
@@ -200,19 +230,26 @@ export class Stage {
     this.isDirty = false;
   }
 
+  /** Whether a picture that stays would be better than the last one. */
+  get canBeFiner(): boolean { return !this.isFine && this.renderer.getPixelRatio() < this.finePixels; }
+
   /** Shadows are as sharp as the view needs. */
   private aimSun(distance: number): void {
-    const radius = Math.min(Math.max(0.9 * distance, 0.1), 30);
-    const camera = this.sun.shadow.camera;
-    if (Math.abs(camera.right - radius) > 0.1 * camera.right || camera.right === 5) {
-      camera.left = camera.bottom = -radius;
-      camera.right = camera.top = radius;
-      camera.near = 0.1 * radius;
-      camera.far = 8 * radius;
+    const { camera } = this.sun.shadow;
+    const wanted = Math.min(Math.max(0.9 * distance, 0.1), 30);
+    if (Math.abs(camera.right - wanted) > 0.1 * camera.right || camera.right === 5) {
+      camera.left = camera.bottom = -wanted;
+      camera.right = camera.top = wanted;
+      camera.near = 0.1 * wanted;
+      camera.far = 8 * wanted;
       camera.updateProjectionMatrix();
+      this.sunAt.set(NaN, NaN, NaN);
     }
     const at = this.controls.target;
+    if (at.equals(this.sunAt)) return;
+    this.sunAt.copy(at);
     this.sun.target.position.copy(at);
-    this.sun.position.copy(at).addScaledVector(sunDirection, 4 * radius);
+    this.sun.position.copy(at).addScaledVector(sunDirection, 4 * camera.right);
+    this.shadowsChange();
   }
 }

@@ -26,6 +26,21 @@ export const layers = [
 export type Layer = (typeof layers)[number]["name"];
 export const layersAtFirst: Layer[] = ["bodies", "shadows", "tags", "lights", "rays", "radio", "trails"];
 
+/** Whether two frames of one world look the same, lines aside. */
+function isSame(a: Poses, b: Poses): boolean {
+  const same = (x: ArrayLike<number>, y: ArrayLike<number>): boolean => {
+    if (x.length !== y.length) return false;
+    for (let i = 0; i < x.length; ++i) if (x[i] !== y[i]) return false;
+    return true;
+  };
+  return a.tagPayloads.length === 0 && b.tagPayloads.length === 0 && same(a.positions, b.positions)
+      && same(a.orientations, b.orientations) && same(a.ledColors, b.ledColors)
+      && same(a.directionalLedColors, b.directionalLedColors) && same(a.magnetMoments, b.magnetMoments);
+}
+
+const longestGap = 100; // frames between two points of a trail
+const restAfter = 0.4; // [s] without change, the picture is drawn once with all pixels
+
 export class View {
   readonly stage: Stage;
   private readonly bodies = new Bodies();
@@ -38,9 +53,12 @@ export class View {
   private trails = new Map<string, Vector[]>();
   private reference = 1; // force [N] that has an arrow of this length [m]
   private arrow = 0.1;
+  private highlighted = ""; // links
+  private hadLines = false; // the frame before had rays, messages or contacts
   private flashed = -1;
   private hasFramed = false;
-  private drawnAt = -10; // [s]
+  private drawnAt = 0; // [s]
+  private drewBefore = false; // at the screen's last frame
   poses: Poses | null = null;
   shown = new Set<Layer>(layersAtFirst);
   trailed: string[] = []; // ids of entities
@@ -52,6 +70,14 @@ export class View {
     this.stage.scene.add(this.bodies.group, this.tags.group, this.lights.group, this.lines.object);
   }
 
+  /** Forgets the world, before that of another source is shown. */
+  forget(): void {
+    this.world = this.frame = this.poses = null;
+    this.trails.clear();
+    this.flashed = -1;
+    this.hasFramed = false;
+  }
+
   /** Shows a frame; false if nothing in it is known yet. */
   show(frame: Frame, highlighted: number[]): boolean {
     const message = frame.messages.get("/poses");
@@ -59,12 +85,24 @@ export class View {
     if (!message || !world) return false;
     const poses = message.read<Poses>();
     if (poses.generation !== world.generation) return false;
-    if (world !== this.world) this.setWorld(world);
-    const before = this.poses;
+    const isNewWorld = world !== this.world;
+    if (isNewWorld) this.setWorld(world);
+    const before = isNewWorld ? null : this.poses;
+    const distance = frame.sequence - (this.frame?.sequence ?? frame.sequence);
+    if (distance < 0 || distance > longestGap) this.trails.clear(); // the user jumped
     this.poses = poses;
     this.frame = frame;
-    this.bodies.setPoses(poses);
     this.bodies.highlight(highlighted);
+    const hasLines = ["/rays", "/radio", "/contacts"].some((topic) => frame.messages.has(topic));
+    if (before && isSame(before, poses) && highlighted.join() === this.highlighted) {
+      this.stage.isDirty ||= hasLines || this.hadLines;
+      this.hadLines = hasLines;
+      return true;
+    }
+    this.hadLines = hasLines;
+    this.highlighted = highlighted.join();
+    this.bodies.setPoses(poses);
+    this.stage.shadowsChange();
     this.tags.setPoses(poses);
     this.lights.setPoses(poses);
     this.follow(before);
@@ -79,7 +117,7 @@ export class View {
 
   private setWorld(world: World): void {
     this.world = world;
-    this.bodies.setWorld(world);
+    this.bodies.setWorld(world, this.stage.triangles(false));
     this.tags.setWorld(world);
     this.lights.setWorld(world);
     this.stage.setWorld(world);
@@ -96,17 +134,25 @@ export class View {
     this.stage.isDirty = true;
   }
 
-  /** Draws if anything changed. @param now  wall time [s] */
+  /** Draws if anything changed; called at each frame of the screen. @param now  wall time [s] */
   render(now: number): boolean {
     this.stage.resize();
-    if (!this.stage.isDirty && !this.flashes.isActive) return false;
-    this.drawLines(now);
-    this.stage.render();
-    // Consecutive frames only: the time between them includes what the graphics processor does.
-    if (now - this.drawnAt < 1) this.stage.noteFrame(now - this.drawnAt);
-    this.drawnAt = now;
-    return true;
+    const isMoving = this.stage.isDirty || this.flashes.isActive;
+    const isFine = !isMoving && now - this.drawnAt > restAfter && this.stage.canBeFiner;
+    if (isMoving || isFine) {
+      if (this.world && this.bodies.setDetail(this.world, this.stage.triangles(isFine))) this.stage.shadowsChange();
+      this.drawLines(now);
+      this.stage.render(isFine);
+      // Consecutive frames only: the time between them includes what the graphics processor does.
+      if (isMoving && this.drewBefore) this.stage.noteFrame(now - this.drawnAt);
+      this.drawnAt = now;
+    }
+    this.drewBefore = isMoving;
+    return isMoving || isFine;
   }
+
+  /** Whether the picture is the last one, drawn as well as it can be, until something changes. */
+  get isAtRest(): boolean { return !this.stage.isDirty && !this.flashes.isActive && !this.stage.canBeFiner; }
 
   private drawLines(now: number): void {
     const { lines, frame, world, poses } = this;

@@ -61,10 +61,14 @@ export class Series {
 
   private push(frame: Frame): void {
     const message = frame.messages.get(this.name.topic);
-    if (!message) return;
-    this.sequences.push(frame.sequence);
-    this.times.push(Number(frame.timeNs) * 1e-9);
-    this.values.push(numberAt(message.read(), this.name.path));
+    if (message) this.add(frame.sequence, Number(frame.timeNs) * 1e-9, message.read());
+  }
+
+  /** Takes the number out of a message. @param time  simulated [s] */
+  add(sequence: number, time: number, message: unknown): void {
+    this.sequences.push(sequence);
+    this.times.push(time);
+    this.values.push(numberAt(message, this.name.path));
   }
 
   get latest(): number | null { return this.values[this.values.length - 1] ?? null; }

@@ -14,7 +14,7 @@ export interface Frame {
   readonly messages: Map<string, Message>;
 }
 
-export type MarkKind = "log" | "warning" | "error" | "missed" | "reset";
+export type MarkKind = "log" | "warning" | "error" | "missed" | "collision" | "reset";
 
 /** Something that happened. */
 export interface Mark {
@@ -23,7 +23,22 @@ export interface Mark {
   text: string;
 }
 
-export class Timeline {
+/** Frames by their numbers: those that the page has seen of a running world, or those of a recording. */
+export interface Frames {
+  readonly length: number;
+  readonly first: number;
+  readonly last: number;
+  readonly newest: Frame | null;
+  readonly marks: Mark[];
+  /** The frame, or the nearest one before; null while it is being read. */
+  at(sequence: number): Frame | null;
+  /** Simulated time from a frame to the next one [ns]; null: not known yet. */
+  stepNs(sequence: number): number | null;
+  /** The newest message of a topic at or before a frame; it looks back so many frames. */
+  message(topic: string, sequence: number, back?: number): Message | null;
+}
+
+export class Timeline implements Frames {
   private frames: Frame[] = [];
   private begin = 0; // of the frames in use; the array is cut now and then
   private bytes = 0;
@@ -46,6 +61,11 @@ export class Timeline {
     if (this.length === 0) return null;
     const index = Math.min(Math.max(sequence - this.first, 0), this.length - 1);
     return this.frames[this.begin + index];
+  }
+
+  stepNs(sequence: number): number | null {
+    const [a, b] = [this.at(sequence), this.at(sequence + 1)];
+    return a && b ? Math.max(0, Number(b.timeNs - a.timeNs)) : null; // after a reset time begins again
   }
 
   clear(): void {

@@ -2,19 +2,26 @@
 import type { Listener, Message, Source, Status, Value } from "../data/source";
 import type { View, Layer } from "../drawing/view";
 import { layers } from "../drawing/view";
-import type { Barrier, Entity, Log, Robot, World } from "../model/messages";
+import { Collisions } from "../model/collisions";
+import type { Barrier, Contacts, Entity, Log, Robot, World } from "../model/messages";
+import { Playback } from "../model/playback";
+import { Recorded } from "../model/recorded";
 import { nameOf, Series, type SeriesName } from "../model/series";
 import type { Settings, Tab } from "../model/settings";
-import { Timeline, type Frame } from "../model/timeline";
+import { Timeline, type Frame, type Frames } from "../model/timeline";
 
 export interface LogEntry { sequence: number; seconds: number; name: string; level: number; text: string }
 export interface Notice { level: "info" | "warning" | "error"; text: string }
 
 /** With more robots than this, only what is selected or plotted is subscribed. */
 const mostRobotsAtOnce = 12;
+/** With more links than this, collisions are looked for only while the layer of contacts is on. */
+const mostLinksForCollisions = 300;
 
 export class App implements Listener {
-  readonly timeline = new Timeline();
+  private seen = new Timeline(); // of a running world
+  private collisions = new Collisions();
+  readonly playback = new Playback();
   connection: Status = { phase: "connecting", text: "", mayControl: false, session: "" };
   topicNames: string[] = [];
   parameters = new Map<string, unknown>();
@@ -29,17 +36,48 @@ export class App implements Listener {
   onStatus: () => void = () => undefined;
   onSettings: () => void = () => undefined;
   private session = "";
+  private shownBefore: Frame | null = null;
 
-  constructor(readonly source: Source, readonly settings: Settings, readonly view: View) {
+  constructor(public source: Source, readonly settings: Settings, readonly view: View) {
     this.series = settings.plots.map((name) => new Series(name));
     this.applySettings();
   }
+
+  /** Shows another source from now on. */
+  open(source: Source): void {
+    this.source.close();
+    this.source = source;
+    this.seen = new Timeline();
+    this.collisions = new Collisions();
+    this.log = [];
+    this.barrier = null;
+    this.parameters.clear();
+    this.session = "";
+    this.shownBefore = null;
+    this.view.forget();
+    this.series = this.settings.plots.map((name) => new Series(name));
+    this.pinned = null;
+    this.playback.isPlaying = false;
+    if (source instanceof Recorded) {
+      this.pinned = 0;
+      for (const series of this.series) source.fill(series);
+      this.playback.speed = 1;
+      this.playback.start();
+    }
+    source.start(this);
+  }
+
+  /** The recording that is shown. */
+  get recorded(): Recorded | null { return this.source instanceof Recorded ? this.source : null; }
+
+  get timeline(): Frames { return this.recorded ?? this.seen; }
 
   // --- what arrives ---------------------------------------------------------------------------------
 
   status(status: Status): void {
     if (status.phase === "open" && this.session !== "" && status.session !== this.session) {
-      this.timeline.clear();
+      this.seen.clear();
+      this.collisions = new Collisions();
       this.log = [];
       this.pinned = null;
       this.onNotice({ level: "info", text: "The server was started again." });
@@ -56,12 +94,13 @@ export class App implements Listener {
   }
 
   message(message: Message): void {
-    this.timeline.take(message);
+    this.seen.take(message);
+    if (message.topic === "/contacts") this.takeContacts(message);
     if (message.topic === "/log") this.takeLog(message);
     if (message.topic === "/world") this.want();
     if (message.topic === "/barrier") {
       this.barrier = message.read<Barrier>();
-      this.timeline.noteMissed(this.barrier.histograms.reduce((sum, { missedTicks }) => sum + missedTicks, 0));
+      this.seen.noteMissed(this.barrier.histograms.reduce((sum, { missedTicks }) => sum + missedTicks, 0));
     }
   }
 
@@ -72,11 +111,22 @@ export class App implements Listener {
 
   notice(level: Notice["level"], text: string): void { this.onNotice({ level, text }); }
 
-  private takeLog(message: Message): void {
-    const { level, message: text, name } = message.read<Log>();
-    this.log.push({ sequence: this.timeline.last, seconds: Number(message.timeNs) * 1e-9, name, level, text });
+  private takeContacts(message: Message): void {
+    const world = this.seen.newest?.world;
+    const text = world ? this.collisions.take(message.read<Contacts>(), Number(message.timeNs), world) : "";
+    if (text !== "") this.seen.mark("collision", text);
+  }
+
+  logged({ level, message: text, name }: Log, sequence: number, seconds: number): void {
+    this.log.push({ sequence, seconds, name, level, text });
     if (this.log.length > 5000) this.log.splice(0, 1000);
-    this.timeline.mark(level >= 4 ? "error" : level === 3 ? "warning" : "log", `${name}: ${text}`);
+  }
+
+  private takeLog(message: Message): void {
+    const line = message.read<Log>();
+    const { level, message: text, name } = line;
+    this.logged(line, this.seen.last, Number(message.timeNs) * 1e-9);
+    this.seen.mark(level >= 4 ? "error" : level === 3 ? "warning" : "log", `${name}: ${text}`);
     if (this.pauseOnText !== "" && text.includes(this.pauseOnText)) {
       this.onNotice({ level: "info", text: `Paused: ${name} logged “${text}”` });
       this.pauseOnText = "";
@@ -90,6 +140,7 @@ export class App implements Listener {
     for (const layer of layers) {
       if ("topic" in layer && this.view.shown.has(layer.name)) wanted.add(layer.topic);
     }
+    if ((this.world?.links.length ?? Infinity) <= mostLinksForCollisions) wanted.add("/contacts");
     for (const { name } of this.series) wanted.add(name.topic);
     const robots = this.world?.robots ?? [];
     const selected = this.selectedRobot;
@@ -110,12 +161,17 @@ export class App implements Listener {
 
   /** The frame at which the page looks: never one of which the poses have not arrived. */
   get frame(): Frame | null {
-    if (this.pinned !== null) return this.timeline.at(this.pinned);
-    for (let s = this.timeline.last; s >= this.timeline.first && s > this.timeline.last - 3; --s) {
-      const frame = this.timeline.at(s);
+    if (this.recorded) {
+      this.shownBefore = this.recorded.at(this.pinned ?? this.recorded.last) ?? this.shownBefore;
+      return this.shownBefore;
+    }
+    const { seen } = this;
+    if (this.pinned !== null) return seen.at(this.pinned);
+    for (let s = seen.last; s >= seen.first && s > seen.last - 3; --s) {
+      const frame = seen.at(s);
       if (frame?.messages.has("/poses")) return frame;
     }
-    return this.timeline.newest;
+    return seen.newest;
   }
 
   get selected(): { entity: Entity; index: number } | null {
@@ -134,12 +190,46 @@ export class App implements Listener {
     return entity ? Array.from({ length: entity.linkCount }, (_, i) => entity.firstLink + i) : [];
   }
 
-  get isPaused(): boolean { return this.parameters.get("phase") === "paused"; }
+  /** Whether the page looks at the newest frame of a running world. */
+  get isLive(): boolean { return this.pinned === null && this.recorded === null; }
+
+  /** Whether time stands: that of the world, or that of the past or the recording that is shown. */
+  get isPaused(): boolean { return this.isLive ? this.parameters.get("phase") === "paused" : !this.playback.isPlaying; }
 
   // --- what the user does ---------------------------------------------------------------------------
 
   pin(sequence: number | null): void {
-    this.pinned = sequence === null || sequence >= this.timeline.last ? null : Math.max(sequence, this.timeline.first);
+    const { first, last } = this.timeline;
+    if (this.recorded) this.pinned = Math.min(Math.max(sequence ?? last, first), last);
+    else this.pinned = sequence === null || sequence >= last ? null : Math.max(sequence, first);
+    if (this.isLive) this.playback.isPlaying = false;
+  }
+
+  /** One frame further, of what the page has; of a running world one tick. */
+  step(): void {
+    if (this.isLive) return void this.call("/step", { ticks: 1 });
+    this.playback.isPlaying = false;
+    this.pin((this.pinned ?? 0) + 1);
+  }
+
+  /** Back to the start: of the world, or of what the page has. */
+  restart(): void {
+    if (this.isLive) void this.call("/reset");
+    else this.pin(this.timeline.first);
+  }
+
+  setSpeed(factor: number): void {
+    if (this.isLive) void this.call("/speed", { factor });
+    else this.playback.speed = factor;
+  }
+
+  /** Plays what the page has. @param now  wall time [s] */
+  play(now: number): void {
+    if (this.isLive || !this.playback.isPlaying) return;
+    const { last } = this.timeline;
+    const next = this.playback.advance(now, this.pinned ?? last, this.timeline);
+    if (next !== this.pinned) this.pin(next);
+    if (next >= last) this.playback.isPlaying = false;
   }
 
   select(id: string | null): void {
@@ -178,7 +268,13 @@ export class App implements Listener {
   togglePlot(name: SeriesName): void {
     const text = nameOf(name);
     const without = this.series.filter((series) => nameOf(series.name) !== text);
-    this.series = without.length < this.series.length ? without : [...this.series, new Series(name)];
+    if (without.length < this.series.length) {
+      this.series = without;
+    } else {
+      const series = new Series(name);
+      this.series = [...this.series, series];
+      this.recorded?.fill(series);
+    }
     this.settings.plots = this.series.map((series) => series.name);
     this.want();
     this.onSettings();
@@ -204,5 +300,18 @@ export class App implements Listener {
     }
   }
 
-  playOrPause(): void { void this.call(this.isPaused ? "/resume" : "/pause"); }
+  playOrPause(): void {
+    if (this.isLive) return void this.call(this.isPaused ? "/resume" : "/pause");
+    if (this.playback.isPlaying) {
+      this.playback.isPlaying = false;
+      return;
+    }
+    if (this.recorded && this.pinned === this.recorded.last) this.pin(0); // once more
+    this.playback.start();
+  }
+
+  /** Takes the numbers that are new into the plots; those of a recording come by themselves. */
+  updateSeries(): void {
+    if (!this.recorded) for (const series of this.series) series.update(this.seen);
+  }
 }

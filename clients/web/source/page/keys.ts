@@ -4,7 +4,7 @@ import { layers } from "../drawing/view";
 import type { Tab } from "../model/settings";
 import type { App } from "./app";
 
-export interface Actions { help(): void; theme(): void; search(): void; speed(by: 1 | -1): void }
+export interface Actions { open(): void; help(): void; theme(): void; search(): void; speed(by: 1 | -1): void }
 
 const tabKeys: Record<string, Tab> = { d: "devices", p: "plots", c: "camera", b: "barrier", k: "log" };
 const turns: Record<string, [number, number]> = {
@@ -34,8 +34,8 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
   const selected = app.settings.selected;
   switch (key) {
     case " ": return done(app.playOrPause());
-    case "n": return done(void app.call("/step", { ticks: 1 }));
-    case "r": return done(void app.call("/reset"));
+    case "n": return done(app.step());
+    case "r": return done(app.restart());
     case "[": return done(actions.speed(-1));
     case "]": return done(actions.speed(1));
     case ",": return done(move(app, -1));
@@ -48,6 +48,7 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "-": return done(zoom(app, 1 / 0.85));
     case "a": return done(app.view.frameAll());
     case "o": return done(app.view.stage.top());
+    case "e": return done(actions.open());
     case "v": return done(app.tool = "select");
     case "m": return done(app.tool = "move");
     case "l": return done(actions.theme());
@@ -67,7 +68,10 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
 
 function done(_: unknown): boolean { return true; }
 
-function move(app: App, frames: number): void { app.pin((app.pinned ?? app.timeline.last) + frames); }
+function move(app: App, frames: number): void {
+  app.playback.isPlaying = false;
+  app.pin((app.pinned ?? app.timeline.last) + frames);
+}
 
 function zoom(app: App, factor: number): void {
   const { look } = app.view.stage;

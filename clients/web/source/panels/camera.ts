@@ -4,6 +4,7 @@ import * as three from "three";
 import type { App } from "../page/app";
 import type { Camera, Detections, SeenByCamera } from "../model/messages";
 import { compose, poseAt } from "../model/pose";
+import { bytesText } from "../model/readings";
 import { make, setText } from "./element";
 import type { Panel } from "./panel";
 
@@ -11,9 +12,11 @@ const toScreen = Uint8ClampedArray.from({ length: 256 }, (_, i) => {
   const light = i / 255; // linear light to sRGB
   return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
 });
+const mostLines = 30; // of detections
 const hex = (color: number): string => `#${color.toString(16).padStart(6, "0")}`;
 
-interface Shown { index: number; camera: Camera; canvas: HTMLCanvasElement; caption: HTMLElement; image: ImageBitmap | null; of: unknown }
+interface Shown { index: number; camera: Camera; canvas: HTMLCanvasElement; caption: HTMLElement; list: HTMLElement;
+                 image: ImageBitmap | null; of: unknown; drawn: unknown }
 
 export class CameraPanel implements Panel {
   readonly element = make("section.camera");
@@ -34,10 +37,10 @@ export class CameraPanel implements Panel {
       const place = robot && world ? world.robots.indexOf(robot) : -1;
       this.shown = (world?.cameras ?? []).map((camera, index) => ({ camera, index }))
         .filter(({ camera }) => camera.robot === place)
-        .map(({ camera, index }) => ({ camera, index, image: null, of: null, caption: make("div.muted"),
+        .map(({ camera, index }) => ({ camera, index, image: null, of: null, drawn: null, caption: make("div.muted"), list: make("div.detections.number"),
           canvas: make("canvas", { width: camera.width, height: camera.height }) as HTMLCanvasElement }));
-      this.element.replaceChildren(...this.shown.flatMap(({ camera, canvas, caption }) => [
-        make("h3", {}, camera.id, make("span.muted", {}, ` ${camera.width} × ${camera.height}`)), canvas, caption]));
+      this.element.replaceChildren(...this.shown.flatMap(({ camera, canvas, caption, list }) => [
+        make("h3", {}, camera.id, make("span.muted", {}, ` ${camera.width} × ${camera.height}`)), canvas, caption, list]));
     }
     if (this.shown.length === 0) {
       this.element.replaceChildren(make("p.empty", {}, robot ? "This robot has no camera." : "Select a robot with a camera."));
@@ -51,6 +54,9 @@ export class CameraPanel implements Panel {
     const frame = app.frame;
     const picture = frame?.messages.get(`/robots/${robot}/cameras/${shown.camera.id}/image`);
     const draw = shown.canvas.getContext("2d")!;
+    const key = [frame, frame?.messages.size, shown.image, app.view.poses];
+    if (Array.isArray(shown.drawn) && key.every((value, i) => value === (shown.drawn as unknown[])[i])) return;
+    shown.drawn = key;
     if (picture && picture !== shown.of) {
       shown.of = picture;
       const { data } = picture.read<{ data: Uint8Array }>();
@@ -61,6 +67,7 @@ export class CameraPanel implements Panel {
     const seen = frame?.messages.get("/detections")?.read<Detections>().cameras.find(({ camera }) => camera === shown.index);
     this.drawDetections(draw, seen);
     const count = seen ? seen.leds.length + seen.directionalLeds.length + seen.tags.length : 0;
+    this.listDetections(shown.list, seen);
     setText(shown.caption, `${shown.image && shown.camera.image ? "as the camera took it" : "drawn by the page"} · ${count} detected`);
   }
 
@@ -92,6 +99,15 @@ export class CameraPanel implements Panel {
       for (let i = 0; i < 4 * width; ++i) image.data[to + i] = i % 4 === 3 ? 255 : toScreen[pixels[from + i]];
     }
     draw.putImageData(image, 0, 0);
+  }
+
+  private listDetections(list: HTMLElement, seen: SeenByCamera | undefined): void {
+    const at = ({ u, v }: { u: number; v: number }): string => `at ${u.toFixed(1)}, ${v.toFixed(1)} px`;
+    const light = (kind: string) => (one: { color: number; u: number; v: number }) => `${kind} ${hex(one.color)} ${at(one)}`;
+    const lines = seen ? [...seen.leds.map(light("LED")), ...seen.directionalLeds.map(light("directional LED")),
+      ...seen.tags.map((tag) => `tag ${bytesText(tag.payload)} ${at(tag)}`)] : [];
+    const more = lines.length > mostLines ? [`… and ${lines.length - mostLines} more`] : [];
+    setText(list, [...lines.slice(0, mostLines), ...more].join("\n"));
   }
 
   private drawDetections(draw: CanvasRenderingContext2D, seen: SeenByCamera | undefined): void {

@@ -12,22 +12,23 @@ export class Header implements Panel {
   private readonly connection = make("span.connection", { title: "connection" });
   private rates: { wall: number; seconds: number; tick: number }[] = [];
 
-  constructor(private readonly app: App, toggleTheme: () => void, openHelp: () => void) {
+  constructor(private readonly app: App, openFile: () => void, toggleTheme: () => void, openHelp: () => void) {
     this.element.append(make("strong.name", {}, "Ziggurat"), this.scene, this.state, this.rate, make("span.space"),
       this.steering, this.connection,
+      make("button.wide", { id: "open", title: "Open a recording, a file .mcap (e), or drop it on the page", click: openFile }, "Open"),
       make("button", { title: "Light or dark (L)", click: toggleTheme }, "◐"),
       make("button", { title: "Keys and help (?)", click: openHelp }, "?"));
   }
 
   update(): void {
     const { app } = this;
-    const world = app.timeline.newest?.world;
+    const world = app.world;
     setText(this.scene, world ? world.scene.split("/").pop() ?? "" : "");
     if (world) {
       this.scene.title = `${world.scene}\nhash ${world.sceneHash}\nseed ${world.seed}\n`
           + `${world.entities.filter(({ removed }) => !removed).length} entities, ${world.links.length} links`;
     }
-    const phase = String(app.parameters.get("phase") ?? "");
+    const phase = app.recorded ? "recording" : String(app.parameters.get("phase") ?? "");
     setText(this.state, phase);
     this.state.dataset.phase = phase;
     const { phase: connected, mayControl } = app.connection;
@@ -42,7 +43,7 @@ export class Header implements Panel {
   /** How fast the world runs, over the last two seconds of wall time. */
   private rateText(): string {
     const newest = this.app.timeline.newest;
-    if (!newest) return "";
+    if (!newest || this.app.recorded) return "";
     const now = performance.now() * 1e-3;
     this.rates.push({ wall: now, seconds: Number(newest.timeNs) * 1e-9, tick: newest.tick });
     while (this.rates.length > 2 && this.rates[0].wall < now - 2) this.rates.shift();

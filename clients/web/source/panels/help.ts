@@ -2,12 +2,12 @@
 import { make } from "./element";
 
 const keys: [string, string][] = [
-  ["space", "play or pause the world"], ["n", "one tick"], ["r", "back to the start"], ["[  ]", "slower, faster"],
+  ["space", "play or pause"], ["n", "one tick"], ["r", "back to the start"], ["[  ]", "slower, faster"],
   [",  .", "one frame back, ahead"], ["<  >", "fifty frames back, ahead"], ["End", "jump to the newest (live)"],
   ["↑ ↓ ← →", "orbit; with shift: pan"], ["+  −", "zoom"], ["a", "look at all that moves"], ["f", "look at what is selected"],
   ["g", "follow what is selected"], ["o", "from the top"], ["t", "trail of what is selected"],
   ["v  m", "select, or move with the mouse"], ["Delete", "remove what is selected"], ["/", "search"],
-  ["1 … 9, 0", "switch a layer"], ["d p c b", "devices, plots, camera, barrier"], ["k", "log"], ["l", "light or dark"],
+  ["1 … 9, 0", "switch a layer"], ["d p c b", "devices, plots, camera, barrier"], ["k", "log"], ["l", "light or dark"], ["e", "open a recording"],
   ["Esc", "select nothing"], ["?", "this list"],
 ];
 
@@ -19,8 +19,12 @@ export function fillHelp(dialog: HTMLDialogElement): void {
       + "click to look at it. With the tool “move” (m), drag an object over the floor; with shift, up and down; shift + right click "
       + "takes the place for “Spawn”."),
     make("h2", {}, "Time"),
-    make("p", {}, "The line at the bottom has all frames that this page has seen. Drag it to look back; the world runs on. Marks are "
-      + "log lines (grey), warnings (yellow), errors (red), missed deadlines (pink) and resets (blue)."),
+    make("p", {}, "The line at the bottom has all frames that this page has seen. Drag it to look back; the world runs on, and “play” "
+      + "plays the past from there. Marks are log lines (grey), warnings (yellow), errors (red), missed deadlines (pink), collisions "
+      + "(violet; in worlds with many links only while the layer “Contacts” is on), resets and other acts (blue)."),
+    make("h2", {}, "Recordings"),
+    make("p", {}, "Drop a file .mcap on the page, or press “Open”: it plays with the same time line, plots and camera views, without "
+      + "a server. Nothing of it is run."),
     make("h2", {}, "Links"),
     make("p", {}, "The address shows this view: camera, layers, selection and plots. Without the token in it, a page may look and "
       + "not steer."),

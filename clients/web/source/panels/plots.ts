@@ -36,9 +36,10 @@ export class Plots implements Panel {
       box.remove();
       this.drawn.delete(name);
     }
+    app.updateSeries();
     app.series.forEach((series, i) => {
-      series.update(app.timeline);
       const drawn = this.drawn.get(nameOf(series.name)) ?? this.add(series, strokes[i % strokes.length]);
+      drawn.series = series; // a recording that was opened has new ones
       this.fill(drawn);
     });
     if (app.series.length === 0 && !this.list.hasChildNodes()) {
@@ -98,7 +99,7 @@ export class Plots implements Panel {
   }
 
   private listNumbers(): void {
-    const message = this.app.timeline.message(this.topic.value, this.app.timeline.last);
+    const message = this.app.timeline.message(this.topic.value, this.app.pinned ?? this.app.timeline.last);
     const numbers = message ? numbersIn(message.read()) : [];
     this.path.replaceChildren(make("option", { value: "" }, message || this.topic.value === "" ? "Number …"
       : "not shown now: switch its layer on, or select its robot"),

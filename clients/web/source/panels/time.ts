@@ -6,14 +6,14 @@ import type { Panel } from "./panel";
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 4, 10, 0];
 const markColors: Record<MarkKind, string> = {
-  log: "#8a919b", warning: "#e6a417", error: "#e0402c", missed: "#d6336c", reset: "#3d8bfd",
+  log: "#8a919b", warning: "#e6a417", error: "#e0402c", missed: "#d6336c", collision: "#8e5bd0", reset: "#3d8bfd",
 };
 
 export class TimeBar implements Panel {
   readonly element = make("div.time");
   private readonly play = make("button.play", { id: "play", title: "Play or pause (space)", click: () => this.app.playOrPause() });
-  private readonly step = make("button", { id: "step", title: "One tick (n)", click: () => void this.app.call("/step", { ticks: 1 }) }, icon("step"));
-  private readonly reset = make("button", { id: "reset", title: "Back to the start (r)", click: () => void this.app.call("/reset") }, icon("reset"));
+  private readonly step = make("button", { id: "step", title: "One tick (n)", click: () => this.app.step() }, icon("step"));
+  private readonly reset = make("button", { id: "reset", title: "Back to the start (r)", click: () => this.app.restart() }, icon("reset"));
   private readonly speed = make("select", { id: "speed", title: "Simulated seconds per second ([ and ])" }) as HTMLSelectElement;
   private readonly line = make("canvas.line", { id: "timeline", title: "All that this page has seen: drag to look back" }) as HTMLCanvasElement;
   private readonly clock = make("span.clock.number", { id: "clock" });
@@ -22,7 +22,7 @@ export class TimeBar implements Panel {
 
   constructor(private readonly app: App) {
     this.speed.append(...speeds.map((speed) => make("option", { value: speed }, speed === 0 ? "max" : `×${speed}`)));
-    this.speed.addEventListener("change", () => void app.call("/speed", { factor: Number(this.speed.value) }));
+    this.speed.addEventListener("change", () => app.setSpeed(Number(this.speed.value)));
     this.line.addEventListener("pointerdown", (event) => {
       this.line.setPointerCapture(event.pointerId);
       this.scrub(event);
@@ -41,41 +41,49 @@ export class TimeBar implements Panel {
     return this.app.timeline.first + Math.round((event.clientX - this.line.getBoundingClientRect().left) * this.scale);
   }
 
-  private scrub(event: PointerEvent): void { this.app.pin(this.sequenceAt(event)); }
+  private scrub(event: PointerEvent): void {
+    if (!this.app.recorded) this.app.playback.isPlaying = false;
+    this.app.pin(this.sequenceAt(event));
+  }
 
   private hint(event: PointerEvent): void {
     const { timeline } = this.app;
     const sequence = this.sequenceAt(event);
     const near = timeline.marks.filter((mark) => Math.abs(mark.sequence - sequence) <= 3 * this.scale).slice(-6);
-    const frame = timeline.at(sequence);
-    this.line.title = [frame ? `tick ${frame.tick}` : "", ...near.map((mark) => mark.text)].join("\n");
+    const tick = this.app.recorded ? "" : `tick ${timeline.at(sequence)?.tick ?? ""}`;
+    this.line.title = [tick, ...near.map((mark) => mark.text)].join("\n");
   }
 
   changeSpeed(by: 1 | -1): void {
     const index = Math.min(Math.max(this.speed.selectedIndex + by, 0), speeds.length - 1);
     this.speed.selectedIndex = index;
-    void this.app.call("/speed", { factor: speeds[index] });
+    this.app.setSpeed(speeds[index]);
   }
 
   update(): void {
     const { app } = this;
-    const mayControl = app.connection.mayControl;
-    for (const control of [this.play, this.step, this.reset, this.speed]) (control as HTMLButtonElement).disabled = !mayControl;
+    const mayPlay = app.connection.mayControl || !app.isLive;
+    for (const control of [this.play, this.step, this.reset, this.speed]) (control as HTMLButtonElement).disabled = !mayPlay;
     if (app.isPaused !== this.wasPaused) {
       this.wasPaused = app.isPaused;
       this.play.replaceChildren(icon(app.isPaused ? "play" : "pause"));
     }
-    const factor = app.parameters.get("real_time_factor");
+    const factor = app.isLive ? app.parameters.get("real_time_factor") : app.playback.speed;
     if (typeof factor === "number" && document.activeElement !== this.speed) this.showSpeed(factor);
-    const frame = app.frame;
-    const isLive = app.pinned === null;
-    this.live.classList.toggle("on", isLive);
-    this.element.classList.toggle("past", !isLive);
+    const { frame, recorded } = app;
+    this.live.hidden = recorded !== null;
+    this.live.classList.toggle("on", app.isLive);
+    this.element.classList.toggle("past", !app.isLive && !recorded);
+    this.play.title = app.isLive ? "Play or pause the world (space)"
+      : recorded ? "Play or pause (space)" : "Play the past from here (space); the world goes on by itself";
     if (frame) {
-      const behind = isLive ? "" : `  (${(Number(frame.timeNs - app.timeline.newest!.timeNs) * 1e-9).toFixed(2)} s)`;
-      setText(this.clock, `${(Number(frame.timeNs) * 1e-9).toFixed(3)} s · tick ${frame.tick}${behind}`);
+      const newest = app.timeline.newest;
+      const behind = recorded ? ` / ${recorded.seconds.toFixed(2)} s`
+        : app.isLive || !newest ? "" : `  (${(Number(frame.timeNs - newest.timeNs) * 1e-9).toFixed(2)} s)`;
+      setText(this.clock, recorded ? `${recorded.secondsOf(frame).toFixed(3)}${behind} · tick ${frame.tick}`
+        : `${(Number(frame.timeNs) * 1e-9).toFixed(3)} s · tick ${frame.tick}${behind}`);
       this.clock.dataset.tick = String(frame.tick);
-      this.clock.dataset.live = String(app.timeline.newest!.tick);
+      this.clock.dataset.live = String(newest?.tick ?? "");
     }
     this.draw();
   }
@@ -103,7 +111,7 @@ export class TimeBar implements Panel {
     draw.fillStyle = style.getPropertyValue("--line");
     draw.fillRect(0, middle - 2 * ratio, width, 4 * ratio);
     const x = (sequence: number): number => (sequence - timeline.first) / Math.max(timeline.length - 1, 1) * (width - 2 * ratio);
-    const shown = this.app.pinned === null ? timeline.last : this.app.pinned;
+    const shown = this.app.pinned ?? timeline.last;
     draw.fillStyle = style.getPropertyValue("--accent");
     draw.fillRect(0, middle - 2 * ratio, x(shown), 4 * ratio);
     for (const mark of timeline.marks) {

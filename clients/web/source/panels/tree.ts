@@ -58,9 +58,15 @@ export class Tree implements Panel {
       list.filter((item) => item.entity === index).map((item) => `${kind} ${item.id}`);
     const robot = (list: { robot: number; id: string }[], kind: string): string[] =>
       entity.robot === undefined ? [] : list.filter((item) => item.robot === entity.robot).map(({ id }) => `${kind} ${id}`);
+    const described = entity.robot === undefined ? undefined : world.robots[entity.robot]?.description;
+    const proximity = world.proximitySensors.filter(({ robot }) => robot === entity.robot).map((_, i) => `proximity sensor ${i}`);
+    const more = described ? [
+      ...described.imus.map(({ id }) => `IMU ${id}`), ...described.contactSensors.map(({ id }) => `contact sensor ${id}`),
+      ...proximity, ...(described.rangeAndBearing ? ["range and bearing"] : []), ...(described.positioning ? ["positioning"] : []),
+      ...(described.battery ? ["battery"] : []), ...(described.wheels ? ["wheels"] : []), ...(described.turret ? ["turret"] : [])] : [];
     return [...own(world.links, "link"), ...own(world.joints, "joint"), ...robot(world.cameras, "camera"),
             ...robot(world.radios, "radio"), ...own(world.leds, "LED"), ...own(world.directionalLeds, "directional LED"),
-            ...own(world.tags, "tag"), ...own(world.magnets, "magnet")];
+            ...own(world.tags, "tag"), ...own(world.magnets, "magnet"), ...more];
   }
 
   private rowsOf(world: World, entity: Entity): HTMLElement[] {

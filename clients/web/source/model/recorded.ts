@@ -1,0 +1,360 @@
+// A recording: all its frames, of which those in view are in memory. Frames are the ticks of the recording from its
+// first, so that their places on the time line are known before they are read. In the background all of the file is
+// read once, for log lines, collisions and plots.
+import type { IReadable } from "@mcap/core";
+import { Container, type Chunk, type RawMessage } from "../data/container";
+import { makeDecoder, type Decoder } from "../data/decode";
+import type { Listener, Message, Source, Value } from "../data/source";
+import { areWhole, checkWorld } from "./check";
+import { Collisions } from "./collisions";
+import type { Contacts, Log, Poses, World } from "./messages";
+import type { Series } from "./series";
+import type { Frame, Frames, Mark } from "./timeline";
+
+const mostBytes = 192 * 1024 * 1024; // of frames in memory
+const mostFrames = 1e8;
+const mostPoints = 6000; // of a plot
+
+class Held implements Message {
+  constructor(readonly topic: string, readonly timeNs: bigint, private readonly data: Uint8Array,
+              private readonly decoder: Decoder) {}
+  get bytes(): number { return this.data.byteLength; }
+  read<T = Value>(): T { return this.decoder(this.data) as T; }
+}
+
+interface Part {
+  readonly chunk: Chunk;
+  readonly first: number; // frame
+  readonly last: number;
+  state: "away" | "coming" | "here" | "damaged";
+  frames: number[];
+  bytes: number;
+  used: number; // when, in calls
+}
+
+/** An act of a supervisor or viewer, in /inputs: protocol/ziggurat/v1/run.proto. */
+interface Acts { acts: Record<string, Record<string, unknown> | undefined>[] }
+
+export class Recorded implements Source, Frames {
+  readonly isLive = false;
+  readonly first = 0;
+  readonly last: number;
+  readonly marks: Mark[] = [];
+  private readonly parts: Part[] = [];
+  private readonly frames = new Map<number, Frame>();
+  private readonly worlds = new Map<number, World>(); // by generation
+  private readonly decoders = new Map<number, Decoder | null>(); // by channel; those of one schema are the same
+  private readonly bySchema = new Map<number, Decoder | null>();
+  private readonly startNs: bigint;
+  private tickNs: number;
+  private bytes = 0;
+  private calls = 0;
+  private listener: Listener | null = null;
+  private unread: Series[] = [];
+  private isReading = false;
+  private hasRead = false; // log and collisions
+  private isClosed = false;
+
+  private constructor(readonly name: string, readonly container: Container, first: World) {
+    this.startNs = container.chunks[0].startNs;
+    const endNs = container.chunks.reduce((end, chunk) => (chunk.endNs > end ? chunk.endNs : end), this.startNs);
+    const length = Number(endNs - this.startNs);
+    this.tickNs = Math.max(first.tickNs, length / mostFrames);
+    this.last = Math.round(length / this.tickNs);
+    this.worlds.set(first.generation, first);
+    for (const chunk of container.chunks) {
+      this.parts.push({ chunk, first: this.sequenceOf(chunk.startNs), last: this.sequenceOf(chunk.endNs),
+                        state: "away", frames: [], bytes: 0, used: 0 });
+    }
+  }
+
+  /** @throws Error with a sentence for the user */
+  static async open(file: IReadable, name: string): Promise<Recorded> {
+    try {
+      const container = await Container.open(file);
+      const world = await findWorld(container);
+      return new Recorded(name, container, world);
+    } catch (error) {
+      const text = (error as Error).message;
+      throw new Error(/^(is|has) /.test(text) ? `${name} ${text}.` : `${name} can't be read: ${text}.`);
+    }
+  }
+
+  get length(): number { return this.last + 1; }
+  get newest(): Frame | null { return this.frames.get(this.last) ?? null; }
+  get isCut(): boolean { return this.container.isCut; }
+  get seconds(): number { return this.last * this.tickNs * 1e-9; }
+
+  /** When a frame is, from the beginning of the recording [s]. */
+  secondsOf(frame: Frame): number { return Number(frame.timeNs - this.startNs) * 1e-9; }
+
+  // --- a source that answers nothing ----------------------------------------------------------------
+
+  start(listener: Listener): void {
+    this.listener = listener;
+    listener.status({ phase: "open", text: "", mayControl: false, session: this.name });
+    this.tellTopics();
+    if (this.isCut) {
+      listener.notice("warning", `${this.name} is cut off after ${this.seconds.toFixed(2)} s, as by a run that was killed. What is whole `
+        + "is shown. `ziggurat info FILE --repair OUT` writes a whole file of it.");
+    }
+    this.at(0);
+    void this.readAll();
+  }
+
+  want(): void { /* all of it is there */ }
+  call(): Promise<Value> { return Promise.reject(new Error("a recording can't be changed")); }
+  setParameter(): void { /* it has none */ }
+  close(): void { this.isClosed = true; }
+
+  private tellTopics(): void {
+    this.listener?.topics([...new Set([...this.container.channels.values()].map(({ topic }) => topic))].sort());
+  }
+
+  // --- frames ---------------------------------------------------------------------------------------
+
+  private sequenceOf(timeNs: bigint): number {
+    return Math.min(Math.max(Math.round(Number(timeNs - this.startNs) / this.tickNs), 0), mostFrames);
+  }
+
+  stepNs(): number { return this.tickNs; }
+
+  at(sequence: number): Frame | null {
+    const wanted = Math.min(Math.max(Math.round(sequence), 0), this.last);
+    const parts = this.partsAt(wanted);
+    ++this.calls;
+    for (const part of parts) {
+      part.used = this.calls;
+      if (part.state === "away") void this.load(part);
+    }
+    const next = this.parts[this.parts.indexOf(parts[0]) + 1]; // so that playing does not wait
+    if (next?.state === "away" && wanted > (parts[0].first + parts[0].last) / 2) void this.load(next);
+    if (parts.some(({ state }) => state === "coming")) return null;
+    for (const part of parts) {
+      let low = 0, high = part.frames.length;
+      while (low < high) { // the first one behind
+        const middle = (low + high) >> 1;
+        if (part.frames[middle] <= wanted) low = middle + 1;
+        else high = middle;
+      }
+      const found = this.frames.get(part.frames[low - 1]);
+      if (found) return found;
+    }
+    return null;
+  }
+
+  /** The parts that have a frame, the last first: one, or two where one ends within the frame. If none has it, the one before. */
+  private partsAt(sequence: number): Part[] {
+    let low = 0, high = this.parts.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.parts[middle].first <= sequence) low = middle + 1;
+      else high = middle;
+    }
+    const last = Math.max(low - 1, 0);
+    const found = [this.parts[last]];
+    for (let i = last - 1; i >= 0 && i > last - 4 && this.parts[i].last >= sequence; --i) found.push(this.parts[i]);
+    return found;
+  }
+
+  message(topic: string, sequence: number, back = 400): Message | null {
+    for (let s = Math.min(sequence, this.last); s >= 0 && s > sequence - back; --s) {
+      const found = this.frames.get(s)?.messages.get(topic);
+      if (found) return found;
+    }
+    return null;
+  }
+
+  private async load(part: Part): Promise<void> {
+    part.state = "coming";
+    try {
+      const messages = await this.container.read(part.chunk);
+      await this.knowWorlds(part, messages);
+      this.makeFrames(part, messages);
+      part.state = "here";
+    } catch (error) {
+      part.state = "damaged";
+      this.listener?.notice("error", `${this.name} is damaged at ${(part.first * this.tickNs * 1e-9).toFixed(2)} s: ${(error as Error).message}. `
+        + "The rest can be shown.");
+    }
+    this.forgetOld();
+  }
+
+  /** Finds the worlds that the part's poses belong to. */
+  private async knowWorlds(part: Part, messages: RawMessage[]): Promise<void> {
+    const generations = new Set<number>();
+    for (const message of messages) {
+      const topic = this.container.channels.get(message.channel)?.topic;
+      if (topic === "/world") this.takeWorld(message);
+      if (topic === "/poses") generations.add(this.decode<Poses>(message)?.generation ?? 0);
+    }
+    const isUnknown = (): boolean => [...generations].some((generation) => !this.worlds.has(generation));
+    for (let i = this.parts.indexOf(part) - 1; i >= 0 && isUnknown(); --i) {
+      const { channels } = this.parts[i].chunk;
+      if (channels && ![...channels].some((id) => this.container.channels.get(id)?.topic === "/world")) continue;
+      for (const message of await this.container.read(this.parts[i].chunk)) {
+        if (this.container.channels.get(message.channel)?.topic === "/world") this.takeWorld(message);
+      }
+    }
+  }
+
+  private takeWorld(message: RawMessage): void {
+    const world = this.decode<World>(message);
+    if (!world || this.worlds.has(world.generation)) return;
+    checkWorld(world);
+    this.worlds.set(world.generation, world);
+  }
+
+  private makeFrames(part: Part, messages: RawMessage[]): void {
+    let frame: Frame | undefined;
+    for (const message of messages) {
+      const channel = this.container.channels.get(message.channel);
+      const decoder = this.decoderOf(message.channel);
+      if (!channel || !decoder) continue;
+      const sequence = this.sequenceOf(message.timeNs);
+      if (frame?.sequence !== sequence) frame = this.frames.get(sequence);
+      if (!frame) {
+        frame = { sequence, timeNs: message.timeNs, tick: sequence, world: null, messages: new Map() };
+        this.frames.set(sequence, frame);
+        part.frames.push(sequence);
+      }
+      const held = new Held(channel.topic, message.timeNs, message.data, decoder);
+      if (channel.topic === "/poses") {
+        const poses = held.read<Poses>();
+        const world = this.worlds.get(poses.generation);
+        if (!world || !areWhole(poses, world)) continue;
+        frame.world = world;
+        frame.tick = poses.tick;
+      }
+      frame.messages.set(channel.topic, held);
+      part.bytes += message.data.byteLength;
+    }
+    part.frames.sort((a, b) => a - b);
+    this.bytes += part.bytes;
+  }
+
+  private forgetOld(): void {
+    while (this.bytes > mostBytes) {
+      const here = this.parts.filter(({ state, used }) => state === "here" && used < this.calls);
+      if (here.length < 2) return;
+      const old = here.reduce((a, b) => (a.used < b.used ? a : b));
+      for (const sequence of old.frames) this.frames.delete(sequence);
+      this.bytes -= old.bytes;
+      Object.assign(old, { state: "away", frames: [], bytes: 0 });
+    }
+  }
+
+  private decoderOf(id: number): Decoder | null {
+    const known = this.decoders.get(id);
+    if (known !== undefined) return known;
+    const schema = this.container.channels.get(id)?.schema ?? -1;
+    const decoder = this.bySchema.get(schema) ?? decoderIn(this.container, id);
+    this.bySchema.set(schema, decoder);
+    this.decoders.set(id, decoder);
+    if (!decoder) {
+      this.listener?.notice("warning", `${this.container.channels.get(id)?.topic ?? `channel ${id}`} can't be read: its schema is unknown or damaged.`);
+    }
+    return decoder;
+  }
+
+  private decode<T>(message: RawMessage): T | null {
+    return (this.decoderOf(message.channel)?.(message.data) as T | undefined) ?? null;
+  }
+
+  // --- all of the file, once ------------------------------------------------------------------------
+
+  /** Fills series with their numbers of the whole recording, in the background. */
+  fill(series: Series): void {
+    this.unread.push(series);
+    void this.readAll();
+  }
+
+  private async readAll(): Promise<void> {
+    if (this.isReading) return;
+    this.isReading = true;
+    while (!this.isClosed && (!this.hasRead || this.unread.length > 0)) {
+      const series = this.unread;
+      this.unread = [];
+      const isFirst = !this.hasRead;
+      this.hasRead = true;
+      await this.visit(isFirst, series);
+      this.tellTopics(); // those of a file without summary are known now
+    }
+    this.isReading = false;
+  }
+
+  private async visit(isFirst: boolean, series: Series[]): Promise<void> {
+    const collisions = new Collisions();
+    const stride = Math.max(1, Math.ceil(this.length / mostPoints));
+    const topics = new Set(series.map(({ name }) => name.topic));
+    if (isFirst) for (const topic of ["/log", "/contacts", "/inputs"]) topics.add(topic);
+    for (const part of this.parts) {
+      if (this.isClosed) return;
+      const begin = performance.now();
+      let messages: RawMessage[] = [];
+      try {
+        messages = await this.container.read(part.chunk);
+        for (const message of messages) {
+          const topic = this.container.channels.get(message.channel)?.topic ?? "";
+          if (!topics.has(topic)) continue;
+          const sequence = this.sequenceOf(message.timeNs);
+          if (isFirst) this.note(topic, sequence, message, collisions);
+          for (const one of series) {
+            if (one.name.topic === topic && sequence % stride === 0) {
+              one.add(sequence, Number(message.timeNs) * 1e-9, this.decode(message));
+            }
+          }
+        }
+      } catch { /* load() says it when the place is looked at */ }
+      await new Promise((resolve) => setTimeout(resolve, performance.now() - begin)); // half of the time is for drawing
+    }
+  }
+
+  private note(topic: string, sequence: number, message: RawMessage, collisions: Collisions): void {
+    if (topic === "/log") {
+      const log = this.decode<Log>(message);
+      if (log) this.listener?.logged?.(log, sequence, Number(message.timeNs) * 1e-9);
+      if (log) this.mark(sequence, log.level >= 4 ? "error" : log.level === 3 ? "warning" : "log", `${log.name}: ${log.message}`);
+    } else if (topic === "/contacts") {
+      const contacts = this.decode<Contacts>(message);
+      const world = this.frames.get(sequence)?.world ?? [...this.worlds.values()].at(-1);
+      const text = contacts && world ? collisions.take(contacts, Number(message.timeNs), world) : "";
+      if (text) this.mark(sequence, "collision", text);
+    } else if (topic === "/inputs") {
+      for (const act of this.decode<Acts>(message)?.acts ?? []) {
+        const name = ["spawn", "remove", "move", "reset", "restore", "snapshot"].find((key) => act[key] !== undefined);
+        if (name) this.mark(sequence, "reset", `${name} ${String(act[name]?.["entity"] ?? act[name]?.["name"] ?? "")}`);
+      }
+    }
+  }
+
+  private mark(sequence: number, kind: Mark["kind"], text: string): void {
+    if (this.marks.length < 20_000) this.marks.push({ sequence, kind, text: text.slice(0, 300) });
+  }
+}
+
+function decoderIn(container: Container, id: number): Decoder | null {
+  const channel = container.channels.get(id);
+  const schema = channel && container.schemas.get(channel.schema);
+  if (!channel || !schema || channel.encoding !== "protobuf" || schema.encoding !== "protobuf") return null;
+  try {
+    return makeDecoder(schema.data, schema.name);
+  } catch {
+    return null;
+  }
+}
+
+/** The first world of the file. */
+async function findWorld(container: Container): Promise<World> {
+  for (const chunk of container.chunks.slice(0, 20)) {
+    for (const message of await container.read(chunk)) {
+      if (container.channels.get(message.channel)?.topic !== "/world") continue;
+      const world = decoderIn(container, message.channel)?.(message.data) as unknown as World | undefined;
+      if (!world) throw new Error("the type of its topic /world is unknown or damaged");
+      if (!(world.tickNs > 0)) throw new Error("its world has no tick");
+      checkWorld(world);
+      return world;
+    }
+  }
+  throw new Error("has no topic /world: it is no recording of Ziggurat");
+}

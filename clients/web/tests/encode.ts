@@ -1,0 +1,16 @@
+// Encodes messages by the schemas that the server advertises, for tests.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { create, createFileRegistry, fromBinary, toBinary } from "@bufbuild/protobuf";
+import { FileDescriptorSetSchema } from "@bufbuild/protobuf/wkt";
+
+const path = process.env["ZIGGURAT_SCHEMAS"];
+if (!path) throw new Error("ZIGGURAT_SCHEMAS names no file; run ctest -R web/unit");
+export const schema = new Uint8Array(readFileSync(path));
+const registry = createFileRegistry(fromBinary(FileDescriptorSetSchema, schema));
+
+export function encode(name: string, value: Record<string, unknown>): Uint8Array {
+  const type = registry.getMessage(name);
+  assert.ok(type, name);
+  return toBinary(type, create(type, value));
+}

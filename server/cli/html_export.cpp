@@ -1,0 +1,137 @@
+#include "cli/html_export.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace ziggurat::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view magic("\x89MCAP0\r\n", 8);
+constexpr std::string_view name_place = "@NAME@", recording_place = "@RECORDING@";
+/// Browsers hold the text of an element in one string, of at most 512 MiB.
+constexpr std::uint64_t largest = std::uint64_t{350} << 20;
+constexpr std::size_t block = std::size_t{3} << 20;  ///< a multiple of three: nothing is padded
+
+[[noreturn]] void fail(const std::string& text) { throw std::runtime_error(text); }
+
+std::ifstream open(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(fmt::format("{} can't be read: {}", path, std::strerror(errno)));
+  return file;
+}
+
+std::string escaped(std::string_view text) {
+  std::string all;
+  for (const char letter : text) {
+    if (std::string_view("&<>\"'").find(letter) == std::string_view::npos) {
+      all += letter;
+    } else {
+      all += fmt::format("&#{};", static_cast<int>(letter));
+    }
+  }
+  return all;
+}
+
+/// The page around the recording: up to its name, up to its bytes, and the rest.
+struct Template {
+  std::string before_name, before_recording, rest;
+};
+
+Template read_template(const std::string& player) {
+  if (!fs::exists(player)) {
+    fail(fmt::format(
+        "the page was not built: there is no {}; install nodejs and npm, and build again", player));
+  }
+  std::ifstream file = open(player);
+  const std::string all{std::istreambuf_iterator<char>(file), {}};
+  const auto name = all.find(name_place);
+  const auto recording = all.find(recording_place);
+  if (name == std::string::npos || recording == std::string::npos || recording < name) {
+    fail(fmt::format("{} has no place for a recording; build the page again", player));
+  }
+  const auto after_name = name + name_place.size();
+  return {all.substr(0, name), all.substr(after_name, recording - after_name),
+          all.substr(recording + recording_place.size())};
+}
+
+void copy_as_base64(std::ifstream& from, std::ofstream& to) {
+  std::string bytes(block, '\0');
+  while (from) {
+    from.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    to << to_base64({bytes.data(), static_cast<std::size_t>(from.gcount())});
+  }
+}
+
+std::ifstream open_recording(const std::string& path) {
+  std::error_code error;
+  const auto size = fs::file_size(path, error);
+  if (error) fail(fmt::format("{} can't be read: {}", path, error.message()));
+  if (size > largest) {
+    fail(
+        fmt::format("{} has {} MB, and a page holds at most {} MB; record fewer topics "
+                    "(--record-topics), or drop "
+                    "the file on the page of --view",
+                    path, size / 1'000'000, largest / 1'000'000));
+  }
+  std::ifstream file = open(path);
+  std::array<char, magic.size()> begin{};
+  file.read(begin.data(), begin.size());
+  if (std::string_view(begin.data(), begin.size()) != magic) {
+    fail(fmt::format("{} is no recording: it does not begin as an MCAP file does", path));
+  }
+  file.clear();
+  file.seekg(0);
+  return file;
+}
+
+}  // namespace
+
+std::string to_base64(std::string_view bytes) {
+  constexpr std::string_view letters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) {
+      return i + k < bytes.size() ? std::uint32_t{static_cast<unsigned char>(bytes[i + k])} : 0;
+    };
+    const std::uint32_t group = byte(0) << 16 | byte(1) << 8 | byte(2);
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += i + k <= bytes.size() ? letters[(group >> (18 - 6 * k)) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+std::uint64_t export_html(const std::string& player, const std::string& recording,
+                          const std::string& out) {
+  const Template page = read_template(player);
+  std::ifstream bytes = open_recording(recording);
+  const std::string part = out + ".part";
+  std::ofstream file(part, std::ios::binary | std::ios::trunc);
+  file << page.before_name << escaped(fs::path(recording).filename().string())
+       << page.before_recording;
+  copy_as_base64(bytes, file);
+  file << page.rest;
+  file.close();
+  std::error_code error;
+  if (!file || bytes.bad()) {
+    const std::string reason = std::strerror(errno);
+    fs::remove(part, error);
+    fail(fmt::format("{} can't be written: {}", out, reason));
+  }
+  fs::rename(part, out, error);
+  if (error) fail(fmt::format("{} can't be written: {}", out, error.message()));
+  return fs::file_size(out);
+}
+
+}  // namespace ziggurat::cli

@@ -1,0 +1,25 @@
+#pragma once
+// `ziggurat export --html`: the page with a recording inside, as one file.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace ziggurat::cli {
+
+/// The letters of RFC 4648, with `=` at the end.
+std::string to_base64(std::string_view bytes);
+
+/// Writes a page that plays the recording, without a server or a network. It appears under its name
+/// when it is whole.
+/// @param player     the page without recording, as the build makes it: player.html
+/// @param recording  an MCAP file
+/// @param out        is replaced
+/// @return  its size [bytes]
+/// @throws std::runtime_error  a sentence: the page was not built, the recording is none or too
+/// large,
+///                             or a file can't be read or written
+std::uint64_t export_html(const std::string& player, const std::string& recording,
+                          const std::string& out);
+
+}  // namespace ziggurat::cli
