@@ -6,6 +6,8 @@
 #include <boost/program_options/parsers.hpp>
 #include <boost/program_options/positional_options.hpp>
 #include <cstdlib>
+#include <filesystem>
+#include <system_error>
 
 #include "text/names.h"
 #include "text/numbers.h"
@@ -20,6 +22,17 @@ std::string unknown(const std::string& name, const po::options_description& know
   for (const auto& option : known.options()) names.push_back("--" + option->long_name());
   return fmt::format("unknown option '{}'; {}", name,
                      text::advice(name, names, "--help lists the options"));
+}
+
+// The next word is a scene, or was meant as the factor.
+void check_is_scene(const std::string& word) {
+  std::error_code error;
+  const bool looks_like_one = word.starts_with('-') || word.find_first_of("./") != word.npos;
+  if (looks_like_one || std::filesystem::exists(word, error)) return;
+  throw text::UsageError(fmt::format(
+      "--real-time takes a number, the factor of real time (1 if it is left out); '{}' is none, and "
+      "no file has that name; write --real-time 2, for example, or --real-time=1 SCENE",
+      word));
 }
 
 // An option with an optional value takes the next word only if it is a number. Boost would take any
@@ -37,6 +50,7 @@ Arguments join_optional_values(const Arguments& arguments) {
     options_ended = options_ended || arguments[i] == "--";
     if (options_ended || arguments[i] != "--real-time") continue;
     const bool has_value = i + 1 < arguments.size() && is_number(arguments[i + 1]);
+    if (!has_value && i + 1 < arguments.size()) check_is_scene(arguments[i + 1]);
     joined.back() += "=" + (has_value ? arguments[++i] : "1");
   }
   return joined;

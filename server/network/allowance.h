@@ -29,7 +29,7 @@ class Allowance {
   /// The last message counts for more, which may be owed.
   void charge(double tokens) { tokens_ -= tokens; }
   /// The last message was welcome.
-  void give_back() { tokens_ += 1; }
+  void give_back(double tokens) { tokens_ += tokens; }
   bool is_full(const Rate& rate, Time now) const { return at(rate, now) >= rate.at_once; }
 
  private:

@@ -18,14 +18,16 @@ enum class Standing {
 
 inline constexpr std::size_t kibibyte = std::size_t{1} << 10, mebibyte = std::size_t{1} << 20;
 
+inline constexpr std::size_t longest_without_session = 64 * kibibyte;
+
 /// Of a message [bytes].
-/// @param most  of any message
+/// @param most  of the connection's
 inline std::size_t longest_message(Standing standing, std::size_t most) {
   switch (standing) {
     case Standing::none:
     case Standing::waiting:
     case Standing::observer:
-      return std::min(most, 64 * kibibyte);
+      return std::min(most, longest_without_session);
     case Standing::supervisor:
       return std::min(most, 4 * mebibyte);
     case Standing::controller:
@@ -48,7 +50,11 @@ inline constexpr std::size_t most_waiting = 4 * mebibyte;
 /// The same for all clients.
 inline constexpr std::size_t most_waiting_in_all = 256 * mebibyte;
 
-/// Share of the wall time that connections other than controllers' may take while a tick runs.
-inline constexpr double share_of_others = 0.05;
+/// Share of the wall time that connections other than controllers' may take of the tick's thread
+/// while a tick runs. The system's work for them, and what they do themselves with the answers, may
+/// double that on the same machine: in all it is 5 %.
+inline constexpr double share_of_others = 0.025;
+/// A message counts at least that much of it, because it wakes a process: 1000 messages a second.
+inline constexpr std::chrono::microseconds least_cost{25};
 
 }  // namespace ziggurat::network

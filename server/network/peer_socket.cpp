@@ -34,8 +34,9 @@ PeerSocket::PeerSocket(std::string name, Descriptor descriptor, const zmtp::Curv
   send_reply();
 }
 
-void PeerSocket::set_standing(Standing standing, Time now) {
+void PeerSocket::set_standing(Standing standing, std::size_t longest, Time now) {
   standing_ = standing;
+  longest_ = longest;
   if (standing == Standing::none) since_ = now;
 }
 

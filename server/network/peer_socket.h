@@ -30,7 +30,9 @@ class PeerSocket {
   Standing standing() const { return standing_; }
   /// When it came to have no session.
   Time since() const { return since_; }
-  void set_standing(Standing standing, Time now);
+  /// @param longest  of its messages from now on [bytes]
+  void set_standing(Standing standing, std::size_t longest, Time now);
+  std::size_t longest() const { return longest_; }
   bool is_open() const { return engine_.is_open(); }  ///< the handshake is over
   /// The connection is gone, or must be closed.
   bool is_over() const { return is_over_; }
@@ -70,6 +72,7 @@ class PeerSocket {
   zmtp::Engine engine_;
   const bool is_trusted_;
   Standing standing_ = Standing::none;
+  std::size_t longest_ = longest_without_session;
   Time since_;
   bool is_over_ = false;
 

@@ -79,13 +79,14 @@ ReadyList& PeerTable::list_of(const PeerSocket& peer) {
   return peer.standing() == Standing::controller ? controllers_ : others_;
 }
 
-void PeerTable::set_standing(const std::string& name, Standing standing, Time now) {
+void PeerTable::set_standing(const std::string& name, Standing standing, std::size_t longest,
+                             Time now) {
   PeerSocket* peer = find(name);
   if (peer == nullptr) return;
   without_session_ -= peer->standing() == Standing::none ? 1 : 0;
   without_session_ += standing == Standing::none ? 1 : 0;
   ReadyList& before = list_of(*peer);
-  peer->set_standing(standing, now);
+  peer->set_standing(standing, longest, now);
   ReadyList& after = list_of(*peer);
   if (&before == &after) return;
   before.remove(peer->number());

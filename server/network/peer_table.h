@@ -35,7 +35,7 @@ class PeerTable {
     action(peer);
     settle(peer, before);
   }
-  void set_standing(const std::string& name, Standing standing, Time now);
+  void set_standing(const std::string& name, Standing standing, std::size_t longest, Time now);
 
   /// Forgets connections that are over.
   void remove_ended();

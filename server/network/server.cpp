@@ -54,8 +54,8 @@ struct Server::State {
                           : socket.send(connection, message);
             },
             Clock::now(),
-            [this](const std::string& connection, Standing standing) {
-              socket.set_standing(connection, standing);
+            [this](const std::string& connection, Standing standing, std::size_t longest) {
+              socket.set_standing(connection, standing, longest);
             }) {}
 
   template <class Done>

@@ -91,8 +91,9 @@ Delivery Socket::send(const std::string& connection, std::string_view bytes) {
               [&](std::uint8_t* to) { std::memcpy(to, bytes.data(), bytes.size()); });
 }
 
-void Socket::set_standing(const std::string& connection, Standing standing) {
-  peers_.set_standing(connection, standing, Clock::now());
+void Socket::set_standing(const std::string& connection, Standing standing,
+                          std::size_t longest) {
+  peers_.set_standing(connection, standing, longest, Clock::now());
 }
 
 bool Socket::may_serve_others() { return !is_ticking_ || share_.has_some(Clock::now()); }
@@ -103,14 +104,16 @@ void Socket::begin_charge() {
 
 void Socket::handled() {
   if (!charged_since_) return;
-  if (is_ticking_) share_.charge(ThreadClock::now() - *charged_since_);
+  const TimeShare::Seconds used = ThreadClock::now() - *charged_since_;
+  if (is_ticking_) share_.charge(std::max<TimeShare::Seconds>(used, least_cost));
   charged_since_.reset();
 }
 
 bool Socket::receive(Received& received) {
-  handled();
   peers_.remove_ended();
-  if (receive_from(controllers_, received)) return true;
+  const bool has_one = receive_from(controllers_, received);
+  handled();  // the look at controllers was between two messages of others
+  if (has_one) return true;
   if (!may_serve_others()) return false;
   begin_charge();
   if (receive_from(others_, received)) return true;
@@ -132,10 +135,8 @@ bool Socket::take_message(Group& group, Received& received) {
   PeerSocket* peer = group.current.empty() ? nullptr : peers_.find(group.current);
   bool has_message = false;
   if (peer != nullptr) {
-    const Standing standing = peer->is_trusted() ? Standing::controller : peer->standing();
-    peers_.act(*peer, [&](PeerSocket& from) {
-      has_message = from.next(longest_message(standing, longest_), received);
-    });
+    const std::size_t longest = peer->is_trusted() ? longest_ : peer->longest();
+    peers_.act(*peer, [&](PeerSocket& from) { has_message = from.next(longest, received); });
   }
   if (!has_message) group.current.clear();
   return has_message;

@@ -43,7 +43,8 @@ class Socket {
   Delivery send(const std::string& connection, std::string_view bytes);
 
   /// What a connection is from now on.
-  void set_standing(const std::string& connection, Standing standing);
+  /// @param longest  of its messages [bytes]
+  void set_standing(const std::string& connection, Standing standing, std::size_t longest);
   /// A message that arrived, if any. Valid until the next call.
   bool receive(Received& received);
   /// What follows is for others than controllers, until handled().

@@ -48,9 +48,16 @@ void PeerReports::print_log(std::uint64_t tick) {
   console_.offer();
 }
 
+void PeerReports::forget_spawned() {
+  const std::size_t left = world_.simulation.layout().robots.size();
+  for (auto& [robot, failure] : failures_) {
+    if (robot && *robot >= left) robot.reset();
+  }
+}
+
 bool PeerReports::has_failure(std::span<const std::size_t> robots) const {
   return std::ranges::any_of(failures_, [&](const auto& failure) {
-    return std::ranges::find(robots, failure.first) != robots.end();
+    return failure.first && std::ranges::find(robots, *failure.first) != robots.end();
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,7 +35,11 @@ class PeerReports {
   /// Prints the log lines of a tick, in the order of the robots.
   void print_log(std::uint64_t tick);
 
+  /// The world was reset: its spawned robots are gone, and others may take their places.
+  void forget_spawned();
+
   /// Whether the controller of one of these robots failed.
+  /// @param robots  into the present layout
   bool has_failure(std::span<const std::size_t> robots) const;
 
   /// Of all robots whose controller failed: sorted by tick, then by scene order.
@@ -53,8 +58,9 @@ class PeerReports {
   reports::Console& console_;
   const TellLine tell_;
   std::vector<Line> log_;
-  std::vector<std::pair<std::size_t, reports::Summary::Failure>> failures_;  ///< with the robot
-  int notices_ = 0;                                                          ///< printed so far
+  /// With the robot: none if a reset took it.
+  std::vector<std::pair<std::optional<std::size_t>, reports::Summary::Failure>> failures_;
+  int notices_ = 0;  ///< printed so far
 };
 
 }  // namespace ziggurat::run

@@ -351,6 +351,7 @@ bool Run::reset_world() {
     supervision_.refuse_reset(error.what());
     return false;
   }
+  watch_.forget_spawned();
   server_.reset(world_.seed);
   ++resets_;
   supervision_.reset_done();

@@ -61,6 +61,9 @@ class Watch {
   /// has ended. An interruption meanwhile kills the processes that still run.
   void end_run(const wire::End& end);
 
+  /// The world was reset.
+  void forget_spawned() { peers_.forget_spawned(); }
+
   /// Sorted by tick, then by scene order.
   std::vector<reports::Summary::Failure> failures() const { return peers_.failures(); }
   /// A sentence on each robot that a deadline took out of the run.

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "scene/draft.h"
+#include "text/names.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -29,12 +30,18 @@ void read_params(Element params, Controller& controller) {
 void note_type(Draft& draft, const Element& element) {
   if (element.name() == "lua_controller" || element.name() == "external_controller") return;
   constexpr std::array<std::string_view, 2> own{"lua_controller", "external_controller"};
-  const auto meant = nearest(element.name(), own);
+  constexpr std::size_t most_typos = 2;  // <epuck_controller> is none of ours
+  for (const std::string_view ours : own) {
+    if (text::edit_distance(element.name(), ours) > most_typos) continue;
+    return draft.report.fault(
+        element.where(),
+        fmt::format("unknown element <{}> in <controllers>; did you mean <{}>?", element.name(), ours));
+  }
   draft.report.notice(
       element.where(),
       fmt::format(
-          "<{}> is read as an external controller: a client connects and controls its robots{}",
-          element.name(), meant ? fmt::format("; or did you mean <{}>?", *meant) : ""));
+          "<{}> is read as an external controller: a client connects and controls its robots",
+          element.name()));
 }
 
 void take_id(Draft& draft, const Element& element, const Controller& controller) {

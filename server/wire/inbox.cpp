@@ -8,10 +8,9 @@
 
 #include "wire/command.h"
 #include "wire/cost.h"
+#include "wire/read_json.h"
 #include "wire/response.h"
-#include "wire/strict_json.h"
 #include "ziggurat/v1/envelope.h"
-#include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
@@ -42,8 +41,9 @@ struct Inbox::Message {
   };
 
   Kind kind = Kind::malformed;
-  InArena<v1::Command> command;  // the tick path: long-lived
+  InArena<v1::Command> long_lived;  // the tick path
   InArena<v1::ClientMessage> other;
+  const v1::Command* command = nullptr;  // of that kind: in one of the two
   std::string complaint;
 
   // What protobuf keeps for reuse is as large as the largest of each part ever was. Peers decide
@@ -58,7 +58,7 @@ struct Inbox::Message {
   }
   void forget() {
     parsed = 0;
-    command.drop();
+    long_lived.drop();
     other.drop();
   }
 };
@@ -92,7 +92,9 @@ Inbox::Kind Inbox::parse(std::string_view bytes) {
 Inbox::Kind Inbox::decode(std::string_view bytes) {
   Message& in = *message_;
   if (const auto content = v1::sole_field(bytes, v1::ClientMessage::kCommandFieldNumber)) {
-    if (in.command.made().ParseFromArray(content->data(), static_cast<int>(content->size()))) {
+    v1::Command& command = in.long_lived.made();
+    if (command.ParseFromArray(content->data(), static_cast<int>(content->size()))) {
+      in.command = &command;
       in.kind = Kind::command;
     }
     return in.kind;
@@ -100,8 +102,7 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
   in.other.drop();
   v1::ClientMessage& message = in.other.made();
   if (encoding_of(bytes) == Encoding::json) {
-    in.complaint = check_json(bytes, *v1::ClientMessage::descriptor());
-    if (in.complaint.empty()) in.complaint = v1::from_json(bytes, message);
+    in.complaint = read_json(bytes, message);
     if (!in.complaint.empty()) return in.kind;
   } else if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return in.kind;
@@ -121,7 +122,7 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
       break;
     case v1::ClientMessage::kCommand:
       in.kind = Kind::command;
-      in.command.made().CopyFrom(message.command());
+      in.command = &message.command();
       break;
     case v1::ClientMessage::MESSAGE_NOT_SET:
       break;
@@ -178,20 +179,20 @@ bool Inbox::is_question() const {
 
 bool Inbox::is_command() const { return message_->kind == Kind::command; }
 
-std::uint64_t Inbox::command_tick() const { return message_->command.content().tick(); }
+std::uint64_t Inbox::command_tick() const { return message_->command->tick(); }
 
 std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {
   if (message_->kind == Kind::command)
-    return wire::check(message_->command.content(), roster, layout);
+    return wire::check(*message_->command, roster, layout);
   return wire::check(message_->other.content().leave(), roster, layout);
 }
 
 void Inbox::apply(const Roster& roster, world::Commands& commands) const {
-  wire::apply(message_->command.content(), roster, commands);
+  wire::apply(*message_->command, roster, commands);
 }
 
 void Inbox::append_log(const Roster& roster, std::vector<LogLine>& lines) const {
-  const auto& log = message_->kind == Kind::command ? message_->command.content().log()
+  const auto& log = message_->kind == Kind::command ? message_->command->log()
                                                     : message_->other.content().leave().log();
   append(log, roster, lines);
 }

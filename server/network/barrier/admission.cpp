@@ -14,6 +14,7 @@
 #include "network/barrier/talk.h"
 #include "network/barrier/timing.h"
 #include "wire/fault.h"
+#include "wire/longest_command.h"
 
 namespace ziggurat::network {
 
@@ -106,7 +107,13 @@ Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) 
 /// Binds the session to its connection.
 void bind(Barrier& barrier, Session& session, const std::string& connection) {
   session.connection = connection;
-  if (barrier.on_standing) barrier.on_standing(connection, standing_of(&session));
+  if (session.role == wire::Role::controller && barrier.run) {
+    session.longest_command = wire::longest_command(
+        session.roster, barrier.run->layout, barrier.connections.find(connection)->encoding);
+  }
+  if (barrier.on_standing) {
+    barrier.on_standing(connection, standing_of(&session), longest_message(barrier, &session));
+  }
   session.contact = {barrier.now, barrier.now, 0, 0};
   barrier.connections.bind(connection, session.id);
 }

@@ -42,8 +42,9 @@ struct Timers {
 };
 
 struct Barrier {
-  /// Told what a connection is from now on.
-  using OnStanding = std::function<void(const std::string& connection, Standing standing)>;
+  /// Told what a connection is from now on, and how long its messages may be [bytes].
+  using OnStanding =
+      std::function<void(const std::string& connection, Standing standing, std::size_t longest)>;
   Barrier(const Config& config, Send send, Time now, OnStanding on_standing = {});
   Barrier(const Barrier&) = delete;
   Barrier& operator=(const Barrier&) = delete;

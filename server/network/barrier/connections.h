@@ -39,13 +39,14 @@ class Connections {
   };
   /// Whether it may send one more message.
   Verdict spend(Connection& connection, Time now);
-  /// The last message, which was accepted, counts once more for each of these.
-  static constexpr std::size_t bytes_per_message = 4096;
-  static void charge_size(Connection& connection, std::size_t bytes) {
-    connection.allowance.charge(static_cast<double>(bytes / bytes_per_message));
+  /// The last message, which was accepted, counts so many times more.
+  static void charge(Connection& connection, std::size_t times) {
+    connection.allowance.charge(static_cast<double>(times));
   }
-  /// The last message does not count.
-  static void refund(Connection& connection) { connection.allowance.give_back(); }
+  /// The last message does not count, nor for what it was charged.
+  static void refund(Connection& connection, std::size_t times) {
+    connection.allowance.give_back(1 + static_cast<double>(times));
+  }
 
   void bind(const std::string& id, SessionId session);
   void unbind(const std::string& id);

@@ -41,7 +41,8 @@ void release_all(Barrier& barrier, const Session& holder, bool may_resume) {
 void unbind(Barrier& barrier, const Session& session) {
   barrier.connections.unbind(session.connection);
   barrier.calls.forget(session.connection);
-  if (barrier.on_standing) barrier.on_standing(session.connection, Standing::none);
+  if (!barrier.on_standing) return;
+  barrier.on_standing(session.connection, Standing::none, longest_message(barrier, nullptr));
 }
 
 /// The session has lost its last robots to another client.

@@ -18,6 +18,10 @@ using InboxKind = wire::Inbox::Kind;
 
 namespace {
 
+// A message counts once more for each of these of its size [bytes].
+constexpr std::size_t bytes_per_message = 4 * kibibyte;
+constexpr std::size_t bytes_per_message_of_controller = 64 * kibibyte;
+
 void handle_heartbeat(Barrier& barrier, const Session& session) {
   barrier.outbox.heartbeat(barrier.inbox.heartbeat());
   // If the connection is gone, the next observation or heartbeat of ours finds out.
@@ -68,21 +72,24 @@ bool may_send(Barrier& barrier, const std::string& id, Connection& connection, S
   return false;
 }
 
-/// The message in `barrier.inbox`, of a session.
-void handle(Barrier& barrier, Connection& connection, Session& session, InboxKind kind,
-            world::Commands* commands) {
-  if (kind == InboxKind::leave) return handle_leave(barrier, session);
-  if (kind == InboxKind::heartbeat) return handle_heartbeat(barrier, session);
+/// The message in `barrier.inbox`, of a session. True if it is the Command that was owed.
+bool handle(Barrier& barrier, Session& session, InboxKind kind, world::Commands* commands) {
   const bool is_waiting = session.state == SessionState::hello;
-  if (is_waiting || kind == InboxKind::hello) {
-    return answer_fault(barrier, session.connection, &session,
-                        make_fault(ErrorCode::out_of_state, {},
-                                   is_waiting ? "The world is loading, and the Hello waits for it."
-                                              : "This session has had its Hello already."));
+  if (kind == InboxKind::leave) {
+    handle_leave(barrier, session);
+  } else if (kind == InboxKind::heartbeat) {
+    handle_heartbeat(barrier, session);
+  } else if (is_waiting || kind == InboxKind::hello) {
+    answer_fault(barrier, session.connection, &session,
+                 make_fault(ErrorCode::out_of_state, {},
+                            is_waiting ? "The world is loading, and the Hello waits for it."
+                                       : "This session has had its Hello already."));
+  } else if (kind == InboxKind::request) {
+    handle_request(barrier, session);
+  } else {
+    return handle_command(barrier, session, commands);
   }
-  if (kind == InboxKind::request) return handle_request(barrier, session);
-  const bool is_expected = handle_command(barrier, session, commands);
-  if (is_expected) Connections::refund(connection);
+  return false;
 }
 
 }  // namespace
@@ -99,9 +106,11 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
       received.is_single_frame ? wire::encoding_of(received.bytes) : received.several_frames;
   if (session == nullptr) connection.encoding = encoding;
   if (!may_send(barrier, id, connection, session)) return;
-  if (standing_of(session) != Standing::controller) {
-    Connections::charge_size(connection, received.bytes.size());
-  }
+  const std::size_t charge =
+      received.bytes.size() / (standing_of(session) == Standing::controller
+                                   ? bytes_per_message_of_controller
+                                   : bytes_per_message);
+  Connections::charge(connection, charge);
   if (!received.is_single_frame) return answer_malformed(barrier, id, session, {});
   if (auto fault = check_size(barrier, received, session)) {
     return answer_fault(barrier, id, session, std::move(*fault));
@@ -117,7 +126,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
     return answer_malformed(barrier, id, session, barrier.inbox.complaint());
   }
   if (session != nullptr) {
-    handle(barrier, connection, *session, kind, commands);
+    if (handle(barrier, *session, kind, commands)) Connections::refund(connection, charge);
   } else if (kind == InboxKind::hello) {
     handle_hello(barrier, id, received.access, received.bytes, commands);
   } else {

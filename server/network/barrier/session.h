@@ -53,6 +53,7 @@ struct Session {
   std::string token;        ///< to resume with
   std::uint32_t minor = 0;  ///< of the protocol, as agreed
   wire::Roster roster;      ///< of other roles: empty
+  std::size_t longest_command = 0;  ///< that its robots can need, in its form [bytes]
   Turn turn;
   Contact contact;
   Latencies latencies;       ///< from observation to command

@@ -72,7 +72,11 @@ Standing standing_of(const Session* session) {
 }
 
 std::size_t longest_message(const Barrier& barrier, const Session* session) {
-  return longest_message(standing_of(session), barrier.config.max_message_bytes);
+  const std::size_t most = barrier.config.max_message_bytes;
+  const Standing standing = standing_of(session);
+  return longest_message(standing, standing == Standing::controller
+                                       ? std::min(most, session->longest_command)
+                                       : most);
 }
 
 std::uint64_t tick_of(const Barrier& barrier) { return barrier.gate.tick().value_or(0); }

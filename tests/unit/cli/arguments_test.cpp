@@ -47,6 +47,15 @@ TEST(Arguments, OptionalValueIsTheNextWordOnlyIfThatIsANumber) {
   EXPECT_EQ(real_time({"--real-time=4"}), "4");
 }
 
+TEST(Arguments, AWordThatIsNeitherANumberNorAFileIsNoValue) {
+  EXPECT_EQ(complaint({"--real-time", "fast", "scene.argos"}),
+            "--real-time takes a number, the factor of real time (1 if it is left out); 'fast' is "
+            "none, and no file has that name; write --real-time 2, for example, or --real-time=1 "
+            "SCENE");
+  EXPECT_EQ(complaint({"--real-time", "--quiet"}), "");
+  EXPECT_EQ(complaint({"--real-time", "no/such/scene"}), "") << "told when it is opened";
+}
+
 TEST(Arguments, UnknownOptionsGetASuggestionIfOneIsNear) {
   EXPECT_EQ(complaint({"--tikcs", "3"}), "unknown option '--tikcs'; did you mean '--ticks'?");
   EXPECT_EQ(complaint({"--xyzzy"}), "unknown option '--xyzzy'; --help lists the options");

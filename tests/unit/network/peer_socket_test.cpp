@@ -120,7 +120,7 @@ TEST_F(PeerSocketTest, WithoutSessionALongMessageEndsTheConnection) {
 
 TEST_F(PeerSocketTest, WithASessionALongMessageIsToldAndNotKept) {
   open();
-  peer->set_standing(Standing::observer, Time{});
+  peer->set_standing(Standing::observer, 64 * kibibyte, Time{});
   say(long_header(1500) + std::string(1500, 'x') + frame(0, "next"));
   ASSERT_TRUE(next());
   EXPECT_GE(received.skipped, 1500U);
@@ -143,7 +143,7 @@ TEST_F(PeerSocketTest, AnAnnouncedMessageTakesNoMemoryBeforeItArrives) {
 
 TEST_F(PeerSocketTest, TheNewestObservationTakesThePlaceOfTheOneThatWaits) {
   open();
-  peer->set_standing(Standing::controller, Time{});
+  peer->set_standing(Standing::controller, 64 * mebibyte, Time{});
   constexpr std::size_t size = 3 << 20;
   for (char tick = 0; tick < 100; ++tick) tell(size, true, tick);
   tell(10, false, 'e');

@@ -17,6 +17,42 @@ constexpr const char* scene_text = R"(<a><framework><experiment ticks_per_second
 constexpr const char* robot_text =
     R"(<foot-bot id="late"><body/><controller config="c"/></foot-bot>)";
 
+/// A world without robots, and one that is spawned.
+struct Spawning : ::testing::Test {
+  Spawning() { spawn(); }
+  void spawn() {
+    const scene::Addition robot = world.additions.read(robot_text, world.scene, 10000,
+                                                       [](const std::string&) { return false; });
+    ASSERT_TRUE(robot.ok());
+    world.simulation.spawn(world.scene, robot.entity);
+  }
+  static supervision::World make() {
+    auto read = scene::read_text(scene_text, "a.argos");
+    for (const auto& problem : read.problems) ADD_FAILURE() << scene::to_string(problem);
+    return {"a.argos", {std::move(read.scene), std::move(read.additions)}, 1};
+  }
+  supervision::World world = make();
+  reports::Console console;
+  PeerReports reports{world, console, nullptr};
+};
+
+TEST_F(Spawning, AFailureBeforeAResetIsNotThatOfALaterRobotAtItsPlace) {
+  testing::internal::CaptureStderr();
+  const std::vector<std::size_t> robots{0};
+  EXPECT_FALSE(reports.has_failure(robots));
+  network::Report report;
+  report.failures.push_back({0, "broken", 7});
+  reports.take(std::move(report), 7);
+  EXPECT_TRUE(reports.has_failure(robots));
+  world.reset(1);
+  reports.forget_spawned();
+  spawn();
+  EXPECT_FALSE(reports.has_failure(robots));
+  ASSERT_EQ(reports.failures().size(), 1U);
+  EXPECT_EQ(reports.failures()[0].robot, "late");
+  testing::internal::GetCapturedStderr();
+}
+
 TEST(PeerReports, LinesOfARobotThatAResetTookAreStillItsOwn) {
   auto read = scene::read_text(scene_text, "a.argos");
   for (const auto& problem : read.problems) ADD_FAILURE() << scene::to_string(problem);

@@ -228,6 +228,21 @@ TEST(Controllers, KindsAndParams) {
   EXPECT_EQ(count_containing(notices(result), "elements in <params> have no effect"), 1u);
 }
 
+TEST(Controllers, AMisspeltOneIsAFault) {
+  const auto told = [](const std::string& name) {
+    const auto result = read_text("<a><controllers><" + name + " id=\"c\"><actuators/><sensors/></" +
+                                      name + "></controllers></a>",
+                                  "a.argos");
+    return count_containing(
+        faults(result),
+        "unknown element <" + name + "> in <controllers>; did you mean <lua_controller>?");
+  };
+  EXPECT_EQ(told("lua_controler"), 1u);
+  EXPECT_EQ(told("lua-controller"), 1u);
+  EXPECT_EQ(told("luacontroller"), 1u);
+  EXPECT_EQ(told("epuck_controller"), 0u);
+}
+
 TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   const char* actuators[] = {"joints",
                              "radios",

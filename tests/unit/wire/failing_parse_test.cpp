@@ -7,29 +7,33 @@
 
 #include "allocations/allocations.h"
 #include "wire/inbox.h"
+#include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
 namespace {
 
-std::string command() {
+v1::ClientMessage command() {
   v1::ClientMessage message;
   v1::Command& command = *message.mutable_command();
   for (int i = 0; i < 1000; ++i) command.add_joint_targets(i);
   for (int i = 0; i < 20; ++i) command.add_tag_payloads(std::string(1000, 'x'));
   command.add_log()->set_text("a line that does not fit into a small string");
-  return message.SerializeAsString();
+  return message;
 }
 
-std::string read_request() {
+v1::ClientMessage read_request() {
   v1::ClientMessage message;
   v1::ReadRequest& read = *message.mutable_request()->mutable_read();
   for (int i = 0; i < 20; ++i) read.add_entities(std::string(100, 'x'));
-  return message.SerializeAsString();
+  return message;
 }
 
 TEST(Inbox, AMessageForWhichThereIsNoMemoryIsItsSendersError) {
-  for (const std::string& message : {command(), read_request()}) {
+  for (const std::string& message :
+       {command().SerializeAsString(), read_request().SerializeAsString(), v1::to_json(command()),
+        v1::to_json(read_request())}) {
+    SCOPED_TRACE(message.substr(0, 20));
     EXPECT_NE(Inbox().parse(message), Inbox::Kind::malformed);  // protobuf has made its tables then
     std::size_t failures = 0;
     for (std::size_t index = 0;; ++index) {

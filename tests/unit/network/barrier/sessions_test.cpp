@@ -69,7 +69,7 @@ TEST(Connections, ABucketOfMessagesIsRefilledByTime) {
   EXPECT_EQ(connections.spend(peer, start), Verdict::refused);
   EXPECT_EQ(connections.spend(peer, start), Verdict::refused_and_told);
   EXPECT_EQ(connections.spend(peer, start + 100ms), Verdict::accepted);
-  Connections::refund(peer);
+  Connections::refund(peer, 0);
   EXPECT_EQ(connections.spend(peer, start + 100ms), Verdict::accepted);
   EXPECT_EQ(connections.spend(peer, start + 100ms), Verdict::refused);
 }

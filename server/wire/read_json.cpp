@@ -1,4 +1,4 @@
-#include "wire/strict_json.h"
+#include "wire/read_json.h"
 
 #include <fmt/format.h>
 
@@ -6,18 +6,21 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "wire/json_values.h"
+
 namespace ziggurat::wire {
 namespace {
 
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
 using nlohmann::json;
 
-/// The events of a parser, compared with a type. What is in unknown fields is JSON, and nothing
-/// else is asked of it.
-class Matcher final : public nlohmann::json_sax<json> {
+/// Puts what a parser finds into a message. What is in unknown fields is JSON, and nothing else is
+/// asked of it.
+class Reader final : public nlohmann::json_sax<json> {
  public:
-  explicit Matcher(const Descriptor& type) : type_(&type) {}
+  explicit Reader(Message& message) : root_(&message) {}
 
   std::string complaint;
 
@@ -26,26 +29,33 @@ class Matcher final : public nlohmann::json_sax<json> {
     if (!is_in_list()) return true;
     return known() == nullptr || complain(fmt::format("'{}' has null as an element", name_));
   }
-  bool boolean(bool) override { return scalar(Is::boolean); }
-  bool number_integer(number_integer_t) override { return scalar(Is::number); }
-  bool number_unsigned(number_unsigned_t) override { return scalar(Is::number); }
-  bool number_float(number_float_t, const string_t&) override { return scalar(Is::number); }
-  bool string(string_t&) override { return scalar(Is::text); }
+  bool boolean(bool value) override { return scalar(Is::boolean, value); }
+  bool number_integer(number_integer_t value) override { return scalar(Is::number, value); }
+  bool number_unsigned(number_unsigned_t value) override { return scalar(Is::number, value); }
+  bool number_float(number_float_t value, const string_t&) override {
+    return scalar(Is::number, value);
+  }
+  bool string(string_t& value) override { return scalar(Is::text, value); }
   bool binary(binary_t&) override { return false; }  // not in JSON
 
   bool start_object(std::size_t) override {
-    const Descriptor* type = levels_.empty() ? type_ : nullptr;
+    Message* message = levels_.empty() ? root_ : nullptr;
     if (const FieldDescriptor* field = known()) {
       const bool is_message = field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
       if (!is_message) return complain(fmt::format("'{}' is an object", name_));
       if (!is_single_or_element()) return complain_list();
-      type = field->message_type();
+      if (!is_only_one_of_its_kind()) return false;
+      Message* owner = levels_.back().message;
+      const auto& reflection = *owner->GetReflection();
+      message = field->is_repeated() ? reflection.AddMessage(owner, field)
+                                     : reflection.MutableMessage(owner, field);
     }
-    return push({type, nullptr, 0, false});
+    return push({message, nullptr, 0, false});
   }
   bool key(string_t& name) override {
     Level& level = levels_.back();
-    level.field = level.type == nullptr ? nullptr : field_of(*level.type, name);
+    level.field =
+        level.message == nullptr ? nullptr : field_of(*level.message->GetDescriptor(), name);
     if (level.field == nullptr) return true;
     name_ = level.field->name();
     static_assert(sizeof(level.seen) == 8);
@@ -62,7 +72,7 @@ class Matcher final : public nlohmann::json_sax<json> {
     if (field != nullptr && (!field->is_repeated() || is_in_list())) {
       return complain(fmt::format("'{}' is a list{}", name_, is_in_list() ? " of lists" : ""));
     }
-    return push({nullptr, field, 0, true});
+    return push({field == nullptr ? nullptr : levels_.back().message, field, 0, true});
   }
   bool end_array() override { return pop(); }
 
@@ -74,7 +84,7 @@ class Matcher final : public nlohmann::json_sax<json> {
  private:
   enum class Is { boolean, number, text };
   struct Level {
-    const Descriptor* type;        // of an object; null: unknown
+    Message* message;              // of an object, or that has the list; null: unknown
     const FieldDescriptor* field;  // whose value comes next; null: unknown
     std::uint64_t seen;            // fields of the object, by index
     bool is_list;
@@ -88,7 +98,8 @@ class Matcher final : public nlohmann::json_sax<json> {
   bool is_in_list() const { return !levels_.empty() && levels_.back().is_list; }
   bool is_single_or_element() const { return !known()->is_repeated() || is_in_list(); }
 
-  bool scalar(Is kind) {
+  template <class Value>
+  bool scalar(Is kind, const Value& value) {
     if (levels_.empty()) return complain("it is not an object");
     const FieldDescriptor* field = known();
     if (field == nullptr) return true;
@@ -101,9 +112,20 @@ class Matcher final : public nlohmann::json_sax<json> {
       return complain(fmt::format("'{}' is a number", name_));
     }
     const bool is_truth_value = type == FieldDescriptor::CPPTYPE_BOOL;
-    if (is_truth_value == (kind == Is::boolean)) return true;
-    return complain(is_truth_value ? fmt::format("'{}' is neither true nor false", name_)
-                                   : fmt::format("'{}' is a truth value", name_));
+    if (is_truth_value != (kind == Is::boolean)) {
+      return complain(is_truth_value ? fmt::format("'{}' is neither true nor false", name_)
+                                     : fmt::format("'{}' is a truth value", name_));
+    }
+    if (!is_only_one_of_its_kind()) return false;
+    return put({*levels_.back().message, *field}, value) ||
+           complain(fmt::format("'{}' can't have that value", name_));
+  }
+  /// Of the fields of which a message has one at most.
+  bool is_only_one_of_its_kind() {
+    const Message& owner = *levels_.back().message;
+    const auto* choice = known()->real_containing_oneof();
+    if (choice == nullptr || !owner.GetReflection()->HasOneof(owner, choice)) return true;
+    return complain(fmt::format("it has '{}' beside another kind of {}", name_, choice->name()));
   }
   bool push(const Level& level) {
     if (levels_.size() == deepest_json) {
@@ -123,18 +145,18 @@ class Matcher final : public nlohmann::json_sax<json> {
   }
   bool complain_list() { return complain(fmt::format("'{}' is not a list", name_)); }
 
-  const Descriptor* type_;
+  Message* root_;
   std::string name_;  // of the last known field
   std::vector<Level> levels_;
 };
 
 }  // namespace
 
-std::string check_json(std::string_view text, const Descriptor& type) {
-  Matcher matcher(type);
+std::string read_json(std::string_view text, Message& message) {
+  Reader reader(message);
   const bool is_right =
-      json::sax_parse(text.begin(), text.end(), &matcher, json::input_format_t::json, true);
-  if (is_right || !matcher.complaint.empty()) return matcher.complaint;
+      json::sax_parse(text.begin(), text.end(), &reader, json::input_format_t::json, true);
+  if (is_right || !reader.complaint.empty()) return reader.complaint;
   return "not JSON";
 }
 
