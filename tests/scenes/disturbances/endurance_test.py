@@ -123,7 +123,8 @@ class Endurance(SceneTest):
         xml = self.robot.replace('"r0"', '"late"').replace("1.5,0,0", "1.5,1,0")
         self.assertFalse(self.ask(peer, spawn=v1.SpawnRequest(xml=xml)).HasField("error"))
         with RawPeer(self.endpoint) as driver:
-            self.begin(driver, v1.ROLE_CONTROLLER, robots=["late"])
+            welcome = self.begin(driver, v1.ROLE_CONTROLLER, robots=["late"])
+            self.assertIsInstance(welcome, v1.Welcome, welcome)
             self.drive(driver, 3)
             driver.send_message(message(leave=v1.Leave(reason=v1.Leave.DONE)))
         self.assertFalse(self.ask(peer, remove=v1.RemoveRequest(entity="late")).HasField("error"))
@@ -154,6 +155,8 @@ class Endurance(SceneTest):
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
         watcher = RawPeer(self.endpoint)
         self.begin(watcher, v1.ROLE_SUPERVISOR)
+        with RawPeer(self.endpoint) as peer:  # the first tick waits for all
+            self.vanishing_controller(peer)
         ticks = sessions = resets = 0
         first = None
         while ticks + self.tick(watcher) < TICKS or sessions < SESSIONS:
