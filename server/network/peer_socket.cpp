@@ -86,15 +86,6 @@ bool PeerSocket::skip(Received& received) {
   return to_skip_ == 0 && end_message(more_to_skip_, received);
 }
 
-/// A frame that is too long is passed over and told, or the connection is over.
-bool PeerSocket::pass_too_long(const zmtp::Taken& taken, std::size_t limit) {
-  const bool is_bearable = standing_ != Standing::none && taken.size / 2 <= limit;
-  if (!is_bearable) return false;
-  to_skip_ = skipped_ = taken.size;
-  more_to_skip_ = taken.has_more;
-  return true;
-}
-
 /// A frame of a message is over. True if the message is, too.
 bool PeerSocket::end_message(bool has_more, Received& received) {
   const bool is_first = !std::exchange(has_frames_, has_more);
@@ -126,7 +117,10 @@ bool PeerSocket::next(std::size_t limit, Received& received) {
     if (taken.step == Step::failed) {
       is_over_ = true;
     } else if (taken.step == Step::too_long) {
-      is_over_ = !pass_too_long(taken, limit);
+      // It is passed over and told, or the connection is over.
+      is_over_ = standing_ == Standing::none || taken.size / 2 > limit;
+      to_skip_ = skipped_ = taken.size;
+      more_to_skip_ = taken.has_more;
     } else {
       begin_ += taken.size;
       needed_ = 0;

@@ -62,7 +62,6 @@ class PeerSocket {
   void enlarge();
   void let_go();
   bool skip(Received& received);
-  bool pass_too_long(const zmtp::Taken& taken, std::size_t limit);
   bool end_message(bool has_more, Received& received);
   void send_bytes(Buffer& frame, std::size_t size, bool is_observation);
   void send_reply();
