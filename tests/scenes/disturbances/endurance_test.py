@@ -155,8 +155,7 @@ class Endurance(SceneTest):
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
         watcher = RawPeer(self.endpoint)
         self.begin(watcher, v1.ROLE_SUPERVISOR)
-        with RawPeer(self.endpoint) as peer:  # the first tick waits for all
-            self.vanishing_controller(peer)
+        self.begin_ticks()
         ticks = sessions = resets = 0
         first = None
         while ticks + self.tick(watcher) < TICKS or sessions < SESSIONS:
@@ -170,6 +169,7 @@ class Endurance(SceneTest):
                 ticks += self.tick(watcher)
                 resets += 1
                 self.assertFalse(self.ask(watcher, reset=v1.ResetRequest()).HasField("error"))
+                self.begin_ticks()
             if first is None and sessions >= SESSIONS / 5:
                 first = self.measure(process)
         ticks += self.tick(watcher)
@@ -181,6 +181,11 @@ class Endurance(SceneTest):
         watcher.socket.close()
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def begin_ticks(self):
+        """Tick 0 waits for all robots."""
+        with RawPeer(self.endpoint) as peer:
+            self.vanishing_controller(peer)
 
     def tick(self, watcher):
         return self.ask(watcher, status=v1.StatusRequest()).tick
