@@ -33,7 +33,7 @@ struct Spawning : ::testing::Test {
   }
   supervision::World world = make();
   reports::Console console;
-  PeerReports reports{world, console, nullptr};
+  PeerReports reports{world, console, [](auto...) {}};
 };
 
 TEST_F(Spawning, AFailureBeforeAResetIsNotThatOfALaterRobotAtItsPlace) {
