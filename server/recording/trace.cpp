@@ -22,12 +22,13 @@ std::string field(const std::string& text) {
 
 }  // namespace
 
-/// Of those that are new; of all when a world begins.
+/// Of those that are new; of all when a world begins or goes back.
 void Trace::name_rows(const world::State& state) {
-  if (state.tick == 0) {
+  if (state.tick == 0 || state.tick < last_tick_) {
     rows_.clear();
     entities_ = 0;
   }
+  last_tick_ = state.tick;
   for (; entities_ < layout_.entities.size(); ++entities_) {
     const auto& entity = layout_.entities[entities_];
     rows_.push_back({fmt::format(",{},,", field(entity.id)), entities_, true, entities_});

@@ -1,6 +1,7 @@
 #pragma once
 // Where everything stood: `--trace`, a CSV file of world poses.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,8 @@ class Trace {
   };
 
   const world::Layout& layout_;
-  std::size_t entities_ = 0;  // that have rows
+  std::size_t entities_ = 0;     // that have rows
+  std::uint64_t last_tick_ = 0;  // that was written
   std::vector<Row> rows_;
   OutputFile file_;
 };

@@ -1,0 +1,33 @@
+#pragma once
+// Where two states differ.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "world/state.h"
+
+namespace ziggurat::replay {
+
+struct Difference {
+  std::size_t link = 0;  ///< into Layout::links
+  std::string field;     ///< as `position.x`
+  double a = 0, b = 0;
+};
+
+/// The first value that has other bits; of links that both have.
+std::optional<Difference> first_difference(std::span<const world::LinkState> a,
+                                           std::span<const world::LinkState> b);
+
+/// How far the poses of two states are apart.
+struct Distance {
+  double greatest = 0;   ///< [m]
+  double mean = 0;       ///< over all links [m]
+  double angle = 0;      ///< the greatest between two orientations [rad]
+  std::size_t link = 0;  ///< the one with the greatest
+};
+/// Of links that both have. All zero if there are none.
+Distance distance(std::span<const world::LinkState> a, std::span<const world::LinkState> b);
+
+}  // namespace ziggurat::replay

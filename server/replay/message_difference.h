@@ -1,0 +1,27 @@
+#pragma once
+// Where two protobuf messages of one type differ.
+
+#include <google/protobuf/message.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ziggurat::replay {
+
+struct FieldDifference {
+  std::string field;  ///< as `radios[2].payload`
+  std::string a, b;   ///< both values; `nothing` if it is missing
+};
+
+/// The first field that differs, in the order of the type. Numbers of worlds (`generation`), which
+/// count changes, are no difference.
+std::optional<FieldDifference> first_difference(const google::protobuf::Message& a,
+                                                const google::protobuf::Message& b);
+
+/// The same for two encoded messages.
+/// @param type  its full name; nothing is found in messages of a type that this version lacks
+std::optional<FieldDifference> first_difference(const std::string& type, std::string_view a,
+                                                std::string_view b);
+
+}  // namespace ziggurat::replay

@@ -1,0 +1,119 @@
+#include "replay/recording_file.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "recording/inputs.h"
+#include "replay/recording_error.h"
+
+namespace ziggurat::replay {
+namespace {
+
+constexpr std::uint64_t most_embedded = std::uint64_t{1} << 30;  // all files [bytes]
+
+RecordingError damaged(const std::string& path, const mcap::Damaged& damage) {
+  return RecordingError(fmt::format(
+      "{}: damaged at byte {}: {}; 'ziggurat info {} --repair OUT' saves what is whole", path,
+      damage.offset(), damage.what(), path));
+}
+
+}  // namespace
+
+RecordingFile::RecordingFile(std::string path) : path_(std::move(path)) {
+  try {
+    reader_ = std::make_unique<mcap::Reader>(mcap::open_file(path_));
+    auto start = messages({"/run"});
+    const auto message = start ? start->next() : std::nullopt;
+    if (!message) {
+      throw RecordingError(fmt::format(
+          "{}: an MCAP file without the topic /run; only what 'ziggurat run --record' writes can "
+          "be repeated",
+          path_));
+    }
+    if (!run_.ParseFromArray(message->data.data(), static_cast<int>(message->data.size()))) {
+      throw RecordingError(fmt::format("{}: its message of /run is damaged", path_));
+    }
+    read_files();
+  } catch (const mcap::Damaged& damage) {
+    throw damaged(path_, damage);
+  }
+}
+
+void RecordingFile::read_files() {
+  std::uint64_t all = 0;
+  for (const mcap::AttachmentIndex& index : reader_->contents().attachments) {
+    if (index.name.starts_with("snapshot/")) continue;
+    all += index.data_size;
+    if (all > most_embedded) {
+      throw RecordingError(fmt::format("{}: its embedded files have more than {} bytes", path_,
+                                       most_embedded));
+    }
+    files_.add(index.name, reader_->attachment(index));
+  }
+}
+
+std::string RecordingFile::shortcoming() const {
+  if (reader_->has_summary()) return {};
+  const auto& faults = reader_->faults();
+  return fmt::format("the recording was not closed: its end is missing{}",
+                     faults.empty() ? "" : fmt::format(" (byte {}: {})", faults.front().offset,
+                                                       faults.front().text));
+}
+
+std::uint64_t RecordingFile::states() const {
+  const mcap::Channel* channel = reader_->contents().channel_of("/inputs");
+  return channel ? reader_->contents().messages_of(channel->id) : 0;
+}
+
+std::optional<mcap::Messages> RecordingFile::messages(
+    const std::vector<std::string>& topics) const {
+  mcap::Selection selection;
+  for (const std::string& topic : topics) {
+    if (const auto* channel = reader_->contents().channel_of(topic)) {
+      selection.channels.push_back(channel->id);
+    }
+  }
+  if (selection.channels.empty()) return std::nullopt;  // an empty selection would be all
+  return std::optional<mcap::Messages>(std::in_place, *reader_, std::move(selection));
+}
+
+std::optional<mcap::Message> next(const RecordingFile& file, mcap::Messages& messages) {
+  try {
+    return messages.next();
+  } catch (const mcap::Damaged& damage) {
+    throw damaged(file.path(), damage);
+  }
+}
+
+States::States(const RecordingFile& file)
+    : file_(file), messages_(file.messages({"/inputs", "/state"})) {
+  const mcap::Channel* inputs = file.reader().contents().channel_of("/inputs");
+  if (!inputs) throw RecordingError(file.path() + ": it has no topic /inputs");
+  inputs_channel_ = inputs->id;
+}
+
+const v1::Inputs* States::next() {
+  const auto parse = [&](const mcap::Message& message, auto& to, const char* topic) {
+    if (to.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) return;
+    throw RecordingError(fmt::format("{}: a message of {} is damaged", file_.path(), topic));
+  };
+  while (const auto message = replay::next(file_, *messages_)) {
+    if (message->channel == inputs_channel_) {
+      parse(*message, coming_, "/inputs");
+      std::swap(inputs_, coming_);
+      log_time_ = message->log_time;
+      has_links_ = state_.epoch() == inputs_.epoch() && state_.tick() == inputs_.tick() &&
+                   !links_.empty();
+      return &inputs_;
+    }
+    parse(*message, state_, "/state");
+    if (const auto fault = recording::unpack(state_, links_)) {
+      throw RecordingError(fmt::format("{}: {}", file_.path(), *fault));
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace ziggurat::replay

@@ -1,0 +1,165 @@
+#include "replay/replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "recording/inputs.h"
+#include "replay/recording_error.h"
+#include "scene/reader.h"
+#include "ziggurat/v1/run.pb.h"
+
+namespace ziggurat::replay {
+namespace {
+
+constexpr std::size_t most_spawned_bytes = std::size_t{64} << 20;  // of an element, models included
+constexpr std::size_t most_snapshots = 64;
+constexpr double farthest = 1e6;                                   // [m], as in scenes
+
+}  // namespace
+
+Replay::Replay(World world, scene::OpenFile open, Source source)
+    : world_(world), open_(std::move(open)), source_(std::move(source)) {}
+
+void Replay::fail(const std::string& what) const {
+  throw RecordingError(fmt::format("the recording's inputs of tick {}{}: {}", tick_,
+                                   epoch_ > 0 ? fmt::format(" (epoch {})", epoch_) : "", what));
+}
+
+bool Replay::advance() {
+  const bool is_first = inputs_ == nullptr;
+  if (!is_first && !acted_) act();
+  const v1::Inputs* next = source_();
+  if (!next) return false;
+  if (!is_first && next->epoch() == epoch_) {
+    if (!has_commands_) fail("they have no commands, and yet there is a next tick");
+    world_.simulation.step();
+  }
+  inputs_ = next;
+  epoch_ = next->epoch();
+  tick_ = next->tick();
+  has_commands_ = next->has_commands();
+  acted_ = false;
+  if (world_.simulation.state().tick != tick_) {
+    fail(fmt::format("the tick {} was expected", world_.simulation.state().tick));
+  }
+  hash_ = world_.simulation.hash();
+  return true;
+}
+
+bool Replay::is_same() const { return inputs_->hash() == hash_; }
+
+void Replay::act() {
+  acted_ = true;
+  for (const v1::Act& act : inputs_->acts()) {
+    apply(act);
+    if (told_) told_(act);
+  }
+  if (!has_commands_) return;
+  simulation::Simulation& simulation = world_.simulation;
+  const auto fault = recording::unpack(inputs_->commands(), simulation.layout(), simulation.state(),
+                                       simulation.commands(), commands_);
+  if (fault) fail(*fault);
+  simulation.commands() = commands_;
+}
+
+void Replay::apply(const v1::Act& act) {
+  switch (act.act_case()) {
+    case v1::Act::kMove:
+      return move(act.move());
+    case v1::Act::kSpawn:
+      return spawn(act.spawn().xml());
+    case v1::Act::kRemove:
+      ++changes_;
+      return world_.simulation.remove(entity_named(act.remove().entity()));
+    case v1::Act::kReset:
+      return reset(act.reset().seed());
+    case v1::Act::kSnapshot:
+      return snapshot(act.snapshot().name());
+    case v1::Act::kRestore:
+      return restore(act.restore().name());
+    case v1::Act::kPause:
+    case v1::Act::kResume:
+      return;
+    default:
+      fail("they have an act that this version cannot repeat; use the version that recorded it");
+  }
+}
+
+std::size_t Replay::entity_named(const std::string& id) const {
+  const auto& entities = world_.simulation.layout().entities;
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (entities[i].id == id && !world_.simulation.state().is_absent(i)) return i;
+  }
+  fail(fmt::format("there is no entity '{}'", id));
+}
+
+void Replay::move(const v1::Act::Move& move) {
+  const std::size_t entity = entity_named(move.entity());
+  math::Pose pose = world_.simulation.state().origins[entity];
+  const auto& p = move.position();
+  const bool is_near = std::ranges::all_of(p, [](double v) { return std::abs(v) <= farthest; });
+  if (p.size() != 3 || !is_near) fail(fmt::format("'{}' is moved to no position", move.entity()));
+  pose.position = {p[0], p[1], p[2]};
+  if (const auto& q = move.orientation(); !q.empty()) {
+    if (q.size() == 4) pose.orientation = math::Quaternion(q[0], q[1], q[2], q[3]);
+    const double norm = pose.orientation.norm();  // taken as it is: its bits count
+    if (q.size() != 4 || !(std::abs(norm - 1) < 1e-9)) {
+      fail(
+          fmt::format("'{}' is moved to an orientation that is no unit quaternion", move.entity()));
+    }
+  }
+  ++changes_;
+  world_.simulation.move(entity, pose);
+}
+
+void Replay::spawn(const std::string& xml) {
+  const auto& entities = world_.simulation.layout().entities;
+  const auto is_taken = [&](const std::string& id) {
+    for (std::size_t i = 0; i < entities.size(); ++i) {
+      if (entities[i].id == id && !world_.simulation.state().is_absent(i)) return true;
+    }
+    return false;
+  };
+  scene::Addition addition =
+      world_.additions.read(xml, world_.scene, most_spawned_bytes, is_taken, open_);
+  try {
+    if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
+    ++changes_;
+    world_.simulation.spawn(world_.scene, addition.entity);
+  } catch (const scene::SceneError& error) {
+    fail(fmt::format("an entity cannot be spawned: {}", error.what()));
+  }
+}
+
+void Replay::reset(std::uint64_t seed) {
+  if (seed == 0) fail("they reset the world with the seed 0");
+  try {
+    world_.simulation.reset(world_.scene, {seed, {}});
+  } catch (const scene::SceneError& error) {
+    fail(fmt::format("the world cannot be reset: {}", error.what()));
+  }
+  world_.seed = seed;
+  ++changes_;
+}
+
+void Replay::snapshot(const std::string& name) {
+  if (snapshots_.size() == most_snapshots && !snapshots_.contains(name)) {
+    fail(fmt::format("they take more than {} snapshots", most_snapshots));
+  }
+  snapshots_.insert_or_assign(name, world_.simulation.snapshot());
+}
+
+void Replay::restore(const std::string& name) {
+  const auto found = snapshots_.find(name);
+  if (found == snapshots_.end()) {
+    fail(fmt::format("they restore '{}', of which this recording has no snapshot", name));
+  }
+  world_.simulation.restore(world_.scene, found->second);
+  world_.seed = found->second.seed;
+  ++changes_;
+}
+
+}  // namespace ziggurat::replay

@@ -1,0 +1,91 @@
+#pragma once
+// Repeats a run from its inputs: what was done to the world and what its robots wanted, tick by
+// tick. It knows no file; anything that yields the inputs in their order will do.
+//
+//   Replay replay(world, open, source);
+//   while (replay.advance()) {  // the world is in the next recorded state
+//     … replay.is_same() …
+//     replay.act();             // what happened before the next step; optional
+//   }
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "scene/additions.h"
+#include "scene/files.h"
+#include "scene/scene.h"
+#include "simulation/simulation.h"
+#include "simulation/snapshot.h"
+#include "world/commands.h"
+
+namespace ziggurat::v1 {
+class Act;
+class Act_Move;
+class Inputs;
+}  // namespace ziggurat::v1
+
+namespace ziggurat::replay {
+
+/// A world at tick 0, of the recording's scene and seed.
+struct World {
+  const scene::Scene& scene;
+  const scene::Additions& additions;
+  simulation::Simulation& simulation;
+  std::uint64_t& seed;  ///< changes with resets
+};
+
+class Replay {
+ public:
+  /// The next inputs, which stay until the next call; null after the last.
+  /// @throws RecordingError
+  using Source = std::function<const v1::Inputs*()>;
+
+  /// @param world  must outlive this
+  /// @param open   opens the files that spawned elements name
+  Replay(World world, scene::OpenFile open, Source source);
+
+  /// Takes the world to the next recorded state: at the first call to the first one. False: there
+  /// is none; then the world stays.
+  /// @throws RecordingError for inputs that this world cannot have had; std::runtime_error of a
+  /// step
+  bool advance();
+  /// Does what happened after the present state: acts, then commands. advance() does it otherwise.
+  /// @throws RecordingError
+  void act();
+
+  /// Told of each act, after it was done.
+  void tell(std::function<void(const v1::Act&)> told) { told_ = std::move(told); }
+
+  /// Of the present state.
+  const v1::Inputs& inputs() const { return *inputs_; }
+  std::uint64_t hash() const { return hash_; }  ///< as computed
+  bool is_same() const;                         ///< the recorded hash is the same
+  /// How many resets and restores, moves, spawns and removals there were.
+  std::uint64_t changes() const { return changes_; }
+
+ private:
+  void apply(const v1::Act& act);
+  void move(const v1::Act_Move& move);
+  void spawn(const std::string& xml);
+  void reset(std::uint64_t seed);
+  void snapshot(const std::string& name);
+  void restore(const std::string& name);
+  std::size_t entity_named(const std::string& id) const;
+  [[noreturn]] void fail(const std::string& what) const;
+
+  World world_;
+  scene::OpenFile open_;
+  Source source_;
+  std::function<void(const v1::Act&)> told_;
+  const v1::Inputs* inputs_ = nullptr;
+  world::Commands commands_;  // of all inputs so far
+  std::map<std::string, simulation::Snapshot> snapshots_;  // by name
+  std::uint64_t hash_ = 0, changes_ = 0;
+  std::uint64_t epoch_ = 0, tick_ = 0;  // of the present state
+  bool has_commands_ = false, acted_ = false;
+};
+
+}  // namespace ziggurat::replay

@@ -1,0 +1,56 @@
+#include "replay/scene.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "math/hash.h"
+#include "replay/recording_error.h"
+#include "scene/reader.h"
+#include "ziggurat/v1/run.pb.h"
+
+namespace ziggurat::replay {
+namespace {
+
+std::optional<scene::Clock> clock_of(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  if (name == "nominal") return scene::Clock::nominal;
+  if (name == "beta50") return scene::Clock::beta50;
+  throw RecordingError(fmt::format(
+      "the recording's clock is '{}', which this version does not know; replay it with the version "
+      "that made it",
+      name));
+}
+
+/// As of the files on disk when the run began: 16 hexadecimal digits.
+std::string hash_of(const scene::Scene& scene, const EmbeddedFiles& files) {
+  math::Hash hash;
+  for (const std::string& name : scene.files) {
+    const std::string* bytes = files.find(name);
+    hash.add(bytes ? std::string_view(*bytes) : std::string_view());
+  }
+  return math::to_hex(hash.digest());
+}
+
+}  // namespace
+
+scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files) {
+  if (run.seed() == 0) throw RecordingError("the recording's seed is 0, which no run has");
+  scene::ReadOptions options;
+  options.lenient = run.lenient();
+  options.clock = clock_of(run.clock());
+  options.open = files.opener();
+  scene::ReadResult read = scene::read_file(run.scene(), options);
+  if (!read.ok()) throw scene::SceneError(std::move(read.problems));
+  const std::string hash = hash_of(read.scene, files);
+  if (!run.scene_hash().empty() && hash != run.scene_hash()) {
+    throw RecordingError(
+        fmt::format("the hash of the embedded scene is {}, that of the recorded "
+                    "run is {}: the recording was changed",
+                    hash, run.scene_hash()));
+  }
+  return {std::move(read.scene), std::move(read.additions)};
+}
+
+}  // namespace ziggurat::replay

@@ -1,0 +1,155 @@
+// Recordings on disk, made by the writer of MCAP files.
+
+#include "replay/recording_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "mcap/writer.h"
+#include "recorded_run.h"
+#include "replay/difference.h"
+#include "replay/export.h"
+#include "replay/recording_error.h"
+
+namespace ziggurat::replay {
+namespace {
+
+using testing::eventful_run;
+using testing::OwnWorld;
+using testing::Recording;
+
+/// A file in a folder of its own.
+class Disk : public ::testing::Test {
+ protected:
+  Disk() {
+    std::string name = "/tmp/ztXXXXXX";
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~Disk() override { std::filesystem::remove_all(folder_); }
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+
+  /// @param size  of the file's bytes that are written; -1: all
+  std::string write(const Recording& recording, long size = -1) const {
+    std::string bytes;
+    mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"},
+                        mcap::Compression::zstd);
+    const auto channel = [&](const char* topic, const char* type) {
+      return writer.add_channel(writer.add_schema(type, "protobuf", "x"), topic, "protobuf");
+    };
+    const auto run = channel("/run", "ziggurat.v1.RunStart");
+    const auto inputs = channel("/inputs", "ziggurat.v1.Inputs");
+    const auto state = channel("/state", "ziggurat.v1.ExactState");
+    const EmbeddedFiles files = testing::files();
+    for (const char* name : {"scenes/small.argos", "scenes/models/arm.xml"}) {
+      writer.attach(name, "text/xml", *files.find(name), 0, 0);
+    }
+    writer.write(run, 0, 0, testing::start().SerializeAsString());
+    recording::StatePacker packer;
+    for (std::size_t i = 0; i < recording.inputs.size(); ++i) {
+      world::State links;
+      links.tick = recording.inputs[i].tick();
+      links.links = recording.links[i];
+      v1::ExactState exact;
+      packer.pack(recording.inputs[i].epoch(), links, i % 8 == 0, exact);
+      writer.write(state, i, i, exact.SerializeAsString());
+      writer.write(inputs, i, i, recording.inputs[i].SerializeAsString());
+      if (i % 8 == 7) writer.end_chunk();
+    }
+    writer.close();
+    std::ofstream file(path("run.mcap"), std::ios::binary);
+    file.write(bytes.data(), size < 0 ? static_cast<long>(bytes.size()) : size);
+    return path("run.mcap");
+  }
+
+  std::string folder_;
+};
+
+std::size_t same_states(const RecordingFile& file) {
+  OwnWorld own;
+  own.opened = read_scene(file.run(), file.files());
+  simulation::Simulation simulation(own.opened.scene, {file.run().seed(), {}});
+  States states(file);
+  Replay replay({own.opened.scene, own.opened.additions, simulation, own.seed},
+                file.files().opener(), [&] { return states.next(); });
+  std::size_t count = 0;
+  while (replay.advance() && replay.is_same()) {
+    EXPECT_NE(states.links(), nullptr);
+    if (!states.links()) break;
+    EXPECT_FALSE(first_difference(*states.links(), simulation.state().links));
+    ++count;
+  }
+  return count;
+}
+
+TEST_F(Disk, ARecordingIsRepeatedFromItsFile) {
+  const Recording recording = eventful_run();
+  const RecordingFile file(write(recording));
+  EXPECT_EQ(file.shortcoming(), "");
+  EXPECT_EQ(file.states(), recording.inputs.size());
+  EXPECT_EQ(same_states(file), recording.inputs.size());
+}
+
+TEST_F(Disk, WhatAKilledRunLeavesIsRepeated) {
+  const Recording recording = eventful_run();
+  const std::string path = write(recording);
+  const auto size = static_cast<long>(std::filesystem::file_size(path));
+  const RecordingFile whole(path);
+  const auto& chunks = whole.reader().contents().chunks;
+  ASSERT_GE(chunks.size(), 3u);
+  write(recording, static_cast<long>(chunks[1].offset + chunks[1].length) + 5);
+  ASSERT_LT(static_cast<long>(std::filesystem::file_size(path)), size);
+  const RecordingFile cut(path);
+  EXPECT_NE(cut.shortcoming(), "");
+  EXPECT_EQ(same_states(cut), 16u);
+}
+
+TEST_F(Disk, ADamagedPlaceIsNamed) {
+  const std::string path = write(eventful_run());
+  const std::uint64_t place = RecordingFile(path).reader().contents().chunks[1].offset + 60;
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<long>(place));
+  file.put('\x55').put('\xAA').put('\x55');
+  file.close();
+  const RecordingFile damaged(path);
+  States states(damaged);
+  int count = 0;
+  try {
+    while (states.next()) ++count;
+    ADD_FAILURE() << "not found";
+  } catch (const RecordingError& error) {
+    EXPECT_NE(std::string(error.what()).find("damaged at byte"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(count, 8);
+}
+
+TEST_F(Disk, OtherFilesAreRefused) {
+  std::ofstream(path("scene.argos")) << "<argos/>";
+  EXPECT_THROW(RecordingFile(path("scene.argos")), RecordingError);
+  EXPECT_THROW(RecordingFile(path("nothing.mcap")), std::runtime_error);
+  std::string bytes;
+  mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"other", "test"},
+                      mcap::Compression::none);
+  writer.close();
+  std::ofstream(path("other.mcap"), std::ios::binary) << bytes;
+  EXPECT_THROW(RecordingFile(path("other.mcap")), RecordingError);
+}
+
+TEST_F(Disk, MessagesBecomeLines) {
+  const Recording recording = eventful_run();
+  const RecordingFile file(write(recording));
+  const auto is_inputs = [](const std::string& topic) { return topic == "/inputs"; };
+  EXPECT_EQ(export_jsonl(file, is_inputs, path("out.jsonl")), recording.inputs.size());
+  std::ifstream lines(path("out.jsonl"));
+  std::string first;
+  std::getline(lines, first);
+  EXPECT_TRUE(first.starts_with(R"({"topic":"/inputs","time_s":0,"message":{"epoch":"0","tick":"0")")) << first;
+  EXPECT_THROW(export_jsonl(file, [](const auto&) { return false; }, path("out.jsonl")), RecordingError);
+  EXPECT_THROW(export_csv(file, path("out.csv")), RecordingError) << "it has no /world";
+}
+
+}  // namespace
+}  // namespace ziggurat::replay

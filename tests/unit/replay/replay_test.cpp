@@ -1,0 +1,128 @@
+#include "replay/replay.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "recorded_run.h"
+#include "replay/difference.h"
+#include "replay/recording_error.h"
+
+namespace ziggurat::replay {
+namespace {
+
+using testing::eventful_run;
+using testing::OwnWorld;
+using testing::Recording;
+
+/// How many states are the same, from the first on.
+std::size_t same_states(const Recording& recording) {
+  OwnWorld world;
+  Replay replay = world.replay(recording);
+  std::size_t count = 0;
+  while (replay.advance() && replay.is_same()) ++count;
+  return count;
+}
+
+std::string error_of(const Recording& recording) {
+  try {
+    same_states(recording);
+  } catch (const RecordingError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Replay, RepeatsCommandsMovesSpawnsRemovalsAndResets) {
+  const Recording recording = eventful_run();
+  ASSERT_GT(recording.inputs.size(), 20u);
+  EXPECT_EQ(same_states(recording), recording.inputs.size());
+}
+
+TEST(Replay, RepeatsSnapshotsAndRestores) {
+  testing::Recorder run;
+  run.simulation().commands().joint_targets.at(0) = 1;
+  for (int i = 0; i < 5; ++i) run.step();
+  run.snapshot("before");
+  run.simulation().commands().joint_targets.at(0) = -1;
+  for (int i = 0; i < 4; ++i) run.step();
+  run.restore("before");
+  run.simulation().commands().joint_targets.at(0) = 0.5;
+  for (int i = 0; i < 4; ++i) run.step();
+  EXPECT_EQ(same_states(run.recording), run.recording.inputs.size());
+  run.recording.inputs.front().add_acts()->mutable_restore()->set_name("other");
+  EXPECT_NE(error_of(run.recording).find("no snapshot"), std::string::npos);
+}
+
+TEST(Replay, GivesTheSameCommandsBeforeEachStep) {
+  const Recording recording = eventful_run();
+  OwnWorld world;
+  Replay replay = world.replay(recording);
+  ASSERT_TRUE(replay.advance());
+  replay.act();
+  EXPECT_EQ(world.simulation.commands().joint_targets.at(0), 0);
+  EXPECT_EQ(world.simulation.commands().radio_messages.entries.size(), 1u);
+  ASSERT_TRUE(replay.advance());
+  replay.act();
+  EXPECT_EQ(world.simulation.commands().joint_targets.at(0), 0.3);
+}
+
+TEST(Replay, FindsTheFirstStateThatDiffers) {
+  Recording recording = eventful_run();
+  auto& targets = *recording.inputs[4].mutable_commands()->mutable_joint_targets();
+  targets.set_values(0, targets.values(0) + 1e-9);
+  EXPECT_EQ(same_states(recording), 5u);
+
+  OwnWorld world;
+  Replay replay = world.replay(recording);
+  while (replay.advance() && replay.is_same()) continue;
+  EXPECT_EQ(replay.inputs().tick(), 5u);
+  const auto found = first_difference(recording.links[5], world.simulation.state().links);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(world.simulation.layout().links[found->link].id, "arm");
+  EXPECT_EQ(found->field, "position.x");
+  EXPECT_NE(found->a, found->b);
+  EXPECT_NEAR(found->a, found->b, 1e-8);
+}
+
+TEST(Replay, RefusesInputsThatThisWorldCannotHaveHad) {
+  const Recording good = eventful_run();
+  Recording bad = good;
+  bad.inputs[3].mutable_commands()->mutable_joint_targets()->clear_values();
+  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 3: the array joint_targets has 0 values; "
+                           "the world has 1 joint actuators");
+  bad = good;
+  bad.inputs[2].clear_commands();
+  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 2: they have no commands, and yet there "
+                           "is a next tick");
+  bad = good;
+  bad.inputs.erase(bad.inputs.begin() + 3);
+  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 4: the tick 3 was expected");
+  bad = good;
+  bad.inputs[1].add_acts()->mutable_remove()->set_entity("ghost");
+  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 1: there is no entity 'ghost'");
+  bad = good;
+  bad.inputs[1].add_acts()->mutable_move()->set_entity("low");
+  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 1: 'low' is moved to no position");
+  auto& move = *bad.inputs[1].mutable_acts(0)->mutable_move();
+  for (int i = 0; i < 3; ++i) move.add_position(0.5);
+  for (int i = 0; i < 4; ++i) move.add_orientation(1);
+  EXPECT_NE(error_of(bad).find("no unit quaternion"), std::string::npos);
+  bad = good;
+  bad.inputs[1].add_acts();
+  EXPECT_NE(error_of(bad).find("cannot repeat"), std::string::npos);
+  bad = good;
+  bad.inputs[1].add_acts()->mutable_reset();
+  EXPECT_NE(error_of(bad).find("seed 0"), std::string::npos);
+}
+
+TEST(Replay, SpawnsReadNoFileFromTheDisk) {
+  Recording bad = eventful_run();
+  bad.inputs[1].add_acts()->mutable_spawn()->set_xml(
+      R"(<prototype id="x"><body position="5,5,1"/><links ref="l"><link id="l" geometry="hull" mass="1">)"
+      R"(<hull file="hosts.obj"/></link></links></prototype>)");
+  EXPECT_NE(error_of(bad).find("not in the recording"), std::string::npos) << error_of(bad);
+}
+
+}  // namespace
+}  // namespace ziggurat::replay

@@ -1,0 +1,61 @@
+#include "replay/scene.h"
+
+#include <gtest/gtest.h>
+
+#include "recorded_run.h"
+#include "replay/recording_error.h"
+#include "scene/reader.h"
+
+namespace ziggurat::replay {
+namespace {
+
+using testing::files;
+using testing::start;
+
+TEST(EmbeddedScene, IsReadWithItsIncludes) {
+  const EmbeddedFiles embedded = files();
+  const scene::OpenScene opened = read_scene(start(), embedded);
+  EXPECT_EQ(opened.scene.files.size(), 2u);
+  EXPECT_EQ(opened.scene.entities.size(), 3u);
+}
+
+TEST(EmbeddedScene, ReadsNothingFromTheDisk) {
+  EmbeddedFiles embedded;
+  v1::RunStart run = start();
+  run.set_scene(__FILE__);  // exists
+  EXPECT_THROW(read_scene(run, embedded), scene::SceneError);
+  embedded.add("scene.argos", R"(<argos><include file="/etc/hostname"/></argos>)");
+  run.set_scene("scene.argos");
+  try {
+    read_scene(run, embedded);
+    ADD_FAILURE();
+  } catch (const scene::SceneError& error) {
+    EXPECT_NE(std::string(error.what()).find("is not in the recording"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(EmbeddedScene, IsFoundByEachWayToWriteItsPath) {
+  EmbeddedFiles embedded;
+  embedded.add("a/b.xml", "text");
+  EXPECT_NE(embedded.find("a/../a/b.xml"), nullptr);
+  EXPECT_NE(embedded.find("./a/b.xml"), nullptr);
+  EXPECT_EQ(embedded.find("b.xml"), nullptr);
+}
+
+TEST(EmbeddedScene, HasTheRecordedHash) {
+  const EmbeddedFiles embedded = files();
+  v1::RunStart run = start();
+  run.set_scene_hash("0123456789abcdef");
+  EXPECT_THROW(read_scene(run, embedded), RecordingError);
+  run.set_scene_hash("");
+  run.set_clock("sundial");
+  EXPECT_THROW(read_scene(run, embedded), RecordingError);
+  run.set_clock("beta50");
+  EXPECT_EQ(read_scene(run, embedded).scene.physics.clock, scene::Clock::beta50);
+  run.set_seed(0);
+  EXPECT_THROW(read_scene(run, embedded), RecordingError);
+}
+
+}  // namespace
+}  // namespace ziggurat::replay
