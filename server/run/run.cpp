@@ -52,8 +52,8 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       callers_(server_),
       supervision_(supervision_settings(), world_, server_, callers_, controllers_, console_),
       schedule_(plan_.real_time, world_.simulation.tick_length()),
-      showing_(make_showing(
-          options, {world_, server_, callers_, supervision_, schedule_, plan_.ticks.value_or(0)})),
+      showing_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
+                                           plan_.ticks.value_or(0)))),
       watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
               plan_.ticks},
              world_, server_, controllers_, supervision_, signals, console_, showing_.get(),

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
 #include "run/files.h"
 #include "run/loading.h"
@@ -109,6 +110,23 @@ wire::End end_message(const reports::Summary& summary) {
       break;
   }
   return end;
+}
+
+Showing::Run shown(supervision::World& world, network::Server& server, supervision::Callers& callers,
+                   supervision::Supervision& supervision, Schedule& schedule,
+                   std::uint64_t last_tick) {
+  Showing::Run watched{world, schedule, last_tick, {}, {}, {}, {}, {}, {}};
+  watched.connect = [&callers](supervision::LocalCalls calls) { callers.add(std::move(calls)); };
+  watched.changes = [&callers] { return callers.changes(); };
+  watched.is_paused = [&server] { return server.paused(); };
+  watched.paused_for = [&supervision] { return supervision.paused_for(); };
+  watched.status = [&supervision] { return supervision.status(); };
+  watched.missed_ticks = [&server] {
+    std::vector<std::uint64_t> missed;
+    for (const auto& each : server.performance().controllers) missed.push_back(each.missed_ticks);
+    return missed;
+  };
+  return watched;
 }
 
 std::unique_ptr<Showing> make_showing(const Options& options, const Showing::Run& run) {

@@ -1,6 +1,7 @@
 #pragma once
 // What a run needs before it has a world, and what it tells clients at the start and at the end.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "run/options.h"
 #include "run/showing.h"
 #include "scene/scene.h"
+#include "supervision/supervision.h"
 
 namespace ziggurat::run {
 
@@ -40,6 +42,12 @@ wire::End end_message(const reports::Summary& summary);
 /// Ends the program on Ctrl-C before there is a world. The thread that loads it has nothing to
 /// clean up, and ends with the process.
 [[noreturn]] void end_while_loading();
+
+/// A run as viewers see and change it. Everything must outlive what it is given to.
+/// @param last_tick  0: until stopped
+Showing::Run shown(supervision::World& world, network::Server& server, supervision::Callers& callers,
+                   supervision::Supervision& supervision, Schedule& schedule,
+                   std::uint64_t last_tick);
 
 /// Serves viewers, if the options ask for that. Prints the addresses on stderr also if the run is
 /// to be quiet: without them nothing can be seen.

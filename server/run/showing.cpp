@@ -54,7 +54,7 @@ Showing::Showing(const Options& options, Run run) : run_(run), server_(settings_
 }
 
 void Showing::connect_callers() {
-  run_.callers.add({[this] { return take_calls(); },
+  run_.connect({[this] { return take_calls(); },
                     [this](const network::Call& call) {
                       const auto found = unanswered_.find(call.request.id);
                       return found != unanswered_.end() &&
@@ -131,7 +131,7 @@ void Showing::answered() {
 void Showing::restarted() {
   is_gathered_ = false;
   populate();
-  seen_changes_ = run_.callers.changes();
+  seen_changes_ = run_.changes();
   is_current_ = true;
   show(wanted_, every_tick);
 }
@@ -180,13 +180,13 @@ void Showing::apply(const view::Parameter& wish) {
 
 void Showing::set_speed(double factor) {
   run_.schedule.set_factor(factor > 0 ? std::optional(factor) : std::nullopt,
-                           run_.world.simulation.state().tick, run_.supervision.paused_for());
+                           run_.world.simulation.state().tick, run_.paused_for());
   server_.set_parameter({"real_time_factor", factor});
 }
 
 void Showing::update() {
-  if (seen_changes_ != run_.callers.changes()) {
-    seen_changes_ = run_.callers.changes();
+  if (seen_changes_ != run_.changes()) {
+    seen_changes_ = run_.changes();
     populate();
     is_current_ = true;
     show(wanted_, every_tick);
@@ -200,7 +200,7 @@ void Showing::update() {
     show(wanted_, std::array{Pace::tick});
   }
   const auto phase = is_over_               ? wire::Status::Phase::ending
-                     : run_.server.paused() ? wire::Status::Phase::paused
+                     : run_.is_paused() ? wire::Status::Phase::paused
                      : is_gathered_         ? wire::Status::Phase::running
                                             : wire::Status::Phase::gathering;
   if (phase != phase_) {
@@ -215,13 +215,12 @@ void Showing::update() {
 }
 
 void Showing::show_barrier() {
-  wire::Status status = run_.supervision.status();
+  wire::Status status = run_.status();
   if (is_over_) status.phase = wire::Status::Phase::ending;
-  const auto controllers = run_.server.performance().controllers;
+  const auto missed = run_.missed_ticks();
   std::vector<channels::Histogram> histograms;
-  for (std::size_t c = 0; c < controllers.size(); ++c) {
-    histograms.push_back(
-        {run_.world.scene.controllers[c].id, 0, 1, {}, controllers[c].missed_ticks});
+  for (std::size_t c = 0; c < missed.size(); ++c) {
+    histograms.push_back({run_.world.scene.controllers[c].id, 0, 1, {}, missed[c]});
   }
   server_.show(status.time_ns, {channels_.barrier(status, histograms)});
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,11 +12,11 @@
 #include <vector>
 
 #include "channels/channels.h"
-#include "network/server.h"
+#include "network/report.h"
 #include "run/options.h"
 #include "run/schedule.h"
 #include "supervision/callers.h"
-#include "supervision/supervision.h"
+#include "supervision/tick_budget.h"
 #include "supervision/world.h"
 #include "view/server.h"
 
@@ -25,14 +26,19 @@ class Showing {
  public:
   using clock = std::chrono::steady_clock;
 
-  /// What it shows, and what viewers change; all must outlive it.
+  /// What it shows, and what viewers change; all must outlive it. A run, or the replay of one.
   struct Run {
     supervision::World& world;
-    const network::Server& server;
-    supervision::Callers& callers;
-    supervision::Supervision& supervision;
     Schedule& schedule;
     std::uint64_t last_tick;  ///< 0: until stopped
+    /// The requests of viewers are taken there from now on.
+    std::function<void(supervision::LocalCalls)> connect;
+    std::function<std::uint64_t()> changes;  ///< as of supervision::Callers
+    std::function<bool()> is_paused;
+    std::function<clock::duration()> paused_for;  ///< wall time so far
+    std::function<wire::Status()> status;
+    /// Of each of the scene's controllers; none: nothing is known of them.
+    std::function<std::vector<std::uint64_t>()> missed_ticks;
   };
 
   /// Listens. @throws text::UsageError, std::runtime_error
