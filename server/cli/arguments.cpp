@@ -90,4 +90,17 @@ Parsed parse(const Arguments& arguments, const po::options_description& known) {
   return parsed;
 }
 
+const std::string& only_recording(std::string_view command,
+                                  const std::vector<std::string>& positional) {
+  if (positional.size() == 1) return positional.front();
+  if (positional.empty()) {
+    throw text::UsageError(fmt::format(
+        "no recording is given; write the file of 'ziggurat run --record', as in: ziggurat {} "
+        "run.mcap",
+        command));
+  }
+  throw text::UsageError(fmt::format("only one recording is allowed, which is '{}'; remove '{}'",
+                                     positional[0], positional[1]));
+}
+
 }  // namespace ziggurat::cli

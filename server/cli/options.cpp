@@ -369,6 +369,23 @@ po::options_description render_options() {
   return options;
 }
 
+po::options_description replay_options() {
+  po::options_description replay("The replay", width);
+  replay.add_options()                                                         //
+      ("until", text("TICK"), "end at the first state with this tick")  //
+      ("real-time", po::value<std::string>()->implicit_value("1")->value_name("FACTOR"),
+       "pace to the wall clock, FACTOR times as fast (default 1)")  //
+      ("view", po::value<std::string>()->implicit_value("")->value_name("HOST:PORT"),
+       "show it in a browser, Foxglove or Lichtblick, paced as with --real-time: prints the "
+       "address (default 127.0.0.1:8765, or a free port)")  //
+      ("view-token", text("TOKEN"),
+       "the token of that address instead of a random one: 16 characters or more")  //
+      ("insecure", "allow an address that other machines can reach");
+  po::options_description options("", width);
+  options.add(replay).add(output_options());
+  return options;
+}
+
 run::Options parse_options(const Arguments& arguments, const po::options_description& known) {
   const Parsed parsed = parse(arguments, known);
   const Values values(parsed.values);

@@ -16,6 +16,8 @@ constexpr int finished = 0;
 constexpr int fault = 1;  ///< of scene, arguments or environment
 constexpr int controller_failed = 3;
 constexpr int gate_missed = 4;    ///< a controller did not keep up as --gate asks
+constexpr int differs = 5;        ///< a recording from its repetition, or from another one
+constexpr int damaged = 6;        ///< a recording; what can be read of it is the same
 constexpr int interrupted = 130;  ///< Ctrl-C
 }  // namespace exit_code
 

@@ -9,11 +9,11 @@
 namespace ziggurat::supervision {
 
 World::World(std::string path_given, scene::OpenScene opened, std::uint64_t seed_given,
-             const simulation::TellPlaced& tell)
+             const simulation::TellPlaced& tell, const std::string& hash)
     : path(std::move(path_given)),
       scene(std::move(opened.scene)),
       additions(std::move(opened.additions)),
-      scene_hash(supervision::scene_hash(scene)),
+      scene_hash(hash.empty() ? supervision::scene_hash(scene) : hash),
       seed(seed_given),
       simulation(scene, {seed, tell}) {}
 

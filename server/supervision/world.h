@@ -13,9 +13,10 @@ namespace ziggurat::supervision {
 
 struct World {
   /// @param tell  while entities are distributed; may be empty
+  /// @param hash  of the scene's files; empty: they are read for it
   /// @throws scene::SceneError if an entity cannot be placed or built
   World(std::string path, scene::OpenScene opened, std::uint64_t seed,
-        const simulation::TellPlaced& tell = {});
+        const simulation::TellPlaced& tell = {}, const std::string& hash = {});
 
   /// Builds the world again, with this seed. @throws scene::SceneError; then nothing changes
   void reset(std::uint64_t new_seed);

@@ -1,0 +1,67 @@
+#include <boost/program_options/value_semantic.hpp>
+#include <sstream>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "recording/output_file.h"
+#include "reports/console.h"
+#include "run/divergence.h"
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+po::options_description diff_options() {
+  po::options_description options("Options", 96);
+  options.add_options()  //
+      ("plot", po::value<std::string>()->value_name("FILE.svg"), "distances over time as a picture")(
+          "json", "the result as a JSON object");
+  return options;
+}
+
+}  // namespace
+
+std::string help_diff() {
+  std::ostringstream text;
+  text << R"(usage: ziggurat diff A B [OPTION]...
+
+Compares two recordings state by state: the first tick, entity and field that differ, the first inputs
+that differ (commands, acts of supervisors), then how far poses are apart over time, and of which link
+most.
+
+  ziggurat diff before.mcap after.mcap --plot apart.svg
+
+Exit codes: 0 all states are the same; 5 they differ; 1 fault of arguments or recordings.
+
+)" << diff_options();
+  return text.str();
+}
+
+int execute_diff(const Arguments& arguments) {
+  const Parsed parsed = parse(arguments, diff_options());
+  if (parsed.positional.size() != 2) {
+    throw text::UsageError("two recordings must be given, as in: ziggurat diff a.mcap b.mcap");
+  }
+  const replay::RecordingFile a(parsed.positional[0]), b(parsed.positional[1]);
+  const run::Divergence divergence = run::compare(a, b);
+  reports::Console console;
+  for (const auto* file : {&a, &b}) {
+    if (const auto missing = file->shortcoming(); !missing.empty()) {
+      console.warning(file->path() + ": " + missing);
+    }
+  }
+  if (parsed.values.count("plot")) {
+    recording::OutputFile plot(parsed.values["plot"].as<std::string>());
+    plot.buffer().append(to_svg(divergence));
+    plot.close();
+  }
+  std::string text = parsed.values.count("json") ? to_json(divergence) : to_text(divergence);
+  if (text.ends_with('\n')) text.pop_back();
+  console.result(text);
+  console.flush();
+  return divergence.is_same() ? exit_code::finished : exit_code::differs;
+}
+
+}  // namespace ziggurat::cli

@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/program_options/value_semantic.hpp>
+#include <filesystem>
+#include <sstream>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "network/glob.h"
+#include "replay/export.h"
+#include "reports/console.h"
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+struct Order {
+  const replay::RecordingFile& file;
+  std::vector<std::string> topics;  ///< globs; empty: all
+  std::string out;
+};
+
+bool is_wanted(const Order& order, const std::string& topic) {
+  return order.topics.empty() || std::ranges::any_of(order.topics, [&](const auto& glob) {
+           return network::matches(glob, topic);
+         });
+}
+
+std::string to_csv(const Order& order) {
+  return fmt::format("{} states", replay::export_csv(order.file, order.out));
+}
+std::string to_jsonl(const Order& order) {
+  const auto wanted = [&](const std::string& topic) { return is_wanted(order, topic); };
+  return fmt::format("{} messages", replay::export_jsonl(order.file, wanted, order.out));
+}
+
+/// A format of files. What it writes is told in words.
+struct Format {
+  const char* option;
+  const char* value;
+  const char* help;
+  std::string (*write)(const Order&);
+};
+constexpr Format formats[] = {
+    {"csv", "FILE.csv", "poses of all entities at every tick, with the columns of --trace", to_csv},
+    {"jsonl", "FILE.jsonl", "each message as a line of JSON: topic, time_s, message", to_jsonl},
+};
+
+po::options_description export_options() {
+  po::options_description options("Options", 96);
+  for (const Format& format : formats) {
+    options.add_options()(format.option, po::value<std::string>()->value_name(format.value),
+                          format.help);
+  }
+  options.add_options()  //
+      ("topics", po::value<std::vector<std::string>>()->composing()->value_name("GLOB"),
+       "jsonl: only topics that match, as '/robots/*/command'; may be repeated")(
+          "quiet", "no message on what was written");
+  return options;
+}
+
+}  // namespace
+
+std::string help_export() {
+  std::ostringstream text;
+  text << R"(usage: ziggurat export RECORDING --csv FILE.csv | --jsonl FILE.jsonl [OPTION]...
+
+Writes what a recording has as a file for other programs. Nothing is simulated.
+
+  ziggurat export run.mcap --csv poses.csv
+  ziggurat export run.mcap --jsonl commands.jsonl --topics '/robots/*/command'
+
+Poses of links are exact in a table. Those of origins are computed from them, and can differ from a
+trace of the run in the last digit.
+
+Exit codes: 0 done; 1 fault of arguments or recording.
+
+)" << export_options();
+  return text.str();
+}
+
+int execute_export(const Arguments& arguments) {
+  const Parsed parsed = parse(arguments, export_options());
+  const replay::RecordingFile file(only_recording("export", parsed.positional));
+  reports::Console console({parsed.values.count("quiet") > 0, false});
+  if (const auto missing = file.shortcoming(); !missing.empty()) console.warning(missing);
+  Order order{file, {}, {}};
+  if (parsed.values.count("topics")) {
+    order.topics = parsed.values["topics"].as<std::vector<std::string>>();
+  }
+  std::size_t written = 0;
+  for (const Format& format : formats) {
+    if (!parsed.values.count(format.option)) continue;
+    order.out = parsed.values[format.option].as<std::string>();
+    std::error_code error;
+    if (std::filesystem::equivalent(order.out, file.path(), error)) {
+      throw text::UsageError(fmt::format("--{} is the recording itself; name another file", format.option));
+    }
+    console.report(fmt::format("{}: {}\n", order.out, format.write(order)));
+    ++written;
+  }
+  if (written == 0) {
+    throw text::UsageError("no format is given; write --csv FILE.csv or --jsonl FILE.jsonl");
+  }
+  console.flush();
+  return exit_code::finished;
+}
+
+}  // namespace ziggurat::cli

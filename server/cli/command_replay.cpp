@@ -1,0 +1,46 @@
+#include <sstream>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/options.h"
+#include "run/replaying.h"
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+
+std::string help_replay() {
+  std::ostringstream text;
+  text << R"(usage: ziggurat replay RECORDING [OPTION]...
+
+Repeats a run that 'ziggurat run --record RECORDING' has recorded: the same scene, commands and acts of
+supervisors, without controllers. The hash of each state is compared with the recorded one.
+
+  ziggurat replay run.mcap --view
+      watch it; viewers can pause and step it, not change it
+  ziggurat replay run.mcap --trace poses.csv --readings readings.jsonl
+      write files that were not asked for when it ran
+  ziggurat replay run.mcap --until 500 --hash
+      up to tick 500
+
+The recording alone is read: no file that its scene names, and none of its commands is started.
+
+Exit codes: 0 all states are as recorded; 5 one differs; 6 the recording is damaged, what could be
+read is as recorded; 1 fault of arguments or recording; 130 interrupted.
+
+)" << replay_options();
+  return text.str();
+}
+
+int execute_replay(const Arguments& arguments, processes::Signals& signals) {
+  const auto known = replay_options();
+  run::ReplayOptions options;
+  options.run = parse_options(arguments, known);
+  options.recording = only_recording("replay", options.run.scenes);
+  const auto values = parse(arguments, known).values;
+  if (values.count("until")) {
+    options.until = text::to_integer("--until", values["until"].as<std::string>());
+  }
+  return run::Replaying(options, signals).execute();
+}
+
+}  // namespace ziggurat::cli

@@ -1,0 +1,63 @@
+#include "run/embedded_scripts.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "processes/scripts.h"
+#include "replay/recording_error.h"
+
+namespace ziggurat::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where an embedded file is written: `..` and roots are names like any other.
+fs::path place(const std::string& folder, const std::string& name) {
+  fs::path path = folder;
+  for (const fs::path& part : fs::path(name).lexically_normal()) {
+    if (part == "/" || part.empty() || part == ".") continue;
+    path /= part == ".." ? fs::path("_up_") : part;
+  }
+  return path;
+}
+
+}  // namespace
+
+void write_below(const std::string& folder, const replay::EmbeddedFiles& files) {
+  fs::create_directories(folder);
+  for (const auto& [name, bytes] : files.all()) {
+    const fs::path path = place(folder, name);
+    fs::create_directories(path.parent_path());
+    std::ofstream file(path, std::ios::binary);
+    file << bytes;
+    file.close();
+    if (!file) throw std::runtime_error(fmt::format("{} cannot be written", path.string()));
+  }
+}
+
+std::string script_below(const std::string& folder, const replay::EmbeddedFiles& files,
+                         const scene::Scene& scene, const std::string& scene_path,
+                         const world::RobotLayout& robot) {
+  const scene::Controller& controller = scene.controllers[robot.controller];
+  if (!processes::runs_script(controller)) return {};
+  const std::string name = processes::script_of(robot.params);
+  if (name.empty()) return {};
+  std::vector<fs::path> folders;  // where a run looks for scripts, too
+  for (const std::string& file : scene.files) folders.push_back(fs::path(file).parent_path());
+  for (fs::path up = fs::path(scene_path).parent_path(); !up.empty(); up = up.parent_path()) {
+    folders.push_back(up);
+    if (up == up.parent_path()) break;
+  }
+  folders.emplace_back();
+  for (const fs::path& each : folders) {
+    const fs::path path = each / name;
+    if (files.find(path)) return place(folder, path.string()).string();
+  }
+  throw replay::RecordingError(fmt::format(
+      "the script '{}' of '{}' is not in the recording; write --controller {}=CMD", name, robot.id,
+      controller.id));
+}
+
+}  // namespace ziggurat::run

@@ -1,0 +1,304 @@
+#include "run/rehearsal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "replay/commands_difference.h"
+#include "replay/recording_error.h"
+#include "replay/scene.h"
+#include "run/embedded_scripts.h"
+#include "run/replay_difference.h"
+#include "run/setup.h"
+#include "run/version.h"
+#include "text/numbers.h"
+
+namespace ziggurat::run {
+namespace {
+
+using processes::runs_script;
+
+std::size_t robot_named(const world::Layout& layout, const std::string& id) {
+  for (std::size_t r = 0; r < layout.robots.size(); ++r) {
+    if (layout.robots[r].id == id) return r;
+  }
+  throw text::UsageError(fmt::format("the recorded world has no robot '{}' at tick 0", id));
+}
+
+}  // namespace
+
+Rehearsal::Rehearsal(const RehearsalOptions& options, processes::Signals& signals)
+    : options_(options),
+      signals_(signals),
+      console_({options.quiet, false}),
+      file_(options.recording),
+      folder_(signals.guardian()),
+      world_(build_world()),
+      scripts_(embed_scripts()),
+      server_(config(), description()),
+      controllers_(start()),
+      callers_(server_),
+      supervision_({}, world_, server_, callers_, controllers_, console_),
+      watch_({{}, false, false, false, file_.states()}, world_, server_, controllers_, supervision_,
+             signals, console_, nullptr, [](auto...) {}),
+      states_(file_),
+      replay_({world_.scene, world_.additions, world_.simulation, world_.seed},
+              file_.files().opener(), [this] { return states_.next(); }) {
+  replay_.tell([this](const v1::Act& act) { take(act); });
+}
+
+/// The commands of the recording are replaced by the user's own: none of them is left by itself.
+supervision::World Rehearsal::build_world() {
+  const v1::RunStart& run = file_.run();
+  scene::OpenScene opened = replay::read_scene(run, file_.files());
+  const auto recorded = [&](const std::string& id) {
+    for (const auto& each : run.controllers()) {
+      if (each.id() == id) return each.command();
+    }
+    return std::string();
+  };
+  for (scene::Controller& controller : opened.scene.controllers) {
+    controller.command = options_.trusts_commands ? recorded(controller.id) : std::string();
+  }
+  for (const auto& [id, command] : options_.controllers) {
+    const auto found = std::ranges::find(opened.scene.controllers, id, &scene::Controller::id);
+    if (found == opened.scene.controllers.end()) {
+      throw text::UsageError(fmt::format("--controller: the recording has no controller '{}'", id));
+    }
+    found->command = command;
+  }
+  if (!options_.command.empty()) {
+    opened.scene.controllers[tried_controller(opened.scene)].command = options_.command;
+  }
+  return {run.scene(), std::move(opened), run.seed(), {}, run.scene_hash()};
+}
+
+/// The controller of the robot that is tried.
+std::size_t Rehearsal::tried_controller(const scene::Scene& scene) const {
+  for (const scene::Entity& entity : scene.entities) {
+    if (entity.id == *options_.robot && entity.controller) return *entity.controller;
+  }
+  for (const auto& group : scene.distributions) {
+    if (options_.robot->starts_with(group.entity.id) && group.entity.controller) {
+      return *group.entity.controller;
+    }
+  }
+  throw text::UsageError(
+      fmt::format("the recorded world has no robot '{}' with a controller", *options_.robot));
+}
+
+/// Per robot at tick 0: its embedded script as a file; the user's own for the one that is tried.
+std::vector<std::string> Rehearsal::embed_scripts() {
+  const std::string below = folder_.path() + "/files";
+  write_below(below, file_.files());
+  const world::Layout& layout = world_.simulation.layout();
+  std::vector<std::string> scripts(layout.robots.size());
+  const auto tried = options_.robot ? std::optional(robot_named(layout, *options_.robot)) : std::nullopt;
+  for (std::size_t r = 0; r < scripts.size(); ++r) {
+    if (tried && *tried != r) continue;
+    const bool is_own = !options_.script.empty();
+    if (is_own && !runs_script(world_.scene.controllers[layout.robots[r].controller])) {
+      throw text::UsageError("--script is for the robots of Lua controllers; write -- COMMAND");
+    }
+    scripts[r] = is_own ? std::filesystem::absolute(options_.script).string()
+                        : script_below(below, file_.files(), world_.scene, world_.path,
+                                       layout.robots[r]);
+  }
+  return scripts;
+}
+
+bool Rehearsal::is_rehearsed(std::size_t robot) const {
+  const world::RobotLayout& layout = world_.simulation.layout().robots[robot];
+  if (options_.robot && layout.id != *options_.robot) return false;
+  const scene::Controller& controller = world_.scene.controllers[layout.controller];
+  if (!controller.command.empty()) return true;
+  return runs_script(controller) && robot < scripts_.size() && !scripts_[robot].empty();
+}
+
+/// Nothing but the controllers' own time ends a wait: deadlines would change commands.
+network::Config Rehearsal::config() const {
+  network::Config config;
+  config.private_endpoint = "ipc://" + folder_.path() + "/run";
+  config.deadlines.assign(world_.scene.controllers.size(), {scene::DeadlinePolicy{}, true});
+  return config;
+}
+
+wire::Run Rehearsal::description() const {
+  const unsigned rate = world_.scene.experiment.ticks_per_second;
+  wire::Run run{world_.simulation.layout(), world_.scene.controllers, scripts_, world_.seed, 0, 1, {}, {}};
+  run.ticks_per_second = rate;
+  run.tick_ns = (1'000'000'000 + rate / 2) / rate;
+  run.scene_hash = world_.scene_hash;
+  run.server_version = version;
+  return run;
+}
+
+std::vector<std::size_t> Rehearsal::robots_without_controller() const {
+  std::vector<std::size_t> robots;
+  for (std::size_t r = 0; r < world_.simulation.layout().robots.size(); ++r) {
+    const auto& recorded = file_.run().robots_without_controller();
+    const bool had_none = std::ranges::find(recorded, r) != recorded.end();
+    if (had_none || !is_rehearsed(r)) robots.push_back(r);
+  }
+  return robots;
+}
+
+processes::Controllers Rehearsal::start() {
+  const auto without = robots_without_controller();
+  const world::Layout& layout = world_.simulation.layout();
+  if (without.size() == layout.robots.size()) {
+    throw text::UsageError(
+        "there is no controller to start: commands of a recording are started only if you write "
+        "--controller ID=COMMAND, or --trust-recorded-commands");
+  }
+  gone_.assign(layout.robots.size(), false);
+  for (const std::size_t robot : without) gone_[robot] = true;
+  server_.remove_robots(without);
+  processes::LaunchSettings settings{server_.endpoints().front(), folder_.path(),
+                                     processes::find_lua_runner(), 1, options_.lua_arguments,
+                                     signals_.guardian()};
+  std::vector<std::string> folders{folder_.path() + "/files"};
+  if (!options_.script.empty()) {
+    folders.push_back(std::filesystem::absolute(options_.script).parent_path().string());
+  }
+  for (const std::string& folder : folders) {
+    settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
+  }
+  std::vector<std::string> scripts = scripts_;
+  for (const std::size_t robot : without) scripts[robot].clear();
+  return {world_.scene, layout, scripts, settings};
+}
+
+int Rehearsal::execute() {
+  std::optional<Ending> ending;
+  try {
+    ending = repeat();
+  } catch (...) {
+    watch_.end_run({wire::EndReason::failed, "the recording cannot be repeated",
+                    world_.simulation.state().tick});
+    throw;
+  }
+  watch_.end_run({wire::EndReason::finished, {}, world_.simulation.state().tick});
+  const int code = tell(ending);
+  console_.flush();
+  signals_.completed(code);
+  return code;
+}
+
+/// All robots have a controller, which begins with this world.
+std::optional<Rehearsal::Ending> Rehearsal::restart() {
+  is_restarted_ = false;
+  answered_ = world_.simulation.commands();
+  answered_.radio_messages.clear();
+  return watch_.gather();
+}
+
+/// Nothing: the recording was repeated to its end.
+std::optional<Rehearsal::Ending> Rehearsal::repeat() {
+  simulation::Simulation& simulation = world_.simulation;
+  while (replay_.advance()) {
+    if (!replay_.is_same()) {
+      throw replay::RecordingError("what controllers are given would differ: " +
+                                   explain_difference(file_, states_, replay_, world_));
+    }
+    if (is_restarted_) {
+      if (const auto ending = restart()) return ending;
+    }
+    const std::uint64_t tick = simulation.state().tick;
+    server_.publish(simulation.observations(), simulation.state().tag_payloads);
+    answered_.radio_messages.clear();
+    if (const auto ending = watch_.collect(answered_, tick)) return ending;
+    const bool has_commands = replay_.inputs().has_commands();
+    replay_.act();
+    if (has_commands) compare();
+    if (options_.until && tick == *options_.until) break;
+  }
+  return std::nullopt;
+}
+
+void Rehearsal::take(const v1::Act& act) {
+  if (act.has_reset()) {
+    server_.reset(world_.seed);
+    controllers_.forget_robots(world_.simulation.layout().robots.size());
+    gone_.resize(world_.simulation.layout().robots.size());
+    is_restarted_ = true;
+  } else if (act.has_spawn()) {
+    add_robot();
+  } else if (act.has_remove()) {
+    remove_robot(act.remove().entity());
+  }
+}
+
+/// The last entity was spawned. Its places in the arrays begin with the values of the world.
+void Rehearsal::add_robot() {
+  const simulation::Simulation& simulation = world_.simulation;
+  const world::Commands& now = world_.simulation.commands();
+  world::for_each_channel(world::commanded, [&](auto i) {
+    constexpr auto& channel = std::get<i>(world::commanded);
+    auto& values = answered_.*channel.values;
+    const auto& all = now.*channel.values;
+    values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(values.size()), all.end());
+  });
+  const auto& robots = simulation.layout().robots;
+  if (robots.size() == gone_.size()) return;  // without controller
+  const std::size_t robot = robots.size() - 1;
+  const std::string script =
+      options_.robot ? std::string()
+                     : script_below(folder_.path() + "/files", file_.files(), world_.scene,
+                                    world_.path, robots[robot]);
+  server_.add_robots(std::array{script}, simulation.observations(),
+                     simulation.state().tag_payloads);
+  gone_.push_back(script.empty());
+  if (script.empty()) {
+    server_.remove_robots(std::array{robot});
+  } else {
+    controllers_.start_spawned(robot, simulation.layout());
+  }
+}
+
+void Rehearsal::remove_robot(const std::string& entity) {
+  const world::Layout& layout = world_.simulation.layout();
+  for (std::size_t r = 0; r < layout.robots.size(); ++r) {
+    if (layout.entities[layout.robots[r].entity].id != entity || gone_[r]) continue;
+    gone_[r] = true;
+    server_.remove_robots(std::array{r}, fmt::format("'{}' was removed from the world.", entity));
+  }
+}
+
+void Rehearsal::compare() {
+  const world::Layout& layout = world_.simulation.layout();
+  const std::uint64_t tick = replay_.inputs().tick();
+  ++ticks_;
+  for (std::size_t r = 0; r < layout.robots.size(); ++r) {
+    if (gone_[r] || world_.simulation.state().is_absent(layout.robots[r].entity)) continue;
+    const auto found =
+        replay::first_difference(layout, r, world_.simulation.commands(), answered_);
+    if (!found) continue;
+    Difference& all = differences_.try_emplace(layout.robots[r].id, Difference{tick, 0}).first->second;
+    ++all.ticks;
+    if (told_++ >= options_.most_told) continue;
+    console_.result(fmt::format("tick {}: '{}': {} is {} in the recording, {} now", tick,
+                                layout.robots[r].id, found->device, found->recorded, found->now));
+  }
+}
+
+int Rehearsal::tell(const std::optional<Ending>& ending) {
+  if (const auto missing = file_.shortcoming(); !missing.empty()) console_.warning(missing);
+  if (!watch_.vanished().empty()) console_.fault(watch_.vanished());
+  const auto failures = watch_.failures();
+  for (const auto& [robot, difference] : differences_) {
+    console_.report(fmt::format("'{}': {} of {} ticks differ, the first is {}\n", robot,
+                                difference.ticks, ticks_, difference.first_tick));
+  }
+  if (ending == Ending::interrupted || ending == Ending::forced) {
+    return reports::exit_code::interrupted;
+  }
+  if (ending || !failures.empty()) return reports::exit_code::controller_failed;
+  if (!differences_.empty()) return reports::exit_code::differs;
+  console_.result(fmt::format("identical: the commands of {} ticks are as recorded", ticks_));
+  return reports::exit_code::finished;
+}
+
+}  // namespace ziggurat::run

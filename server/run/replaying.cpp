@@ -1,0 +1,251 @@
+#include "run/replaying.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "recording/hash_file.h"
+#include "replay/recording_error.h"
+#include "replay/scene.h"
+#include "run/files.h"
+#include "run/replay_difference.h"
+#include "run/setup.h"
+
+namespace ziggurat::run {
+
+using supervision::Phase;
+
+namespace {
+
+constexpr std::chrono::seconds longest_wait_for_viewer{5};
+constexpr int longest_sleep_ms = 100;  // viewers get their frames meanwhile
+
+std::optional<double> factor_of(const Options& options) {
+  if (options.real_time || !options.view) return options.real_time;
+  return 1;
+}
+
+supervision::World build_world(const replay::RecordingFile& file) {
+  const v1::RunStart& run = file.run();
+  return {run.scene(), replay::read_scene(run, file.files()), run.seed(), {}, run.scene_hash()};
+}
+
+/// Checks the names of all files before any is created.
+std::string checked(const ReplayOptions& options) {
+  Options files = options.run;
+  files.scenes = {options.recording};
+  check_files(files);
+  return options.recording;
+}
+
+}  // namespace
+
+Replaying::Replaying(const ReplayOptions& options, processes::Signals& signals)
+    : options_(options),
+      signals_(signals),
+      console_({options.run.quiet, options.run.json}),
+      file_(checked(options)),
+      world_(build_world(file_)),
+      recorders_(options.run, world_),
+      states_(file_),
+      replay_({world_.scene, world_.additions, world_.simulation, world_.seed},
+              file_.files().opener(), [this] { return states_.next(); }),
+      schedule_(factor_of(options.run), world_.simulation.tick_length()),
+      showing_(make_showing(options.run, shown())),
+      progress_(console_, world_.simulation.tick_length(), file_.states()) {
+  summary_.scene = world_.path;
+  summary_.robots = world_.simulation.layout().robots.size();
+  if (showing_) waits_for_viewer_until_ = clock::now() + longest_wait_for_viewer;
+}
+
+Showing::Run Replaying::shown() {
+  Showing::Run watched{world_, schedule_, file_.run().last_tick(), {}, {}, {}, {}, {}, {}};
+  watched.connect = [this](supervision::LocalCalls calls) { steering_.connect(std::move(calls)); };
+  watched.changes = [this] { return replay_.changes(); };
+  watched.is_paused = [this] { return steering_.is_paused(); };
+  watched.paused_for = [this] { return steering_.paused_for(); };
+  watched.status = [this] { return status(); };
+  watched.missed_ticks = [] { return std::vector<std::uint64_t>(); };
+  return watched;
+}
+
+wire::Status Replaying::status() const {
+  wire::Status status;
+  status.tick = world_.simulation.state().tick;
+  status.time_ns = world_.simulation.state().time_ns;
+  status.phase =
+      steering_.is_paused() ? wire::Status::Phase::paused : wire::Status::Phase::running;
+  status.seed = world_.seed;
+  status.scene = world_.path;
+  status.scene_hash = world_.scene_hash;
+  status.last_tick = file_.run().last_tick();
+  status.solver = supervision::solver_status(world_.simulation);
+  return status;
+}
+
+int Replaying::execute() {
+  End end = End::damaged;
+  try {
+    end = repeat();
+  } catch (const replay::RecordingError& error) {
+    damage_ = error.what();
+  } catch (const mcap::Damaged& error) {
+    damage_ = error.what();
+  }
+  recorders_.close();
+  complete_summary(end);
+  recorders_.write_summary(summary_);
+  if (!options_.verifies) {
+    console_.report(options_.run.json ? to_json(summary_) : to_text(summary_));
+  }
+  tell(end);
+  if (options_.run.hash) console_.result(recording::hash_line(summary_.ticks, summary_.hash));
+  console_.flush();
+  if (showing_ && end != End::stopped) show_end();
+  switch (end) {
+    case End::complete:
+      return reports::exit_code::finished;
+    case End::differs:
+      return reports::exit_code::differs;
+    case End::damaged:
+      return reports::exit_code::damaged;
+    case End::stopped:
+      break;
+  }
+  return steering_.is_over() ? reports::exit_code::finished : reports::exit_code::interrupted;
+}
+
+/// From the first recorded state to the last one, or to the first that differs.
+Replaying::End Replaying::repeat() {
+  simulation::Simulation& simulation = world_.simulation;
+  timer_.end_startup(summary_);
+  std::uint64_t epoch = 0;
+  while (replay_.advance()) {
+    timer_.end_phase(Phase::physics, summary_);
+    if (!replay_.is_same()) {
+      difference_ = explain_difference(file_, states_, replay_, world_);
+      return End::differs;
+    }
+    ++same_;
+    const v1::Inputs& inputs = replay_.inputs();
+    if (same_ == 1 || inputs.epoch() != epoch) schedule_.begin(inputs.tick(), steering_.paused_for());
+    if (showing_ && inputs.epoch() != epoch) showing_->restarted();
+    epoch = inputs.epoch();
+    steering_.stepped(inputs.tick());
+    recorders_.tick(simulation);
+    if (showing_) showing_->tick({});
+    if (progress_.needs_update()) progress_.show(same_ - 1, "");
+    if (options_.until && inputs.tick() == *options_.until) return End::complete;
+    timer_.end_phase(Phase::recording, summary_);
+    if (!wait()) return End::stopped;
+    timer_.end_phase(Phase::pacing, summary_);
+    replay_.act();
+    recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands());
+    if (showing_) {
+      showing_->answered();
+      showing_->update();
+      simulation.list_contacts(showing_->wants_contacts());
+    }
+    timer_.end_phase(Phase::recording, summary_);
+  }
+  return End::complete;
+}
+
+void Replaying::serve() {
+  if (!showing_) return;
+  showing_->serve();
+  steering_.serve(world_.simulation.state().tick);
+  showing_->update();
+}
+
+/// @param timeout_ms  how long to wait otherwise
+bool Replaying::may_step(clock::time_point now, int& timeout_ms) {
+  timeout_ms = longest_sleep_ms;
+  if (showing_ && now < waits_for_viewer_until_) {
+    if (!showing_->is_watched()) return false;
+    waits_for_viewer_until_ = {};
+    schedule_.begin(world_.simulation.state().tick, steering_.paused_for());
+  }
+  if (steering_.is_paused()) return false;
+  const auto moment = schedule_.end_of(world_.simulation.state().tick, steering_.paused_for());
+  if (now >= moment) return true;
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(moment - now).count();
+  timeout_ms = static_cast<int>(std::min<std::int64_t>(left, longest_sleep_ms));
+  return false;
+}
+
+/// Until the next step may begin. False: the replay is to end.
+bool Replaying::wait() {
+  std::vector<pollfd> items{{signals_.descriptor(), POLLIN, 0}};
+  if (showing_) items.push_back({showing_->descriptor(), POLLIN, 0});
+  for (;;) {
+    if (signals_.take().interruptions > 0) return false;
+    serve();
+    if (steering_.is_over()) return false;
+    int timeout_ms = 0;
+    if (may_step(clock::now(), timeout_ms)) return true;
+    console_.offer();
+    ::poll(items.data(), items.size(), timeout_ms);
+  }
+}
+
+void Replaying::show_end() {
+  console_.notice("the replay is over; its last state is shown until Ctrl-C");
+  console_.flush();
+  showing_->end();
+  std::vector<pollfd> items{{signals_.descriptor(), POLLIN, 0},
+                            {showing_->descriptor(), POLLIN, 0}};
+  while (!showing_->shutdown_requested() && signals_.take().interruptions == 0) {
+    showing_->serve();
+    showing_->update();
+    ::poll(items.data(), items.size(), longest_sleep_ms);
+  }
+}
+
+void Replaying::complete_summary(End end) {
+  const simulation::Simulation& simulation = world_.simulation;
+  summary_.ending =
+      end == End::stopped ? reports::Ending::interrupted : reports::Ending::finished;
+  summary_.ticks = simulation.state().tick;
+  summary_.simulated_s = static_cast<double>(summary_.ticks) * simulation.tick_length();
+  summary_.wall_s = summary_.physics_s + summary_.recording_s + summary_.pacing_s;
+  summary_.seed = world_.seed;
+  summary_.hash = replay_.hash();
+  summary_.solver_name = scene::to_text(world_.scene.physics.solver);
+  summary_.solver = supervision::solver_status(simulation);
+}
+
+/// The verdict: the result of `verify`; a replay prints it as a message.
+void Replaying::tell(End end) {
+  const std::string states = fmt::format("{} state{}", same_, same_ == 1 ? "" : "s");
+  std::string verdict = end == End::differs ? "differs" : "identical";
+  std::string text = states + " as recorded";
+  if (end == End::differs) {
+    text = fmt::format("{}; {} before it as recorded", difference_, states);
+    for (const auto& cause : likely_causes(file_.run())) text += "\n  " + cause;
+  }
+  if (end == End::damaged) {
+    verdict = "damaged";
+    text = fmt::format("{}; {} before it as recorded", damage_, states);
+  }
+  if (end == End::stopped) verdict = "stopped";
+  const std::string shortcoming = file_.shortcoming();
+  if (!shortcoming.empty() && end != End::damaged) console_.warning(shortcoming);
+  if (!options_.verifies) {
+    const std::string line = verdict + ": " + text;
+    return end == End::differs || end == End::damaged ? console_.fault(line)
+                                                      : console_.report(line + "\n");
+  }
+  if (!options_.run.json) return console_.result(verdict + ": " + text);
+  nlohmann::ordered_json json{{"verdict", verdict}, {"states", same_}, {"text", text}};
+  if (end == End::differs) {
+    json["tick"] = replay_.inputs().tick();
+    json["epoch"] = replay_.inputs().epoch();
+  }
+  console_.result(json.dump());
+}
+
+}  // namespace ziggurat::run

@@ -1,0 +1,77 @@
+#pragma once
+// A recording that runs again: what `ziggurat replay` and `ziggurat verify` share.
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "processes/signals.h"
+#include "replay/recording_file.h"
+#include "replay/replay.h"
+#include "reports/console.h"
+#include "reports/progress.h"
+#include "reports/summary.h"
+#include "run/options.h"
+#include "run/phase_timer.h"
+#include "run/recorders.h"
+#include "run/schedule.h"
+#include "run/showing.h"
+#include "run/steering.h"
+#include "supervision/world.h"
+
+namespace ziggurat::run {
+
+struct ReplayOptions {
+  std::string recording;               ///< path
+  Options run;                         ///< outputs, view, pacing
+  std::optional<std::uint64_t> until;  ///< the last tick; of the last epoch that has it
+  bool verifies = false;               ///< the verdict is the result, on stdout
+};
+
+class Replaying {
+ public:
+  /// Reads the recording, builds its world and creates the output files.
+  /// @throws replay::RecordingError and what main() turns into a message
+  Replaying(const ReplayOptions& options, processes::Signals& signals);
+
+  /// @returns an exit code: finished, differs, damaged or interrupted
+  int execute();
+
+ private:
+  using clock = std::chrono::steady_clock;
+  enum class End { complete, differs, damaged, stopped };
+
+  Showing::Run shown();
+  std::unique_ptr<Showing> make_shown();
+  End repeat();
+  bool wait();
+  bool may_step(clock::time_point now, int& timeout_ms);
+  void serve();
+  void show_end();
+  void tell(End end);
+  wire::Status status() const;
+  void complete_summary(End end);
+
+  const ReplayOptions& options_;
+  processes::Signals& signals_;
+  reports::Console console_;
+  const replay::RecordingFile file_;
+  supervision::World world_;
+  Recorders recorders_;
+  replay::States states_;
+  replay::Replay replay_;
+  Schedule schedule_;
+  Steering steering_;
+  const std::unique_ptr<Showing> showing_;  ///< null: not shown
+  reports::Progress progress_;
+  reports::Summary summary_;
+  PhaseTimer timer_;
+  std::uint64_t same_ = 0;     ///< states that are as recorded
+  std::string difference_;     ///< what differs first
+  std::string damage_;         ///< what ends the recording early
+  clock::time_point waits_for_viewer_until_{};
+};
+
+}  // namespace ziggurat::run

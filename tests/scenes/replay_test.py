@@ -1,0 +1,195 @@
+"""Recorded runs that are repeated, verified, compared, exported, and given to controllers again."""
+
+import csv
+import json
+import pathlib
+import re
+import signal
+import subprocess
+import unittest
+
+from harness import FAULT, FINISHED, LIMIT, SceneTest, ZIGGURAT, main
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DIFFERS, DAMAGED = 5, 6
+
+
+class Recorded(SceneTest):
+    def record(self, *arguments, name="run.mcap", scene=None):
+        """Records a run; the hash line of its end."""
+        recording = self.folder / name
+        outcome = self.run_scene("--record", recording, "--hash", "--quiet", *arguments, scene=scene)
+        return recording, outcome.lines[-1]
+
+    def ask(self, *arguments, code=FINISHED):
+        outcome = self.ziggurat(*arguments)
+        self.assertEqual(outcome.code, code, f"{arguments}\n{outcome.out}\n{outcome.err}")
+        return outcome
+
+
+class Replay(Recorded):
+    def test_every_scene_gives_the_same_hashes(self):
+        for scene in sorted((ROOT / "scenes").glob("*.argos")):
+            with self.subTest(scene.name):
+                hashes = self.folder / "run.hashes"
+                recording, end = self.record("--ticks", "30", "--seed", "3", "--hash-file", hashes,
+                                             scene=scene)
+                again = self.folder / "again.hashes"
+                replayed = self.ask("replay", recording, "--hash", "--quiet", "--hash-file", again)
+                self.assertEqual(end, replayed.lines[-1])
+                self.assertEqual(hashes.read_text(), again.read_text())
+                self.assertRegex(self.ask("verify", recording).out, r"^identical: 31 states")
+
+    def test_writes_the_files_of_the_run(self):
+        names = {"--trace": "t.csv", "--readings": "r.jsonl", "--rays": "y.jsonl"}
+        recording, _ = self.record("--ticks", "20", *(x for o, n in names.items() for x in (o, n)))
+        self.ask("replay", recording, *(x for o, n in names.items() for x in (o, "again_" + n)))
+        for name in names.values():
+            before = (self.folder / name).read_text().splitlines()
+            after = (self.folder / f"again_{name}").read_text().splitlines()
+            if name == "r.jsonl":  # the answers to the last tick are no inputs of any step
+                before, after = before[:-1], after[:-1]
+            self.assertEqual(before, after, name)
+
+    def test_ends_at_a_tick(self):
+        recording, _ = self.record("--ticks", "20")
+        outcome = self.ask("replay", recording, "--until", "7", "--hash")
+        self.assertRegex(outcome.lines[-1], r"^hash 7 ")
+
+    def test_reads_the_recording_alone(self):
+        recording, end = self.record("--ticks", "10")
+        for name in ("arms.argos", "swing.lua"):
+            (self.folder / name).unlink()
+        self.assertEqual(end, self.ask("replay", recording, "--hash", "--quiet").lines[-1])
+
+    def test_a_run_that_was_killed_is_repeated_as_far_as_it_goes(self):
+        process = self.start("run", self.scene, "--ticks", "1000000", "--record", "run.mcap",
+                             "--lua-processes", "1")
+        recording = self.folder / "run.mcap"
+        self.wait_for(lambda: recording.exists() and recording.stat().st_size,
+                      lambda size: size > 200_000, "recording")
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        outcome = self.ask("verify", recording)
+        self.assertRegex(outcome.out, r"^identical: \d+ states")
+        self.assertIn("not closed", outcome.err)
+
+    def test_other_files_are_refused(self):
+        outcome = self.ask("replay", self.scene, code=FAULT)
+        self.assert_is_sentence(outcome, r"arms\.argos")
+        self.assert_is_sentence(self.ask("verify", "nothing.mcap", code=FAULT), r"nothing\.mcap")
+        self.assert_is_sentence(self.ask("verify", code=FAULT), r"no recording is given")
+
+
+class Supervised(Recorded):
+    def test_moves_spawns_removals_and_resets_are_repeated(self):
+        recording = self.folder / "run.mcap"
+        process = self.start("serve", ROOT / "scenes/dynamics3d_single_body_test.argos", "--json",
+                             "--record", recording, "--hash", "--seed", "5")
+        url = json.loads(process.stdout.readline())["endpoint"]
+
+        def ctl(*words):
+            outcome = subprocess.run([ZIGGURAT, "ctl", url, *words], capture_output=True, text=True,
+                                     timeout=LIMIT, env=self.environment)
+            self.assertEqual(outcome.returncode, 0, outcome.stderr)
+            return outcome.stdout
+
+        ctl("step", "5")
+        first = json.loads(ctl("read", "--json"))["entities"][0]["id"]
+        def spawn(place):
+            box = ('<box id="new" size="0.1,0.1,0.1" movable="true" mass="1">'
+                   f'<body position="{place}"/></box>')
+            ctl("spawn", self.write("box.xml", box))
+
+        ctl("move", first, "0.5,0.5,1.5", "30,20,10")
+        spawn("-1,-1,2")
+        ctl("step", "4")
+        ctl("remove", "new")
+        spawn("1,1,2")
+        ctl("step", "3")
+        ctl("reset", "--seed", "9")
+        ctl("step", "6")
+        state = json.loads(ctl("read", "--json"))
+        ctl("shutdown")
+        self.finish(process)
+        outcome = self.ask("replay", recording, "--hash", "--quiet")
+        self.assertEqual(f"hash 6 {state['hash']}", outcome.lines[-1])
+
+
+class Compare(Recorded):
+    def test_diff_names_the_first_difference_and_draws_it(self):
+        a, _ = self.record("--ticks", "20", "--seed", "3", name="a.mcap")
+        b, _ = self.record("--ticks", "20", "--seed", "3", name="b.mcap")
+        self.assertIn("identical: 21 states", self.ask("diff", a, b).out)
+        self.change('speed="2"', 'speed="2.5"')
+        c, _ = self.record("--ticks", "20", "--seed", "3", name="c.mcap")
+        outcome = self.ask("diff", a, c, "--plot", "apart.svg", code=DIFFERS)
+        self.assertRegex(outcome.out, r"first difference   tick 1: '.*: .* is .* in A, .* in B")
+        self.assertRegex(outcome.out, r"first other input  tick 0: commands.joint_targets.values\[0\] is 2 in A, 2.5 in B")
+        self.assertIn("<svg", (self.folder / "apart.svg").read_text())
+        result = json.loads(self.ask("diff", a, c, "--json", code=DIFFERS).out)
+        self.assertEqual(len(result["distances"]), 21)
+        self.assertFalse(result["identical"])
+
+
+class Export(Recorded):
+    def test_csv_has_the_poses_of_the_trace(self):
+        recording, _ = self.record("--ticks", "10", "--trace", "trace.csv")
+        self.ask("export", recording, "--csv", "poses.csv")
+        with open(self.folder / "trace.csv") as a, open(self.folder / "poses.csv") as b:
+            trace, poses = list(csv.DictReader(a)), list(csv.DictReader(b))
+        self.assertEqual(len(trace), len(poses))
+        for before, after in zip(trace, poses):
+            for name in before:
+                if name in ("tick", "time_s", "entity", "link") or before["link"]:
+                    self.assertEqual(before[name], after[name], (name, before))
+                else:
+                    self.assertAlmostEqual(float(before[name]), float(after[name]), places=12)
+
+    def test_jsonl_has_the_messages_of_the_chosen_topics(self):
+        recording, _ = self.record("--ticks", "10")
+        self.ask("export", recording, "--jsonl", "out.jsonl", "--topics", "/robots/*/command")
+        lines = [json.loads(line) for line in (self.folder / "out.jsonl").read_text().splitlines()]
+        self.assertTrue(lines)
+        self.assertTrue(all(re.fullmatch(r"/robots/.*/command", line["topic"]) for line in lines))
+        self.assertIn("tick", lines[0]["message"])
+        self.ask("export", recording, "--jsonl", "out.jsonl", "--topics", "/nothing", code=FAULT)
+        self.ask("export", recording, code=FAULT)
+
+
+class Controllers(Recorded):
+    def test_the_same_controllers_command_the_same(self):
+        recording, _ = self.record("--ticks", "20")
+        (self.folder / "swing.lua").unlink()  # the embedded one is started
+        outcome = self.ask("verify", recording, "--controllers", "--quiet")
+        self.assertRegex(outcome.lines[-1], r"^identical: the commands of 20 ticks")
+
+    def test_another_script_is_told_from_the_recorded_one(self):
+        recording, _ = self.record("--ticks", "20")
+        robot = re.search(r'<prototype id="([^"]+)"', self.text)[1]
+        self.ask("try", recording, "--robot", robot, "--script", "swing.lua", "--quiet")
+        other = self.write("other.lua", "function init() end\nfunction step() end\n"
+                                        "function reset() end\nfunction destroy() end\n")
+        outcome = self.ask("try", recording, "--robot", robot, "--script", other, "--quiet",
+                           code=DIFFERS)
+        self.assertRegex(outcome.out, rf"tick \d+: '{robot}': .* is .* in the recording, .* now")
+
+    def test_recorded_commands_are_never_started_by_themselves(self):
+        marker = self.folder / "started"
+        self.change("<lua_controller", "<external_controller")
+        self.change("</lua_controller", "</external_controller")
+        self.scene.write_text(re.sub(r"(<external_controller id=\"[^\"]*\")",
+                                     rf'\1 command="touch {marker}; sleep 100"', self.text))
+        recording = self.folder / "run.mcap"
+        process = self.start("run", self.scene, "--record", recording)
+        self.wait_for(marker.exists, bool, "start of the command")
+        self.interrupt(process)
+        self.finish(process)
+        marker.unlink()
+        outcome = self.ask("verify", recording, "--controllers", code=FAULT)
+        self.assert_is_sentence(outcome, "--trust-recorded-commands")
+        self.assertFalse(marker.exists())
+
+
+if __name__ == "__main__":
+    main()

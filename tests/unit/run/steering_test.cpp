@@ -1,0 +1,77 @@
+#include "run/steering.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace ziggurat::run {
+namespace {
+
+using Kind = wire::Request::Kind;
+
+/// A viewer of a replay, and what it was answered.
+struct Viewer {
+  Steering steering;
+  std::vector<network::Call> calls;
+  std::vector<std::string> answers;
+  std::uint64_t next = 1;
+
+  Viewer() {
+    steering.connect({[this] { return std::exchange(calls, {}); },
+                      [](const network::Call&) { return true; },
+                      [this](const network::Call& call, std::uint64_t tick) {
+                        answers.push_back(std::to_string(call.request.id) + " at " + std::to_string(tick));
+                      },
+                      [this](const network::Call& call, const std::string&) {
+                        answers.push_back(std::to_string(call.request.id) + " refused");
+                      }});
+  }
+  void ask(Kind kind, std::uint64_t tick, std::uint64_t ticks = 0) {
+    network::Call call;
+    call.request.kind = kind;
+    call.request.id = next++;
+    call.request.ticks = ticks;
+    calls.push_back(call);
+    steering.serve(tick);
+  }
+};
+
+TEST(Steering, PausesAndSteps) {
+  Viewer viewer;
+  viewer.ask(Kind::pause, 4);
+  EXPECT_TRUE(viewer.steering.is_paused());
+  viewer.ask(Kind::step, 4, 2);
+  EXPECT_FALSE(viewer.steering.is_paused());
+  viewer.steering.stepped(5);
+  EXPECT_FALSE(viewer.steering.is_paused());
+  viewer.steering.stepped(6);
+  EXPECT_TRUE(viewer.steering.is_paused());
+  viewer.ask(Kind::resume, 6);
+  EXPECT_FALSE(viewer.steering.is_paused());
+  EXPECT_EQ(viewer.answers, (std::vector<std::string>{"1 at 4", "2 at 6", "3 at 6"}));
+}
+
+TEST(Steering, AStepThatIsInterruptedIsRefused) {
+  Viewer viewer;
+  viewer.ask(Kind::step, 0, 1);  // it is not paused
+  viewer.ask(Kind::pause, 0);
+  viewer.ask(Kind::step, 0, 100);
+  viewer.steering.stepped(1);
+  viewer.ask(Kind::pause, 1);
+  EXPECT_TRUE(viewer.steering.is_paused());
+  EXPECT_EQ(viewer.answers,
+            (std::vector<std::string>{"1 refused", "2 at 0", "3 refused", "4 at 1"}));
+}
+
+TEST(Steering, ChangesNothingOfTheWorld) {
+  Viewer viewer;
+  for (const Kind kind : {Kind::move, Kind::spawn, Kind::remove, Kind::reset}) viewer.ask(kind, 3);
+  EXPECT_EQ(viewer.answers, (std::vector<std::string>{"1 refused", "2 refused", "3 refused", "4 refused"}));
+  EXPECT_FALSE(viewer.steering.is_over());
+  viewer.ask(Kind::shutdown, 3);
+  EXPECT_TRUE(viewer.steering.is_over());
+}
+
+}  // namespace
+}  // namespace ziggurat::run
