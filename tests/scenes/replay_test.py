@@ -5,8 +5,9 @@ import json
 import pathlib
 import re
 import signal
+import struct
 import subprocess
-import unittest
+import zlib
 
 from harness import FAULT, FINISHED, LIMIT, SceneTest, ZIGGURAT, main
 
@@ -79,6 +80,56 @@ class Replay(Recorded):
         self.assert_is_sentence(outcome, r"arms\.argos")
         self.assert_is_sentence(self.ask("verify", "nothing.mcap", code=FAULT), r"nothing\.mcap")
         self.assert_is_sentence(self.ask("verify", code=FAULT), r"no recording is given")
+
+
+def change_inputs(path, old, new):
+    """Replaces bytes in the first /inputs message that has them, in a file without compression, and
+    corrects the chunk's CRC: all is in order, but for what it says."""
+    data = bytearray(path.read_bytes())
+    at = 8
+    while at < len(data) - 8:
+        op, length = data[at], int.from_bytes(data[at + 1:at + 9], "little")
+        begin, at = at + 9, at + 9 + length
+        if op != 0x06:  # a chunk: times, size, CRC, name of the compression, records
+            continue
+        assert data[begin + 28:begin + 32] == bytes(4), "it is compressed"
+        records = begin + 40
+        found = data.find(old, records, at)
+        if found < 0:
+            continue
+        data[found:found + len(old)] = new
+        data[begin + 24:begin + 28] = zlib.crc32(data[records:at]).to_bytes(4, "little")
+        path.write_bytes(data)
+        return
+    raise AssertionError("no chunk has these bytes")
+
+
+class Verify(Recorded):
+    def test_inputs_that_were_changed_are_caught(self):
+        recording, _ = self.record("--ticks", "10", "--record-compression", "none")
+
+        def packed(*targets):  # repeated doubles, field 1
+            return bytes([0x0A, 8 * len(targets)]) + struct.pack(f"<{len(targets)}d", *targets)
+
+        change_inputs(recording, packed(2, 2, -3), packed(2, 2.25, -3))
+        outcome = self.ask("verify", recording, code=DIFFERS)
+        self.assertRegex(outcome.out, r"^differs: tick 1: 'r1', link '\w+': [\w.]+ is \S+ in the "
+                                      r"recording, \S+ now \(hash \w{16} in the recording, \w{16} now\)"
+                                      r"; 1 state before it as recorded")
+        self.assertIn("the same build recorded it", outcome.out)
+        verdict = json.loads(self.ask("verify", recording, "--json", code=DIFFERS).out)
+        self.assertEqual((verdict["verdict"], verdict["tick"]), ("differs", 1))
+        outcome = self.ask("replay", recording, "--hash-file", "hashes", code=DIFFERS)
+        self.assertRegex(outcome.err, "differs: tick 1: 'r1'")
+
+    def test_a_damaged_place_is_told(self):
+        recording, _ = self.record("--ticks", "10", "--record-compression", "none")
+        data = bytearray(recording.read_bytes())
+        place = data.find(struct.pack("<3d", 2, 2, -3))
+        data[place + 3] ^= 0x10
+        recording.write_bytes(data)
+        outcome = self.ask("verify", recording, code=DAMAGED)
+        self.assertRegex(outcome.out, r"^damaged: .*: damaged at byte \d+: ")
 
 
 class Supervised(Recorded):
