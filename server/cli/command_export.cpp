@@ -7,9 +7,11 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/html_export.h"
 #include "network/glob.h"
 #include "replay/export.h"
 #include "reports/console.h"
+#include "run/page_folder.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
@@ -36,6 +38,10 @@ std::string to_jsonl(const Order& order) {
   const auto wanted = [&](const std::string& topic) { return is_wanted(order, topic); };
   return fmt::format("{} messages", replay::export_jsonl(order.file, wanted, order.out));
 }
+std::string to_html(const Order& order) {
+  const auto size = export_html(run::page_folder() + "/player.html", order.file.path(), order.out);
+  return fmt::format("{} kB, opens in any browser", (size + 999) / 1000);
+}
 
 /// A format of files. What it writes is told in words.
 struct Format {
@@ -47,6 +53,8 @@ struct Format {
 constexpr Format formats[] = {
     {"csv", "FILE.csv", "poses of all entities at every tick, with the columns of --trace", to_csv},
     {"jsonl", "FILE.jsonl", "each message as a line of JSON: topic, time_s, message", to_jsonl},
+    {"html", "FILE.html",
+     "one page that plays the recording in a browser, without a server or a network", to_html},
 };
 
 po::options_description export_options() {
@@ -66,10 +74,12 @@ po::options_description export_options() {
 
 std::string help_export() {
   std::ostringstream text;
-  text << R"(usage: ziggurat export RECORDING --csv FILE.csv | --jsonl FILE.jsonl [OPTION]...
+  text
+      << R"(usage: ziggurat export RECORDING --csv FILE.csv | --jsonl FILE.jsonl | --html FILE.html [OPTION]...
 
-Writes what a recording has as a file for other programs. Nothing is simulated.
+Writes what a recording has as a file for other programs, or as a page for people. Nothing is simulated.
 
+  ziggurat export run.mcap --html run.html
   ziggurat export run.mcap --csv poses.csv
   ziggurat export run.mcap --jsonl commands.jsonl --topics '/robots/*/command'
 
@@ -97,13 +107,15 @@ int execute_export(const Arguments& arguments) {
     order.out = parsed.values[format.option].as<std::string>();
     std::error_code error;
     if (std::filesystem::equivalent(order.out, file.path(), error)) {
-      throw text::UsageError(fmt::format("--{} is the recording itself; name another file", format.option));
+      throw text::UsageError(
+          fmt::format("--{} is the recording itself; name another file", format.option));
     }
     console.report(fmt::format("{}: {}\n", order.out, format.write(order)));
     ++written;
   }
   if (written == 0) {
-    throw text::UsageError("no format is given; write --csv FILE.csv or --jsonl FILE.jsonl");
+    throw text::UsageError(
+        "no format is given; write --csv FILE.csv, --jsonl FILE.jsonl or --html FILE.html");
   }
   console.flush();
   return exit_code::finished;

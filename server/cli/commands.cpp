@@ -21,7 +21,7 @@ constexpr Command table[] = {
     {"verify", "check that a recorded run repeats to the bit", help_verify, execute_verify},
     {"diff", "show where and how two recordings differ", help_diff, execute_diff},
     {"try", "compare a controller's commands with those of a recorded run", help_try, execute_try},
-    {"export", "write a recording as CSV or JSON lines", help_export, execute_export},
+    {"export", "write a recording as CSV, JSON lines or a page", help_export, execute_export},
     {"magnetism", "plot force and torque between two magnets of a scene", help_magnetism,
      execute_magnetism},
     {"info", "tell what a recording has, and whether it is whole", help_info, execute_info},

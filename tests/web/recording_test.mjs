@@ -91,6 +91,17 @@ test("plots have all of the recording", { timeout: 60_000 }, async () => {
   await page.context().close();
 });
 
+test("the exported page plays from the disk, with nothing but itself", { timeout: 90_000 }, async () => {
+  const out = `${folder}/drop.html`;
+  execFileSync(ziggurat, ["export", recording, "--html", out, "--quiet"]);
+  const text = readFileSync(out, "utf8");
+  assert.match(text, /default-src 'none'/);
+  assert.doesNotMatch(text, /unsafe-inline|unsafe-eval/);
+  const page = await openFile(out);
+  await checkPlaying(page);
+  await page.context().close();
+});
+
 test("damaged files give a sentence", { timeout: 90_000 }, async () => {
   const whole = readFileSync(recording);
   const page = await openFile(playerFile);
@@ -113,10 +124,11 @@ test("names of a recording are text", { timeout: 60_000 }, async () => {
   const scene = `${folder}/names.argos`;
   const escaped = hostileName.replaceAll("<", "&lt;").replaceAll(">", "&gt;");
   writeFileSync(scene, readFileSync(`${root}tests/web/tags.argos`, "utf8").replace('"near"', `"${escaped}"`));
-  const file = `${folder}/names.mcap`;
+  const file = `${folder}/"&${hostileName}.mcap`; // in the page, too
   run(scene, file);
-  const page = await openFile(playerFile, `selected=${encodeURIComponent(hostileName)}`);
-  await dropFile(page, readFileSync(file), `${hostileName}.mcap`);
+  const out = `${folder}/names.html`;
+  execFileSync(ziggurat, ["export", file, "--html", out, "--quiet"]);
+  const page = await openFile(out, `selected=${encodeURIComponent(hostileName)}`);
   await waitFor(() => isShown(page), "first frame");
   await waitFor(async () => (await page.locator(".tree").textContent()).includes(hostileName), "its name");
   await page.waitForTimeout(500);
