@@ -156,7 +156,7 @@ TEST(Snapshot, OfWrongStateLeavesTheWorldAsItIs) {
     }
     try {
       world.simulation.step();
-    } catch (const std::runtime_error&) {  // no number is finite for ever
+    } catch (const std::runtime_error&) {  // the state is no longer finite
       world.simulation.restore(world.read.scene, snapshot);
     }
   }
