@@ -57,9 +57,9 @@ void copy_messages(const Reader& reader, const Ids& channels, Writer& to, Repair
 
 }  // namespace
 
-Repaired repair(const Reader& reader, Sink sink) {
+Repaired repair(const Reader& reader, Sink sink, Compression compression) {
   const Contents& contents = reader.contents();
-  Writer writer(std::move(sink), contents.header, Compression::zstd);
+  Writer writer(std::move(sink), contents.header, compression);
   Repaired repaired;
   for (const MetadataIndex& index : contents.metadata) {
     save(repaired.lost, [&] {

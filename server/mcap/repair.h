@@ -15,6 +15,6 @@ struct Repaired {
 };
 
 /// What is in damaged chunks and attachments is left out.
-Repaired repair(const Reader& reader, Sink sink);
+Repaired repair(const Reader& reader, Sink sink, Compression compression = Compression::zstd);
 
 }  // namespace ziggurat::mcap

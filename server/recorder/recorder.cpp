@@ -13,6 +13,12 @@ namespace {
 constexpr std::size_t most_waiting = std::size_t{64} << 20;  // [bytes]
 constexpr std::size_t most_tasks = 1024;
 
+// The recorder's thread looks for work so often, or is woken when this much waits: to wake it for
+// each tick would cost the run more than all copies.
+constexpr std::chrono::milliseconds interval{10};
+constexpr std::size_t many_tasks = most_tasks / 4;
+constexpr std::size_t much_waiting = most_waiting / 4;  // [bytes]
+
 }  // namespace
 
 Recorder::Recorder(Settings settings, Start start)
@@ -30,14 +36,16 @@ Recorder::~Recorder() { close(); }
 void Recorder::add(std::function<void(Recording&)> run, std::size_t size) {
   std::unique_lock lock(mutex_);
   has_room_.wait(lock, [&] {
-    return has_failed_ || tasks_.empty() ||
-           (waiting_ + size <= most_waiting && tasks_.size() < most_tasks);
+    return has_failed_ || unfinished_ == 0 ||
+           (waiting_ + size <= most_waiting && unfinished_ < most_tasks);
   });
   if (has_failed_ || is_closing_) return;
   waiting_ += size;
+  ++unfinished_;
   tasks_.push_back({std::move(run), size});
+  const bool wakes = tasks_.size() >= many_tasks || waiting_ >= much_waiting;
   lock.unlock();
-  has_task_.notify_one();
+  if (wakes) wake_.notify_one();
 }
 
 TickCopy Recorder::take_copy() {
@@ -144,7 +152,7 @@ void Recorder::close() {
     const std::lock_guard lock(mutex_);
     is_closing_ = true;
   }
-  has_task_.notify_one();
+  wake_.notify_one();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -165,36 +173,43 @@ void Recorder::fail(std::string why) {
   has_room_.notify_all();
 }
 
-/// The next task; nothing: a moment has passed, or all is done.
-std::optional<Recorder::Task> Recorder::next(std::optional<clock::time_point> end) {
+/// All tasks that wait, after a while if there are none; none and the end: nothing follows.
+std::deque<Recorder::Task> Recorder::next() {
   std::unique_lock lock(mutex_);
-  const auto is_ready = [this] { return !tasks_.empty() || is_closing_; };
-  if (end) {
-    has_task_.wait_until(lock, *end, is_ready);
-  } else {
-    has_task_.wait(lock, is_ready);
+  if (tasks_.empty() && !is_closing_) {
+    wake_.wait_for(lock, interval, [this] {
+      return is_closing_ || tasks_.size() >= many_tasks || waiting_ >= much_waiting;
+    });
   }
-  if (tasks_.empty()) return std::nullopt;
-  Task task = std::move(tasks_.front());
-  tasks_.pop_front();
-  waiting_ -= task.size;
-  lock.unlock();
+  return std::exchange(tasks_, {});
+}
+
+/// @param size  of the task's memory
+void Recorder::done(std::size_t size) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_ -= size;
+    --unfinished_;
+  }
   has_room_.notify_one();
-  return task;
+}
+
+bool Recorder::is_over() {
+  const std::lock_guard lock(mutex_);
+  return is_closing_ && tasks_.empty();
 }
 
 void Recorder::work(Start start, Settings settings) {
   try {
     Recording recording([this](std::string_view bytes) { disk_.write(bytes); },
                         settings.compression, std::move(settings.contents), start);
-    for (;;) {
-      const auto task = next(recording.end_old_chunk());
-      if (task) {
-        task->run(recording);
-        continue;
+    while (!is_over()) {
+      for (Task& task : next()) {
+        task.run(recording);
+        task.run = nullptr;
+        done(task.size);
       }
-      const std::lock_guard lock(mutex_);
-      if (is_closing_ && tasks_.empty()) break;
+      recording.end_old_chunk();
     }
     recording.close();
     disk_.close();

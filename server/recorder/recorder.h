@@ -65,17 +65,20 @@ class Recorder {
   void give_back(TickCopy copy);
   void work(Start start, Settings settings);
   void fail(std::string why);
-  std::optional<Task> next(std::optional<clock::time_point> end);
+  std::deque<Task> next();
+  void done(std::size_t size);
+  bool is_over();
 
   const std::function<bool(std::string_view)> wants_;
   const std::uint64_t picture_interval_;
   const clock::time_point begin_ = clock::now();
   Disk disk_;
   std::mutex mutex_;  // of all below
-  std::condition_variable has_task_, has_room_;
+  std::condition_variable wake_, has_room_;
   std::deque<Task> tasks_;
   std::vector<TickCopy> copies_;  // free ones, whose memory is used again
-  std::size_t waiting_ = 0;       // of all tasks [bytes]
+  std::size_t waiting_ = 0;       // of all tasks that are not done [bytes]
+  std::size_t unfinished_ = 0;    // their number
   bool is_closing_ = false, has_failed_ = false;
   std::optional<std::string> failure_;
   std::thread thread_;  // the last: it uses the others

@@ -152,12 +152,8 @@ void Recording::end_chunk() {
   links_.forget();
 }
 
-std::optional<Recording::clock::time_point> Recording::end_old_chunk() {
-  if (writer_.chunk_size() == 0) return std::nullopt;
-  const clock::time_point end = chunk_begin_ + longest_chunk;
-  if (clock::now() < end) return end;
-  end_chunk();
-  return std::nullopt;
+void Recording::end_old_chunk() {
+  if (writer_.chunk_size() > 0 && clock::now() - chunk_begin_ >= longest_chunk) end_chunk();
 }
 
 void Recording::close() {

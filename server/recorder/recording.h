@@ -46,8 +46,8 @@ class Recording {
   /// A new epoch begins: after a reset, for example.
   void end_epoch();
 
-  /// Ends the chunk if it has lasted so long. Nothing: there is no chunk that will have to end.
-  std::optional<clock::time_point> end_old_chunk();
+  /// Ends the chunk if it has lasted a second. Call it now and then.
+  void end_old_chunk();
   void close();
 
  private:

@@ -66,8 +66,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     read_all(reader);
     require(mcap::check(mcap::bytes_of(bytes), limits).faults.size() <= 2 * mcap::most_faults);
     std::string saved;
-    const mcap::Repaired repaired =
-        mcap::repair(reader, [&](std::string_view some) { saved += some; });
+    const mcap::Repaired repaired = mcap::repair(
+        reader, [&](std::string_view some) { saved += some; }, mcap::Compression::none);  // faster
     require(repaired.messages == messages);
     const mcap::Scan scanned = mcap::check(mcap::bytes_of(saved));
     require(scanned.faults.empty());

@@ -1,0 +1,199 @@
+// A recording has what it takes to repeat the run.
+
+#include "recorder/recorder.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "mcap/messages.h"
+#include "mcap/scan.h"
+#include "recorder/overview.h"
+#include "shown_world.h"
+
+namespace ziggurat::recorder {
+namespace {
+
+using channels::testing::ShownWorld;
+
+struct File {
+  std::string path = ::testing::TempDir() + "recorder_test_" + std::to_string(::getpid()) + ".mcap";
+  ~File() { std::remove(path.c_str()); }
+};
+
+/// A world on its way into a recording.
+struct Recorded : ShownWorld {
+  explicit Recorded(const std::string& path, Contents contents = {})
+      : recorder({path, mcap::Compression::zstd, std::move(contents)}, start()) {
+    populate();
+  }
+  static Start start() {
+    Start start;
+    start.scene = "small.argos";
+    start.seed = 1;
+    start.build.version = "1";
+    start.files = {{"small.argos", "<argos/>"}};
+    return start;
+  }
+  void populate() {
+    recorder.populate({scene, path, scene_hash, 1, 0, simulation.layout(), simulation.entities(),
+                       simulation.state()});
+  }
+  void publish() {
+    hashes.push_back(simulation.hash());
+    recorder.tick({simulation.state(), simulation.observations(), simulation.commands(),
+                   simulation.contacts(), {}});
+  }
+  void step(double target) {
+    simulation.commands().joint_targets = {target};
+    recorder.step(simulation.commands());
+    simulation.step();
+  }
+
+  std::vector<std::uint64_t> hashes;
+  Recorder recorder;
+};
+
+template <class Type>
+std::vector<Type> read(const mcap::Reader& reader, const std::string& topic) {
+  std::vector<Type> all;
+  const mcap::Channel* channel = reader.contents().channel_of(topic);
+  if (!channel) return all;
+  mcap::Messages messages(reader, {{channel->id}});
+  while (const auto message = messages.next()) {
+    EXPECT_TRUE(all.emplace_back().ParseFromArray(message->data.data(),
+                                                  static_cast<int>(message->data.size())));
+  }
+  return all;
+}
+
+TEST(Recorder, HasWhatItTakesToRepeatTheRun) {
+  const File file;
+  Recorded run(file.path);
+  math::Pose there;
+  there.position = {0.3, -0.5, 0.2};
+  for (int i = 0; i < 4; ++i) {
+    run.publish();
+    if (i == 2) {
+      run.simulation.move(1, there);
+      run.recorder.moved("crate", there);
+    }
+    run.step(0.1 * i);
+  }
+  run.publish();
+  run.recorder.reset(7);
+  run.simulation.reset(run.scene, {7, {}});
+  run.populate();
+  for (int i = 0; i < 3; ++i) {
+    run.publish();
+    run.step(1);
+  }
+  run.publish();
+  run.recorder.close();
+  EXPECT_FALSE(run.recorder.take_failure());
+
+  const mcap::Reader reader(mcap::open_file(file.path));
+  EXPECT_TRUE(mcap::check(mcap::open_file(file.path)).faults.empty());
+  const auto inputs = read<v1::Inputs>(reader, "/inputs");
+  ASSERT_EQ(inputs.size(), run.hashes.size());
+  simulation::Simulation again(run.scene, {1, {}});
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    EXPECT_EQ(inputs[i].hash(), run.hashes[i]) << i;
+    EXPECT_EQ(again.hash(), run.hashes[i]) << i;
+    EXPECT_EQ(inputs[i].epoch(), i < 5 ? 0u : 1u);
+    EXPECT_EQ(inputs[i].tick(), i < 5 ? i : i - 5);
+    for (const v1::Act& act : inputs[i].acts()) {
+      if (act.has_move()) {
+        math::Pose pose;
+        for (int j = 0; j < 3; ++j) pose.position[j] = act.move().position(j);
+        again.move(1, pose);
+      }
+      if (act.has_reset()) again.reset(run.scene, {act.reset().seed(), {}});
+    }
+    if (!inputs[i].has_commands()) continue;
+    const v1::Commands& commands = inputs[i].commands();
+    if (commands.has_joint_targets()) {
+      again.commands().joint_targets.assign(commands.joint_targets().values().begin(),
+                                            commands.joint_targets().values().end());
+    }
+    again.step();
+  }
+  EXPECT_FALSE(inputs.back().has_commands());
+  EXPECT_FALSE(inputs[4].has_commands());
+  EXPECT_TRUE(inputs[5].commands().has_led_colors()) << "an epoch begins with all arrays";
+  EXPECT_FALSE(inputs[6].commands().has_joint_targets()) << "as before";
+}
+
+TEST(Recorder, TimesNeverFallAndEachTickHasItsMessages) {
+  const File file;
+  Recorded run(file.path);
+  run.publish();
+  run.step(1);
+  run.publish();
+  run.recorder.reset(1);
+  run.simulation.reset(run.scene, {1, {}});
+  run.populate();
+  run.publish();
+  run.recorder.log(channels::Severity::info, "arm", "hello");
+  run.recorder.close();
+  const mcap::Reader reader(mcap::open_file(file.path));
+  mcap::Messages messages(reader, {});
+  std::uint64_t last = 0;
+  while (const auto message = messages.next()) {
+    EXPECT_GE(message->log_time, last);
+    last = message->log_time;
+  }
+  EXPECT_EQ(last, 200'000'000u) << "the second epoch begins a tick after the first ends";
+  EXPECT_EQ(read<v1::World>(reader, "/world").size(), 2u);
+  EXPECT_EQ(read<v1::Poses>(reader, "/poses").size(), 3u);
+  EXPECT_EQ(read<v1::Command>(reader, "/robots/arm/command").size(), 1u);
+  EXPECT_EQ(read<foxglove::Log>(reader, "/log").at(0).message(), "hello");
+  const auto states = read<v1::ExactState>(reader, "/state");
+  ASSERT_EQ(states.size(), 3u);
+  EXPECT_TRUE(states[0].is_complete());
+  EXPECT_FALSE(states[1].is_complete());
+  EXPECT_TRUE(states[2].is_complete());
+  EXPECT_EQ(reader.contents().channel_of("/phases"), nullptr);
+  const Overview seen = overview(reader);
+  EXPECT_EQ(seen.epochs, 2u);
+  EXPECT_EQ(seen.states, 3u);
+  EXPECT_EQ(seen.start->scene, "small.argos");
+}
+
+TEST(Recorder, KeepsOnlyWhatIsWanted) {
+  const File file;
+  Contents contents;
+  contents.wants = [](std::string_view topic) { return topic == "/poses"; };
+  Recorded run(file.path, contents);
+  EXPECT_FALSE(run.recorder.wants("/contacts"));
+  run.publish();
+  run.step(1);
+  run.recorder.close();
+  const mcap::Reader reader(mcap::open_file(file.path));
+  std::vector<std::string> topics;
+  for (const auto& [id, channel] : reader.contents().channels) topics.push_back(channel.topic);
+  EXPECT_EQ(topics, (std::vector<std::string>{"/run", "/inputs", "/poses"}));
+}
+
+TEST(Recorder, AFullDiskHoldsUpNothing) {
+  Recorded run("/dev/full");
+  for (int i = 0; i < 2000; ++i) {  // more than may wait
+    run.publish();
+    run.recorder.step(run.simulation.commands());
+  }
+  run.recorder.close();
+  const auto why = run.recorder.take_failure();
+  ASSERT_TRUE(why);
+  EXPECT_EQ(*why, "/dev/full: cannot be written: No space left on device");
+  EXPECT_FALSE(run.recorder.take_failure()) << "once";
+}
+
+TEST(Recorder, APathThatCannotBeWrittenIsReportedAtOnce) {
+  EXPECT_THROW(Recorded("/nowhere/at/all.mcap"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace ziggurat::recorder
