@@ -124,7 +124,7 @@ class Client:
     # ---- what it says ----
 
     def hello(self, token=b""):
-        hello = protocol.Hello(version={"major": 1, "minor": 1}, role=protocol.ROLE_CONTROLLER, robots=["*"],
+        hello = protocol.Hello(version={"major": 1, "minor": 2}, role=protocol.ROLE_CONTROLLER, robots=["*"],
                                client_name="tiny", session_token=token)
         bugs.HELLOS.get(self.bug, lambda *_: None)(hello)
         self.say(hello=hello)
