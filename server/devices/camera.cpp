@@ -18,10 +18,12 @@ bool Sight::clear(const math::Vector3& eye, const math::Vector3& target) const {
   const physics::RayQuery ray{eye, target, {}, false};
   const auto hit = few ? rays.cast(ray, colliders) : rays.cast(ray);
   const bool blocked = hit && hit->distance < length - at_target;
-  if (shown) {
+  if (shown || all) {
     const math::Vector3 end =
         blocked ? math::Vector3(eye + way * (hit->distance / length)) : target;
-    shown->push_back({world::Ray::Kind::camera, robot, eye, end, blocked});
+    for (auto* to : {shown, all}) {
+      if (to) to->push_back({world::Ray::Kind::camera, robot, eye, end, blocked});
+    }
   }
   return !blocked;
 }
@@ -102,7 +104,7 @@ class Cameras final : public Kind {
     // All rays of a camera lie in the box of its eye and its frustum.
     tick.rays.find(view.bounds.low.cwiseMin(view.pose.position),
                    view.bounds.high.cwiseMax(view.pose.position), colliders_);
-    Sight sight{tick.rays, robot, nullptr, colliders_, colliders_.size() <= few_colliders};
+    Sight sight{tick.rays, robot, nullptr, tick.all_rays, colliders_, colliders_.size() <= few_colliders};
     // One reference: a function that holds more would allocate.
     const camera::LineOfSight clear = [&sight](const math::Vector3& eye,
                                                const math::Vector3& target) {

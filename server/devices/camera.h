@@ -17,6 +17,7 @@ struct Sight {
   const physics::Rays& rays;
   std::size_t robot;                       ///< into Layout::robots: the one with the camera
   std::vector<world::Ray>* shown;          ///< gets the tested rays; may be null
+  std::vector<world::Ray>* all;            ///< the same
   std::span<const std::size_t> colliders;  ///< all that can be in the way, if there are few
   bool few;
 

@@ -123,10 +123,10 @@ class Proximity final : public Kind {
         reading = std::clamp(reading, sensor.least, sensor.most);
       }
       tick.observations.proximity[i] = reading;
-      if (!robot.shows_rays) continue;
+      if (!tick.wants_rays(robot.shows_rays)) continue;
       const math::Vector3 seen = hit ? math::Vector3(start.position + hit->distance * way) : end;
-      tick.state.rays.push_back(
-          {world::Ray::Kind::proximity, robot.index, start.position, seen, hit.has_value()});
+      tick.add({world::Ray::Kind::proximity, robot.index, start.position, seen, hit.has_value()},
+               robot.shows_rays);
     }
   }
 

@@ -51,13 +51,13 @@ class Radios final : public Kind {
     }
     medium_.deliver(tick.layout, tick.index, tick.commands.radio_messages, received);
     for (const media::RadioLink& link : medium_.links()) {
-      if (!tick.layout.radios[link.sender].shows_links &&
-          !tick.layout.radios[link.receiver].shows_links) {
-        continue;
-      }
-      tick.state.rays.push_back({world::Ray::Kind::radio, robots_[link.receiver],
-                                 tick.index.position(tick.index.radios, link.sender),
-                                 tick.index.position(tick.index.radios, link.receiver), false});
+      const bool is_asked_for = tick.layout.radios[link.sender].shows_links ||
+                                tick.layout.radios[link.receiver].shows_links;
+      if (!tick.wants_rays(is_asked_for)) continue;
+      tick.add({world::Ray::Kind::radio, robots_[link.receiver],
+                tick.index.position(tick.index.radios, link.sender),
+                tick.index.position(tick.index.radios, link.receiver), false},
+               is_asked_for);
     }
   }
 

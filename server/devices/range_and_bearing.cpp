@@ -88,17 +88,18 @@ class RangeAndBearing final : public Kind {
       // The two carriers are not in their own way.
       const std::array carriers{to.mount.entity, from.mount.entity};
       const auto hit = tick.rays.cast({other, own.position, carriers, false});
-      if (receiver.shows_rays) {
+      if (tick.wants_rays(receiver.shows_rays)) {
         const math::Vector3 way = own.position - other;
         const math::Vector3 end =
             hit ? math::Vector3(other + way.normalized() * hit->distance) : own.position;
-        tick.state.rays.push_back(
-            {world::Ray::Kind::range_and_bearing, receiver.robot, other, end, hit.has_value()});
+        tick.add(
+            {world::Ray::Kind::range_and_bearing, receiver.robot, other, end, hit.has_value()},
+            receiver.shows_rays);
       }
       if (hit) return;
-    } else if (receiver.shows_rays) {
-      tick.state.rays.push_back(
-          {world::Ray::Kind::range_and_bearing, receiver.robot, other, own.position, false});
+    } else if (tick.wants_rays(receiver.shows_rays)) {
+      tick.add({world::Ray::Kind::range_and_bearing, receiver.robot, other, own.position, false},
+               receiver.shows_rays);
     }
     if (receiver.loss > 0 && receiver.random.uniform(0, 1) < receiver.loss) return;
     math::Vector3 seen = math::inverse(own) * other;

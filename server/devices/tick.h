@@ -47,6 +47,14 @@ struct Tick {
   physics::World& physics;
   const physics::Rays& rays;
   const media::DevicesIndex& index;
+  std::vector<world::Ray>* all_rays = nullptr;  ///< gets those of all devices; may be null
+
+  /// @param is_asked_for  by the device: `show_rays`
+  bool wants_rays(bool is_asked_for) const { return is_asked_for || all_rays; }
+  void add(const world::Ray& ray, bool is_asked_for) {
+    if (is_asked_for) state.rays.push_back(ray);
+    if (all_rays) all_rays->push_back(ray);
+  }
 };
 
 }  // namespace ziggurat::devices

@@ -22,7 +22,10 @@ struct Simulation::Parts {
   void spawn(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
   void grow(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
   void remove(std::size_t entity);
-  devices::Tick tick() { return {layout, state, observations, commands, physics, rays, *index}; }
+  devices::Tick tick() {
+    auto* all = lists_rays ? &all_rays : nullptr;
+    return {layout, state, observations, commands, physics, rays, *index, all};
+  }
   void look_around();  // rays and index take the poses of the state
   /// @throws std::runtime_error that names the first entity whose state is not finite then
   void step();
@@ -50,6 +53,8 @@ struct Simulation::Parts {
   std::optional<media::DevicesIndex> index;
   std::vector<world::Contact> contacts;  // of the last substep, if they are listed
   bool lists_contacts = false;
+  std::vector<world::Ray> all_rays;  // of the last tick, if they are listed
+  bool lists_rays = false;
   devices::Devices devices;
   std::vector<scene::Entity> entities;      // placed, then spawned: as in the layout
   std::size_t in_physics = 0, in_rays = 0;  // entities

@@ -198,6 +198,7 @@ void Simulation::step() {
 void Simulation::Parts::step() {
   devices::Tick now = tick();
   state.rays.clear();
+  all_rays.clear();
   state.frusta.clear();
   devices.apply(now);
   for (unsigned i = 0; i < substeps; ++i) {
@@ -224,6 +225,11 @@ void Simulation::list_contacts(bool wanted) {
   parts_->lists_contacts = wanted;
   if (!wanted) parts_->contacts.clear();
 }
+void Simulation::list_rays(bool wanted) {
+  parts_->lists_rays = wanted;
+  if (!wanted) parts_->all_rays.clear();
+}
+const std::vector<world::Ray>& Simulation::rays() const { return parts_->all_rays; }
 const std::vector<world::Contact>& Simulation::contacts() const { return parts_->contacts; }
 
 std::uint64_t Simulation::hash() const { return world::hash(parts_->state, parts_->observations); }

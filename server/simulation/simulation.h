@@ -68,6 +68,12 @@ class Simulation {
   /// Of the last substep; empty unless they are listed.
   const std::vector<world::Contact>& contacts() const;
 
+  /// Whether rays() lists the rays of all devices from the next tick on, whether they have `show_rays`
+  /// or not; that costs time. Not at first, and not after a reset. No result depends on it.
+  void list_rays(bool wanted);
+  /// Of the last tick; empty unless they are listed.
+  const std::vector<world::Ray>& rays() const;
+
   /// Advances by one tick.
   /// @throws std::runtime_error that names the first entity whose state is not finite then
   void step();

@@ -152,6 +152,7 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot) {
       throw SnapshotError("The snapshot's state is not the one that its hash is of.");
     }
     fresh->lists_contacts = p.lists_contacts;
+    fresh->lists_rays = p.lists_rays;
     parts_ = std::move(fresh);
     list_contacts(parts_->lists_contacts);
   } catch (const math::ArchiveError& error) {

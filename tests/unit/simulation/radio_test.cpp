@@ -134,6 +134,11 @@ TEST(Radio, ReachesTheRobotsOtherRadiosAndPublishesLinksIfAsked) {
     }
     simulation.step();
     EXPECT_TRUE(simulation.state().rays.empty());
+    simulation.list_rays(true);
+    send(simulation, 0, "3");
+    simulation.step();
+    EXPECT_EQ(simulation.rays().size(), 1u);
+    EXPECT_EQ(simulation.state().rays.size(), sensor == both ? 0u : 1u);
   }
 }
 

@@ -89,8 +89,13 @@ TEST(Proximity, PublishesItsRaysIfAsked) {
   EXPECT_TRUE(simulation.state().rays[0].hit);
   EXPECT_NEAR(simulation.state().rays[0].end.x(), 1, 1e-12);
   EXPECT_EQ(silent.state().tick, 1u);
+  silent.list_rays(true);  // for viewers
   silent.step();
   EXPECT_EQ(simulation.hash(), silent.hash());
+  EXPECT_TRUE(silent.state().rays.empty());
+  ASSERT_EQ(silent.rays().size(), 1u);
+  EXPECT_EQ(silent.rays()[0].end, simulation.state().rays[0].end);
+  EXPECT_TRUE(simulation.rays().empty());
 }
 
 std::string bearer(const std::string& medium = "rab", const std::string& more = "") {
