@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <numbers>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -69,12 +71,74 @@ std::vector<double> to_times(const std::string& text) {
   return times;
 }
 
+render::Layers to_layers(const std::string& text) {
+  const std::map<std::string, bool render::Layers::*> known{{"rays", &render::Layers::rays},
+                                                            {"frusta", &render::Layers::frusta},
+                                                            {"labels", &render::Layers::labels}};
+  render::Layers layers;
+  for (const std::string& part : split(text, ',')) {
+    const auto found = known.find(part);
+    if (found == known.end()) {
+      throw text::UsageError(
+          fmt::format("--layers: there is no layer '{}'; the layers are rays, frusta and labels, as "
+                      "--layers rays,labels",
+                      part));
+    }
+    layers.*found->second = true;
+  }
+  return layers;
+}
+
+std::optional<run::FilmOptions> film_options(const po::variables_map& values) {
+  const auto number = [&](const char* name) {
+    return text::to_number(std::string("--") + name, values[name].as<std::string>());
+  };
+  if (!values.count("video")) {
+    for (const char* name : {"fps", "speed", "from", "to"}) {
+      if (values.count(name)) {
+        throw text::UsageError(fmt::format("--{} is for films; write --video FILE.mp4 too", name));
+      }
+    }
+    return std::nullopt;
+  }
+  run::FilmOptions film;
+  film.path = values["video"].as<std::string>();
+  if (!recording::is_film(film.path)) {
+    throw text::UsageError(fmt::format("--video is '{}'; its name must end with {}", film.path,
+                                       recording::film_endings));
+  }
+  if (values.count("fps")) film.frames_per_second = number("fps");
+  if (!(film.frames_per_second >= 0.1 && film.frames_per_second <= 1000)) {
+    throw text::UsageError("--fps must be 0.1 to 1000 frames per second");
+  }
+  if (values.count("speed")) film.speed = number("speed");
+  if (!(film.speed >= 0.001 && film.speed <= 1000)) {
+    throw text::UsageError("--speed must be 0.001 to 1000; 2 is twice as fast as in the simulation");
+  }
+  if (values.count("from")) film.from = number("from");
+  if (values.count("to")) film.to = number("to");
+  if (film.from < 0 || (film.to && *film.to <= film.from)) {
+    throw text::UsageError(
+        "--from and --to are simulated seconds; write --from from 0 on, and --to after it");
+  }
+  return film;
+}
+
 run::PictureOptions picture_options(const po::variables_map& values) {
   run::PictureOptions pictures;
   const auto text = [&](const char* name) { return values[name].as<std::string>(); };
-  if (!values.count("out")) throw text::UsageError("no output file is given; write --out FILE.png");
-  pictures.out = text("out");
+  pictures.film = film_options(values);
+  if (values.count("out")) {
+    pictures.out = text("out");
+  } else if (!pictures.film) {
+    throw text::UsageError("no output file is given; write --out FILE.png or --video FILE.mp4");
+  }
   if (values.count("at")) pictures.times = to_times(text("at"));
+  if (values.count("follow")) pictures.view.follow = text("follow");
+  if (values.count("follow") && values.count("look-at")) {
+    throw text::UsageError("--follow and --look-at both say what is in the middle; write one of them");
+  }
+  if (values.count("layers")) pictures.view.layers = to_layers(text("layers"));
   if (values.count("eye")) pictures.view.eye = to_point("--eye", text("eye"));
   if (values.count("look-at")) pictures.view.look_at = to_point("--look-at", text("look-at"));
   if (values.count("size")) read_size(text("size"), pictures);
@@ -94,9 +158,10 @@ run::PictureOptions picture_options(const po::variables_map& values) {
 std::string help_render() {
   std::ostringstream text;
   text << R"(usage: ziggurat render SCENE --out FILE.png [OPTION]...
+       ziggurat render SCENE --video FILE.mp4 [OPTION]...
 
-Draws a scene, off-screen and on the CPU: no display is needed. For a picture of a later time the scene
-runs with its controllers, exactly as with `ziggurat run`.
+Draws a scene, off-screen and on the CPU: no display is needed. For a picture of a later time, and for a
+film, the scene runs with its controllers, exactly as with `ziggurat run`.
 
   ziggurat render vehicle.argos --out start.png
       the whole arena at the start
@@ -106,6 +171,15 @@ runs with its controllers, exactly as with `ziggurat run`.
       several pictures of one run: frame_000.png to frame_003.png
   ziggurat render drop.argos --at 2 --without-controllers --out drop.png
       physics alone
+  ziggurat render vehicle.argos --video drive.mp4 --to 10
+      a film of ten simulated seconds; .webm, .webp and .gif are animated, too
+  ziggurat render vehicle.argos --video close.mp4 --follow vehicle1 --layers rays,labels --from 5 --to 10
+      the view stays with a robot; with the rays of its sensors and the names of all entities
+
+Films are made by ffmpeg (sudo apt install ffmpeg). Ctrl-C ends a film early: it can be played as far as
+it got. Pictures are drawn on all cores; they are the same, bit by bit, whatever the number of cores.
+Layers: rays of all sensors, links of radios included; frusta, what cameras can see; labels, the ids of
+entities.
 
 The world's z axis points up in the picture. Links are coloured by their kind: fixed links are grey,
 movable boxes brown, movable cylinders teal, spheres light grey, robots blue. Tags whose payload is an integer 0 to 586 have

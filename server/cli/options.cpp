@@ -149,7 +149,14 @@ po::options_description picture_options() {
       ("eye", text("X,Y,Z"), "viewpoint [m] (default: the whole arena is in view)")             //
       ("look-at", text("X,Y,Z"), "point in the centre [m] (default: the middle of the arena)")  //
       ("size", text("WxH"), "pixels (default 1280x720)")                                        //
-      ("fov", text("DEGREES"), "angle from the left edge to the right edge (default 46)");
+      ("fov", text("DEGREES"), "angle from the left edge to the right edge (default 46)")       //
+      ("follow", text("ENTITY"), "the view moves with this entity")                             //
+      ("layers", text("NAME,..."), "draw rays, frusta, labels, too")                            //
+      ("video", text("FILE"), "a film: .mp4, .webm, .webp or .gif; needs ffmpeg")               //
+      ("fps", text("N"), "frames of the film per second (default 30)")                          //
+      ("speed", text("FACTOR"), "simulated seconds per second of the film (default 1)")         //
+      ("from", text("S"), "its beginning in simulated seconds (default 0)")                     //
+      ("to", text("S"), "its end (default: the end of the scene)");
   return options;
 }
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr unsigned largest_tile = 1024;  // [px] of the picture, so that memory stays bounded
 constexpr float near_plane = 1e-3f;      // [m]
+constexpr float line_width = 1.5f;       // [px] of the picture
 
 /// The uniforms of shaders::common.
 struct Frame {
@@ -46,6 +47,19 @@ void shrink(const std::uint8_t* from, std::size_t stride, std::size_t width, uns
   }
 }
 
+/// The same for the usual n, which the compiler can unroll.
+void shrink_row(const std::uint8_t* from, std::size_t stride, std::size_t width, unsigned n,
+                std::uint8_t* to) {
+  if (n == 1) return shrink(from, stride, width, 1, to);
+  if (n != 2) return shrink(from, stride, width, n, to);
+  const std::uint8_t* below = from + 4 * stride;
+  for (std::size_t x = 0; x < width; ++x, from += 8, below += 8, to += 3) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      to[i] = static_cast<std::uint8_t>((from[i] + from[4 + i] + below[i] + below[4 + i] + 2) >> 2);
+    }
+  }
+}
+
 }  // namespace
 
 Canvas::Canvas(const Meshes& meshes) {
@@ -54,6 +68,7 @@ Canvas::Canvas(const Meshes& meshes) {
   make_body_arrays();
   take(meshes);
   make_mark_arrays();
+  make_line_arrays();
   make_shadow_map();
   gl.create_vertex_arrays(1, &no_arrays_);
   gl.create_buffers(1, &frame_);
@@ -135,7 +150,8 @@ void Canvas::set_frame(const Drawing& drawing, const Model& model, const View& v
   frame.right = with(drawing.right, eye.x() - origin.x());
   frame.ahead = with(drawing.ahead, eye.y() - origin.y());
   frame.up = with(drawing.up, eye.z());
-  frame.ground = {static_cast<float>(model.tile), model.has_floor ? 1.0f : 0.0f, near_plane, 0};
+  frame.ground = {static_cast<float>(model.tile), 2 * line_width / static_cast<float>(tile.width),
+                  near_plane, 2 * line_width / static_cast<float>(tile.height)};
   const math::Vector2 center = model.arena_center - origin;
   frame.arena = {static_cast<float>(center.x()), static_cast<float>(center.y()),
                  static_cast<float>(model.arena_half_size.x()),
@@ -172,8 +188,39 @@ void Canvas::draw_shadows(const Drawing& drawing) {
   gl.disable(GL_POLYGON_OFFSET_FILL);
 }
 
+/// Floor and sky, where nothing is in front of them.
+void Canvas::draw_background(bool with_floor) {
+  const OpenGl& gl = context_.gl();
+  gl.disable(GL_CULL_FACE);
+  gl.bind_vertex_array(no_arrays_);
+  if (with_floor) {
+    gl.use_program(floor_program_);
+    gl.draw_arrays(GL_TRIANGLES, 0, 3);
+  }
+  gl.depth_func(GL_GEQUAL);
+  gl.use_program(sky_program_);
+  gl.draw_arrays(GL_TRIANGLES, 0, 3);
+  gl.depth_func(GL_GREATER);
+}
+
+void Canvas::draw_marks_and_lines(const Drawing& drawing) {
+  const OpenGl& gl = context_.gl();
+  gl.enable(GL_CULL_FACE);
+  gl.use_program(mark_program_);
+  gl.bind_vertex_array(mark_arrays_);
+  gl.enable(GL_BLEND);
+  gl.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(drawing.marks.size()));
+  gl.disable(GL_BLEND);
+  if (drawing.lines.empty()) return;
+  gl.disable(GL_CULL_FACE);
+  gl.use_program(line_program_);
+  gl.bind_vertex_array(line_arrays_);
+  gl.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(drawing.lines.size()));
+}
+
+/// @param with_floor  and not seen edge on
 void Canvas::draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversampling,
-                       Picture& picture) {
+                       bool with_floor, Picture& picture) {
   const OpenGl& gl = context_.gl();
   const auto w = static_cast<GLsizei>(tile.width * oversampling);
   const auto h = static_cast<GLsizei>(tile.height * oversampling);
@@ -182,33 +229,23 @@ void Canvas::draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversa
   const float infinity = 0;
   gl.clear_named_framebuffer(sampled_, GL_DEPTH, 0, &infinity);
   gl.enable(GL_DEPTH_TEST);
-
-  gl.depth_func(GL_ALWAYS);
-  gl.disable(GL_CULL_FACE);
-  gl.use_program(background_program_);
-  gl.bind_vertex_array(no_arrays_);
-  gl.draw_arrays(GL_TRIANGLES, 0, 3);
-
+  // The nearest first: what is behind them is not coloured at all.
   gl.depth_func(GL_GREATER);
   gl.enable(GL_CULL_FACE);
   gl.front_face(GL_CW);  // with v downwards, the picture is a mirror image to OpenGL
   gl.use_program(body_program_);
   draw_bodies(drawing, false);
-
-  gl.use_program(mark_program_);
-  gl.bind_vertex_array(mark_arrays_);
-  gl.enable(GL_BLEND);
-  gl.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(drawing.marks.size()));
-  gl.disable(GL_BLEND);
+  draw_background(with_floor);
+  draw_marks_and_lines(drawing);
 
   gl.blit_named_framebuffer(sampled_, resolved_, 0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT,
                             GL_NEAREST);
   gl.bind_framebuffer(GL_FRAMEBUFFER, resolved_);
   gl.read_pixels(0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, pixels_.data());
+  const std::size_t stride = std::size_t{tile.width} * oversampling;
   for (std::size_t row = 0; row < tile.height; ++row) {
-    const std::size_t stride = std::size_t{tile.width} * oversampling;
-    shrink(pixels_.data() + 4 * row * oversampling * stride, stride, tile.width, oversampling,
-           picture.rgb.data() + 3 * ((tile.y + row) * picture.width + tile.x));
+    shrink_row(pixels_.data() + 4 * row * oversampling * stride, stride, tile.width, oversampling,
+               picture.rgb.data() + 3 * ((tile.y + row) * picture.width + tile.x));
   }
 }
 
@@ -224,14 +261,17 @@ void Canvas::draw(const Drawing& drawing, const Model& model, const View& view, 
                        GL_DYNAMIC_DRAW);
   gl.named_buffer_data(mark_instances_, bytes(std::span(drawing.marks)), drawing.marks.data(),
                        GL_DYNAMIC_DRAW);
+  gl.named_buffer_data(line_instances_, bytes(std::span(drawing.lines)), drawing.lines.data(),
+                       GL_DYNAMIC_DRAW);
   set_frame(drawing, model, view, {0, 0, view.width, view.height});
   if (drawing.shadow_texel > 0) draw_shadows(drawing);
+  const bool with_floor = model.has_floor && view.camera.position.z() != 0;
   for (unsigned y = 0; y < view.height; y += largest_tile) {
     for (unsigned x = 0; x < view.width; x += largest_tile) {
       const Tile tile{x, y, std::min(largest_tile, view.width - x),
                       std::min(largest_tile, view.height - y)};
       set_frame(drawing, model, view, tile);
-      draw_tile(drawing, tile, view.oversampling, picture);
+      draw_tile(drawing, tile, view.oversampling, with_floor, picture);
     }
   }
   check();

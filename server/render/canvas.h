@@ -28,19 +28,24 @@ class Canvas {
   void make_programs();
   void make_body_arrays();
   void make_mark_arrays();
+  void make_line_arrays();
   void make_shadow_map();
   void make_target(unsigned width, unsigned height);
   void set_frame(const Drawing& drawing, const Model& model, const View& view, const Tile& tile);
   void draw_shadows(const Drawing& drawing);
-  void draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversampling, Picture& picture);
+  void draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversampling, bool with_floor,
+                 Picture& picture);
   void draw_bodies(const Drawing& drawing, bool with_hidden);
+  void draw_background(bool with_floor);
+  void draw_marks_and_lines(const Drawing& drawing);
   void check() const;
 
   Context context_;
-  GLuint body_program_ = 0, shadow_program_ = 0, background_program_ = 0, mark_program_ = 0;
-  GLuint body_arrays_ = 0, mark_arrays_ = 0, no_arrays_ = 0;
+  GLuint body_program_ = 0, shadow_program_ = 0, floor_program_ = 0, sky_program_ = 0;
+  GLuint mark_program_ = 0, line_program_ = 0;
+  GLuint body_arrays_ = 0, mark_arrays_ = 0, line_arrays_ = 0, no_arrays_ = 0;
   GLuint mesh_buffers_[2]{};  // vertices and indices
-  GLuint body_instances_ = 0, mark_instances_ = 0, frame_ = 0;
+  GLuint body_instances_ = 0, mark_instances_ = 0, line_instances_ = 0, frame_ = 0;
   GLuint shadow_map_ = 0, shadow_target_ = 0;
   GLuint sampled_ = 0, resolved_ = 0;              // framebuffers: four samples per pixel, and one
   GLuint buffers_[3]{};                            // theirs

@@ -76,7 +76,9 @@ void Canvas::make_programs() {
   const OpenGl& gl = context_.gl();
   body_program_ = make_program(gl, shaders::body_vertex, shaders::body_fragment);
   shadow_program_ = make_program(gl, shaders::shadow_vertex, shaders::shadow_fragment);
-  background_program_ = make_program(gl, shaders::background_vertex, shaders::background_fragment);
+  floor_program_ = make_program(gl, shaders::floor_vertex, shaders::floor_fragment);
+  sky_program_ = make_program(gl, shaders::sky_vertex, shaders::sky_fragment);
+  line_program_ = make_program(gl, shaders::line_vertex, shaders::line_fragment);
   mark_program_ = make_program(gl, shaders::mark_vertex, shaders::mark_fragment);
 }
 
@@ -121,6 +123,17 @@ void Canvas::make_mark_arrays() {
   attributes.floats(2, offsetof(MarkInstance, y));
   attributes.floats(3, offsetof(MarkInstance, color));
   attributes.integers(4, offsetof(MarkInstance, code));
+}
+
+void Canvas::make_line_arrays() {
+  const OpenGl& gl = context_.gl();
+  gl.create_buffers(1, &line_instances_);
+  gl.create_vertex_arrays(1, &line_arrays_);
+  Attributes attributes(gl, line_arrays_);
+  attributes.buffer(line_instances_, sizeof(LineInstance), 1);
+  attributes.floats(0, offsetof(LineInstance, start));
+  attributes.floats(1, offsetof(LineInstance, end));
+  attributes.floats(2, offsetof(LineInstance, color));
 }
 
 }  // namespace ziggurat::render

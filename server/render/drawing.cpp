@@ -20,13 +20,6 @@ constexpr double led_radius = 0.004;             // [m]
 constexpr double least_led_radius = 1.5;         // [px]
 constexpr double modules_per_side = 10.0 / 8.0;  // with the white margin, of a tag's side_length
 
-Float3 to_floats(const Vector3& vector) {
-  return {static_cast<float>(vector.x()), static_cast<float>(vector.y()),
-          static_cast<float>(vector.z())};
-}
-
-Float3 to_floats(const Rgb& color) { return {color.x(), color.y(), color.z()}; }
-
 /// A sphere around a link.
 struct Ball {
   Vector3 center;  ///< [m]
@@ -229,12 +222,17 @@ void Draftsman::draw(const world::State& state, const View& view, Drawing& drawi
   drawing.bodies.clear();
   drawing.batches.clear();
   drawing.marks.clear();
+  drawing.lines.clear();
+  drawing.labels.clear();
   const math::Quaternion camera_from_world = view.camera.orientation.conjugate();
   drawing.right = to_floats(camera_from_world * Vector3::UnitX());
   drawing.ahead = to_floats(camera_from_world * Vector3::UnitY());
   drawing.up = to_floats(camera_from_world * Vector3::UnitZ());
   add_bodies(state, view, drawing);
   add_marks(state, view, drawing);
+  if (view.layers.rays) add_rays(state, view, drawing);
+  if (view.layers.frusta) add_frusta(state, view, drawing);
+  if (view.layers.labels) add_labels(state, view, drawing);
 }
 
 void Draftsman::add_bodies(const world::State& state, const View& view, Drawing& drawing) {

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "render/labels.h"
 #include "render/meshes.h"
 #include "render/model.h"
 #include "render/view.h"
@@ -18,6 +19,11 @@
 namespace ziggurat::render {
 
 using Float3 = std::array<float, 3>;
+inline Float3 to_floats(const math::Vector3& vector) {
+  return {static_cast<float>(vector.x()), static_cast<float>(vector.y()),
+          static_cast<float>(vector.z())};
+}
+inline Float3 to_floats(const Rgb& color) { return {color.x(), color.y(), color.z()}; }
 using Matrix4 = std::array<float, 16>;  ///< column by column
 
 /// A link. Camera frame: +z forward, +x right, +y down [m].
@@ -37,6 +43,12 @@ struct MarkInstance {
   std::array<std::uint32_t, 3> code;  ///< kind; a pattern's bits 0 to 31, and 32 to 35
 };
 
+/// A segment, as wide as the canvas draws lines; both ends are in front of the camera.
+struct LineInstance {
+  Float3 start, end;  ///< [m]
+  Float3 color;       ///< sRGB
+};
+
 /// Links that are drawn as one mesh: first those in view, then those that only throw shadows.
 struct Batch {
   Mesh mesh;
@@ -48,6 +60,8 @@ struct Drawing {
   std::vector<BodyInstance> bodies;
   std::vector<Batch> batches;
   std::vector<MarkInstance> marks;
+  std::vector<LineInstance> lines;
+  std::vector<Label> labels;
   Float3 sun;               ///< unit, towards the sun
   Float3 right, ahead, up;  ///< world's x, y and z
   Matrix4
@@ -78,6 +92,9 @@ class Draftsman {
   void add_hulls(std::size_t first_body);
   void add_bodies(const world::State& state, const View& view, Drawing& drawing);
   void add_marks(const world::State& state, const View& view, Drawing& drawing) const;
+  void add_rays(const world::State& state, const View& view, Drawing& drawing) const;
+  void add_frusta(const world::State& state, const View& view, Drawing& drawing) const;
+  void add_labels(const world::State& state, const View& view, Drawing& drawing) const;
 
   Model model_;
   const world::Layout& layout_;

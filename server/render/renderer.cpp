@@ -4,6 +4,7 @@
 
 #include "render/canvas.h"
 #include "render/drawing.h"
+#include "render/labels.h"
 #include "render/model.h"
 
 namespace ziggurat::render {
@@ -43,6 +44,7 @@ void Renderer::draw(const world::State& state, const View& view, Picture& pictur
   Parts& p = *parts_;
   p.draftsman.draw(state, view, p.drawing);
   p.canvas->draw(p.drawing, p.draftsman.model(), view, picture);
+  draw_labels(p.drawing.labels, picture);
 }
 
 }  // namespace ziggurat::render

@@ -10,9 +10,13 @@ extern const char* const body_vertex;
 extern const char* const body_fragment;
 extern const char* const shadow_vertex;
 extern const char* const shadow_fragment;
-extern const char* const background_vertex;
-extern const char* const background_fragment;
+extern const char* const floor_vertex;
+extern const char* const floor_fragment;
+extern const char* const sky_vertex;
+extern const char* const sky_fragment;
 extern const char* const mark_vertex;
 extern const char* const mark_fragment;
+extern const char* const line_vertex;
+extern const char* const line_fragment;
 
 }  // namespace ziggurat::render::shaders

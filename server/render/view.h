@@ -14,6 +14,13 @@ struct Picture {
   std::vector<std::uint8_t> rgb;   ///< width * height * 3
 };
 
+/// What a picture shows besides what an eye would see.
+struct Layers {
+  bool rays = false;    ///< State::rays
+  bool frusta = false;  ///< what cameras can see, as edges
+  bool labels = false;  ///< ids of entities
+};
+
 /// A pinhole camera. A point (X, Y, Z) of its frame, Z > 0, is at u = fx X / Z + cx,
 /// v = fy Y / Z + cy; (0, 0) is the top left corner of the picture, not the centre of a pixel.
 struct View {
@@ -24,6 +31,7 @@ struct View {
   /// Each pixel is the mean of so many by so many rendered ones, >= 1. Each of these has four
   /// samples for the outlines of things in any case, and tags have more.
   unsigned oversampling = 2;
+  Layers layers = {};
 };
 
 /// The pose X_WC of a camera at `eye` that looks at `target` and has world's z up in its picture;

@@ -18,7 +18,7 @@ namespace ziggurat::run {
 void Run::end_in_failure(const std::exception& error) {
   try {
     recorders_.close();
-  } catch (const recording::WriteError&) {
+  } catch (const std::runtime_error&) {
   }
   try {
     watch_.end_run({wire::EndReason::failed, error.what(), world_.simulation.state().tick});

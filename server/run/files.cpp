@@ -30,6 +30,9 @@ std::vector<File> outputs_of(const Options& options) {
                           {"--summary", options.summary, {".json"}},
                           {"--report-card", options.report_card, {".json", ".svg", ".csv"}}};
   if (options.pictures) files.push_back({"--out", options.pictures->out, {".png"}});
+  if (options.pictures && options.pictures->film) {
+    files.push_back({"--video", options.pictures->film->path, {}});
+  }
   std::erase_if(files, [](const File& file) { return file.path.empty(); });
   return files;
 }

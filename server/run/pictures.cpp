@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "recording/png.h"
 #include "run/loading.h"
+#include "text/names.h"
+#include "text/numbers.h"
 
 namespace ziggurat::run {
 namespace {
@@ -36,8 +40,67 @@ std::optional<Placeholder> find_placeholder(std::string_view text) {
 
 }  // namespace
 
+namespace {
+
+double end_of(const FilmOptions& film, const scene::Experiment& experiment) {
+  if (film.to) return *film.to;
+  if (experiment.length <= film.from) {
+    throw text::UsageError("--video needs an end, which the scene has not; write --to SECONDS");
+  }
+  return experiment.length;
+}
+
+/// At least one.
+std::uint64_t frame_count(const FilmOptions& film, const scene::Experiment& experiment) {
+  const double length = (end_of(film, experiment) - film.from) / film.speed;
+  return static_cast<std::uint64_t>(std::max(1.0, std::round(length * film.frames_per_second)));
+}
+
+/// A film has less to show of each frame than a picture: outlines with four samples are enough.
+render::View view_of_film(render::View view) {
+  view.oversampling = 1;
+  return view;
+}
+
+std::uint64_t tick_of_frame(std::uint64_t frame, const FilmOptions& film,
+                            const scene::Experiment& experiment) {
+  return tick_at(film.from + static_cast<double>(frame) * film.speed / film.frames_per_second, experiment);
+}
+
+/// No more than there are pictures: each thread has Mesa compile its programs.
+unsigned threads_for(std::uint64_t pictures) {
+  constexpr unsigned most = 4;
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  return static_cast<unsigned>(std::min<std::uint64_t>(std::min(most, cores), pictures));
+}
+
+std::uint64_t picture_count(const PictureOptions& options, const scene::Experiment& experiment) {
+  return (options.out.empty() ? 0 : options.times.size()) +
+         (options.film ? frame_count(*options.film, experiment) : 0);
+}
+
+std::optional<std::size_t> find_entity(const std::string& id, const world::Layout& layout) {
+  if (id.empty()) return std::nullopt;
+  std::vector<std::string> ids;
+  for (const world::EntityLayout& entity : layout.entities) ids.push_back(entity.id);
+  const auto found = std::ranges::find(ids, id);
+  if (found != ids.end()) return static_cast<std::size_t>(found - ids.begin());
+  throw text::UsageError(fmt::format("--follow: the scene has no entity '{}'; {}", id,
+                                     text::advice(id, ids, "write the id of one")));
+}
+
+}  // namespace
+
 std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& experiment) {
-  return tick_at(*std::ranges::max_element(options.times), experiment);
+  std::uint64_t last = 0;
+  if (!options.out.empty()) {
+    last = tick_at(*std::ranges::max_element(options.times), experiment);
+  }
+  if (options.film) {
+    const std::uint64_t frames = frame_count(*options.film, experiment);
+    last = std::max(last, tick_of_frame(frames - 1, *options.film, experiment));
+  }
+  return last;
 }
 
 std::string picture_path(const std::string& out, std::size_t number, std::size_t of) {
@@ -59,19 +122,67 @@ Pictures::Pictures(const PictureOptions& options, const scene::Scene& scene,
     : options_(options),
       scene_(scene),
       entities_(std::move(entities)),
-      renderer_(scene, entities_, layout) {
-  renderer_.prepare();
+      followed_(find_entity(options.view.follow, layout)),
+      several_(scene, entities_, layout, threads_for(picture_count(options, scene.experiment))) {
+  if (followed_) followed_link_ = layout.entities[*followed_].links.begin;
+  if (!options.film) return;
+  frames_ = frame_count(*options.film, scene.experiment);
+  film_.emplace(options.film->path,
+                recording::FilmFormat{options.view.width, options.view.height,
+                                      options.film->frames_per_second});
 }
 
-void Pictures::tick(const world::State& state) {
-  const auto& times = options_.times;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    if (tick_at(times[i], scene_.experiment) != state.tick) continue;
-    if (!view_) view_ = choose_view(options_.view, extent_of(scene_, entities_, state));
-    renderer_.draw(state, *view_, picture_);
-    taken_.push_back(picture_path(options_.out, i, times.size()));
-    recording::write_png(taken_.back(), picture_.width, picture_.height, picture_.rgb);
+/// That of the first picture, moved with the entity that it follows.
+render::View Pictures::view(const world::State& state) {
+  const auto place = [&] { return state.origins[*followed_].position; };
+  if (!view_) {
+    view_ = choose_view(options_.view,
+                        followed_ ? extent_about(entities_[*followed_], followed_link_, state)
+                                  : extent_of(scene_, entities_, state));
+    if (followed_) seen_at_ = place();
   }
+  render::View view = *view_;
+  if (followed_) view.camera.position += place() - seen_at_;
+  return view;
+}
+
+void Pictures::tick(const world::State& state, std::span<const world::Ray> rays) {
+  const auto& times = options_.times;
+  for (std::size_t i = 0; i < times.size() && !options_.out.empty(); ++i) {
+    if (tick_at(times[i], scene_.experiment) != state.tick) continue;
+    taken_.push_back(picture_path(options_.out, i, times.size()));
+    several_.draw(state, rays, view(state), [path = taken_.back()](const render::Picture& picture) {
+      recording::write_png(path, picture.width, picture.height, picture.rgb);
+    });
+  }
+  std::uint64_t copies = 0;  // with more frames than ticks
+  while (next_frame_ < frames_ &&
+         tick_of_frame(next_frame_, *options_.film, scene_.experiment) == state.tick) {
+    ++next_frame_;
+    ++copies;
+  }
+  if (copies == 0) return;
+  several_.draw(state, rays, view_of_film(view(state)), [this, copies](const render::Picture& picture) {
+    for (std::uint64_t i = 0; i < copies; ++i) film_->write(picture.rgb);
+  });
+}
+
+void Pictures::close() {
+  several_.finish();
+  if (!film_) return;
+  film_->close();
+  const bool is_new = std::ranges::find(taken_, film_->path()) == taken_.end();
+  if (is_new && film_->frames() > 0) taken_.push_back(film_->path());
+}
+
+std::string Pictures::shortcoming() const {
+  if (!film_ || film_->frames() == frames_) return {};
+  if (film_->frames() == 0) {
+    return fmt::format("{}: there is no film, because the run ended before its first frame",
+                       film_->path());
+  }
+  return fmt::format("{}: the film has the first {} of {} frames, because the run ended early",
+                     film_->path(), film_->frames(), frames_);
 }
 
 }  // namespace ziggurat::run

@@ -1,13 +1,15 @@
 #pragma once
-// The pictures that `ziggurat render` takes of a run.
+// The pictures and the film that `ziggurat render` takes of a run.
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "render/renderer.h"
+#include "recording/film.h"
+#include "render/several.h"
 #include "run/viewpoint.h"
 #include "scene/scene.h"
 #include "world/layout.h"
@@ -15,41 +17,66 @@
 
 namespace ziggurat::run {
 
+struct FilmOptions {
+  std::string path;
+  double frames_per_second = 30;  ///< as it is played, > 0
+  double speed = 1;               ///< simulated seconds per second as it is played, > 0
+  double from = 0;                ///< simulated [s], >= 0
+  std::optional<double> to;       ///< simulated [s], > from; nothing: the end of the scene
+};
+
 struct PictureOptions {
   std::vector<double> times{0};  ///< simulated [s], >= 0, in any order
   ViewOptions view;              ///< of all; chosen at the first
-  std::string out;               ///< path; of several pictures, their pattern
+  std::string out;               ///< path; of several pictures, their pattern; empty: none is taken
+  std::optional<FilmOptions> film;
 };
 
-/// The tick of the last picture.
+/// The tick of the last picture. @throws text::UsageError if the film has no end
 std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& experiment);
 
 /// The path of a picture. A single one is `out`. For several, `%d` or `%03d` in it is replaced by
 /// the number; without that the number goes before the suffix.
 std::string picture_path(const std::string& out, std::size_t number, std::size_t of);
 
+/// Draws on other threads while the run goes on.
 class Pictures {
  public:
   /// @param entities  all of them, placed, in scene order
-  /// @param scene, layout  must outlive this
-  /// @throws render::RenderError
+  /// @param scene  must outlive this
+  /// @throws render::RenderError, recording::WriteError; text::UsageError if there is no entity to
+  /// follow
   Pictures(const PictureOptions& options, const scene::Scene& scene,
            std::vector<scene::Entity> entities, const world::Layout& layout);
 
-  /// Takes the pictures of the state's tick. @throws recording::WriteError, render::RenderError
-  void tick(const world::State& state);
+  /// @param rays  that are drawn, if the view asks for them
+  /// Takes the pictures of the state's tick; waits for earlier ones if they are many.
+  /// @throws recording::WriteError, render::RenderError
+  void tick(const world::State& state, std::span<const world::Ray> rays);
 
-  /// The paths of the pictures so far.
+  /// Waits for all pictures, and completes the film with the frames that it has.
+  /// @throws as tick()
+  void close();
+
+  /// The paths of pictures and film, after close().
   const std::vector<std::string>& taken() const { return taken_; }
+  /// A sentence if the film has fewer frames than it should have, otherwise empty; after close().
+  std::string shortcoming() const;
 
  private:
+  render::View view(const world::State& state);
+
   PictureOptions options_;
   const scene::Scene& scene_;
   std::vector<scene::Entity> entities_;
+  std::optional<std::size_t> followed_;  // into the layout
+  std::size_t followed_link_ = 0;        // its first
   std::optional<render::View> view_;
-  render::Renderer renderer_;
-  render::Picture picture_;
+  math::Vector3 seen_at_ = math::Vector3::Zero();  // where the followed entity was then
+  std::uint64_t next_frame_ = 0, frames_ = 0;
   std::vector<std::string> taken_;
+  std::optional<recording::Film> film_;
+  render::Several several_;  // the last: its threads use the film
 };
 
 }  // namespace ziggurat::run

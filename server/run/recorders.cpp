@@ -55,7 +55,7 @@ void Recorders::tick(const simulation::Simulation& simulation) {
   if (hashes_) hashes_->write(simulation.state().tick, simulation.hash());
   if (rays_) rays_->write(simulation.state());
   if (images_) images_->write(simulation.observations());
-  if (pictures_) pictures_->tick(simulation.state());
+  if (pictures_) pictures_->tick(simulation.state(), simulation.rays());
 }
 
 void Recorders::exchange(const world::State& state, const world::Observations& observations,
@@ -72,7 +72,7 @@ void Recorders::close() {
     if (!file) return;
     try {
       file->close();
-    } catch (const recording::WriteError&) {
+    } catch (const std::runtime_error&) {
       if (!first) first = std::current_exception();
     }
   };
@@ -80,11 +80,16 @@ void Recorders::close() {
   close(hashes_);
   close(readings_);
   close(rays_);
+  close(pictures_);
   if (first) std::rethrow_exception(first);
 }
 
 std::span<const std::string> Recorders::pictures() const {
   return pictures_ ? std::span(pictures_->taken()) : std::span<const std::string>();
+}
+
+std::string Recorders::missing_frames() const {
+  return pictures_ ? pictures_->shortcoming() : std::string();
 }
 
 void Recorders::write_summary(const reports::Summary& summary) {

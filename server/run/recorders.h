@@ -40,11 +40,13 @@ class Recorders {
                 const world::Commands& commands);
 
   /// Completes every file except the summary and the report card, also if one of them fails.
-  /// @throws recording::WriteError
+  /// @throws recording::WriteError, render::RenderError
   void close();
 
   /// The paths of the pictures that were taken so far.
   std::span<const std::string> pictures() const;
+  /// A sentence if a film has fewer frames than it should have, otherwise empty; after close().
+  std::string missing_frames() const;
 
   /// @throws recording::WriteError
   void write_summary(const reports::Summary& summary);

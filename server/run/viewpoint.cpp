@@ -65,9 +65,31 @@ Extent extent_of(const scene::Scene& scene, const std::vector<scene::Entity>& en
   return box;
 }
 
+Extent extent_about(const scene::Entity& entity, std::size_t first_link,
+                    const world::State& state) {
+  constexpr double nearby = 1.5;  // a cube's half side by the entity's diagonal
+  Extent box{Vector3::Constant(std::numeric_limits<double>::infinity()), {}};
+  box.high = -box.low;
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    const math::Pose& pose = state.links[first_link + i].pose;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3 way = pose.orientation.conjugate() * Vector3::Unit(axis);
+      const double at = pose.position[axis];
+      const scene::Geometry& geometry = entity.links[i].geometry;
+      box.low[axis] = std::min(box.low[axis], at - scene::reach(geometry, -way));
+      box.high[axis] = std::max(box.high[axis], at + scene::reach(geometry, way));
+    }
+  }
+  const Vector3 middle = 0.5 * (box.low + box.high);
+  const Vector3 half = Vector3::Constant(nearby * (box.high - box.low).norm());
+  return {middle - half, middle + half};
+}
+
 render::View choose_view(const ViewOptions& options, const Extent& box) {
   const auto view_from = [&](const math::Pose& camera) {
-    return render::symmetric_view(camera, options.opening, options.width, options.height);
+    auto view = render::symmetric_view(camera, options.opening, options.width, options.height);
+    view.layers = options.layers;
+    return view;
   };
   const Vector3 middle = 0.5 * (box.low + box.high);
   if (options.eye)

@@ -1,10 +1,15 @@
 """`ziggurat render`: pictures of a scene, at the start and at times of a run."""
 
+import re
+import shutil
+import signal
 import struct
+import subprocess
+import time
 import unittest
 import zlib
 
-from harness import FAULT, FINISHED, SceneTest
+from harness import BIN, FAULT, FINISHED, HERE, INTERRUPTED, SceneTest
 
 
 def read_png(path):
@@ -113,10 +118,101 @@ class RenderTest(SceneTest):
                 (["--at", "1,,2", "--out", "x.png"], "--at"),
                 (["--fov", "180", "--out", "x.png"], "degrees"),
                 (["--out", self.folder / "none/x.png"], "none/x.png"),
+                (["--video", "x.avi"], ".mp4, .webm, .webp or .gif"),
+                (["--video", "x.mp4", "--fps", "0"], "--fps"),
+                (["--video", "x.mp4", "--from", "2", "--to", "1"], "--to"),
+                (["--fps", "10", "--out", "x.png"], "--video"),
+                (["--layers", "rays,smoke", "--out", "x.png"], "no layer 'smoke'"),
+                (["--follow", "ghost", "--out", "x.png"], "no entity 'ghost'"),
+                (["--follow", "arm", "--look-at", "0,0,0", "--out", "x.png"], "--look-at"),
                 ([], "--out")]:
             outcome = self.ziggurat("render", self.scene, *options)
             self.assertEqual(outcome.code, FAULT, options)
             self.assertIn(message, outcome.err)
+
+    def test_a_film_needs_ffmpeg_and_says_how_to_get_it(self):
+        self.environment["PATH"] = str(self.folder)
+        outcome = self.ziggurat("render", self.scene, "--video", "a.mp4", "--to", "1")
+        self.assertEqual(outcome.code, FAULT)
+        self.assert_is_sentence(outcome, r"install ffmpeg: sudo apt install ffmpeg")
+        self.assertFalse((self.folder / "a.mp4").exists())
+
+    def test_the_view_follows_an_entity_and_layers_are_drawn(self):
+        names = {"plain": [], "labels": ["--layers", "labels"], "follow": ["--follow", "r0"]}
+        pictures = {}
+        for name, options in names.items():
+            self.picture(name + ".png", *options)
+            pictures[name] = (self.folder / (name + ".png")).read_bytes()
+        self.assertEqual(len(set(pictures.values())), 3)
+
+
+@unittest.skipUnless(shutil.which("ffmpeg"), "needs ffmpeg")
+class FilmTest(SceneTest):
+    def frames(self, name):
+        """The frames of a film as hashes."""
+        text = subprocess.run(
+            ["ffmpeg", "-v", "error", "-i", self.folder / name, "-f", "framemd5", "-"],
+            capture_output=True, text=True, check=True).stdout
+        return [line.split()[-1] for line in text.splitlines() if not line.startswith("#")]
+
+    def film(self, name, *options):
+        outcome = self.ziggurat("render", self.scene, "--size", "95x64", "--video", name, *options)
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        self.assertIn(name, outcome.out)
+        return self.frames(name)
+
+    def test_a_film_has_its_frames_and_is_the_same_again(self):
+        frames = self.film("a.mp4", "--to", "1", "--fps", "20")
+        self.assertEqual(len(frames), 20)
+        self.assertGreater(len(set(frames)), 7, "the arms move")
+        self.film("b.mp4", "--to", "1", "--fps", "20")
+        self.assertEqual(self.frames("b.mp4"), frames)
+
+    def test_films_have_other_formats_parts_of_a_run_and_more_frames_than_ticks(self):
+        self.assertEqual(len(self.film("a.gif", "--from", "0.5", "--to", "1", "--fps", "10")), 5)
+        self.assertEqual(len(self.film("a.webm", "--to", "0.2")), 6)
+        many = self.film("b.mp4", "--to", "0.2", "--fps", "100")
+        self.assertEqual(len(many), 20)
+        self.assertEqual(len(self.film("fast.mp4", "--to", "2", "--speed", "4", "--fps", "20")), 10)
+
+    def test_without_a_length_a_film_needs_an_end(self):
+        self.change('length="2"', 'length="0"')
+        outcome = self.ziggurat("render", self.scene, "--video", "a.mp4")
+        self.assertEqual(outcome.code, FAULT)
+        self.assert_is_sentence(outcome, r"--to SECONDS")
+
+    def test_ctrl_c_leaves_a_film_that_can_be_played_and_says_so(self):
+        process = self.start("render", self.scene, "--size", "320x240", "--video", "a.mp4", "--to", "900")
+        self.wait_for(lambda: (self.folder / "a.mp4").exists(), bool, "film")
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, INTERRUPTED)
+        self.wait_for(lambda: self.processes("ffmpeg", str(self.folder)), lambda all: not all, "end")
+        number = int(re.search(r"the first (\d+) of 27000 frames", outcome.err)[1])
+        self.assertGreater(number, 0)
+        self.assertEqual(len(self.frames("a.mp4")), number)
+
+
+@unittest.skipUnless(shutil.which("ffmpeg"), "needs ffmpeg")
+class DocumentsTest(SceneTest):
+    def test_the_commands_that_make_the_pictures_of_the_documents_work(self):
+        root = HERE.parents[1]
+        made = subprocess.run(
+            [root / "docs/pictures/make.sh", BIN, self.folder], capture_output=True, text=True, timeout=300,
+            env=dict(self.environment, SCREENSHOTS="no"))
+        self.assertEqual(made.returncode, 0, made.stderr)
+        texts = [root / "README.md", *(root / "docs").glob("*.md")]
+        shown = {name for text in texts
+                 for name in re.findall(r"pictures/([\w.]+\.(?:png|webp|jpg))", text.read_text())}
+        for path in self.folder.iterdir():
+            if path.suffix not in (".png", ".webp"):
+                continue
+            self.assertIn(path.name, shown, "no document shows it")
+            self.assertTrue((root / "docs/pictures" / path.name).exists(), path.name)
+            self.assertLess(path.stat().st_size, 3 << 20)
+        sizes = sum(path.stat().st_size for path in (root / "docs/pictures").iterdir())
+        self.assertLess(sizes, 3 << 20, "all pictures together")
 
 
 if __name__ == "__main__":
