@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "network/answer_times.h"
 #include "network/delays.h"
 #include "network/link.h"
 #include "network/reactions.h"
@@ -37,6 +38,7 @@ struct Performance {
   struct Controller {
     std::uint64_t missed_ticks = 0;  ///< at which one of its robots or more missed a deadline
     Lost lost;                       ///< messages lost on purpose
+    AnswerTimes answer_times;        ///< from observations to commands
   };
   std::vector<Controller> controllers;  ///< of the scene
   const Reactions& reactions;           ///< of the server, if its config keeps them

@@ -253,7 +253,7 @@ Performance Server::performance() const {
   const std::vector<std::uint64_t>& missed = barrier.deadlines.missed_ticks();
   for (std::size_t c = 0; c < missed.size(); ++c) {
     const Lost lost = state_->link ? state_->link->lost_messages()[c] : Lost{};
-    result.controllers.push_back({missed[c], lost});
+    result.controllers.push_back({missed[c], lost, barrier.answer_times[c]});
   }
   return result;
 }

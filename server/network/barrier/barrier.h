@@ -20,6 +20,7 @@
 #include "network/config.h"
 #include "network/limits.h"
 #include "network/link.h"
+#include "network/answer_times.h"
 #include "network/reactions.h"
 #include "network/report.h"
 #include "wire/inbox.h"
@@ -64,6 +65,7 @@ struct Barrier {
   Calls calls;
   Journal journal;
   Reactions reactions;
+  std::vector<AnswerTimes> answer_times;  ///< per controller of the scene
 
   Senses senses;
   Timers timers;

@@ -57,6 +57,9 @@ void measure_answer(Barrier& barrier, Session& session) {
   const Turn& turn = session.turn;
   const double seconds = seconds_since(barrier, turn.owes_since);
   session.latencies.add(seconds);
+  for_each_controller(barrier, session, [&](std::size_t robot) {
+    barrier.answer_times[barrier.deadlines.controller(robot)].add(seconds);
+  });
   if (!barrier.reactions.are_kept) return;
   settle_missed(barrier, session, turn.tick, {});
   for_each_controller(barrier, session, [&](std::size_t robot) {

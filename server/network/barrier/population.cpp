@@ -88,6 +88,7 @@ void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Dead
   barrier.run.emplace(run);
   barrier.progress = {1, "The world is loaded."};
   barrier.deadlines = Deadlines(deadlines, run.controllers.size());
+  barrier.answer_times.resize(run.controllers.size());
   add_robots(barrier, run.scripts, {});
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "network/answer_times.h"
+
 namespace ziggurat::network {
 namespace {
 
@@ -52,6 +54,23 @@ TEST(Latencies, PercentilesOfTheLastThousandAreExact) {
     ASSERT_EQ(static_cast<float>(times.recent().p99), place(0.99)) << i;
     ASSERT_EQ(static_cast<float>(times.recent().max), last.back()) << i;
   }
+}
+
+TEST(AnswerTimes, EachTimeIsInItsBin) {
+  AnswerTimes times;
+  times.add(0);
+  times.add(1.3e-5);
+  times.add(2.1e-5);
+  times.add(1e9);
+  EXPECT_EQ(times.counts[0], 2u);
+  EXPECT_EQ(times.counts[2], 1u);
+  EXPECT_EQ(times.counts.back(), 1u);
+  times = {};
+  times.add(1e-3);
+  const auto bin = static_cast<int>(
+      std::ranges::find(times.counts, 1u) - times.counts.begin());
+  EXPECT_LE(AnswerTimes::least * std::pow(AnswerTimes::growth, bin), 1e-3);
+  EXPECT_GT(AnswerTimes::least * std::pow(AnswerTimes::growth, bin + 1), 1e-3);
 }
 
 }  // namespace
