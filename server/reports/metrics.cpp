@@ -5,12 +5,9 @@
 #include <chrono>
 #include <mutex>
 #include <optional>
-#include <stdexcept>
 #include <string_view>
 
-#include "network/endpoint.h"
-#include "network/listener.h"
-#include "reports/http_port.h"
+#include "http/port.h"
 #include "text/numbers.h"
 
 namespace ziggurat::reports {
@@ -125,47 +122,31 @@ struct MetricsPort::State {
   Clock::time_point published{};
   std::mutex mutex;  // of the next two
   std::string prometheus, json;
-  std::optional<HttpPort> port;  // last: its thread ends first
+  std::optional<http::Port> port;  // last: its thread ends first
 
-  HttpPort::Content read(std::string_view path) {
+  http::Answer read(std::string_view path) {
     const std::lock_guard lock(mutex);
-    if (path == "/metrics") return {"text/plain; version=0.0.4; charset=utf-8", prometheus};
-    if (path == "/status") return {"application/json", json};
-    if (path == "/") return {"text/plain", "Ziggurat: /metrics for Prometheus, /status for JSON\n"};
-    return {};
+    if (path == "/metrics") return {200, "text/plain; version=0.0.4; charset=utf-8", {}, prometheus};
+    if (path == "/status") return {200, "application/json", {}, json};
+    if (path == "/") {
+      return {200, "text/plain", {}, "Ziggurat: /metrics for Prometheus, /status for JSON\n"};
+    }
+    return {404, "text/plain", {}, "404: there are /metrics and /status.\n"};
   }
 };
 
 MetricsPort::MetricsPort(const std::string& address, bool insecure)
     : state_(std::make_unique<State>()) {
-  const auto colon = address.rfind(':');
-  if (colon == std::string::npos) {
-    throw text::UsageError(
-        fmt::format("--metrics is '{}'; write host:port, as 127.0.0.1:9464", address));
-  }
-  const std::string host = address.substr(0, colon);
-  const auto port = text::to_integer("--metrics", address.substr(colon + 1));
-  if (port > 65535) {
-    throw text::UsageError(
-        fmt::format("--metrics: port {} is too large; ports are 0 to 65535", port));
-  }
-  if (!insecure && host != "127.0.0.1" && host != "localhost" && host != "[::1]") {
+  const http::Address place = http::to_address("--metrics", address);
+  if (!insecure && !http::is_loopback(place.host)) {
     throw text::UsageError(fmt::format(
-        "--metrics: other machines can reach {}; use 127.0.0.1, or add --insecure", host));
+        "--metrics: other machines can reach {}; use 127.0.0.1, or add --insecure", place.host));
   }
-  try {
-    State& state = *state_;
-    // Other machines may know this one by any name.
-    state.port.emplace(network::Listener("tcp://" + address), insecure ? "*" : host,
-                       [&state](std::string_view path) { return state.read(path); });
-    const std::string& endpoint = state.port->endpoint();
-    state.url = fmt::format("http://{}{}", host, endpoint.substr(endpoint.rfind(':')));
-  } catch (const network::EndpointError&) {
-    throw std::runtime_error(
-        fmt::format("--metrics: {} can't be opened; the port must be free (0 takes any free one), "
-                    "and the host one of this machine",
-                    address));
-  }
+  State& state = *state_;
+  // Other machines may know this one by any name.
+  state.port.emplace("--metrics", place, insecure,
+                     [&state](std::string_view path) { return state.read(path); });
+  state.url = fmt::format("http://{}:{}", address.substr(0, address.rfind(':')), state.port->number());
 }
 
 MetricsPort::~MetricsPort() = default;

@@ -1,6 +1,5 @@
 #include "view/access.h"
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
 #include <sys/random.h>
 
@@ -10,6 +9,7 @@
 #include <cstddef>
 #include <system_error>
 
+#include "http/address.h"
 #include "text/numbers.h"
 
 namespace ziggurat::view {
@@ -18,26 +18,6 @@ namespace {
 constexpr std::string_view letters =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 constexpr std::size_t least_token = 16, longest_token = 256;  // [characters]
-
-std::string_view without_brackets(std::string_view host) {
-  const bool has = host.size() > 2 && host.front() == '[' && host.back() == ']';
-  return has ? host.substr(1, host.size() - 2) : host;
-}
-
-std::string_view without_port(std::string_view host) {
-  const std::size_t colon = host.rfind(':');
-  if (colon == std::string_view::npos || host.find(']', colon) != std::string_view::npos) {
-    return host;
-  }
-  return host.substr(0, colon);
-}
-
-bool is_number(std::string_view host) {
-  const std::string text(without_brackets(host));
-  std::array<std::uint8_t, 16> address;
-  return ::inet_pton(AF_INET, text.c_str(), address.data()) == 1 ||
-         ::inet_pton(AF_INET6, text.c_str(), address.data()) == 1;
-}
 
 /// In a time that does not depend on where they differ.
 bool equal(std::string_view a, std::string_view b) {
@@ -49,26 +29,6 @@ bool equal(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
-
-Address to_address(std::string_view option, const std::string& value) {
-  const std::size_t colon = value.rfind(':');
-  if (colon == std::string::npos || colon == 0) {
-    throw text::UsageError(
-        fmt::format("{} is '{}'; write host:port, as 127.0.0.1:8765", option, value));
-  }
-  const auto port = text::to_integer(std::string(option), value.substr(colon + 1));
-  if (port > 65535) {
-    throw text::UsageError(
-        fmt::format("{}: port {} is too large; ports are 0 to 65535", option, port));
-  }
-  return {std::string(without_brackets(std::string_view(value).substr(0, colon))),
-          static_cast<std::uint16_t>(port)};
-}
-
-bool is_loopback(std::string_view host) {
-  host = without_brackets(host);
-  return host == "localhost" || host == "::1" || (host.starts_with("127.") && is_number(host));
-}
 
 std::string random_token() {
   std::array<std::uint8_t, 22> random;
@@ -88,12 +48,6 @@ void check_token(const std::string& token) {
                   least_token, longest_token, token.size(), plain ? "" : ", and others"));
 }
 
-bool allows_host(const Rules& rules, std::string_view host) {
-  if (rules.any_host || host.empty()) return true;  // only old programs leave it out
-  const std::string_view name = without_port(host);
-  return name == "localhost" || is_number(name) || name == rules.host;
-}
-
 std::optional<std::string> token_in(std::string_view target) {
   const std::size_t question = target.find('?');
   if (question == std::string_view::npos) return std::nullopt;
@@ -108,7 +62,7 @@ std::optional<std::string> token_in(std::string_view target) {
 }
 
 Access access_of(const Rules& rules, const Asker& asker) {
-  if (!allows_host(rules, asker.host)) return Access::refused;
+  if (!rules.any_host && !http::allows_host(rules.host, asker.host)) return Access::refused;
   if (const auto token = token_in(asker.target)) {
     return equal(*token, rules.token) ? Access::steer : Access::refused;
   }

@@ -8,18 +8,6 @@
 
 namespace ziggurat::view {
 
-struct Address {
-  std::string host;
-  std::uint16_t port = 0;  ///< 0: any free one
-};
-
-/// @param value  HOST:PORT; HOST may be in brackets
-/// @throws text::UsageError that names the option
-Address to_address(std::string_view option, const std::string& value);
-
-/// Only programs of this machine can reach it.
-bool is_loopback(std::string_view host);
-
 /// 128 random bits as 22 characters. @throws std::system_error
 std::string random_token();
 
@@ -41,9 +29,6 @@ struct Asker {
 };
 
 enum class Access { refused, look, steer };
-
-/// Whether `Host` is a name that no website can make mean this machine.
-bool allows_host(const Rules& rules, std::string_view host);
 
 /// Of a WebSocket handshake.
 Access access_of(const Rules& rules, const Asker& asker);

@@ -20,9 +20,10 @@ void Output::add_frame(std::vector<Item> items) {
   }
   frame_bytes_ += frame.bytes;
   frames_.push_back(std::move(frame));
-  while (frame_bytes_ > most_frames) {
+  for (;;) {
     const std::size_t oldest = frames_.front().is_begun ? 1 : 0;
-    if (oldest + 1 >= frames_.size()) return;  // the newest stays
+    const bool is_much = frame_bytes_ > most_frames || frames_.size() - oldest > most_waiting;
+    if (!is_much || oldest + 1 >= frames_.size()) return;  // the newest stays
     drop(oldest);
   }
 }

@@ -64,15 +64,15 @@ std::string type_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-Answer Page::get(std::string_view target, std::string_view known_etag) const {
+http::Answer Page::get(std::string_view target, std::string_view known_etag) const {
   std::string path(target.substr(0, target.find('?')));
   if (path == "/") path = "/index.html";
   if (!path.starts_with('/') || !is_plain(path)) {
-    return {404, Answer().type, {}, "There is no such file.\n"};
+    return {404, http::Answer().type, {}, "There is no such file.\n"};
   }
   auto content = read(folder_ + path);
-  if (!content && path == "/index.html") return {200, Answer().type, {}, std::string(not_built)};
-  if (!content) return {404, Answer().type, {}, "There is no such file.\n"};
+  if (!content && path == "/index.html") return {200, http::Answer().type, {}, std::string(not_built)};
+  if (!content) return {404, http::Answer().type, {}, "There is no such file.\n"};
   math::Hash hash;
   hash.add(std::string_view(*content));
   const std::string etag = "\"" + math::to_hex(hash.digest()) + "\"";

@@ -4,14 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace ziggurat::view {
+#include "http/answer.h"
 
-struct Answer {
-  unsigned status = 200;
-  std::string type = "text/plain; charset=utf-8";
-  std::string etag;  ///< empty: the answer is not to be kept
-  std::string body;
-};
+namespace ziggurat::view {
 
 class Page {
  public:
@@ -20,7 +15,7 @@ class Page {
 
   /// @param target  path and query
   /// @param known_etag  of `If-None-Match`; empty: none
-  Answer get(std::string_view target, std::string_view known_etag) const;
+  http::Answer get(std::string_view target, std::string_view known_etag) const;
 
  private:
   std::string folder_;

@@ -2,24 +2,20 @@
 #include "view/server.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <array>
 #include <atomic>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
-#include <list>
 #include <set>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "http/exchange.h"
+#include "http/listening.h"
 #include "text/numbers.h"
 #include "view/hub.h"
 #include "view/page.h"
@@ -29,23 +25,16 @@ namespace {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
-namespace http = beast::http;
 namespace websocket = beast::websocket;
-using tcp = asio::ip::tcp;
-using Error = beast::error_code;
-using Request = http::request<http::string_body>;
-using Response = http::response<http::string_body>;
+using Error = http::Error;
+using Field = beast::http::field;
 
 constexpr std::uint16_t usual_port = 8765;
 constexpr std::chrono::seconds request_time{10};  // for a request and for its answer
-constexpr std::chrono::seconds silence{60};       // of a viewer, answers to pings included
-constexpr std::uint32_t longest_header = 8 * 1024;                         // [bytes]
 constexpr std::size_t longest_message_to_look = std::size_t{64} << 10;     // [bytes]
 constexpr std::size_t longest_message_to_steer = std::size_t{2} << 20;     // [bytes]
 constexpr std::array protocols{"foxglove.websocket.v1", "foxglove.sdk.v1"};
 constexpr int most_posted = 64;  // ticks on their way to the server's thread
-
-std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
 /// The protocol that both speak; empty: there is none.
 std::string protocol_in(std::string_view offered) {
@@ -66,6 +55,7 @@ std::string protocol_in(std::string_view offered) {
 struct Shared {
   Rules rules;
   Page page;
+  std::chrono::milliseconds silence;  // of a viewer
   Hub hub;
   std::size_t connections = 0;
   bool is_closing = false;
@@ -76,21 +66,21 @@ struct Shared {
 
 class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
  public:
-  ViewerConnection(beast::tcp_stream stream, Shared& shared)
+  ViewerConnection(http::Stream stream, Shared& shared)
       : socket_(std::move(stream)), shared_(shared) {
     ++shared_.connections;
   }
   ~ViewerConnection() { --shared_.connections; }
 
-  void start(const Request& request, bool may_steer) {
-    websocket::stream_base::timeout times{request_time, silence, true};
+  void start(const http::Request& request, bool may_steer) {
+    websocket::stream_base::timeout times{request_time, shared_.silence, true};
     socket_.set_option(times);
     socket_.read_message_max(may_steer ? longest_message_to_steer : longest_message_to_look);
     socket_.auto_fragment(false);
-    const std::string protocol = protocol_in(view_of(request[http::field::sec_websocket_protocol]));
+    const std::string protocol = protocol_in(http::view_of(request[Field::sec_websocket_protocol]));
     socket_.set_option(websocket::stream_base::decorator([protocol](auto& response) {
-      response.set(http::field::sec_websocket_protocol, protocol);
-      response.set(http::field::server, "ziggurat");
+      response.set(Field::sec_websocket_protocol, protocol);
+      response.set(Field::server, "ziggurat");
     }));
     socket_.async_accept(request, [self = shared_from_this(), may_steer](Error error) {
       if (!error) self->opened(may_steer);
@@ -159,7 +149,7 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
     });
   }
 
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<http::Stream> socket_;
   Shared& shared_;
   beast::flat_buffer buffer_;
   Viewer* viewer_ = nullptr;
@@ -167,131 +157,69 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
   bool is_writing_ = false;
 };
 
-// --- requests over HTTP ---------------------------------------------------------------------------
+// --- the port -------------------------------------------------------------------------------------
 
-class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
- public:
-  HttpConnection(tcp::socket socket, Shared& shared)
-      : stream_(std::move(socket)), shared_(shared) {
-    ++shared_.connections;
-  }
-  ~HttpConnection() { --shared_.connections; }
-
-  void read() {
-    parser_.emplace();
-    parser_->header_limit(longest_header);
-    parser_->body_limit(0);
-    stream_.expires_after(request_time);
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = shared_from_this()](Error error, std::size_t) {
-                       if (!error) self->handle(self->parser_->release());
-                     });
-  }
-
- private:
-  void handle(Request request) {
-    const std::string_view host = view_of(request[http::field::host]);
-    const std::string_view target = view_of(request.target());
-    const bool is_viewer = websocket::is_upgrade(request);
-    if (!allows_host(shared_.rules, host)) {
-      return answer(request, {403, Answer().type, {},
-                              "403: this server is called by its number or localhost only.\n"});
-    }
-    if (is_viewer) return upgrade(std::move(request));
-    if (request.method() != http::verb::get && request.method() != http::verb::head) {
-      return answer(request, {405, Answer().type, {}, "405: only GET and HEAD are served.\n"});
-    }
-    answer(request,
-           shared_.page.get(target, view_of(request[http::field::if_none_match])));
-  }
-
-  void upgrade(Request request) {
-    const std::string_view target = view_of(request.target());
-    Asker asker{view_of(request[http::field::host]), std::nullopt, target};
-    if (request.count(http::field::origin) > 0) {
-      asker.origin = view_of(request[http::field::origin]);
-    }
-    const Access access = access_of(shared_.rules, asker);
-    if (access == Access::refused) {
-      return answer(request, {403, Answer().type, {},
-                              "403: open the address with ?token= that the program printed.\n"});
-    }
-    if (target.substr(0, target.find('?')) != "/") {
-      return answer(request, {404, Answer().type, {}, "404: viewers connect to / only.\n"});
-    }
-    if (protocol_in(view_of(request[http::field::sec_websocket_protocol])).empty()) {
-      return answer(request, {400, Answer().type, {},
-                              "400: the subprotocol must be foxglove.websocket.v1.\n"});
-    }
-    stream_.expires_never();
-    std::make_shared<ViewerConnection>(std::move(stream_), shared_)
-        ->start(request, access == Access::steer);
-  }
-
-  void answer(const Request& request, Answer from) {
-    auto response = std::make_shared<Response>(
-        static_cast<http::status>(from.status), request.version());
-    response->set(http::field::server, "ziggurat");
-    response->set(http::field::content_type, from.type);
-    response->set("X-Content-Type-Options", "nosniff");
-    response->set("Referrer-Policy", "no-referrer");
-    response->set("Content-Security-Policy",
-                  content_security_policy(view_of(request[http::field::host])));
-    response->set(http::field::cache_control, from.etag.empty() ? "no-store" : "no-cache");
-    if (!from.etag.empty()) response->set(http::field::etag, from.etag);
-    response->keep_alive(request.keep_alive() && from.status < 400);
-    const std::size_t size = from.body.size();
-    if (request.method() != http::verb::head) response->body() = std::move(from.body);
-    response->content_length(size);
-    stream_.expires_after(request_time);
-    http::async_write(stream_, *response,
-                      [self = shared_from_this(), response](Error error, std::size_t) {
-                        if (!error && response->keep_alive()) return self->read();
-                        Error ignored;
-                        self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-                      });
-  }
-
-  beast::tcp_stream stream_;
-  Shared& shared_;
-  beast::flat_buffer buffer_;
-  std::optional<http::request_parser<http::string_body>> parser_;
-};
-
-// --- listening ------------------------------------------------------------------------------------
-
-tcp::acceptor listen(asio::io_context& io, const Address& address) {
-  Error error;
-  const std::string host = address.host == "localhost" ? "127.0.0.1" : address.host;
-  const auto found = tcp::resolver(io).resolve(host, std::to_string(address.port),
-                                               tcp::resolver::passive, error);
-  const auto fail = [&](const std::string& what) {
-    return std::runtime_error(
-        fmt::format("--view: {}:{} can't be opened: {}", address.host, address.port, what));
-  };
-  if (error || found.empty()) throw fail(error.message());
-  const tcp::endpoint endpoint = found.begin()->endpoint();
-  tcp::acceptor acceptor(io);
-  acceptor.open(endpoint.protocol(), error);
-  if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
-  if (!error) acceptor.bind(endpoint, error);
-  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) throw fail(error.message());
-  return acceptor;
+Asker asker_of(const http::Request& request) {
+  Asker asker{http::view_of(request[Field::host]), std::nullopt, http::view_of(request.target())};
+  if (request.count(Field::origin) > 0) asker.origin = http::view_of(request[Field::origin]);
+  return asker;
 }
 
-tcp::acceptor listen(asio::io_context& io, const std::optional<Address>& address) {
-  if (address) return listen(io, *address);
+/// Why a handshake is refused, if it is.
+std::optional<http::Answer> refusal_of(const Rules& rules, const http::Request& request) {
+  const auto refuse = [](unsigned status, const char* why) {
+    return http::Answer{status, http::Answer().type, {}, why};
+  };
+  const Asker asker = asker_of(request);
+  if (access_of(rules, asker) == Access::refused) {
+    return refuse(403, "403: open the address with ?token= that the program printed.\n");
+  }
+  if (asker.target.substr(0, asker.target.find('?')) != "/") {
+    return refuse(404, "404: viewers connect to / only.\n");
+  }
+  if (protocol_in(http::view_of(request[Field::sec_websocket_protocol])).empty()) {
+    return refuse(400, "400: the subprotocol must be foxglove.websocket.v1.\n");
+  }
+  return std::nullopt;
+}
+
+http::Service service_of(Shared& shared) {
+  http::Service service;
+  service.host = shared.rules.host;
+  service.any_host = shared.rules.any_host;
+  service.time = request_time;
+  service.get = [&shared](std::string_view target, std::string_view etag) {
+    return shared.page.get(target, etag);
+  };
+  service.decorate = [](const http::Request& request, http::Response& response) {
+    response.set("Referrer-Policy", "no-referrer");
+    response.set("Content-Security-Policy",
+                 content_security_policy(http::view_of(request[Field::host])));
+  };
+  service.refuse_upgrade = [&shared](const http::Request& request) {
+    return refusal_of(shared.rules, request);
+  };
+  service.upgrade = [&shared](http::Stream stream, const http::Request& request) {
+    const bool may_steer = access_of(shared.rules, asker_of(request)) == Access::steer;
+    std::make_shared<ViewerConnection>(std::move(stream), shared)->start(request, may_steer);
+  };
+  return service;
+}
+
+/// The usual port, or a free one.
+http::Listening listen(asio::io_context& io, const std::optional<http::Address>& address,
+                       const http::Listening::Take& take) {
+  if (address) return {io, "--view", *address, take};
   try {
-    return listen(io, Address{"127.0.0.1", usual_port});
+    return {io, "--view", {"127.0.0.1", usual_port}, take};
   } catch (const std::runtime_error&) {
-    return listen(io, Address{"127.0.0.1", 0});
+    return {io, "--view", {"127.0.0.1", 0}, take};
   }
 }
 
 Rules rules_of(const Settings& settings) {
   const std::string host = settings.address ? settings.address->host : "127.0.0.1";
-  const bool is_open = !is_loopback(host);
+  const bool is_open = !http::is_loopback(host);
   if (is_open && !settings.insecure && settings.token.empty()) {
     throw text::UsageError(fmt::format(
         "--view: other machines can reach {}; use 127.0.0.1, or add --view-token TOKEN with a token "
@@ -307,34 +235,18 @@ Rules rules_of(const Settings& settings) {
 
 struct Server::State {
   explicit State(const Settings& settings)
-      : shared{rules_of(settings), Page(settings.folder),
+      : shared{rules_of(settings), Page(settings.folder), settings.silence,
                Hub({settings.version, settings.scene, random_token()}, settings.parameters, desk)},
-        acceptor(listen(io, settings.address)),
-        pause(io) {
-    accept();
-    // Signals are for the main thread: the new one gets none.
-    sigset_t all, before;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);
-    thread = std::thread([this] { io.run(); });
-    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  }
+        listening(listen(io, settings.address,
+                         [this](http::Tcp::socket socket) { take(std::move(socket)); })),
+        pause(io),
+        thread(http::serve(io)) {}
 
-  void accept() {
-    acceptor.async_accept([this](Error error, tcp::socket socket) {
-      if (error == asio::error::operation_aborted) return;
-      if (error) {  // without descriptors left it would come back here at once, again and again
-        pause.expires_after(std::chrono::milliseconds(20));
-        return pause.async_wait([this](Error cancelled) {
-          if (!cancelled) accept();
-        });
-      }
-      if (shared.connections < most_connections) {
-        socket.set_option(tcp::no_delay(true), error);
-        std::make_shared<HttpConnection>(std::move(socket), shared)->read();
-      }
-      accept();
-    });
+  void take(http::Tcp::socket socket) {
+    if (shared.connections >= most_connections) return;
+    ++shared.connections;
+    std::make_shared<http::Exchange>(std::move(socket), service, [this] { --shared.connections; })
+        ->start();
   }
 
   void pump() {
@@ -357,14 +269,15 @@ struct Server::State {
     if (host == "0.0.0.0" || host == "*") host = "127.0.0.1";
     if (host == "::") host = "::1";
     if (host.find(':') != std::string::npos) host = "[" + host + "]";
-    return fmt::format("{}://{}:{}/?token={}", scheme, host, acceptor.local_endpoint().port(),
+    return fmt::format("{}://{}:{}/?token={}", scheme, host, listening.port(),
                        shared.rules.token);
   }
 
   Desk desk;
   Shared shared;
+  http::Service service = service_of(shared);
   asio::io_context io{1};  // behind what its connections use
-  tcp::acceptor acceptor;
+  http::Listening listening;
   asio::steady_timer pause;
   std::atomic<int> posted = 0;  // ticks that the thread has not taken yet
   std::vector<channels::Message> held_back;  // of ticks that were not posted
@@ -377,7 +290,7 @@ Server::~Server() {
   State& state = *state_;
   asio::post(state.io, [&state] {
     state.shared.is_closing = true;
-    state.acceptor.close();
+    state.listening.close();
     const std::vector<ViewerConnection*> all(state.shared.open.begin(), state.shared.open.end());
     for (ViewerConnection* each : all) each->end();
     state.shared.open.clear();

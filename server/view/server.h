@@ -2,6 +2,7 @@
 // The live server: the page over HTTP, and viewers over WebSocket, on one port and a thread of its
 // own. The run is never held up: it leaves messages and takes what viewers want.
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -10,17 +11,19 @@
 
 #include "channels/channel.h"
 #include "channels/message.h"
+#include "http/address.h"
 #include "view/access.h"
 #include "view/desk.h"
 
 namespace ziggurat::view {
 
 struct Settings {
-  std::optional<Address> address;  ///< nothing: 127.0.0.1:8765, or another port if that is taken
+  std::optional<http::Address> address;  ///< nothing: 127.0.0.1:8765, or another port if that is taken
   bool insecure = false;           ///< other machines may look without token
   std::string token;               ///< the user's own; empty: a random one
   std::string folder;              ///< of the page's files
   std::string version, scene;      ///< that viewers are told
+  std::chrono::milliseconds silence{60'000};  ///< of a viewer, answers to pings included, until it is disconnected
   std::vector<Parameter> parameters;
 };
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "network/zmtp/engine.h"
-#include "reports/http_port.h"
+#include "http/port.h"
 #include "require.h"
 
 namespace {
@@ -75,9 +75,9 @@ Outcome play(bool is_curve, const std::string& bytes, std::size_t piece) {
 
 void ask(const std::string& request) {
   const auto read = [](std::string_view path) {
-    return reports::HttpPort::Content{path == "/" ? "text/plain" : "", "text"};
+    return http::Answer{path == "/" ? 200u : 404u, "text/plain", {}, "text"};
   };
-  const std::string answer = reports::answer_to(request, "localhost", read);
+  const std::string answer = http::answer_at_port(request, "localhost", false, read);
   require(answer.starts_with("HTTP/1.1 "));
 }
 

@@ -23,7 +23,10 @@ writeFileSync(scene, `<argos><framework><experiment ticks_per_second="10" random
 
 /** Starts the program and waits for its address. */
 async function start(...options) {
-  const child = spawn(program, ["run", scene, "--duration=0", "--quiet", ...options]);
+  return startCommand("run", "--duration=0", ...options);
+}
+async function startCommand(command, ...options) {
+  const child = spawn(program, [command, scene, "--quiet", ...options]);
   let text = "";
   const address = await new Promise((resolve, reject) => {
     child.on("exit", (code) => reject(new Error(`it ended with ${code}: ${text}`)));
@@ -305,6 +308,46 @@ const tests = {
     assert.ok(frames > 30, `${frames} frames in 1.5 s`);
     sleepers.forEach((ws) => ws.terminate());
     viewer.client.close();
+  },
+
+  async the_world_waits_for_the_first_viewer_but_not_forever() {
+    const first = async (server, after) => {
+      await sleep(after);
+      const viewer = await connect(server);
+      subscribe(viewer, "/poses");
+      const tick = varint((await once(viewer.client, "message")).data, 1);
+      viewer.client.close();
+      server.child.kill("SIGKILL");
+      return tick;
+    };
+    const [early, late] = await Promise.all([start("--view=127.0.0.1:0"), start("--view=127.0.0.1:0")]);
+    [early, late].forEach(({ child }) => child.removeAllListeners("exit"));
+    const ticks = await Promise.all([first(early, 1500), first(late, 7000)]);
+    assert.equal(ticks[0], 0, "10 ticks per second, and none before the first viewer");
+    assert.ok(ticks[1] > 0, "after 5 seconds it begins");
+  },
+
+  async serve_shows_its_run_too() {
+    const server = await startCommand("serve", "--duration=0", "--view=127.0.0.1:0", "--endpoint=tcp://127.0.0.1:*");
+    server.child.removeAllListeners("exit");
+    const viewer = await connect(server);
+    subscribe(viewer, "/world");
+    await once(viewer.client, "message");
+    viewer.client.close();
+    server.child.kill("SIGKILL");
+  },
+
+  async a_run_that_is_over_says_that_it_cannot_be_reset() {
+    const server = await startCommand("run", "--ticks=2", "--view=127.0.0.1:0");
+    server.child.removeAllListeners("exit");
+    const viewer = await connect(server);
+    viewer.client.subscribeParameterUpdates(["phase"]);
+    subscribe(viewer, "/poses");
+    await once(viewer.client, "parameterValues", ({ parameters }) => parameters.some((p) => p.value === "over"));
+    await assert.rejects(call(viewer, "/reset"), /start the program again/);
+    await assert.rejects(call(viewer, "/pause"), /The run is over/);
+    viewer.client.close();
+    server.child.kill("SIGKILL");
   },
 
   async shutdown_ends_the_run(server) {

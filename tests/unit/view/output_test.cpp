@@ -27,13 +27,20 @@ TEST(Output, DropsOldTicksWholeAndKeepsTheNewest) {
   Output output;
   for (const char tick : {'a', 'b', 'c', 'd', 'e', 'f'}) {
     output.add_frame(
-        {item(1, 600'000, Keep::nothing, tick), item(2, 600'000, Keep::nothing, tick)});
+        {item(1, 200'000, Keep::nothing, tick), item(2, 200'000, Keep::nothing, tick)});
     EXPECT_LE(output.size(), Output::most_frames);
   }
-  EXPECT_EQ(marks(output), "ddeeff");
-  EXPECT_EQ(output.dropped(), 3u);
+  EXPECT_EQ(marks(output), "eeff");
+  EXPECT_EQ(output.dropped(), 4u);
   output.add_frame({item(1, 2 * Output::most_frames)});
   EXPECT_FALSE(output.empty()) << "one that is larger than the limit is sent all the same";
+}
+
+TEST(Output, FewTicksWaitHoweverSmallTheyAre) {
+  Output output;
+  for (char tick = 'a'; tick <= 'z'; ++tick) output.add_frame({item(1, 10, Keep::nothing, tick)});
+  EXPECT_EQ(output.dropped(), 26 - Output::most_waiting);
+  EXPECT_EQ(marks(output), "wxyz");
 }
 
 TEST(Output, ATickThatWasBegunIsSentToItsEnd) {

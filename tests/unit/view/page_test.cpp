@@ -28,13 +28,13 @@ class Folder : public ::testing::Test {
 };
 
 TEST_F(Folder, HasTypesAndTags) {
-  const Answer page = page_.get("/?token=x", {});
+  const http::Answer page = page_.get("/?token=x", {});
   EXPECT_EQ(page.status, 200u);
   EXPECT_EQ(page.type, "text/html; charset=utf-8");
   EXPECT_EQ(page.body, "<html>");
-  const Answer script = page_.get("/assets/page.js", {});
+  const http::Answer script = page_.get("/assets/page.js", {});
   EXPECT_EQ(script.type, "text/javascript; charset=utf-8");
-  const Answer again = page_.get("/assets/page.js", script.etag);
+  const http::Answer again = page_.get("/assets/page.js", script.etag);
   EXPECT_EQ(again.status, 304u);
   EXPECT_TRUE(again.body.empty());
   write("web/assets/page.js", "walk()");
@@ -45,14 +45,14 @@ TEST_F(Folder, IsNotLeft) {
   for (const char* target :
        {"/../secret", "/assets/../../secret", "/..", "//secret", "/.hidden", "/%2e%2e/secret",
         "/assets", "/assets/", "/nothing", "secret", "", "/\\..\\secret"}) {
-    const Answer answer = page_.get(target, {});
+    const http::Answer answer = page_.get(target, {});
     EXPECT_EQ(answer.status, 404u) << target;
     EXPECT_EQ(answer.body.find("no\n"), std::string::npos);
   }
 }
 
 TEST(Page, ThatWasNotBuiltIsAText) {
-  const Answer answer = Page("/nowhere").get("/", {});
+  const http::Answer answer = Page("/nowhere").get("/", {});
   EXPECT_EQ(answer.status, 200u);
   EXPECT_NE(answer.body.find("not built"), std::string::npos);
   EXPECT_NE(content_security_policy("h:1").find("connect-src 'self' ws://h:1;"), std::string::npos);

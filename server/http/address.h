@@ -1,0 +1,27 @@
+#pragma once
+// Where a port listens, and what clients may call it.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace ziggurat::http {
+
+struct Address {
+  std::string host;
+  std::uint16_t port = 0;  ///< 0: any free one
+};
+
+/// @param value  HOST:PORT; HOST may be in brackets
+/// @throws text::UsageError that names the option
+Address to_address(std::string_view option, const std::string& value);
+
+/// Only programs of this machine can reach it.
+bool is_loopback(std::string_view host);
+
+/// Whether the value of `Host` is a name that no website can make mean this machine: a number,
+/// `localhost` or the port's own name. Without `Host`, as old programs ask, it is.
+/// @param own  in any letters
+bool allows_host(std::string_view own, std::string_view called);
+
+}  // namespace ziggurat::http

@@ -1,0 +1,124 @@
+#include "http/exchange.h"
+
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <sstream>
+#include <utility>
+
+#include "http/address.h"
+
+namespace ziggurat::http {
+namespace {
+
+namespace beast = boost::beast;
+using Field = beast::http::field;
+
+/// @param request  may be half read
+Response make_response(const Request& request, bool keeps_open, Answer from) {
+  Response response(static_cast<beast::http::status>(from.status), 11);
+  response.set(Field::server, "ziggurat");
+  response.set(Field::content_type, from.type);
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set(Field::cache_control, from.etag.empty() ? "no-store" : "no-cache");
+  if (!from.etag.empty()) response.set(Field::etag, from.etag);
+  response.keep_alive(keeps_open && from.status < 400);
+  const std::size_t size = from.body.size();
+  if (request.method() != beast::http::verb::head) response.body() = std::move(from.body);
+  response.content_length(size);
+  return response;
+}
+
+Answer refusal(unsigned status, const std::string& why) {
+  return {status, Answer().type, {}, std::to_string(status) + ": " + why + ".\n"};
+}
+
+/// Of what is no request, or too long for one.
+Answer refusal(Error error) {
+  return error == beast::http::error::header_limit || error == beast::http::error::buffer_overflow
+             ? refusal(431, "the request is too long")
+             : refusal(400, "this is no request over HTTP");
+}
+
+Answer answer_of(const Request& request, const Service& service) {
+  if (!service.any_host && !allows_host(service.host, view_of(request[Field::host]))) {
+    return refusal(403, "this server is called by its number or localhost only");
+  }
+  const auto method = request.method();
+  if (method != beast::http::verb::get && method != beast::http::verb::head) {
+    return refusal(405, "only GET and HEAD are served");
+  }
+  return service.get(view_of(request.target()), view_of(request[Field::if_none_match]));
+}
+
+Response respond(const Request& request, const Service& service) {
+  const bool has_body = request.count(Field::content_length) > 0 || request.chunked();
+  const bool keeps_open = service.keeps_open && request.keep_alive() && !has_body;
+  Response response = make_response(request, keeps_open, answer_of(request, service));
+  if (service.decorate) service.decorate(request, response);
+  return response;
+}
+
+}  // namespace
+
+Exchange::Exchange(Tcp::socket socket, const Service& service, std::function<void()> ended)
+    : stream_(std::move(socket)), service_(service), ended_(std::move(ended)) {}
+
+Exchange::~Exchange() { ended_(); }
+
+void Exchange::start() {
+  stream_.expires_after(service_.time);
+  read();
+}
+
+void Exchange::read() {
+  parser_.emplace();
+  parser_->header_limit(longest_header);
+  beast::http::async_read_header(
+      stream_, buffer_, *parser_, [self = shared_from_this()](Error error, std::size_t) {
+        if (!error) return self->handle(self->parser_->release());
+        const bool is_bad_request = error.category() == beast::http::make_error_code(
+                                        beast::http::error::bad_method).category() &&
+                                    error != beast::http::error::end_of_stream &&
+                                    error != beast::http::error::partial_message;
+        if (is_bad_request) self->write(make_response({}, false, refusal(error)));
+      });
+}
+
+void Exchange::handle(Request request) {
+  const bool is_allowed =
+      service_.any_host || allows_host(service_.host, view_of(request[Field::host]));
+  if (is_allowed && service_.upgrade && beast::websocket::is_upgrade(request)) {
+    if (auto refused = service_.refuse_upgrade(request)) {
+      return write(make_response(request, false, *std::move(refused)));
+    }
+    stream_.expires_never();
+    return service_.upgrade(std::move(stream_), request);
+  }
+  write(respond(request, service_));
+}
+
+void Exchange::write(Response response) {
+  auto held = std::make_shared<Response>(std::move(response));
+  if (service_.keeps_open) stream_.expires_after(service_.time);
+  beast::http::async_write(
+      stream_, *held, [self = shared_from_this(), held](Error error, std::size_t) {
+        if (!error && held->keep_alive()) return self->start();
+        Error ignored;
+        self->stream_.socket().shutdown(Tcp::socket::shutdown_send, ignored);
+      });
+}
+
+std::string answer_to(std::string_view request, const Service& service) {
+  beast::http::request_parser<beast::http::empty_body> parser;
+  parser.header_limit(longest_header);
+  Error error;
+  parser.put(boost::asio::const_buffer(request.data(), request.size()), error);
+  std::ostringstream out;
+  if (parser.is_header_done()) {
+    out << respond(parser.get(), service);
+  } else {
+    out << make_response({}, false, refusal(error));
+  }
+  return out.str();
+}
+
+}  // namespace ziggurat::http

@@ -1,0 +1,41 @@
+#pragma once
+// Serves a few short texts over HTTP, on a thread of its own: one request per connection. Clients can be
+// slow, many and rude: each has a time and a number of bytes, and of too many the oldest ends.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "http/address.h"
+#include "http/answer.h"
+
+namespace ziggurat::http {
+
+class Port {
+ public:
+  /// What is at a path. It is called on the port's thread.
+  using Read = std::function<Answer(std::string_view path)>;
+
+  /// @param option  of the program, for messages
+  /// @param any_host  clients may call it by any name; otherwise see allows_host()
+  /// @throws std::runtime_error if it can't listen
+  Port(std::string_view option, const Address& address, bool any_host, Read read);
+  /// At once, whatever clients do.
+  ~Port();
+  Port(const Port&) = delete;
+  Port& operator=(const Port&) = delete;
+
+  std::uint16_t number() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The bytes that such a port sends for those of a request.
+std::string answer_at_port(std::string_view request, const std::string& host, bool any_host,
+                           const Port::Read& read);
+
+}  // namespace ziggurat::http
