@@ -164,16 +164,18 @@ std::optional<std::string> Channels::bytes_of(const Channel& channel, const Mome
       poses_.set_generation(world_.generation());
       return poses_.SerializeAsString();
     case Kind::rays:
-      return rays_of(moment).SerializeAsString();
+      fill(moment, rays_);
+      return rays_.SerializeAsString();
     case Kind::detections:
-      return detections_of(moment).SerializeAsString();
-    case Kind::radio: {
-      const v1::RadioTraffic traffic = radio_of(moment);
-      if (traffic.messages().empty() && traffic.packets().empty()) break;
-      return traffic.SerializeAsString();
-    }
+      fill(moment, detections_);
+      return detections_.SerializeAsString();
+    case Kind::radio:
+      fill(moment, traffic_);
+      if (traffic_.messages().empty() && traffic_.packets().empty()) break;
+      return traffic_.SerializeAsString();
     case Kind::contacts:
-      return contacts_of(moment).SerializeAsString();
+      fill(moment, contacts_);
+      return contacts_.SerializeAsString();
     case Kind::phases:
       return phases_of(moment).SerializeAsString();
     case Kind::scene:
@@ -182,9 +184,11 @@ std::optional<std::string> Channels::bytes_of(const Channel& channel, const Mome
       fill(moment, frames_);
       return frames_.SerializeAsString();
     case Kind::observation:
-      return observation_of(roster_of(channel.place), moment).SerializeAsString();
+      fill(roster_of(channel.place), moment, observation_);
+      return observation_.SerializeAsString();
     case Kind::command:
-      return command_of(roster_of(channel.place), population_->layout, moment).SerializeAsString();
+      fill(roster_of(channel.place), population_->layout, moment, command_);
+      return command_.SerializeAsString();
     case Kind::calibration:
       return calibration_of(world_, channel.place, moment.state.time_ns).SerializeAsString();
     case Kind::annotations:

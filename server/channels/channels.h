@@ -19,6 +19,7 @@
 #include "wire/request.h"
 #include "wire/roster.h"
 #include "ziggurat/v1/channels.pb.h"
+#include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::channels {
 
@@ -77,6 +78,13 @@ class Channels {
   v1::Poses poses_;
   PoseSource pose_source_;
   foxglove::FrameTransforms frames_;
+  // Of the last tick: their memory is used again.
+  v1::Rays rays_;
+  v1::Detections detections_;
+  v1::RadioTraffic traffic_;
+  v1::Contacts contacts_;
+  v1::Observation observation_;
+  v1::Command command_;
   std::vector<std::optional<wire::Roster>> rosters_;  // per robot, when it is asked for
 };
 

@@ -8,11 +8,10 @@ namespace ziggurat::channels {
 namespace {
 
 template <class Message>
-Message begin(const Moment& moment) {
-  Message message;
+void begin(const Moment& moment, Message& message) {
+  message.Clear();
   message.set_tick(moment.state.tick);
   message.set_time_ns(moment.state.time_ns);
-  return message;
 }
 
 void assign(std::string& to, std::span<const std::uint8_t> from) {
@@ -37,20 +36,19 @@ void set_light(const world::LedReading& from, v1::Detections::Light& to) {
 
 }  // namespace
 
-v1::Rays rays_of(const Moment& moment) {
-  auto rays = begin<v1::Rays>(moment);
-  for (const world::Ray& ray : moment.state.rays) {
+void fill(const Moment& moment, v1::Rays& rays) {
+  begin(moment, rays);
+  for (const world::Ray& ray : moment.rays.value_or(std::span(moment.state.rays))) {
     rays.add_kinds(static_cast<v1::Rays::Kind>(ray.kind));  // the same numbers
     rays.add_robots(index(ray.robot));
     add(ray.start, *rays.mutable_segments());
     add(ray.end, *rays.mutable_segments());
     rays.add_hits(ray.hit);
   }
-  return rays;
 }
 
-v1::Detections detections_of(const Moment& moment) {
-  auto detections = begin<v1::Detections>(moment);
+void fill(const Moment& moment, v1::Detections& detections) {
+  begin(moment, detections);
   for (const auto& led : moment.observations.leds) {
     set_light(led, *camera_in(detections, led.camera).add_leds());
   }
@@ -68,11 +66,10 @@ v1::Detections detections_of(const Moment& moment) {
       seen.add_corners(corner.y());
     }
   }
-  return detections;
 }
 
-v1::RadioTraffic radio_of(const Moment& moment) {
-  auto traffic = begin<v1::RadioTraffic>(moment);
+void fill(const Moment& moment, v1::RadioTraffic& traffic) {
+  begin(moment, traffic);
   const world::Observations& seen = moment.observations;
   for (const auto& entry : seen.radio_messages.entries) {
     v1::RadioTraffic::Delivery& delivery = *traffic.add_messages();
@@ -90,11 +87,10 @@ v1::RadioTraffic radio_of(const Moment& moment) {
     packet.set_horizontal_bearing(heard.horizontal_bearing);
     packet.set_vertical_bearing(heard.vertical_bearing);
   }
-  return traffic;
 }
 
-v1::Contacts contacts_of(const Moment& moment) {
-  auto contacts = begin<v1::Contacts>(moment);
+void fill(const Moment& moment, v1::Contacts& contacts) {
+  begin(moment, contacts);
   for (const world::Contact& contact : moment.contacts) {
     contacts.add_links(static_cast<std::int32_t>(contact.link));
     contacts.add_links(contact.other ? static_cast<std::int32_t>(*contact.other) : -1);
@@ -102,7 +98,6 @@ v1::Contacts contacts_of(const Moment& moment) {
     add(contact.normal, *contacts.mutable_normals());
     add(contact.force, *contacts.mutable_forces());
   }
-  return contacts;
 }
 
 }  // namespace ziggurat::channels

@@ -6,10 +6,11 @@
 
 namespace ziggurat::channels {
 
-v1::Rays rays_of(const Moment& moment);
-v1::Detections detections_of(const Moment& moment);
+// Each clears the message, whose memory is used again.
+void fill(const Moment& moment, v1::Rays& rays);
+void fill(const Moment& moment, v1::Detections& detections);
 /// Without messages and packets: nothing was received.
-v1::RadioTraffic radio_of(const Moment& moment);
-v1::Contacts contacts_of(const Moment& moment);
+void fill(const Moment& moment, v1::RadioTraffic& traffic);
+void fill(const Moment& moment, v1::Contacts& contacts);
 
 }  // namespace ziggurat::channels

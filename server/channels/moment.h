@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ struct Moment {
   const world::Commands& commands;  ///< that led to the state, until the tick is answered
   std::span<const world::Contact> contacts;
   PhaseTimes phases;  ///< of the tick before
+  std::optional<std::span<const world::Ray>> rays = {};  ///< of all devices; nothing: State::rays
 };
 
 /// What `/scene` contains besides the shapes of links.

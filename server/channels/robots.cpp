@@ -6,15 +6,14 @@
 
 namespace ziggurat::channels {
 
-v1::Observation observation_of(const wire::Roster& robot, const Moment& moment) {
-  v1::Observation observation;
-  wire::fill(robot, moment.observations, moment.state.tag_payloads, observation);
-  return observation;
+void fill(const wire::Roster& robot, const Moment& moment, v1::Observation& to) {
+  to.Clear();
+  wire::fill(robot, moment.observations, moment.state.tag_payloads, to);
 }
 
-v1::Command command_of(const wire::Roster& robot, const world::Layout& layout,
-                       const Moment& moment) {
-  v1::Command command;
+void fill(const wire::Roster& robot, const world::Layout& layout, const Moment& moment,
+          v1::Command& command) {
+  command.Clear();
   command.set_tick(moment.state.tick);
   wire::add_channels(robot, moment.commands, command);
   const world::Range& radios = layout.robots[robot.robots.front()].radios;
@@ -26,7 +25,6 @@ v1::Command command_of(const wire::Roster& robot, const world::Layout& layout,
     const auto payload = sent.payload(entry);
     message.set_payload(payload.data(), payload.size());
   }
-  return command;
 }
 
 }  // namespace ziggurat::channels

@@ -7,11 +7,13 @@
 
 namespace ziggurat::channels {
 
+// Each clears the message, whose memory is used again.
+
 /// Pictures are left out: they have channels of their own.
-v1::Observation observation_of(const wire::Roster& robot, const Moment& moment);
+void fill(const wire::Roster& robot, const Moment& moment, v1::Observation& to);
 
 /// All that it wants now, and the messages that its radios are about to send.
-v1::Command command_of(const wire::Roster& robot, const world::Layout& layout,
-                       const Moment& moment);
+void fill(const wire::Roster& robot, const world::Layout& layout, const Moment& moment,
+          v1::Command& to);
 
 }  // namespace ziggurat::channels

@@ -68,7 +68,7 @@ Showing::Run Replaying::shown() {
   watched.is_paused = [this] { return steering_.is_paused(); };
   watched.paused_for = [this] { return steering_.paused_for(); };
   watched.status = [this] { return status(); };
-  watched.missed_ticks = [] { return std::vector<std::uint64_t>(); };
+  watched.controllers = [] { return std::vector<network::Performance::Controller>(); };
   return watched;
 }
 
@@ -148,6 +148,7 @@ Replaying::End Replaying::repeat() {
       showing_->answered();
       showing_->update();
       simulation.list_contacts(showing_->wants_contacts());
+      simulation.list_rays(showing_->wants_rays());
     }
     timer_.end_phase(Phase::recording, summary_);
   }

@@ -221,6 +221,7 @@ int Run::execute() {
   summary_.failures = watch_.failures();
   recorders_.write_summary(summary_);
   for (const auto& picture : recorders_.pictures()) console_.result(picture);
+  if (const auto missing = recorders_.missing_frames(); !missing.empty()) console_.warning(missing);
   const bool has_passed = report_hil();
   print_summary();
   int code = exit_code_of(summary_);
@@ -281,6 +282,8 @@ Ending Run::run_world() {
     if (recorded_) recorded_->step();
     simulation.list_contacts((showing_ && showing_->wants_contacts()) ||
                              (recorded_ && recorded_->wants_contacts()));
+    simulation.list_rays((showing_ && showing_->wants_rays()) ||
+                         (options_.pictures && options_.pictures->view.layers.rays));
     simulation.step();
     timer_.end_phase(Phase::physics, summary_);
     if (!printed_miss_) print_first_miss();

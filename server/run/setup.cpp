@@ -121,11 +121,7 @@ Showing::Run shown(supervision::World& world, network::Server& server, supervisi
   watched.is_paused = [&server] { return server.paused(); };
   watched.paused_for = [&supervision] { return supervision.paused_for(); };
   watched.status = [&supervision] { return supervision.status(); };
-  watched.missed_ticks = [&server] {
-    std::vector<std::uint64_t> missed;
-    for (const auto& each : server.performance().controllers) missed.push_back(each.missed_ticks);
-    return missed;
-  };
+  watched.controllers = [&server] { return server.performance().controllers; };
   return watched;
 }
 

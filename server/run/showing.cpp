@@ -15,11 +15,15 @@ using channels::Kind;
 using channels::Pace;
 
 constexpr std::chrono::milliseconds barrier_interval{250};
+constexpr const char* over = "The run is over: its last state is shown, and nothing changes it.";
+constexpr const char* over_for_good =
+    "The run is over and its controllers have ended, so it can't be reset; start the program again, "
+    "with --duration=0 for a run that does not end by itself.";
 constexpr std::array every_tick{Pace::latched, Pace::tick, Pace::answer};
 
 view::Settings settings_of(const Options& options, const Showing::Run& run) {
   view::Settings settings;
-  if (!options.view->empty()) settings.address = view::to_address("--view", *options.view);
+  if (!options.view->empty()) settings.address = http::to_address("--view", *options.view);
   settings.insecure = options.insecure;
   settings.token = options.view_token;
   settings.folder = page_folder();
@@ -88,7 +92,7 @@ std::vector<network::Call> Showing::take_calls() {
 channels::Moment Showing::moment() const {
   simulation::Simulation& simulation = run_.world.simulation;
   return {simulation.state(), simulation.observations(), simulation.commands(),
-          simulation.contacts(), phases_};
+          simulation.contacts(), phases_, simulation.rays()};
 }
 
 bool Showing::wants(Kind kind) const {
@@ -152,7 +156,8 @@ void Showing::serve() {
       set_speed(*call.speed);
       server_.answer(call, run_.world.simulation.state().tick);
     } else if (is_over_ && call.request.kind != wire::Request::Kind::shutdown) {
-      server_.refuse(call, "The run is over.");
+      const bool is_reset = call.request.kind == wire::Request::Kind::reset;
+      server_.refuse(call, is_reset ? over_for_good : over);
     } else if (is_over_) {
       server_.answer(call, run_.world.simulation.state().tick);
       shutdown_ = true;
@@ -217,17 +222,19 @@ void Showing::update() {
 void Showing::show_barrier() {
   wire::Status status = run_.status();
   if (is_over_) status.phase = wire::Status::Phase::ending;
-  const auto missed = run_.missed_ticks();
+  const auto controllers = run_.controllers();
   std::vector<channels::Histogram> histograms;
-  for (std::size_t c = 0; c < missed.size(); ++c) {
-    histograms.push_back({run_.world.scene.controllers[c].id, 0, 1, {}, missed[c]});
+  for (std::size_t c = 0; c < controllers.size(); ++c) {
+    const network::AnswerTimes& times = controllers[c].answer_times;
+    histograms.push_back({run_.world.scene.controllers[c].id, times.least, times.growth, times.counts,
+                          controllers[c].missed_ticks});
   }
   server_.show(status.time_ns, {channels_.barrier(status, histograms)});
 }
 
 void Showing::end() {
   is_over_ = true;
-  for (const auto& [id, call] : unanswered_) server_.refuse(call, "The run is over.");
+  for (const auto& [id, call] : unanswered_) server_.refuse(call, over);
   unanswered_.clear();
   update();
 }

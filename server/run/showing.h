@@ -38,7 +38,7 @@ class Showing {
     std::function<clock::duration()> paused_for;  ///< wall time so far
     std::function<wire::Status()> status;
     /// Of each of the scene's controllers; none: nothing is known of them.
-    std::function<std::vector<std::uint64_t>()> missed_ticks;
+    std::function<std::vector<network::Performance::Controller>()> controllers;
   };
 
   /// Listens. @throws text::UsageError, std::runtime_error
@@ -59,6 +59,7 @@ class Showing {
   void answered();
   /// A viewer wants contacts, which the next tick must list.
   bool wants_contacts() const { return wants(channels::Kind::contacts); }
+  bool wants_rays() const { return wants(channels::Kind::rays); }
   /// The world began anew.
   void restarted();
   void log(channels::Severity severity, std::string_view name, std::string_view text);

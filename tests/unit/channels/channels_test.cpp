@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "shown_world.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -124,7 +126,12 @@ TEST(Channels, MessagesNameTheirSenderAndReceiver) {
   ShownWorld shown(text);
   EXPECT_TRUE(shown.encode("/radio").empty()) << "nothing was sent";
   shown.simulation.commands().radio_messages.add(0, std::vector<std::uint8_t>{'x'});
+  shown.simulation.list_rays(true);
   shown.simulation.step();
+  const auto rays = shown.read<v1::Rays>("/rays");  // though no radio has show_rays
+  EXPECT_EQ(std::ranges::count(rays.kinds(), v1::Rays::RADIO), 1);
+  EXPECT_EQ(rays.segments_size(), 6 * rays.kinds_size());
+  EXPECT_TRUE(shown.simulation.state().rays.empty());
   const auto traffic = shown.read<v1::RadioTraffic>("/radio");
   ASSERT_EQ(traffic.messages_size(), 1);
   EXPECT_EQ(traffic.messages(0).sender(), 0u);

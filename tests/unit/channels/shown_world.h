@@ -63,7 +63,8 @@ struct ShownWorld {
                      simulation.observations(),
                      simulation.commands(),
                      simulation.contacts(),
-                     {1, 2, 3, 4}},
+                     {1, 2, 3, 4},
+                     simulation.rays()},
                     pace_of(channel->kind), std::vector{channel->id}, messages);
     return messages;
   }
