@@ -1,6 +1,8 @@
 #include "http/exchange.h"
 
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <cstdint>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -57,6 +59,11 @@ Response respond(const Request& request, const Service& service) {
   return response;
 }
 
+void bound(beast::http::request_parser<beast::http::empty_body>& parser) {
+  parser.header_limit(longest_header);
+  parser.body_limit(std::numeric_limits<std::uint64_t>::max());  // it is not read
+}
+
 }  // namespace
 
 Exchange::Exchange(Tcp::socket socket, const Service& service, std::function<void()> ended)
@@ -71,16 +78,29 @@ void Exchange::start() {
 
 void Exchange::read() {
   parser_.emplace();
-  parser_->header_limit(longest_header);
-  beast::http::async_read_header(
-      stream_, buffer_, *parser_, [self = shared_from_this()](Error error, std::size_t) {
-        if (!error) return self->handle(self->parser_->release());
-        const bool is_bad_request = error.category() == beast::http::make_error_code(
-                                        beast::http::error::bad_method).category() &&
-                                    error != beast::http::error::end_of_stream &&
-                                    error != beast::http::error::partial_message;
-        if (is_bad_request) self->write(make_response({}, false, refusal(error)));
-      });
+  bound(*parser_);
+  received_ = buffer_.size();
+  parse();
+}
+
+/// What has arrived; then more, until the request's header is complete. A body is never read.
+void Exchange::parse() {
+  Error error;
+  buffer_.consume(parser_->put(buffer_.cdata(), error));
+  if (parser_->is_header_done()) return handle(parser_->release());
+  if (error == beast::http::error::need_more && received_ >= longest_header) {
+    error = beast::http::error::header_limit;
+  }
+  if (error && error != beast::http::error::need_more) {
+    return write(make_response({}, false, refusal(error)));
+  }
+  stream_.async_read_some(buffer_.prepare(longest_header - received_),
+                          [self = shared_from_this()](Error ended, std::size_t count) {
+                            if (ended) return;
+                            self->buffer_.commit(count);
+                            self->received_ += count;
+                            self->parse();
+                          });
 }
 
 void Exchange::handle(Request request) {
@@ -109,7 +129,7 @@ void Exchange::write(Response response) {
 
 std::string answer_to(std::string_view request, const Service& service) {
   beast::http::request_parser<beast::http::empty_body> parser;
-  parser.header_limit(longest_header);
+  bound(parser);
   Error error;
   parser.put(boost::asio::const_buffer(request.data(), request.size()), error);
   std::ostringstream out;

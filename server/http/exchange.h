@@ -55,6 +55,7 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
 
  private:
   void read();
+  void parse();
   void handle(Request request);
   void write(Response response);
 
@@ -62,6 +63,7 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
   const Service& service_;
   std::function<void()> ended_;
   boost::beast::flat_buffer buffer_;
+  std::size_t received_ = 0;  // [bytes] of the request
   std::optional<boost::beast::http::request_parser<boost::beast::http::empty_body>> parser_;
 };
 
