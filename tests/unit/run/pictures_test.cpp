@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "run/loading.h"
+#include "text/numbers.h"
 
 namespace ziggurat::run {
 namespace {
@@ -15,8 +16,28 @@ TEST(TickAt, IsTheTickThatATimeFallsInto) {
   EXPECT_EQ(tick_at(0.299, experiment), 29u);
   EXPECT_EQ(tick_at(1e30, experiment), std::uint64_t{1} << 63);
   PictureOptions options;
+  options.out = "a.png";
   options.times = {1, 3, 2};
   EXPECT_EQ(last_tick(options, experiment), 300u);
+}
+
+TEST(LastTick, OfAFilmIsThatOfItsLastFrame) {
+  scene::Experiment experiment;
+  experiment.ticks_per_second = 100;
+  PictureOptions options;
+  options.film.emplace();
+  options.film->from = 1;
+  EXPECT_THROW(last_tick(options, experiment), text::UsageError) << "it has no end";
+  experiment.length = 3;
+  options.film->frames_per_second = 10;
+  EXPECT_EQ(last_tick(options, experiment), 290u);  // 20 frames, the first at 1 s
+  options.film->to = 2;
+  EXPECT_EQ(last_tick(options, experiment), 190u);
+  options.film->speed = 2;
+  EXPECT_EQ(last_tick(options, experiment), 180u);  // 5 frames
+  options.out = "a.png";
+  options.times = {4};
+  EXPECT_EQ(last_tick(options, experiment), 400u);
 }
 
 TEST(PicturePath, IsTheNameItselfForOnePicture) {
