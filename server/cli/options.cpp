@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cli/arguments.h"
+#include "scene/settings.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
@@ -24,7 +25,12 @@ constexpr double least_factor = 1e-6, most_factor = 1e6;
 
 po::options_description scene_options() {
   po::options_description options("Reading the scene", width);
-  options.add_options()                                          //
+  options.add_options()  //
+      ("set", texts("PATH=VALUE"),
+       "set the attributes that an XPath from the root element names, as in --set "
+       "'physics_engines/dynamics3d/@iterations=7'; may be repeated")  //
+      ("param", texts("NAME=VALUE"),
+       "the value of a parameter of the scene's <parameters>, instead of its own; may be repeated")  //
       ("lenient", "unknown attributes are notices, not faults")  //
       ("max-scene-size", text("SIZE"), "largest scene file, as 64M (the default)");
   return options;
@@ -333,6 +339,26 @@ Arguments without_secrets(const Arguments& arguments) {
   return kept;
 }
 
+/// @throws UsageError
+template <class T>
+std::vector<T> read_all(const std::string& option, const std::vector<std::string>& texts,
+                        scene::Value<T> (*read)(std::string_view)) {
+  std::vector<T> result;
+  for (const std::string& text : texts) {
+    auto value = read(text);
+    if (const auto* wrong = std::get_if<scene::Wrong>(&value)) {
+      throw text::UsageError(fmt::format("--{} {} {}", option, text, wrong->text));
+    }
+    result.push_back(std::get<0>(std::move(value)));
+  }
+  return result;
+}
+
+void read_variation(const Values& values, scene::Variation& to) {
+  to.settings = read_all("set", values.texts("set"), scene::to_setting);
+  to.parameters = read_all("param", values.texts("param"), scene::to_parameter);
+}
+
 }  // namespace
 
 po::options_description run_options() {
@@ -402,6 +428,7 @@ run::Options parse_options(const Arguments& arguments, const po::options_descrip
   if (values.has("max-scene-size")) {
     options.scene_file.max_size = text::to_size("--max-scene-size", values.text("max-scene-size"));
   }
+  read_variation(values, options.scene_file.variation);
   read_length(values, options);
   if (values.has("seed")) options.seed = text::to_integer("--seed", values.text("seed"));
   if (values.has("clock")) options.scene_file.clock = to_clock(values.text("clock"));

@@ -38,6 +38,7 @@ struct Additions::Parts {
   std::unordered_map<std::string, std::size_t> model_ids;
   std::vector<ControllerUse> uses;
   std::unordered_map<std::string, std::size_t> media, controllers;
+  Parameters parameters;
 };
 
 Additions::Additions() = default;
@@ -45,7 +46,8 @@ Additions::Additions(Draft& draft)
     : parts_(std::make_unique<Parts>(Parts{draft.options, draft.defaults, draft.has_engine,
                                            std::move(draft.models), std::move(draft.model_ids),
                                            std::move(draft.uses), std::move(draft.media),
-                                           std::move(draft.controllers)})) {}
+                                           std::move(draft.controllers),
+                                           std::move(draft.parameters)})) {}
 Additions::~Additions() = default;
 Additions::Additions(Additions&&) noexcept = default;
 Additions& Additions::operator=(Additions&&) noexcept = default;
@@ -75,6 +77,7 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
   }
   ReadOptions options = parts_->options;
   options.open = open;
+  options.variation = {};  // it was for the scene
   Draft draft(report, around, options);
   draft.budget = budget_for(max_size);
   draft.defaults = parts_->defaults;
@@ -84,6 +87,7 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
   draft.uses = parts_->uses;
   draft.media = parts_->media;
   draft.controllers = parts_->controllers;
+  draft.parameters = parts_->parameters;
   try {
     read_addition(draft, std::move(text), is_taken, addition.entity);
   } catch (const TooManyFaults&) {

@@ -79,6 +79,7 @@ void read_controller(Draft& draft, Element& element, bool included,
     use.has_params = true;
     read_params(*params, controller);
   }
+  controller.params = with_parameters(std::move(controller.params), draft.parameters);
   element.done();
   draft.missing_parts = nullptr;
   draft.report.subject.clear();
@@ -330,7 +331,7 @@ std::optional<ControllerChoice> read_controller_choice(Draft& draft, Element& el
 void give_controller(Draft& draft, const ControllerChoice& choice, Entity& entity) {
   entity.overrides_params = choice.params.has_value();
   entity.params_where = choice.params_where;
-  if (choice.params) entity.params = *choice.params;
+  if (choice.params) entity.params = with_parameters(*choice.params, draft.parameters);
   const auto found = draft.controllers.find(choice.id);
   if (found == draft.controllers.end()) {
     if (draft.blamed.insert(choice.unknown.where).second) {

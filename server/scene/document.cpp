@@ -73,6 +73,7 @@ std::string complaint(const pugi::xml_parse_result& result, bool at_end) {
 /// Faults the first character reference of an attribute that stands for no character.
 void check_references(const Document& document, std::string_view element,
                       const pugi::xml_attribute& attribute) {
+  if (document.setting_of(attribute)) return;
   const std::string_view raw = document.raw(attribute);
   for (std::size_t begin = raw.find('&'); begin != std::string_view::npos;
        begin = raw.find('&', begin + 1)) {
@@ -120,7 +121,7 @@ void check_repeated_attributes(const Document& document, const pugi::xml_node& n
 void report_unknown_attribute(const Document& document, std::string_view element,
                               const pugi::xml_attribute& attribute,
                               std::span<const std::string_view> known, std::string_view elsewhere) {
-  const Location where = document.locate(attribute.name());
+  const Location where = document.locate(attribute);
   const std::string_view name = attribute.name();
   if (!elsewhere.empty()) {
     document.report().fault(where,
@@ -139,8 +140,9 @@ void report_unknown_attribute(const Document& document, std::string_view element
     return;
   }
   document.report().fault(where,
-                          fmt::format("<{}> has an unknown attribute {}={}; {}", element, name,
-                                      in_quotes(attribute.value()), advice(name, known)));
+                          fmt::format("<{}> has an unknown attribute {}={}; {}{}", element, name,
+                                      in_quotes(attribute.value()), advice(name, known),
+                                      document.origin(attribute)));
   if (const auto meant = nearest(name, known)) document.report().left_out(*meant);
 }
 
@@ -151,8 +153,12 @@ ReadBudget budget_for(std::size_t max_size) {
 }
 
 Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget,
-                   Report& report)
-    : source_(std::move(text)), file_(file), lenient_(lenient), report_(report) {
+                   Report& report, const Parameters* parameters)
+    : source_(std::move(text)),
+      file_(file),
+      lenient_(lenient),
+      report_(report),
+      parameters_(parameters) {
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < source_.size(); ++i) {
     if (source_[i] == '\n') line_starts_.push_back(i + 1);
@@ -238,6 +244,55 @@ Location Document::locate(const char* character) const {
   return at(static_cast<std::size_t>(character - buffer_.data()));
 }
 
+Location Document::locate(const pugi::xml_attribute& attribute) const {
+  const auto found = set_.find(attribute.hash_value());
+  return found == set_.end() ? locate(attribute.name()) : found->second.where;
+}
+
+Location Document::locate_value(const pugi::xml_attribute& attribute) const {
+  if (const auto found = set_.find(attribute.hash_value()); found != set_.end()) {
+    return found->second.where;
+  }
+  const std::string_view written = raw(attribute);
+  const std::string_view text = trimmed(written);
+  const std::ptrdiff_t skipped = text.empty() ? 0 : text.data() - written.data();
+  return locate(attribute.value() + skipped);
+}
+
+Value<std::size_t> Document::set(const Setting& setting) {
+  if (!root_) return std::size_t{0};
+  auto found = attributes_at(root_, setting.path);
+  if (const Wrong* wrong = std::get_if<1>(&found)) return *wrong;
+  for (Attribute& each : std::get<0>(found)) {
+    each.attribute.set_value(setting.value.c_str());
+    set_.insert_or_assign(each.attribute.hash_value(),
+                          Set{setting, locate(each.element.name() - 1)});
+  }
+  return std::get<0>(found).size();
+}
+
+const Setting* Document::setting_of(const pugi::xml_attribute& attribute) const {
+  const auto found = set_.find(attribute.hash_value());
+  return found == set_.end() ? nullptr : &found->second.setting;
+}
+
+std::string Document::origin(const pugi::xml_attribute& attribute) const {
+  std::string text;
+  if (std::string_view(attribute.value()).find("${") != std::string_view::npos) {
+    if (const auto meant = value(attribute); const std::string* known = std::get_if<0>(&meant)) {
+      text = fmt::format("; with its parameters it is {}", in_quotes(*known));
+    }
+  }
+  if (const Setting* setting = setting_of(attribute)) text += "; set by " + to_string(*setting);
+  return text;
+}
+
+Value<std::string> Document::value(const pugi::xml_attribute& attribute) const {
+  const std::string_view text = trimmed(attribute.value());
+  if (parameters_ == nullptr || text.find("${") == std::string_view::npos) return std::string(text);
+  return expand(text, *parameters_);
+}
+
 std::string_view Document::raw(const pugi::xml_attribute& attribute) const {
   const auto begin = static_cast<std::size_t>(attribute.value() - buffer_.data());
   return std::string_view(source_).substr(begin, source_.find(source_[begin - 1], begin) - begin);
@@ -249,27 +304,31 @@ Location Element::where() const { return document_->locate(node_.name() - 1); }
 
 Location Element::where(const char* attribute) const {
   const pugi::xml_attribute found = node_.attribute(attribute);
-  if (found.empty()) return where();
-  const std::string_view raw = document_->raw(found);
-  const std::string_view text = trimmed(raw);
-  const std::size_t skipped = text.empty() ? 0 : static_cast<std::size_t>(text.data() - raw.data());
-  return document_->locate(found.value() + skipped);
+  return found.empty() ? where() : document_->locate_value(found);
 }
 
 std::optional<std::string> Element::take(const char* attribute) {
   asked_attributes_.push_back(attribute);
   const pugi::xml_attribute found = node_.attribute(attribute);
   if (found.empty()) return std::nullopt;
-  check_references(*document_, name(), found);
-  return std::string(trimmed(found.value()));
+  return value_of(found);
+}
+
+std::optional<std::string> Element::value_of(const pugi::xml_attribute& attribute) const {
+  check_references(*document_, name(), attribute);
+  auto value = document_->value(attribute);
+  if (const Wrong* wrong = std::get_if<1>(&value)) {
+    fault_at(attribute.name(), wrong->text);
+    return std::nullopt;
+  }
+  return std::get<0>(std::move(value));
 }
 
 std::vector<std::pair<std::string, std::string>> Element::all_attributes() {
   any_attribute_ = true;
   std::vector<std::pair<std::string, std::string>> result;
   for (const pugi::xml_attribute attribute : node_.attributes()) {
-    check_references(*document_, name(), attribute);
-    result.emplace_back(attribute.name(), trimmed(attribute.value()));
+    if (auto value = value_of(attribute)) result.emplace_back(attribute.name(), std::move(*value));
   }
   return result;
 }
@@ -368,8 +427,9 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
 }
 
 std::string Element::sentence(const char* attribute, std::string_view text) const {
-  return fmt::format("{}={} of <{}> {}", attribute,
-                     in_quotes(trimmed(node_.attribute(attribute).value())), name(), text);
+  const pugi::xml_attribute found = node_.attribute(attribute);
+  return fmt::format("{}={} of <{}> {}{}", attribute, in_quotes(trimmed(found.value())), name(), text,
+                     document_->origin(found));
 }
 
 void Element::fault_at(const char* attribute, std::string_view text,

@@ -13,13 +13,16 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "scene/names.h"
+#include "scene/parameters.h"
 #include "scene/reader.h"
 #include "scene/report.h"
+#include "scene/settings.h"
 #include "scene/values.h"
 
 namespace ziggurat::scene {
@@ -39,18 +42,33 @@ class Document {
   /// Parses; what is wrong with the text itself (not UTF-8, malformed, …) is a fault.
   /// @param file  its index in Scene::files
   /// @param budget  at least the text's size; the text is taken from it
-  Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget, Report& report);
+  /// @param parameters  what ${name} stands for; must outlive this; null: none
+  Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget, Report& report,
+           const Parameters* parameters = nullptr);
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
   /// The root element; empty if the text is no well-formed document.
   pugi::xml_node root() const { return root_; }
 
+  /// Sets attributes. @returns how many; what is wrong with the path
+  Value<std::size_t> set(const Setting& setting);
+
   /// Where a character of the parsed text stands.
   Location locate(const char* character) const;
+  /// Where an attribute's name stands, or its element if the attribute was set.
+  Location locate(const pugi::xml_attribute& attribute) const;
+  /// Where its value begins; the same.
+  Location locate_value(const pugi::xml_attribute& attribute) const;
 
   /// The attribute's text as written, before character references are replaced.
   std::string_view raw(const pugi::xml_attribute& attribute) const;
+  /// The setting that set it, or null.
+  const Setting* setting_of(const pugi::xml_attribute& attribute) const;
+  /// How the attribute got its value, if not as written: continues a message.
+  std::string origin(const pugi::xml_attribute& attribute) const;
+  /// Its value with parameters, trimmed.
+  Value<std::string> value(const pugi::xml_attribute& attribute) const;
 
   bool lenient() const { return lenient_; }
   Report& report() const { return report_; }
@@ -66,9 +84,15 @@ class Document {
   std::size_t file_;
   bool lenient_;
   Report& report_;
+  const Parameters* parameters_;
   std::vector<std::size_t> line_starts_;
   pugi::xml_document tree_;
   pugi::xml_node root_;
+  struct Set {
+    Setting setting;
+    Location where;  ///< of the element
+  };
+  std::unordered_map<std::size_t, Set> set_;  ///< by xml_attribute::hash_value(); only looked up
 };
 
 /// Zero, the identity, or nothing.
@@ -178,6 +202,8 @@ class Element {
 
  private:
   std::optional<std::string> take(const char* attribute);
+  /// Its value; a wrong one is a fault.
+  std::optional<std::string> value_of(const pugi::xml_attribute& attribute) const;
 
   Document* document_;
   pugi::xml_node node_;

@@ -15,6 +15,7 @@
 
 #include "scene/document.h"
 #include "scene/names.h"
+#include "scene/parameters.h"
 #include "scene/scene.h"
 
 namespace ziggurat::scene {
@@ -78,13 +79,16 @@ struct Draft {
       : report(report_of_all),
         scene(scene_read),
         options(chosen),
-        budget(budget_for(chosen.max_size)) {}
+        budget(budget_for(chosen.max_size)),
+        set(chosen.variation.settings.size(), std::size_t{0}) {}
 
   Report& report;
   Scene& scene;
   const ReadOptions& options;
   ReadBudget budget;
   std::deque<Document> documents;  ///< of Scene::files, same order
+  Parameters parameters;
+  std::vector<Value<std::size_t>> set;  ///< per Variation::settings: how many attributes it has set
   std::vector<PendingFault>* missing_parts =
       nullptr;                ///< collects what the scene must provide; null: reported at once
   std::vector<Model> models;  ///< of Scene::models, same order
@@ -102,8 +106,20 @@ struct Draft {
 
   Document& add_document(std::string text, const std::string& name) {
     scene.files.push_back(name);
-    return documents.emplace_back(std::move(text), scene.files.size() - 1, options.lenient, budget,
-                                  report);
+    Document& document = documents.emplace_back(std::move(text), scene.files.size() - 1,
+                                                options.lenient, budget, report, &parameters);
+    const auto& settings = options.variation.settings;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      std::size_t* const count = std::get_if<0>(&set[i]);
+      if (!count) continue;
+      auto more = document.set(settings[i]);
+      if (std::get_if<1>(&more)) {
+        set[i] = std::move(more);
+      } else {
+        *count += std::get<0>(more);
+      }
+    }
+    return document;
   }
 };
 
@@ -120,6 +136,8 @@ Parts read_includes(Draft& draft, Element& root, const std::string& identity);
 /// Why a file is refused: `is larger than …`.
 std::string too_large(std::size_t max_size);
 
+/// Reads <parameters> and what the command line gives for them.
+void read_parameters(Draft& draft, Element& root);
 void read_framework(Draft& draft, Element& root);
 void read_engines(Draft& draft, Element& root);
 void read_media(Draft& draft, Element& root);

@@ -50,6 +50,25 @@ bool check_root(const Element& root, const pugi::xml_node& node) {
   return false;
 }
 
+/// Reports the settings that set nothing, and those that set more than one attribute.
+void check_settings(Draft& draft, const Document& document) {
+  for (std::size_t i = 0; i < draft.set.size(); ++i) {
+    const Setting& setting = draft.options.variation.settings[i];
+    const std::string option = to_string(setting);
+    if (const Wrong* wrong = std::get_if<1>(&draft.set[i])) {
+      draft.report.fault({}, fmt::format("{}: the path {}", option, wrong->text));
+      continue;
+    }
+    const std::size_t count = std::get<0>(draft.set[i]);
+    if (count == 0) {
+      draft.report.fault({}, fmt::format("{}: the path {}", option,
+                                         why_nothing(document.root(), setting.path)));
+    } else if (count > 1) {
+      draft.report.notice({}, fmt::format("{} sets {} attributes", option, count));
+    }
+  }
+}
+
 void read_scene(Draft& draft, File file, const std::string& name) {
   if (!trimmed(file.text).empty() && file.text.find_first_of("<\0"sv) == std::string::npos) {
     draft.scene.files.push_back(name);
@@ -59,7 +78,9 @@ void read_scene(Draft& draft, File file, const std::string& name) {
   if (!document.root()) return;
   Element root(document, document.root());
   if (!check_root(root, document.root())) return;
+  read_parameters(draft, root);
   Parts parts = read_includes(draft, root, file.identity);
+  check_settings(draft, document);
   read_framework(draft, root);
   read_engines(draft, root);
   read_media(draft, root);
@@ -72,6 +93,7 @@ void read_scene(Draft& draft, File file, const std::string& name) {
 
 ReadResult read(File file, const std::string& name, const ReadOptions& options) {
   ReadResult result;
+  result.scene.variation = options.variation;
   Report report(result.scene.files);
   Draft draft(report, result.scene, options);
   try {

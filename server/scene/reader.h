@@ -13,6 +13,7 @@
 #include "scene/files.h"
 #include "scene/problem.h"
 #include "scene/scene.h"
+#include "scene/variation.h"
 
 namespace ziggurat::scene {
 
@@ -21,6 +22,7 @@ struct ReadOptions {
   std::optional<Clock> clock = {};  ///< instead of the scene's
   std::size_t max_size = std::size_t{64} << 20;  ///< of the scene with what it includes and with
                                                  ///< its models written out [bytes]
+  Variation variation = {};
   OpenFile open = open_file;  ///< every file that is read, the scene's and those it includes
 };
 

@@ -18,6 +18,7 @@
 #include "scene/devices.h"
 #include "scene/geometry.h"
 #include "scene/location.h"
+#include "scene/variation.h"
 
 namespace ziggurat::scene {
 
@@ -240,6 +241,7 @@ struct ModelName {
 };
 
 struct Scene {
+  Variation variation;             ///< that it was read with
   std::vector<std::string> files;  ///< what Location::file counts; [0] is the scene file
   Experiment experiment;
   std::vector<Controller> controllers;

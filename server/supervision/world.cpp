@@ -33,6 +33,8 @@ std::string scene_hash(const scene::Scene& scene) {
     std::ifstream file(name, std::ios::binary);
     hash.add(std::string(std::istreambuf_iterator<char>(file), {}));
   }
+  for (const auto& [path, value] : scene.variation.settings) hash.add(path + '=' + value);
+  for (const auto& [name, value] : scene.variation.parameters) hash.add("$" + name + '=' + value);
   return math::to_hex(hash.digest());
 }
 

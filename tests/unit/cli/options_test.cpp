@@ -38,7 +38,14 @@ TEST(Options, AreTakenFromTheCommandLine) {
                             "--hash",
                             "--trace",
                             "t.csv",
-                            "--lenient"});
+                            "--lenient",
+                            "--set",
+                            "arena/@size=2,2,1",
+                            "--param=gain=0.5"});
+  ASSERT_EQ(options.scene_file.variation.settings.size(), 1u);
+  EXPECT_EQ(options.scene_file.variation.settings[0].value, "2,2,1");
+  ASSERT_EQ(options.scene_file.variation.parameters.size(), 1u);
+  EXPECT_EQ(options.scene_file.variation.parameters[0].first, "gain");
   EXPECT_EQ(options.ticks, 7u);
   EXPECT_EQ(options.seed, 0u);
   EXPECT_EQ(options.scene_file.clock, scene::Clock::beta50);
@@ -55,7 +62,7 @@ TEST(Options, WrongValuesAreRefused) {
   for (const Arguments& arguments :
        {Arguments{"--ticks", "-1"}, Arguments{"--duration", "-1"}, Arguments{"--duration", "nan"},
         Arguments{"--real-time=0"}, Arguments{"--clock", "fast"}, Arguments{"--controller", "x"},
-        Arguments{"--controller", "=x"}, Arguments{"--ticks", "1", "--duration", "1"}}) {
+        Arguments{"--controller", "=x"}, Arguments{"--set", "arena"}, Arguments{"--param", "=1"}, Arguments{"--ticks", "1", "--duration", "1"}}) {
     EXPECT_THROW(run(arguments), text::UsageError) << arguments.front();
   }
 }

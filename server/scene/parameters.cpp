@@ -1,0 +1,101 @@
+#include "scene/parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/draft.h"
+
+namespace ziggurat::scene {
+namespace {
+
+constexpr std::size_t longest_text = 1 << 20;  // of an attribute, with its parameters [bytes]
+
+std::vector<std::string> names_of(const Parameters& parameters) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : parameters) names.push_back(parameter.name);
+  return names;
+}
+
+const Parameter* find(const Parameters& parameters, std::string_view name) {
+  const auto found = std::ranges::find(parameters, name, &Parameter::name);
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+Wrong unknown(std::string_view name, const Parameters& parameters) {
+  return {parameters.empty()
+              ? fmt::format("uses ${{{0}}}, and the scene has no parameters; write <parameters "
+                            "{0}=\"…\"/> into <argos-configuration>, or $${{ for a literal ${{",
+                            name)
+              : fmt::format("uses ${{{}}}, which is no parameter; {}", name,
+                            advice(name, names_of(parameters)))};
+}
+
+}  // namespace
+
+Value<std::string> expand(std::string_view text, const Parameters& parameters) {
+  std::string result;
+  for (std::size_t begin = 0;;) {
+    const std::size_t found = text.find("${", begin);
+    const bool is_literal = found != std::string_view::npos && found > begin && text[found - 1] == '$';
+    result += text.substr(begin, is_literal ? found - 1 - begin : found - begin);
+    if (result.size() > longest_text) {
+      return Wrong{fmt::format("has more than {} bytes with its parameters", longest_text)};
+    }
+    if (found == std::string_view::npos) return result;
+    if (is_literal) {
+      result += "${";
+      begin = found + 2;
+      continue;
+    }
+    const std::size_t end = text.find('}', found);
+    if (end == std::string_view::npos) {
+      return Wrong{"has ${ without }; write ${name}, or $${ for a literal ${"};
+    }
+    const std::string_view name = text.substr(found + 2, end - found - 2);
+    const Parameter* parameter = find(parameters, name);
+    if (!parameter) return unknown(name, parameters);
+    result += parameter->value;
+    begin = end + 1;
+  }
+}
+
+Params with_parameters(Params params, const Parameters& parameters) {
+  for (const Parameter& parameter : parameters) {
+    const auto same =
+        std::ranges::find(params, parameter.name, &Params::value_type::first);
+    if (same == params.end()) {
+      params.emplace_back(parameter.name, parameter.value);
+    } else if (parameter.given) {
+      same->second = parameter.value;
+    }
+  }
+  return params;
+}
+
+void read_parameters(Draft& draft, Element& root) {
+  if (auto element = root.child("parameters")) {
+    for (auto& [name, value] : element->all_attributes()) {
+      draft.parameters.push_back({std::move(name), std::move(value)});
+    }
+    element->done();
+  }
+  for (const auto& [name, value] : draft.options.variation.parameters) {
+    const auto found = std::ranges::find(draft.parameters, name, &Parameter::name);
+    if (found != draft.parameters.end()) {
+      found->value = value;
+      found->given = true;
+      continue;
+    }
+    draft.report.fault(
+        root.where(),
+        draft.parameters.empty()
+            ? fmt::format("--param {0}={1}: the scene has no parameters; write <parameters "
+                          "{0}=\"{1}\"/> into <argos-configuration>",
+                          name, value)
+            : fmt::format("--param {}={}: the scene has no such parameter; {}", name, value,
+                          advice(name, names_of(draft.parameters))));
+  }
+}
+
+}  // namespace ziggurat::scene

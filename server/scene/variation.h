@@ -1,0 +1,21 @@
+#pragma once
+// How a run differs from what its scene file says, apart from options with a name of their own.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ziggurat::scene {
+
+/// A value for all attributes that a path names: `--set`.
+struct Setting {
+  std::string path;  ///< XPath from the root element: `physics_engines/dynamics3d/@iterations`
+  std::string value;
+};
+
+struct Variation {
+  std::vector<Setting> settings;                                ///< in order: later ones win
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< names and values: `--param`
+};
+
+}  // namespace ziggurat::scene
