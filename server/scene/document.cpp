@@ -311,14 +311,10 @@ std::optional<std::string> Element::take(const char* attribute) {
   asked_attributes_.push_back(attribute);
   const pugi::xml_attribute found = node_.attribute(attribute);
   if (found.empty()) return std::nullopt;
-  return value_of(found);
-}
-
-std::optional<std::string> Element::value_of(const pugi::xml_attribute& attribute) const {
-  check_references(*document_, name(), attribute);
-  auto value = document_->value(attribute);
+  check_references(*document_, name(), found);
+  auto value = document_->value(found);
   if (const Wrong* wrong = std::get_if<1>(&value)) {
-    fault_at(attribute.name(), wrong->text);
+    fault_at(attribute, wrong->text);
     return std::nullopt;
   }
   return std::get<0>(std::move(value));
@@ -328,7 +324,9 @@ std::vector<std::pair<std::string, std::string>> Element::all_attributes() {
   any_attribute_ = true;
   std::vector<std::pair<std::string, std::string>> result;
   for (const pugi::xml_attribute attribute : node_.attributes()) {
-    if (auto value = value_of(attribute)) result.emplace_back(attribute.name(), std::move(*value));
+    if (auto value = take(attribute.name())) {
+      result.emplace_back(attribute.name(), std::move(*value));
+    }
   }
   return result;
 }

@@ -202,8 +202,6 @@ class Element {
 
  private:
   std::optional<std::string> take(const char* attribute);
-  /// Its value; a wrong one is a fault.
-  std::optional<std::string> value_of(const pugi::xml_attribute& attribute) const;
 
   Document* document_;
   pugi::xml_node node_;
