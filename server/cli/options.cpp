@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "cli/arguments.h"
-#include "scene/settings.h"
+#include "cli/variation.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
@@ -339,26 +339,6 @@ Arguments without_secrets(const Arguments& arguments) {
   return kept;
 }
 
-/// @throws UsageError
-template <class T>
-std::vector<T> read_all(const std::string& option, const std::vector<std::string>& texts,
-                        scene::Value<T> (*read)(std::string_view)) {
-  std::vector<T> result;
-  for (const std::string& text : texts) {
-    auto value = read(text);
-    if (const auto* wrong = std::get_if<scene::Wrong>(&value)) {
-      throw text::UsageError(fmt::format("--{} {} {}", option, text, wrong->text));
-    }
-    result.push_back(std::get<0>(std::move(value)));
-  }
-  return result;
-}
-
-void read_variation(const Values& values, scene::Variation& to) {
-  to.settings = read_all("set", values.texts("set"), scene::to_setting);
-  to.parameters = read_all("param", values.texts("param"), scene::to_parameter);
-}
-
 }  // namespace
 
 po::options_description run_options() {
@@ -428,7 +408,7 @@ run::Options parse_options(const Arguments& arguments, const po::options_descrip
   if (values.has("max-scene-size")) {
     options.scene_file.max_size = text::to_size("--max-scene-size", values.text("max-scene-size"));
   }
-  read_variation(values, options.scene_file.variation);
+  options.scene_file.variation = to_variation(values.texts("set"), values.texts("param"));
   read_length(values, options);
   if (values.has("seed")) options.seed = text::to_integer("--seed", values.text("seed"));
   if (values.has("clock")) options.scene_file.clock = to_clock(values.text("clock"));

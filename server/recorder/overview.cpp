@@ -14,6 +14,8 @@ Start to_start(const v1::RunStart& from) {
   to.scene_hash = from.scene_hash();
   to.seed = from.seed();
   to.lenient = from.lenient();
+  for (const auto& each : from.settings()) to.settings.emplace_back(each.name(), each.value());
+  for (const auto& each : from.parameters()) to.parameters.emplace_back(each.name(), each.value());
   to.clock = from.clock();
   to.last_tick = from.last_tick();
   for (const auto& each : from.controllers()) {

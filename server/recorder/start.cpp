@@ -10,6 +10,15 @@ v1::RunStart to_message(const Start& from) {
   to.set_scene_hash(from.scene_hash);
   to.set_seed(from.seed);
   to.set_lenient(from.lenient);
+  const auto add = [](const auto& values, auto& target) {
+    for (const auto& [name, value] : values) {
+      v1::RunStart::Value& each = *target.Add();
+      each.set_name(v1::valid_utf8(name));
+      each.set_value(v1::valid_utf8(value));
+    }
+  };
+  add(from.settings, *to.mutable_settings());
+  add(from.parameters, *to.mutable_parameters());
   to.set_clock(from.clock);
   to.set_last_tick(from.last_tick);
   for (const Start::Controller& each : from.controllers) {

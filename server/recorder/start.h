@@ -28,6 +28,7 @@ struct Start {
   std::string scene, scene_hash;
   std::uint64_t seed = 1;
   bool lenient = false;
+  std::vector<std::pair<std::string, std::string>> settings, parameters;
   std::string clock;
   std::uint64_t last_tick = 0;
   std::vector<Controller> controllers;

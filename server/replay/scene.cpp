@@ -30,6 +30,7 @@ std::string hash_of(const scene::Scene& scene, const EmbeddedFiles& files) {
     const std::string* bytes = files.find(name);
     hash.add(bytes ? std::string_view(*bytes) : std::string_view());
   }
+  if (const std::string text = to_text(scene.variation); !text.empty()) hash.add(text);
   return math::to_hex(hash.digest());
 }
 
@@ -39,6 +40,12 @@ scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files)
   if (run.seed() == 0) throw RecordingError("the recording's seed is 0, which no run has");
   scene::ReadOptions options;
   options.lenient = run.lenient();
+  for (const auto& each : run.settings()) {
+    options.variation.settings.push_back({each.name(), each.value()});
+  }
+  for (const auto& each : run.parameters()) {
+    options.variation.parameters.emplace_back(each.name(), each.value());
+  }
   options.clock = clock_of(run.clock());
   options.open = files.opener();
   scene::ReadResult read = scene::read_file(run.scene(), options);

@@ -84,6 +84,10 @@ recorder::Start start_of(const Options& options, const supervision::World& world
   start.scene_hash = world.scene_hash;
   start.seed = world.seed;
   start.lenient = options.scene_file.lenient;
+  for (const auto& [path, value] : options.scene_file.variation.settings) {
+    start.settings.emplace_back(path, value);
+  }
+  start.parameters = options.scene_file.variation.parameters;
   start.clock = clock_of(options);
   start.last_tick = last_tick;
   start.controllers = controllers_of(world);

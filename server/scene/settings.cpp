@@ -114,6 +114,15 @@ std::string to_string(const Setting& setting) {
   return fmt::format("--set '{}={}'", setting.path, setting.value);
 }
 
+std::string to_text(const Variation& variation) {
+  std::string text;
+  for (const auto& [path, value] : variation.settings) text += fmt::format("set {}={}\n", path, value);
+  for (const auto& [name, value] : variation.parameters) {
+    text += fmt::format("param {}={}\n", name, value);
+  }
+  return text;
+}
+
 Value<std::vector<Attribute>> attributes_at(const pugi::xml_node& root, const std::string& path) {
   const Ending ending = ending_of(path);
   const auto selected = select(root, ending.name.empty() ? path : ending.elements);

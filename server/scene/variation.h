@@ -18,4 +18,7 @@ struct Variation {
   std::vector<std::pair<std::string, std::string>> parameters;  ///< names and values: `--param`
 };
 
+/// One line for each, for hashes; empty if there are none.
+std::string to_text(const Variation& variation);
+
 }  // namespace ziggurat::scene

@@ -33,8 +33,7 @@ std::string scene_hash(const scene::Scene& scene) {
     std::ifstream file(name, std::ios::binary);
     hash.add(std::string(std::istreambuf_iterator<char>(file), {}));
   }
-  for (const auto& [path, value] : scene.variation.settings) hash.add(path + '=' + value);
-  for (const auto& [name, value] : scene.variation.parameters) hash.add("$" + name + '=' + value);
+  if (const std::string text = to_text(scene.variation); !text.empty()) hash.add(text);
   return math::to_hex(hash.digest());
 }
 
