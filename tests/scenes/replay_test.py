@@ -52,6 +52,17 @@ class Replay(Recorded):
                 before, after = before[:-1], after[:-1]
             self.assertEqual(before, after, name)
 
+    def test_repeats_what_set_and_param_changed(self):
+        text = (self.folder / "arms.argos").read_text()
+        (self.folder / "arms.argos").write_text(re.sub(
+            r'ticks_per_second="\d+"', 'ticks_per_second="${hz}"', text, count=1).replace(
+            "<controllers>", '<parameters hz="10"/><controllers>', 1))
+        _, usual = self.record("--ticks", "20")
+        recording, end = self.record("--ticks", "20", "--param", "hz=25", "--set",
+                                     "physics_engines/*/@iterations=3")
+        self.assertNotEqual(usual, end)
+        self.assertEqual(end, self.ask("replay", recording, "--hash", "--quiet").lines[-1])
+
     def test_ends_at_a_tick(self):
         recording, _ = self.record("--ticks", "20")
         outcome = self.ask("replay", recording, "--until", "7", "--hash")
