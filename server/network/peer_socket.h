@@ -37,6 +37,9 @@ class PeerSocket {
   /// The connection is gone, or must be closed.
   bool is_over() const { return is_over_; }
   void give_up() { is_over_ = true; }
+  /// It stands in the order in which connections are asked for messages.
+  bool has_turn() const { return has_turn_; }
+  void set_turn(bool has_turn) { has_turn_ = has_turn; }
   /// Why its keys were refused, for people; empty if they were not.
   const std::string& refusal() const { return engine_.refusal(); }
 
@@ -74,6 +77,7 @@ class PeerSocket {
   std::size_t longest_ = longest_without_session;
   Time since_;
   bool is_over_ = false;
+  bool has_turn_ = false;
 
   Buffer input_;  // what has arrived is from begin_ to end_
   std::size_t begin_ = 0, end_ = 0;

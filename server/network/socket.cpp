@@ -94,6 +94,10 @@ Delivery Socket::send(const std::string& connection, std::string_view bytes) {
 void Socket::set_standing(const std::string& connection, Standing standing,
                           std::size_t longest) {
   peers_.set_standing(connection, standing, longest, Clock::now());
+  PeerSocket* peer = peers_.find(connection);
+  if (peer == nullptr || !peer->has_turn()) return;
+  for (Group* group : {&controllers_, &others_}) std::erase(group->turns, connection);
+  give_turn(standing == Standing::controller ? controllers_ : others_, *peer);
 }
 
 bool Socket::may_serve_others() { return !is_ticking_ || share_.has_some(Clock::now()); }
@@ -123,35 +127,51 @@ bool Socket::receive(Received& received) {
 
 bool Socket::receive_from(Group& group, Received& received) {
   for (;;) {
+    if (group.until_look > 0) {
+      --group.until_look;
+    } else if (const auto ready = group.list.next()) {
+      read_from(group, *ready);
+      if (group.list.has_more()) continue;
+      group.until_look = group.turns.size();
+    } else {
+      if (group.turns.empty()) return false;
+      group.until_look = group.turns.size();
+    }
     if (take_message(group, received)) return true;
-    const auto ready = group.list.next();
-    if (!ready) return false;
-    read_from(group, *ready);
   }
 }
 
-/// The next message of the group's current connection.
+/// The next message of the connection whose turn it is. It gets another turn after all others, so
+/// that one that sends much does not keep them waiting.
 bool Socket::take_message(Group& group, Received& received) {
-  PeerSocket* peer = group.current.empty() ? nullptr : peers_.find(group.current);
+  if (group.turns.empty()) return false;
+  PeerSocket* peer = peers_.find(group.turns.front());
+  group.turns.pop_front();
+  if (peer == nullptr) return false;
+  const std::size_t longest = peer->is_trusted() ? longest_ : peer->longest();
   bool has_message = false;
-  if (peer != nullptr) {
-    const std::size_t longest = peer->is_trusted() ? longest_ : peer->longest();
-    peers_.act(*peer, [&](PeerSocket& from) { has_message = from.next(longest, received); });
-  }
-  if (!has_message) group.current.clear();
+  peers_.act(*peer, [&](PeerSocket& from) { has_message = from.next(longest, received); });
+  peer->set_turn(false);
+  if (has_message) give_turn(group, *peer);
   return has_message;
 }
 
-/// A connection that is ready becomes the current one of the group.
+void Socket::give_turn(Group& group, PeerSocket& peer) {
+  group.turns.push_back(peer.name());
+  peer.set_turn(true);
+}
+
+/// A connection that is ready gets a turn. What it sends waits in the system until it has had all
+/// messages that are here already.
 void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
   if (ready.id < PeerTable::first_id) return accept(entrances_[ready.id]);
   PeerSocket* peer = peers_.find(ready.id);
   if (peer == nullptr) return;
   peers_.act(*peer, [&](PeerSocket& from) {
     if (ready.can_write) from.flush();
-    if (ready.can_read && !from.is_over()) from.read();
+    if (ready.can_read && !from.is_over() && !from.has_turn()) from.read();
   });
-  if (!peer->is_over()) group.current = peer->name();
+  if (!peer->is_over() && !peer->has_turn()) give_turn(group, *peer);
 }
 
 void Socket::accept(const Entrance& entrance) {
@@ -195,7 +215,7 @@ Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptor
   handled();
   const bool serves_others = may_serve_others();
   const auto has_more = [](const Group& group) {
-    return !group.current.empty() || group.list.has_more();
+    return !group.turns.empty() || group.list.has_more();
   };
   if (has_more(controllers_) || (serves_others && has_more(others_))) return Ready::message;
   if (!serves_others) {

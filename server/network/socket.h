@@ -6,6 +6,8 @@
 #include <poll.h>
 
 #include <chrono>
+#include <cstddef>
+#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -72,10 +74,11 @@ class Socket {
     Listener listener;
     bool is_private = false;
   };
-  /// Connections that are served together, and the one whose messages are given out.
+  /// Connections that are served together.
   struct Group {
     ReadyList& list;
-    std::string current;
+    std::deque<std::string> turns;   ///< those that may have messages: one each, in turn
+    std::size_t until_look = 0;      ///< so many turns until the list is asked for others
   };
 
   void listen(const std::string& endpoint, bool is_private, bool allows_any);
@@ -85,6 +88,7 @@ class Socket {
   bool receive_from(Group& group, Received& received);
   bool take_message(Group& group, Received& received);
   void read_from(Group& group, const ReadyList::Ready& ready);
+  void give_turn(Group& group, PeerSocket& peer);
   void accept(const Entrance& entrance);
   void set_accepting(bool is_accepting);
 
