@@ -97,7 +97,7 @@ void Socket::set_standing(const std::string& connection, Standing standing,
   PeerSocket* peer = peers_.find(connection);
   if (peer == nullptr || !peer->has_turn()) return;
   for (Group* group : {&controllers_, &others_}) std::erase(group->turns, connection);
-  give_turn(standing == Standing::controller ? controllers_ : others_, *peer);
+  (standing == Standing::controller ? controllers_ : others_).give_turn(*peer);
 }
 
 bool Socket::may_serve_others() { return !is_ticking_ || share_.has_some(Clock::now()); }
@@ -152,12 +152,12 @@ bool Socket::take_message(Group& group, Received& received) {
   bool has_message = false;
   peers_.act(*peer, [&](PeerSocket& from) { has_message = from.next(longest, received); });
   peer->set_turn(false);
-  if (has_message) give_turn(group, *peer);
+  if (has_message) group.give_turn(*peer);
   return has_message;
 }
 
-void Socket::give_turn(Group& group, PeerSocket& peer) {
-  group.turns.push_back(peer.name());
+void Socket::Group::give_turn(PeerSocket& peer) {
+  turns.push_back(peer.name());
   peer.set_turn(true);
 }
 
@@ -171,7 +171,7 @@ void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
     if (ready.can_write) from.flush();
     if (ready.can_read && !from.is_over() && !from.has_turn()) from.read();
   });
-  if (!peer->is_over() && !peer->has_turn()) give_turn(group, *peer);
+  if (!peer->is_over() && !peer->has_turn()) group.give_turn(*peer);
 }
 
 void Socket::accept(const Entrance& entrance) {

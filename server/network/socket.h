@@ -79,6 +79,8 @@ class Socket {
     ReadyList& list;
     std::deque<std::string> turns;   ///< those that may have messages: one each, in turn
     std::size_t until_look = 0;      ///< so many turns until the list is asked for others
+
+    void give_turn(PeerSocket& peer);
   };
 
   void listen(const std::string& endpoint, bool is_private, bool allows_any);
@@ -88,7 +90,6 @@ class Socket {
   bool receive_from(Group& group, Received& received);
   bool take_message(Group& group, Received& received);
   void read_from(Group& group, const ReadyList::Ready& ready);
-  void give_turn(Group& group, PeerSocket& peer);
   void accept(const Entrance& entrance);
   void set_accepting(bool is_accepting);
 

@@ -106,7 +106,9 @@ bool read(const Numbers& from, std::vector<T>& to) {
   const auto count = static_cast<std::size_t>(from.values_size());
   if (count % world::width<T> != 0) return false;
   to.resize(count / world::width<T>);
-  if (count > 0) std::memcpy(to.data(), from.values().data(), count * sizeof(double));
+  static_assert(sizeof(T) == world::width<T> * sizeof(double) && std::is_trivially_copyable_v<T>);
+  void* const target = to.data();
+  if (count > 0) std::memcpy(target, from.values().data(), count * sizeof(double));
   return true;
 }
 bool read(const Integers& from, std::vector<world::Color>& to) {
@@ -140,10 +142,13 @@ std::optional<std::string> read_channel(const Commands& from, world::Commands& t
     return fmt::format("the array {} has a value that is out of range or half a value",
                        channel.recorded);
   }
-  if (!(from.*row.has)() || !channel.rule.holds) return std::nullopt;
-  for (std::size_t d = 0; d < values.size(); ++d) {
-    if (channel.rule.holds(values[d])) continue;
-    return fmt::format("the {} number {} must be {}", channel.value_words, d, channel.rule.words);
+  if (!(from.*row.has)()) return std::nullopt;
+  constexpr auto holds = channel.rule.holds;  // null: all values are right
+  if constexpr (holds != nullptr) {
+    for (std::size_t d = 0; d < values.size(); ++d) {
+      if (holds(values[d])) continue;
+      return fmt::format("the {} number {} must be {}", channel.value_words, d, channel.rule.words);
+    }
   }
   return std::nullopt;
 }
