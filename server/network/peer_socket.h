@@ -17,6 +17,9 @@ namespace ziggurat::network {
 
 class PeerSocket {
  public:
+  /// It stands in the order in which connections are asked for messages.
+  bool has_turn = false;
+
   /// Sends the first bytes of the handshake.
   /// @param name  of the connection
   /// @param keys  must outlive the connection; null: it is not encrypted
@@ -37,9 +40,6 @@ class PeerSocket {
   /// The connection is gone, or must be closed.
   bool is_over() const { return is_over_; }
   void give_up() { is_over_ = true; }
-  /// It stands in the order in which connections are asked for messages.
-  bool has_turn() const { return has_turn_; }
-  void set_turn(bool has_turn) { has_turn_ = has_turn; }
   /// Why its keys were refused, for people; empty if they were not.
   const std::string& refusal() const { return engine_.refusal(); }
 
@@ -77,7 +77,6 @@ class PeerSocket {
   std::size_t longest_ = longest_without_session;
   Time since_;
   bool is_over_ = false;
-  bool has_turn_ = false;
 
   Buffer input_;  // what has arrived is from begin_ to end_
   std::size_t begin_ = 0, end_ = 0;

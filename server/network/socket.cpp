@@ -95,7 +95,7 @@ void Socket::set_standing(const std::string& connection, Standing standing,
                           std::size_t longest) {
   peers_.set_standing(connection, standing, longest, Clock::now());
   PeerSocket* peer = peers_.find(connection);
-  if (peer == nullptr || !peer->has_turn()) return;
+  if (peer == nullptr || !peer->has_turn) return;
   for (Group* group : {&controllers_, &others_}) std::erase(group->turns, connection);
   (standing == Standing::controller ? controllers_ : others_).give_turn(*peer);
 }
@@ -151,14 +151,14 @@ bool Socket::take_message(Group& group, Received& received) {
   const std::size_t longest = peer->is_trusted() ? longest_ : peer->longest();
   bool has_message = false;
   peers_.act(*peer, [&](PeerSocket& from) { has_message = from.next(longest, received); });
-  peer->set_turn(false);
+  peer->has_turn = false;
   if (has_message) group.give_turn(*peer);
   return has_message;
 }
 
 void Socket::Group::give_turn(PeerSocket& peer) {
   turns.push_back(peer.name());
-  peer.set_turn(true);
+  peer.has_turn = true;
 }
 
 /// A connection that is ready gets a turn. What it sends waits in the system until it has had all
@@ -169,9 +169,9 @@ void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
   if (peer == nullptr) return;
   peers_.act(*peer, [&](PeerSocket& from) {
     if (ready.can_write) from.flush();
-    if (ready.can_read && !from.is_over() && !from.has_turn()) from.read();
+    if (ready.can_read && !from.is_over() && !from.has_turn) from.read();
   });
-  if (!peer->is_over() && !peer->has_turn()) group.give_turn(*peer);
+  if (!peer->is_over() && !peer->has_turn) group.give_turn(*peer);
 }
 
 void Socket::accept(const Entrance& entrance) {
