@@ -75,7 +75,8 @@ class Controller:
 
     def hello(self):
         self.connection.send(hello={
-            "version": {"major": 1, "minor": 1}, "role": "ROLE_CONTROLLER", "clientName": "json", "robots": ["*"],
+            "version": {"major": 1, "minor": 2}, "role": "ROLE_CONTROLLER", "clientName": "json", "robots": ["*"],
+            "canRestore": True,  # it has no state but what it was told
             "controller": os.environ.get("ZIGGURAT_CONTROLLER", ""), "sessionToken": self.token})
 
     def resume(self):
@@ -115,14 +116,15 @@ class Controller:
                         for robot in welcome["robots"] for motor in robot["jointActuators"]]
 
     def take_observation(self, observation):
-        is_again, self.is_resumed = self.is_resumed and self.command["tick"] == observation["tick"], False
+        is_same = all(self.command.get(name) == observation.get(name) for name in ("tick", "epoch"))
+        is_again, self.is_resumed = self.is_resumed and is_same, False
         if not is_again:
             self.command = self.answer_to(observation)
             self.is_over_at = None
         self.connection.send(command=self.command)
 
     def answer_to(self, observation):
-        command = {"tick": observation["tick"]}
+        command = {name: observation[name] for name in ("tick", "epoch") if name in observation}
         if not self.are_told:
             command["jointTargets"] = self.targets
         elif observation["jointReadings"]:

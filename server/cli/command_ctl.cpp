@@ -74,6 +74,12 @@ void reset(const Call& call) {
   print_result(call, "reset", 0);
 }
 
+void snapshot(const Call& call) { print_result(call, "kept", call.server.snapshot(call.words[0])); }
+
+void restore(const Call& call) {
+  print_result(call, "restored", call.server.restore(call.words[0]));
+}
+
 std::string contents_of(const std::string& path) {
   if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
   std::ifstream file(path);
@@ -150,6 +156,8 @@ constexpr Verb verbs[] = {
     {"resume", "", 0, 0, "continue", resume},
     {"step", "[TICKS]", 0, 1, "advance a paused world, by 1 tick if TICKS is missing", step},
     {"reset", "[--seed N]", 0, 0, "build the world again; controllers are told", reset},
+    {"snapshot", "NAME", 1, 1, "keep the world under this name", snapshot},
+    {"restore", "NAME", 1, 1, "go back to what was kept; controllers are told", restore},
     {"spawn", "FILE|-", 1, 1, "add an entity: one element, as in <arena>", spawn},
     {"remove", "ENTITY", 1, 1, "remove it from the world", remove},
     {"move", "ENTITY x,y,z [z,y,x]", 2, 3,

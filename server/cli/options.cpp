@@ -72,6 +72,8 @@ po::options_description world_options() {
        "robots that a supervisor spawns may use the scripts and files below DIR, too; otherwise "
        "only "
        "scripts that the scene names; may be repeated")  //
+      ("snapshot-folder", text("DIR"),
+       "write the snapshots that supervisors take below DIR, and read them from there")  //
       ("metrics", text("HOST:PORT"),
        "serve the run's status over HTTP there: /metrics for Prometheus, /status as JSON")  //
       ("view", po::value<std::string>()->implicit_value("")->value_name("HOST:PORT"),
@@ -275,6 +277,7 @@ void read_network(const Values& values, run::Options& options) {
   options.insecure = values.has("insecure");
   options.paused = values.has("paused");
   options.spawned_script_folders = values.texts("allow-spawned-scripts");
+  options.snapshot_folder = values.text("snapshot-folder");
   options.metrics = values.text("metrics");
   if (values.has("view")) options.view = values.text("view");
   options.view_token = values.text("view-token");

@@ -31,6 +31,7 @@ struct RobotStatus {
   Time last_message;     ///< of its session, if held
   scene::DeadlinePolicy deadline;  ///< what happens if it is not answered for in time
   bool was_held = false;           ///< a session has had it
+  bool can_restore = true;  ///< held, or of a lost session: its controller can go back to a snapshot
 };
 
 /// How well controllers answered.

@@ -218,11 +218,11 @@ void Server::set_paused(bool is_paused) {
 
 bool Server::paused() const { return state_->barrier.gate.is_standing(); }
 
-void Server::reset(std::uint64_t seed) {
+void Server::restart(const wire::Restart& restart) {
   state_->advance();
   ++state_->changes;
-  if (state_->link) state_->link->set_seed(seed);
-  network::reset(state_->barrier, seed);
+  if (state_->link) state_->link->set_seed(restart.seed);
+  network::restart(state_->barrier, restart);
 }
 
 std::vector<Call> Server::take_calls() { return state_->barrier.calls.take(); }

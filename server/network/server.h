@@ -122,10 +122,12 @@ class Server {
   void set_paused(bool is_paused);
   bool paused() const;
 
-  /// The world went back to its start: sessions are told, what they owed is void, and the next
-  /// observation to be published is that of tick 0. Robots that the layout has no more are
-  /// forgotten, and sessions that have one of them are over.
-  void reset(std::uint64_t seed);
+  /// The world went back to its start or to a snapshot: sessions are told, what they owed is void, and
+  /// the next observation to be published is that of tick 0 or of the snapshot. Robots that the layout
+  /// has no more, or that are others now, are forgotten, and sessions that have one of them are over;
+  /// these others come by add_robots().
+  /// @param restart  its epoch is the server's to know
+  void restart(const wire::Restart& restart);
 
   /// Requests that arrived since the last call, in order of arrival.
   std::vector<Call> take_calls();

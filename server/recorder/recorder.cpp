@@ -129,15 +129,22 @@ void Recorder::reset(std::uint64_t seed) {
   add([](Recording& to) { to.end_epoch(); }, 0);
 }
 
-void Recorder::paused() {
+void Recorder::kept(const std::string& snapshot) {
   v1::Act act;
-  act.mutable_pause();
+  act.mutable_snapshot()->set_name(snapshot);
   add(std::move(act));
 }
 
-void Recorder::resumed() {
+void Recorder::restored(const std::string& snapshot) {
   v1::Act act;
-  act.mutable_resume();
+  act.mutable_restore()->set_name(snapshot);
+  add(std::move(act));
+  add([](Recording& to) { to.end_epoch(); }, 0);
+}
+
+void Recorder::set_paused(bool is_paused) {
+  v1::Act act;
+  is_paused ? void(act.mutable_pause()) : void(act.mutable_resume());
   add(std::move(act));
 }
 

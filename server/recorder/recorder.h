@@ -42,8 +42,9 @@ class Recorder {
   void spawned(const std::string& xml, std::vector<EmbeddedFile> files);
   void removed(const std::string& entity);
   void reset(std::uint64_t seed);
-  void paused();
-  void resumed();
+  void kept(const std::string& snapshot);
+  void restored(const std::string& snapshot);
+  void set_paused(bool is_paused);
   void log(channels::Severity severity, std::string_view name, std::string_view text);
   void step(const world::Commands& commands);
 

@@ -30,6 +30,7 @@ struct Options {
   unsigned lua_processes = 1;                                    ///< 0 = one per robot
   std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command
   std::vector<std::string> spawned_script_folders;  ///< whose files spawned robots may use, too
+  std::string snapshot_folder;                      ///< for supervisors; empty = none
   std::vector<std::string> lua_arguments;           ///< for ziggurat-lua, of --lua-… options
   std::vector<std::string> endpoints;
   std::vector<DeadlineOption> deadlines;

@@ -175,11 +175,16 @@ void RecordedRun::act(const supervision::Act& done) {
         } else if constexpr (std::is_same_v<Type, supervision::WasReset>) {
           to.reset(act.seed);
           is_population_new_ = true;
+        } else if constexpr (std::is_same_v<Type, supervision::Restored>) {
+          to.restored(act.snapshot);
+          is_population_new_ = true;
+        } else if constexpr (std::is_same_v<Type, supervision::Kept>) {
+          to.kept(act.snapshot);
         } else if constexpr (std::is_same_v<Type, supervision::Paused>) {
-          to.paused();
+          to.set_paused(true);
         } else {
           static_assert(std::is_same_v<Type, supervision::Resumed>);
-          to.resumed();
+          to.set_paused(false);
         }
       },
       done);

@@ -220,10 +220,14 @@ std::optional<Rehearsal::Ending> Rehearsal::repeat() {
 
 void Rehearsal::take(const v1::Act& act) {
   if (act.has_reset()) {
-    server_.reset(world_.seed);
+    server_.restart({world_.seed});
     controllers_.forget_robots(world_.simulation.layout().robots.size());
     gone_.resize(world_.simulation.layout().robots.size());
     is_restarted_ = true;
+  } else if (act.has_restore()) {
+    throw replay::RecordingError(
+        "the run went back to a snapshot, and controllers that are started now cannot; verify it "
+        "without --controllers");
   } else if (act.has_spawn()) {
     add_robot();
   } else if (act.has_remove()) {

@@ -185,7 +185,9 @@ processes::LaunchSettings Run::launch_settings() const {
 
 supervision::Supervision::Settings Run::supervision_settings() const {
   return {options_.scene_file.max_size, plan_.ticks.value_or(0), options_.hil, with_controllers_,
-          options_.spawned_script_folders};
+          options_.spawned_script_folders,
+          options_.snapshot_folder,
+          fmt::format("{}, {}", version, __VERSION__)};
 }
 
 void Run::print_notices() {
@@ -251,10 +253,10 @@ Ending Run::run_to_end() {
   }
 }
 
-/// One world, from tick 0 on.
+/// One world, from tick 0 or a snapshot on.
 Ending Run::run_world() {
   simulation::Simulation& simulation = world_.simulation;
-  schedule_.begin(0, supervision_.paused_for());
+  schedule_.begin(simulation.state().tick, supervision_.paused_for());
   for (;;) {
     // Controllers compute while the files are written.
     server_.publish(simulation.observations(), simulation.state().tag_payloads);
@@ -345,19 +347,11 @@ std::optional<Ending> Run::wait(const Wait& step) {
   }
 }
 
-/// False if the world cannot be built with the requested seed; then the supervisor gets an error
-/// and the world stays as it is.
+/// To the start, or to a snapshot. False if the world can't be put back so.
 bool Run::reset_world() {
-  try {
-    world_.reset(*supervision_.requested_reset());
-  } catch (const scene::SceneError& error) {
-    supervision_.refuse_reset(error.what());
-    return false;
-  }
+  if (!supervision_.restart()) return false;
   watch_.forget_spawned();
-  server_.reset(world_.seed);
   ++resets_;
-  supervision_.reset_done();
   if (showing_) showing_->restarted();
   return true;
 }

@@ -140,7 +140,7 @@ std::optional<Ending> Watch::supervisor_request() {
   if (const auto& reason = supervision_.requested_shutdown()) {
     return reason->empty() ? Ending::interrupted : Ending::shut_down;
   }
-  if (supervision_.requested_reset()) return Ending::reset;
+  if (supervision_.requests_restart()) return Ending::reset;
   return std::nullopt;
 }
 

@@ -28,10 +28,18 @@ struct Removed {
 struct WasReset {
   std::uint64_t seed = 1;
 };
+/// The world went back to what was kept under a name.
+struct Restored {
+  std::string snapshot;
+};
+/// The world was kept under a name.
+struct Kept {
+  std::string snapshot;
+};
 struct Paused {};
 struct Resumed {};
 
-using Act = std::variant<Moved, Spawned, Removed, WasReset, Paused, Resumed>;
+using Act = std::variant<Moved, Spawned, Removed, WasReset, Restored, Kept, Paused, Resumed>;
 using TellAct = std::function<void(const Act&)>;
 
 }  // namespace ziggurat::supervision

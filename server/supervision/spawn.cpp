@@ -11,7 +11,9 @@
 
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
+#include "supervision/opener.h"
 #include "supervision/supervision.h"
+#include "wire/fault.h"
 
 namespace ziggurat::supervision {
 
@@ -43,13 +45,12 @@ void check_size(const scene::Entity& entity, std::vector<scene::Problem>& proble
   }
 }
 
-/// Opens files below the allowed folders: as an element of the scene file would name them,
-/// otherwise relative to one of these folders.
-/// @param act  gets the files
+}  // namespace
+
 scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string& scene_file,
-                       Spawned& act) {
+                       Spawned* act) {
   const auto scene_folder = std::filesystem::path(scene_file).parent_path();
-  return [&allowed, &act, scene_folder](const std::filesystem::path& path, std::size_t max_size) {
+  return [&allowed, act, scene_folder](const std::filesystem::path& path, std::size_t max_size) {
     std::vector<std::filesystem::path> candidates{path};
     for (const auto& folder : allowed.folders) {
       candidates.push_back(folder / path.lexically_relative(scene_folder));
@@ -57,9 +58,8 @@ scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string
     for (const auto& candidate : candidates) {
       if (processes::is_below(allowed.folders, candidate)) {
         auto opened = scene::open_file(candidate, max_size);
-        if (const auto* file = std::get_if<scene::File>(&opened)) {
-          act.files.emplace_back(path.string(), file->text);
-        }
+        const auto* file = std::get_if<scene::File>(&opened);
+        if (file && act) act->files.emplace_back(path.string(), file->text);
         return opened;
       }
     }
@@ -67,26 +67,28 @@ scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string
   };
 }
 
-}  // namespace
-
 Supervision::Reply Supervision::spawn(const network::Call& call) {
   const std::string& text = call.request.text;
   if (text.size() > longest_text) {
-    return fail(call, ErrorCode::too_large, "spawn.xml",
-                fmt::format("The element has {} bytes; at most {} are allowed.", text.size(),
-                            longest_text));
+    return fail(call,
+                wire::make_fault(ErrorCode::too_large, "spawn.xml",
+                                 fmt::format("The element has {} bytes; at most {} are allowed.",
+                                             text.size(), longest_text)));
   }
   if (spawned_ == most_spawned) {
-    return fail(call, ErrorCode::too_many, {},
-                fmt::format("{} entities have been spawned, which is the limit; reset the world to "
-                            "spawn more.",
-                            most_spawned));
+    return fail(
+        call,
+        wire::make_fault(
+            ErrorCode::too_many, {},
+            fmt::format("{} entities have been spawned, which is the limit; reset the world to "
+                        "spawn more.",
+                        most_spawned)));
   }
   Spawned act{text, {}};
   scene::Addition addition = world_.additions.read(
       text, world_.scene, spawnable_size_,
-      [this](const std::string& id) { return entity_named(id).has_value(); },
-      opener(allowed_, world_.path, act));
+      [this](const std::string& id) { return entity_named(world_.simulation, id).has_value(); },
+      opener(allowed_, world_.path, &act));
   const scene::Entity& entity = addition.entity;
   processes::SpawnedScript script;
   try {
@@ -101,42 +103,48 @@ Supervision::Reply Supervision::spawn(const network::Call& call) {
     }
     if (addition.ok()) check_size(entity, addition.problems);
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
-    world_.simulation.spawn(world_.scene, entity);
+    world_.simulation.spawn(world_.scene, entity, text);
   } catch (const std::exception& error) {  // the world is as it was
-    return fail(call, ErrorCode::bad_value, "spawn.xml",
-                std::string(error.what()).substr(0, longest_message));
+    return fail(call, wire::make_fault(ErrorCode::bad_value, "spawn.xml",
+                                       std::string(error.what()).substr(0, longest_message)));
   }
   for (const scene::Problem& notice : addition.problems) console_.problem(notice);
   callers_.tell(act);
   ++spawned_;
   spawnable_size_ -= addition.size;
-  if (entity.controller) add_controller(entity, script.path);
+  const std::size_t robots = world_.simulation.layout().robots.size();
+  if (entity.controller) add_controllers(robots - 1, std::array{script.path});
   return done(call);
 }
 
-/// Gives the last robot of the layout, which was just spawned, its controller: a Lua process if the
-/// run has started those of the other robots, otherwise a client that connects.
-/// @param script  of a Lua controller; empty if it has none
-void Supervision::add_controller(const scene::Entity& entity, const std::string& script) {
+/// Gives the robots of the layout that came last their controllers: a Lua process if the run has
+/// started those of the other robots, otherwise a client that connects.
+/// @param first    of them
+/// @param scripts  of their Lua controllers; empty if one has none
+void Supervision::add_controllers(std::size_t first, std::span<const std::string> scripts) {
   const simulation::Simulation& simulation = world_.simulation;
-  server_.add_robots(std::array{script}, simulation.observations(),
-                     simulation.state().tag_payloads);
-  const std::array robot{simulation.layout().robots.size() - 1};
-  const bool is_lua = processes::runs_script(world_.scene.controllers[*entity.controller]);
-  if (!settings_.with_controllers || (is_lua && script.empty())) {
-    return server_.remove_robots(robot);
-  }
-  if (!is_lua) return;
-  try {
-    controllers_.start_spawned(robot[0], simulation.layout());
-  } catch (const std::runtime_error& error) {
-    console_.notice(error.what());  // the run then reports that it waits for a client to connect
+  const auto& robots = simulation.layout().robots;
+  server_.add_robots(scripts, simulation.observations(), simulation.state().tag_payloads);
+  for (std::size_t i = first; i < robots.size(); ++i) {
+    const std::array robot{i};
+    const bool is_lua = processes::runs_script(world_.scene.controllers[robots[i].controller]);
+    if (!settings_.with_controllers || (is_lua && scripts[i - first].empty()) ||
+        simulation.state().is_absent(robots[i].entity)) {
+      server_.remove_robots(robot);
+      continue;
+    }
+    if (!is_lua) continue;
+    try {
+      controllers_.start_spawned(i, simulation.layout());
+    } catch (const std::runtime_error& error) {
+      console_.notice(error.what());  // the run then reports that it waits for a client to connect
+    }
   }
 }
 
 Supervision::Reply Supervision::remove(const network::Call& call) {
   const std::string& id = call.request.text;
-  const auto entity = entity_named(id);
+  const auto entity = entity_named(world_.simulation, id);
   if (!entity) return fail(call, no_entity("remove.entity", id));
   std::vector<std::size_t> robots;
   const auto& all = world_.simulation.layout().robots;

@@ -66,6 +66,15 @@ wire::Fault no_entity(std::string field, const std::string& id) {
       fmt::format("There is no entity '{}'.", id.substr(0, network::longest_pattern)));
 }
 
+std::optional<std::size_t> entity_named(const simulation::Simulation& world,
+                                        const std::string& id) {
+  const auto& entities = world.layout().entities;
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (entities[i].id == id && !world.state().is_absent(i)) return i;
+  }
+  return std::nullopt;
+}
+
 void PauseTimer::update(bool is_paused) {
   if (is_paused == paused_since_.has_value()) return;
   if (is_paused) {
@@ -90,6 +99,7 @@ Supervision::Supervision(const Settings& settings, World& world, network::Server
       callers_(callers),
       controllers_(controllers),
       console_(console),
+      snapshots_(settings.snapshot_folder, settings.build),
       spawnable_size_(settings.max_spawned_size) {}
 
 /// Requests of one connection are answered in their order; different connections do not wait for
@@ -129,12 +139,17 @@ Supervision::Reply Supervision::handle(const network::Call& call) {
       return spawn(call);
     case Kind::remove:
       return remove(call);
+    case Kind::snapshot:
+      return snapshot(call);
+    case Kind::restore:
+      return restore(call);
     case Kind::shutdown:
       if (auto fault = fault_of_reason(call.request.text)) return fail(call, std::move(*fault));
       if (!shutdown_) shutdown_ = call.request.text;
       return done(call);
     default:
-      return fail(call, ErrorCode::unimplemented, {}, "This server does not know that request.");
+      return fail(call, wire::make_fault(ErrorCode::unimplemented, {},
+                                         "This server does not know that request."));
   }
 }
 
@@ -169,12 +184,14 @@ Supervision::Reply Supervision::step(const network::Call& call) {
   }
   if (stepping_) return Reply::later;
   if (call.request.ticks == 0) {
-    return fail(call, ErrorCode::bad_value, "step.ticks", "A step has at least one tick.");
+    return fail(call, wire::make_fault(ErrorCode::bad_value, "step.ticks",
+                                       "A step has at least one tick."));
   }
   if (!is_gathered_ && is_pause_asked_) return Reply::later;  // the world stands at tick 0, then
   if (!server_.paused()) {
-    return fail(call, ErrorCode::out_of_state, {},
-                "The world is not paused; send a Pause request before a Step.");
+    return fail(call,
+                wire::make_fault(ErrorCode::out_of_state, {},
+                                 "The world is not paused; send a Pause request before a Step."));
   }
   stepping_ = call;
   steps_left_ = call.request.ticks;
@@ -183,36 +200,17 @@ Supervision::Reply Supervision::step(const network::Call& call) {
   return Reply::later;
 }
 
-/// Answered by reset_done() or refuse_reset().
+/// Answered by restart().
 Supervision::Reply Supervision::reset(const network::Call& call) {
   if (resetting_) return Reply::later;
   if (call.request.seed == std::uint64_t{0}) {
-    return fail(call, ErrorCode::bad_value, "reset.seed",
-                "The seed is 0; write a seed from 1 on, or none to keep the present one.");
+    return fail(call,
+                wire::make_fault(
+                    ErrorCode::bad_value, "reset.seed",
+                    "The seed is 0; write a seed from 1 on, or none to keep the present one."));
   }
   resetting_ = call;
   return Reply::given;
-}
-
-std::optional<std::uint64_t> Supervision::requested_reset() const {
-  if (!resetting_) return std::nullopt;
-  return resetting_->request.seed.value_or(world_.seed);
-}
-
-/// A reset removes all that was spawned. Processes of such robots end by themselves.
-void Supervision::reset_done() {
-  is_gathered_ = false;  // until every robot has its controller again
-  spawned_ = 0;
-  spawnable_size_ = settings_.max_spawned_size;
-  controllers_.forget_robots(world_.simulation.layout().robots.size());
-  callers_.tell(WasReset{world_.seed});
-  done(*resetting_);
-  resetting_.reset();
-}
-
-void Supervision::refuse_reset(const std::string& why) {
-  fail(*resetting_, ErrorCode::bad_value, "reset.seed", why);
-  resetting_.reset();
 }
 
 Supervision::Reply Supervision::read(const network::Call& call) {
@@ -232,13 +230,14 @@ Supervision::Reply Supervision::read(const network::Call& call) {
 
 Supervision::Reply Supervision::move(const network::Call& call) {
   const wire::Request& request = call.request;
-  const auto entity = entity_named(request.text);
+  const auto entity = entity_named(world_.simulation, request.text);
   if (!entity) return fail(call, no_entity("move.entity", request.text));
   constexpr double farthest = 1e6;  // [m], as in scenes
   const auto is_near = [](double value) { return std::abs(value) <= farthest; };
   if (request.position.size() != 3 || !std::ranges::all_of(request.position, is_near)) {
-    return fail(call, ErrorCode::bad_value, "move.position",
-                "A position must be three numbers x, y, z from -1e6 to 1e6 metres.");
+    return fail(call, wire::make_fault(
+                          ErrorCode::bad_value, "move.position",
+                          "A position must be three numbers x, y, z from -1e6 to 1e6 metres."));
   }
   math::Pose pose = world_.simulation.state().origins[*entity];
   pose.position = {request.position[0], request.position[1], request.position[2]};
@@ -246,8 +245,10 @@ Supervision::Reply Supervision::move(const network::Call& call) {
     const auto& q = request.orientation;
     const double norm = std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), 0.0));
     if (q.size() != 4 || !std::isfinite(norm) || norm < 1e-6) {
-      return fail(call, ErrorCode::bad_value, "move.orientation",
-                  "An orientation must be a quaternion w, x, y, z, finite and not zero.");
+      return fail(
+          call,
+          wire::make_fault(ErrorCode::bad_value, "move.orientation",
+                           "An orientation must be a quaternion w, x, y, z, finite and not zero."));
     }
     pose.orientation = math::Quaternion(q[0], q[1], q[2], q[3]).normalized();
   }
@@ -262,22 +263,9 @@ Supervision::Reply Supervision::fail(const network::Call& call, wire::Fault faul
   return Reply::given;
 }
 
-Supervision::Reply Supervision::fail(const network::Call& call, ErrorCode code, std::string field,
-                                     std::string message) {
-  return fail(call, wire::make_fault(code, std::move(field), std::move(message)));
-}
-
 Supervision::Reply Supervision::done(const network::Call& call) {
   callers_.done(call, world_.simulation.state().tick);
   return Reply::given;
-}
-
-std::optional<std::size_t> Supervision::entity_named(const std::string& id) const {
-  const auto& entities = world_.simulation.layout().entities;
-  for (std::size_t i = 0; i < entities.size(); ++i) {
-    if (entities[i].id == id && !world_.simulation.state().is_absent(i)) return i;
-  }
-  return std::nullopt;
 }
 
 void Supervision::published() {
@@ -285,9 +273,7 @@ void Supervision::published() {
   if (steps_left_ > 0 && --steps_left_ == 0) server_.set_paused(true);
 }
 
-void Supervision::charge(Phase phase, double seconds) {
-  budget_.add(phase, seconds);
-}
+void Supervision::charge(Phase phase, double seconds) { budget_.add(phase, seconds); }
 
 wire::Status Supervision::status() const {
   const world::State& state = world_.simulation.state();

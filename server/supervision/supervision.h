@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "processes/spawned_scripts.h"
 #include "reports/console.h"
 #include "supervision/callers.h"
+#include "supervision/snapshots.h"
 #include "supervision/tick_budget.h"
 #include "supervision/world.h"
 
@@ -21,6 +23,9 @@ namespace ziggurat::supervision {
 /// The fault of a request for an entity that is not there.
 /// @param field  of the request
 wire::Fault no_entity(std::string field, const std::string& id);
+
+/// The entity of that id that is in the world, into Layout::entities.
+std::optional<std::size_t> entity_named(const simulation::Simulation& world, const std::string& id);
 
 /// How long a paced run has been paused: its schedule shifts by that.
 class PauseTimer {
@@ -44,6 +49,8 @@ class Supervision {
     bool is_hardware_in_the_loop = false;
     bool with_controllers = true;  ///< otherwise spawned robots have no controller either
     std::vector<std::string> spawned_script_folders;  ///< whose files spawned robots may use, too
+    std::string snapshot_folder;  ///< where snapshots are written to and read from; empty: nowhere
+    std::string build;            ///< of this program
   };
 
   /// Everything but the settings must outlive this. Notices on spawned entities go to the console.
@@ -60,11 +67,11 @@ class Supervision {
   /// Adds wall time to a phase of the tick that ends.
   void charge(Phase phase, double seconds);
 
-  /// The seed of a requested reset. The caller resets the world and the server, then calls
-  /// reset_done(), or refuse_reset() if the world cannot be built with this seed.
-  std::optional<std::uint64_t> requested_reset() const;
-  void reset_done();
-  void refuse_reset(const std::string& why);
+  /// A supervisor asks for a reset or a restore: the caller calls restart() between two ticks.
+  bool requests_restart() const { return resetting_.has_value(); }
+  /// Puts the world back to its start or to a snapshot, and tells all of it.
+  /// @return  false if that can't be; then the supervisor gets an error, and the world stays as it is
+  bool restart();
 
   /// A supervisor ends the run. The reason is empty if the end was not planned.
   const std::optional<std::string>& requested_shutdown() const { return shutdown_; }
@@ -82,12 +89,12 @@ class Supervision {
   Reply move(const network::Call& call);
   Reply spawn(const network::Call& call);
   Reply remove(const network::Call& call);
-  void add_controller(const scene::Entity& entity, const std::string& script);
-  Reply fail(const network::Call& call, wire::ErrorCode code, std::string field,
-             std::string message);
+  Reply snapshot(const network::Call& call);
+  Reply restore(const network::Call& call);
+  void welcome_back(std::size_t robots);
+  void add_controllers(std::size_t first, std::span<const std::string> scripts);
   Reply fail(const network::Call& call, wire::Fault fault);
   Reply done(const network::Call& call);
-  std::optional<std::size_t> entity_named(const std::string& id) const;
 
   const Settings settings_;
   const processes::AllowedFiles allowed_;  ///< for spawned entities
@@ -98,6 +105,8 @@ class Supervision {
   reports::Console& console_;
   std::vector<network::Call> waiting_;  ///< unanswered, in order of arrival
   std::optional<network::Call> stepping_, resetting_;
+  Snapshots snapshots_;
+  std::optional<simulation::Snapshot> restoring_;  ///< with resetting_
   std::uint64_t steps_left_ = 0;
   std::size_t spawned_ = 0;     ///< entities, since the start or the last reset
   std::size_t spawnable_size_;  ///< left for more entities [bytes]

@@ -22,6 +22,11 @@ void World::reset(std::uint64_t new_seed) {
   seed = new_seed;
 }
 
+void World::restore(const simulation::Snapshot& snapshot) {
+  simulation.restore(scene, snapshot);
+  seed = snapshot.seed;
+}
+
 wire::SolverStatus solver_status(const simulation::Simulation& simulation) {
   const auto convergence = simulation.convergence();
   return {convergence.islands, convergence.not_converged, convergence.worst};

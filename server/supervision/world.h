@@ -21,6 +21,9 @@ struct World {
   /// Builds the world again, with this seed. @throws scene::SceneError; then nothing changes
   void reset(std::uint64_t new_seed);
 
+  /// Puts the world back. @throws std::runtime_error; then nothing changes
+  void restore(const simulation::Snapshot& snapshot);
+
   const std::string path;  ///< of the scene file
   const scene::Scene scene;
   const scene::Additions additions;  ///< reads elements that are added to the scene

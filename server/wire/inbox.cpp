@@ -153,6 +153,7 @@ Hello Inbox::hello() const {
     deadline.miss_budget = wish.miss_budget();
   }
   hello.takeover = from.takeover();
+  hello.can_restore = from.can_restore();
   return hello;
 }
 
@@ -180,6 +181,12 @@ bool Inbox::is_question() const {
 bool Inbox::is_command() const { return message_->kind == Kind::command; }
 
 std::uint64_t Inbox::command_tick() const { return message_->command->tick(); }
+
+std::optional<std::uint64_t> Inbox::command_epoch() const {
+  const v1::Command& command = *message_->command;
+  if (!command.has_epoch()) return std::nullopt;
+  return command.epoch();
+}
 
 std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {
   if (message_->kind == Kind::command)

@@ -42,6 +42,7 @@ class Inbox {
   Leave leave() const;
   std::uint64_t heartbeat() const;  ///< its sequence
   std::uint64_t command_tick() const;
+  std::optional<std::uint64_t> command_epoch() const;  ///< none: it does not say
   std::uint64_t request_id() const;
   Request request() const;
   bool is_question() const;  ///< a Request that changes nothing

@@ -35,10 +35,12 @@ struct Version {
 };
 
 /// Version of the server. A client must have the same major version.
-inline constexpr Version version{1, 1};
+inline constexpr Version version{1, 2};
 /// From this minor version on a session is told of dropped and spawned robots, and what was commanded
 /// before it was resumed.
 inline constexpr std::uint32_t minor_with_events = 1;
+/// From this minor version on ticks have an epoch, and a session may be told that the world went back.
+inline constexpr std::uint32_t minor_with_epochs = 2;
 
 enum class Role { unspecified, controller, supervisor, observer };
 
@@ -57,6 +59,7 @@ struct Hello {
   /// A wish. The action may be a number that is none; unspecified is read as wait.
   std::optional<DeadlinePolicy> deadline;
   bool takeover = false;  ///< take robots from other sessions too
+  bool can_restore = false;  ///< its controllers can go back to a snapshot
 };
 
 /// A line that a controller logged.
@@ -142,6 +145,19 @@ struct Spawned {
   std::string_view robot;       ///< id
   std::string_view controller;  ///< id in the scene
   std::uint64_t tick = 0;       ///< from which on it stands there
+};
+
+/// The world went back to its start, or to a snapshot.
+struct Restart {
+  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> epoch = {};  ///< that begins; none: the session knows of no epochs
+  struct Snapshot {
+    std::string_view name;
+    std::uint64_t tick = 0;
+    const world::Commands* commands = nullptr;  ///< of all robots, as they were then
+    std::size_t robots = 0;  ///< so many of the first are the same as before; the others are new
+  };
+  std::optional<Snapshot> snapshot = {};  ///< none: to the start
 };
 
 enum class EndReason { finished, interrupted, failed };

@@ -49,14 +49,21 @@ void fill(const std::vector<DeadlinePolicy>& policies, v1::Welcome& welcome) {
 
 constexpr std::size_t longest_commanded = std::size_t{1} << 20;  // [bytes]
 
+/// What was commanded last.
+/// @return  false if it is too long for a message
+bool fill(const Roster& roster, const world::Commands& commands, v1::Command& command) {
+  if (payload_bytes(roster, commands) > longest_commanded) return false;
+  add_channels(roster, commands, command);
+  return command.ByteSizeLong() <= longest_commanded;
+}
+
 /// The present state of a session that is resumed.
 void fill(const Roster& roster, const world::Commands* commands, v1::Resumed& resumed) {
   for (std::size_t position = 0; position < roster.gone.size(); ++position) {
     if (roster.gone[position]) resumed.add_gone_robots(static_cast<std::uint32_t>(position));
   }
-  if (commands == nullptr || payload_bytes(roster, *commands) > longest_commanded) return;
-  add_channels(roster, *commands, *resumed.mutable_commanded());
-  if (resumed.commanded().ByteSizeLong() > longest_commanded) resumed.clear_commanded();
+  if (commands == nullptr) return;
+  if (!fill(roster, *commands, *resumed.mutable_commanded())) resumed.clear_commanded();
 }
 
 v1::End::Reason reason_of(EndReason reason) {
@@ -163,7 +170,8 @@ void Outbox::refusal(const Refusal& from) {
 }
 
 bool Outbox::observation(const Roster& roster, const world::Observations& observations,
-                         std::span<const std::string> tag_payloads, std::size_t limit) {
+                         std::span<const std::string> tag_payloads, std::size_t limit,
+                         std::optional<std::uint64_t> epoch) {
   const std::size_t changing = radio_bytes(roster, observations.radio_messages) +
                                payload_bytes(roster, observations, tag_payloads);
   if (changing + image_bytes(roster, observations) > limit) return false;
@@ -171,6 +179,7 @@ bool Outbox::observation(const Roster& roster, const world::Observations& observ
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();
   fill(roster, observations, tag_payloads, observation);
+  if (epoch) observation.set_epoch(*epoch);
   finish();
   return message_->size <= limit;
 }
@@ -218,8 +227,21 @@ void Outbox::spawned(const Spawned& from) {
   finish();
 }
 
-void Outbox::reset(std::uint64_t seed) {
-  message_->message.mutable_reset()->set_seed(seed);
+void Outbox::restart(const Roster& roster, const Restart& from) {
+  if (from.snapshot) {
+    v1::Restored& restored = *message_->message.mutable_restored();
+    restored.Clear();
+    restored.set_tick(from.snapshot->tick);
+    restored.set_snapshot(v1::valid_utf8(from.snapshot->name));
+    if (from.epoch) restored.set_epoch(*from.epoch);
+    const bool fits = fill(roster, *from.snapshot->commands, *restored.mutable_commanded());
+    if (!fits) restored.clear_commanded();
+  } else {
+    v1::Reset& reset = *message_->message.mutable_reset();
+    reset.Clear();
+    reset.set_seed(from.seed);
+    if (from.epoch) reset.set_epoch(*from.epoch);
+  }
   finish();
 }
 

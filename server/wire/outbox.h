@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,13 +42,15 @@ class Outbox {
   void refusal(const Refusal& refusal);
   /// False if it would have more than `limit` bytes in binary form; then there is no message.
   /// @param tag_payloads  of the same tick, for each of Layout::tags
+  /// @param epoch         of the tick; none: the session knows of no epochs
   bool observation(const Roster& roster, const world::Observations& observations,
                    std::span<const std::string> tag_payloads,
-                   std::size_t limit = max_observation_bytes);
+                   std::size_t limit = max_observation_bytes,
+                   std::optional<std::uint64_t> epoch = {});
   void end(const End& end);
   void error(const Fault& fault);
   void heartbeat(std::uint64_t sequence);
-  void reset(std::uint64_t seed);
+  void restart(const Roster& roster, const Restart& restart);
   // A request was done at this tick, with its result.
   void response(std::uint64_t request, std::uint64_t tick);
   void response(std::uint64_t request, const Status& status);

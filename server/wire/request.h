@@ -30,8 +30,9 @@ struct Request {
   Kind kind = Kind::none;
   std::uint64_t ticks = 0;            ///< step
   std::optional<std::uint64_t> seed;  ///< reset
-  std::string
-      text;  ///< spawn: XML; remove, move: id of an entity; shutdown: the reason, or nothing
+  /// spawn: XML; remove, move: id of an entity; snapshot, restore: its name; shutdown: the reason, or
+  /// nothing
+  std::string text;
   std::vector<std::string> entities;  ///< read: ids or globs
   std::vector<double> position;       ///< move: as given; x, y, z [m] if it is right
   std::vector<double> orientation;    ///< move: as given; w, x, y, z or nothing

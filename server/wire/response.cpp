@@ -52,6 +52,8 @@ Request read(const v1::Request& from) {
   if (from.has_shutdown()) request.text = from.shutdown().reason();
   if (from.has_remove()) request.text = from.remove().entity();
   if (from.has_move()) request.text = from.move().entity();
+  if (from.has_snapshot()) request.text = from.snapshot().name();
+  if (from.has_restore()) request.text = from.restore().name();
   request.entities.assign(from.read().entities().begin(), from.read().entities().end());
   request.position.assign(from.move().position().begin(), from.move().position().end());
   request.orientation.assign(from.move().orientation().begin(), from.move().orientation().end());

@@ -1,5 +1,5 @@
-// What version 1.1 of the protocol adds (docs/protocol.md: W10, L13, V15), and that sessions of
-// version 1.0 see none of it.
+// What versions 1.1 and 1.2 of the protocol add (docs/protocol.md: W10, L13, V15; S13, L6, V17),
+// and that sessions of lower versions see none of it.
 
 #include <gtest/gtest.h>
 
@@ -21,11 +21,11 @@ v1::ClientMessage hello(const std::string& robots, std::uint32_t minor,
 }
 
 TEST(LaterVersions, H2_TheLowerMinorVersionCounts) {
-  for (const std::uint32_t minor : {0U, 1U, 7U}) {
+  for (const std::uint32_t minor : {0U, 1U, 2U, 7U}) {
     const SmallRun small(1);
     Peers peers(small);
     peers.say("p", hello("*", minor));
-    EXPECT_EQ(peers.told("p").welcome().version().minor(), std::min(minor, 1U));
+    EXPECT_EQ(peers.told("p").welcome().version().minor(), std::min(minor, 2U));
   }
 }
 
@@ -173,6 +173,114 @@ TEST(LaterVersions, V15_SessionsWithRobotsOfItsControllerAreToldOfASpawnedRobot)
 TEST(LaterVersions, V15_NotInVersion10) {
   Spawning run(0);
   EXPECT_TRUE(run.peers.inboxes["p"].empty());
+}
+
+// ---- epochs and snapshots -----------------------------------------------------------------------
+
+v1::ClientMessage command(std::uint64_t tick, std::uint64_t epoch,
+                          std::vector<double> targets = {}) {
+  auto message = Peers::command(tick, std::move(targets));
+  message.mutable_command()->set_epoch(epoch);
+  return message;
+}
+
+v1::ServerMessage last(Peers& peers) {
+  const auto messages = std::exchange(peers.inboxes["p"], {});
+  return messages.empty() ? v1::ServerMessage{} : messages.back();
+}
+
+TEST(LaterVersions, S13_ObservationsAndResetsHaveAnEpoch) {
+  const SmallRun small(1);
+  Peers peers(small);
+  peers.say("p", hello("*", 2));
+  peers.publish(0);
+  const v1::ServerMessage first = last(peers);
+  EXPECT_TRUE(first.observation().has_epoch());
+  EXPECT_EQ(first.observation().epoch(), 0U);
+  restart(peers.barrier, {7});
+  EXPECT_EQ(last(peers).reset().epoch(), 1U);
+  peers.publish(0);
+  EXPECT_EQ(last(peers).observation().epoch(), 1U);
+}
+
+TEST(LaterVersions, S13_ACommandThatCrossesAResetIsNotTakenForTheNewTick) {
+  const SmallRun small(1);
+  Peers peers(small);
+  peers.say("p", hello("*", 2));
+  peers.publish(0);
+  restart(peers.barrier, {7});
+  peers.publish(0);
+  peers.say("p", command(0, 0, {3}));
+  const v1::ServerMessage stale = last(peers);
+  EXPECT_EQ(stale.error().code(), v1::Error::STALE_TICK);
+  EXPECT_EQ(stale.error().field(), "epoch");
+  EXPECT_FALSE(peers.is_complete());
+  peers.say("p", command(0, 2));
+  EXPECT_EQ(last(peers).error().code(), v1::Error::FUTURE_TICK);
+  peers.say("p", command(0, 1));
+  EXPECT_TRUE(peers.is_complete());
+}
+
+TEST(LaterVersions, S13_ACommandWithoutEpochAnswersTheLastObservation) {
+  const SmallRun small(1);
+  Peers peers(small);
+  peers.say("p", hello("*", 2));
+  restart(peers.barrier, {7});
+  peers.publish(0);
+  peers.say("p", Peers::command(0));
+  EXPECT_TRUE(peers.is_complete());
+}
+
+TEST(LaterVersions, S13_SessionsOfLowerVersionsSeeNoEpoch) {
+  for (const std::uint32_t minor : {0U, 1U}) {
+    const SmallRun small(1);
+    Peers peers(small);
+    peers.say("p", hello("*", minor));
+    peers.publish(0);
+    restart(peers.barrier, {7});
+    const v1::ServerMessage reset = last(peers);
+    EXPECT_TRUE(reset.has_reset());
+    EXPECT_FALSE(reset.reset().has_epoch());
+    peers.publish(0);
+    const v1::ServerMessage observed = last(peers);
+    EXPECT_TRUE(observed.has_observation());
+    EXPECT_FALSE(observed.observation().has_epoch());
+    peers.say("p", command(0, 5));  // an unknown field
+    EXPECT_TRUE(peers.is_complete());
+  }
+}
+
+TEST(LaterVersions, L6_ARestoreTellsTheTickTheNameAndWhatWasCommanded) {
+  const SmallRun small(1);
+  Peers peers(small);
+  auto begin = hello("*", 2);
+  begin.mutable_hello()->set_can_restore(true);
+  peers.say("p", begin);
+  peers.publish(5);
+  world::Commands then = peers.commands;
+  then.joint_targets = {0.5};
+  wire::Restart back{7};
+  back.snapshot = {"here", 3, &then, 1};
+  restart(peers.barrier, back);
+  const v1::Restored restored = last(peers).restored();
+  EXPECT_EQ(restored.tick(), 3U);
+  EXPECT_EQ(restored.snapshot(), "here");
+  EXPECT_EQ(restored.epoch(), 1U);
+  ASSERT_EQ(restored.commanded().joint_targets_size(), 1);
+  EXPECT_EQ(restored.commanded().joint_targets(0), 0.5);
+  peers.publish(3);
+  EXPECT_EQ(last(peers).observation().tick(), 3U);
+}
+
+TEST(LaterVersions, V17_OnlyASessionOf12CanSayThatItGoesBack) {
+  for (const std::uint32_t minor : {0U, 1U, 2U}) {
+    const SmallRun small(1);
+    Peers peers(small);
+    auto begin = hello("*", minor);
+    begin.mutable_hello()->set_can_restore(true);
+    peers.say("p", begin);
+    EXPECT_EQ(robot_status(peers.barrier)[0].can_restore, minor == 2);
+  }
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ TEST(Pause, P3_NoDeadlineRunsAndHeartbeatsGoOn) {
 
 TEST(Reset, L6_ASessionBeforeTick0GetsNoTickOfTheFormerWorld) {
   Pair pair({});
-  reset(pair.peers.barrier, 7);
+  restart(pair.peers.barrier, {7});
   pair.peers.say("r", takeover("robot0"));
   EXPECT_TRUE(pair.peers.told("r").has_welcome());  // and nothing else
   EXPECT_EQ(pair.peers.inboxes["p"].back().message_case(), v1::ServerMessage::kDisplaced);

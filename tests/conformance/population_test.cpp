@@ -38,7 +38,7 @@ class Population : public ::testing::Test {
     layout.robots.resize(2);
     layout.joint_sensors.resize(2);
     layout.joint_actuators.resize(2);
-    network::reset(peers.barrier, 42);
+    network::restart(peers.barrier, {42});
   }
   /// A client that joins while a tick is in hand is told of it, too.
   v1::Welcome join(const std::string& peer, const std::string& robots) {
@@ -240,7 +240,7 @@ TEST(PopulationOf, V14_SessionsThatHaveSomeEndAndTheirOtherRobotsAreFree) {
   others.say("q", hello);
   others.inboxes.clear();
   three.layout().robots.resize(2);
-  reset(others.barrier, 42);
+  restart(others.barrier, {42});
   EXPECT_EQ(others.told("q").end().reason(), v1::End::FINISHED);
   EXPECT_FALSE(others.is_gathered());
   EXPECT_EQ(others.join("r", "*").robots_size(), 2);

@@ -78,7 +78,7 @@ void Play::supervise() {
       return resume(barrier_);
     case 2:
       if (phase_ != Phase::collecting) return;
-      reset(barrier_, 7);
+      restart(barrier_, {7});
       phase_ = Phase::gathering;
       tick_ = 0;
       return;

@@ -45,10 +45,8 @@ void Fleet::reset() {
   for (const auto& channel : channels_) channel->reset();
 }
 
-void Fleet::resume(const v1::Resumed& resumed) {
-  v1::Command commanded = resumed.commanded();
+void Fleet::resume(v1::Command commanded) {
   for (const auto& channel : channels_) channel->load(commanded);
-  remove(resumed.gone_robots());
 }
 
 void Fleet::remove(const google::protobuf::RepeatedField<std::uint32_t>& robots) {

@@ -30,8 +30,8 @@ class Fleet {
   void repeat();
   /// All values that were set become the initial ones.
   void reset();
-  /// The session was resumed: values become those that were commanded before.
-  void resume(const v1::Resumed& resumed);
+  /// The session was resumed or the world restored: values become those that were commanded.
+  void resume(v1::Command commanded);
   /// These robots (positions) have left the run. Positions that the session does not have are ignored.
   void remove(const google::protobuf::RepeatedField<std::uint32_t>& robots);
 

@@ -83,6 +83,7 @@ void Session::State::go_on(const v1::Welcome& welcome) {
   read(welcome);
   if (seed != seed_before) read_reset();
   fleet->remove(welcome.resumed().gone_robots());
+  commanded = welcome.resumed().commanded();
   std::erase_if(failures, [&](const v1::Leave& leave) { return robots[leave.robots(0)].gone(); });
   fleet->repeat();
   ++resumes;
@@ -95,7 +96,12 @@ void Session::State::go_on(const v1::Welcome& welcome) {
 bool Session::State::repeats_answer(const v1::Observation& observation) {
   if (!is_resumed) return false;
   is_resumed = false;
-  if (observation.tick() < tick) read_reset();  // while there was no connection
+  const bool is_other = epoch && observation.has_epoch() && observation.epoch() != *epoch;
+  if (observation.tick() < tick || is_other) {  // while there was no connection
+    read_reset();
+    is_restored = is_other && options.can_restore && observation.tick() > 0;
+    if (is_restored) fleet->resume(commanded);
+  }
   if (observation.tick() != tick || is_reset) return false;
   send_answer();
   return true;

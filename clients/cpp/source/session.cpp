@@ -64,6 +64,7 @@ void Session::State::answer() {
   v1::Command& command = *outgoing.mutable_command();
   command.Clear();
   command.set_tick(tick);
+  if (epoch) command.set_epoch(*epoch);
   fleet->write(command);
   owes = false;
   send_answer();
@@ -107,6 +108,9 @@ bool Session::State::wait() {
       case Connection::Kind::kReset:
         read(message.reset());
         break;
+      case Connection::Kind::kRestored:
+        read(message.restored());
+        break;
       case Connection::Kind::kError:
         take(message.error());
         break;
@@ -146,9 +150,14 @@ void Session::State::read(const v1::Observation& observation) {
   }
   tick = observation.tick();
   time = std::chrono::nanoseconds(observation.time_ns());
-  event = !has_begun ? Event::init : is_reset ? Event::reset : Event::step;
+  epoch.reset();
+  if (observation.has_epoch()) epoch = observation.epoch();
+  event = is_restored ? Event::restored
+          : !has_begun ? Event::init
+          : is_reset   ? Event::reset
+                       : Event::step;
   has_begun = true;
-  is_reset = is_resumed = false;
+  is_reset = is_resumed = is_restored = false;
   resumes_in_vain = 0;
   owes = true;
 }
@@ -169,6 +178,14 @@ void Session::State::read_reset() {
   is_reset = was_reset = true;
   is_resumed = false;
   fleet->reset();
+}
+
+void Session::State::read(const v1::Restored& restored) {
+  snapshot = restored.snapshot();
+  is_restored = was_reset = true;
+  is_reset = is_resumed = false;
+  fleet->reset();
+  fleet->resume(restored.commanded());
 }
 
 void Session::State::read(const v1::RobotSpawned& robot) {
@@ -209,6 +226,7 @@ std::uint32_t Session::ticks_per_second() const noexcept { return state_->ticks_
 std::uint64_t Session::seed() const noexcept { return state_->seed; }
 const std::string& Session::scene_hash() const noexcept { return state_->scene_hash; }
 const std::string& Session::server_version() const noexcept { return state_->server_version; }
+const std::string& Session::snapshot() const noexcept { return state_->snapshot; }
 const std::string& Session::token() const noexcept { return state_->token; }
 std::uint64_t Session::missed() const noexcept { return state_->missed; }
 std::uint64_t Session::resumes() const noexcept { return state_->resumes; }

@@ -39,6 +39,7 @@ struct Session::State {
   void read(const v1::End& end);
   void read(const v1::Reset& reset);
   void read_reset();
+  void read(const v1::Restored& restored);
   void read(const v1::RobotSpawned& robot);
   void leave(v1::Leave::Reason reason, std::string_view message);
 
@@ -53,6 +54,10 @@ struct Session::State {
   Event event = Event::init;
   bool has_begun = false;  // an observation was delivered
   bool is_reset = false;   // the next observation is the first after a reset
+  v1::Command commanded;               // when the session was resumed last
+  bool is_restored = false;            // or after a restore
+  std::string snapshot;                // that was restored last
+  std::optional<std::uint64_t> epoch;  // of the current observation
   bool was_reset = false;  // at some time
   bool owes = false;       // the current observation is not answered yet
   bool is_over = false;    // nothing is sent any more

@@ -210,6 +210,16 @@ void Supervisor::reset(std::optional<std::uint64_t> seed) {
   state_->ask();
 }
 
+std::uint64_t Supervisor::snapshot(std::string_view name) {
+  state_->request().mutable_snapshot()->set_name(v1::valid_utf8(std::string(name)));
+  return state_->ask().tick();
+}
+
+std::uint64_t Supervisor::restore(std::string_view name) {
+  state_->request().mutable_restore()->set_name(v1::valid_utf8(std::string(name)));
+  return state_->ask().tick();
+}
+
 std::uint64_t Supervisor::spawn(std::string_view xml) {
   state_->request().mutable_spawn()->set_xml(v1::valid_utf8(std::string(xml)));
   return state_->ask().tick();

@@ -26,6 +26,7 @@ void fill(const Options& options, v1::Hello& hello) {
   }
   hello.set_session_token(options.session_token);
   hello.set_takeover(options.takeover);
+  hello.set_can_restore(options.can_restore);
   if (options.deadline) {
     v1::DeadlinePolicy& policy = *hello.mutable_deadline_policy();
     policy.set_action(static_cast<v1::DeadlinePolicy::Action>(options.deadline->action));
@@ -74,7 +75,8 @@ void Session::State::begin(const v1::Welcome& welcome) {
   read(welcome);
   try {
     fleet.emplace(welcome);
-    fleet->resume(welcome.resumed());
+    fleet->resume(welcome.resumed().commanded());
+    fleet->remove(welcome.resumed().gone_robots());
   } catch (const std::runtime_error& error) {
     throw ConnectionError(options.endpoint + ": " + error.what());
   }

@@ -56,6 +56,8 @@ const char* name_of(Event event) {
       return "step";
     case Event::reset:
       return "reset";
+    case Event::restored:
+      return "restored";
   }
   return "step";
 }

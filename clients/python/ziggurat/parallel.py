@@ -3,6 +3,8 @@ that package: agents are robots, a step is a tick."""
 
 from __future__ import annotations
 
+import os
+from dataclasses import dataclass
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 from .errors import ProtocolError
@@ -13,6 +15,15 @@ from .supervisor import Supervisor
 
 Observe = Callable[[Robot], Any]
 Act = Callable[[Robot, Any], None]
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A moment of a ParallelEnv, kept by its server."""
+
+    name: str
+    tick: int
+    agents: Tuple[str, ...]  # whose task was not over
 
 
 def all_readings(robot: Robot) -> List[float]:
@@ -75,6 +86,7 @@ class ParallelEnv:
         self._server: Optional[Server] = None
         self._session: Optional[Session] = None
         self._supervisor: Optional[Supervisor] = None
+        self._kept = 0  # snapshots so far
         self.possible_agents: List[str] = []  # known after the first reset
         self.agents: List[str] = []
 
@@ -93,13 +105,40 @@ class ParallelEnv:
 
     def reset(self, seed: Optional[int] = None,
               options: Optional[Dict] = None) -> Tuple[Dict[str, Any], Dict[str, Dict]]:
-        """Back to tick 0: observations and infos by agent. Without a seed, the last one again."""
-        if not self._reset_world(seed):
+        """Back to tick 0: observations and infos by agent. Without a seed, the last one again.
+
+        options={"snapshot": s} goes back to what snapshot() gave in place of that; what follows is what
+        followed then, bit for bit, with the same actions."""
+        snapshot = (options or {}).get("snapshot")
+        if snapshot is not None:
+            self.restore(snapshot)
+        elif not self._reset_world(seed):
             self._start(seed)
-        next(self.session)
+        if snapshot is None:
+            next(self.session)
         self.possible_agents = [robot.id for robot in self.session.robots]
-        self.agents = list(self.possible_agents)
+        if snapshot is None:
+            self.agents = list(self.possible_agents)
         return self._observations(), self._infos()
+
+    def snapshot(self) -> "Snapshot":
+        """The world as it is, commands and random streams included, to go back to."""
+        self._kept += 1
+        name = f"env-{os.getpid()}-{self._kept}"
+        tick = self._supervise().snapshot(name)
+        return Snapshot(name, tick, tuple(self.agents))
+
+    def restore(self, snapshot: "Snapshot") -> None:
+        """Back to it. Observations are those of its tick."""
+        self._supervise().restore(snapshot.name)
+        self.session.expect_reset()
+        next(self.session)
+        self.agents = list(snapshot.agents)
+
+    def _supervise(self) -> Supervisor:
+        if self._supervisor is None:
+            self._supervisor = Supervisor(self.session.endpoint, name="parallel_env")
+        return self._supervisor
 
     def step(self, actions: Dict[str, Any]) -> Tuple[Dict, Dict, Dict, Dict, Dict]:
         """One tick: observations, rewards, terminations, truncations and infos by agent."""
@@ -127,9 +166,7 @@ class ParallelEnv:
         if self._session is None or self._session.ending is not None:
             return False
         try:
-            if self._supervisor is None:
-                self._supervisor = Supervisor(self._session.endpoint, name="parallel_env")
-            self._supervisor.reset(seed)
+            self._supervise().reset(seed)
             self._session.expect_reset()
         except ProtocolError as error:
             if error.code not in ("UNIMPLEMENTED", "FORBIDDEN") or self._server is None:
@@ -147,9 +184,9 @@ class ParallelEnv:
             seeds = [] if seed is None else ["--seed", str(seed)]
             self._server = Server(self._scene, command=self._command,
                                   arguments=[*self._arguments, *seeds])
-            self._session = connect(self._server.endpoint, self._robots)
+            self._session = connect(self._server.endpoint, self._robots, can_restore=True)
         else:
-            self._session = connect(self._endpoint, self._robots)
+            self._session = connect(self._endpoint, self._robots, can_restore=True)
             if seed is not None and seed != self._session.seed:
                 self._session_reset_at_start(seed)
 

@@ -34,6 +34,7 @@ class Event(enum.Enum):
     INIT = "init"  # the first observation of a session
     STEP = "step"
     RESET = "reset"  # the world was reset, and all commands with it
+    RESTORED = "restored"  # the world went back to a snapshot: Session.snapshot
     RESUME = "resume"  # the first observation of a resumed session
 
 
@@ -81,14 +82,16 @@ class Deadline:
 
 def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, controller: str = "",
             name: str = "", version: str = "", deadline: Optional[Deadline] = None,
-            takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
-            wait_timeout: Optional[float] = None,
+            takeover: bool = False, can_restore: bool = False, curve: Optional[Curve] = None,
+            connect_timeout: float = 10.0, wait_timeout: Optional[float] = None,
             resume_timeout: Optional[float] = None) -> "Session":
     """A session with all robots that match both `robots` (ids, or globs with * ? [a-z]) and
     `controller` (its id in the scene); with neither, all robots. Without endpoint it is that of
     find_server(), the keys are those of Curve.from_environment(), and a token in ZIGGURAT_SESSION_TOKEN (in
     hexadecimal) resumes its session; that is removed from the environment.
 
+    can_restore      this controller can go back: at Event.RESTORED it takes the state that it had at
+                     the tick of the snapshot. Without, the server refuses to restore the world
     connect_timeout  wall time to wait for the server's welcome [s]
     wait_timeout     wall time to wait for a message [s]; None: forever
     resume_timeout   wall time for which a session whose connection was lost is tried to resume [s]; None: as
@@ -105,7 +108,7 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
         wanted = ["*"]
     hello = v1.Hello(role=v1.ROLE_CONTROLLER, robots=wanted, controller=controller,
                      client_name=name or controller or "python", client_version=version, takeover=takeover,
-                     session_token=token)
+                     session_token=token, can_restore=can_restore)
     if deadline is not None:
         hello.deadline_policy.CopyFrom(deadline._message())
     return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout)
@@ -171,6 +174,8 @@ class Session:
         self.ending: Optional[Ending] = None
         self.paused = False
         self._was_reset = False  # at some time
+        self._epoch: Optional[int] = None  # of the tick that is not answered yet
+        self.snapshot = ""  # the name of the one that the world went back to last
         self.missed = 0  # deadlines
         self.resumed = 0  # lost connections that were replaced
         self.late = 0  # commands that came too late or twice
@@ -237,6 +242,11 @@ class Session:
         """Handles messages other than ticks and the end; ignores unknown kinds."""
         if kind == "reset":
             self._begin_anew()
+        elif kind == "restored":
+            self._begin_anew()
+            self._exchange.resume(message.restored.commanded)
+            self._event = Event.RESTORED
+            self.snapshot = message.restored.snapshot
         elif kind == "robot_spawned":
             robot = message.robot_spawned
             self.spawned.append(SpawnedRobot(robot.robot, robot.controller, robot.tick))
@@ -327,9 +337,14 @@ class Session:
         if not self._is_resumed:
             return False
         self._is_resumed = False
-        if observation.tick < self.tick.number:
+        is_other = (self._epoch is not None and observation.HasField("epoch")
+                    and observation.epoch != self._epoch)
+        if observation.tick < self.tick.number or is_other:
             self._begin_anew()  # while there was no connection
-        if observation.tick != self.tick.number or self._answered is None:
+            if is_other and self._hello.can_restore and observation.tick > 0:
+                self._exchange.resume(self.welcome.resumed.commanded)
+                self._event = Event.RESTORED
+        if is_other or observation.tick != self.tick.number or self._answered is None:
             return False
         self._connection.send(self._answered)
         return True
@@ -372,12 +387,15 @@ class Session:
         self._owes = observation.tick
         self.paused = self._is_resumed = False
         self._resumed_in_vain = 0
+        self._epoch = observation.epoch if observation.HasField("epoch") else None
         self.tick = Tick(observation.tick, observation.time_ns, self._event)
         self._event = Event.STEP
         return self.tick
 
     def _answer(self) -> None:
         message = self._exchange.command(self._owes)
+        if self._epoch is not None:
+            message.command.epoch = self._epoch
         size = message.ByteSize()
         if 0 < self.welcome.max_message_bytes < size:
             raise ValueError(f"the command has {size} bytes; the server accepts at most "

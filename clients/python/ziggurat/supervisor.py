@@ -149,6 +149,15 @@ class Supervisor:
         """Builds the world again, with the same seed if none is given."""
         return self._ask(reset=v1.ResetRequest(seed=seed)).tick
 
+    def snapshot(self, name: str) -> int:
+        """Keeps the world under a name: 1 to 64 letters, digits, `-`, `_` and `.`."""
+        return self._ask(snapshot=v1.SnapshotRequest(name=name)).tick
+
+    def restore(self, name: str) -> int:
+        """Back to a snapshot; the tick that the world is at then. Refused while clients have robots
+        that can't go back (can_restore of connect)."""
+        return self._ask(restore=v1.RestoreRequest(name=name)).tick
+
     def spawn(self, xml: str) -> int:
         """Adds an element, written as in <arena>."""
         return self._ask(spawn=v1.SpawnRequest(xml=xml)).tick

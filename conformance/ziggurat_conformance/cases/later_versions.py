@@ -1,12 +1,13 @@
 """What version 1.1 brought: dropped robots (W10), what a resumed session had commanded (L13), spawned robots
-(V15). A session of 1.0 sees none of it: the rules of every session say so."""
+(V15); and 1.2: epochs (S13), snapshots (V11, V16, V17). Sessions of lower versions see none of it: the rules of
+every session say so."""
 
 from ..case import Case, Level
 from ..messages import answer, hear_error, hello, join, leave, observe, send_hello
-from ..steps import Check, Hang, Hear, Join, Silence, Tick, Token
-from ..wire import Count
+from ..steps import Check, Hang, Hear, Join, Send, Silence, Skip, Tick, Token
+from ..wire import AtLeast, Count
 from .deadlines import MS, policy
-from .supervision import arm, ask, told
+from .supervision import arm, ask, failed, told
 
 _V11 = {"major": 1, "minor": 1}
 
@@ -32,6 +33,27 @@ _DROPPED = [_joins("x", "arm0", "arm1", deadline_policy=policy("DROP")),
             join("y", "arm2", "arm3"), *observe("x", "y")]
 _SPAWNING = [ask("s", 1, pause={}), Silence("s", 0.1)]
 _SUPERVISOR = Join("s", hello(role="ROLE_SUPERVISOR"), {"robots": Count(0)})
+
+_V12 = {"major": 1, "minor": 2}
+
+
+def _joins_12(peer: str, *robots: str, **fields) -> Join:
+    return Join(peer, hello(*robots, version=_V12, **fields), {"version": _V12})
+
+
+def _sees(peer: str, epoch: int) -> Hear:
+    return Hear(peer, "observation", {"epoch": epoch})
+
+
+def _answers(peer: str, epoch: int, **fields) -> Send:
+    return answer(peer, epoch=epoch, **fields)
+
+
+def _paused_12(**fields) -> list:
+    """"p" has all robots of a world that is paused at tick 0, or the tick that it is at."""
+    return [_joins_12("p", "*", **fields), Hear("p", "observation"), _SUPERVISOR, *_SPAWNING, answer("p"),
+            told("s", 1), Hear("p", "paused")]
+
 
 CASES = [
     Case("H2.minor-1", "The version 1.1 is agreed upon with a client of 1.1, and 1.0 with one of 1.0",
@@ -76,4 +98,34 @@ CASES = [
           answer("p"), answer("q"), told("s", 1), Hear("p", "paused"), Hear("q", "paused"),
           ask("s", 2, spawn={"xml": arm("arm9")}), told("s", 2), Silence("p"), Silence("q")),
          Level.RECONNECT, fresh=True),
+    Case("H2.minor-2", "The version 1.2 is agreed upon with a client of 1.2", (_joins_12("p", "arm0"),)),
+    Case("S13.epoch", "Observations of a session of 1.2 have an epoch, and a reset begins another",
+         (*_paused_12(), ask("s", 2, reset={}), Hear("p", "reset", {"epoch": AtLeast(1)}),
+          Hear("p", "observation", {"epoch": AtLeast(1)}), told("s", 2), ask("s", 3, resume={}), told("s", 3)), fresh=True),
+    Case("S13.stale", "A Command of an earlier epoch is STALE_TICK, also for the same tick",
+         (_joins_12("p", "*"), _sees("p", 0), _SUPERVISOR, ask("s", 1, reset={}), Hear("p", "reset", {"epoch": 1}),
+          _sees("p", 1), told("s", 1), _answers("p", 0), hear_error("p", "STALE_TICK"), _answers("p", 1),
+          _sees("p", 1)), Level.RECONNECT, fresh=True),
+    Case("S13.future", "One of a later epoch is FUTURE_TICK",
+         (_joins_12("p", "*"), Hear("p", "observation"), _answers("p", 99), hear_error("p", "FUTURE_TICK"),
+          answer("p"), Hear("p", "observation")), fresh=True),
+    Case("S13.absent", "A Command without epoch answers the last Observation",
+         (_joins_12("p", "*"), Hear("p", "observation"), answer("p"), Hear("p", "observation"))),
+    Case("V11.snapshot", "The world can be kept, and restored: Restored, then the Observation of its tick",
+         (*_paused_12(can_restore=True), ask("s", 2, snapshot={"name": "here"}), told("s", 2),
+          ask("s", 3, step={"ticks": 3}), *[step for _ in range(3) for step in (Hear("p", "observation"), answer("p"))],
+          told("s", 3), Skip("p", "paused"),
+          ask("s", 4, restore={"name": "here"}), Hear("p", "restored", {"snapshot": "here"}),
+          Hear("p", "observation"), told("s", 4), answer("p"), Hear("p", "paused"), ask("s", 5, resume={}),
+          told("s", 5)), Level.RECONNECT, fresh=True),
+    Case("V11.name", "The name of a snapshot is BAD_VALUE if it is no plain one",
+         (*_paused_12(), *[step for number, name in enumerate(("", ".x", "a/b", "../a", "x" * 65), 2)
+                           for step in (ask("s", number, snapshot={"name": name}), failed("s", number, "BAD_VALUE"))],
+          ask("s", 9, resume={}), told("s", 9)), Level.RECONNECT, fresh=True),
+    Case("V16.unknown", "To restore what was not kept is BAD_VALUE",
+         (*_paused_12(can_restore=True), ask("s", 2, restore={"name": "nothing"}), failed("s", 2, "BAD_VALUE"),
+          ask("s", 3, resume={}), told("s", 3)), Level.RECONNECT, fresh=True),
+    Case("V17.refused", "The world is not restored while a session has not said that it can go back",
+         (*_paused_12(), ask("s", 2, snapshot={"name": "here"}), told("s", 2), ask("s", 3, restore={"name": "here"}),
+          failed("s", 3, "OUT_OF_STATE"), ask("s", 4, resume={}), told("s", 4)), Level.RECONNECT, fresh=True),
 ]

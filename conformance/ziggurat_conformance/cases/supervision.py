@@ -242,10 +242,6 @@ CASES = [
        ask("s", 2, remove={"entity": "nobody"}), failed("s", 2, "UNKNOWN_ENTITY"), *_resumed()),
     _v("V10.shutdown", "Shutdown is answered, and the run ends", *ALL, _comes(),
        ask("s", 1, shutdown={}), told("s", 1), Skip("p", "end"), Skip("s", "end"), fresh=True),
-    *[_v(f"V11.{name}", f"{name} has its place and is not served",
-         *ALL, _comes(), ask("s", 1, **{name: {"name": "x"}}),
-         Hear("s", "response", {"id": 1, "error": {"code": "UNIMPLEMENTED"}}))
-      for name in ("snapshot", "restore")],
     _v("V12.who", "The status names the session that the world waits for", *ALL, _comes(),
        Check("status", _ask_status), Check("owing", _holds_up), answer("p"), *observe("p")),
     _v("V12.phase", "The status tells whether the world runs or is paused", *ALL, _comes(),

@@ -171,6 +171,8 @@ class Session:
         if self.is_certain and self.state in _RECEIVED and kind not in _RECEIVED[self.state] | _ANY_STATE:
             faults.append(Fault("M0", f"{kind} in {self.state.value}"))
         welcome = message.welcome if kind == "welcome" else self.welcome
+        if _is_since_1_2(message) and welcome is not None and welcome.version.minor < 2:
+            faults.append(Fault("H2", f"{kind} has what version 1.2 brought, in a session of 1.{welcome.version.minor}"))
         if _is_since_1_1(message) and welcome is not None and welcome.version.minor < 1:
             faults.append(Fault("H2", f"{kind} has what version 1.1 brought, in a session of 1.0"))
         faults += _told.get(kind, lambda *_: ())(self, getattr(message, kind)) or ()
@@ -279,6 +281,11 @@ class Session:
 def _is_since_1_1(message: protocol.ServerMessage) -> bool:
     return (message.HasField("robot_spawned") or message.welcome.HasField("resumed")
             or message.error.code == _Error.ROBOTS_DROPPED)
+
+
+def _is_since_1_2(message: protocol.ServerMessage) -> bool:
+    return (message.HasField("restored") or message.observation.HasField("epoch")
+            or message.reset.HasField("epoch"))
 
 
 def _error_faults(error: protocol.Error) -> Iterator[Fault]:

@@ -169,6 +169,7 @@ void admit(Barrier& barrier, const std::string& connection, const Access& access
   session.role = hello.role;
   session.client = label_of(hello);
   session.minor = std::min(hello.version.minor, wire::version.minor);
+  session.can_restore = hello.can_restore && session.minor >= wire::minor_with_epochs;
   session.state = SessionState::ready;
   session.key = access.key;
   bind(barrier, session, connection);

@@ -43,9 +43,6 @@ std::optional<wire::Fault> check_request(const wire::Request& request, wire::Rol
   if (!may) {
     return make_fault(ErrorCode::forbidden, {}, "This role may not make this request.");
   }
-  if (request.kind == Kind::snapshot || request.kind == Kind::restore) {
-    return make_fault(ErrorCode::unimplemented, {}, "There are no snapshots yet.");
-  }
   return check_entities(request.entities);
 }
 

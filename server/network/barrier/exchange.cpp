@@ -33,6 +33,9 @@ std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& 
     return make_fault(ErrorCode::out_of_state, {},
                       "A Command answers an Observation; none was sent yet.");
   }
+  const auto epoch =
+      session.minor >= wire::minor_with_epochs ? barrier.inbox.command_epoch() : std::nullopt;
+  if (auto fault = check_epoch(session.turn, epoch)) return fault;
   if (auto fault = check_tick(session.turn, barrier.inbox.command_tick())) return fault;
   if (!is_collecting) {
     return make_fault(ErrorCode::out_of_state, {}, "No tick is being collected.");
@@ -80,7 +83,9 @@ bool observe(Barrier& barrier, Session& session) {
   const std::size_t limit =
       is_json ? wire::max_json_observation_bytes : wire::max_observation_bytes;
   const auto& [observations, tag_payloads] = barrier.senses;
-  if (!session.observation.observation(session.roster, *observations, *tag_payloads, limit)) {
+  session.turn.epoch = barrier.epoch;
+  if (!session.observation.observation(session.roster, *observations, *tag_payloads, limit,
+                                       epoch_for(barrier, session))) {
     tell_too_large(barrier, session);
     return false;
   }

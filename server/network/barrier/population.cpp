@@ -65,9 +65,9 @@ void end_without_robots(Barrier& barrier, Session& session) {
   session.roster = {};
 }
 
-/// Forgets robots that the layout has no more.
-void forget_robots(Barrier& barrier) {
-  const std::size_t count = barrier.run->layout.robots.size();
+/// Forgets robots that the layout has no more, or that are others now.
+/// @param count  the first ones, which stay
+void forget_robots(Barrier& barrier, std::size_t count) {
   if (barrier.seats.size() <= count) return;
   barrier.sessions.for_each([&](Session& session) {
     const auto& robots = session.roster.robots;  // ascending
@@ -118,11 +118,13 @@ void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const 
   stand_if_paused(barrier);
 }
 
-void reset(Barrier& barrier, std::uint64_t seed) {
-  barrier.run->seed = seed;
+void restart(Barrier& barrier, wire::Restart restart) {
+  barrier.run->seed = restart.seed;
+  ++barrier.epoch;
   barrier.sessions.for_each([&](Session& session) { give_up_answers(barrier, session); });
   ++barrier.reactions.world;
-  forget_robots(barrier);
+  forget_robots(barrier, restart.snapshot ? restart.snapshot->robots
+                                          : barrier.run->layout.robots.size());
   barrier.gate.clear();  // a session that begins now gets no tick of the former world
   barrier.senses = {};
   barrier.deadlines.reset();
@@ -132,7 +134,8 @@ void reset(Barrier& barrier, std::uint64_t seed) {
         session.state == SessionState::stepping || session.state == SessionState::paused;
     if (!has_ticks || session.roster.empty()) return;
     session.turn.late_commands = 0;
-    barrier.outbox.reset(seed);
+    restart.epoch = epoch_for(barrier, session);
+    barrier.outbox.restart(session.roster, restart);
     if (send(barrier, session) == Delivery::unreachable) {
       lose(barrier, session, "its connection is gone");
     }

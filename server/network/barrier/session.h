@@ -52,6 +52,7 @@ struct Session {
   std::string client;       ///< name and version, for messages
   std::string token;        ///< to resume with
   std::uint32_t minor = 0;  ///< of the protocol, as agreed
+  bool can_restore = false;  ///< its controllers can go back to a snapshot
   wire::Roster roster;      ///< of other roles: empty
   std::size_t longest_command = 0;  ///< that its robots can need, in its form [bytes]
   Turn turn;

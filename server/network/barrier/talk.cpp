@@ -98,4 +98,9 @@ std::string robots_of(const Barrier& barrier, const Session& session) {
   return names_of(barrier, robots);
 }
 
+std::optional<std::uint64_t> epoch_for(const Barrier& barrier, const Session& session) {
+  if (session.minor < wire::minor_with_epochs) return std::nullopt;
+  return barrier.epoch;
+}
+
 }  // namespace ziggurat::network

@@ -31,6 +31,8 @@ std::size_t longest_message(const Barrier& barrier, const Session* session);
 
 /// The tick in hand; 0 before the first.
 std::uint64_t tick_of(const Barrier& barrier);
+/// The epoch, if the session knows of epochs.
+std::optional<std::uint64_t> epoch_for(const Barrier& barrier, const Session& session);
 /// Some of these robots, for messages: "r0, r1, r2 and 7 more".
 /// @param robots  into Layout::robots
 std::string names_of(const Barrier& barrier, std::span<const std::size_t> robots);

@@ -34,6 +34,16 @@ void TickGate::miss(Turn& turn) {
   ++turn.late_commands;
 }
 
+std::optional<wire::Fault> check_epoch(const Turn& turn, std::optional<std::uint64_t> epoch) {
+  if (!epoch || *epoch == turn.epoch) return std::nullopt;
+  const bool is_past = *epoch < turn.epoch;
+  return make_fault(
+      is_past ? ErrorCode::stale_tick : ErrorCode::future_tick, "epoch",
+      fmt::format("The Command is for a tick of epoch {}; the last Observation is of epoch "
+                  "{}. Each reset and restore of the world begins another.",
+                  *epoch, turn.epoch));
+}
+
 std::optional<wire::Fault> check_tick(const Turn& turn, std::uint64_t tick) {
   if (tick > turn.tick) {
     return make_fault(

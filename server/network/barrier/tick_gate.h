@@ -57,6 +57,9 @@ class TickGate {
   bool is_standing_ = false;
 };
 
+/// Why a Command of an epoch does not answer the last observation of a session, if it does not.
+/// @param epoch  none: the Command does not say
+std::optional<wire::Fault> check_epoch(const Turn& turn, std::optional<std::uint64_t> epoch);
 /// Why a Command for a tick does not answer the last observation of a session, if it does not.
 /// @param turn  of a session that has had an observation
 std::optional<wire::Fault> check_tick(const Turn& turn, std::uint64_t tick);

@@ -12,6 +12,7 @@ namespace ziggurat::network {
 
 struct Turn {
   std::uint64_t tick = 0;      ///< of its last observation
+  std::uint64_t epoch = 0;     ///< likewise
   bool owes = false;           ///< that observation is not answered yet
   bool has_missed = false;     ///< nor will it be: the tick goes on without the answer
   bool is_repeated = false;    ///< that observation was sent before, to it or another session

@@ -49,6 +49,9 @@ struct Options {
   /// them, and the handles begin with the scene's values: set all values again then.
   std::string session_token;
   bool takeover = false;             ///< also robots of other sessions, which keep the rest
+  /// Whether this controller can go back: at Event::restored it takes the state that it had at the tick
+  /// of the snapshot. Without, the server refuses to restore the world while this session is there.
+  bool can_restore = false;
   std::optional<Deadline> deadline;  ///< a wish; none = as the scene or the server's options say
 
   std::string name;  ///< of this program, for the server's messages; empty: `controller`
@@ -89,6 +92,7 @@ enum class Event {
   init,   ///< the first of the session; at tick 0, before any physics, readings are 0
   step,   ///< a tick passed
   reset,  ///< the world went back to tick 0
+  restored,  ///< the world went back to a snapshot, see Session::snapshot()
 };
 
 /// Why the run ended.
@@ -135,6 +139,8 @@ class Session {
   /// Set when next() has returned false at the end of the run.
   const std::optional<Ending>& ending() const noexcept;
 
+  /// The name of the snapshot that the world went back to last; empty: it never did.
+  const std::string& snapshot() const noexcept;
   const std::string& token() const noexcept;  ///< for Options::session_token; any bytes
   std::uint64_t missed() const noexcept;      ///< ticks that did not wait for this session's answer
   std::uint64_t resumes() const noexcept;     ///< how often a lost connection was replaced

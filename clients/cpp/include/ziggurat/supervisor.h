@@ -119,6 +119,11 @@ class Supervisor {
   std::uint64_t step(std::uint64_t ticks);
   /// Builds the world again; none = with the same seed.
   void reset(std::optional<std::uint64_t> seed = std::nullopt);
+  /// Keeps the world under a name: 1 to 64 letters, digits, `-`, `_` and `.`.
+  std::uint64_t snapshot(std::string_view name);
+  /// Back to a snapshot; the tick that the world is at then. Refused while clients have robots that
+  /// can't go back.
+  std::uint64_t restore(std::string_view name);
   /// @param xml  one element, as in <arena>
   std::uint64_t spawn(std::string_view xml);
   std::uint64_t remove(std::string_view entity);

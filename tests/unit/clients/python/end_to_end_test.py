@@ -168,6 +168,39 @@ class EndToEnd(unittest.TestCase):
         self.assertEqual(episodes[0], episodes[1], "a reset world is a fresh one")
         self.assertEqual(env.session.seed, 3)
 
+    def test_a_hundred_futures_from_one_moment(self):
+        os.chdir(ROOT)
+        env = ziggurat.parallel_env(str(VEHICLE), command=PROGRAM, arguments=["--duration", "0"])
+        self.addCleanup(env.close)
+        env.reset(seed=3)
+        for _ in range(4):
+            env.step({"vehicle": [1.0, 1.0, 0.5, 0.5]})
+        moment = env.snapshot()
+        self.assertEqual(moment.tick, 4)
+
+        def future(speed):
+            states = []
+            for _ in range(3):
+                observations, *_, infos = env.step({"vehicle": [speed] * 4})
+                states.append((infos["vehicle"]["tick"], observations["vehicle"]))
+            with ziggurat.Supervisor(env.session.endpoint) as world:
+                return states, world.read().hash
+
+        first = future(0.25)
+        different = set()
+        for number in range(100):
+            observations, infos = env.reset(options={"snapshot": moment})
+            self.assertEqual(infos["vehicle"]["tick"], 4)
+            self.assertEqual(env.agents, ["vehicle"])
+            if number % 10 == 0:
+                self.assertEqual(future(0.25), first, f"future {number} is the one that was")
+            else:
+                states, _ = future(0.01 * number)
+                different.add(states[-1][1][0])
+        self.assertGreater(len(different), 80)
+        env.reset(seed=3)
+        self.assertEqual(env.session.tick.number, 0)
+
 
 if __name__ == "__main__":
     unittest.main()

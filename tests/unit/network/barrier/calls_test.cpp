@@ -28,7 +28,8 @@ TEST(Calls, RolesMayMakeTheirRequests) {
   EXPECT_EQ(verdict(Kind::pause, Role::observer), ErrorCode::forbidden);
   EXPECT_EQ(verdict(Kind::status, Role::controller), ErrorCode::forbidden);
   EXPECT_EQ(verdict(Kind::none, Role::supervisor), ErrorCode::bad_value);
-  EXPECT_EQ(verdict(Kind::snapshot, Role::supervisor), ErrorCode::unimplemented);
+  EXPECT_EQ(verdict(Kind::snapshot, Role::supervisor), ErrorCode::unspecified);
+  EXPECT_EQ(verdict(Kind::restore, Role::observer), ErrorCode::forbidden);
 }
 
 TEST(Calls, AreTakenOnceInTheirOrder) {

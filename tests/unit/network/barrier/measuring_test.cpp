@@ -108,7 +108,7 @@ TEST_F(Measuring, OrUntilTheConnectionIsGone) {
 TEST_F(Measuring, AResetBeginsAnotherWorld) {
   peers.publish(0);
   peers.pass(milliseconds{50});
-  network::reset(peers.barrier, 42);
+  network::restart(peers.barrier, {42});
   peers.publish(0);
   peers.say("p", Peers::command(0));
   ASSERT_EQ(kept().size(), 2U);

@@ -1,0 +1,147 @@
+#include "supervision/snapshots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "wire/fault.h"
+
+namespace ziggurat::supervision {
+
+using simulation::Snapshot;
+using wire::ErrorCode;
+using wire::make_fault;
+
+namespace {
+
+constexpr std::size_t most = 1024;                          // snapshots in memory
+constexpr std::size_t most_bytes = std::size_t{1} << 30;    // of all of them
+constexpr std::size_t longest_file = std::size_t{1} << 30;  // [bytes]
+constexpr std::size_t longest_element = std::size_t{64}
+                                        << 20;  // spawned, models written out [bytes]
+constexpr std::size_t longest_name = 64;
+
+bool is_name(std::string_view name) {
+  const auto is_allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.';
+  };
+  return !name.empty() && name.size() <= longest_name && name[0] != '.' &&
+         std::ranges::all_of(name, is_allowed);
+}
+
+std::optional<wire::Fault> fault_of_name(const std::string& name, const char* field) {
+  if (is_name(name)) return std::nullopt;
+  return make_fault(
+      ErrorCode::bad_value, field,
+      "The name of a snapshot has 1 to 64 letters, digits, '-', '_' and '.', and does "
+      "not begin with '.'.");
+}
+
+std::vector<std::byte> read_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (std::filesystem::file_size(path) > longest_file) {
+    throw simulation::SnapshotError(
+        fmt::format("The file has more than {} MiB.", longest_file >> 20));
+  }
+  std::vector<std::byte> bytes(std::filesystem::file_size(path));
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!file) throw simulation::SnapshotError("The file can't be read.");
+  return bytes;
+}
+
+}  // namespace
+
+Snapshots::Snapshots(std::filesystem::path folder, std::string build)
+    : folder_(std::move(folder)), build_(std::move(build)) {
+  if (folder_.empty() || std::filesystem::is_directory(folder_)) return;
+  throw std::runtime_error(
+      fmt::format("--snapshot-folder: '{}' is no folder; make it first", folder_.string()));
+}
+
+std::filesystem::path Snapshots::path_of(const std::string& name) const {
+  return folder_ / (name + ".snapshot");
+}
+
+std::optional<wire::Fault> Snapshots::fault_of_size(const std::string& name,
+                                                    std::size_t size) const {
+  const auto old = kept_.find(name);
+  const std::size_t others = size_ - (old == kept_.end() ? 0 : old->second.size());
+  if (old == kept_.end() && kept_.size() >= most) {
+    return make_fault(
+        ErrorCode::too_many, "snapshot.name",
+        fmt::format("The server keeps {} snapshots already; use one of their names again.", most));
+  }
+  if (others + size > most_bytes) {
+    return make_fault(
+        ErrorCode::too_large, "snapshot.name",
+        fmt::format(
+            "The snapshot has {} bytes, and the others have {}; together at most {} are kept.",
+            size, others, most_bytes));
+  }
+  return std::nullopt;
+}
+
+std::optional<wire::Fault> Snapshots::keep(const std::string& name, const World& world) {
+  if (auto fault = fault_of_name(name, "snapshot.name")) return fault;
+  try {
+    Snapshot snapshot = world.simulation.snapshot();
+    const std::size_t size = snapshot.size();
+    if (auto fault = fault_of_size(name, size)) return fault;
+    if (!folder_.empty()) write(name, snapshot, world);
+    const auto [place, is_new] = kept_.try_emplace(name);
+    size_ += size - (is_new ? 0 : place->second.size());
+    place->second = std::move(snapshot);
+  } catch (const simulation::SnapshotError& error) {
+    return make_fault(ErrorCode::out_of_state, "snapshot.name", error.what());
+  }
+  return std::nullopt;
+}
+
+/// A file is there whole or not at all.
+void Snapshots::write(const std::string& name, const Snapshot& snapshot, const World& world) const {
+  const std::vector<std::byte> bytes = simulation::to_bytes(snapshot, {world.scene_hash, build_});
+  const std::filesystem::path path = path_of(name), partial = path.string() + ".part";
+  std::ofstream file(partial, std::ios::binary | std::ios::trunc);
+  file.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(partial, path, error);
+  if (file && !error) return;
+  std::filesystem::remove(partial, error);
+  throw simulation::SnapshotError("The snapshot can't be written to the server's folder.");
+}
+
+std::variant<Snapshot, wire::Fault> Snapshots::find(const std::string& name, const World& world,
+                                                    const scene::OpenFile& open) const {
+  if (auto fault = fault_of_name(name, "restore.name")) return std::move(*fault);
+  if (const auto found = kept_.find(name); found != kept_.end()) return found->second;
+  std::error_code error;
+  const bool is_file = !folder_.empty() && std::filesystem::is_regular_file(path_of(name), error);
+  if (!is_file) {
+    return make_fault(ErrorCode::bad_value, "restore.name",
+                      fmt::format("There is no snapshot '{}'.", name));
+  }
+  const auto read = [&](const std::string& xml) {
+    scene::Addition addition = world.additions.read(
+        xml, world.scene, longest_element, [](const std::string&) { return false; }, open);
+    if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
+    return std::move(addition.entity);
+  };
+  try {
+    const std::vector<std::byte> bytes = read_file(path_of(name));
+    return simulation::from_bytes(bytes, {world.scene_hash, build_}, read);
+  } catch (const std::exception& exception) {
+    return make_fault(ErrorCode::bad_value, "restore.name",
+                      std::string(exception.what()).substr(0, 1024));
+  }
+}
+
+}  // namespace ziggurat::supervision
