@@ -95,9 +95,10 @@ std::vector<std::string> Rehearsal::embed_scripts() {
   write_below(below, file_.files());
   const world::Layout& layout = world_.simulation.layout();
   std::vector<std::string> scripts(layout.robots.size());
-  const auto tried = options_.robot ? std::optional(robot_named(layout, *options_.robot)) : std::nullopt;
+  const bool tries_one = options_.robot.has_value();
+  const std::size_t tried = tries_one ? robot_named(layout, *options_.robot) : 0;
   for (std::size_t r = 0; r < scripts.size(); ++r) {
-    if (tried && *tried != r) continue;
+    if (tries_one && tried != r) continue;
     const bool is_own = !options_.script.empty();
     if (is_own && !runs_script(world_.scene.controllers[layout.robots[r].controller])) {
       throw text::UsageError("--script is for the robots of Lua controllers; write -- COMMAND");
