@@ -25,6 +25,7 @@ def _same_answer(stage) -> str:
     return "" if first == second else f"first {text_of(first, 200)}; then {text_of(second, 200)}"
 
 
+_WELCOME_BACK = welcome(version={"major": 1, "minor": 2}, resumed={"gone_robots": []})
 _RESET = Tell({"reset": {"seed": 8}})
 _PAUSED = Tell({"paused": {"tick": 0}})
 
@@ -48,8 +49,9 @@ CASES = [
     _case("L10.displaced", "It does not take them back",
           *BEGUN, *ticks(1, 2), Tell({"displaced": {"by": "another 1", "message": "takeover"}}), Quiet(2.0)),
     _case("L6.restored", "It is told that the world was restored, and goes on at that tick",
-          HELLO, SinceMinor(2, (welcome(version={"major": 1, "minor": 2}), *ticks(0, 5),
-                                Tell({"restored": {"tick": 2, "snapshot": "two"}}), *ticks(2, 4)))),
+          HELLO, SinceMinor(2, (
+              welcome(version={"major": 1, "minor": 2}), *ticks(0, 5, epoch=0),
+              Tell({"restored": {"tick": 2, "snapshot": "two", "epoch": 1}}), *ticks(2, 4, epoch=1)))),
     _case("L4.lost", "A connection that is lost between ticks is made anew, and the session resumed",
           *BEGUN, *ticks(1, 3), Cut(), _resumed(3)),
     _case("L4.lost-in-a-tick", "… and one that is lost before the answer",
@@ -76,6 +78,14 @@ CASES = [
     _case("L13.resumed", "A Welcome of 1.1 with what was commanded is a Welcome",
           *BEGUN, *ticks(1, 2), Cut(), HearResume(),
           SinceMinor(1, (welcome(version={"major": 1, "minor": 1}, resumed={"gone_robots": []}), *ticks(2, 4)))),
+    _case("S13.epoch", "Its Command has the epoch of the Observation that it answers",
+          HELLO, SinceMinor(2, (welcome(version={"major": 1, "minor": 2}), *ticks(0, 2, epoch=0),
+                                Tell({"reset": {"seed": 8, "epoch": 1}}), *ticks(0, 2, epoch=1)))),
+    _case("S13.resumed", "So has the one that is sent again after a loss, and the first of another epoch",
+          HELLO, SinceMinor(2, (
+              welcome(version={"major": 1, "minor": 2}), *ticks(0, 2, epoch=4),
+              Cut(), HearResume(), _WELCOME_BACK, *ticks(2, 3, epoch=4),
+              Cut(), HearResume(), _WELCOME_BACK, *ticks(3, 4, epoch=5)))),
     _case("V15.spawned", "That a robot was spawned needs no answer",
           HELLO, SinceMinor(1, (welcome(version={"major": 1, "minor": 1}), *ticks(0, 2), Tell(
               {"robot_spawned": {"robot": "arm9", "controller": "steady", "tick": 2}}), Quiet(0.3), *ticks(3, 4)))),

@@ -44,6 +44,7 @@ class Session:
         self.hello: Optional[protocol.Hello] = None  # the last
         self.welcome: Optional[protocol.Welcome] = None
         self.tick: Optional[int] = None  # of the last Observation
+        self.epoch: Optional[int] = None  # the same; None: a session of an earlier version
         self.owes = False
         self.missed: set[int] = set()  # ticks that went on without a Command, which may still come
         self.left: set[int] = set()  # positions
@@ -99,6 +100,9 @@ class Session:
             return  # it was on its way (M1)
         if self.state is State.DRAINING:
             yield Fault("L5", f"a Command for tick {command.tick} after the End")
+        elif command.HasField("epoch") and self.epoch is not None and command.epoch != self.epoch:
+            yield Fault("S13", f"a Command of epoch {command.epoch}; the last Observation is of {self.epoch}",
+                        "FUTURE_TICK" if command.epoch > self.epoch else "STALE_TICK", "epoch")
         elif command.tick > self.tick:
             yield Fault("S9", f"a Command for tick {command.tick}; the last Observation is of {self.tick}",
                         "FUTURE_TICK", "tick")
@@ -107,6 +111,8 @@ class Session:
                         "STALE_TICK", "tick")
         elif command.tick == self.tick and not self.owes and command.tick not in self.missed:
             yield Fault("S9", f"a second Command for tick {command.tick}", "DUPLICATE_TICK", "tick")
+        if self.epoch is not None and not command.HasField("epoch"):
+            yield Fault("S13", "a Command without epoch, though its Observation has one", should=True)
         yield from command_faults(self.welcome.robots, self.left, command)
         if self._must_repeat and self.owes and command.tick == self.tick:
             lost = {field for field, _ in self._used - self._commanded(command)}
@@ -207,6 +213,7 @@ class Session:
         if self.owes and self.tick is not None:
             self.missed.add(self.tick)
         self.tick, self.owes, self._is_new_world = told.tick, True, False
+        self.epoch = told.epoch if told.HasField("epoch") else None
         if self.state is not State.DRAINING:
             self.state = State.STEPPING
         return faults

@@ -61,6 +61,8 @@ MUTANTS = [
     _should("refusal-is-fine", "L11", "H10.refused"),
     Mutant("hello-twice", "M0", "H1.loading"),
     Mutant("command-early", "M0", "H11.waits"),
+    Mutant("guesses-epochs", "S13", "S13.epoch"),
+    _should("forgets-epochs", "S13", "S13.epoch"),
     Mutant("skips-zero", "S3", "S1.first-tick"),
     Mutant("skips-a-tick", "S3", "S3.answers-each"),
     Mutant("tick-ahead", "S9", "S3.answers-each"),

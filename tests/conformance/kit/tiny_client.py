@@ -38,6 +38,7 @@ class Client:
         self.token = bytes.fromhex(os.environ.get("ZIGGURAT_SESSION_TOKEN", "") if bug != "forgets-its-past" else "")
         self.answered, self.is_resumed = None, False  # the last Command
         self.started_at = time.monotonic()
+        self.epoch = None
         self.tick, self.is_fresh = -1, True  # the next Command has all values
         self.left, self.retries = set(), 3
         self.curve = None
@@ -137,7 +138,8 @@ class Client:
 
     def command(self):
         """The right one for the last Observation."""
-        command = protocol.Command(tick=self.tick)
+        epoch = None if self.bug == "forgets-epochs" else self.epoch
+        command = protocol.Command(tick=self.tick, epoch=epoch if epoch is None or self.bug != "guesses-epochs" else epoch + 1)
         robots = self.welcome.robots
         if self.is_fresh:
             for field, values in PER_ROBOT.items():
@@ -207,10 +209,11 @@ class Client:
     def take_observation(self, observation):
         if self.bug == "only-consecutive" and self.tick >= 0 and observation.tick not in (0, self.tick + 1):
             return
-        if self.is_resumed and observation.tick == self.tick and self.bug != "sees-ticks-twice":
+        moment = (observation.tick, observation.epoch if observation.HasField("epoch") else None)
+        if self.is_resumed and moment == (self.tick, self.epoch) and self.bug != "sees-ticks-twice":
             self.say(command=self.answered)
         else:
-            self.tick = observation.tick
+            self.tick, self.epoch = moment
             self.answer()
         self.is_resumed = False
 
