@@ -2,7 +2,8 @@
 
 import protocol_pb2 as protocol
 
-from .kinds import E, TOLD, clear_fields, drop, in_kind, refill, said, told
+from .supervision import done_without
+from .kinds import E, SAID, TOLD, clear_fields, drop, in_kind, refill, said, told
 
 TOLD["dropped-not-told"] = drop("error", E.ROBOTS_DROPPED)
 TOLD["dropped-beyond"] = in_kind("error", lambda _, error: error.dropped.robots.append(9)
@@ -54,3 +55,17 @@ def _(connection, message):
 def _(connection, message):
     if message.request.HasField("move"):
         refill(message.request.move, "position", [min(x, 1e6) for x in message.request.move.position])
+
+TOLD["epoch-not-told"] = clear_fields("observation", "epoch")
+SAID["any-epoch"] = clear_fields("command", "epoch")
+SAID["later-epochs-count"] = in_kind("command", lambda _, command: command.ClearField("epoch")
+                                     if command.epoch > 9 else None)
+TOLD["restored-not-told"] = drop("restored")
+SAID["restore-not-done"] = done_without("restore")
+SAID["restores-all"] = in_kind("hello", lambda _, hello: setattr(hello, "can_restore", True))
+
+
+@said("any-name")
+def _(connection, message):
+    if message.request.HasField("snapshot"):
+        message.request.snapshot.name = "any"
