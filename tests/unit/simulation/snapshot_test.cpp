@@ -143,7 +143,7 @@ TEST(Snapshot, OfWrongStateLeavesTheWorldAsItIs) {
       wrong.state.resize(random() % wrong.state.size());
     } else {
       // The low bytes are those of numbers, high ones those of sizes and exponents.
-      for (std::size_t k = 0; k <= i % 3; ++k) {
+      for (std::size_t k = 0; k <= static_cast<std::size_t>(i % 3); ++k) {
         wrong.state[random() % wrong.state.size()] = static_cast<std::byte>(random());
       }
     }
@@ -168,7 +168,6 @@ TEST(Snapshot, NamesTheFieldThatDiffers) {
   world.run(3);
   const Snapshot snapshot = world.simulation.snapshot();
   EXPECT_EQ(world.simulation.first_difference(snapshot), "");
-  world.simulation.commands().led_colors.size();
   world.run(1);
   EXPECT_NE(world.simulation.first_difference(snapshot), "");
 }
