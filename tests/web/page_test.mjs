@@ -46,6 +46,7 @@ function phaseIs(page, phase) {
 
 /** Lets the world begin again, and pauses it in its first ticks. */
 async function beginAgain(page) {
+  await waitFor(async () => (await liveTick(page)) > 0, "first tick"); // from which the page sees the world go back
   await page.locator("#reset").click();
   await waitFor(() => page.evaluate(() => window.ziggurat.app.timeline.marks.some(({ kind }) => kind === "reset")), "reset");
   await page.locator("#play").click();

@@ -237,7 +237,7 @@ MUTANTS = [
     _bent("epoch-not-told", "S13.epoch"),
     _bent("any-epoch", "S13.stale"),
     _bent("later-epochs-count", "S13.future"),
-    _bent("restored-not-told", "V11.snapshot", "L6"),
+    _bent("restored-not-told", "V11.snapshot", "S1"),
     _bent("any-name", "V11.name"),
     _bent("restore-not-done", "V16.unknown"),
     _bent("restores-all", "V17.refused"),
