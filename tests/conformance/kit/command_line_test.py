@@ -47,7 +47,7 @@ class Mistakes(unittest.TestCase):
                     "echo no libfoo >&2; exit 7")
 
     def test_a_server_that_does_not_listen(self):
-        self.expect(r"nothing listens at tcp://\S+, which takes the place of \{endpoint\} .*after 10 s; "
+        self.expect(r"nothing listens at tcp://\S+, which takes the place of \{endpoint\} .*after 30 s; "
                     r"the server said nothing", "server", "--", "sleep", "1000")
 
     def test_an_endpoint_without_server(self):
