@@ -1,6 +1,8 @@
 #include "world/archive.h"
 
 #include <algorithm>
+#include <tuple>
+#include <type_traits>
 
 namespace ziggurat::world {
 
@@ -121,10 +123,15 @@ void archive(math::Archive& archive, const Layout& layout, const State& state,
     archive.any_number("time_left", reading.time_left);  // infinite, if nothing is drawn
   }
   archive_sights(archive, layout, state, observations);
-  archive_numbers(archive, "wheels", observations.wheels);
   archive("turrets", observations.turrets);
-  archive_numbers(archive, "imus", observations.imus);
-  archive_numbers(archive, "contact_sensors", observations.contact_sensors);
+  for_each_channel(sensed, [&](auto i) {
+    constexpr auto& channel = std::get<i>(sensed);
+    auto& values = observations.*channel.values;
+    using Reading = typename std::remove_reference_t<decltype(values)>::value_type;
+    if constexpr (Numbers<Reading> && !std::is_same_v<Reading, BatteryReading>) {
+      archive_numbers(archive, channel.recorded, values);
+    }
+  });
 }
 
 void archive(math::Archive& archive, const Layout& layout, Commands& commands) {

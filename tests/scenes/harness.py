@@ -53,9 +53,16 @@ class SceneTest(unittest.TestCase):
                 process.communicate()
         try:
             self.assertEqual(self.left_processes(), [], "left behind")
+            self.wait_for_guardian()
             self.assertEqual(list(self.runtime.iterdir()), [], "left behind")
         finally:
             shutil.rmtree(self.folder, ignore_errors=True)
+
+    def wait_for_guardian(self):
+        """The guardian of a program that was killed cleans up a moment later."""
+        end = time.monotonic() + 10
+        while any(self.runtime.iterdir()) and time.monotonic() < end:
+            time.sleep(0.02)
 
     # --- scenes ---------------------------------------------------------------------------------
 

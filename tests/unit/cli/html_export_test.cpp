@@ -57,7 +57,8 @@ TEST_F(HtmlExport, TheRecordingAndItsNameStandInThePage) {
   const auto player =
       write("player.html", "<a data-name=\"@NAME@\">@RECORDING@</a> @NAME@ @RECORDING@");
   const auto recording = write("a<\"&b.mcap", magic_ + "foo");
-  EXPECT_EQ(export_html(player, recording, path("out.html")), read(path("out.html")).size());
+  const std::size_t size = export_html(player, recording, path("out.html"));
+  EXPECT_EQ(size, read(path("out.html")).size());
   EXPECT_EQ(read(path("out.html")), "<a data-name=\"a&#60;&#34;&#38;b.mcap\">" +
                                         to_base64(magic_ + "foo") + "</a> @NAME@ @RECORDING@");
   EXPECT_FALSE(fs::exists(path("out.html.part")));
