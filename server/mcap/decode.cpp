@@ -50,7 +50,7 @@ std::optional<Header> to_header(std::string_view content) {
   Bytes bytes(content);
   Header header;
   header.profile = text(bytes);
-  header.library = text(bytes);
+  header.writer = text(bytes);
   return if_ok(bytes, std::move(header));
 }
 

@@ -49,7 +49,7 @@ void put_counts(const std::vector<std::pair<std::uint16_t, std::uint64_t>>& coun
 void append(const Header& header, std::string& to) {
   const Record record(Op::header, to);
   put_text(header.profile, to);
-  put_text(header.library, to);
+  put_text(header.writer, to);
 }
 
 void append_without_crc(const Footer& footer, std::string& to) {

@@ -42,7 +42,8 @@ enum class Compression { none, lz4, zstd };
 using Map = std::vector<std::pair<std::string, std::string>>;
 
 struct Header {
-  std::string profile, library;
+  std::string profile;
+  std::string writer;  ///< program that wrote the file: `library` in the specification
 };
 
 struct Footer {

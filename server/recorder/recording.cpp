@@ -99,15 +99,14 @@ void Recording::tick(TickCopy& copy) {
   if (std::exchange(begins_epoch_, false)) {
     const std::int64_t tick_ns = 1'000'000'000 / population_->scene.experiment.ticks_per_second;
     offset_ns_ = epoch_ == 0 ? 0 : log_time_ns_ + tick_ns - time_ns;
-    commands_.forget();
-    links_.forget();
+    links_ = {};
   }
   log_time_ns_ = time_ns + offset_ns_;
   if (std::exchange(is_population_new_, false)) write_messages(Pace::latched);
   write_messages(Pace::tick);
   if (state_channel_ != 0) {
-    links_.fill(tick_.state, exact_);
-    exact_.set_epoch(epoch_);
+    exact_.Clear();
+    links_.pack(epoch_, tick_.state, false, exact_);
     write(state_channel_, exact_.SerializeAsString());
   }
   inputs_.Clear();
@@ -130,7 +129,7 @@ void Recording::log(channels::Severity severity, const std::string& name,
 void Recording::step(const world::Commands& commands) {
   tick_.commands = commands;
   write_messages(Pace::answer);
-  commands_.fill(commands, *inputs_.mutable_commands());
+  commands_.pack(commands, *inputs_.mutable_commands());
   write_inputs();
 }
 
@@ -149,7 +148,7 @@ void Recording::end_epoch() {
 
 void Recording::end_chunk() {
   writer_.end_chunk();
-  links_.forget();
+  links_ = {};
 }
 
 void Recording::end_old_chunk() {

@@ -13,9 +13,8 @@
 
 #include "channels/channels.h"
 #include "mcap/writer.h"
+#include "recording/inputs.h"
 #include "recorder/copies.h"
-#include "recorder/exact_state.h"
-#include "recorder/inputs.h"
 #include "recorder/start.h"
 
 namespace ziggurat::recorder {
@@ -75,9 +74,9 @@ class Recording {
   TickCopy tick_;  // the last one
   v1::Inputs inputs_;
   bool has_inputs_ = false;  // of the last tick, not written yet
-  CommandChanges commands_;
-  StateChanges links_;
-  v1::ExactState exact_;
+  recording::CommandPacker commands_;
+  recording::StatePacker links_;
+  v1::ExactState exact_;  // keeps its memory
   std::uint64_t epoch_ = 0;
   std::int64_t offset_ns_ = 0;    // of log times from simulated time
   std::int64_t log_time_ns_ = 0;  // of the last tick

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "scene/document.h"
 #include "scene/draft.h"
 
 namespace ziggurat::scene {

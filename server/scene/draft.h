@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "scene/document.h"
+#include "scene/element.h"
 #include "scene/names.h"
 #include "scene/parameters.h"
 #include "scene/scene.h"

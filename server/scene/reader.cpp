@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "scene/document.h"
 #include "scene/draft.h"
 
 namespace ziggurat::scene {

@@ -4,7 +4,7 @@ import json
 
 import protocol_pb2 as protocol
 
-from .kinds import E, RAW, SAID, TOLD, clear_fields, drop, in_kind, recode, refill, said, set_fields, told
+from .kinds import E, RAW, SAID, TOLD, clear_fields, drop, in_kind, recode, refill, said, set_fields, swap, told
 
 RAW["two-frames"] = lambda data: [(data, b"")]
 RAW["other-form"] = lambda data: [data[1:] if data[:1] == b"{" else data]
@@ -58,17 +58,7 @@ def _(connection, message):
     return None
 
 
-@told("reorders")
-def _(connection, message):
-    if not message.HasField("heartbeat"):
-        return None
-    held = connection.notes.pop("held", None)
-    if held is None:
-        connection.notes["held"] = message
-        return []
-    return [message, held]
-
-
+TOLD["reorders"] = swap("heartbeat")
 TOLD["no-limit"] = set_fields("welcome", max_message_bytes=0)
 TOLD["too-large-is-silent"] = drop("error", E.TOO_LARGE)
 TOLD["garbage-is-silent"] = drop("error", E.MALFORMED)

@@ -53,6 +53,19 @@ def drop(kind, *codes):
     return in_kind(kind, lambda _, content: [] if not codes or content.code in codes else None)
 
 
+def swap(kind):
+    """Each two messages of a kind in the other order."""
+    def bend(connection, message):
+        if not message.HasField(kind):
+            return None
+        held = connection.notes.pop("held", None)
+        if held is None:
+            connection.notes["held"] = message
+            return []
+        return [message, held]
+    return bend
+
+
 def recode(kind, code, other):
     """Another code in errors."""
     def change(_, content):

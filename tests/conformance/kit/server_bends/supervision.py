@@ -2,24 +2,12 @@
 
 import protocol_pb2 as protocol
 
-from .kinds import E, SAID, TOLD, clear_fields, drop, finite, in_kind, refill, said, set_fields, told
+from .kinds import E, SAID, TOLD, clear_fields, drop, finite, in_kind, refill, said, set_fields, swap, told
 
 SAID["supervisor-robots-ignored"] = in_kind("hello", lambda _, hello: hello.ClearField("robots")
                                         if hello.role == protocol.ROLE_SUPERVISOR else None)
 TOLD["id-plus-one"] = in_kind("response", lambda _, response: setattr(response, "id", (response.id + 1) % 2**64))
-
-
-@told("responses-swapped")
-def _(connection, message):
-    if not message.HasField("response"):
-        return None
-    held = connection.notes.pop("held", None)
-    if held is None:
-        connection.notes["held"] = message
-        return []
-    return [message, held]
-
-
+TOLD["responses-swapped"] = swap("response")
 TOLD["observer-may-all"] = clear_fields("response", "error")
 
 

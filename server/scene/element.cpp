@@ -1,0 +1,251 @@
+#include "scene/element.h"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <system_error>
+
+namespace ziggurat::scene {
+namespace {
+
+/// Faults the first character reference of an attribute that stands for no character.
+void check_references(const Document& document, std::string_view element,
+                      const pugi::xml_attribute& attribute) {
+  if (document.setting_of(attribute)) return;
+  const std::string_view raw = document.raw(attribute);
+  for (std::size_t begin = raw.find('&'); begin != std::string_view::npos;
+       begin = raw.find('&', begin + 1)) {
+    const std::size_t end = raw.find(';', begin);
+    const std::string_view name =
+        end == std::string_view::npos ? "" : raw.substr(begin + 1, end - begin - 1);
+    constexpr std::string_view known[] = {"amp", "lt", "gt", "quot", "apos"};
+    if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
+    unsigned code = 0;
+    if (name.starts_with('#')) {
+      const bool hexadecimal = name.size() > 1 && name[1] == 'x';
+      const std::string_view digits = name.substr(hexadecimal ? 2 : 1);
+      const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code,
+                                                 hexadecimal ? 16 : 10);
+      if (error != std::errc() || stop != digits.data() + digits.size()) code = 0;
+    }
+    const bool white = code == 0x9 || code == 0xA || code == 0xD;
+    const bool character = (code >= 0x20 && code <= 0x10FFFF && !(code >= 0xD800 && code < 0xE000));
+    if (white || character) continue;
+    document.report().fault(document.locate(attribute.value()),
+                            fmt::format("{}={} of <{}> has the reference {}, which stands for no "
+                                        "character; write &amp; for a literal &",
+                                        attribute.name(), in_quotes(raw), element,
+                                        in_quotes(raw.substr(begin, name.size() + 2))));
+    return;
+  }
+}
+
+void check_repeated_attributes(const Document& document, const pugi::xml_node& node) {
+  std::vector<std::pair<std::string_view, const char*>> names;
+  for (const pugi::xml_attribute attribute : node.attributes()) {
+    names.emplace_back(attribute.name(), attribute.name());
+  }
+  std::sort(names.begin(), names.end());
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    if (names[i].first != names[i - 1].first) continue;
+    document.report().fault(
+        document.locate(names[i].second),
+        fmt::format("malformed XML: <{}> has the attribute {} twice; write it once", node.name(),
+                    in_quotes(names[i].first)));
+  }
+}
+
+/// @param known  the attributes that the element may have
+void report_unknown_attribute(const Document& document, std::string_view element,
+                              const pugi::xml_attribute& attribute,
+                              std::span<const std::string_view> known, std::string_view elsewhere) {
+  const Location where = document.locate(attribute);
+  const std::string_view name = attribute.name();
+  if (!elsewhere.empty()) {
+    document.report().fault(where,
+                            fmt::format("the attribute {}={} can't stand in this <{}>: {}", name,
+                                        in_quotes(attribute.value()), element, elsewhere));
+    return;
+  }
+  if (document.lenient()) {
+    document.report().notice(where, fmt::format("unknown attribute {} of <{}> has no effect; {}",
+                                                in_quotes(name), element, advice(name, known)));
+    return;
+  }
+  if (const auto why = unsupported_attribute(name)) {
+    document.report().fault(where, fmt::format("the attribute {}={} of <{}> is not supported; {}",
+                                               name, in_quotes(attribute.value()), element, *why));
+    return;
+  }
+  document.report().fault(where,
+                          fmt::format("<{}> has an unknown attribute {}={}; {}{}", element, name,
+                                      in_quotes(attribute.value()), advice(name, known),
+                                      document.origin(attribute)));
+  if (const auto meant = nearest(name, known)) document.report().left_out(*meant);
+}
+
+}  // namespace
+
+Location Element::where() const { return document_->locate(node_.name() - 1); }
+
+Location Element::where(const char* attribute) const {
+  const pugi::xml_attribute found = node_.attribute(attribute);
+  return found.empty() ? where() : document_->locate_value(found);
+}
+
+std::optional<std::string> Element::take(const char* attribute) {
+  asked_attributes_.push_back(attribute);
+  const pugi::xml_attribute found = node_.attribute(attribute);
+  if (found.empty()) return std::nullopt;
+  check_references(*document_, name(), found);
+  auto value = document_->value(found);
+  if (const Wrong* wrong = std::get_if<1>(&value)) {
+    fault_at(attribute, wrong->text);
+    return std::nullopt;
+  }
+  return std::get<0>(std::move(value));
+}
+
+std::vector<std::pair<std::string, std::string>> Element::all_attributes() {
+  any_attribute_ = true;
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const pugi::xml_attribute attribute : node_.attributes()) {
+    if (auto value = take(attribute.name())) {
+      result.emplace_back(attribute.name(), std::move(*value));
+    }
+  }
+  return result;
+}
+
+std::optional<Element> Element::child(const char* name) {
+  asked_children_.push_back(name);
+  const pugi::xml_node found = node_.child(name);
+  if (!found) return std::nullopt;
+  if (const pugi::xml_node second = found.next_sibling(name)) {
+    report().notice(document_->locate(second.name() - 1),
+                    fmt::format("a second <{}> in <{}> has no effect: the first one counts", name,
+                                this->name()));
+  }
+  return Element(*document_, found);
+}
+
+std::optional<Element> Element::required_child(const char* name) {
+  std::optional<Element> found = child(name);
+  if (!found) fault(fmt::format("lacks the element <{0}>; write <{0} …> in it", name), {name});
+  return found;
+}
+
+std::vector<Element> Element::children() {
+  any_child_ = true;
+  std::vector<Element> result;
+  for (const pugi::xml_node node : node_.children()) {
+    if (node.type() == pugi::node_element) result.emplace_back(*document_, node);
+  }
+  return result;
+}
+
+std::vector<Element> Element::children(const char* name) {
+  asked_children_.push_back(name);
+  std::vector<Element> result;
+  for (const pugi::xml_node node : node_.children(name)) result.emplace_back(*document_, node);
+  return result;
+}
+
+void Element::child_without_effect(const char* name, std::string_view why) {
+  asked_children_.push_back(name);
+  if (const pugi::xml_node found = node_.child(name)) {
+    report().notice(document_->locate(found.name() - 1),
+                    fmt::format("<{}> has no effect here: {}", name, why));
+  }
+}
+
+void Element::done(std::string_view elsewhere) {
+  check_repeated_attributes(*document_, node_);
+  for (const pugi::xml_attribute attribute : node_.attributes()) {
+    if (any_attribute_) break;
+    const std::string_view name = attribute.name();
+    if (name.starts_with("xml:") || name.starts_with("xmlns")) continue;  // XML's own
+    if (std::find(asked_attributes_.begin(), asked_attributes_.end(), name) ==
+        asked_attributes_.end()) {
+      report_unknown_attribute(*document_, this->name(), attribute, asked_attributes_, elsewhere);
+    }
+  }
+  for (const pugi::xml_node node : node_.children()) {
+    if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
+      report().notice(document_->locate(node.value()),
+                      fmt::format("the text {} in <{}> has no effect here",
+                                  in_quotes(trimmed(node.value())), name()));
+    }
+    if (node.type() != pugi::node_element || any_child_) continue;
+    if (std::find(asked_children_.begin(), asked_children_.end(), node.name()) ==
+        asked_children_.end()) {
+      const Element child(*document_, node);
+      if (elsewhere.empty()) {
+        child.unknown_in(name(), asked_children_);
+      } else {
+        child.fault(fmt::format("can't stand in this <{}>: {}", name(), elsewhere));
+      }
+    }
+  }
+}
+
+void Element::unknown_in(std::string_view parent, std::span<const std::string_view> known) const {
+  if (const auto why = unsupported_element(name())) {
+    report().fault(where(), fmt::format("<{}> is not supported; {}", name(), *why));
+    return;
+  }
+  const auto meant = nearest(name(), known);
+  if (const auto home = home_of(name()); home && *home != parent && !meant) {
+    report().fault(where(), fmt::format("<{}> can't stand in <{}>; write it into <{}>", name(), parent,
+                                        *home));
+    report().left_out(*home);
+    report().left_out(name());
+    return;
+  }
+  report().fault(where(), known.empty()
+                              ? fmt::format("unknown element <{}> in <{}>, which has no elements",
+                                            name(), parent)
+                              : fmt::format("unknown element <{}> in <{}>; {}", name(), parent,
+                                            advice(name(), known)));
+  if (meant) report().left_out(*meant);
+}
+
+std::string Element::sentence(const char* attribute, std::string_view text) const {
+  const pugi::xml_attribute found = node_.attribute(attribute);
+  return fmt::format("{}={} of <{}> {}{}", attribute, in_quotes(trimmed(found.value())), name(), text,
+                     document_->origin(found));
+}
+
+void Element::fault_at(const char* attribute, std::string_view text,
+                       std::vector<std::string_view> causes) const {
+  report().fault(where(attribute), sentence(attribute, text), std::move(causes));
+}
+
+void Element::fault(std::string_view text, std::vector<std::string_view> causes) const {
+  report().fault(where(), fmt::format("<{}> {}", name(), text), std::move(causes));
+}
+
+void Element::missing(const char* attribute) const {
+  fault(fmt::format("lacks the attribute {0}; write {0}=\"…\"", attribute), {attribute});
+}
+
+std::size_t Element::size() const {
+  struct Sum : pugi::xml_tree_walker {
+    std::size_t bytes = 0;
+    void add(const pugi::xml_node& node) {
+      bytes += 2 * std::string_view(node.name()).size() + std::string_view(node.value()).size();
+      bytes += std::string_view("<></>").size();
+      for (const pugi::xml_attribute attribute : node.attributes()) {
+        bytes += std::string_view(attribute.name()).size();
+        bytes += std::string_view(attribute.value()).size() + std::string_view(" =\"\"").size();
+      }
+    }
+    bool begin(pugi::xml_node& node) override { return add(node), true; }
+    bool for_each(pugi::xml_node& node) override { return add(node), true; }
+  } sum;
+  pugi::xml_node node = node_;
+  node.traverse(sum);
+  return sum.bytes;
+}
+
+}  // namespace ziggurat::scene

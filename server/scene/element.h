@@ -1,0 +1,142 @@
+#pragma once
+// Elements of a scene file: their attributes and children as values, and a record of which of them
+// were read, so that unknown ones are found without a list.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <pugixml.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "scene/document.h"
+#include "scene/names.h"
+#include "scene/report.h"
+#include "scene/values.h"
+
+namespace ziggurat::scene {
+
+/// Zero, the identity, or nothing.
+template <class T>
+T blank() {
+  if constexpr (requires { T::Zero(); }) {
+    return T::Zero();
+  } else if constexpr (requires { T::Identity(); }) {
+    return T::Identity();
+  } else {
+    return T{};
+  }
+}
+
+/// One element being read. Read its attributes and children, then call done().
+class Element {
+ public:
+  Element(Document& document, pugi::xml_node node) : document_(&document), node_(node) {}
+
+  std::string_view name() const { return node_.name(); }
+  Location where() const;
+  Report& report() const { return document_->report(); }
+
+  /// Where an attribute's value begins, or the element if it has none of that name.
+  Location where(const char* attribute) const;
+  bool has(const char* attribute) const { return !node_.attribute(attribute).empty(); }
+  /// Whether a value of the attribute has been asked for.
+  bool was_asked(std::string_view attribute) const {
+    return std::ranges::find(asked_attributes_, attribute) != asked_attributes_.end();
+  }
+
+  /// What a reader of values returns.
+  template <class Read>
+  using ValueOf = std::variant_alternative_t<0, std::invoke_result_t<Read, std::string_view>>;
+
+  /// The attribute's value, or nothing if it is missing or wrong; a wrong one is a fault.
+  template <class Read>
+  std::optional<ValueOf<Read>> optional(const char* attribute, Read read) {
+    const std::optional<std::string> text = take(attribute);
+    if (!text) return std::nullopt;
+    auto value = read(std::string_view(*text));
+    if (const Wrong* wrong = std::get_if<1>(&value)) {
+      fault_at(attribute, wrong->text);
+      return std::nullopt;
+    }
+    return std::get<0>(std::move(value));
+  }
+
+  /// The same with a default.
+  template <class Read>
+  ValueOf<Read> optional(const char* attribute, Read read, ValueOf<Read> fallback) {
+    return optional(attribute, read).value_or(std::move(fallback));
+  }
+
+  /// The attribute's value; a missing or wrong one is a fault and gives `fallback`.
+  template <class Read>
+  ValueOf<Read> required(const char* attribute, Read read,
+                         ValueOf<Read> fallback = blank<ValueOf<Read>>()) {
+    if (!has(attribute)) missing(attribute);
+    return optional(attribute, read).value_or(std::move(fallback));
+  }
+
+  /// Checks an attribute that has no effect here, and reports that.
+  template <class Read>
+  void without_effect(const char* attribute, Read read, std::string_view why) {
+    if (!has(attribute)) return;
+    optional(attribute, read);
+    report().notice(where(attribute),
+                    fmt::format("{} of <{}> has no effect here: {}", attribute, name(), why));
+  }
+
+  /// All attributes, trimmed, whatever their names: for <params>.
+  std::vector<std::pair<std::string, std::string>> all_attributes();
+
+  /// The child of that name, if there is one; a second one is a notice.
+  std::optional<Element> child(const char* name);
+  /// The same; none is a fault.
+  std::optional<Element> required_child(const char* name);
+  /// All children, for a caller that knows what to do with each name.
+  std::vector<Element> children();
+  /// All children of that name.
+  std::vector<Element> children(const char* name);
+  /// Children that do nothing here, with everything in them.
+  void child_without_effect(const char* name, std::string_view why);
+
+  /// Reports attributes and children that were not read, repeated attributes, and text.
+  /// @param elsewhere  where they belong, if all of them belong there
+  void done(std::string_view elsewhere = {});
+
+  /// Reports this element as one that its parent can't hold.
+  /// @param known  what the parent may hold
+  void unknown_in(std::string_view parent, std::span<const std::string_view> known) const;
+
+  /// `attribute="value" of <element> <text>`.
+  std::string sentence(const char* attribute, std::string_view text) const;
+  /// That sentence, at the value.
+  /// @param causes  as of Report::fault
+  void fault_at(const char* attribute, std::string_view text,
+                std::vector<std::string_view> causes = {}) const;
+  /// `<element> <text>`, at the element.
+  /// @param causes  as of Report::fault
+  void fault(std::string_view text, std::vector<std::string_view> causes = {}) const;
+  void missing(const char* attribute) const;
+
+  /// Of the element with all that is in it, white space and comments aside [bytes].
+  std::size_t size() const;
+
+ private:
+  std::optional<std::string> take(const char* attribute);
+
+  Document* document_;
+  pugi::xml_node node_;
+  std::vector<std::string_view> asked_attributes_;
+  std::vector<std::string_view> asked_children_;
+  bool any_attribute_ = false;
+  bool any_child_ = false;
+};
+
+}  // namespace ziggurat::scene
