@@ -6,13 +6,13 @@
 #include <array>
 #include <filesystem>
 
+#include "processes/scripts.h"
 #include "replay/commands_difference.h"
 #include "replay/recording_error.h"
 #include "replay/scene.h"
 #include "run/embedded_scripts.h"
 #include "run/replay_difference.h"
 #include "run/setup.h"
-#include "run/version.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -37,7 +37,7 @@ Rehearsal::Rehearsal(const RehearsalOptions& options, processes::Signals& signal
       folder_(signals.guardian()),
       world_(build_world()),
       scripts_(embed_scripts()),
-      server_(config(), description()),
+      server_(config(), description_of(world_, scripts_)),
       controllers_(start()),
       callers_(server_),
       supervision_({}, world_, server_, callers_, controllers_, console_),
@@ -124,16 +124,6 @@ network::Config Rehearsal::config() const {
   config.private_endpoint = "ipc://" + folder_.path() + "/run";
   config.deadlines.assign(world_.scene.controllers.size(), {scene::DeadlinePolicy{}, true});
   return config;
-}
-
-wire::Run Rehearsal::description() const {
-  const unsigned rate = world_.scene.experiment.ticks_per_second;
-  wire::Run run{world_.simulation.layout(), world_.scene.controllers, scripts_, world_.seed, 0, 1, {}, {}};
-  run.ticks_per_second = rate;
-  run.tick_ns = (1'000'000'000 + rate / 2) / rate;
-  run.scene_hash = world_.scene_hash;
-  run.server_version = version;
-  return run;
 }
 
 std::vector<std::size_t> Rehearsal::robots_without_controller() const {

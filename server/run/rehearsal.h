@@ -55,7 +55,6 @@ class Rehearsal {
   std::size_t tried_controller(const scene::Scene& scene) const;
   std::vector<std::string> embed_scripts();
   network::Config config() const;
-  wire::Run description() const;
   processes::Controllers start();
   std::vector<std::size_t> robots_without_controller() const;
   bool is_rehearsed(std::size_t robot) const;

@@ -141,13 +141,7 @@ network::Config Run::complete_config() {
 }
 
 wire::Run Run::description() const {
-  const unsigned ticks_per_second = world_.scene.experiment.ticks_per_second;
-  wire::Run run{
-      world_.simulation.layout(), world_.scene.controllers, scripts_, world_.seed, 0, 1, {}, {}};
-  run.ticks_per_second = ticks_per_second;
-  run.tick_ns = (1'000'000'000 + ticks_per_second / 2) / ticks_per_second;
-  run.scene_hash = world_.scene_hash;
-  run.server_version = version;
+  wire::Run run = description_of(world_, scripts_);
   run.is_hardware_in_the_loop = options_.hil;
   return run;
 }

@@ -14,6 +14,7 @@
 
 #include "run/files.h"
 #include "run/loading.h"
+#include "run/version.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -83,6 +84,17 @@ void announce(const Options& options, const std::vector<std::string>& endpoints,
   const std::string keys =
       is_protected ? " --server-key \"$(cat SERVER.public)\" --curve-secret FILE" : "";
   console.notice(fmt::format("connect with: ziggurat-lua --connect {}{}", endpoints.front(), keys));
+}
+
+wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts) {
+  const unsigned rate = world.scene.experiment.ticks_per_second;
+  wire::Run run{
+      world.simulation.layout(), world.scene.controllers, scripts, world.seed, 0, 1, {}, {}};
+  run.ticks_per_second = rate;
+  run.tick_ns = (1'000'000'000 + rate / 2) / rate;
+  run.scene_hash = world.scene_hash;
+  run.server_version = version;
+  return run;
 }
 
 wire::End end_message(const reports::Summary& summary) {

@@ -36,6 +36,10 @@ void add_controllers(const Options& options, const scene::Scene& scene, network:
 void announce(const Options& options, const std::vector<std::string>& endpoints,
               reports::Console& console);
 
+/// What clients are told of a run. Refers to both.
+/// @param scripts  per robot of the scene; empty = none
+wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts);
+
 /// What clients are told at the end of the run.
 wire::End end_message(const reports::Summary& summary);
 
