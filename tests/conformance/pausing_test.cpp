@@ -33,6 +33,18 @@ TEST(Pause, P1_TakesEffectWhenTheTickIsAnswered) {
   EXPECT_TRUE(pair.peers.is_complete());
 }
 
+TEST(Pause, P1_AWorldWithoutRobotsStandsAtEachTick) {
+  const SmallRun small(0);
+  Peers peers(small);
+  peers.publish(5);
+  pause(peers.barrier);
+  EXPECT_TRUE(peers.barrier.gate.is_standing());
+  restart(peers.barrier, {42});
+  peers.publish(0);
+  EXPECT_TRUE(peers.barrier.gate.is_standing());
+  EXPECT_FALSE(peers.is_complete());
+}
+
 TEST(Pause, P2_ASessionThatBeginsMeanwhileIsToldAfterItsAnswer) {
   Pair pair{Config{}};
   pair.peers.say("p", Peers::command(5));

@@ -75,6 +75,7 @@ void publish(Barrier& barrier, const world::Observations& observations,
     if (observe(barrier, session)) return;
     lose(barrier, session, "its connection is gone, or it does not read");
   });
+  stand_if_paused(barrier);  // if no session owes an answer
 }
 
 bool observe(Barrier& barrier, Session& session) {
