@@ -99,6 +99,7 @@ void Recording::tick(TickCopy& copy) {
   if (std::exchange(begins_epoch_, false)) {
     const std::int64_t tick_ns = 1'000'000'000 / population_->scene.experiment.ticks_per_second;
     offset_ns_ = epoch_ == 0 ? 0 : log_time_ns_ + tick_ns - time_ns;
+    commands_ = {};
     links_ = {};
   }
   log_time_ns_ = time_ns + offset_ns_;

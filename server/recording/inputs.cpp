@@ -223,7 +223,7 @@ void CommandPacker::pack(const world::Commands& commands, v1::Commands& to) {
   world::for_each_row(packed, [&](auto i) {
     constexpr auto& row = std::get<i>(packed);
     const auto& values = commands.*row.values;
-    if (is_same(values, last_.*row.values)) return;
+    if (!is_first_ && is_same(values, last_.*row.values)) return;
     last_.*row.values = values;
     write(values, *(to.*row.add)());
   });
@@ -233,6 +233,7 @@ void CommandPacker::pack(const world::Commands& commands, v1::Commands& to) {
     const auto payload = commands.radio_messages.payload(entry);
     message.set_payload(payload.data(), payload.size());
   }
+  is_first_ = false;
 }
 
 std::optional<std::string> unpack(const v1::Commands& from, const world::Layout& layout,

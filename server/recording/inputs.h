@@ -18,15 +18,17 @@ class ExactState;
 
 namespace ziggurat::recording {
 
-/// Packs the commands of one step after the other. One for all epochs of a run.
+/// Packs the commands of one step after the other, all arrays at the first call. A new epoch takes a
+/// new one.
 class CommandPacker {
  public:
-  /// Arrays that are as in the call before are left out; radio messages never are.
+  /// Later, arrays that are as in the call before are left out; radio messages never are.
   /// @param to  is empty before
   void pack(const world::Commands& commands, v1::Commands& to);
 
  private:
   world::Commands last_;  ///< without radio messages
+  bool is_first_ = true;
 };
 
 /// The inverse: takes over what a message has; arrays that it leaves out stay as they are.
