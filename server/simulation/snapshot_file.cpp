@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cstring>
 #include <string_view>
 
 #include "math/archive.h"
@@ -92,9 +92,10 @@ Snapshot from_bytes(std::span<const std::byte> bytes, const Origin& origin,
                             ? "The file is a snapshot of another version of this format."
                             : "The file is no snapshot.");
   }
-  const std::size_t content = bytes.size() - std::min(bytes.size(), sizeof(std::uint64_t));
   std::uint64_t sum = 0;
-  std::memcpy(&sum, bytes.data() + content, bytes.size() - content);
+  if (bytes.size() < mark.size() + sizeof sum) throw SnapshotError("The snapshot is cut off.");
+  const std::size_t content = bytes.size() - sizeof sum;
+  std::memcpy(&sum, bytes.data() + content, sizeof sum);
   if (sum != checksum(bytes.first(content))) {
     throw SnapshotError("The snapshot is damaged: its checksum is wrong.");
   }

@@ -123,6 +123,9 @@ TEST_P(Snapshots, OfAFileThatIsDamagedAreRefused) {
     damaged.resize(random() % bytes.size());
     EXPECT_THROW(from_bytes(damaged, {"scene", "build"}, read), SnapshotError);
   }
+  for (std::size_t size = 0; size < 60; ++size) {  // cut off in the mark, too
+    EXPECT_THROW(from_bytes(std::span(bytes).first(size), {"scene", "build"}, read), SnapshotError);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Snapshots, ::testing::Values("newton", "sweeps"),
