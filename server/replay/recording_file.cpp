@@ -45,7 +45,7 @@ void RecordingFile::read_files() {
   std::uint64_t all = 0;
   for (const mcap::AttachmentIndex& index : reader_->contents().attachments) {
     if (index.name.starts_with("snapshot/")) continue;
-    all += index.data_size;
+    all += index.length;  // the index's data_size may say anything
     if (all > most_embedded) {
       throw RecordingError(fmt::format("{}: its embedded files have more than {} bytes", path_,
                                        most_embedded));
