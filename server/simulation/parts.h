@@ -38,6 +38,7 @@ struct Simulation::Parts {
   void repeat_act(const scene::Scene& scene, const Act& act, world::Layout& grown);
   /// Writes down what the coming step takes, if only repeating gives the state again.
   void note_commands();
+  void note_move(std::size_t entity, const math::Pose& pose);
 
   std::uint64_t seed;
   bool has_archive;  // otherwise only the same steps again give the same state

@@ -158,8 +158,7 @@ void Simulation::Parts::move(std::size_t entity, const math::Pose& pose) {
 
 void Simulation::move(std::size_t entity, const math::Pose& pose) {
   parts_->move(entity, pose);
-  if (parts_->has_archive) return;
-  parts_->history.acts.push_back({Act::Kind::move, parts_->state.tick, entity, pose, {}, {}});
+  parts_->note_move(entity, pose);
 }
 
 void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, std::string xml) {

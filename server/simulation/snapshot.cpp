@@ -63,13 +63,19 @@ void Simulation::Parts::note_commands() {
   std::swap(commanded, commanding);
 }
 
+void Simulation::Parts::note_move(std::size_t entity, const math::Pose& pose) {
+  if (has_archive || history.size > longest_history) return;
+  history.acts.push_back({Act::Kind::move, state.tick, entity, pose, {}, {}});
+  history.size += sizeof(Act);
+}
+
 const History& Simulation::history() const { return parts_->history; }
 
 Snapshot Simulation::snapshot() const {
   Parts& p = *parts_;
   if (p.history.size > longest_history) {
     throw SnapshotError(fmt::format(
-        "There are too many commands since the start to repeat them: more than {} MiB. Snapshots of "
+        "There are too many commands and moves since the start to repeat them: more than {} MiB. Snapshots of "
         "long runs need solver=\"newton\".",
         longest_history >> 20));
   }

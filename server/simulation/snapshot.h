@@ -37,7 +37,7 @@ struct History {
   std::vector<Act> acts;  ///< in order; moves only where the world must be repeated
   /// Only where it must be repeated: those that differ from the last step's, ascending.
   std::vector<Commanded> commands;
-  std::size_t size = 0;  ///< of all commands [bytes]
+  std::size_t size = 0;  ///< of all commands and moves [bytes]
 };
 
 struct SnapshotError : std::runtime_error {
