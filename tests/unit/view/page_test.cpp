@@ -3,9 +3,11 @@
 #include "view/page.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 namespace ziggurat::view {
 namespace {
@@ -23,7 +25,7 @@ class Folder : public ::testing::Test {
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(path_ / name) << text;
   }
-  const std::filesystem::path path_ = ::testing::TempDir() + "/page_test";
+  const std::filesystem::path path_ = ::testing::TempDir() + "page_test_" + std::to_string(::getpid());
   const Page page_{(path_ / "web").string()};
 };
 
