@@ -221,6 +221,10 @@ Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptor
   if (!serves_others) {
     timeout = std::min(timeout, std::chrono::ceil<milliseconds>(share_.time_until_some()));
   }
+  if (!is_accepting_) {  // until tend() no other event may come
+    const auto rest = std::chrono::ceil<milliseconds>(next_tending_ - Clock::now());
+    timeout = std::clamp(rest, milliseconds{0}, std::max(timeout, milliseconds{0}));
+  }
   polled_.assign({{controllers_.list.number(), POLLIN, 0},
                   {serves_others ? others_.list.number() : -1, POLLIN, 0}});
   const std::size_t ours = polled_.size();

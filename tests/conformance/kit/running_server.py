@@ -14,8 +14,9 @@ FEWEST = 400  # cases, with their forms, that must pass
 
 def main(ziggurat, kit, *options):
     scene = subprocess.run([kit, "--scene"], check=True, capture_output=True, text=True).stdout.strip()
+    said = tempfile.TemporaryFile("w+")
     server = subprocess.Popen([ziggurat, "serve", scene, "--endpoint", "tcp://127.0.0.1:*"],
-                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+                              stdout=subprocess.PIPE, stderr=said, text=True)
     try:
         endpoint = server.stdout.readline().split()[1]
         with tempfile.TemporaryDirectory() as folder:
@@ -26,7 +27,8 @@ def main(ziggurat, kit, *options):
         passed = sum(case["verdict"] == "pass" for case in cases)
         if code == 0 and server.poll() is None and passed >= FEWEST:
             return 0
-        print(f"exit code {code}, {passed} passed, server: {server.poll()}")
+        said.seek(0)
+        print(f"exit code {code}, {passed} passed, server: {server.poll()}; it said:\n{said.read()[-2000:]}")
         return 1
     finally:
         server.send_signal(signal.SIGINT)
