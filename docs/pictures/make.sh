@@ -35,5 +35,6 @@ else
 fi
 
 if [ "${SCREENSHOTS:-yes}" = yes ]; then
-  ZIGGURAT_BIN=$programs node docs/pictures/screenshots.mjs "$results"
+  ZIGGURAT_BIN=$programs node docs/pictures/screenshots.mjs "$results" ||
+    echo "make.sh: no screenshots (sudo apt install chromium; ninja -C build/release web web_tests)" >&2
 fi

@@ -39,8 +39,13 @@ export class Run {
   }
 
   /** @param options  further arguments of `ziggurat run` */
-  static async start(scene, ...options) {
-    const child = spawn(ziggurat, ["run", scene, "--quiet", ...(options.some((option) => option.startsWith("--view"))
+  static start(scene, ...options) { return Run.launch("run", scene, options); }
+
+  /** The same of `ziggurat replay`. */
+  static replay(recording, ...options) { return Run.launch("replay", recording, options); }
+
+  static async launch(command, file, options) {
+    const child = spawn(ziggurat, [command, file, "--quiet", ...(options.some((option) => option.startsWith("--view"))
       ? options : ["--view=127.0.0.1:0", ...options])], { cwd: root, stdio: ["ignore", "ignore", "pipe"] });
     const told = [];
     for await (const line of createInterface({ input: child.stderr })) {
@@ -81,8 +86,8 @@ export async function newPage(browser, size = { width: 1100, height: 560 }) {
 }
 
 /** A page at a run. */
-export async function openPage(browser, address, hash = "") {
-  const page = await newPage(browser);
+export async function openPage(browser, address, hash = "", size = undefined) {
+  const page = await newPage(browser, size);
   const url = new URL(address);
   url.hash = hash;
   await page.goto(url.href);

@@ -44,6 +44,10 @@ function phaseIs(page, phase) {
   return waitFor(() => page.evaluate((wanted) => window.ziggurat.app.parameters.get("phase") === wanted, phase), `phase ${phase}`);
 }
 
+function countResets(page) {
+  return page.evaluate(() => window.ziggurat.app.timeline.marks.filter(({ kind }) => kind === "reset").length);
+}
+
 /** Lets the world begin again, and pauses it in its first ticks. */
 async function beginAgain(page) {
   await waitFor(async () => (await liveTick(page)) > 0, "first tick"); // from which the page sees the world go back
@@ -109,6 +113,51 @@ pageTest("the drop: a hundred bodies move, and the picture is that of `render`",
   console.log(`silhouettes at tick ${tick}: ${any} pixels, ${(100 * both / any).toFixed(1)} % shared`);
   assert.ok(both / any > 0.95, `${both} of ${any} pixels are shared`);
 }, "--real-time", "0.1");
+
+pageTest("a paused world that begins again stays paused, and the page shows it", drop, "", async (page) => {
+  await waitFor(async () => (await liveTick(page)) > 1, "tick 2");
+  await key(page, "Space");
+  await phaseIs(page, "paused");
+  for (let i = 0; i < 3; ++i) {
+    const resets = await countResets(page);
+    await page.locator("#reset").click();
+    await waitFor(async () => (await countResets(page)) > resets, "reset");
+    await waitFor(async () => (await liveTick(page)) === 0, "tick 0");
+    await phaseIs(page, "paused");
+    await page.waitForTimeout(700);
+    assert.equal(await liveTick(page), 0);
+    assert.equal(await page.evaluate(() => window.ziggurat.app.parameters.get("phase")), "paused");
+    await page.locator("#step").click(); // the page sees a world go back only from a later tick
+    await waitFor(async () => (await liveTick(page)) === 1, "tick 1");
+  }
+}, "--real-time", "0.5");
+
+test("a replay is watched as a run, and can't be changed", { timeout: 90_000 }, async () => {
+  const file = `${folder}/replayed.mcap`;
+  execFileSync(ziggurat, ["run", tags, "--ticks=40", "--quiet", "--record", file], { cwd: root, stdio: "ignore" });
+  const run = await Run.replay(file, "--real-time", "1");
+  try {
+    const page = await openPage(browser, run.address);
+    await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
+    await key(page, "Space");
+    await phaseIs(page, "paused");
+    await page.waitForTimeout(300);
+    const tick = await liveTick(page);
+    await page.locator("#step").click();
+    await waitFor(async () => (await liveTick(page)) === tick + 1, "next tick");
+    await page.locator("#reset").click(); // refused
+    await waitFor(() => page.locator("#notices").innerText().then((text) => text.length > 0), "notice");
+    assert.equal(await liveTick(page), tick + 1);
+    await page.locator("#play").click();
+    await waitFor(async () => (await liveTick(page)) === 40, "last tick");
+    await phaseIs(page, "over");
+    assert.deepEqual(page.problems, []);
+    assert.deepEqual(page.foreign, []);
+    await page.context().close();
+  } finally {
+    await run.stop();
+  }
+});
 
 pageTest("pause stops the server, a step is one tick, resume goes on", tags, "", async (page) => {
   await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
