@@ -26,4 +26,12 @@ from .supervisor import (EntityState, LinkState, SessionStatus, SolverStatus, St
                          Supervisor, supervise)
 
 __version__ = "0.1.0"
+
+
+def vector_env(scene, n, **options):
+    """A VectorEnv (ziggurat.vector): n worlds at once. Needs numpy, which nothing else of this package does."""
+    from .vector import VectorEnv
+    return VectorEnv(scene, n, **options)
+
+
 __all__ = [name for name in dir() if not name.startswith("_") and name not in ("google", "zmq")]

@@ -234,6 +234,11 @@ class Session:
                 raise StopIteration
             self._take(kind, message)
 
+    def answer(self) -> None:
+        """Answers the last tick now; next() then only waits. Several sessions of one program use the wait so."""
+        if self._owes is not None and self.ending is None and not self._is_over:
+            self._answer()
+
     def expect_reset(self) -> None:
         """Does not answer the current tick, because the world is being reset."""
         self._owes = None

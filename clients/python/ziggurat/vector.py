@@ -1,0 +1,283 @@
+"""Many worlds at once for learning, with the methods of Gymnasium's VectorEnv, without that package. It needs
+numpy."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+
+try:
+    import numpy
+except ImportError as error:
+    raise ImportError(f"{error}. vector_env needs numpy: apt-get install python3-numpy, or pip install "
+                      "numpy") from None
+
+from .parallel import all_readings
+from .robot import Robot
+from .server import Server
+from .session import Session, connect
+from .spaces import Box
+from .supervisor import Supervisor
+
+Observe = Callable[[Robot], Sequence[float]]
+Act = Callable[[Robot, Sequence[float]], None]
+
+
+@dataclass(frozen=True)
+class VectorSnapshot:
+    """A moment of all worlds of a VectorEnv, kept by their servers."""
+
+    names: Tuple[str, ...]  # by world
+    ticks: Tuple[int, ...]
+
+
+def motors(robot: Robot, action: Sequence[float]) -> None:
+    """A target for each motor of the robot, in order, then the speeds of its wheels: left, right."""
+    at = 0
+    for joint in robot.joints:
+        if joint.actuator_mode is not None:
+            joint.target = float(action[at])
+            at += 1
+    if robot.wheels is not None and robot.wheels.drives:
+        robot.wheels.set_velocity(float(action[at]), float(action[at + 1]))
+
+
+def motor_count(robot: Robot) -> int:
+    drives = robot.wheels is not None and robot.wheels.drives
+    return sum(joint.actuator_mode is not None for joint in robot.joints) + 2 * drives
+
+
+class _World:
+    """A server, and the sessions with it."""
+
+    def __init__(self, scene: str, robots: Union[str, Sequence[str]], command: str,
+                 arguments: Sequence[str]):
+        self.server = Server(scene, command=command, arguments=arguments)
+        self.session: Session = connect(self.server.endpoint, can_restore=True)
+        patterns = [robots] if isinstance(robots, str) else list(robots)
+        self.agents: List[Robot] = [robot for robot in self.session.robots
+                                    if any(fnmatchcase(robot.id, each) for each in patterns)]
+        self.supervisor = Supervisor(self.server.endpoint, name="vector_env")
+        self.begin = ""  # the name of the snapshot of tick 0 with the present seed
+        self._seed = self.session.seed
+        self._kept = 0
+
+    def advance(self) -> None:
+        """To the tick whose command was sent."""
+        if next(self.session, None) is None:
+            ending = self.session.ending
+            raise RuntimeError(f"the run of a world ended at tick {ending.tick}: {ending.reason} {ending.message}")
+
+    def snapshot(self) -> Tuple[str, int]:
+        self._kept += 1
+        name = f"vector-{os.getpid()}-{self._kept}"
+        return name, self.supervisor.snapshot(name)
+
+    def restore(self, name: str) -> None:
+        self.supervisor.restore(name)
+        self.session.expect_reset()
+        self.advance()
+
+    def reset(self, seed: Optional[int]) -> None:
+        """To tick 0; with the seed that it has, by a snapshot."""
+        if self.session.tick is None:
+            self.advance()  # the first observation
+        if seed is not None and seed != self._seed:
+            self.supervisor.reset(seed)
+            self.session.expect_reset()
+            self.advance()
+            self.begin = ""
+            self._seed = seed
+        elif self.begin:
+            return self.restore(self.begin)
+        self.begin, _ = self.snapshot()
+
+    def close(self) -> None:
+        for part in (self.session, self.supervisor, self.server):
+            part.close()
+
+
+class VectorEnv:
+    """`n` worlds of `scene`, each in a server process of its own. They compute at the same time.
+
+    robots      ids or globs: those that act, which must have the same devices. All other robots do nothing
+    observe     the observation of a robot, a fixed number of values; default all_readings
+    act         performs the action of a robot; default motors
+    action_space  of one robot, a Box; default -1 to 1 for each motor. Other actions are not refused
+    reward      of a robot, after each tick; default 0
+    terminated  whether a robot's task is over; default never
+    max_ticks   length of an episode; default without end
+    autoreset   a world whose episode is over goes back to its begin in the same step
+    dtype       of observations
+    command     the server's program; arguments: its other options
+
+    Arrays have the shape (n, …) if one robot acts, otherwise (n, robots, …).
+    """
+
+    metadata = {"name": "ziggurat", "render_modes": [], "autoreset_mode": "SameStep"}
+
+    def __init__(self, scene: str, n: int, *, robots: Union[str, Sequence[str]] = "*",
+                 observe: Observe = all_readings, act: Act = motors,
+                 action_space: Optional[Box] = None,
+                 reward: Callable[[Robot], float] = lambda robot: 0.0,
+                 terminated: Callable[[Robot], bool] = lambda robot: False,
+                 max_ticks: Optional[int] = None, autoreset: bool = True, dtype: Any = numpy.float64,
+                 command: str = "ziggurat", arguments: Sequence[str] = ()):
+        if n < 1:
+            raise ValueError(f"n is {n}; it must be 1 or more")
+        self.num_envs = n
+        self._observe, self._act = observe, act
+        self._reward, self._terminated = reward, terminated
+        self._max_ticks, self._autoreset = max_ticks, autoreset
+        self._worlds: List[_World] = []
+        try:
+            for _ in range(n):
+                self._worlds.append(_World(str(scene), robots, command, ["--duration", "0", *arguments]))
+            self._shape_spaces(action_space, dtype)
+        except BaseException:
+            self.close()
+            raise
+
+    def _shape_spaces(self, action_space: Optional[Box], dtype: Any) -> None:
+        """Waits for the first observations, whose length is that of all."""
+        for world in self._worlds:
+            world.reset(None)
+        first = self._worlds[0].agents
+        if not first:
+            raise ValueError("robots: the scene has no robot with such an id")
+        self.possible_agents = [robot.id for robot in first]
+        self.agents = list(self.possible_agents)
+        sizes = {robot.id: len(self._observe(robot)) for robot in first}
+        counts = {robot.id: motor_count(robot) for robot in first}
+        if len(set(sizes.values())) > 1 or (action_space is None and len(set(counts.values())) > 1):
+            raise ValueError(f"the robots are not alike: they have observations of {sizes} values and actions of "
+                             f"{counts}; choose some of them by robots=…")
+        size, count = next(iter(sizes.values())), next(iter(counts.values()))
+        self._agent_observation = Box(-numpy.inf, numpy.inf, (size,), dtype)
+        self._agent_action = Box(-1, 1, (count,)) if action_space is None else action_space
+        inner = () if len(first) == 1 else (len(first),)
+        self._inner = inner
+        self.single_observation_space = Box(-numpy.inf, numpy.inf, (*inner, size), dtype)
+        self.single_action_space = _repeated(self._agent_action, inner)
+        self.observation_space = Box(-numpy.inf, numpy.inf, (self.num_envs, *inner, size), dtype)
+        self.action_space = _repeated(self._agent_action, (self.num_envs, *inner))
+        self._observations = numpy.zeros((self.num_envs, len(first), size), dtype)
+
+    def agent_observation_space(self, agent: str) -> Box:
+        """Of one robot, as PettingZoo's observation_space(agent)."""
+        return self._agent_observation
+
+    def agent_action_space(self, agent: str) -> Box:
+        return self._agent_action
+
+    def sessions(self) -> List[Session]:
+        """By world, for devices that actions and observations do not include."""
+        return [world.session for world in self._worlds]
+
+    def supervisors(self) -> List[Supervisor]:
+        """By world, to move or spawn entities between two steps."""
+        return [world.supervisor for world in self._worlds]
+
+    def reset(self, *, seed: Union[None, int, Sequence[int]] = None,
+              options: Optional[Dict] = None) -> Tuple[numpy.ndarray, Dict]:
+        """All worlds back to tick 0: observations and infos.
+
+        seed     one for each world, or that of the first one, which counts up; without, each keeps its own
+        options  {"snapshot": s} goes back to what snapshot() gave in place of that; {"mask": m}, by world: only
+                 these go back
+        """
+        options = options or {}
+        snapshot: Optional[VectorSnapshot] = options.get("snapshot")
+        mask = numpy.asarray(options.get("mask", [True] * self.num_envs), bool)
+        if mask.shape != (self.num_envs,):
+            raise ValueError(f"the mask has the shape {mask.shape}; it must have {self.num_envs} values")
+        if isinstance(seed, int):
+            seed = [seed + number for number in range(self.num_envs)]
+        if seed is not None and len(seed) != self.num_envs:
+            raise ValueError(f"there are {len(seed)} seeds for {self.num_envs} worlds")
+        for number in numpy.flatnonzero(mask):
+            world = self._worlds[number]
+            if snapshot is not None:
+                world.restore(snapshot.names[number])
+            else:
+                world.reset(None if seed is None else seed[number])
+            self._read(number)
+        return self._shaped(self._observations.copy()), self._infos()
+
+    def snapshot(self) -> VectorSnapshot:
+        """All worlds as they are, to go back to: what follows is what followed then, bit for bit, with the same
+        actions."""
+        kept = [world.snapshot() for world in self._worlds]
+        return VectorSnapshot(tuple(name for name, _ in kept), tuple(tick for _, tick in kept))
+
+    def step(self, actions: Any) -> Tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray, Dict]:
+        """One tick of all worlds: observations, rewards, terminations, truncations and infos.
+
+        Where an episode is over, its world has gone back to its begin (autoreset); infos["final_observation"]
+        has the last observation, and infos["_final_observation"] says where."""
+        self.step_async(actions)
+        return self.step_wait()
+
+    def step_async(self, actions: Any) -> None:
+        """Sends the actions; the worlds compute while this program does something else."""
+        actions = numpy.asarray(actions, float)
+        if actions.shape != self.action_space.shape:
+            raise ValueError(f"actions have the shape {actions.shape}, not {self.action_space.shape}")
+        actions = actions.reshape(self.num_envs, len(self.agents), -1)
+        for world, world_actions in zip(self._worlds, actions):
+            for robot, action in zip(world.agents, world_actions):
+                self._act(robot, action)
+            world.session.answer()
+
+    def step_wait(self) -> Tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray, Dict]:
+        shape = (self.num_envs, len(self.agents))
+        rewards, terminations = numpy.zeros(shape), numpy.zeros(shape, bool)
+        truncations = numpy.zeros(shape, bool)
+        for number, world in enumerate(self._worlds):
+            world.advance()
+            self._read(number)
+            robots = world.agents
+            rewards[number] = [self._reward(robot) for robot in robots]
+            terminations[number] = [self._terminated(robot) for robot in robots]
+            tick = world.session.tick.number
+            truncations[number] = self._max_ticks is not None and tick >= self._max_ticks
+        over = terminations.all(axis=1) | truncations.all(axis=1)
+        infos = {}
+        if self._autoreset and over.any():
+            infos["final_observation"] = self._shaped(self._observations.copy())
+            infos["_final_observation"] = over
+            for number in numpy.flatnonzero(over):
+                self._worlds[number].reset(None)
+                self._read(number)
+        infos.update(self._infos())
+        return (self._shaped(self._observations.copy()), self._shaped(rewards),
+                self._shaped(terminations), self._shaped(truncations), infos)
+
+    def _read(self, number: int) -> None:
+        for place, robot in enumerate(self._worlds[number].agents):
+            self._observations[number, place] = self._observe(robot)
+
+    def _shaped(self, array: numpy.ndarray) -> numpy.ndarray:
+        """Without the axis of robots if there is one of them."""
+        return array if self._inner else array[:, 0]
+
+    def _infos(self) -> Dict[str, Any]:
+        return {"tick": numpy.array([world.session.tick.number for world in self._worlds])}
+
+    def close(self) -> None:
+        for world in self._worlds:
+            world.close()
+        self._worlds = []
+
+    def __enter__(self) -> "VectorEnv":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+
+def _repeated(space: Box, shape: Sequence[int]) -> Box:
+    shape = (*shape, *space.shape)
+    return Box(numpy.broadcast_to(space.low, shape), numpy.broadcast_to(space.high, shape), shape, space.dtype)
