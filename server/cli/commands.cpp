@@ -18,6 +18,7 @@ constexpr Command table[] = {
     {"render", "draw a scene at given times", help_render, execute_render},
     {"replay", "repeat a recorded run, to the bit, without its controllers", help_replay,
      execute_replay},
+    {"fork", "go on live from a tick of a recorded run", help_fork, execute_fork},
     {"verify", "check that a recorded run repeats to the bit", help_verify, execute_verify},
     {"diff", "show where and how two recordings differ", help_diff, execute_diff},
     {"try", "compare a controller's commands with those of a recorded run", help_try, execute_try},

@@ -23,14 +23,19 @@ constexpr double longest_lease = 4e6;  // [s]
 // Simulated seconds per second of wall time. At the least a tick of 0.1 s takes a day.
 constexpr double least_factor = 1e-6, most_factor = 1e6;
 
-po::options_description scene_options() {
-  po::options_description options("Reading the scene", width);
+void add_variation(po::options_description& options) {
   options.add_options()  //
       ("set", texts("PATH=VALUE"),
        "set the attributes that an XPath from the root element names, as in --set "
        "'physics_engines/dynamics3d/@iterations=7'; may be repeated")  //
       ("param", texts("NAME=VALUE"),
-       "the value of a parameter of the scene's <parameters>, instead of its own; may be repeated")  //
+       "the value of a parameter of the scene's <parameters>, instead of its own; may be repeated");
+}
+
+po::options_description scene_options() {
+  po::options_description options("Reading the scene", width);
+  add_variation(options);
+  options.add_options()                                          //
       ("lenient", "unknown attributes are notices, not faults")  //
       ("max-scene-size", text("SIZE"), "largest scene file, as 64M (the default)");
   return options;
@@ -399,6 +404,29 @@ po::options_description replay_options() {
       ("insecure", "allow an address that other machines can reach");
   po::options_description options("", width);
   options.add(replay).add(output_options());
+  return options;
+}
+
+po::options_description fork_options() {
+  po::options_description fork("The fork", width);
+  add_variation(fork);
+  fork.add_options()  //
+      ("at", text("TICK"), "the recorded state from which it goes on: the first with this tick; required")  //
+      ("fresh",
+       "controllers begin at that tick; otherwise they are first given what robots sensed before, tick by tick")  //
+      ("controller", texts("ID=CMD"), "start CMD for the controller ID; may be repeated")  //
+      ("script", texts("NAME=FILE.lua"),
+       "FILE instead of the embedded script NAME ('ziggurat info' lists them); may be repeated")  //
+      ("trust-recorded-commands",
+       "start the commands that the recording names; they can do anything that you can do")  //
+      ("without-controllers", "start no controllers; the robots do nothing")             //
+      ("lua-processes", text("N"),
+       "share the Lua robots among N processes; default 1, 0 is one for each robot")         //
+      ("lua-memory", text("MIB"), "largest memory of a robot's Lua script; default 256")  //
+      ("lua-instructions", text("MILLIONS"),
+       "most Lua instructions of a robot at one tick, in millions; default 1000");
+  po::options_description options("", width);
+  options.add(fork).add(world_options()).add(output_options()).add(record_options());
   return options;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The options of `run`, `serve`, `check`, `render` and `replay`: their help, and what they ask for.
+// The options of `run`, `serve`, `check`, `render`, `replay` and `fork`: their help, and what they ask for.
 
 #include <boost/program_options/options_description.hpp>
 
@@ -14,6 +14,7 @@ boost::program_options::options_description serve_options();
 boost::program_options::options_description check_options();
 boost::program_options::options_description render_options();
 boost::program_options::options_description replay_options();
+boost::program_options::options_description fork_options();
 
 /// @throws UsageError
 run::Options parse_options(const Arguments& arguments,

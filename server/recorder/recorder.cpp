@@ -135,9 +135,16 @@ void Recorder::kept(const std::string& snapshot) {
   add(std::move(act));
 }
 
-void Recorder::restored(const std::string& snapshot) {
+void Recorder::restored(const std::string& snapshot, std::span<const std::byte> bytes) {
   v1::Act act;
   act.mutable_restore()->set_name(snapshot);
+  if (!bytes.empty()) {
+    const std::string file = std::to_string(++snapshots_);
+    const auto* begin = reinterpret_cast<const char*>(bytes.data());
+    EmbeddedFile embedded{"snapshot/" + file, std::string(begin, bytes.size())};
+    add([embedded = std::move(embedded)](Recording& to) { to.attach(embedded); }, bytes.size());
+    act.mutable_restore()->set_file(file);
+  }
   add(std::move(act));
   add([](Recording& to) { to.end_epoch(); }, 0);
 }

@@ -38,6 +38,7 @@ v1::RunStart to_message(const Start& from) {
   build.set_libm(from.build.libm);
   build.set_cpu_path(from.build.cpu_path);
   for (const std::string& argument : from.arguments) to.add_arguments(v1::valid_utf8(argument));
+  to.set_snapshot(from.snapshot);
   return to;
 }
 

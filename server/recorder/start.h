@@ -38,6 +38,7 @@ struct Start {
   Build build;
   std::vector<std::string> arguments;
   std::vector<EmbeddedFile> files;  ///< attachments
+  std::string snapshot;  ///< that the world begins with: of the file `snapshot/…`; empty: none
 };
 
 v1::RunStart to_message(const Start& start);

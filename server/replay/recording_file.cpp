@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +12,7 @@
 namespace ziggurat::replay {
 namespace {
 
+const std::string snapshot_folder = "snapshot/";  // of the names of attachments
 constexpr std::uint64_t most_embedded = std::uint64_t{1} << 30;  // all files [bytes]
 
 RecordingError damaged(const std::string& path, const mcap::Damaged& damage) {
@@ -44,13 +46,28 @@ RecordingFile::RecordingFile(std::string path) : path_(std::move(path)) {
 void RecordingFile::read_files() {
   std::uint64_t all = 0;
   for (const mcap::AttachmentIndex& index : reader_->contents().attachments) {
-    if (index.name.starts_with("snapshot/")) continue;
+    if (index.name.starts_with(snapshot_folder)) continue;
     all += index.length;  // the index's data_size may say anything
     if (all > most_embedded) {
       throw RecordingError(fmt::format("{}: its embedded files have more than {} bytes", path_,
                                        most_embedded));
     }
     files_.add(index.name, reader_->attachment(index));
+  }
+}
+
+std::optional<std::string> RecordingFile::snapshot(const std::string& name) const {
+  const auto& all = reader_->contents().attachments;
+  const auto found = std::ranges::find(all, snapshot_folder + name, &mcap::AttachmentIndex::name);
+  if (found == all.end()) return std::nullopt;
+  if (found->length > most_embedded) {
+    throw RecordingError(
+        fmt::format("{}: the snapshot '{}' has more than {} bytes", path_, name, most_embedded));
+  }
+  try {
+    return reader_->attachment(*found);
+  } catch (const mcap::Damaged& damage) {
+    throw damaged(path_, damage);
   }
 }
 

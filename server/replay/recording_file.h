@@ -24,6 +24,8 @@ class RecordingFile {
   const v1::RunStart& run() const { return run_; }
   const EmbeddedFiles& files() const { return files_; }
   const mcap::Reader& reader() const { return *reader_; }
+  /// The bytes of an embedded snapshot; nothing: it has none of this name. @throws RecordingError
+  std::optional<std::string> snapshot(const std::string& name) const;
   /// A sentence on what is missing or damaged at the end; empty: it was closed in good order.
   std::string shortcoming() const;
   /// How many states were recorded.

@@ -15,7 +15,8 @@ namespace ziggurat::replay {
 namespace {
 
 constexpr std::size_t most_spawned_bytes = std::size_t{64} << 20;  // of an element, models included
-constexpr std::size_t most_snapshots = 64;
+constexpr std::size_t most_snapshots = 1024;  // as the server keeps
+constexpr std::size_t most_snapshot_bytes = std::size_t{1} << 30;  // of all of them
 constexpr double farthest = 1e6;                                   // [m], as in scenes
 
 }  // namespace
@@ -79,7 +80,7 @@ void Replay::apply(const v1::Act& act) {
     case v1::Act::kSnapshot:
       return snapshot(act.snapshot().name());
     case v1::Act::kRestore:
-      return restore(act.restore().name());
+      return restore(act.restore());
     case v1::Act::kPause:
     case v1::Act::kResume:
       return;
@@ -128,7 +129,7 @@ void Replay::spawn(const std::string& xml) {
   try {
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
     ++changes_;
-    world_.simulation.spawn(world_.scene, addition.entity);
+    world_.simulation.spawn(world_.scene, addition.entity, xml);
   } catch (const scene::SceneError& error) {
     fail(fmt::format("an entity cannot be spawned: {}", error.what()));
   }
@@ -146,19 +147,30 @@ void Replay::reset(std::uint64_t seed) {
 }
 
 void Replay::snapshot(const std::string& name) {
-  if (snapshots_.size() == most_snapshots && !snapshots_.contains(name)) {
+  simulation::Snapshot& place = snapshots_[name];
+  snapshots_size_ -= place.size();
+  place = world_.simulation.snapshot();
+  snapshots_size_ += place.size();
+  if (snapshots_.size() > most_snapshots) {
     fail(fmt::format("they take more than {} snapshots", most_snapshots));
   }
-  snapshots_.insert_or_assign(name, world_.simulation.snapshot());
+  if (snapshots_size_ > most_snapshot_bytes) {
+    fail(fmt::format("they take snapshots of more than {} MiB", most_snapshot_bytes >> 20));
+  }
 }
 
-void Replay::restore(const std::string& name) {
-  const auto found = snapshots_.find(name);
+void Replay::restore(const v1::Act::Restore& restore) {
+  if (!restore.file().empty() && open_snapshot_) return restore_to(open_snapshot_(restore.file()));
+  const auto found = snapshots_.find(restore.name());
   if (found == snapshots_.end()) {
-    fail(fmt::format("they restore '{}', of which this recording has no snapshot", name));
+    fail(fmt::format("they restore '{}', of which this recording has no snapshot", restore.name()));
   }
-  world_.simulation.restore(world_.scene, found->second);
-  world_.seed = found->second.seed;
+  restore_to(found->second);
+}
+
+void Replay::restore_to(const simulation::Snapshot& snapshot) {
+  world_.simulation.restore(world_.scene, snapshot);
+  world_.seed = snapshot.seed;
   ++changes_;
 }
 

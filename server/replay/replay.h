@@ -24,6 +24,7 @@
 namespace ziggurat::v1 {
 class Act;
 class Act_Move;
+class Act_Restore;
 class Inputs;
 }  // namespace ziggurat::v1
 
@@ -56,6 +57,10 @@ class Replay {
   /// @throws RecordingError
   void act();
 
+  /// Where the snapshots are that the recording has embedded: by the name of their file.
+  using OpenSnapshot = std::function<simulation::Snapshot(const std::string& file)>;
+  void open_snapshots_by(OpenSnapshot open) { open_snapshot_ = std::move(open); }
+
   /// Told of each act, after it was done.
   void tell(std::function<void(const v1::Act&)> told) { told_ = std::move(told); }
 
@@ -72,7 +77,8 @@ class Replay {
   void spawn(const std::string& xml);
   void reset(std::uint64_t seed);
   void snapshot(const std::string& name);
-  void restore(const std::string& name);
+  void restore(const v1::Act_Restore& restore);
+  void restore_to(const simulation::Snapshot& snapshot);
   std::size_t entity_named(const std::string& id) const;
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -83,6 +89,8 @@ class Replay {
   const v1::Inputs* inputs_ = nullptr;
   world::Commands commands_;  // of all inputs so far
   std::map<std::string, simulation::Snapshot> snapshots_;  // by name
+  std::size_t snapshots_size_ = 0;                         // of all of them [bytes]
+  OpenSnapshot open_snapshot_;
   std::uint64_t hash_ = 0, changes_ = 0;
   std::uint64_t epoch_ = 0, tick_ = 0;  // of the present state
   bool has_commands_ = false, acted_ = false;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "math/hash.h"
@@ -24,19 +25,23 @@ std::optional<scene::Clock> clock_of(const std::string& name) {
 }
 
 /// As of the files on disk when the run began: 16 hexadecimal digits.
-std::string hash_of(const scene::Scene& scene, const EmbeddedFiles& files) {
+std::string hash_of(const scene::Scene& scene, const scene::Variation& variation,
+                    const EmbeddedFiles& files) {
   math::Hash hash;
   for (const std::string& name : scene.files) {
     const std::string* bytes = files.find(name);
     hash.add(bytes ? std::string_view(*bytes) : std::string_view());
   }
-  if (const std::string text = to_text(scene.variation); !text.empty()) hash.add(text);
+  if (const std::string text = to_text(variation); !text.empty()) hash.add(text);
   return math::to_hex(hash.digest());
 }
 
+constexpr std::size_t longest_element = std::size_t{64} << 20;  // spawned [bytes]
+
 }  // namespace
 
-scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files) {
+scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files,
+                            const scene::Variation& more) {
   if (run.seed() == 0) throw RecordingError("the recording's seed is 0, which no run has");
   scene::ReadOptions options;
   options.lenient = run.lenient();
@@ -46,11 +51,18 @@ scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files)
   for (const auto& each : run.parameters()) {
     options.variation.parameters.emplace_back(each.name(), each.value());
   }
+  const scene::Variation recorded = options.variation;
+  for (const auto& each : more.settings) options.variation.settings.push_back(each);
+  for (const auto& each : more.parameters) {
+    std::erase_if(options.variation.parameters,
+                  [&](const auto& other) { return other.first == each.first; });
+    options.variation.parameters.push_back(each);
+  }
   options.clock = clock_of(run.clock());
   options.open = files.opener();
   scene::ReadResult read = scene::read_file(run.scene(), options);
   if (!read.ok()) throw scene::SceneError(std::move(read.problems));
-  const std::string hash = hash_of(read.scene, files);
+  const std::string hash = hash_of(read.scene, recorded, files);
   if (!run.scene_hash().empty() && hash != run.scene_hash()) {
     throw RecordingError(
         fmt::format("the hash of the embedded scene is {}, that of the recorded "
@@ -58,6 +70,27 @@ scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files)
                     hash, run.scene_hash()));
   }
   return {std::move(read.scene), std::move(read.additions)};
+}
+
+std::string scene_hash(const scene::Scene& scene, const EmbeddedFiles& files) {
+  return hash_of(scene, scene.variation, files);
+}
+
+simulation::Snapshot read_snapshot(const RecordingFile& file, const std::string& name,
+                                   const scene::Scene& scene, const scene::Additions& additions) {
+  const auto bytes = file.snapshot(name);
+  if (!bytes) {
+    throw RecordingError(fmt::format(
+        "{}: the snapshot '{}' that it needs is missing: the run was ended before it was written",
+        file.path(), name));
+  }
+  const auto read = [&](const std::string& xml) {
+    scene::Addition addition = additions.read(
+        xml, scene, longest_element, [](const std::string&) { return false; }, file.files().opener());
+    if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
+    return std::move(addition.entity);
+  };
+  return simulation::from_bytes(std::as_bytes(std::span(*bytes)), {}, read);
 }
 
 }  // namespace ziggurat::replay

@@ -78,16 +78,16 @@ std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& pa
 
 recorder::Start start_of(const Options& options, const supervision::World& world,
                          const ReadFiles& files, std::uint64_t last_tick,
-                         const std::vector<std::size_t>& idle) {
+                         const std::vector<std::size_t>& idle, const Past* past) {
   recorder::Start start;
   start.scene = world.path;
   start.scene_hash = world.scene_hash;
   start.seed = world.seed;
   start.lenient = options.scene_file.lenient;
-  for (const auto& [path, value] : options.scene_file.variation.settings) {
+  for (const auto& [path, value] : world.scene.variation.settings) {
     start.settings.emplace_back(path, value);
   }
-  start.parameters = options.scene_file.variation.parameters;
+  start.parameters = world.scene.variation.parameters;
   start.clock = clock_of(options);
   start.last_tick = last_tick;
   start.controllers = controllers_of(world);
@@ -97,7 +97,7 @@ recorder::Start start_of(const Options& options, const supervision::World& world
   start.build = this_build();
   start.arguments = options.arguments;
   start.files = files.all();
-  add_scripts(world, start);
+  past ? past->describe(world, start) : add_scripts(world, start);
   return start;
 }
 
@@ -123,7 +123,7 @@ std::vector<std::string> ReadFiles::names() const {
 
 RecordedRun::RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
                          std::uint64_t last_tick, const std::vector<std::size_t>& idle,
-                         reports::Console& console)
+                         const Past* past, reports::Console& console)
     : world_(world),
       console_(console),
       last_tick_(last_tick),
@@ -131,7 +131,7 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
       recorder_({options.record,
                  options.record_compression,
                  {wish_of(options.record_topics), options.record_every}},
-                start_of(options, world, files, last_tick, idle)) {}
+                start_of(options, world, files, last_tick, idle, past)) {}
 
 void RecordedRun::tick() {
   simulation::Simulation& simulation = world_.simulation;
@@ -176,7 +176,7 @@ void RecordedRun::act(const supervision::Act& done) {
           to.reset(act.seed);
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Restored>) {
-          to.restored(act.snapshot);
+          to.restored(act.snapshot, act.bytes);
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Kept>) {
           to.kept(act.snapshot);
@@ -188,6 +188,14 @@ void RecordedRun::act(const supervision::Act& done) {
         }
       },
       done);
+}
+
+std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
+                                             const ReadFiles& files, std::uint64_t last_tick,
+                                             const std::vector<std::size_t>& idle, const Past* past,
+                                             reports::Console& console) {
+  if (options.record.empty()) return nullptr;
+  return std::make_unique<RecordedRun>(options, world, files, last_tick, idle, past, console);
 }
 
 }  // namespace ziggurat::run

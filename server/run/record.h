@@ -2,6 +2,7 @@
 // --record: what a recording is told of its run.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "recorder/recorder.h"
 #include "reports/console.h"
 #include "run/options.h"
+#include "run/past.h"
 #include "scene/files.h"
 #include "supervision/act.h"
 #include "supervision/world.h"
@@ -35,8 +37,9 @@ class RecordedRun {
   /// @param last_tick  0: until stopped
   /// @param idle       robots without controller: into Layout::robots
   /// @throws recording::WriteError
+  /// @param past       of a fork, whose world is where it begins; null: the run begins at tick 0
   RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
-              std::uint64_t last_tick, const std::vector<std::size_t>& idle,
+              std::uint64_t last_tick, const std::vector<std::size_t>& idle, const Past* past,
               reports::Console& console);
 
   bool wants_contacts() const { return recorder_.wants("/contacts"); }
@@ -62,5 +65,11 @@ class RecordedRun {
   recorder::Recorder recorder_;
   bool is_population_new_ = true;
 };
+
+/// Null if the options ask for no recording.
+std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
+                                             const ReadFiles& files, std::uint64_t last_tick,
+                                             const std::vector<std::size_t>& idle, const Past* past,
+                                             reports::Console& console);
 
 }  // namespace ziggurat::run

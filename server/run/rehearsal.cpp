@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 #include "processes/scripts.h"
-#include "replay/commands_difference.h"
 #include "replay/recording_error.h"
 #include "replay/scene.h"
 #include "run/embedded_scripts.h"
-#include "run/replay_difference.h"
+#include "run/recorded_world.h"
 #include "run/setup.h"
 #include "text/numbers.h"
 
@@ -42,12 +40,7 @@ Rehearsal::Rehearsal(const RehearsalOptions& options, processes::Signals& signal
       callers_(server_),
       supervision_({}, world_, server_, callers_, controllers_, console_),
       watch_({{}, false, false, false, file_.states()}, world_, server_, controllers_, supervision_,
-             signals, console_, nullptr, [](auto...) {}),
-      states_(file_),
-      replay_({world_.scene, world_.additions, world_.simulation, world_.seed},
-              file_.files().opener(), [this] { return states_.next(); }) {
-  replay_.tell([this](const v1::Act& act) { take(act); });
-}
+             signals, console_, nullptr, [](auto...) {}) {}
 
 /// The commands of the recording are replaced by the user's own: none of them is left by itself.
 supervision::World Rehearsal::build_world() {
@@ -91,6 +84,7 @@ std::size_t Rehearsal::tried_controller(const scene::Scene& scene) const {
 
 /// Per robot at tick 0: its embedded script as a file; the user's own for the one that is tried.
 std::vector<std::string> Rehearsal::embed_scripts() {
+  begin_as_recorded(file_, world_);  // before anything is told who is in the world
   const std::string below = folder_.path() + "/files";
   write_below(below, file_.files());
   const world::Layout& layout = world_.simulation.layout();
@@ -178,121 +172,40 @@ int Rehearsal::execute() {
   return code;
 }
 
-/// All robots have a controller, which begins with this world.
-std::optional<Rehearsal::Ending> Rehearsal::restart() {
-  is_restarted_ = false;
-  answered_ = world_.simulation.commands();
-  answered_.radio_messages.clear();
-  return watch_.gather();
-}
-
 /// Nothing: the recording was repeated to its end.
 std::optional<Rehearsal::Ending> Rehearsal::repeat() {
-  simulation::Simulation& simulation = world_.simulation;
-  while (replay_.advance()) {
-    if (!replay_.is_same()) {
-      throw replay::RecordingError("what controllers are given would differ: " +
-                                   explain_difference(file_, states_, replay_, world_));
-    }
-    if (is_restarted_) {
-      if (const auto ending = restart()) return ending;
-    }
-    const std::uint64_t tick = simulation.state().tick;
-    server_.publish(simulation.observations(), simulation.state().tag_payloads);
-    answered_.radio_messages.clear();
-    if (const auto ending = watch_.collect(answered_, tick)) return ending;
-    const bool has_commands = replay_.inputs().has_commands();
-    replay_.act();
-    if (has_commands) compare();
-    if (options_.until && tick == *options_.until) break;
-  }
-  return std::nullopt;
-}
-
-void Rehearsal::take(const v1::Act& act) {
-  if (act.has_reset()) {
-    server_.restart({world_.seed});
-    controllers_.forget_robots(world_.simulation.layout().robots.size());
-    gone_.resize(world_.simulation.layout().robots.size());
-    is_restarted_ = true;
-  } else if (act.has_restore()) {
-    throw replay::RecordingError(
-        "the run went back to a snapshot, and controllers that are started now cannot; verify it "
-        "without --controllers");
-  } else if (act.has_spawn()) {
-    add_robot();
-  } else if (act.has_remove()) {
-    remove_robot(act.remove().entity());
-  }
-}
-
-/// The last entity was spawned. Its places in the arrays begin with the values of the world.
-void Rehearsal::add_robot() {
-  const simulation::Simulation& simulation = world_.simulation;
-  const world::Commands& now = world_.simulation.commands();
-  world::for_each_channel(world::commanded, [&](auto i) {
-    constexpr auto& channel = std::get<i>(world::commanded);
-    auto& values = answered_.*channel.values;
-    const auto& all = now.*channel.values;
-    values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(values.size()), all.end());
-  });
-  const auto& robots = simulation.layout().robots;
-  if (robots.size() == gone_.size()) return;  // without controller
-  const std::size_t robot = robots.size() - 1;
-  const std::string script =
-      options_.robot ? std::string()
-                     : script_below(folder_.path() + "/files", file_.files(), world_.scene,
-                                    world_.path, robots[robot]);
-  server_.add_robots(std::array{script}, simulation.observations(),
-                     simulation.state().tag_payloads);
-  gone_.push_back(script.empty());
-  if (script.empty()) {
-    server_.remove_robots(std::array{robot});
-  } else {
-    controllers_.start_spawned(robot, simulation.layout());
-  }
-}
-
-void Rehearsal::remove_robot(const std::string& entity) {
-  const world::Layout& layout = world_.simulation.layout();
-  for (std::size_t r = 0; r < layout.robots.size(); ++r) {
-    if (layout.entities[layout.robots[r].entity].id != entity || gone_[r]) continue;
-    gone_[r] = true;
-    server_.remove_robots(std::array{r}, fmt::format("'{}' was removed from the world.", entity));
-  }
-}
-
-void Rehearsal::compare() {
-  const world::Layout& layout = world_.simulation.layout();
-  const std::uint64_t tick = replay_.inputs().tick();
-  ++ticks_;
-  for (std::size_t r = 0; r < layout.robots.size(); ++r) {
-    if (gone_[r] || world_.simulation.state().is_absent(layout.robots[r].entity)) continue;
-    const auto found =
-        replay::first_difference(layout, r, world_.simulation.commands(), answered_);
-    if (!found) continue;
-    Difference& all = differences_.try_emplace(layout.robots[r].id, Difference{tick, 0}).first->second;
-    ++all.ticks;
-    if (told_++ >= options_.most_told) continue;
-    console_.result(fmt::format("tick {}: '{}': {} is {} in the recording, {} now", tick,
-                                layout.robots[r].id, found->device, found->recorded, found->now));
-  }
+  const auto script_of = [this](const world::RobotLayout& robot) -> std::optional<std::string> {
+    if (options_.robot) return std::nullopt;
+    const std::string script = script_below(folder_.path() + "/files", file_.files(), world_.scene,
+                                            world_.path, robot);
+    return script.empty() ? std::nullopt : std::optional(script);
+  };
+  const auto tell = [this](std::uint64_t tick, const std::string& robot,
+                           const replay::CommandDifference& found) {
+    if (told_++ >= options_.most_told) return;
+    console_.result(fmt::format("tick {}: '{}': {} is {} in the recording, {} now", tick, robot,
+                                found.device, found.recorded, found.now));
+  };
+  retelling_.emplace(file_, world_, world_, std::function<void()>(), Retelling::Parties{server_, controllers_, watch_}, gone_,
+                     script_of, tell);
+  return retelling_->tell([this](std::uint64_t tick) { return options_.until && tick > *options_.until; });
 }
 
 int Rehearsal::tell(const std::optional<Ending>& ending) {
   if (const auto missing = file_.shortcoming(); !missing.empty()) console_.warning(missing);
   if (!watch_.vanished().empty()) console_.fault(watch_.vanished());
   const auto failures = watch_.failures();
-  for (const auto& [robot, difference] : differences_) {
+  for (const auto& [robot, difference] : retelling_->differences()) {
     console_.report(fmt::format("'{}': {} of {} ticks differ, the first is {}\n", robot,
-                                difference.ticks, ticks_, difference.first_tick));
+                                difference.ticks, retelling_->ticks(), difference.first_tick));
   }
   if (ending == Ending::interrupted || ending == Ending::forced) {
     return reports::exit_code::interrupted;
   }
   if (ending || !failures.empty()) return reports::exit_code::controller_failed;
-  if (!differences_.empty()) return reports::exit_code::differs;
-  console_.result(fmt::format("identical: the commands of {} ticks are as recorded", ticks_));
+  if (!retelling_->differences().empty()) return reports::exit_code::differs;
+  console_.result(fmt::format("identical: the commands of {} ticks are as recorded",
+                              retelling_->ticks()));
   return reports::exit_code::finished;
 }
 

@@ -4,7 +4,6 @@
 // `ziggurat try`.
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,8 +15,8 @@
 #include "processes/private_folder.h"
 #include "processes/signals.h"
 #include "replay/recording_file.h"
-#include "replay/replay.h"
 #include "reports/console.h"
+#include "run/retelling.h"
 #include "run/watch.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
@@ -47,9 +46,6 @@ class Rehearsal {
 
  private:
   using Ending = reports::Ending;
-  struct Difference {
-    std::uint64_t first_tick = 0, ticks = 0;  // the first one; how many
-  };
 
   supervision::World build_world();
   std::size_t tried_controller(const scene::Scene& scene) const;
@@ -60,11 +56,6 @@ class Rehearsal {
   bool is_rehearsed(std::size_t robot) const;
 
   std::optional<Ending> repeat();
-  std::optional<Ending> restart();
-  void take(const v1::Act& act);
-  void add_robot();
-  void remove_robot(const std::string& entity);
-  void compare();
   int tell(const std::optional<Ending>& ending);
 
   const RehearsalOptions& options_;
@@ -80,12 +71,7 @@ class Rehearsal {
   supervision::Callers callers_;
   supervision::Supervision supervision_;
   Watch watch_;
-  replay::States states_;
-  replay::Replay replay_;
-  world::Commands answered_;
-  bool is_restarted_ = true;
-  std::uint64_t ticks_ = 0;  ///< that were compared
-  std::map<std::string, Difference> differences_;  // by robot
+  std::optional<Retelling> retelling_;
   std::size_t told_ = 0;
 };
 

@@ -11,6 +11,7 @@
 #include "replay/recording_error.h"
 #include "replay/scene.h"
 #include "run/files.h"
+#include "run/recorded_world.h"
 #include "run/replay_difference.h"
 #include "run/setup.h"
 
@@ -56,6 +57,8 @@ Replaying::Replaying(const ReplayOptions& options, processes::Signals& signals)
       schedule_(factor_of(options.run), world_.simulation.tick_length()),
       showing_(make_showing(options.run, shown())),
       progress_(console_, world_.simulation.tick_length(), file_.states()) {
+  begin_as_recorded(file_, world_);
+  replay_.open_snapshots_by(embedded_snapshots(file_, world_));
   summary_.scene = world_.path;
   summary_.robots = world_.simulation.layout().robots.size();
   if (showing_) waits_for_viewer_until_ = clock::now() + longest_wait_for_viewer;

@@ -26,7 +26,7 @@ std::vector<std::string> loaded_by(const fs::path& script) {
   if (fs::file_size(script, error) > largest_file || error) return {};
   std::ifstream file(script, std::ios::binary);
   std::vector<std::string> names;
-  static const std::regex call(R"((require|dofile|loadfile)\s*\(?\s*["']([^"'\n]{1,255})["'])");
+  static const std::regex call(R"((require|dofile|loadfile)\s*\(?\s*(?:\w+\s*\.\.\s*)?["']([^"'\n]{1,255})["'])");
   for (std::string line; std::getline(file, line);) {
     if (line.size() > 4096) continue;  // std::regex recurses
     for (std::sregex_iterator at(line.begin(), line.end(), call), end; at != end; ++at) {
@@ -49,7 +49,9 @@ void add_required(std::vector<fs::path>& scripts) {
   scripts.erase(std::unique(scripts.begin(), scripts.end()), scripts.end());
   for (std::size_t i = 0; i < scripts.size() && scripts.size() < most_files; ++i) {
     for (const std::string& name : loaded_by(scripts[i])) {
-      for (const fs::path& folder : folders) {
+      std::vector<fs::path> places = folders;
+      places.push_back(scripts[i].parent_path());
+      for (const fs::path& folder : places) {
         const fs::path path = (folder / name).lexically_normal();
         std::error_code error;
         if (!fs::is_regular_file(path, error)) continue;

@@ -15,6 +15,7 @@
 #include "run/setup.h"
 #include "run/version.h"
 #include "simulation/doubts.h"
+#include "text/numbers.h"
 
 namespace ziggurat::run {
 
@@ -32,7 +33,9 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       service_(service),
       signals_(signals),
       console_({options.quiet, options.json}),
-      path_(existing_scene(options, service == Service::serve, console_)),
+      past_(options.fork ? std::make_unique<Past>(options) : nullptr),
+      path_(past_ ? past_->scene_path()
+                  : existing_scene(options, service == Service::serve, console_)),
       local_(signals.guardian()),
       config_(network_config(options, service == Service::serve, local_)),
       listening_(std::make_unique<network::Server>(config_)),
@@ -41,13 +44,13 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       world_(*loaded_),
       plan_(make_plan()),
       with_controllers_(!options.without_controllers && !(options.pictures && plan_.ticks == 0)),
-      scripts_(script_paths(world_.scene, world_.simulation.layout(), path_)),
       folder_(signals.guardian()),
+      scripts_(past_ ? past_->write_scripts(world_, folder_.path() + "/files")
+                     : script_paths(world_.scene, world_.simulation.layout(), path_)),
       recorders_(options, world_),
-      recorded_(options.record.empty()
-                    ? nullptr
-                    : std::make_unique<RecordedRun>(options, world_, files_, plan_.ticks.value_or(0),
-                                                    robots_without_controller(), console_)),
+      recorded_(past_ ? nullptr
+                      : start_recording(options, world_, files_, plan_.ticks.value_or(0),
+                                        robots_without_controller(), nullptr, console_)),
       controllers_(start_controllers()),
       callers_(server_),
       supervision_(supervision_settings(), world_, server_, callers_, controllers_, console_),
@@ -62,9 +65,9 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
                if (recorded_) recorded_->log(severity, name, text);
              }),
       waits_for_viewer_(showing_ && !options.paused) {
-  if (recorded_) {
-    callers_.tell_acts([this](const supervision::Act& act) { recorded_->act(act); });
-  }
+  callers_.tell_acts([this](const supervision::Act& act) {
+    if (recorded_) recorded_->act(act);
+  });
   print_notices();
   summary_.scene = path_;
   summary_.robots = world_.simulation.layout().robots.size();
@@ -77,18 +80,20 @@ supervision::World Run::read_world(const Tell& tell_clients) {
     console_.progress(fmt::format("{:.0f} %: {}", 100 * share, message));
     tell_clients(share, message);
   };
+  const auto tell_placed = [&](std::size_t placed, std::size_t all) {
+    const double share = static_cast<double>(placed) / static_cast<double>(all);
+    tell(before_placing + (1 - before_placing) * share,
+         placed == all ? "The world is being built."
+                       : fmt::format("{} of {} entities are placed.", placed, all));
+  };
   tell(0, "The scene is being read.");
+  if (past_) return past_->build(tell_placed);
   Options options = options_;
   if (!options.record.empty()) options.scene_file.open = files_.keep(options.scene_file.open);
   scene::OpenScene opened = load_scene(path_, options, console_);
   tell(before_placing, "The world is being built.");
   const std::uint64_t seed = choose_seed(options_, opened.scene);
-  return {path_, std::move(opened), seed, [&](std::size_t placed, std::size_t all) {
-            const double share = static_cast<double>(placed) / static_cast<double>(all);
-            tell(before_placing + (1 - before_placing) * share,
-                 placed == all ? "The world is being built."
-                               : fmt::format("{} of {} entities are placed.", placed, all));
-          }};
+  return {path_, std::move(opened), seed, tell_placed};
 }
 
 /// A killed program cannot remove the files of its sockets.
@@ -111,7 +116,7 @@ std::unique_ptr<supervision::World> Run::load_world() {
     const auto news = loading.news();
     if (news.is_done) {
       auto world = loading.take();
-      check_outputs(options_, world->scene, files_.names());
+      past_ ? past_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
       return world;
     }
     server_.attend({news.progress, news.message}, {std::chrono::milliseconds{-1}, descriptors});
@@ -127,6 +132,14 @@ Plan Run::make_plan() const {
   Plan plan;
   plan.ticks = options_.pictures ? last_tick(*options_.pictures, experiment)
                                  : tick_count(options_, world_.scene);
+  if (past_ && !options_.ticks && !options_.duration && past_->last_tick()) {
+    plan.ticks = past_->last_tick();
+  }
+  if (past_ && plan.ticks && *plan.ticks < options_.fork->at) {
+    throw text::UsageError(fmt::format(
+        "--at {} is after the end of the run at tick {}; write --ticks with a later end",
+        options_.fork->at, *plan.ticks));
+  }
   plan.real_time = options_.real_time;
   const bool is_paced =
       options_.hil || options_.view.has_value() || (!options_.pictures && experiment.real_time);
@@ -140,15 +153,10 @@ network::Config Run::complete_config() {
   return config_;
 }
 
-wire::Run Run::description() const {
-  wire::Run run = description_of(world_, scripts_);
-  run.is_hardware_in_the_loop = options_.hil;
-  return run;
-}
-
 /// Those whose Lua controller names no script, or all robots if controllers are not wanted. The
 /// run does not wait for them.
 std::vector<std::size_t> Run::robots_without_controller() const {
+  if (past_) return past_->idle_robots(world_, scripts_);
   const auto& all = world_.simulation.layout().robots;
   std::vector<std::size_t> robots;
   for (std::size_t r = 0; r < all.size(); ++r) {
@@ -159,7 +167,9 @@ std::vector<std::size_t> Run::robots_without_controller() const {
 }
 
 processes::Controllers Run::start_controllers() {
-  server_.open(description(), complete_config());
+  wire::Run run = description_of(world_, scripts_);
+  run.is_hardware_in_the_loop = options_.hil;
+  server_.open(std::move(run), complete_config());
   server_.remove_robots(robots_without_controller());
   if (service_ == Service::serve || !with_controllers_) return {};
   return {world_.scene, world_.simulation.layout(), scripts_, launch_settings()};
@@ -172,7 +182,10 @@ processes::LaunchSettings Run::launch_settings() const {
   const auto allow = [&](const std::string& folder) {
     settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
   };
-  for (const auto& folder : processes::folders_of(world_.scene, path_)) allow(folder.string());
+  if (past_) allow(folder_.path() + "/files");
+  if (!past_) {
+    for (const auto& folder : processes::folders_of(world_.scene, path_)) allow(folder.string());
+  }
   for (const auto& folder : options_.spawned_script_folders) allow(folder);
   return settings;
 }
@@ -187,11 +200,12 @@ supervision::Supervision::Settings Run::supervision_settings() const {
 void Run::print_notices() {
   for (const auto& doubt : simulation::doubts(world_.scene, world_.simulation)) console_.problem(doubt);
   for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
-  if (options_.seed.value_or(world_.scene.experiment.random_seed) == 0) {
+  const std::uint64_t scene_seed = past_ ? world_.seed : world_.scene.experiment.random_seed;
+  if (options_.seed.value_or(scene_seed) == 0) {
     console_.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", world_.seed));
   }
   if (options_.paused) {
-    server_.set_paused(true);
+    server_.set_paused(!past_);  // a fork stands when it begins
     return console_.notice("paused, as --paused asks; 'ziggurat ctl URL resume' begins");
   }
   const bool has_controllers =
@@ -233,8 +247,25 @@ int Run::execute() {
   return code;
 }
 
+/// A fork begins with the recorded run. Supervisors wait meanwhile.
+std::optional<Ending> Run::relive() {
+  callers_.hold(true);
+  const auto ending = past_->relive(world_, {server_, controllers_, watch_},
+                                    robots_without_controller(), folder_.path() + "/files",
+                                    signals_, console_);
+  callers_.hold(false);
+  if (ending) return ending;
+  recorded_ = start_recording(options_, world_, files_, plan_.ticks.value_or(0),
+                              robots_without_controller(), past_.get(), console_);
+  if (options_.paused) server_.set_paused(true);
+  return std::nullopt;
+}
+
 /// From the start to the end, again after each reset.
 Ending Run::run_to_end() {
+  if (past_) {
+    if (const auto ending = relive()) return *ending;
+  }
   for (;;) {
     std::optional<Ending> ending = wait([&] { return watch_.gather(); });
     timer_.end_startup(summary_);

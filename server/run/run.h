@@ -17,6 +17,7 @@
 #include "reports/summary.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
+#include "run/past.h"
 #include "run/phase_timer.h"
 #include "run/radio_watch.h"
 #include "run/record.h"
@@ -64,7 +65,6 @@ class Run {
   std::unique_ptr<supervision::World> load_world();
   Plan make_plan() const;
   network::Config complete_config();
-  wire::Run description() const;
   std::vector<std::size_t> robots_without_controller() const;
   processes::Controllers start_controllers();
   processes::LaunchSettings launch_settings() const;
@@ -72,6 +72,7 @@ class Run {
   void print_notices();
 
   // Running.
+  std::optional<Ending> relive();
   Ending run_to_end();
   Ending run_world();
   std::optional<Ending> collect();
@@ -91,6 +92,7 @@ class Run {
   const Service service_;
   processes::Signals& signals_;
   reports::Console console_;
+  const std::unique_ptr<Past> past_;  ///< null: the run begins at tick 0
   const std::string path_;  ///< of the scene file
   ReadFiles files_;  ///< of the scene
   LocalEndpoints local_;
@@ -101,10 +103,10 @@ class Run {
   supervision::World& world_;
   const Plan plan_;
   const bool with_controllers_;
-  const std::vector<std::string> scripts_;  ///< per robot of the scene; empty = none
   const processes::PrivateFolder folder_;
+  const std::vector<std::string> scripts_;  ///< per robot of the scene; empty = none
   Recorders recorders_;
-  const std::unique_ptr<RecordedRun> recorded_;  ///< null: not recorded
+  std::unique_ptr<RecordedRun> recorded_;  ///< null: not recorded; of a fork, once it begins
   processes::Controllers controllers_;
   supervision::Callers callers_;
   supervision::Supervision supervision_;

@@ -33,8 +33,10 @@ struct Simulation::Parts {
 
   /// All that the next step reads. @pre has_archive; @throws math::ArchiveError
   void archive(math::Archive& archive);
-  /// Does again what was done to a world that began as this one did.
+  /// Does again what was done to a world that began as this one did. With another seed than the
+  /// snapshot's random streams stay at their begin.
   void repeat(const scene::Scene& scene, const Snapshot& snapshot, world::Layout& grown);
+  std::vector<std::byte> with_own_streams(const std::vector<std::byte>& given);
   void repeat_act(const scene::Scene& scene, const Act& act, world::Layout& grown);
   /// Writes down what the coming step takes, if only repeating gives the state again.
   void note_commands();

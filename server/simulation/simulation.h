@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -86,8 +87,13 @@ class Simulation {
   /// Puts the world back: what follows is what followed the snapshot, bit for bit, with the same
   /// commands. Entities that came since are gone, those that went are back.
   /// @param scene  the one that both were made from
-  /// @throws SnapshotError, if it is none of this scene; then nothing changes
-  void restore(const scene::Scene& scene, const Snapshot& snapshot);
+  /// @param seed   given: the snapshot is of a scene that may have other values, but the same entities and
+  ///               devices; this is the seed from then on, not 0. With another one than the snapshot's all
+  ///               that is random is drawn anew
+  /// @throws SnapshotError if it does not fit, or with a seed if its state can't be copied; then
+  ///         nothing changes
+  void restore(const scene::Scene& scene, const Snapshot& snapshot,
+               std::optional<std::uint64_t> seed = {});
   /// What was done to the world since the start, as far as snapshots need it.
   const History& history() const;
   /// The first field in which the state differs from that of a snapshot: empty if none does, or if

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <random>
 
 #include "simulation/parts.h"
 #include "world/archive.h"
@@ -114,13 +115,41 @@ void Simulation::Parts::repeat_act(const scene::Scene& scene, const Act& act,
   }
 }
 
+/// A state with the random streams that this world has now.
+std::vector<std::byte> Simulation::Parts::with_own_streams(const std::vector<std::byte>& given) {
+  const auto write = [this](std::vector<math::Archive::Place>& streams) {
+    std::vector<std::byte> bytes;
+    auto archive = math::Archive::writer(bytes, &streams);
+    this->archive(archive);
+    std::erase_if(streams, [](const auto& place) { return !place.path.ends_with("/engine"); });
+    return bytes;
+  };
+  std::vector<math::Archive::Place> own_streams, streams;
+  const std::vector<std::byte> own = write(own_streams);
+  auto archive = math::Archive::reader(given);
+  this->archive(archive);
+  std::vector<std::byte> mixed = write(streams);
+  if (!std::ranges::equal(own_streams, streams, {}, &math::Archive::Place::path,
+                          &math::Archive::Place::path)) {
+    throw SnapshotError("The snapshot has other random streams than the scene.");
+  }
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const auto from = own.begin() + static_cast<std::ptrdiff_t>(own_streams[i].offset);
+    std::copy_n(from, sizeof(std::uint64_t) * (std::mt19937_64::state_size + 1),
+                mixed.begin() + static_cast<std::ptrdiff_t>(streams[i].offset));
+  }
+  return mixed;
+}
+
 void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapshot,
                                world::Layout& grown) {
   auto act = snapshot.history.acts.begin();
   const auto end = snapshot.history.acts.end();
   if (has_archive) {
     for (; act != end; ++act) repeat_act(scene, *act, grown);
-    auto archive = math::Archive::reader(snapshot.state);
+    std::vector<std::byte> mixed;
+    if (seed != snapshot.seed) mixed = with_own_streams(snapshot.state);
+    auto archive = math::Archive::reader(mixed.empty() ? snapshot.state : mixed);
     this->archive(archive);
   } else {
     auto change = snapshot.history.commands.begin();
@@ -137,13 +166,18 @@ void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapsh
   commanded = history.commands.empty() ? std::vector<std::byte>() : history.commands.back().bytes;
 }
 
-void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot) {
+void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
+                         std::optional<std::uint64_t> seed) {
   Parts& p = *parts_;
   const bool copies = p.has_archive;
+  if (seed && (!copies || snapshot.state.empty())) {
+    throw SnapshotError(
+        "Only a world with solver=\"newton\" can go on from a state with other values or another seed.");
+  }
   if (copies != snapshot.commands.empty() || copies == snapshot.state.empty()) {
     throw SnapshotError("The snapshot is of a scene with another solver.");
   }
-  if (copies && snapshot.is_checked && p.seed == snapshot.seed &&
+  if (!seed && copies && snapshot.is_checked && p.seed == snapshot.seed &&
       same_entities(p.history, snapshot.history)) {
     auto archive = math::Archive::reader(snapshot.state);
     p.archive(archive);
@@ -152,7 +186,7 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot) {
   }
   world::Layout before = *layout_;
   try {
-    auto fresh = std::make_unique<Parts>(scene, Options{snapshot.seed, {}}, *layout_);
+    auto fresh = std::make_unique<Parts>(scene, Options{seed.value_or(snapshot.seed), {}}, *layout_);
     fresh->repeat(scene, snapshot, *layout_);
     if (world::hash(fresh->state, fresh->observations) != snapshot.hash) {
       throw SnapshotError("The snapshot's state is not the one that its hash is of.");

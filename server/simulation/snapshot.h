@@ -57,7 +57,7 @@ struct Snapshot {
   std::size_t size() const;  ///< about what it takes [bytes]
 };
 
-/// What a file of a snapshot belongs to.
+/// What a file of a snapshot belongs to. What is empty is not compared when it is read.
 struct Origin {
   std::string scene_hash;
   std::string build;
@@ -66,7 +66,7 @@ struct Origin {
 /// @throws SnapshotError if something was spawned whose element is not known
 std::vector<std::byte> to_bytes(const Snapshot& snapshot, const Origin& origin);
 
-/// @param origin  must be that of the bytes
+/// @param origin  must be that of the bytes, where it is not empty
 /// @param read    reads the element of an entity that was spawned; may throw scene::SceneError
 /// @throws SnapshotError if the bytes are no snapshot, damaged, or from elsewhere
 Snapshot from_bytes(std::span<const std::byte> bytes, const Origin& origin,

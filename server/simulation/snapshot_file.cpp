@@ -105,11 +105,11 @@ Snapshot from_bytes(std::span<const std::byte> bytes, const Origin& origin,
     auto archive = math::Archive::reader(bytes.first(content).subspan(mark.size()));
     archive("scene_hash", from.scene_hash);
     archive("build", from.build);
-    if (from.scene_hash != origin.scene_hash) {
+    if (!origin.scene_hash.empty() && from.scene_hash != origin.scene_hash) {
       throw SnapshotError(fmt::format("The snapshot is of another scene: its hash is {}, this one's {}.",
                                       from.scene_hash, origin.scene_hash));
     }
-    if (from.build != origin.build) {
+    if (!origin.build.empty() && from.build != origin.build) {
       throw SnapshotError(fmt::format("The snapshot was made by another build: {}; this is {}.",
                                       from.build, origin.build));
     }

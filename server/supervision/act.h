@@ -1,6 +1,7 @@
 #pragma once
 // What supervisors and viewers have done to the world, as a recording needs it to do it again.
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -31,6 +32,7 @@ struct WasReset {
 /// The world went back to what was kept under a name.
 struct Restored {
   std::string snapshot;
+  std::vector<std::byte> bytes;  ///< of its file; empty: it was kept in this run
 };
 /// The world was kept under a name.
 struct Kept {

@@ -8,6 +8,7 @@
 namespace ziggurat::supervision {
 
 std::vector<network::Call> Callers::take() {
+  if (is_held_) return {};
   std::vector<network::Call> calls = server_.take_calls();
   if (local_.take) std::ranges::move(local_.take(), std::back_inserter(calls));
   return calls;

@@ -27,6 +27,8 @@ class Callers {
 
   void add(LocalCalls local) { local_ = std::move(local); }
 
+  /// While that holds requests wait.
+  void hold(bool is_held) { is_held_ = is_held; }
   /// Requests that arrived since the last call.
   std::vector<network::Call> take();
   bool can_hear(const network::Call& call) const;
@@ -48,6 +50,7 @@ class Callers {
   LocalCalls local_;
   TellAct tell_act_;
   std::uint64_t changes_ = 0;
+  bool is_held_ = false;
 };
 
 }  // namespace ziggurat::supervision

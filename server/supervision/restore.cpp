@@ -87,7 +87,7 @@ Supervision::Reply Supervision::restore(const network::Call& call) {
   }
   auto found = snapshots_.find(call.request.text, world_, opener(allowed_, world_.path));
   if (auto* fault = std::get_if<wire::Fault>(&found)) return fail(call, std::move(*fault));
-  restoring_ = std::get<simulation::Snapshot>(std::move(found));
+  restoring_ = std::get<FoundSnapshot>(std::move(found));
   resetting_ = call;
   return Reply::given;
 }
@@ -96,7 +96,7 @@ bool Supervision::restart() {
   const simulation::History before = world_.simulation.history();
   const world::Layout layout = world_.simulation.layout();
   try {
-    restoring_ ? world_.restore(*restoring_)
+    restoring_ ? world_.restore(restoring_->snapshot)
                : world_.reset(resetting_->request.seed.value_or(world_.seed));
   } catch (const std::runtime_error& error) {
     fail(*resetting_, make_fault(ErrorCode::bad_value, restoring_ ? "restore.name" : "reset.seed",
@@ -110,11 +110,11 @@ bool Supervision::restart() {
   if (restoring_) {
     simulation.commands().radio_messages.clear();  // controllers send them again
     restart.snapshot = {resetting_->request.text, simulation.state().tick, &simulation.commands(),
-                        common_robots(before, restoring_->history, layout)};
+                        common_robots(before, restoring_->snapshot.history, layout)};
   }
   server_.restart(restart);
   if (restoring_) {
-    callers_.tell(Restored{resetting_->request.text});
+    callers_.tell(Restored{resetting_->request.text, std::move(restoring_->bytes)});
   } else {
     callers_.tell(WasReset{world_.seed});
   }

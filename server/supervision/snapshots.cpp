@@ -119,10 +119,13 @@ void Snapshots::write(const std::string& name, const Snapshot& snapshot, const W
   throw simulation::SnapshotError("The snapshot can't be written to the server's folder.");
 }
 
-std::variant<Snapshot, wire::Fault> Snapshots::find(const std::string& name, const World& world,
-                                                    const scene::OpenFile& open) const {
+std::variant<FoundSnapshot, wire::Fault> Snapshots::find(const std::string& name,
+                                                        const World& world,
+                                                        const scene::OpenFile& open) const {
   if (auto fault = fault_of_name(name, "restore.name")) return std::move(*fault);
-  if (const auto found = kept_.find(name); found != kept_.end()) return found->second;
+  if (const auto found = kept_.find(name); found != kept_.end()) {
+    return FoundSnapshot{found->second, {}};
+  }
   std::error_code error;
   const bool is_file = !folder_.empty() && std::filesystem::is_regular_file(path_of(name), error);
   if (!is_file) {
@@ -136,8 +139,9 @@ std::variant<Snapshot, wire::Fault> Snapshots::find(const std::string& name, con
     return std::move(addition.entity);
   };
   try {
-    const std::vector<std::byte> bytes = read_file(path_of(name));
-    return simulation::from_bytes(bytes, {world.scene_hash, build_}, read);
+    std::vector<std::byte> bytes = read_file(path_of(name));
+    Snapshot snapshot = simulation::from_bytes(bytes, {world.scene_hash, build_}, read);
+    return FoundSnapshot{std::move(snapshot), std::move(bytes)};
   } catch (const std::exception& exception) {
     return make_fault(ErrorCode::bad_value, "restore.name",
                       std::string(exception.what()).substr(0, 1024));

@@ -6,12 +6,18 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "scene/files.h"
 #include "supervision/world.h"
 #include "wire/messages.h"
 
 namespace ziggurat::supervision {
+
+struct FoundSnapshot {
+  simulation::Snapshot snapshot;
+  std::vector<std::byte> bytes;  ///< of its file; empty: it was kept by this server
+};
 
 class Snapshots {
  public:
@@ -27,8 +33,8 @@ class Snapshots {
   /// The snapshot of a name, from memory or from the folder.
   /// @param open  opens the files that spawned elements name
   /// @return  or why there is none
-  std::variant<simulation::Snapshot, wire::Fault> find(const std::string& name, const World& world,
-                                                       const scene::OpenFile& open) const;
+  std::variant<FoundSnapshot, wire::Fault> find(const std::string& name, const World& world,
+                                                const scene::OpenFile& open) const;
 
  private:
   std::optional<wire::Fault> fault_of_size(const std::string& name, std::size_t size) const;

@@ -106,7 +106,7 @@ class Supervision {
   std::vector<network::Call> waiting_;  ///< unanswered, in order of arrival
   std::optional<network::Call> stepping_, resetting_;
   Snapshots snapshots_;
-  std::optional<simulation::Snapshot> restoring_;  ///< with resetting_
+  std::optional<FoundSnapshot> restoring_;  ///< with resetting_
   std::uint64_t steps_left_ = 0;
   std::size_t spawned_ = 0;     ///< entities, since the start or the last reset
   std::size_t spawnable_size_;  ///< left for more entities [bytes]

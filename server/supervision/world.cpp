@@ -27,6 +27,11 @@ void World::restore(const simulation::Snapshot& snapshot) {
   seed = snapshot.seed;
 }
 
+void World::branch(const simulation::Snapshot& snapshot, std::uint64_t new_seed) {
+  simulation.restore(scene, snapshot, new_seed);
+  seed = new_seed;
+}
+
 wire::SolverStatus solver_status(const simulation::Simulation& simulation) {
   const auto convergence = simulation.convergence();
   return {convergence.islands, convergence.not_converged, convergence.worst};

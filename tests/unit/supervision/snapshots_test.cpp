@@ -39,7 +39,7 @@ class OfSnapshots : public ::testing::Test {
   void SetUp() override { fs::create_directory(folder); }
   void TearDown() override { fs::remove_all(folder); }
   bool has(const Snapshots& snapshots, const std::string& name) const {
-    return std::holds_alternative<simulation::Snapshot>(snapshots.find(name, *world, no_files()));
+    return std::holds_alternative<FoundSnapshot>(snapshots.find(name, *world, no_files()));
   }
   std::size_t files() const {
     return static_cast<std::size_t>(
@@ -74,8 +74,8 @@ TEST_F(OfSnapshots, AnotherServerFindsThemInTheFolder) {
   world->simulation.step();
   const Snapshots later(folder, "build");
   const auto found = later.find("here", *world, no_files());
-  ASSERT_TRUE(std::holds_alternative<simulation::Snapshot>(found));
-  world->restore(std::get<simulation::Snapshot>(found));
+  ASSERT_TRUE(std::holds_alternative<FoundSnapshot>(found));
+  world->restore(std::get<FoundSnapshot>(found).snapshot);
   EXPECT_EQ(world->simulation.hash(), hash);
   EXPECT_EQ(world->simulation.state().tick, 3U);
   EXPECT_FALSE(has(Snapshots({}, "build"), "here"));

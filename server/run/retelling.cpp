@@ -1,0 +1,170 @@
+#include "run/retelling.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "replay/recording_error.h"
+#include "run/recorded_world.h"
+#include "run/replay_difference.h"
+
+namespace ziggurat::run {
+
+using reports::Ending;
+
+Retelling::Retelling(const replay::RecordingFile& file, supervision::World& past,
+                     const supervision::World& present, std::function<void()> follow,
+                     const Parties& parties, std::vector<bool> gone, ScriptOf script_of,
+                     TellDifference tell_difference)
+    : file_(file),
+      past_(past),
+      present_(present),
+      follow_(std::move(follow)),
+      parties_(parties),
+      gone_(std::move(gone)),
+      script_of_(std::move(script_of)),
+      tell_difference_(std::move(tell_difference)),
+      states_(file_),
+      replay_({past_.scene, past_.additions, past_.simulation, past_.seed}, file_.files().opener(),
+              [this] { return states_.next(); }) {
+  replay_.tell([this](const v1::Act& act) { take(act); });
+  replay_.open_snapshots_by(embedded_snapshots(file_, past_));
+}
+
+/// To the next state, which must be as recorded.
+bool Retelling::advance() {
+  if (!replay_.advance()) {
+    has_ended_ = true;
+    return false;
+  }
+  if (replay_.is_same()) return true;
+  throw replay::RecordingError("what controllers are given would differ: " +
+                               explain_difference(file_, states_, replay_, past_));
+}
+
+std::optional<Ending> Retelling::tell(const std::function<bool(std::uint64_t)>& is_end) {
+  simulation::Simulation& simulation = past_.simulation;
+  while (advance()) {
+    const std::uint64_t tick = simulation.state().tick;
+    if (is_end(tick)) break;
+    if (is_restarted_) {
+      if (const auto ending = restart()) return ending;
+    }
+    parties_.server.publish(simulation.observations(), simulation.state().tag_payloads);
+    answered_.radio_messages.clear();
+    if (const auto ending = parties_.watch.collect(answered_, tick)) return ending;
+    const bool has_commands = replay_.inputs().has_commands();
+    replay_.act();
+    if (has_commands) compare();
+  }
+  return std::nullopt;
+}
+
+bool Retelling::skip(const std::function<bool(std::uint64_t)>& is_end,
+                     const std::function<bool()>& meanwhile) {
+  is_told_ = false;
+  while (advance()) {
+    if (is_end(past_.simulation.state().tick)) break;
+    replay_.act();
+    if (!meanwhile()) return false;
+  }
+  return true;
+}
+
+/// All robots have a controller, which begins with this world.
+std::optional<Ending> Retelling::restart() {
+  is_restarted_ = false;
+  answered_ = past_.simulation.commands();
+  answered_.radio_messages.clear();
+  return parties_.watch.gather();
+}
+
+void Retelling::take(const v1::Act& act) {
+  const bool changes_population =
+      act.has_reset() || act.has_restore() || act.has_spawn() || act.has_remove();
+  if (follow_ && changes_population) follow_();
+  if (act.has_reset()) take_reset();
+  if (act.has_restore()) take_restore(act.restore().name());
+  if (act.has_spawn()) add_robot();
+  if (act.has_remove()) remove_robot(act.remove().entity());
+}
+
+/// Controllers that were told nothing yet are not told of a reset either.
+void Retelling::take_reset() {
+  const std::size_t robots = present_.simulation.layout().robots.size();
+  const bool has_fewer = robots < gone_.size();
+  gone_.resize(robots);
+  if (!is_told_ && !has_fewer) return;
+  parties_.server.restart({past_.seed});
+  parties_.controllers.forget_robots(robots);
+  parties_.watch.forget_spawned();
+  is_restarted_ = true;
+}
+
+void Retelling::take_restore(const std::string& snapshot) {
+  if (is_told_) {
+    throw replay::RecordingError(fmt::format(
+        "the run went back to the snapshot '{}', and controllers that are started now cannot; "
+        "--fresh of 'ziggurat fork' starts them later",
+        snapshot));
+  }
+  if (has_other_robots_) {
+    throw replay::RecordingError(fmt::format(
+        "robots were spawned or removed before the run went back to the snapshot '{}': their controllers "
+        "cannot be told of that; fork it before",
+        snapshot));
+  }
+}
+
+/// The last entity was spawned. Its places in the arrays begin with the values of the world.
+void Retelling::add_robot() {
+  const simulation::Simulation& simulation = past_.simulation;
+  const world::Commands& now = past_.simulation.commands();
+  world::for_each_channel(world::commanded, [&](auto i) {
+    constexpr auto& channel = std::get<i>(world::commanded);
+    auto& values = answered_.*channel.values;
+    const auto& all = now.*channel.values;
+    values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(values.size()), all.end());
+  });
+  const world::Layout& layout = present_.simulation.layout();
+  if (layout.robots.size() == gone_.size()) return;  // without controller
+  has_other_robots_ = true;
+  const std::size_t robot = layout.robots.size() - 1;
+  const auto script = script_of_(layout.robots[robot]);
+  parties_.server.add_robots(std::array{script.value_or("")}, simulation.observations(),
+                             simulation.state().tag_payloads);
+  gone_.push_back(!script);
+  if (!script) {
+    parties_.server.remove_robots(std::array{robot});
+  } else if (!script->empty()) {
+    parties_.controllers.start_spawned(robot, layout);
+  }
+}
+
+void Retelling::remove_robot(const std::string& entity) {
+  const world::Layout& layout = present_.simulation.layout();
+  for (std::size_t r = 0; r < layout.robots.size(); ++r) {
+    if (layout.entities[layout.robots[r].entity].id != entity || gone_[r]) continue;
+    gone_[r] = has_other_robots_ = true;
+    parties_.server.remove_robots(std::array{r},
+                                  fmt::format("'{}' was removed from the world.", entity));
+  }
+}
+
+void Retelling::compare() {
+  const world::Layout& layout = past_.simulation.layout();
+  const std::uint64_t tick = replay_.inputs().tick();
+  ++ticks_;
+  for (std::size_t r = 0; r < layout.robots.size(); ++r) {
+    if (gone_[r] || past_.simulation.state().is_absent(layout.robots[r].entity)) continue;
+    const auto found =
+        replay::first_difference(layout, r, past_.simulation.commands(), answered_);
+    if (!found) continue;
+    const std::string& id = layout.robots[r].id;
+    ++differences_.try_emplace(id, Difference{tick, 0}).first->second.ticks;
+    if (tell_difference_) tell_difference_(tick, id, *found);
+  }
+}
+
+}  // namespace ziggurat::run

@@ -1,0 +1,93 @@
+#pragma once
+// Gives controllers a recorded run again, tick by tick: they see what robots saw then; what they
+// answer is compared with the recorded commands and has no effect.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/server.h"
+#include "processes/controllers.h"
+#include "replay/commands_difference.h"
+#include "replay/recording_file.h"
+#include "replay/replay.h"
+#include "run/watch.h"
+#include "supervision/world.h"
+
+namespace ziggurat::run {
+
+class Retelling {
+ public:
+  /// Of the commands of one robot.
+  struct Difference {
+    std::uint64_t first_tick = 0, ticks = 0;  ///< the first tick with one; how many have one
+  };
+  /// The script of a robot that was spawned, as a file; empty if its controller needs none. Nothing: the
+  /// robot gets no controller.
+  using ScriptOf = std::function<std::optional<std::string>(const world::RobotLayout& robot)>;
+  using TellDifference = std::function<void(std::uint64_t tick, const std::string& robot,
+                                            const replay::CommandDifference& difference)>;
+  struct Parties {
+    network::Server& server;
+    processes::Controllers& controllers;
+    Watch& watch;
+  };
+
+  /// All that is given must outlive this, but for the functions.
+  /// @param past     of the recording's scene and seed, at its begin; the recorded run is repeated in it
+  /// @param present  the world that the controllers were told of: the same one, or one of a scene with
+  ///                 other values
+  /// @param follow   gives the present world the population of the past one; empty: it is the same
+  /// @param gone     robots that no controller has
+  Retelling(const replay::RecordingFile& file, supervision::World& past,
+            const supervision::World& present, std::function<void()> follow, const Parties& parties,
+            std::vector<bool> gone, ScriptOf script_of, TellDifference tell_difference);
+
+  /// To the state for which `is_end(tick)` holds, which controllers are not given, or to the end of the
+  /// recording. Controllers must have been gathered.
+  /// @return  nothing, or what ended the run
+  /// @throws replay::RecordingError if a state differs from the recorded one, or if the run went back to a
+  /// snapshot, which controllers cannot
+  std::optional<reports::Ending> tell(const std::function<bool(std::uint64_t tick)>& is_end);
+  /// The same, but controllers are given nothing.
+  /// @param meanwhile  is called between two ticks; false: the run ends
+  /// @return  false: it was ended
+  bool skip(const std::function<bool(std::uint64_t tick)>& is_end,
+            const std::function<bool()>& meanwhile);
+
+  /// What the controllers command after tell(), values that stay included; null if they were told nothing.
+  const world::Commands* commanded() const { return is_restarted_ ? nullptr : &answered_; }
+  bool has_ended() const { return has_ended_; }      ///< it came to the end of the recording
+  std::uint64_t ticks() const { return ticks_; }     ///< whose commands were compared
+  const std::map<std::string, Difference>& differences() const { return differences_; }  ///< by robot
+
+ private:
+  bool advance();
+  std::optional<reports::Ending> restart();
+  void take(const v1::Act& act);
+  void take_reset();
+  void take_restore(const std::string& snapshot);
+  void add_robot();
+  void remove_robot(const std::string& entity);
+  void compare();
+
+  const replay::RecordingFile& file_;
+  supervision::World& past_;
+  const supervision::World& present_;
+  const std::function<void()> follow_;
+  Parties parties_;
+  std::vector<bool> gone_;
+  const ScriptOf script_of_;
+  const TellDifference tell_difference_;
+  replay::States states_;
+  replay::Replay replay_;
+  world::Commands answered_;
+  bool is_restarted_ = true, has_ended_ = false, is_told_ = true, has_other_robots_ = false;
+  std::uint64_t ticks_ = 0;
+  std::map<std::string, Difference> differences_;
+};
+
+}  // namespace ziggurat::run

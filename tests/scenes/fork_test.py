@@ -1,0 +1,243 @@
+"""Runs that go on live from a tick of a recorded run."""
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+
+from harness import CONTROLLER_FAILED, FAULT, FINISHED, LIMIT, ZIGGURAT, main
+from replay_test import ROOT, Recorded
+
+SPEED = re.compile(r"robot\.params\.speed")
+
+
+class Fork(Recorded):
+    def hashes(self, *arguments, code=FINISHED):
+        """By tick, of a command that writes them."""
+        path = self.folder / "hashes"
+        outcome = self.ask(*arguments, "--hash-file", path, code=code)
+        lines = [line.split() for line in path.read_text().splitlines()]
+        return {int(tick): digits for _, tick, digits in lines}, outcome
+
+    def recorded_hashes(self, recording):
+        return self.hashes("replay", recording)[0]
+
+
+class Same(Fork):
+    def test_the_same_controllers_repeat_the_rest(self):
+        scenes = [self.scene, ROOT / "scenes/prototype_radio_test.argos", ROOT / "scenes/devices_test.argos",
+                  ROOT / "scenes/prototype_srocs_system.argos"]
+        for scene in scenes:
+            with self.subTest(scene.name):
+                recording, _ = self.record("--ticks", "30", "--seed", "3", scene=scene)
+                recorded = self.recorded_hashes(recording)
+                forked, outcome = self.hashes("fork", recording, "--at", "13")
+                self.assertEqual(forked, {tick: recorded[tick] for tick in range(13, 31)})
+                self.assertIn("up to tick 13 the controllers command what they did", outcome.err)
+
+    def test_outputs_begin_at_that_tick(self):
+        recording, _ = self.record("--ticks", "30", "--trace", "whole.csv")
+        self.ask("fork", recording, "--at", "12", "--trace", "part.csv", "--quiet")
+        whole = (self.folder / "whole.csv").read_text().splitlines()
+        part = (self.folder / "part.csv").read_text().splitlines()
+        self.assertEqual(part, whole[:1] + [line for line in whole[1:] if int(line.split(",")[0]) >= 12])
+
+    def test_it_can_last_longer(self):
+        recording, _ = self.record("--ticks", "20")
+        _, end = self.record("--ticks", "40", name="longer.mcap")
+        outcome = self.ask("fork", recording, "--at", "15", "--ticks", "40", "--hash", "--quiet")
+        self.assertEqual(outcome.lines[-1], end)
+
+    def test_sweeps_can_be_forked_too(self):
+        self.change("<dynamics3d ", '<dynamics3d solver="sweeps" ')
+        recording, end = self.record("--ticks", "20")
+        self.assertEqual(self.ask("fork", recording, "--at", "9", "--hash", "--quiet").lines[-1], end)
+        outcome = self.ask("fork", recording, "--at", "9", "--set", "physics_engines/*/@iterations=12",
+                           code=FAULT)
+        self.assert_is_sentence(outcome, r'solver="newton"')
+
+
+class Other(Fork):
+    def other_script(self):
+        text = (self.folder / "swing.lua").read_text()
+        self.assertRegex(text, SPEED)
+        return self.write("other.lua", text.replace("steps == 10", "steps == 14"))
+
+    def test_another_script(self):
+        recording, _ = self.record("--ticks", "30")
+        recorded = self.recorded_hashes(recording)
+        forked, outcome = self.hashes("fork", recording, "--at", "12", "--script",
+                                      f"swing.lua={self.other_script()}")
+        self.assertEqual(forked[12], recorded[12])
+        self.assertNotEqual(forked[13], recorded[13])
+        self.assertRegex(outcome.err, r"otherwise than in the recording, which counts: 'r0' from tick 9 on")
+        outcome = self.ask("fork", recording, "--at", "12", "--script", "nothing.lua=other.lua", code=FAULT)
+        self.assert_is_sentence(outcome, r"no script 'nothing\.lua'; its scripts are: .*swing\.lua")
+
+    def test_controllers_know_what_was_before_unless_they_are_fresh(self):
+        recording, _ = self.record("--ticks", "30")
+        steps = lambda outcome: [int(n) for n in re.findall(r"\[\d+ r0\] step (\d+)", outcome.out)]
+        outcome = self.ask("fork", recording, "--at", "12", "--ticks", "14")
+        self.assertEqual(steps(outcome), list(range(1, 15)))
+        outcome = self.ask("fork", recording, "--at", "12", "--ticks", "14", "--fresh")
+        self.assertEqual(steps(outcome), [1, 2])
+
+    def test_other_values_hold_from_that_tick_on(self):
+        recording, _ = self.record("--ticks", "30")
+        recorded = self.recorded_hashes(recording)
+        for change in (["--set", "physics_engines/*/gravity/@g=2"],
+                       ["--set", "arena/prototype[@id='r1']/joints/joint/@axis=0,0,1", "--set",
+                        "arena/box/@mass=0.5"]):
+            forked, _ = self.hashes("fork", recording, "--at", "12", *change)
+            self.assertEqual(forked[12], recorded[12])
+            self.assertNotEqual(forked[30], recorded[30])
+            again, _ = self.hashes("fork", recording, "--at", "12", *change)
+            self.assertEqual(forked, again)
+
+    def test_parameters_reach_controllers_and_scene(self):
+        self.change('speed="2"', 'speed="${v}"')
+        self.change("<controllers>", '<parameters v="2"/><controllers>')
+        recording, _ = self.record("--ticks", "30", "--param", "v=2.5")
+        recorded = self.recorded_hashes(recording)
+        forked, outcome = self.hashes("fork", recording, "--at", "5", "--param", "v=2.75")
+        self.assertEqual(forked[5], recorded[5])
+        self.assertNotEqual(forked[6], recorded[6], "what they command stays, also from before the fork")
+        self.assertIn("'r0' from tick 0 on", outcome.err)
+
+    def test_another_seed_draws_anew_from_there_on(self):
+        self.change("<sensors>", '<sensors><positioning implementation="default" pos_noise_range="-0.1:0.1" />')
+        recording, _ = self.record("--ticks", "20", "--seed", "3")
+        recorded = self.recorded_hashes(recording)
+        other, _ = self.hashes("fork", recording, "--at", "9", "--seed", "4")
+        same, _ = self.hashes("fork", recording, "--at", "9", "--seed", "3")
+        self.assertEqual(other[9], recorded[9])
+        self.assertNotEqual(other[10], recorded[10])
+        self.assertEqual(same[20], recorded[20])
+
+    def test_a_program_of_the_user(self):
+        recording, _ = self.record("--ticks", "20")
+        outcome = self.ask("fork", recording, "--at", "9", "--controller", "swing=exit 7",
+                           code=CONTROLLER_FAILED)
+        self.assertIn("7", outcome.err)
+
+
+class Refused(Fork):
+    def test_what_cannot_be_is_refused(self):
+        recording, _ = self.record("--ticks", "20")
+        for words, pattern in [
+                ((), "no tick is given; write --at TICK"),
+                (("--at", "21", "--ticks", "30"), "has no such tick, it ends at tick 20"),
+                (("--at", "15", "--ticks", "10"), "write --ticks with a later end"),
+                (("--at", "5", "--clock", "beta50"), "keeps the clock"),
+                (("--at", "5", "--set", "framework/experiment/@ticks_per_second=20"), "ticks_per_second"),
+                (("--at", "5", "--set", "arena/distribute/entity/@quantity=6"), "same entities"),
+                (("--at", "5", "--trust-scripts"), "trust-scripts"),
+                (("--at", "5", "--record", "run.mcap"), "run.mcap"),
+        ]:
+            with self.subTest(words):
+                self.assert_is_sentence(self.ask("fork", recording, *words, code=FAULT), pattern)
+
+    def test_recorded_commands_are_never_started_by_themselves(self):
+        marker = self.folder / "started"
+        self.change("<lua_controller", "<external_controller")
+        self.change("</lua_controller", "</external_controller")
+        self.scene.write_text(re.sub(r"(<external_controller id=\"[^\"]*\")",
+                                     rf'\1 command="touch {marker}; sleep 100"', self.text))
+        recording = self.folder / "run.mcap"
+        process = self.start("run", self.scene, "--record", recording)
+        self.wait_for(marker.exists, bool, "start of the command")
+        self.interrupt(process)
+        self.finish(process)
+        marker.unlink()
+        outcome = self.ask("fork", recording, "--at", "0", "--ticks", "5", code=FAULT)
+        self.assert_is_sentence(outcome, "--controller ID=COMMAND: swing; or --trust-recorded-commands")
+        self.assertFalse(marker.exists())
+
+
+class Kept(Fork):
+    """Recordings that do not begin at tick 0."""
+
+    def test_a_fork_is_recorded_replayed_and_forked_again(self):
+        recording, _ = self.record("--ticks", "30")
+        other, further = self.folder / "other.mcap", self.folder / "further.mcap"
+        forked, _ = self.hashes("fork", recording, "--at", "12", "--set", "physics_engines/*/gravity/@g=2",
+                                "--record", other)
+        self.assertRegex(self.ask("verify", other).out, r"^identical: 19 states")
+        again, _ = self.hashes("fork", other, "--at", "20", "--set", "physics_engines/*/gravity/@g=2",
+                               "--fresh", "--without-controllers", "--record", further)
+        self.assertEqual(again[20], forked[20])
+        self.assertRegex(self.ask("verify", further).out, r"^identical: 11 states")
+
+    def ctl(self, url, *words):
+        outcome = subprocess.run([ZIGGURAT, "ctl", url, *map(str, words)], capture_output=True, text=True,
+                                 timeout=LIMIT, env=self.environment)
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        return outcome.stdout
+
+    def serve(self, *arguments):
+        process = self.start("serve", ROOT / "scenes/dynamics3d_single_body_test.argos", "--json", "--seed",
+                             "5", *arguments)
+        return process, json.loads(process.stdout.readline())["endpoint"]
+
+    def test_acts_of_supervisors_are_part_of_the_past(self):
+        recording = self.folder / "run.mcap"
+        process, url = self.serve("--record", recording)
+        box = self.write("box.xml", '<box id="new" size="0.1,0.1,0.1" movable="true" mass="1">'
+                                    '<body position="-1,-1,2"/></box>')
+        self.ctl(url, "step", 5)
+        self.ctl(url, "spawn", box)
+        self.ctl(url, "snapshot", "here")
+        self.ctl(url, "step", 4)
+        self.ctl(url, "remove", "new")
+        self.ctl(url, "step", 3)
+        self.ctl(url, "restore", "here")
+        self.ctl(url, "step", 9)
+        state = json.loads(self.ctl(url, "read", "--json"))
+        self.ctl(url, "shutdown")
+        self.finish(process)
+        outcome = self.ask("fork", recording, "--at", "13", "--ticks", "14", "--fresh", "--hash", "--quiet")
+        self.assertEqual(outcome.lines[-1], f"hash 14 {state['hash']}")
+        other = self.folder / "other.mcap"
+        self.ask("fork", recording, "--at", "8", "--ticks", "20", "--set", "physics_engines/*/gravity/@g=5",
+                 "--record", other, "--quiet")
+        self.assertRegex(self.ask("verify", other).out, r"^identical: 13 states")
+
+    def test_a_run_that_was_restored_from_a_file_replays(self):
+        """By a server that begins with the snapshots of an earlier one."""
+        snapshots = self.folder / "snapshots"
+        snapshots.mkdir()
+        process, url = self.serve("--snapshot-folder", snapshots)
+        self.ctl(url, "step", 5)
+        self.ctl(url, "snapshot", "here")
+        self.ctl(url, "shutdown")
+        self.finish(process)
+        recording = self.folder / "run.mcap"
+        process, url = self.serve("--snapshot-folder", snapshots, "--record", recording)
+        self.ctl(url, "step", 2)
+        self.ctl(url, "restore", "here")
+        self.ctl(url, "step", 6)
+        state = json.loads(self.ctl(url, "read", "--json"))
+        self.ctl(url, "shutdown")
+        self.finish(process)
+        shutil.rmtree(snapshots)
+        outcome = self.ask("replay", recording, "--hash", "--quiet")
+        self.assertEqual(outcome.lines[-1], f"hash 11 {state['hash']}")
+
+
+class Example(Fork):
+    def test_which_gain_keeps_the_block_from_slipping(self):
+        """The example of docs/recordings.md. Friction holds up to a gain of mu g / speed = 6.1."""
+        done = subprocess.run([sys.executable, "-B", ROOT / "docs/forks/gains.py", ZIGGURAT, "gains.svg"],
+                              cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=LIMIT)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        slips = {int(gain): float(slip) for gain, slip in re.findall(r"gain +(\d+): .* ([\d.]+) mm", done.stdout)}
+        self.assertEqual(list(slips), [2, 4, 6, 8, 10])
+        self.assertLess(max(slips[gain] for gain in (2, 4, 6)), 0.05)
+        self.assertGreater(slips[8], 0.5)
+        self.assertGreater(slips[10], 2 * slips[8])
+        self.assertIn("</svg>", (self.folder / "gains.svg").read_text())
+
+
+if __name__ == "__main__":
+    main()
