@@ -205,7 +205,7 @@ std::optional<Ending> Past::relive(supervision::World& world, const Retelling::P
   auto last_look = clock::now();
   const auto meanwhile = [&] {  // clients are heard while nothing is asked of them
     if (clock::now() - last_look < std::chrono::milliseconds(200)) return true;
-    parties.server.gather({});
+    parties.server.gather({std::chrono::milliseconds(0), {}});
     last_look = clock::now();
     return signals.take().interruptions == 0;
   };
@@ -244,7 +244,7 @@ void Past::report(const Retelling& retelling, reports::Console& console) const {
     robots.push_back(fmt::format("and {} more robots", differences.size() - most));
   }
   console.notice(fmt::format(
-      "up to tick {} the controllers command otherwise than in the recording, which counts: {}", fork_.at,
+      "up to tick {} the controllers command otherwise than in the recording, whose commands were applied: {}", fork_.at,
       fmt::join(robots, "; ")));
 }
 

@@ -71,7 +71,7 @@ class Other(Fork):
                                       f"swing.lua={self.other_script()}")
         self.assertEqual(forked[12], recorded[12])
         self.assertNotEqual(forked[13], recorded[13])
-        self.assertRegex(outcome.err, r"otherwise than in the recording, which counts: 'r0' from tick 10 on")
+        self.assertRegex(outcome.err, r"otherwise than in the recording, whose commands were applied: 'r0' from tick 10 on")
         outcome = self.ask("fork", recording, "--at", "12", "--script", "nothing.lua=other.lua", code=FAULT)
         self.assert_is_sentence(outcome, r"no script 'nothing\.lua'; its scripts are: .*swing\.lua")
 
