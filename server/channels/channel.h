@@ -1,6 +1,7 @@
 #pragma once
 // What can be shown: a topic with messages of one type.
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -27,6 +28,10 @@ enum class Kind {
   image,
   annotations,
 };
+
+using Kinds = std::bitset<static_cast<std::size_t>(Kind::annotations) + 1>;
+
+constexpr std::size_t index_of(Kind kind) { return static_cast<std::size_t>(kind); }
 
 /// When a channel has a message.
 enum class Pace {

@@ -202,7 +202,7 @@ std::optional<std::string> Channels::bytes_of(const Channel& channel, const Mome
 }
 
 Message Channels::log(std::int64_t time_ns, Severity severity, std::string_view name,
-                      std::string_view text) const {
+                      std::string_view text) {
   using foxglove::Log;
   Log line;
   set_time(time_ns, *line.mutable_timestamp());
@@ -214,7 +214,7 @@ Message Channels::log(std::int64_t time_ns, Severity severity, std::string_view 
   return {id_of(Kind::log), time_ns, content_of(line.SerializeAsString()), true};
 }
 
-Message Channels::barrier(const wire::Status& status, std::span<const Histogram> histograms) const {
+Message Channels::barrier(const wire::Status& status, std::span<const Histogram> histograms) {
   v1::Barrier barrier;
   wire::fill(status, *barrier.mutable_status());
   for (const Histogram& from : histograms) {

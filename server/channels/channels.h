@@ -55,9 +55,9 @@ class Channels {
               std::vector<Message>& to);
 
   /// @param name  of the robot, or `ziggurat`
-  Message log(std::int64_t time_ns, Severity severity, std::string_view name,
-              std::string_view text) const;
-  Message barrier(const wire::Status& status, std::span<const Histogram> histograms) const;
+  static Message log(std::int64_t time_ns, Severity severity, std::string_view name,
+                     std::string_view text);
+  static Message barrier(const wire::Status& status, std::span<const Histogram> histograms);
 
   /// Ids of channels without place.
   static std::uint32_t id_of(Kind kind) { return static_cast<std::uint32_t>(kind) + 1; }

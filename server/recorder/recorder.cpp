@@ -48,27 +48,27 @@ void Recorder::add(std::function<void(Recording&)> run, std::size_t size) {
   if (wakes) wake_.notify_one();
 }
 
-TickCopy Recorder::take_copy() {
+channels::TickCopy Recorder::take_copy() {
   const std::lock_guard lock(mutex_);
   if (copies_.empty()) return {};
-  TickCopy copy = std::move(copies_.back());
+  channels::TickCopy copy = std::move(copies_.back());
   copies_.pop_back();
   return copy;
 }
 
-void Recorder::give_back(TickCopy copy) {
+void Recorder::give_back(channels::TickCopy copy) {
   const std::lock_guard lock(mutex_);
   copies_.push_back(std::move(copy));
 }
 
 void Recorder::populate(const channels::Population& population) {
-  auto copy = std::make_shared<const PopulationCopy>(population);
+  auto copy = std::make_shared<const channels::PopulationCopy>(population);
   add([copy = std::move(copy)](Recording& to) { to.populate(copy); }, 0);
 }
 
 void Recorder::tick(const channels::Moment& moment) {
-  auto copied = std::make_shared<TickCopy>(take_copy());
-  copy(moment, moment.state.tick % picture_interval_ == 0, *copied);
+  auto copied = std::make_shared<channels::TickCopy>(take_copy());
+  channels::copy(moment, moment.state.tick % picture_interval_ == 0, *copied);
   const std::size_t size = size_of(*copied);
   add(
       [this, copied = std::move(copied)](Recording& to) {
@@ -79,14 +79,14 @@ void Recorder::tick(const channels::Moment& moment) {
 }
 
 void Recorder::step(const world::Commands& commands) {
-  auto copied = std::make_shared<TickCopy>(take_copy());
+  auto copied = std::make_shared<channels::TickCopy>(take_copy());
   copied->commands = commands;
   add(
       [this, copied = std::move(copied)](Recording& to) {
         to.step(copied->commands);
         give_back(std::move(*copied));
       },
-      sizeof(TickCopy) + commands.radio_messages.bytes.size());
+      sizeof(channels::TickCopy) + commands.radio_messages.bytes.size());
 }
 
 void Recorder::add(v1::Act act) {

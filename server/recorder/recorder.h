@@ -64,8 +64,8 @@ class Recorder {
 
   void add(std::function<void(Recording&)> run, std::size_t size);
   void add(v1::Act act);
-  TickCopy take_copy();
-  void give_back(TickCopy copy);
+  channels::TickCopy take_copy();
+  void give_back(channels::TickCopy copy);
   void work(Start start, Settings settings);
   void fail(std::string why);
   std::deque<Task> next();
@@ -79,7 +79,7 @@ class Recorder {
   std::mutex mutex_;  // of all below
   std::condition_variable wake_, has_room_;
   std::deque<Task> tasks_;
-  std::vector<TickCopy> copies_;  // free ones, whose memory is used again
+  std::vector<channels::TickCopy> copies_;  // free ones, whose memory is used again
   std::size_t waiting_ = 0;       // of all tasks that are not done [bytes]
   std::size_t unfinished_ = 0;    // their number
   std::uint32_t snapshots_ = 0;   // embedded so far, of files

@@ -63,10 +63,8 @@ void Recording::attach(const EmbeddedFile& file) {
   writer_.attach(file.name, "application/octet-stream", file.text, time, time);
 }
 
-void Recording::populate(std::shared_ptr<const PopulationCopy> population) {
-  const PopulationCopy& now = *population;
-  channels_.populate({now.scene, now.path, now.scene_hash, now.seed, now.last_tick, now.layout,
-                      now.entities, now.state});
+void Recording::populate(std::shared_ptr<const channels::PopulationCopy> population) {
+  channels_.populate(population->view());
   population_ = std::move(population);  // what channels_ referred to before may go now
   is_population_new_ = true;
   wanted_.clear();
@@ -86,13 +84,13 @@ bool Recording::takes_pictures() const {
 
 void Recording::write_messages(Pace pace) {
   std::vector<channels::Message> messages;
-  channels_.encode(moment(), pace, takes_pictures() ? wanted_ : without_pictures_, messages);
+  channels_.encode(tick_.view(), pace, takes_pictures() ? wanted_ : without_pictures_, messages);
   for (const channels::Message& message : messages) {
     write(channels_of_.at(message.channel), message.content->bytes());
   }
 }
 
-void Recording::tick(TickCopy& copy) {
+void Recording::tick(channels::TickCopy& copy) {
   if (has_inputs_) write_inputs();
   std::swap(tick_, copy);
   const std::int64_t time_ns = tick_.state.time_ns;

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "channels/channels.h"
+#include "channels/copies.h"
 #include "mcap/writer.h"
 #include "recording/inputs.h"
-#include "recorder/copies.h"
 #include "recorder/start.h"
 
 namespace ziggurat::recorder {
@@ -33,9 +33,9 @@ class Recording {
   Recording(mcap::Sink sink, mcap::Compression compression, Contents contents, const Start& start);
 
   /// Who is in the world from the next tick on.
-  void populate(std::shared_ptr<const PopulationCopy> population);
+  void populate(std::shared_ptr<const channels::PopulationCopy> population);
   /// A state was published. @param copy  gets memory that is not needed any more
-  void tick(TickCopy& copy);
+  void tick(channels::TickCopy& copy);
   /// Between the last tick and the next.
   void add(v1::Act act);
   void log(channels::Severity severity, const std::string& name, const std::string& text);
@@ -57,9 +57,6 @@ class Recording {
   void write_inputs();
   void end_chunk();
   bool takes_pictures() const;
-  channels::Moment moment() const {
-    return {tick_.state, tick_.observations, tick_.commands, tick_.contacts, {}};
-  }
 
   mcap::Writer writer_;
   const Contents contents_;
@@ -67,11 +64,11 @@ class Recording {
   std::map<std::string, std::uint16_t> topics_;         // channels in the file
   std::map<std::uint32_t, std::uint16_t> channels_of_;  // by Channel::id
   std::uint16_t run_ = 0, inputs_channel_ = 0, state_channel_ = 0;  // 0: not wanted
-  std::shared_ptr<const PopulationCopy> population_;  // that channels_ refers to
+  std::shared_ptr<const channels::PopulationCopy> population_;  // that channels_ refers to
   channels::Channels channels_;
   std::vector<std::uint32_t> wanted_, without_pictures_;  // Channel::id, ascending
   bool is_population_new_ = false;
-  TickCopy tick_;  // the last one
+  channels::TickCopy tick_;  // the last one
   v1::Inputs inputs_;
   bool has_inputs_ = false;  // of the last tick, not written yet
   recording::CommandPacker commands_;

@@ -12,14 +12,12 @@ namespace ziggurat::run {
 namespace {
 
 using channels::Kind;
-using channels::Pace;
 
 constexpr std::chrono::milliseconds barrier_interval{250};
 constexpr const char* over = "The run is over: its last state is shown, and nothing changes it.";
 constexpr const char* over_for_good =
     "The run is over and its controllers have ended, so it can't be reset; start the program again, "
     "with --duration=0 for a run that does not end by itself.";
-constexpr std::array every_tick{Pace::latched, Pace::tick, Pace::answer};
 
 view::Settings settings_of(const Options& options, const Showing::Run& run) {
   view::Settings settings;
@@ -95,25 +93,18 @@ channels::Moment Showing::moment() const {
           simulation.contacts(), phases_, simulation.rays()};
 }
 
-bool Showing::wants(Kind kind) const {
-  return std::ranges::binary_search(wanted_, channels::Channels::id_of(kind));
-}
-
 void Showing::populate() {
   const supervision::World& world = run_.world;
-  channels_.populate({world.scene, world.path, world.scene_hash, world.seed, run_.last_tick,
-                      world.simulation.layout(), world.simulation.entities(),
-                      world.simulation.state()});
-  server_.set_channels(channels_.list());
+  server_.populate({world.scene, world.path, world.scene_hash, world.seed, run_.last_tick,
+                    world.simulation.layout(), world.simulation.entities(),
+                    world.simulation.state()});
 }
 
-void Showing::show(std::span<const std::uint32_t> wanted, std::span<const Pace> paces) {
-  std::vector<channels::Message> messages;
-  for (const Pace pace : paces) channels_.encode(moment(), pace, wanted, messages);
-  if (!messages.empty()) {
-    server_.show(run_.world.simulation.state().time_ns, std::move(messages));
-  }
+void Showing::show_all(const std::vector<std::uint32_t>& wanted) {
+  if (!wanted.empty()) server_.show(moment(), {wanted, wanted, wants(Kind::image)});
 }
+
+void Showing::show_tick() { server_.show(moment(), {wanted_, {}, wants(Kind::image)}); }
 
 void Showing::tick(const std::array<double, supervision::phase_count>& phases) {
   is_current_ = false;
@@ -125,11 +116,11 @@ void Showing::tick(const std::array<double, supervision::phase_count>& phases) {
   if (now - last_frame_ < least) return;
   last_frame_ = now;
   is_current_ = true;
-  show(wanted_, std::array{Pace::tick});
+  show_tick();
 }
 
 void Showing::answered() {
-  if (is_current_ && !wanted_.empty()) show(wanted_, std::array{Pace::answer});
+  if (is_current_ && wants(Kind::command)) server_.show_commands(moment(), wanted_);
 }
 
 void Showing::restarted() {
@@ -137,19 +128,20 @@ void Showing::restarted() {
   populate();
   seen_changes_ = run_.changes();
   is_current_ = true;
-  show(wanted_, every_tick);
+  show_all(wanted_);
 }
 
 void Showing::log(channels::Severity severity, std::string_view name, std::string_view text) {
   if (!wants(Kind::log)) return;
   const std::int64_t time_ns = run_.world.simulation.state().time_ns;
-  server_.show(time_ns, {channels_.log(time_ns, severity, name, text)});
+  server_.show_event(channels::Channels::log(time_ns, severity, name, text));
 }
 
 void Showing::serve() {
   if (!server_.desk().has_news()) return;
   view::Desk::News news = server_.desk().take();
   wanted_ = std::move(news.wanted);
+  kinds_ = news.kinds;
   for (const view::Parameter& wish : news.wishes) apply(wish);
   for (view::Call& call : news.calls) {
     if (call.speed) {
@@ -166,7 +158,7 @@ void Showing::serve() {
     }
   }
   if (!news.fresh.empty()) {
-    show(news.fresh, every_tick);
+    show_all(news.fresh);
     last_barrier_ = {};
   }
 }
@@ -177,10 +169,9 @@ void Showing::apply(const view::Parameter& wish) {
     frames_per_second_ = std::get<double>(wish.value);
     return;
   }
-  channels::Layers layers = channels_.layers();
-  (wish.name == "draw_labels" ? layers.labels : layers.frusta) = std::get<bool>(wish.value);
-  channels_.set_layers(layers);
-  show(wanted_, std::array{Pace::latched});
+  (wish.name == "draw_labels" ? layers_.labels : layers_.frusta) = std::get<bool>(wish.value);
+  server_.set_layers(layers_);
+  show_all(wanted_);
 }
 
 void Showing::set_speed(double factor) {
@@ -194,7 +185,7 @@ void Showing::update() {
     seen_changes_ = run_.changes();
     populate();
     is_current_ = true;
-    show(wanted_, every_tick);
+    show_all(wanted_);
   }
   if (!has_viewers()) return;
   const auto now = clock::now();
@@ -202,7 +193,7 @@ void Showing::update() {
   if (!is_current_ && !wanted_.empty() && now - last_frame_ >= least) {  // while the world waits
     last_frame_ = now;
     is_current_ = true;
-    show(wanted_, std::array{Pace::tick});
+    show_tick();
   }
   const auto phase = is_over_               ? wire::Status::Phase::ending
                      : run_.is_paused() ? wire::Status::Phase::paused
@@ -229,7 +220,7 @@ void Showing::show_barrier() {
     histograms.push_back({run_.world.scene.controllers[c].id, times.least, times.growth, times.counts,
                           controllers[c].missed_ticks});
   }
-  server_.show(status.time_ns, {channels_.barrier(status, histograms)});
+  server_.show_event(channels::Channels::barrier(status, histograms));
 }
 
 void Showing::end() {

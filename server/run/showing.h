@@ -78,15 +78,17 @@ class Showing {
   void apply(const view::Parameter& wish);
   void set_speed(double factor);
   void populate();
-  void show(std::span<const std::uint32_t> wanted, std::span<const channels::Pace> paces);
+  void show_all(const std::vector<std::uint32_t>& wanted);
+  void show_tick();
   void show_barrier();
-  bool wants(channels::Kind kind) const;
+  bool wants(channels::Kind kind) const { return kinds_.test(channels::index_of(kind)); }
   channels::Moment moment() const;
 
   const Run run_;
-  channels::Channels channels_;
   view::Server server_;
+  channels::Layers layers_;
   std::vector<std::uint32_t> wanted_;               ///< ids of channels, ascending
+  channels::Kinds kinds_;                           ///< of these
   std::vector<view::Call> calls_;                   ///< not taken yet
   std::map<std::uint64_t, view::Call> unanswered_;  ///< by Request::id
   std::uint64_t next_call_ = 1, seen_changes_ = 0;

@@ -30,8 +30,10 @@ void Desk::viewer_left(std::uint64_t viewer) {
   viewer_count_ = viewers_.size();
 }
 
-void Desk::set_wanted(std::vector<std::uint32_t> wanted, std::vector<std::uint32_t> fresh) {
+void Desk::set_wanted(std::vector<std::uint32_t> wanted, std::vector<std::uint32_t> fresh,
+                      channels::Kinds kinds) {
   const std::lock_guard lock(mutex_);
+  news_.kinds = kinds;
   news_.wanted = std::move(wanted);
   for (const std::uint32_t id : fresh) {
     if (std::ranges::find(news_.fresh, id) == news_.fresh.end()) news_.fresh.push_back(id);

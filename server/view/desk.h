@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "channels/channel.h"
 #include "network/descriptor.h"
 #include "view/call.h"
 
@@ -24,7 +25,9 @@ class Desk {
   void viewer_left(std::uint64_t viewer);
   /// @param wanted  ids of channels that any viewer subscribes to, ascending
   /// @param fresh  of these: without subscriber before
-  void set_wanted(std::vector<std::uint32_t> wanted, std::vector<std::uint32_t> fresh);
+  /// @param kinds  of those that are wanted
+  void set_wanted(std::vector<std::uint32_t> wanted, std::vector<std::uint32_t> fresh,
+                  channels::Kinds kinds);
   void add_call(Call call);
   void add_wish(Parameter wish);
 
@@ -38,6 +41,7 @@ class Desk {
   struct News {
     std::vector<std::uint32_t> wanted;  ///< all of now
     std::vector<std::uint32_t> fresh;   ///< since the last call
+    channels::Kinds kinds;              ///< of those that are wanted now
     std::vector<Call> calls;
     std::vector<Parameter> wishes;
   };

@@ -132,8 +132,12 @@ void Hub::count_subscribers(std::vector<std::uint32_t> fresh) {
   std::erase_if(subscribers_, [](const auto& entry) { return entry.second == 0; });
   std::erase_if(newest_, [&](const auto& entry) { return !subscribers_.contains(entry.first); });
   std::vector<std::uint32_t> wanted;
-  for (const auto& [id, count] : subscribers_) wanted.push_back(id);
-  desk_.set_wanted(std::move(wanted), std::move(fresh));
+  channels::Kinds kinds;
+  for (const auto& [id, count] : subscribers_) {
+    wanted.push_back(id);
+    if (const auto* found = channel(id)) kinds.set(channels::index_of(found->kind));
+  }
+  desk_.set_wanted(std::move(wanted), std::move(fresh), kinds);
 }
 
 std::vector<Parameter> Hub::values_of(std::span<const std::string> names) const {

@@ -17,6 +17,7 @@
 #include "http/exchange.h"
 #include "http/listening.h"
 #include "text/numbers.h"
+#include "view/feed.h"
 #include "view/hub.h"
 #include "view/page.h"
 
@@ -34,7 +35,10 @@ constexpr std::chrono::seconds request_time{10};  // for a request and for its a
 constexpr std::size_t longest_message_to_look = std::size_t{64} << 10;     // [bytes]
 constexpr std::size_t longest_message_to_steer = std::size_t{2} << 20;     // [bytes]
 constexpr std::array protocols{"foxglove.websocket.v1", "foxglove.sdk.v1"};
-constexpr int most_posted = 64;  // ticks on their way to the server's thread
+// While ticks come, the server's thread looks for them so often: to wake it for each would cost the
+// run more than to copy it.
+constexpr std::chrono::milliseconds interval{5};
+constexpr int longest_idle = 20;  // looks in vain, until it sleeps
 
 /// The protocol that both speak; empty: there is none.
 std::string protocol_in(std::string_view offered) {
@@ -240,6 +244,7 @@ struct Server::State {
         listening(listen(io, settings.address,
                          [this](http::Tcp::socket socket) { take(std::move(socket)); })),
         pause(io),
+        next_look(io),
         thread(http::serve(io)) {}
 
   void take(http::Tcp::socket socket) {
@@ -259,8 +264,34 @@ struct Server::State {
   template <class Work>
   void post(Work work) {
     asio::post(io, [this, work = std::move(work)]() mutable {
+      feed.pass_on(shared.hub);  // what was shown before
       work(shared.hub);
       pump();
+    });
+  }
+
+  /// Something waits in the feed.
+  void wake() {
+    if (!looks.exchange(true)) asio::post(io, [this] { look(); });
+  }
+
+  /// Takes what waits in the feed, again and again until nothing comes any more.
+  void look() {
+    if (feed.pass_on(shared.hub)) {
+      idle = 0;
+      pump();
+    } else if (++idle > longest_idle) {
+      idle = 0;
+      looks = false;
+      if (feed.pass_on(shared.hub)) {  // came just now
+        pump();
+        wake();
+      }
+      return;
+    }
+    next_look.expires_after(interval);
+    next_look.async_wait([this](Error error) {
+      if (!error) look();
     });
   }
 
@@ -278,9 +309,10 @@ struct Server::State {
   http::Service service = service_of(shared);
   asio::io_context io{1};  // behind what its connections use
   http::Listening listening;
-  asio::steady_timer pause;
-  std::atomic<int> posted = 0;  // ticks that the thread has not taken yet
-  std::vector<channels::Message> held_back;  // of ticks that were not posted
+  asio::steady_timer pause, next_look;
+  Feed feed;
+  std::atomic<bool> looks = false;  // the thread looks into the feed now and then
+  int idle = 0;                     // looks in vain
   std::thread thread;
 };
 
@@ -304,30 +336,26 @@ std::string Server::page_address() const { return state_->address("http"); }
 std::string Server::viewer_address() const { return state_->address("ws"); }
 Desk& Server::desk() { return state_->desk; }
 
-void Server::set_channels(std::vector<channels::Channel> list) {
-  state_->post([list = std::move(list)](Hub& hub) mutable { hub.set_channels(std::move(list)); });
+void Server::populate(const channels::Population& population) {
+  state_->feed.populate(population);
+  state_->wake();
 }
 
-/// If the server's thread is busy, ticks are dropped here already, but for what must arrive.
-void Server::show(std::int64_t time_ns, std::vector<channels::Message> messages) {
-  State& state = *state_;
-  if (!state.held_back.empty()) {
-    messages.insert(messages.begin(), state.held_back.begin(), state.held_back.end());
-    state.held_back.clear();
-  }
-  if (state.posted >= most_posted) {
-    for (channels::Message& message : messages) {
-      if (message.must_arrive && state.held_back.size() < 1000) {
-        state.held_back.push_back(std::move(message));
-      }
-    }
-    return;
-  }
-  ++state.posted;
-  state.post([&state, time_ns, messages = std::move(messages)](Hub& hub) {
-    --state.posted;
-    hub.show(time_ns, messages);
-  });
+void Server::set_layers(const channels::Layers& layers) { state_->feed.set_layers(layers); }
+
+void Server::show(const channels::Moment& moment, Wanted wanted) {
+  state_->feed.show(moment, std::move(wanted));
+  state_->wake();
+}
+
+void Server::show_commands(const channels::Moment& moment, std::vector<std::uint32_t> wanted) {
+  state_->feed.show_commands(moment, std::move(wanted));
+  state_->wake();
+}
+
+void Server::show_event(channels::Message message) {
+  state_->feed.show_event(std::move(message));
+  state_->wake();
 }
 
 void Server::set_parameter(Parameter parameter) {

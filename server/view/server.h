@@ -1,6 +1,6 @@
 #pragma once
 // The live server: the page over HTTP, and viewers over WebSocket, on one port and a thread of its
-// own. The run is never held up: it leaves messages and takes what viewers want.
+// own. The run is never held up: it leaves copies and takes what viewers want.
 
 #include <chrono>
 #include <cstdint>
@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "channels/channel.h"
 #include "channels/message.h"
 #include "http/address.h"
 #include "view/access.h"
 #include "view/desk.h"
+#include "view/feed.h"
 
 namespace ziggurat::view {
 
@@ -48,10 +48,13 @@ class Server {
 
   // Each of these returns at once.
 
-  /// All channels of now, ascending by id.
-  void set_channels(std::vector<channels::Channel> list);
-  /// Messages of a tick.
-  void show(std::int64_t time_ns, std::vector<channels::Message> messages);
+  // What is shown: as of Feed.
+  void populate(const channels::Population& population);
+  void set_layers(const channels::Layers& layers);
+  void show(const channels::Moment& moment, Wanted wanted);
+  void show_commands(const channels::Moment& moment, std::vector<std::uint32_t> wanted);
+  void show_event(channels::Message message);
+
   void set_parameter(Parameter parameter);
   void answer(const Call& call, std::uint64_t tick);
   void refuse(const Call& call, const std::string& why);

@@ -2,12 +2,13 @@
 // The world at a tick, copied for another thread.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "channels/moment.h"
 
-namespace ziggurat::recorder {
+namespace ziggurat::channels {
 
 /// Who is in the world since the last change.
 struct PopulationCopy {
@@ -18,7 +19,7 @@ struct PopulationCopy {
   std::vector<scene::Entity> entities;
   world::State state;
 
-  explicit PopulationCopy(const channels::Population& from)
+  explicit PopulationCopy(const Population& from)
       : scene(from.scene),
         path(from.path),
         scene_hash(from.scene_hash),
@@ -27,6 +28,10 @@ struct PopulationCopy {
         layout(from.layout),
         entities(from.entities),
         state(from.state) {}
+
+  Population view() const {
+    return {scene, path, scene_hash, seed, last_tick, layout, entities, state};
+  }
 };
 
 struct TickCopy {
@@ -34,13 +39,17 @@ struct TickCopy {
   world::Observations observations;
   world::Commands commands;
   std::vector<world::Contact> contacts;
+  PhaseTimes phases;
+  std::optional<std::vector<world::Ray>> rays;  ///< of all devices; nothing: State::rays
+
+  Moment view() const;
 };
 
 /// Pictures are left out unless they are wanted.
 /// @param to  keeps its memory
-void copy(const channels::Moment& from, bool with_images, TickCopy& to);
+void copy(const Moment& from, bool with_images, TickCopy& to);
 
 /// How much memory it takes, about [bytes].
 std::size_t size_of(const TickCopy& copy);
 
-}  // namespace ziggurat::recorder
+}  // namespace ziggurat::channels

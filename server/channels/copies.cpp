@@ -1,10 +1,16 @@
-#include "recorder/copies.h"
+#include "channels/copies.h"
 
 #include <type_traits>
 
-namespace ziggurat::recorder {
+namespace ziggurat::channels {
 
-void copy(const channels::Moment& from, bool with_images, TickCopy& to) {
+Moment TickCopy::view() const {
+  Moment moment{state, observations, commands, contacts, phases};
+  if (rays) moment.rays = *rays;
+  return moment;
+}
+
+void copy(const Moment& from, bool with_images, TickCopy& to) {
   to.state = from.state;
   world::for_each_row(world::sensed, [&](auto i) {
     constexpr auto& row = std::get<i>(world::sensed);
@@ -17,6 +23,14 @@ void copy(const channels::Moment& from, bool with_images, TickCopy& to) {
   });
   to.commands = from.commands;
   to.contacts.assign(from.contacts.begin(), from.contacts.end());
+  to.phases = from.phases;
+  if (!from.rays) {
+    to.rays.reset();
+  } else if (to.rays) {
+    to.rays->assign(from.rays->begin(), from.rays->end());
+  } else {
+    to.rays.emplace(from.rays->begin(), from.rays->end());
+  }
 }
 
 std::size_t size_of(const TickCopy& copy) {
@@ -27,10 +41,11 @@ std::size_t size_of(const TickCopy& copy) {
   size += copy.state.links.size() * sizeof(world::LinkState);
   size += copy.state.origins.size() * sizeof(math::Pose);
   size += copy.state.rays.size() * sizeof(world::Ray);
+  if (copy.rays) size += copy.rays->size() * sizeof(world::Ray);
   size += sensed.radio_messages.bytes.size() + copy.commands.radio_messages.bytes.size();
   size += sensed.range_and_bearing_data.size();
   size += copy.contacts.size() * sizeof(world::Contact);
   return size;
 }
 
-}  // namespace ziggurat::recorder
+}  // namespace ziggurat::channels
