@@ -100,11 +100,10 @@ void Showing::populate() {
                     world.simulation.state()});
 }
 
-void Showing::show_all(const std::vector<std::uint32_t>& wanted) {
-  if (!wanted.empty()) server_.show(moment(), {wanted, wanted, wants(Kind::image)});
+void Showing::show(const std::vector<std::uint32_t>& wanted, bool all) {
+  if (wanted.empty()) return;
+  server_.show(moment(), {wanted, all ? wanted : std::vector<std::uint32_t>(), wants(Kind::image)});
 }
-
-void Showing::show_tick() { server_.show(moment(), {wanted_, {}, wants(Kind::image)}); }
 
 void Showing::tick(const std::array<double, supervision::phase_count>& phases) {
   is_current_ = false;
@@ -116,7 +115,7 @@ void Showing::tick(const std::array<double, supervision::phase_count>& phases) {
   if (now - last_frame_ < least) return;
   last_frame_ = now;
   is_current_ = true;
-  show_tick();
+  show(wanted_, false);
 }
 
 void Showing::answered() {
@@ -128,7 +127,7 @@ void Showing::restarted() {
   populate();
   seen_changes_ = run_.changes();
   is_current_ = true;
-  show_all(wanted_);
+  show(wanted_, true);
 }
 
 void Showing::log(channels::Severity severity, std::string_view name, std::string_view text) {
@@ -158,7 +157,7 @@ void Showing::serve() {
     }
   }
   if (!news.fresh.empty()) {
-    show_all(news.fresh);
+    show(news.fresh, true);
     last_barrier_ = {};
   }
 }
@@ -171,7 +170,7 @@ void Showing::apply(const view::Parameter& wish) {
   }
   (wish.name == "draw_labels" ? layers_.labels : layers_.frusta) = std::get<bool>(wish.value);
   server_.set_layers(layers_);
-  show_all(wanted_);
+  show(wanted_, true);
 }
 
 void Showing::set_speed(double factor) {
@@ -185,7 +184,7 @@ void Showing::update() {
     seen_changes_ = run_.changes();
     populate();
     is_current_ = true;
-    show_all(wanted_);
+    show(wanted_, true);
   }
   if (!has_viewers()) return;
   const auto now = clock::now();
@@ -193,7 +192,7 @@ void Showing::update() {
   if (!is_current_ && !wanted_.empty() && now - last_frame_ >= least) {  // while the world waits
     last_frame_ = now;
     is_current_ = true;
-    show_tick();
+    show(wanted_, false);
   }
   const auto phase = is_over_               ? wire::Status::Phase::ending
                      : run_.is_paused() ? wire::Status::Phase::paused

@@ -78,8 +78,8 @@ class Showing {
   void apply(const view::Parameter& wish);
   void set_speed(double factor);
   void populate();
-  void show_all(const std::vector<std::uint32_t>& wanted);
-  void show_tick();
+  /// @param all  latched messages and commands, too
+  void show(const std::vector<std::uint32_t>& wanted, bool all);
   void show_barrier();
   bool wants(channels::Kind kind) const { return kinds_.test(channels::index_of(kind)); }
   channels::Moment moment() const;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -31,8 +32,8 @@ struct Watched {
     }
   }
 
-  channels::Moment moment() const {
-    const simulation::Simulation& from = world.simulation;
+  channels::Moment moment() {
+    simulation::Simulation& from = world.simulation;
     return {from.state(), from.observations(), from.commands(), from.contacts(), {}};
   }
   void populate() {
