@@ -34,6 +34,13 @@ std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::
   return targets;
 }
 
+/// No tick goes on before a message of one that is no controller yet: the world stands, or a robot is
+/// free that the tick waits for without end.
+bool waits_for_newcomer(const Barrier& barrier) {
+  const bool waits_for_robot = barrier.seats.is_awaited() && barrier.timers.deadline == never;
+  return barrier.gate.is_standing() || waits_for_robot;
+}
+
 /// Observers and supervisors leave most of the connections to controllers.
 Config with_places(Config config, std::size_t connections) {
   const auto share = [&](std::size_t part) { return std::max(std::size_t{1}, connections / part); };
@@ -128,7 +135,7 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
   for (;;) {
     // What has arrived is not late, however long the server was kept from looking.
     barrier.now = Clock::now();
-    socket.set_ticking(commands != nullptr && !barrier.gate.is_standing());
+    socket.set_ticking(commands != nullptr && !waits_for_newcomer(barrier));
     socket.tend();
     if (take_messages(done, commands)) return Outcome::complete;
     advance();

@@ -22,6 +22,7 @@ constexpr milliseconds linger{1000};  // what waits at the end may take this lon
 constexpr milliseconds tending{500};
 constexpr milliseconds saved_share{5};  // of the time for others
 constexpr int accepted_at_once = 16;
+constexpr int looks_at_once = 64;  // at connections that may send without end and no message
 
 /// How many descriptors connections may have: an eighth is for files and processes.
 std::size_t descriptors_for_peers() {
@@ -64,9 +65,10 @@ void Socket::add_private(const Config& config) {
 
 void Socket::listen(const std::string& endpoint, bool is_private, bool allows_any) {
   check_endpoint(endpoint, allows_any);
-  const Entrance& entrance = entrances_.emplace_back(Entrance{Listener(endpoint), is_private});
+  const std::uint64_t id = entrances_.size();
+  const Entrance& entrance = entrances_.emplace_back(Entrance{Listener(endpoint), id, is_private});
   endpoints_.push_back(entrance.listener.endpoint());
-  peers_.others().add(entrance.listener.number(), entrances_.size() - 1);
+  peers_.others().add(entrance.listener.number(), id);
 }
 
 /// @param write  writes the content, `size` bytes
@@ -97,7 +99,11 @@ void Socket::set_standing(const std::string& connection, Standing standing,
   PeerSocket* peer = peers_.find(connection);
   if (peer == nullptr || !peer->has_turn) return;
   for (Group* group : {&controllers_, &others_}) std::erase(group->turns, connection);
-  (standing == Standing::controller ? controllers_ : others_).give_turn(*peer);
+  group_of(*peer).give_turn(*peer);
+}
+
+Socket::Group& Socket::group_of(const PeerSocket& peer) {
+  return peer.standing() == Standing::controller ? controllers_ : others_;
 }
 
 bool Socket::may_serve_others() { return !is_ticking_ || share_.has_some(Clock::now()); }
@@ -126,11 +132,11 @@ bool Socket::receive(Received& received) {
 }
 
 bool Socket::receive_from(Group& group, Received& received) {
-  for (;;) {
+  for (int look = 0; look < looks_at_once; ++look) {
     if (group.until_look > 0) {
       --group.until_look;
     } else if (const auto ready = group.list.next()) {
-      read_from(group, *ready);
+      read_from(*ready);
       if (group.list.has_more()) continue;
       group.until_look = group.turns.size();
     } else {
@@ -139,6 +145,7 @@ bool Socket::receive_from(Group& group, Received& received) {
     }
     if (take_message(group, received)) return true;
   }
+  return false;
 }
 
 /// The next message of the connection whose turn it is. It gets another turn after all others, so
@@ -163,7 +170,7 @@ void Socket::Group::give_turn(PeerSocket& peer) {
 
 /// A connection that is ready gets a turn. What it sends waits in the system until it has had all
 /// messages that are here already.
-void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
+void Socket::read_from(const ReadyList::Ready& ready) {
   if (ready.id < PeerTable::first_id) return accept(entrances_[ready.id]);
   PeerSocket* peer = peers_.find(ready.id);
   if (peer == nullptr) return;
@@ -171,20 +178,24 @@ void Socket::read_from(Group& group, const ReadyList::Ready& ready) {
     if (ready.can_write) from.flush();
     if (ready.can_read && !from.is_over() && !from.has_turn) from.read();
   });
-  if (!peer->is_over() && !peer->has_turn) group.give_turn(*peer);
+  if (!peer->is_over() && !peer->has_turn) group_of(*peer).give_turn(*peer);
 }
 
-void Socket::accept(const Entrance& entrance) {
+/// Connections without session take no places of those over the private entrance.
+void Socket::accept(Entrance& entrance) {
   for (int i = 0; i < accepted_at_once; ++i) {
     const Time now = Clock::now();
-    const bool is_full =
-        peers_.without_session() >= most_without_session_ || peers_.size() >= most_peers_;
-    if (is_full && !peers_.make_place(now)) return set_accepting(false);
+    const bool are_many =
+        !entrance.is_private && peers_.without_session() >= most_without_session_;
+    const bool is_full = are_many || peers_.size() >= most_peers_;
+    if (is_full && !peers_.make_place(now)) return entrance.set_accepting(peers_.others(), false);
     peers_.remove_ended();
     Descriptor client = entrance.listener.accept();
     if (!client.is_open()) {
       const bool lacks_descriptors = errno == EMFILE || errno == ENFILE;
-      if (lacks_descriptors && !peers_.make_place(now)) set_accepting(false);
+      if (lacks_descriptors && !peers_.make_place(now)) {
+        entrance.set_accepting(peers_.others(), false);
+      }
       return;
     }
     peers_.add(std::move(client), keys_ && !entrance.is_private ? &*keys_ : nullptr,
@@ -192,13 +203,10 @@ void Socket::accept(const Entrance& entrance) {
   }
 }
 
-/// Those who connect meanwhile wait in the kernel.
-void Socket::set_accepting(bool is_accepting) {
-  if (is_accepting_ == is_accepting) return;
-  is_accepting_ = is_accepting;
-  for (std::size_t i = 0; i < entrances_.size(); ++i) {
-    peers_.others().change(entrances_[i].listener.number(), i, is_accepting, false);
-  }
+void Socket::Entrance::set_accepting(ReadyList& list, bool accepts) {
+  if (is_accepting == accepts) return;
+  is_accepting = accepts;
+  list.change(listener.number(), id, accepts, false);
 }
 
 void Socket::tend() {
@@ -208,7 +216,7 @@ void Socket::tend() {
   peers_.end_old(now);
   peers_.remove_ended();
   peers_.give_back_memory();
-  set_accepting(true);
+  for (Entrance& entrance : entrances_) entrance.set_accepting(peers_.others(), true);
 }
 
 Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptors) {
@@ -217,11 +225,15 @@ Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptor
   const auto has_more = [](const Group& group) {
     return !group.turns.empty() || group.list.has_more();
   };
-  if (has_more(controllers_) || (serves_others && has_more(others_))) return Ready::message;
-  if (!serves_others) {
+  const bool has_message = has_more(controllers_) || (serves_others && has_more(others_));
+  if (has_message) {
+    timeout = milliseconds{0};  // but the other descriptors are looked at
+  } else if (!serves_others) {
     timeout = std::min(timeout, std::chrono::ceil<milliseconds>(share_.time_until_some()));
   }
-  if (!is_accepting_) {  // until tend() no other event may come
+  const bool is_closed = std::ranges::any_of(
+      entrances_, [](const Entrance& entrance) { return !entrance.is_accepting; });
+  if (is_closed) {  // until tend() no other event may come
     const auto rest = std::chrono::ceil<milliseconds>(next_tending_ - Clock::now());
     timeout = std::clamp(rest, milliseconds{0}, std::max(timeout, milliseconds{0}));
   }
@@ -237,7 +249,7 @@ Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptor
   for (std::size_t i = ours; i < polled_.size(); ++i) {
     if (polled_[i].revents != 0) return Ready::woken;
   }
-  return count > 0 ? Ready::message : Ready::timed_out;
+  return has_message || count > 0 ? Ready::message : Ready::timed_out;
 }
 
 }  // namespace ziggurat::network

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <optional>
 #include <span>
@@ -47,7 +48,8 @@ class Socket {
   /// What a connection is from now on.
   /// @param longest  of its messages [bytes]
   void set_standing(const std::string& connection, Standing standing, std::size_t longest);
-  /// A message that arrived, if any. Valid until the next call.
+  /// A message that arrived, if any. Valid until the next call. It is false, too, if clients send
+  /// much that is no message: the caller looks at the time and calls again.
   bool receive(Received& received);
   /// What follows is for others than controllers, until handled().
   void begin_charge();
@@ -72,7 +74,12 @@ class Socket {
   /// An endpoint that listens.
   struct Entrance {
     Listener listener;
+    std::uint64_t id = 0;  ///< in the list of what is ready
     bool is_private = false;
+    bool is_accepting = true;
+
+    /// Those who connect while it does not accept wait in the system.
+    void set_accepting(ReadyList& list, bool accepts);
   };
   /// Connections that are served together.
   struct Group {
@@ -89,9 +96,9 @@ class Socket {
   bool may_serve_others();
   bool receive_from(Group& group, Received& received);
   bool take_message(Group& group, Received& received);
-  void read_from(Group& group, const ReadyList::Ready& ready);
-  void accept(const Entrance& entrance);
-  void set_accepting(bool is_accepting);
+  void read_from(const ReadyList::Ready& ready);
+  Group& group_of(const PeerSocket& peer);
+  void accept(Entrance& entrance);
 
   const std::size_t longest_;  // message [bytes]
   const std::size_t most_peers_, most_without_session_;
@@ -100,7 +107,6 @@ class Socket {
   std::vector<std::string> endpoints_;
   PeerTable peers_;
   Group controllers_{peers_.controllers(), {}}, others_{peers_.others(), {}};
-  bool is_accepting_ = true;
   Time next_tending_;
 
   bool is_ticking_ = false;

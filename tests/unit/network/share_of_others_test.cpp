@@ -5,7 +5,10 @@
 
 #include <atomic>
 #include <cstdio>
+#include <optional>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "network/limits.h"
 #include "network/local_server.h"
@@ -36,6 +39,12 @@ void flood(const std::string& endpoint, const std::atomic<bool>& is_over, std::a
   }
 }
 
+void answer_calls(Server& server) {
+  for (const Call& call : server.take_calls()) {
+    server.answer_question(call, [](wire::Outbox& outbox) { outbox.response(0, 0); });
+  }
+}
+
 TEST(ShareOfOthers, ObserversThatAskAsFastAsTheyCanTakeLittleOfTheThreadOfTheTicks) {
   const SmallRun small(1);
   Config config = local_config();
@@ -60,16 +69,14 @@ TEST(ShareOfOthers, ObserversThatAskAsFastAsTheyCanTakeLittleOfTheThreadOfTheTic
     while (!is_over) std::this_thread::sleep_for(milliseconds{10});
     ++ended;
   });
-  ASSERT_EQ(server.gather(patience), Outcome::complete);
+  while (server.gather(patience) != Outcome::complete) answer_calls(server);
   world::Commands commands = small.commands();
   const world::Observations seen = small.observations(0);
   server.publish(seen, no_tags);
   const auto serve = [&](auto is_enough) {
     while (!is_enough()) {
       server.collect(commands, {milliseconds{50}, {}});
-      for (const Call& call : server.take_calls()) {
-        server.answer_question(call, [](wire::Outbox& outbox) { outbox.response(0, 0); });
-      }
+      answer_calls(server);
     }
   };
   const auto begin = std::chrono::steady_clock::now();
@@ -92,6 +99,54 @@ TEST(ShareOfOthers, ObserversThatAskAsFastAsTheyCanTakeLittleOfTheThreadOfTheTic
   EXPECT_GT(answered, 100);
   const double most = wall * share_of_others / std::chrono::duration<double>(least_cost).count();
   EXPECT_LT(answered, 1.2 * most + 200);
+}
+
+/// A client that comes to drive a free robot is one of the others until then, so they have no small
+/// share of the time while the tick waits for one.
+TEST(ShareOfOthers, IsNotLimitedWhileTheTickWaitsForAFreeRobot) {
+  const SmallRun small(1);
+  Config config = local_config();
+  config.rate = {1e9, 1e9};
+  Server server(config, small.run());
+  const std::string endpoint = server.endpoints().front();
+  world::Commands commands = small.commands();
+  std::optional<Peer> driver(std::in_place, std::vector{endpoint});
+  v1::ClientMessage hello;
+  hello.mutable_hello()->mutable_version()->set_major(1);
+  hello.mutable_hello()->set_role(v1::ROLE_CONTROLLER);
+  hello.mutable_hello()->add_robots("*");
+  driver->say(hello);
+  ASSERT_EQ(server.gather(patience), Outcome::complete);
+  const world::Observations seen = small.observations(0);
+  server.publish(seen, no_tags);
+  driver.reset();  // its connection is gone
+  std::atomic<bool> is_over = false, has_ended = false;
+  std::atomic<int> answers = 0;
+  std::thread client([&] {
+    flood(endpoint, is_over, answers);
+    has_ended = true;
+  });
+  const auto serve = [&](auto is_enough) {
+    while (!is_enough()) {
+      server.collect(commands, {milliseconds{50}, {}});
+      answer_calls(server);
+    }
+  };
+  const auto is_free = [&] {
+    return server.status().front().membership == RobotStatus::Membership::free;
+  };
+  serve(is_free);
+  const auto begin = std::chrono::steady_clock::now();
+  constexpr int many = 5000;
+  const int before = answers;
+  serve([&] { return answers >= before + many; });
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  is_over = true;
+  serve([&] { return has_ended.load(); });
+  client.join();
+  std::printf("%d answers in %.2f s\n", many, wall.count());
+  const double least = many * std::chrono::duration<double>(least_cost).count() / share_of_others;
+  EXPECT_LT(wall.count(), 0.8 * least);
 }
 
 }  // namespace
