@@ -267,12 +267,16 @@ void Watch::report_awaited() {
       unheld_robots(), [&](std::size_t robot) { return !controllers_.have(robot); });
   if (!client_must_connect && waited < long_wait) return;
   auto text = by_controller(robots);
-  if (text.empty() || text == printed_) return;
+  auto others = robots;
+  const bool names_script = !busy_scripts(others).empty();
+  const bool is_printed = text == printed_ && (printed_script_ || !names_script);
+  if (text.empty() || is_printed) return;
   const auto where = client_must_connect
                          ? fmt::format(" to connect to {}", fmt::join(server_.endpoints(), " or "))
                          : std::string();
   console_.notice(fmt::format("waiting for {}{}", awaited(), where));
   printed_ = std::move(text);
+  printed_script_ = names_script;
 }
 
 void Watch::end_run(const wire::End& end) {

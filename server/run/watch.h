@@ -108,6 +108,7 @@ class Watch {
   std::optional<clock::time_point> missed_since_;  ///< since when a controller seems to be lost
   clock::time_point waiting_since_{};
   std::string printed_;  ///< the robots that were last printed as awaited
+  bool printed_script_ = false;  ///< with the script that they wait for
 };
 
 }  // namespace ziggurat::run

@@ -76,10 +76,46 @@ function step()
    end
 end
 """)
+        self.expect_waiting_for_line_4()
+
+    def test_a_stuck_library_function_is_named_with_file_and_line(self):
+        self.write("swing.lua", """function init() end
+function step()
+   if robot.id == "r1" then
+      return (("a"):rep(1000000)):find(".-.-b")
+   end
+end
+""")
+        self.expect_waiting_for_line_4()
+
+    def test_a_stuck_coroutine_is_named_with_file_and_line(self):
+        self.write("swing.lua", """function init() end
+local function work()
+   coroutine.yield()
+   while robot.id == "r1" do robot.stuck = 1 end
+end
+function step()
+   local go = coroutine.wrap(work)
+   go()
+   go()
+end
+""")
+        self.expect_waiting_for_line_4()
+
+    def expect_waiting_for_line_4(self):
         process = self.start("run", self.scene, *ENDLESS, "--trust-scripts")
         self.read_until(process.stderr, r"waiting for r1: .*swing\.lua:4$")
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_an_error_in_destroy_is_a_failure(self):
+        self.write("swing.lua", "function init() end function step() log('last') end "
+                   "function destroy() if robot.id == 'r1' then error('no end') end end")
+        outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.err, r"robot r1 .* failed at tick 2: .*no end")
+        self.assertEqual((outcome.out + outcome.err).count("no end"), 1, "printed once")
+        self.assertIn("1 robot failed: r1 at tick 2", outcome.err)
+        self.assertIn("[2 r2] last", outcome.lines)
 
     def test_fail_fast_ends_at_the_first_error(self):
         self.write("swing.lua", FAILS_AT_TICK_3)

@@ -65,8 +65,6 @@ void Runner::finish() {
     if (are_scripts_interrupted()) return;
     if (!seat.controller) continue;
     const Failure failure = seat.controller->destroy(session_.tick());
-    // The run is over, so the robot can't fail; the server's log gets the message.
-    if (failure) seat.controller->log().add(true, *failure);
     hand_over_log(seat);
     if (failure) fail(seat, *failure);
   }

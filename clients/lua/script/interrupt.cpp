@@ -14,7 +14,8 @@ namespace {
 
 constexpr int step = 1000;            // instructions between two looks of the hook
 constexpr long interval_us = 50'000;  // computing time between two looks of the signal
-constexpr unsigned patience = 100;    // such intervals without an instruction
+// Such intervals without an instruction: a library function runs.
+constexpr unsigned patience_for_place = 10, patience = 100;
 constexpr int switch_cost = 100;      // of a coroutine that is resumed [instructions]
 constexpr int exit_failed_script = 3;
 
@@ -110,8 +111,11 @@ void look(int) {
   } else if (!watch.is_counting) {
     watch.is_counting = true;
     set_hook(state);
-  } else if (watch.max_instructions > 0 && ++watch.quiet > patience) {
+  } else if (++watch.quiet > patience && watch.max_instructions > 0) {
     end_process(state);
+  } else if (watch.quiet == patience_for_place) {
+    note_place(state);
+    write_place(watch.robot, watch.place);
   }
 }
 

@@ -22,8 +22,10 @@ void allow_scripts() noexcept;
 
 /// From now on a signal (SIGVTALRM) looks at the running call each time that this process has
 /// computed for 50 ms. A call that lasts longer counts its instructions from there on: counting all
-/// of them would make every script slower. Its file and line are then in the place file, if there is one. A call that then runs no instruction for 5 s of
-/// computing is in a library function that can't be ended: the process ends with a message.
+/// of them would make every script slower. Its file and line are then in the place file, if there
+/// is one, and those of a library function that computes for half a second. A call with a limit that
+/// then runs no instruction for 5 s of computing is in a library function that can't be ended: the
+/// process ends with a message.
 void watch_scripts();
 
 /// A call of a script.

@@ -107,8 +107,7 @@ void handle_leave(Barrier& barrier, Session& session) {
   for (const std::size_t position : positions) {
     if (session.roster.gone[position]) continue;
     const std::size_t robot = session.roster.robots[position];
-    const bool is_failure = leave.reason == wire::LeaveReason::failed;
-    if (is_failure && session.state != SessionState::draining) {
+    if (leave.reason == wire::LeaveReason::failed) {
       barrier.journal.fail(robot, leave.message, session.turn.tick);
     }
     remove_robot(barrier, robot);
