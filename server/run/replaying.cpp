@@ -93,6 +93,10 @@ int Replaying::execute() {
   End end = End::damaged;
   try {
     end = repeat();
+    if (same_ == 0 && end == End::complete) {  // each recording has the state of tick 0
+      damage_ = file_.shortcoming().empty() ? "there is no state" : file_.shortcoming();
+      end = End::damaged;
+    }
   } catch (const replay::RecordingError& error) {
     damage_ = error.what();
   } catch (const mcap::Damaged& error) {

@@ -142,8 +142,7 @@ Value<std::vector<Attribute>> attributes_at(const pugi::xml_node& root, const st
 
 std::string why_nothing(const pugi::xml_node& root, const std::string& path) {
   auto parents = select(root, ".");
-  for (std::size_t end = 0; end < path.size();) {
-    const std::size_t begin = end == 0 ? 0 : end + 1;
+  for (std::size_t begin = 0, end = 0; begin < path.size(); begin = end + 1) {
     end = std::min(find_outside(path, '/', begin), path.size());
     if (end == begin) continue;  // of // or a leading /
     auto found = select(root, path.substr(0, end));

@@ -39,6 +39,16 @@ std::size_t length_of_character(std::string_view text) {
   return 0;
 }
 
+/// The character at the beginning, U+2000 to U+207F, if it changes the order in which what follows is
+/// shown, or begins a line; otherwise 0.
+unsigned reorders_text(std::string_view text) {
+  if (byte(text, 0) != 0xe2 || (byte(text, 1) & 0xfe) != 0x80 || byte(text, 2) < 0x80) return 0;
+  const unsigned code = 0x2000U + ((byte(text, 1) & 1U) << 6) + (byte(text, 2) & 0x3fU);
+  const bool is_mark = code == 0x200e || code == 0x200f;
+  const bool is_one = (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  return is_mark || is_one ? code : 0;
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
@@ -51,10 +61,13 @@ std::string printable(std::string_view text) {
     if (text.empty()) break;
     const std::size_t length = length_of_character(text);
     const bool is_control = length == 1 || (byte(text, 0) == 0xc2 && byte(text, 1) < 0xa0);
+    const unsigned reordering = reorders_text(text);
     if (length == 0) {
       result += "\xef\xbf\xbd";
     } else if (is_control) {
       result += fmt::format("\\u{:04x}", byte(text, length - 1));
+    } else if (reordering != 0) {
+      result += fmt::format("\\u{:04x}", reordering);
     } else {
       result.append(text.substr(0, length));
     }

@@ -142,6 +142,16 @@ class Verify(Recorded):
         outcome = self.ask("verify", recording, code=DAMAGED)
         self.assertRegex(outcome.out, r"^damaged: .*: damaged at byte \d+: ")
 
+    def test_a_recording_without_states_is_not_identical(self):
+        """Its chunks and its summary are damaged, as by a disk."""
+        recording, _ = self.record("--ticks", "10")
+        data = bytearray(recording.read_bytes())
+        for place in range(len(data) // 3, len(data), 50):
+            data[place] ^= 0x10
+        recording.write_bytes(data)
+        outcome = self.ask("verify", recording, code=DAMAGED)
+        self.assertRegex(outcome.out, r"^damaged: .*; 0 states before it as recorded")
+
 
 class Supervised(Recorded):
     def test_moves_spawns_removals_and_resets_are_repeated(self):

@@ -89,6 +89,10 @@ TEST(Set, SaysWhichStepIsNotThere) {
   EXPECT_EQ(only_fault(boxes().read(set({"arena/box[@id='c']/@mass=7"}))),
             "test.argos: --set 'arena/box[@id='c']/@mass=7': the path matches nothing: there is no "
             "\"box[@id='c']\"");
+  for (const char* path : {"//tower/@mass", "/argos-configuration/tower/@mass", "//*[1]//tower/@mass"}) {
+    EXPECT_NE(only_fault(boxes().read(set({(std::string(path) + "=7").c_str()}))).find("no \"tower\""),
+              std::string::npos) << path;
+  }
 }
 
 TEST(Set, RefusesWhatIsNoPathToAttributes) {

@@ -21,6 +21,13 @@ TEST(Printable, ControlCharactersAreWrittenAsNumbers) {
       << "CSI as one character";
 }
 
+TEST(Printable, CharactersThatReorderTextAreWrittenAsNumbers) {
+  EXPECT_EQ(printable("a\u202eb\u2066c\u200fd"), "a\\u202eb\\u2066c\\u200fd");
+  EXPECT_EQ(printable("a\u2028b"), "a\\u2028b") << "another line";
+  const std::string others = "\u2014 \u2026 \u2082";
+  EXPECT_EQ(printable(others), others);
+}
+
 TEST(Printable, OtherBytesBecomeReplacementCharacters) {
   const std::string other = "\xef\xbf\xbd";
   EXPECT_EQ(printable("\x9b"
