@@ -24,6 +24,9 @@ lock-step with them, for the scene's length or, if that is 0, until Ctrl-C.
   ziggurat run vehicle.argos --controller 'drive=./my-controller --verbose'
       a program instead of a controller of the scene; its environment contains ZIGGURAT_ENDPOINT,
       the address of the server, and ZIGGURAT_CONTROLLER, the controller's id
+  ziggurat run vehicle.argos --restart drive=3
+      a process of the controller 'drive' that dies is started again, up to three times, with the token of
+      its session in ZIGGURAT_SESSION_TOKEN
   ziggurat run vehicle.argos --endpoint tcp://127.0.0.1:5770
       an <external_controller> without a command may connect there
 

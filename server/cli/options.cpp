@@ -150,7 +150,10 @@ po::options_description controller_options() {
       ("lua-memory", text("MIB"), "largest memory of a robot's Lua script; default 256")  //
       ("lua-instructions", text("MILLIONS"),
        "most Lua instructions of a robot at one tick, in millions; default 1000")  //
-      ("controller", texts("ID=CMD"), "start CMD for the scene's controller ID");
+      ("controller", texts("ID=CMD"), "start CMD for the scene's controller ID")  //
+      ("restart", texts("[ID=]N"),
+       "a process of the scene's controller ID (of any, without ID) that dies is started again, up to N "
+       "times: it resumes its session at the present tick; may be repeated");
   return options;
 }
 
@@ -262,6 +265,9 @@ void read_controllers(const Values& values, run::Options& options) {
   }
   for (const auto& each : values.texts("inject")) {
     options.injections.push_back(run::to_injection(each));
+  }
+  for (const auto& each : values.texts("restart")) {
+    options.restarts.push_back(run::to_restart(each));
   }
 }
 

@@ -26,6 +26,7 @@ struct RobotStatus {
   Membership membership = Membership::free;
   std::string holder;    ///< held: name and version of the client; free: of the lost session that
                          ///< may resume
+  std::string token;  ///< of that session; a secret, for a process that is started in place of its own
   bool awaited = false;  ///< the tick waits for it
   Time awaited_since;    ///< if awaited
   Time last_message;     ///< of its session, if held

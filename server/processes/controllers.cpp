@@ -21,6 +21,26 @@ namespace {
 const std::vector<std::pair<std::string, std::string>> no_keys{{"ZIGGURAT_SERVER_KEY", ""},
                                                                {"ZIGGURAT_CURVE_SECRET", ""}};
 
+constexpr const char* token_name = "ZIGGURAT_SESSION_TOKEN";
+
+/// The same process again, which resumes that session.
+ControllerProcess start_again(const ControllerProcess& ended, const std::string& token,
+                              const Guardian* guardian) {
+  Program program = ended.program;
+  if (!token.empty()) {
+    std::string digits;
+    for (const char byte : token) digits += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+    program.environment.emplace_back(token_name, digits);
+  }
+  try {
+    return {ended.name,       ended.robots, ChildProcess(program, guardian),
+            ended.place_file, std::nullopt, ended.program, ended.restarts + 1};
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(
+        fmt::format("{} cannot be started again: {}", ended.name, error.code().message()));
+  }
+}
+
 /// @param option, path  where it finds its robots
 Launch lua_launch(std::string name, const char* option, const std::string& path,
                   const LaunchSettings& settings) {
@@ -67,8 +87,8 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout,
   try {
     std::optional<RobotPipe> pipe;
     if (!launch.robot_pipe.empty()) pipe.emplace(launch.robot_pipe);
-    return {launch.name, launch.robots, ChildProcess(launch.program, guardian), launch.place_file,
-            std::move(pipe)};
+    return {launch.name,       launch.robots,  ChildProcess(launch.program, guardian),
+            launch.place_file, std::move(pipe), launch.program};
   } catch (const std::system_error& error) {
     throw std::runtime_error(fmt::format("{} cannot be started ({}): {}", launch.name,
                                          launch.program.arguments[0], error.code().message()));
@@ -180,6 +200,18 @@ bool Controllers::have(std::size_t robot) const {
   return std::ranges::any_of(processes_, [&](const ControllerProcess& each) {
     return std::ranges::find(each.robots, robot) != each.robots.end();
   });
+}
+
+const ControllerProcess& Controllers::restart(const ControllerProcess& ended,
+                                             const std::string& token) {
+  const auto position = static_cast<std::size_t>(&ended - processes_.data());
+  auto started = start_again(ended, token, settings_->guardian);
+  std::vector<ControllerProcess> processes;  // a process can be moved, but not assigned
+  for (std::size_t i = 0; i < processes_.size(); ++i) {
+    processes.push_back(std::move(i == position ? started : processes_[i]));
+  }
+  processes_ = std::move(processes);
+  return processes_[position];
 }
 
 const ControllerProcess* Controllers::first_ended(

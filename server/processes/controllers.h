@@ -31,6 +31,8 @@ struct ControllerProcess {
   ChildProcess process;
   std::string place_file;         ///< as Launch::place_file
   std::optional<RobotPipe> pipe;  ///< for robots that come later; none: it has its robots for good
+  Program program;                ///< that it runs
+  unsigned restarts = 0;          ///< how often it was started again
 };
 
 /// A script that runs now.
@@ -92,6 +94,14 @@ class Controllers {
 
   /// Whether a process was started for this robot.
   bool have(std::size_t robot) const;
+
+  /// Starts an ended process again, with the same robots, in the place of the one that ended.
+  /// @param ended  as first_ended() returns it; not valid afterwards. Not one for spawned robots
+  /// @param token  of its session, which the new process resumes (ZIGGURAT_SESSION_TOKEN, in hexadecimal);
+  ///               empty: it had none
+  /// @returns the new process
+  /// @throws std::runtime_error, see start_all
+  const ControllerProcess& restart(const ControllerProcess& ended, const std::string& token);
 
   /// The first process, in the order of their start, that has ended and for which `is_needed`.
   const ControllerProcess* first_ended(

@@ -13,6 +13,7 @@
 #include "run/deadline_option.h"
 #include "run/inject_option.h"
 #include "run/pictures.h"
+#include "run/restart_option.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
 
@@ -45,6 +46,7 @@ struct Options {
   std::vector<std::string> endpoints;
   std::vector<DeadlineOption> deadlines;
   std::vector<InjectOption> injections;
+  std::vector<RestartOption> restarts;
   double lease = 0;  ///< wall time that the robots of a lost session are kept for it [s]
   bool without_controllers = false;         ///< the robots do nothing
   std::string curve_secret, curve_clients;  ///< paths; both or none

@@ -58,7 +58,7 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       showing_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
                                            plan_.ticks.value_or(0)))),
       watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
-              plan_.ticks},
+              plan_.ticks, restarts_of(options.restarts, world_.scene)},
              world_, server_, controllers_, supervision_, signals, console_, showing_.get(),
              [this](auto severity, auto name, auto text) {
                if (showing_) showing_->log(severity, name, text);

@@ -30,6 +30,15 @@ constexpr Patience usual{milliseconds{2000}, 1000};
 // Together with what else is to be done, less than Signals::patience.
 constexpr Patience interrupted{milliseconds{400}, 100};
 
+/// "ziggurat-lua (process 7) was killed by signal 9 (Killed) at tick 3; it controlled robot r0"
+/// @param when  "at tick 3"
+std::string describe_end(const processes::ControllerProcess& ended, const std::string& when,
+                         const world::Layout& layout) {
+  return fmt::format("{} (process {}) {} {}; it controlled {}", ended.name, ended.process.id(),
+                     ended.process.how_it_ended(), when,
+                     processes::names_of(ended.robots, layout));
+}
+
 }  // namespace
 
 Watch::Watch(const Settings& settings, const supervision::World& world, network::Server& server,
@@ -47,6 +56,7 @@ Watch::Watch(const Settings& settings, const supervision::World& world, network:
                            : std::vector{signals.descriptor()}),
       fails_fast_(settings.fail_fast),
       waits_for_clients_(settings.waits_for_clients),
+      restarts_(settings.restarts),
       peers_(world, console, std::move(tell)),
       progress_(console, world.simulation.tick_length(), settings.ticks) {
   if (settings.metrics.empty()) return;
@@ -110,7 +120,7 @@ std::optional<Ending> Watch::until(const Step& step) {
     if (!ending) ending = stopped_;
     if (!ending) ending = supervisor_request();
     const bool complete = outcome == network::Outcome::complete;
-    const bool may_have_lost = !complete || child_ended_ || missed_since_;
+    const bool may_have_lost = !complete || child_ended_ || missed_since_ || !restarted_.empty();
     if (!ending && may_have_lost) ending = lost_controller();
     if (ending || complete) {
       peers_.print_log(tick_);
@@ -155,13 +165,18 @@ std::optional<Ending> Watch::lost_controller() {
     // One that was ended from outside took leave perhaps; its own failures are reported already.
     const bool was_ended = !process.process.ended_well() && !peers_.has_failure(process.robots);
     return std::ranges::any_of(process.robots, [&](std::size_t robot) {
-      const bool is_missing = status[robot].membership != Membership::gone || was_ended;
-      return is_missing && is_required(status[robot]);
+      const bool is_held = status[robot].membership != Membership::gone;
+      return (is_held || was_ended) && (is_required(status[robot]) || (is_held && may_restart(process)));
     });
   };
   const auto* ended = controllers_.first_ended(is_needed);
   auto lost = gathered_ ? unheld_robots() : std::vector<std::size_t>();
-  std::erase_if(lost, [&](std::size_t robot) { return !status[robot].was_held; });  // still to come
+  std::erase_if(restarted_, [&](std::size_t robot) {
+    return status[robot].membership != Membership::free;
+  });
+  std::erase_if(lost, [&](std::size_t robot) {  // those whose controller is still to come
+    return !status[robot].was_held || std::ranges::find(restarted_, robot) != restarted_.end();
+  });
   if (!ended && lost.empty()) {
     missed_since_.reset();
     return std::nullopt;
@@ -169,15 +184,40 @@ std::optional<Ending> Watch::lost_controller() {
   if (!missed_since_) missed_since_ = clock::now();
   if (clock::now() - *missed_since_ < last_messages) return std::nullopt;
   if (ended) {
-    vanished_ = fmt::format("{} (process {}) {} {}; it controlled {}", ended->name,
-                            ended->process.id(), ended->process.how_it_ended(),
-                            gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick",
-                            processes::names_of(ended->robots, world_.simulation.layout()));
+    vanished_ = describe_end(*ended, gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick",
+                             world_.simulation.layout());
+    if (restart(*ended)) return std::nullopt;
   } else {
     vanished_ =
         fmt::format("the controller of {} disconnected at tick {}", by_controller(lost), tick_);
   }
   return Ending::controller_vanished;
+}
+
+/// Whether this process is one to start again. Lua processes have robots of several controllers: the most
+/// that one of these may counts. Robots that came later have sessions of their own, and are not resumed.
+bool Watch::may_restart(const processes::ControllerProcess& process) const {
+  if (process.pipe || restarts_.empty()) return false;
+  const auto& robots = world_.simulation.layout().robots;
+  return std::ranges::any_of(process.robots, [&](std::size_t robot) {
+    return process.restarts < restarts_[robots[robot].controller];
+  });
+}
+
+/// Starts an ended process again, if the options ask for it and one of its robots is still in the run. The
+/// sentence on its end is a notice then.
+bool Watch::restart(const processes::ControllerProcess& ended) {
+  const auto status = server_.status();
+  const auto robot = std::ranges::find_if(ended.robots, [&](std::size_t each) {
+    return status[each].membership != Membership::gone;
+  });
+  if (robot == ended.robots.end() || !may_restart(ended)) return false;
+  const auto& started = controllers_.restart(ended, status[*robot].token);
+  console_.notice(fmt::format("{}; started again (restart {}) as process {}",
+                              std::exchange(vanished_, {}), started.restarts, started.process.id()));
+  restarted_.insert(restarted_.end(), started.robots.begin(), started.robots.end());
+  missed_since_.reset();
+  return true;
 }
 
 void Watch::take_report() {

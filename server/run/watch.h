@@ -32,6 +32,8 @@ class Watch {
     bool fail_fast = false;          ///< the first failure or drop of a robot ends the run
     bool waits_for_clients = false;  ///< serve: a client that disconnected may connect again
     std::optional<std::uint64_t> ticks;  ///< of the whole run; none: until it is stopped
+    std::vector<unsigned> restarts;  ///< per controller of the scene: how often a process that died is
+                                     ///< started again at most; empty: never
   };
 
   /// Everything but the settings must outlive this.
@@ -78,6 +80,8 @@ class Watch {
   std::optional<reports::Ending> interruption();
   std::optional<reports::Ending> supervisor_request();
   std::optional<reports::Ending> lost_controller();
+  bool may_restart(const processes::ControllerProcess& process) const;
+  bool restart(const processes::ControllerProcess& ended);
   void serve();
   void take_report();
   bool is_required(const network::RobotStatus& robot) const;
@@ -96,11 +100,13 @@ class Watch {
   Showing* const showing_;
   const std::vector<int> descriptors_;  ///< that end a wait: of signals, and of viewers
   const bool fails_fast_, waits_for_clients_;
+  const std::vector<unsigned> restarts_;
   std::optional<reports::MetricsPort> metrics_;
   PeerReports peers_;
   reports::Progress progress_;
   bool gathered_ = false;
   std::uint64_t tick_ = 0;
+  std::vector<std::size_t> restarted_;  ///< robots whose process was started again and is still to connect
   std::string vanished_;
   bool child_ended_ = false;                ///< one or more, since the last look
   std::optional<reports::Ending> stopped_;  ///< by a deadline or a failure

@@ -17,12 +17,13 @@ constexpr double shortest_length = 1e-6, longest_length = 1e6;
 constexpr double shortest_duration = 1e-6;
 constexpr double lightest_mass = 1e-9, heaviest_mass = 1e9;
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
+/// @param most  parts that are of interest: the last one returned may be cut off behind
+std::vector<std::string_view> split(std::string_view text, char separator, std::size_t most = 9) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0;;) {
     const std::size_t end = text.find(separator, begin);
     parts.push_back(trimmed(text.substr(begin, end - begin)));
-    if (end == std::string_view::npos || parts.size() > 8) return parts;
+    if (end == std::string_view::npos || parts.size() == most) return parts;
     begin = end + 1;
   }
 }
@@ -288,7 +289,7 @@ Value<Response> response(std::string_view text) {
   constexpr std::size_t most_points = 1000;
   constexpr const char* form = "write distance:reading, … with ascending distances";
   Response result;
-  for (const std::string_view part : split(text, ',')) {
+  for (const std::string_view part : split(text, ',', most_points + 1)) {
     if (result.points.size() == most_points) {
       return Wrong{fmt::format("has more than {} points; write fewer", most_points)};
     }

@@ -38,6 +38,40 @@ class Killed(SceneTest):
         os.kill(victim, signal.SIGKILL)
         self.assert_reports_the_kill(self.finish(process), "robot r1")
 
+    def test_a_killed_process_is_started_again(self):
+        """The scripts begin anew at the present tick, told which; the others notice nothing."""
+        script = self.folder / "swing.lua"
+        script.write_text(script.read_text().replace('log("init")', 'log("init ", robot.first_tick)'))
+        process = self.start("run", self.scene, "--ticks", 400, "--lua-processes", 0, "--restart", "swing=2",
+                             "--real-time", 20)
+        for tick in (20, 60):
+            self.read_until(process.stdout, rf"^\[{tick} r2\]")
+            [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
+            os.kill(victim, signal.SIGKILL)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        for number in (1, 2):
+            self.assertRegex(outcome.err, rf"killed by signal 9 .*robot r1; started again \(restart {number}\)")
+        [(tick, told)] = re.findall(r"\[(\d+) r1\] init (\d+)", outcome.out)  # of the second restart
+        self.assertEqual(tick, told)
+        self.assertGreaterEqual(int(told), 60)
+        self.assertNotRegex(outcome.out, r" r[02]\] init")
+        self.assertRegex(outcome.out, r"\[400 r1\] destroy")
+
+    def test_more_deaths_than_restarts(self):
+        process = self.start("run", self.scene, *ENDLESS, "--restart", "1")
+        for tick in (20, 60):
+            self.read_until(process.stdout, rf"^\[{tick} r2\]")
+            os.kill(self.lua_processes()[0], signal.SIGKILL)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, CONTROLLER_FAILED, outcome.err)
+        self.assertEqual(len(re.findall("killed by signal 9", outcome.err)), 2)
+        self.assertEqual(len(re.findall("started again", outcome.err)), 1)
+
+    def test_restart_names_a_controller_that_the_scene_lacks(self):
+        outcome = self.run_scene("--restart", "sving=1", code=1)
+        self.assert_is_sentence(outcome, r"--restart: the scene has no controller 'sving'.*swing")
+
     def test_controller_that_ends_before_it_connects(self):
         outcome = self.run_scene("--controller", "swing=exit 4", code=CONTROLLER_FAILED)
         self.assert_is_sentence(outcome, r"'swing'.*exit code 4 before the first tick.*r0, r1, r2")

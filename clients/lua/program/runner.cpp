@@ -38,8 +38,8 @@ void Runner::start(Seat& seat) {
   if (script.path.empty()) return fail(seat, script.fault);
   try {
     seat.controller = std::make_unique<Controller>(
-        *seat.robot, ControllerOptions{script.path, session_.seed(), options_.max_memory,
-                                       options_.max_instructions,
+        *seat.robot, ControllerOptions{script.path, session_.seed(), session_.tick(),
+                                       options_.max_memory, options_.max_instructions,
                                        options_.trusts_scripts ? nullptr : &folders_});
   } catch (const std::bad_alloc&) {
     return fail(seat, "no memory for a Lua state");

@@ -42,6 +42,7 @@ void get_global_if_any(lua_State* state, const char* name) {
 Controller::Controller(Robot& robot, const ControllerOptions& options)
     : robot_(robot),
       random_(options.seed, robot_.id()),
+      first_tick_(options.first_tick),
       max_memory_(options.max_memory),
       max_instructions_(options.max_instructions),
       folders_(options.folders),
@@ -54,7 +55,7 @@ Controller::Controller(Robot& robot, const ControllerOptions& options)
 Failure Controller::start() {
   const Running running(calling());
   if (auto failure = run_chunk()) return failure;
-  return call("init", true, "init, tick 0");
+  return call("init", true, "init, tick " + std::to_string(first_tick_));
 }
 
 Failure Controller::step(std::uint64_t tick) {
@@ -81,7 +82,7 @@ Failure Controller::run_chunk() {
   lua_pushcfunction(state, keep_traceback);
   push_protected(load);
   if (lua_pcall(state, 1, 1, 0) != LUA_OK) return describe_error("its beginning");
-  return call_prepared("its chunk, tick 0");
+  return call_prepared("its chunk, tick " + std::to_string(first_tick_));
 }
 
 // Also refreshes the tables. A function that is not required may be missing.
@@ -113,7 +114,8 @@ void Controller::push_protected(int (*function)(lua_State*)) {
 int Controller::build(lua_State* state) {
   auto& self = *static_cast<Controller*>(lua_touserdata(state, 1));
   prepare_error_messages(state);
-  set_up(state, {self.robot_, self.log_, self.random_, self.folder_, self.folders_});
+  set_up(state, {self.robot_, self.log_, self.random_, self.folder_, self.folders_,
+                 self.first_tick_});
   return 0;
 }
 

@@ -19,6 +19,7 @@ namespace ziggurat::lua {
 struct ControllerOptions {
   std::filesystem::path script;
   std::uint64_t seed = 1;                           ///< of the run
+  std::uint64_t first_tick = 0;                     ///< at which the script begins: `robot.first_tick`
   std::size_t max_memory = std::size_t{256} << 20;  ///< of the script's Lua state [bytes]
   std::uint64_t max_instructions = 1'000'000'000;   ///< of a call (interrupt.h); 0 = any number
   /// The files that the script may use; they outlive it. Null: the script is trusted, and may use
@@ -42,7 +43,7 @@ class Controller {
   /// What the script logged, also in a call that failed. The caller clears it.
   LogLines& log() { return log_; }
 
-  /// At tick 0: creates `robot` and `log`, runs the script's chunk, then init().
+  /// At the first tick: creates `robot` and `log`, runs the script's chunk, then init().
   Failure start();
   /// @param tick  >= 1
   Failure step(std::uint64_t tick);
@@ -74,6 +75,7 @@ class Controller {
   Robot& robot_;
   LogLines log_;
   RandomStreams random_;
+  std::uint64_t first_tick_;
   std::size_t max_memory_;
   std::uint64_t max_instructions_;
   const Folders* folders_;

@@ -101,6 +101,8 @@ void set_up(lua_State* state, const Environment& environment) {
   push_robot(state, environment.robot);
   push_robot_random(state, environment.random.robot_random);
   lua_setfield(state, -2, "random");
+  lua_pushinteger(state, static_cast<lua_Integer>(environment.first_tick));
+  lua_setfield(state, -2, "first_tick");
   lua_setglobal(state, "robot");
 }
 

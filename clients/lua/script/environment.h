@@ -1,6 +1,7 @@
 #pragma once
 // The globals of a script: the standard libraries, robot, log, logerr.
 
+#include <cstdint>
 #include <lua.hpp>
 #include <string>
 
@@ -28,6 +29,7 @@ struct Environment {
   RandomStreams& random;
   const std::string& folder;  ///< of the script; the first place to search for modules
   const Folders* files;       ///< those that the script may use; null: it is trusted
+  std::uint64_t first_tick;   ///< at which the script begins
 };
 
 /// Opens the libraries and sets the globals. May raise a Lua error.

@@ -61,14 +61,18 @@ std::vector<RobotStatus> robot_status(const Barrier& barrier) {
     } else if (const Session* holder = barrier.sessions.find(seat.holder)) {
       status.membership = RobotStatus::Membership::held;
       status.holder = holder->client;
+      status.token = holder->token;
       status.can_restore = holder->can_restore;
       status.awaited = holder->turn.owes;
       status.awaited_since = holder->turn.owes_since;
       status.last_message = holder->contact.last_received;
     } else {
       const Session* claimant = barrier.sessions.find(seat.claimant);
-      if (claimant != nullptr) status.holder = claimant->client;
-      if (claimant != nullptr) status.can_restore = claimant->can_restore;
+      if (claimant != nullptr) {
+        status.holder = claimant->client;
+        status.token = claimant->token;
+        status.can_restore = claimant->can_restore;
+      }
       status.awaited = !seat.is_skipped;
       status.awaited_since = seat.free_since;
     }

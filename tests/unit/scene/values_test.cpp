@@ -166,5 +166,14 @@ TEST(InQuotes, ShortensWithoutSplittingCharacters) {
   EXPECT_EQ(in_quotes(long_text), "\"" + std::string(59, 'x') + "…\"");
 }
 
+TEST(Values, AResponseMayHaveManyPoints) {
+  std::string text;
+  for (int i = 1; i <= 1000; ++i) text += (i > 1 ? "," : "") + std::to_string(i) + ":0.5";
+  const Response table = good(response(text));
+  ASSERT_EQ(table.points.size(), 1000U);
+  EXPECT_EQ(table.points.back().distance, 1000);
+  EXPECT_NE(bad(response(text + ",1001:0")).find("more than 1000 points"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ziggurat::scene
