@@ -28,15 +28,15 @@ Inertia link_inertia(const Tree& tree, int i) {
 
 /// What the wrenches on all links do along each dof; leaves in each link's place those of all that
 /// it carries.
-void project_wrenches(Tree& tree, std::span<double> out) {
+void project_wrenches(const Tree& tree, Workspace& work, std::span<double> out) {
   for (int i = static_cast<int>(tree.links.size()) - 1; i >= 0; --i) {
     const int first = tree.first_dof[i];
     for (int k = first; k < first + tree.dof_count[i]; ++k) {
-      out[k] = dot(tree.axes[k], tree.wrench[i]);
+      out[k] = dot(tree.axes[k], work.wrench[i]);
     }
     if (i > 0) {
-      Wrench& parent = tree.wrench[tree.links[i].parent];
-      parent = parent + tree.wrench[i];
+      Wrench& parent = work.wrench[tree.links[i].parent];
+      parent = parent + work.wrench[i];
     }
   }
 }
@@ -56,43 +56,49 @@ void set_root_mass(const Inertia& inertia, double* mass, int n) {
 
 }  // namespace
 
-void compute_mass(Tree& tree) {
+void compute_mass(const Tree& tree, Workspace& work) {
   const int size = static_cast<int>(tree.links.size()), n = tree.dofs;
+  work.own_inertia.resize(size);
+  work.inertia.resize(size);
+  work.wrench.resize(size);
+  work.acceleration.resize(size);
+  work.scratch.resize(n);
+  work.mass.resize(n * n);
   for (int i = 0; i < size; ++i) {
-    tree.own_inertia[i] =
+    work.own_inertia[i] =
         tree.links[i].joint == JointType::fixed ? Inertia{} : link_inertia(tree, i);
-    tree.inertia[i] = tree.own_inertia[i];
+    work.inertia[i] = work.own_inertia[i];
   }
-  if (size > 1) tree.mass.assign(tree.mass.size(), 0);  // dofs on different branches do not couple
+  if (size > 1) work.mass.assign(work.mass.size(), 0);  // dofs on different branches do not couple
   const int root = tree.free_root ? 6 : 0;              // dofs along the world's axes
   for (int i = size - 1; i >= 0; --i) {
     const int first = tree.first_dof[i];
     for (int k = std::max(first, root); k < first + tree.dof_count[i]; ++k) {
-      const Wrench momentum = tree.inertia[i] * tree.axes[k];
+      const Wrench momentum = work.inertia[i] * tree.axes[k];
       for (int j = k; j >= root; j = tree.parent_dof[j]) {
-        tree.mass[k * n + j] = tree.mass[j * n + k] = dot(tree.axes[j], momentum);
+        work.mass[k * n + j] = work.mass[j * n + k] = dot(tree.axes[j], momentum);
       }
       for (int j = 0; j < root; ++j) {
         const double part = j < 3 ? momentum.moment[j] : momentum.force[j - 3];
-        tree.mass[k * n + j] = tree.mass[j * n + k] = part;
+        work.mass[k * n + j] = work.mass[j * n + k] = part;
       }
     }
-    if (i > 0) tree.inertia[tree.links[i].parent] += tree.inertia[i];
+    if (i > 0) work.inertia[tree.links[i].parent] += work.inertia[i];
   }
-  if (tree.free_root) set_root_mass(tree.inertia[0], tree.mass.data(), n);
+  if (tree.free_root) set_root_mass(work.inertia[0], work.mass.data(), n);
 }
 
-void bias_forces(Tree& tree, std::span<double> out) {
+void bias_forces(const Tree& tree, Workspace& work, std::span<double> out) {
   const int size = static_cast<int>(tree.links.size());
   for (int i = 0; i < size; ++i) {
     const Link& link = tree.links[i];
     const Motion& motion = tree.motion[i];
-    Motion& acceleration = tree.acceleration[i];
+    Motion& acceleration = work.acceleration[i];
     if (i == 0) {
       // The root's coordinates are of its centre of mass, which moves away from O.
       acceleration = {Vector3::Zero(), -motion.angular.cross(motion.linear)};
     } else {
-      acceleration = tree.acceleration[link.parent];
+      acceleration = work.acceleration[link.parent];
       Motion relative;
       const int first = tree.first_dof[i];
       for (int k = first; k < first + tree.dof_count[i]; ++k) {
@@ -101,32 +107,34 @@ void bias_forces(Tree& tree, std::span<double> out) {
       acceleration = acceleration + cross(tree.motion[link.parent], relative);
     }
     if (link.joint == JointType::fixed) {
-      tree.wrench[i] = Wrench{};
+      work.wrench[i] = Wrench{};
       continue;
     }
-    const Inertia& inertia = tree.own_inertia[i];
-    tree.wrench[i] = inertia * acceleration + cross(motion, inertia * motion);
+    const Inertia& inertia = work.own_inertia[i];
+    work.wrench[i] = inertia * acceleration + cross(motion, inertia * motion);
   }
-  project_wrenches(tree, out);
+  project_wrenches(tree, work, out);
 }
 
-void external_forces(Tree& tree, std::span<double> out, bool fields, bool gravity) {
+void external_forces(const Tree& tree, Workspace& work, std::span<double> out, bool fields,
+                     bool gravity) {
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     const Vector3 arm = tree.position[i] - tree.origin;
     Vector3 force = Vector3::Zero();
     if (fields) force += tree.external[i].force;
     if (gravity) force += tree.gravity * tree.links[i].mass;
-    tree.wrench[i] = {arm.cross(force), force};
-    if (fields) tree.wrench[i].moment += tree.external[i].moment;
+    work.wrench[i] = {arm.cross(force), force};
+    if (fields) work.wrench[i].moment += tree.external[i].moment;
   }
-  project_wrenches(tree, out);
+  project_wrenches(tree, work, out);
 }
 
-void factor_mass(Tree& tree, double length) {
+void factor_mass(const Tree& tree, Workspace& work, double length) {
   const int n = tree.dofs;
+  work.factor.resize(n * n);
   const int* parent = tree.parent_dof.data();
-  double* m = tree.factor.data();
-  std::copy(tree.mass.begin(), tree.mass.end(), m);
+  double* m = work.factor.data();
+  std::copy(work.mass.begin(), work.mass.end(), m);
   for (int k = 0; k < n; ++k) m[k * n + k] += length * tree.damping[k];
   for (int k = n - 1; k >= 0; --k) {
     const double inverse = 1 / m[k * n + k];
@@ -139,10 +147,10 @@ void factor_mass(Tree& tree, double length) {
   }
 }
 
-void solve_mass(const Tree& tree, double* x) {
+void solve_mass(const Tree& tree, const Workspace& work, double* x) {
   const int n = tree.dofs;
   const int* parent = tree.parent_dof.data();
-  const double* m = tree.factor.data();
+  const double* m = work.factor.data();
   for (int i = n - 1; i >= 0; --i) {
     for (int j = parent[i]; j >= 0; j = parent[j]) x[j] -= m[i * n + j] * x[i];
   }
@@ -152,11 +160,11 @@ void solve_mass(const Tree& tree, double* x) {
   }
 }
 
-double mobility(Tree& tree, int dof) {
+double mobility(const Tree& tree, Workspace& work, int dof) {
   // x = L^-T e has entries on the way from the dof to the root only.
   const int n = tree.dofs;
-  const double* m = tree.factor.data();
-  double* x = tree.scratch.data();
+  const double* m = work.factor.data();
+  double* x = work.scratch.data();
   for (int j = dof; j >= 0; j = tree.parent_dof[j]) x[j] = j == dof ? 1 : 0;
   double sum = 0;
   for (int i = dof; i >= 0; i = tree.parent_dof[i]) {
@@ -166,15 +174,15 @@ double mobility(Tree& tree, int dof) {
   return sum;
 }
 
-void accelerations(Tree& tree, std::span<double> out) {
+void accelerations(Tree& tree, Workspace& work, std::span<double> out) {
   place(tree);
   move(tree);
-  compute_mass(tree);
-  factor_mass(tree, 0);
-  external_forces(tree, out, false, true);
-  bias_forces(tree, tree.scratch);
-  for (int k = 0; k < tree.dofs; ++k) out[k] -= tree.scratch[k] + tree.damping[k] * tree.v[k];
-  solve_mass(tree, out.data());
+  compute_mass(tree, work);
+  factor_mass(tree, work, 0);
+  external_forces(tree, work, out, false, true);
+  bias_forces(tree, work, work.scratch);
+  for (int k = 0; k < tree.dofs; ++k) out[k] -= work.scratch[k] + tree.damping[k] * tree.v[k];
+  solve_mass(tree, work, out.data());
 }
 
 }  // namespace ziggurat::dynamics

@@ -4,38 +4,57 @@
 //   bias forces       recursive Newton-Euler (section 5.3), all about one point in world axes
 //   factors           M = L^T D L without fill-in along the tree (section 6.5)
 
+#include <array>
 #include <span>
+#include <vector>
 
 #include "dynamics/tree.h"
 
 namespace ziggurat::dynamics {
 
-/// Fills tree.mass, with both triangles, and tree.own_inertia; needs place().
-void compute_mass(Tree& tree);
+/// What is computed of one tree, in memory that the next tree uses again: it stays in the nearest
+/// cache, however many trees there are.
+struct Workspace {
+  std::vector<Inertia> own_inertia;  ///< of each link alone, about O
+  std::vector<Inertia> inertia;      ///< of each link with all that it carries, about O
+  std::vector<Wrench> wrench;        ///< on each link
+  std::vector<Motion> acceleration;  ///< of each link
+  std::vector<double> mass;          ///< mass matrix, dofs x dofs, row by row
+  std::vector<double> factor;        ///< its factors
+  std::vector<double> scratch;       ///< of each dof
+  std::array<double, 6> drift{};     ///< by momentum_after()
+  std::vector<double> stages;        ///< of the integrator, see flight.h
+  std::vector<double> before;        ///< q and v, kept while a flight is tried
+};
 
-/// Coriolis, centrifugal and gyroscopic forces c(q, v); needs place(), move() and compute_mass().
+/// Fills work.mass, with both triangles, and work.own_inertia; needs place(). All other functions
+/// need it, for the same tree.
+void compute_mass(const Tree& tree, Workspace& work);
+
+/// Coriolis, centrifugal and gyroscopic forces c(q, v); needs place() and move().
 /// @param out  of each dof [N m] or [N]
-void bias_forces(Tree& tree, std::span<double> out);
+void bias_forces(const Tree& tree, Workspace& work, std::span<double> out);
 
 /// What acts from outside as generalised forces; needs place().
 /// @param out      of each dof [N m] or [N]
 /// @param fields   whether Tree::external counts;  @param gravity  whether gravity does
-void external_forces(Tree& tree, std::span<double> out, bool fields, bool gravity);
+void external_forces(const Tree& tree, Workspace& work, std::span<double> out, bool fields,
+                     bool gravity);
 
-/// Factors tree.mass, with the joints' damping over a time added, into tree.factor.
+/// Factors work.mass, with the joints' damping over a time added, into work.factor.
 /// @param length  [s]; 0: the mass matrix alone
-void factor_mass(Tree& tree, double length);
+void factor_mass(const Tree& tree, Workspace& work, double length);
 
 /// x := M^-1 x with the factors.
 /// @param x  of each dof
-void solve_mass(const Tree& tree, double* x);
+void solve_mass(const Tree& tree, const Workspace& work, double* x);
 
 /// What a unit force or torque at a dof changes of its speed: (M^-1)_kk [1/kg] or [1/(kg m^2)];
 /// needs the factors.
-double mobility(Tree& tree, int dof);
+double mobility(const Tree& tree, Workspace& work, int dof);
 
 /// dv/dt at the state (q, v) of the tree under gravity alone; places, moves and factors it.
 /// @param out  of each dof [rad/s^2] or [m/s^2]
-void accelerations(Tree& tree, std::span<double> out);
+void accelerations(Tree& tree, Workspace& work, std::span<double> out);
 
 }  // namespace ziggurat::dynamics

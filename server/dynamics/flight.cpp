@@ -9,10 +9,10 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double largest_turn = 0.1;      // of a Runge-Kutta step of a single body [rad]
-constexpr int most_steps = 4000;          // of one substep
-constexpr double tolerance = 1e-7;        // of a Dormand-Prince step, relative
-constexpr double slow = 3e-3;             // relative change of speed that bias forces may make
+constexpr double largest_turn = 0.1;  // of a Runge-Kutta step of a single body [rad]
+constexpr int most_steps = 4000;      // of one substep
+constexpr double tolerance = 1e-7;    // of a Dormand-Prince step, relative
+constexpr double slow = 3e-3;         // relative change of speed that bias forces may make
 
 using Quaternion4 = Eigen::Vector4d;  // w x y z
 
@@ -142,12 +142,11 @@ constexpr double weights[stage_count][6] = {
     {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
 /// Fifth less fourth order.
 constexpr double error_weights[stage_count] = {
-    71.0 / 57600,        0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525,
-    -1.0 / 40};
+    71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
 /// One step of the method: stages in `k`, each the rates of q and v; the new state in the tree.
 /// @return  the estimated error relative to the tolerance
-double try_step(Tree& tree, const double* start, double* k, double h) {
+double try_step(Tree& tree, Workspace& work, const double* start, double* k, double h) {
   const int places = static_cast<int>(tree.q.size()), size = places + tree.dofs;
   for (int stage = 1; stage < stage_count; ++stage) {
     for (int i = 0; i < size; ++i) {
@@ -156,7 +155,7 @@ double try_step(Tree& tree, const double* start, double* k, double h) {
       (i < places ? tree.q[i] : tree.v[i - places]) = start[i] + h * sum;
     }
     place_rates(tree, tree.q.data(), tree.v.data(), k + stage * size);
-    accelerations(tree, {k + stage * size + places, static_cast<std::size_t>(tree.dofs)});
+    accelerations(tree, work, {k + stage * size + places, static_cast<std::size_t>(tree.dofs)});
   }
   double speed = 0;  // the fastest coordinate: small ones need no digits of their own
   for (int i = 0; i < tree.dofs; ++i) speed = std::max(speed, std::abs(tree.v[i]));
@@ -175,33 +174,33 @@ double try_step(Tree& tree, const double* start, double* k, double h) {
 }
 
 /// The impulse of the fields.
-void kick(Tree& tree, double length) {
+void kick(Tree& tree, Workspace& work, double length) {
   const auto acts = [](const Wrench& w) { return !w.moment.isZero(0) || !w.force.isZero(0); };
   if (std::none_of(tree.external.begin(), tree.external.end(), acts)) return;
-  compute_mass(tree);
-  factor_mass(tree, length);
-  external_forces(tree, tree.scratch, true, false);
-  solve_mass(tree, tree.scratch.data());
-  for (int i = 0; i < tree.dofs; ++i) tree.v[i] += length * tree.scratch[i];
+  compute_mass(tree, work);
+  factor_mass(tree, work, length);
+  external_forces(tree, work, work.scratch, true, false);
+  solve_mass(tree, work, work.scratch.data());
+  for (int i = 0; i < tree.dofs; ++i) tree.v[i] += length * work.scratch[i];
 }
 
-int fly_tree(Tree& tree, double length) {
+int fly_tree(Tree& tree, Workspace& work, double length) {
   const int places = static_cast<int>(tree.q.size()), size = places + tree.dofs;
-  tree.stages.resize((stage_count + 1) * size);
-  double* start = tree.stages.data();
+  work.stages.resize((stage_count + 1) * size);
+  double* start = work.stages.data();
   double* k = start + size;
-  kick(tree, length);
+  kick(tree, work, length);
   std::copy(tree.q.begin(), tree.q.end(), start);
   std::copy(tree.v.begin(), tree.v.end(), start + places);
   place_rates(tree, tree.q.data(), tree.v.data(), k);
-  accelerations(tree, {k + places, static_cast<std::size_t>(tree.dofs)});
+  accelerations(tree, work, {k + places, static_cast<std::size_t>(tree.dofs)});
   double done = 0, h = std::min(length, tree.flight_step > 0 ? tree.flight_step : length);
   int steps = 0;
   while (done < length && steps < most_steps) {
     ++steps;
     const bool last = done + h >= length * (1 - 1e-12);
     if (last) h = length - done;
-    const double error = try_step(tree, start, k, h);
+    const double error = try_step(tree, work, start, k, h);
     const double factor = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 4.0);
     if (error > 1 && steps < most_steps / 2) {
       h *= factor;
@@ -223,84 +222,84 @@ int fly_tree(Tree& tree, double length) {
 }
 
 /// The momentum that belongs to the velocity after a flight, with the mass matrix of before it.
-void momentum_flown(Tree& tree, double length, std::span<double> out) {
+void momentum_flown(Tree& tree, Workspace& work, double length, std::span<double> out) {
   const int n = tree.dofs;
-  tree.before.assign(tree.q.begin(), tree.q.end());
-  tree.before.insert(tree.before.end(), tree.v.begin(), tree.v.end());
-  fly_tree(tree, length);
-  std::copy(tree.v.begin(), tree.v.end(), tree.stages.begin());
-  std::copy_n(tree.before.begin(), tree.q.size(), tree.q.begin());
-  std::copy_n(tree.before.begin() + static_cast<std::ptrdiff_t>(tree.q.size()), n, tree.v.begin());
+  work.before.assign(tree.q.begin(), tree.q.end());
+  work.before.insert(work.before.end(), tree.v.begin(), tree.v.end());
+  fly_tree(tree, work, length);
+  std::copy(tree.v.begin(), tree.v.end(), work.stages.begin());
+  std::copy_n(work.before.begin(), tree.q.size(), tree.q.begin());
+  std::copy_n(work.before.begin() + static_cast<std::ptrdiff_t>(tree.q.size()), n, tree.v.begin());
   place(tree);
   move(tree);
-  compute_mass(tree);
+  compute_mass(tree, work);
   for (int i = 0; i < n; ++i) {
     out[i] = 0;
     for (int j = 0; j < n; ++j) {
       // The joints' damping comes with the velocity that it leads to; see island.h.
-      out[i] += tree.mass[i * n + j] * tree.stages[j];
+      out[i] += work.mass[i * n + j] * work.stages[j];
     }
-    out[i] += length * tree.damping[i] * tree.stages[i];
+    out[i] += length * tree.damping[i] * work.stages[i];
   }
 }
 
 }  // namespace
 
-int fly(Tree& tree, double length) {
+int fly(Tree& tree, Workspace& work, double length) {
   if (tree.single) return fly_single(tree, length);
-  return tree.dofs > 0 ? fly_tree(tree, length) : 0;
+  return tree.dofs > 0 ? fly_tree(tree, work, length) : 0;
 }
 
 namespace {
 
-void momentum_of_body(Tree& tree, double length, std::span<double> out) {
+void momentum_of_body(const Tree& tree, Workspace& work, double length, std::span<double> out) {
   const Link& link = tree.links[0];
   const Matrix3& r = tree.rotation[0];
   Vector3 omega(tree.v[0], tree.v[1], tree.v[2]);
   const Vector3 torque = r.transpose() * tree.external[0].moment;
   omega += r * (torque.cwiseQuotient(link.inertia) * length);
   Vector3 momentum = r * (r.transpose() * omega).cwiseProduct(link.inertia);
-  tree.drift.fill(0);
+  work.drift.fill(0);
   if (!symmetric(link.inertia) && omega.norm() * length > slow) {
     double place[4];
     std::copy_n(tree.q.data() + 3, 4, place);
     turn(place, link.inertia, length, omega);
     const Vector3 flown = r * (r.transpose() * omega).cwiseProduct(link.inertia);
-    for (int k = 0; k < 3; ++k) tree.drift[k] = momentum[k] - flown[k];
+    for (int k = 0; k < 3; ++k) work.drift[k] = momentum[k] - flown[k];
     momentum = flown;
   }
   for (int k = 0; k < 3; ++k) {
     out[k] = momentum[k];
-    out[3 + k] = link.mass * (tree.v[3 + k] + length * tree.gravity[k]) +
-                 length * tree.external[0].force[k];
+    out[3 + k] =
+        link.mass * (tree.v[3 + k] + length * tree.gravity[k]) + length * tree.external[0].force[k];
   }
 }
 
 }  // namespace
 
-void momentum_after(Tree& tree, double length, std::span<double> out) {
-  if (tree.single) return momentum_of_body(tree, length, out);
+void momentum_after(Tree& tree, Workspace& work, double length, std::span<double> out) {
+  if (tree.single) return momentum_of_body(tree, work, length, out);
   const int n = tree.dofs;
   // Bias forces turn the velocity and do no work, but an explicit step of them adds the square of
   // its relative change to the energy: where that matters the substep is flown.
-  bias_forces(tree, tree.scratch);
-  external_forces(tree, out, true, true);
+  bias_forces(tree, work, work.scratch);
+  external_forces(tree, work, out, true, true);
   double energy = 0, change = 0;
   for (int i = 0; i < n; ++i) {
     double momentum = 0;
-    for (int j = 0; j < n; ++j) momentum += tree.mass[i * n + j] * tree.v[j];
+    for (int j = 0; j < n; ++j) momentum += work.mass[i * n + j] * tree.v[j];
     out[i] = momentum + length * out[i];
     energy += momentum * tree.v[i];
-    change += length * length * tree.scratch[i] * tree.scratch[i] / tree.mass[i * n + i];
+    change += length * length * work.scratch[i] * work.scratch[i] / work.mass[i * n + i];
   }
   const int root = std::min(6, n);
-  std::copy_n(out.begin(), root, tree.drift.begin());
+  std::copy_n(out.begin(), root, work.drift.begin());
   if (change > slow * slow * energy) {
-    momentum_flown(tree, length, out);
+    momentum_flown(tree, work, length, out);
   } else {
-    for (int i = 0; i < n; ++i) out[i] -= length * tree.scratch[i];
+    for (int i = 0; i < n; ++i) out[i] -= length * work.scratch[i];
   }
-  for (int i = 0; i < root; ++i) tree.drift[i] -= out[i];
+  for (int i = 0; i < root; ++i) work.drift[i] -= out[i];
 }
 
 }  // namespace ziggurat::dynamics

@@ -1,7 +1,7 @@
 #pragma once
 // Motion without contacts, limits and motors.
 
-#include "dynamics/tree.h"
+#include "dynamics/equations.h"
 
 namespace ziggurat::dynamics {
 
@@ -14,16 +14,16 @@ namespace ziggurat::dynamics {
 /// Math. 6, 1980, table 2) with steps chosen by its estimate of the error.
 /// @param length  [s]
 /// @return        how many steps it took
-int fly(Tree& tree, double length);
+int fly(Tree& tree, Workspace& work, double length);
 
 /// The generalised momentum that a tree would have at the end of a substep without contacts, at the
 /// mass matrix of its beginning: M(q) v plus what its forces and its own motion add. The damping of
 /// joints is not in it: it is implicit (see problem.h).
-/// Tree::drift becomes what the momentum of a floating tree as a whole would be more than that: with
+/// work.drift becomes what the momentum of a floating tree as a whole would be more than that: with
 /// its shape the mass matrix changes too.
 /// Needs place(), move() and compute_mass(), and leaves the tree so.
 /// @param length  [s]
 /// @param out     of each dof [kg m/s] or [kg m^2/s]
-void momentum_after(Tree& tree, double length, std::span<double> out);
+void momentum_after(Tree& tree, Workspace& work, double length, std::span<double> out);
 
 }  // namespace ziggurat::dynamics

@@ -118,7 +118,7 @@ void Solver::start_matrix(Problem& problem) {
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     double* block = matrix_.block(static_cast<int>(i), static_cast<int>(i));
-    std::copy(tree.mass.begin(), tree.mass.end(), block);
+    std::copy_n(problem.mass_of(i), tree.dofs * tree.dofs, block);
     for (int k = 0; k < tree.dofs; ++k) {
       block[k * tree.dofs + k] += problem.length * tree.damping[k];
     }

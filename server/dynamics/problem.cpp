@@ -26,6 +26,9 @@ Matrix3 frame_about(const Vector3& normal) {
 void Problem::clear() {
   trees.clear();
   offset.clear();
+  mass.clear();
+  mass_offset.clear();
+  drift.clear();
   blocks.clear();
   jacobian.clear();
   momentum.clear();
@@ -34,13 +37,18 @@ void Problem::clear() {
   couplings.clear();
 }
 
-void Problem::add(Tree& tree) {
+void Problem::add(Tree& tree, Workspace& work) {
   const int first = static_cast<int>(momentum.size());
   trees.push_back(&tree);
   offset.push_back(first);
   momentum.resize(first + tree.dofs);
-  momentum_after(tree, length, {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
-  for (int k = 0; k < tree.dofs; ++k) inverse_mass.push_back(1 / tree.mass[k * tree.dofs + k]);
+  compute_mass(tree, work);
+  momentum_after(tree, work, length,
+                 {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
+  for (int k = 0; k < tree.dofs; ++k) inverse_mass.push_back(1 / work.mass[k * tree.dofs + k]);
+  mass_offset.push_back(static_cast<int>(mass.size()));
+  mass.insert(mass.end(), work.mass.begin(), work.mass.end());
+  drift.push_back(work.drift);
   velocity.insert(velocity.end(), tree.v.begin(), tree.v.end());
 }
 

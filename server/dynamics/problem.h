@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "dynamics/constraint.h"
-#include "dynamics/tree.h"
+#include "dynamics/equations.h"
 
 namespace ziggurat::dynamics {
 
@@ -45,10 +45,13 @@ struct Block {
 };
 
 struct Problem {
-  double length = 0;              ///< of the substep [s]
-  double allowed_overlap = 1e-6;  ///< that turn_into_displacement() leaves [m]
-  std::vector<Tree*> trees;       ///< by their index in the system
-  std::vector<int> offset;        ///< of each tree in p and v
+  double length = 0;                         ///< of the substep [s]
+  double allowed_overlap = 1e-6;             ///< that turn_into_displacement() leaves [m]
+  std::vector<Tree*> trees;                  ///< by their index in the system
+  std::vector<int> offset;                   ///< of each tree in p and v
+  std::vector<double> mass;                  ///< matrices of all trees, each dofs x dofs
+  std::vector<int> mass_offset;              ///< of each tree in `mass`
+  std::vector<std::array<double, 6>> drift;  ///< of each tree, see momentum_after()
   std::vector<Block> blocks;
   std::vector<double> jacobian;
   std::vector<double> momentum;  ///< p
@@ -58,8 +61,10 @@ struct Problem {
   std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block
 
   void clear();
-  /// Adds a tree at the end, with its momentum; it is placed, moved and has its mass.
-  void add(Tree& tree);
+  /// Adds a tree at the end, with its momentum; it is placed and moved.
+  void add(Tree& tree, Workspace& work);
+  /// Mass matrix of a tree, without the joints' damping, row by row.
+  const double* mass_of(std::size_t tree) const { return mass.data() + mass_offset[tree]; }
   /// Places of the trees in the island.
   void add(const Contact& contact, int a, int b, int source);
   void add(const Servo& servo, int place, int source);

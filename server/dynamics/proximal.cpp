@@ -43,13 +43,14 @@ double imbalance(const Problem& problem, std::vector<double>& out) {
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     const int n = tree.dofs;
+    const double* mass = problem.mass_of(i);
     const double* v = problem.velocity.data() + problem.offset[i];
     double* to = out.data() + problem.offset[i];
     for (int r = 0; r < n; ++r) {
       double sum = problem.length * tree.damping[r] * v[r];
-      for (int c = 0; c < n; ++c) sum += tree.mass[r * n + c] * v[c];
+      for (int c = 0; c < n; ++c) sum += mass[r * n + c] * v[c];
       to[r] -= sum;
-      worst = std::max(worst, std::abs(to[r]) / tree.mass[r * n + r]);
+      worst = std::max(worst, std::abs(to[r]) / mass[r * n + r]);
     }
   }
   return worst;

@@ -80,7 +80,8 @@ void Sweeps::factor(const Problem& problem) {
     const Tree& tree = *problem.trees[i];
     const int n = tree.dofs, first = static_cast<int>(factors_.size());
     factor_of_.push_back(first);
-    factors_.insert(factors_.end(), tree.mass.begin(), tree.mass.end());
+    const double* mass = problem.mass_of(i);
+    factors_.insert(factors_.end(), mass, mass + n * n);
     double* c = factors_.data() + first;
     for (int k = 0; k < n; ++k) c[k * n + k] += problem.length * tree.damping[k];
     factor_in_place(c, n);

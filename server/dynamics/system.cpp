@@ -20,28 +20,31 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// Angular momentum about the tree's origin and linear momentum, of a floating tree.
-Vector6 momentum(const Tree& tree) {
+/// @param mass  its matrix
+Vector6 momentum(const Tree& tree, const double* mass) {
   Vector6 out = Vector6::Zero();
   for (int i = 0; i < 6; ++i) {
-    for (int k = 0; k < tree.dofs; ++k) out[i] += tree.mass[i * tree.dofs + k] * tree.v[k];
+    for (int k = 0; k < tree.dofs; ++k) out[i] += mass[i * tree.dofs + k] * tree.v[k];
   }
   return out;
 }
 
 /// Moves a tree that touches nothing fixed. Its momentum stays, so its root's velocity changes with
 /// its shape.
-void displace_keeping_momentum(Tree& tree, std::span<const double> by) {
-  Vector6 before = momentum(tree);
-  for (int i = 0; i < 6; ++i) before[i] += tree.drift[i];
+/// @param mass   its matrix before;  @param drift  see momentum_after()
+void displace_keeping_momentum(Tree& tree, Workspace& work, const double* mass,
+                               std::span<const double, 6> drift, std::span<const double> by) {
+  Vector6 before = momentum(tree, mass);
+  for (int i = 0; i < 6; ++i) before[i] += drift[i];
   const Vector3 origin = tree.origin;
   displace(tree, by);
   place(tree);
-  compute_mass(tree);
+  compute_mass(tree, work);
   before.head<3>() += (origin - tree.origin).cross(Vector3(before.tail<3>()));
-  const Vector6 missing = before - momentum(tree);
+  const Vector6 missing = before - momentum(tree, work.mass.data());
   Matrix6 root;
   for (int i = 0; i < 6; ++i) {
-    for (int k = 0; k < 6; ++k) root(i, k) = tree.mass[i * tree.dofs + k];
+    for (int k = 0; k < 6; ++k) root(i, k) = work.mass[i * tree.dofs + k];
   }
   const Vector6 change = root.llt().solve(missing);
   for (int i = 0; i < 6; ++i) tree.v[i] += change[i];
@@ -175,7 +178,7 @@ bool System::fly_island(int first_tree, int last_tree, int first_item, int last_
       kept_.insert(kept_.end(), tree.q.begin(), tree.q.end());
       kept_.insert(kept_.end(), tree.v.begin(), tree.v.end());
     }
-    fly(tree, length_);
+    fly(tree, work_, length_);
   }
   if (std::none_of(item_order_.begin() + first_item, item_order_.begin() + last_item, violated)) {
     for (int i = first_item; i < last_item; ++i) limits_[item_order_[i].index].impulse = 0;
@@ -209,9 +212,7 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
   problem_.length = length_;
   problem_.allowed_overlap = allowed_overlap;
   for (int i = first_tree; i < last_tree; ++i) {
-    Tree& tree = trees[tree_order_[i]];
-    compute_mass(tree);
-    problem_.add(tree);
+    problem_.add(trees[tree_order_[i]], work_);
   }
   const auto place = [&](int tree) {
     return tree >= 0 && trees[tree].dofs > 0 ? place_[tree] : -1;
@@ -237,7 +238,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const bool touched = std::any_of(problem_.blocks.begin(), problem_.blocks.end(),
                                    [](const Block& b) { return b.impulse[0] != 0; });
   if (!touched) {  // what it flew past did not hold it
-    for (Tree* tree : problem_.trees) fly(*tree, length_);
+    for (Tree* tree : problem_.trees) fly(*tree, work_, length_);
     settle(first_tree, last_tree, false);
     return;
   }
@@ -266,7 +267,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       dynamics::place(tree);
       move(tree);
     } else {
-      displace_keeping_momentum(tree, by);
+      displace_keeping_momentum(tree, work_, problem_.mass_of(i), problem_.drift[i], by);
     }
   }
   settle(first_tree, last_tree, carried);

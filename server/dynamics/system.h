@@ -132,6 +132,7 @@ class System {
   std::vector<int> first_tree_, tree_order_, first_item_;
   std::vector<Item> items_, item_order_;
   std::vector<double> kept_, step_;
+  Workspace work_;
   Problem problem_;
   Solver solver_;
 };

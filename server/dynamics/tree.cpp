@@ -42,22 +42,34 @@ void place_root(Tree& tree, const math::Pose& fixed) {
   tree.position[0] = tree.origin = Vector3(q[0], q[1], q[2]);
 }
 
-}  // namespace
-
-Tree::Tree(std::vector<Link> with, const math::Pose& root, unsigned with_freedoms)
-    : links(std::move(with)), freedoms(with_freedoms) {
-  count();
-  set_root(root);
-  place(*this);
-  move(*this);
+/// Of trees that were taken apart.
+const std::shared_ptr<const Mechanism>& nothing_that_moves() {
+  static const auto mechanism = [] {
+    std::vector<Link> links(1);
+    links[0].joint = JointType::fixed;
+    return std::make_shared<const Mechanism>(std::move(links), all_freedoms);
+  }();
+  return mechanism;
 }
 
-void Tree::count() {
+}  // namespace
+
+bool Link::operator==(const Link& other) const {
+  const auto same = [](const math::Pose& a, const math::Pose& b) {
+    return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
+  };
+  return parent == other.parent && joint == other.joint &&
+         same(joint_in_parent, other.joint_in_parent) && same(joint_in_link, other.joint_in_link) &&
+         axis == other.axis && mass == other.mass && inertia == other.inertia &&
+         damping == other.damping;
+}
+
+Mechanism::Mechanism(std::vector<Link> with, unsigned with_freedoms)
+    : links(std::move(with)), freedoms(with_freedoms) {
   const std::size_t size = links.size();
   first_dof.resize(size);
   dof_count.resize(size);
   first_place.resize(size);
-  int places = 0;
   for (std::size_t i = 0; i < size; ++i) {
     const Link& link = links[i];
     first_dof[i] = dofs;
@@ -76,41 +88,16 @@ void Tree::count() {
     }
     dofs += dof_count[i];
     places += places_of(link.joint);
-    parent_side_.push_back(link.joint_in_parent.orientation.toRotationMatrix());
-    link_side_.push_back(link.joint_in_link.orientation.conjugate().toRotationMatrix());
+    parent_side.push_back(link.joint_in_parent.orientation.toRotationMatrix());
+    link_side.push_back(link.joint_in_link.orientation.conjugate().toRotationMatrix());
   }
   note_ways();
   free_root = links[0].joint == JointType::floating && dof_count[0] == 6;
   single = size == 1 && free_root;
-  q.assign(places, 0);
-  v.assign(dofs, 0);
-  for (std::size_t i = 0; i < size; ++i) {
-    if (links[i].joint == JointType::spherical) q[first_place[i]] = 1;
-  }
-  external.resize(size);
-  rotation.resize(size);
-  position.resize(size);
-  axes.resize(dofs);
-  motion.resize(size);
-  own_inertia.resize(size);
-  inertia.resize(size);
-  wrench.resize(size);
-  acceleration.resize(size);
-  mass.assign(dofs * dofs, 0);
-  factor.assign(dofs * dofs, 0);
-  scratch.assign(dofs, 0);
-  int next = 0;  // the axes of a floating root never change
-  for (int k = 0; k < 6 && links[0].joint == JointType::floating; ++k) {
-    if (!(freedoms >> k & 1)) continue;
-    Motion& axis = axes[next++];
-    (k < 3 ? axis.angular : axis.linear)[k % 3] = 1;
-  }
 }
 
 /// The dofs on the way to each link.
-void Tree::note_ways() {
-  ways.clear();
-  way_end.clear();
+void Mechanism::note_ways() {
   for (std::size_t i = 0; i < links.size(); ++i) {
     const auto begin = static_cast<std::ptrdiff_t>(ways.size());
     int carrier = static_cast<int>(i);
@@ -124,16 +111,71 @@ void Tree::note_ways() {
   std::iota(dof_places.begin(), dof_places.end(), 0);
 }
 
+Tree::Tree(std::vector<Link> with, const math::Pose& root, unsigned with_freedoms) {
+  nothing_that_moves();  // so that take_apart() takes no memory
+  use(std::make_shared<const Mechanism>(std::move(with), with_freedoms));
+  begin();
+  set_root(root);
+  place(*this);
+  move(*this);
+}
+
+Tree::Tree(const Tree& like, const math::Pose& root) {
+  use(like.mechanism_);
+  begin();
+  set_root(root);
+  place(*this);
+  move(*this);
+}
+
+void Tree::use(std::shared_ptr<const Mechanism> mechanism) noexcept {
+  mechanism_ = std::move(mechanism);
+  const Mechanism& m = *mechanism_;
+  links = m.links;
+  freedoms = m.freedoms;
+  dofs = m.dofs;
+  first_dof = m.first_dof;
+  dof_count = m.dof_count;
+  first_place = m.first_place;
+  parent_dof = m.parent_dof;
+  damping = m.damping;
+  parent_side = m.parent_side;
+  link_side = m.link_side;
+  free_root = m.free_root;
+  single = m.single;
+}
+
+bool Tree::share(const Tree& other) {
+  const Mechanism &own = *mechanism_, &its = *other.mechanism_;
+  if (own.freedoms != its.freedoms || own.links != its.links) return false;
+  use(other.mechanism_);
+  return true;
+}
+
+/// The state at rest, with memory for what follows from it.
+void Tree::begin() {
+  const std::size_t size = links.size();
+  q.assign(static_cast<std::size_t>(mechanism_->places), 0);
+  v.assign(static_cast<std::size_t>(dofs), 0);
+  for (std::size_t i = 0; i < size; ++i) {
+    if (links[i].joint == JointType::spherical) q[first_place[i]] = 1;
+  }
+  external.resize(size);
+  rotation.resize(size);
+  position.resize(size);
+  axes.resize(dofs);
+  motion.resize(size);
+  int next = 0;  // the axes of a floating root never change
+  for (int k = 0; k < 6 && links[0].joint == JointType::floating; ++k) {
+    if (!(freedoms >> k & 1)) continue;
+    Motion& axis = axes[next++];
+    (k < 3 ? axis.angular : axis.linear)[k % 3] = 1;
+  }
+}
+
 void Tree::take_apart() noexcept {
-  links.resize(1);
-  links[0] = {};
-  links[0].joint = JointType::fixed;
-  dofs = 0;
-  parent_dof.clear();
-  damping.clear();
-  parent_side_.clear();
-  link_side_.clear();
-  count();
+  use(nothing_that_moves());
+  begin();
   set_root({});
   place(*this);
   move(*this);
@@ -162,7 +204,7 @@ void place(Tree& tree) {
     const Link& link = tree.links[i];
     const Matrix3& parent = tree.rotation[link.parent];
     const double* q = tree.q.data() + tree.first_place[i];
-    Matrix3 joint = parent * tree.parent_side_[i];
+    Matrix3 joint = parent * tree.parent_side[i];
     Vector3 pivot = tree.position[link.parent] + parent * link.joint_in_parent.position;
     Motion* axes = tree.axes.data() + tree.first_dof[i];
     if (link.joint == JointType::revolute) {
@@ -179,7 +221,7 @@ void place(Tree& tree) {
         axes[k] = {joint.col(k), (pivot - tree.origin).cross(joint.col(k))};
       }
     }
-    tree.rotation[i] = joint * tree.link_side_[i];
+    tree.rotation[i] = joint * tree.link_side[i];
     tree.position[i] = pivot - tree.rotation[i] * link.joint_in_link.position;
   }
 }

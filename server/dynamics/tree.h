@@ -2,8 +2,8 @@
 // An articulated tree of rigid bodies in generalised coordinates. A single body is a tree of one
 // link. Links come parents first; link 0 is the root.
 
-#include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,6 +30,8 @@ struct Link {
   double mass = 0;             ///< [kg], > 0 unless fixed
   Vector3 inertia{0, 0, 0};    ///< principal [kg m^2], > 0 unless fixed
   double damping = 0;          ///< of the joint's speeds [N m s] or [N s/m]
+
+  bool operator==(const Link& other) const;
 };
 
 /// Freedoms of a floating root: bits of turning about x, y, z and moving along x, y, z of the
@@ -38,15 +40,13 @@ constexpr unsigned all_freedoms = 0b111111;
 constexpr unsigned upright_freedoms = 0b111100;  ///< turns about z only
 constexpr unsigned planar_freedoms = 0b011100;   ///< as well, and keeps its height
 
-class Tree {
- public:
-  /// @param root      pose of link 0 in the world
-  /// @param freedoms  of a floating root
-  Tree(std::vector<Link> links, const math::Pose& root, unsigned freedoms = all_freedoms);
+/// How a tree is built: what does not change.
+struct Mechanism {
+  Mechanism(std::vector<Link> links, unsigned freedoms);
 
-  // What does not change.
   std::vector<Link> links;
-  unsigned freedoms;
+  unsigned freedoms;             ///< of a floating root
+  int places = 0;                ///< size of q
   int dofs = 0;                  ///< size of v
   std::vector<int> first_dof;    ///< of each link, into v
   std::vector<int> dof_count;    ///< of each link
@@ -56,8 +56,30 @@ class Tree {
   std::vector<int> ways;         ///< the dofs from the root to each link, one after the other
   std::vector<int> way_end;      ///< of each link, into `ways`
   std::vector<int> dof_places;   ///< 0, 1, … dofs - 1
+  std::vector<Matrix3> parent_side, link_side;  ///< rotations X_PJ and X_JL of each link
   bool free_root = false;  ///< floating with all six freedoms: dofs 0 to 5 are the world's axes
   bool single = false;     ///< one link, with a free root
+
+ private:
+  void note_ways();
+};
+
+class Tree {
+ public:
+  /// @param root      pose of link 0 in the world
+  /// @param freedoms  of a floating root
+  Tree(std::vector<Link> links, const math::Pose& root, unsigned freedoms = all_freedoms);
+  /// One that is built like another.
+  Tree(const Tree& like, const math::Pose& root);
+
+  // What does not change: see Mechanism, to which these refer.
+  std::span<const Link> links;
+  unsigned freedoms = 0;
+  int dofs = 0;
+  std::span<const int> first_dof, dof_count, first_place, parent_dof;
+  std::span<const double> damping;
+  std::span<const Matrix3> parent_side, link_side;
+  bool free_root = false, single = false;
 
   // The state.
   /// A floating root: position [m] and orientation w x y z; a revolute joint: angle [rad]; a
@@ -83,21 +105,15 @@ class Tree {
   // What follows from v as well, by move().
   std::vector<Motion> motion;  ///< of each link, about O
 
-  // Memory to work in.
-  std::vector<Inertia> own_inertia;  ///< of each link alone, about O, by compute_mass()
-  std::vector<Inertia> inertia;      ///< of each link with all that it carries, about O
-  std::vector<Wrench> wrench;
-  std::vector<Motion> acceleration;
-  std::vector<double> mass;       ///< mass matrix, dofs x dofs, row by row
-  std::vector<double> factor;     ///< its factors, see equations.h
-  std::array<double, 6> drift{};  ///< see momentum_after()
-  std::vector<double> scratch;    ///< of each dof
-  std::vector<double> stages;     ///< of the integrator, see flight.h
-  std::vector<double> before;     ///< q and v, kept while a flight is tried
-  double flight_step = 0;         ///< the step that the integrator would take next [s]
+  double flight_step = 0;  ///< the step that the integrator would take next [s]
 
   /// The state: what the next substep reads.
   void archive(math::Archive& archive);
+
+  /// Uses another's mechanism if it is the same: what many trees have in common is in memory, and
+  /// in the caches, once.
+  /// @return  whether it is
+  bool share(const Tree& other);
 
   /// Leaves one link that is fixed to the world: nothing that moves. Takes no memory.
   void take_apart() noexcept;
@@ -110,10 +126,10 @@ class Tree {
   Vector3 angular_velocity(int link) const;       ///< after move() [rad/s]
 
  private:
-  void count();
-  void note_ways();
+  void use(std::shared_ptr<const Mechanism> mechanism) noexcept;
+  void begin();
+  std::shared_ptr<const Mechanism> mechanism_;
   math::Pose fixed_root_;
-  std::vector<Matrix3> parent_side_, link_side_;  // rotations X_PJ and X_JL of each link
   friend void place(Tree& tree);
 };
 
@@ -127,10 +143,13 @@ void move(Tree& tree);
 void displace(Tree& tree, std::span<const double> step);
 
 inline std::span<const int> Tree::dofs_of(int link) const {
-  const int begin = link > 0 ? way_end[link - 1] : 0;
-  return {ways.data() + begin, static_cast<std::size_t>(way_end[link] - begin)};
+  const Mechanism& m = *mechanism_;
+  const int begin = link > 0 ? m.way_end[link - 1] : 0;
+  return {m.ways.data() + begin, static_cast<std::size_t>(m.way_end[link] - begin)};
 }
-inline std::span<const int> Tree::dof_alone(int dof) const { return {dof_places.data() + dof, 1}; }
+inline std::span<const int> Tree::dof_alone(int dof) const {
+  return {mechanism_->dof_places.data() + dof, 1};
+}
 
 /// The dof of a revolute or prismatic joint.
 inline int joint_dof(const Tree& tree, int link) { return tree.first_dof[link]; }

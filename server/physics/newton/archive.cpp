@@ -38,22 +38,6 @@ void Contacts::Remembered::archive(math::Archive& archive) {
   archive("gap", gap);
 }
 
-namespace {
-
-void archive_law(math::Archive& archive, dynamics::Contact& law) {
-  archive("a.tree", law.a.tree);
-  archive("a.link", law.a.link);
-  archive("b.tree", law.b.tree);
-  archive("b.link", law.b.link);
-  archive("normal", law.normal);
-  archive("friction", law.friction);
-  archive("rolling", law.rolling);
-  archive("spinning", law.spinning);
-  archive("restitution", law.restitution);
-}
-
-}  // namespace
-
 void Contacts::Pair::archive(math::Archive& archive) {
   archive("live", live);
   if (!live) {
@@ -65,7 +49,6 @@ void Contacts::Pair::archive(math::Archive& archive) {
   archive("seen", seen);
   archive("met", met);
   archive("rests", rests);
-  archive_law(archive, law);
   archive("normal", normal);
   archive("earlier", earlier);
   archive("share", share);
@@ -91,12 +74,17 @@ void archive_fields(math::Archive& archive, Contacts& contacts) {
   if (!archive.reads()) return;
   contacts.places_.clear();
   contacts.floor_pairs_.assign(contacts.colliders_.all.size(), 0);
+  contacts.lists_.clear();
+  contacts.lists_.resize(contacts.colliders_.all.size());
+  contacts.lists_.make_room(contacts.pairs_.size());
   for (std::size_t i = 1; i < contacts.pairs_.size(); ++i) {
     const Contacts::Pair& pair = contacts.pairs_[i];
     if (!pair.live) continue;
     const bool is_floor = contacts.colliders_.floor == pair.b;
     (is_floor ? contacts.floor_pairs_[pair.a] : contacts.places_[key_of(pair.a, pair.b)]) =
         static_cast<int>(i);
+    contacts.lists_.add(static_cast<int>(i), pair.a,
+                        is_floor ? std::nullopt : std::optional<std::size_t>(pair.b));
   }
   contacts.near_.clear();
   contacts.contacts_.clear();
@@ -115,19 +103,11 @@ void Contacts::check_pairs(const math::Archive& archive) const {
     resting += pair.rests;
     const std::size_t most = colliders_.all.size();
     archive.require(&pair != pairs_.data() && pair.a < most && pair.b < most, "is beyond its list");
+    archive.require(pair.a != pair.b, "touches itself");
     const Collider& a = colliders_.all[pair.a];
     const Collider& b = colliders_.all[pair.b];
-    const auto is_that = [](const dynamics::LinkIndex& side, const Collider& collider) {
-      if (collider.entity == Collider::floor) return side.tree == -1;
-      return side.tree == static_cast<int>(collider.entity) &&
-             side.link == static_cast<int>(collider.part);
-    };
     const bool is_floor = pair.b == colliders_.floor;
     archive.require(a.present && (b.present || is_floor), "touches what is not there");
-    // Its law is unset before it has been met.
-    const bool unmet = pair.law.a.tree == -1 && pair.law.b.tree == -1 && pair.count == 0;
-    archive.require(unmet || (is_that(pair.law.a, a) && is_that(pair.law.b, b)),
-                    "joins links that its colliders do not have");
   }
   archive.require(live == live_ && resting == resting_, "counts wrongly");
   std::vector<bool> is_unused(pairs_.size());

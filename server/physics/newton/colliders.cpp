@@ -53,8 +53,7 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   collider.moves = body.parts[placed.part].moves;
   collider.rolls = body.ground.has_value() && i == 0;
   collider.surface = link.surface;
-  collider.outline = bullet_shape(link.geometry);
-  collider.smallest = placed.half_extents.minCoeff();
+  collider.half = to_bullet(placed.half_extents);
   collider.radius = contact::bounding_radius(collider.shape);
   return collider;
 }
@@ -133,9 +132,12 @@ void Colliders::enclose(ColliderGroup& group) {
   group.high = -group.low;
   for (std::size_t i = group.first; i < group.first + group.count; ++i) {
     Collider& collider = all[i];
-    const btVector3 reach(collider.reach, collider.reach, collider.reach);
-    collider.outline->getAabb(collider.pose, collider.low, collider.high);
-    collider.low -= reach, collider.high += reach;
+    const btMatrix3x3 turned = collider.pose.getBasis().absolute();
+    btVector3 half = turned * collider.half;  // no larger than a ball needs
+    half.setMin(btVector3(collider.radius, collider.radius, collider.radius));
+    half += btVector3(collider.reach, collider.reach, collider.reach);
+    collider.low = collider.pose.getOrigin() - half;
+    collider.high = collider.pose.getOrigin() + half;
     group.low.setMin(collider.low);
     group.high.setMax(collider.high);
   }
@@ -147,7 +149,6 @@ void Colliders::insert(ColliderGroup& group, std::size_t index) {
                                         1, nullptr);
 }
 
-/// The groups of an entity, which stand together: groups are in the order of their entities.
 std::span<ColliderGroup> Colliders::groups_of(std::size_t entity) {
   const auto first = std::ranges::lower_bound(groups, entity, {}, &ColliderGroup::entity);
   const auto last = std::ranges::upper_bound(groups, entity, {}, &ColliderGroup::entity);

@@ -3,7 +3,6 @@
 // within a substep (Bullet's trees of boxes).
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
-#include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
 #include <memory>
 #include <optional>
@@ -31,8 +30,8 @@ struct Collider {
   std::size_t group = 0;  ///< into the broad phase's groups
   bool rolls = false;     ///< has wheels: does not rub on what is below or above it
   scene::Surface surface;
-  double smallest = 1e30;  ///< half extent [m]
-  double radius = 0;       ///< of the sphere about the shape's centre that holds it [m]
+  btVector3 half{0, 0, 0};  ///< half extents of the box about it and its centre, in its axes [m]
+  double radius = 0;        ///< of the sphere about the shape's centre that holds it [m]
 
   // Of the coming substep:
   btTransform pose = btTransform::getIdentity();  ///< X_WS
@@ -40,8 +39,6 @@ struct Collider {
   btVector3 angular_velocity{0, 0, 0};            ///< [rad/s]
   double reach = 0;                               ///< how far its surface may come [m]
   btVector3 low{0, 0, 0}, high{0, 0, 0};          ///< corners of the box about it and its reach [m]
-
-  std::unique_ptr<btCollisionShape> outline;  ///< for the box about it
 
   void archive(math::Archive& archive);
 };
@@ -88,6 +85,9 @@ class Colliders {
   /// Where a body was put, with all its pairs forgotten.
   void moved(std::size_t entity, const dynamics::Tree& tree);
 
+  /// The groups of an entity, which stand together: groups are in the order of their entities.
+  std::span<ColliderGroup> groups_of(std::size_t entity);
+
   /// Where they were in the last substep.
   void archive(math::Archive& archive);
 
@@ -108,7 +108,6 @@ class Colliders {
  private:
   struct Filter;
   struct Hits;
-  std::span<ColliderGroup> groups_of(std::size_t entity);
   void place(Collider& collider, const dynamics::Tree& tree) const;
   double follow(ColliderGroup& group, const dynamics::System& system, double length);
   void enclose(ColliderGroup& group);

@@ -30,6 +30,10 @@ bool rolls_on(const Collider& collider, const btVector3& normal) {
   return collider.rolls && btFabs(collider.pose.getBasis().getColumn(2).dot(normal)) > face;
 }
 
+double square_between(const math::Vector3& a, const math::Vector3& b) {
+  return (to_bullet(a) - to_bullet(b)).length2();
+}
+
 /// How two colliders come together in a substep.
 struct Approach {
   double least = BT_LARGE_FLOAT;  ///< distance of all points [m]
@@ -51,36 +55,38 @@ Approach approach_of(const contact::Contacts& found, const Collider& a, const Co
   return out;
 }
 
+/// Half of it; the floor has none [m].
+double smallest_extent(const Collider& collider) {
+  if (collider.entity == Collider::floor) return BT_LARGE_FLOAT;
+  return std::min({collider.half.x(), collider.half.y(), collider.half.z()});
+}
+
 /// Whether a body may turn so far in a substep that another side of it lands: it turns, or an
 /// impact turns it.
 bool tumbles(const Collider& a, const Collider& b, const Approach& approach, double length) {
   constexpr double far = 0.05;  // [rad]
   const double turning = (a.angular_velocity - b.angular_velocity).length();
-  return length * (turning + approach.fastest / std::min(a.smallest, b.smallest)) > far;
+  return length * (turning + approach.fastest / std::min(smallest_extent(a), smallest_extent(b))) >
+         far;
 }
 
 }  // namespace
 
-/// The pair of a place that remembers it; a new one if it is new.
-Contacts::Pair& Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
-  if (place == 0) {
-    if (unused_.empty()) {
-      if (pairs_.empty()) pairs_.emplace_back();
-      unused_.push_back(static_cast<int>(pairs_.size()));
-      pairs_.emplace_back();
-      unused_.reserve(pairs_.capacity());  // drop() takes no memory
-    }
-    place = unused_.back();
-    unused_.pop_back();
-    pairs_[place] = {};
-    pairs_[place].a = a;
-    pairs_[place].b = b;
-    pairs_[place].live = true;
-    ++live_;
+dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
+                         int count) {
+  const bool rolls = rolls_on(a, to_bullet(normal)) || rolls_on(b, to_bullet(normal));
+  dynamics::Contact law;
+  law.a = link_of(a);
+  law.b = link_of(b);
+  law.normal = normal;
+  law.friction = rolls ? 0 : a.surface.friction * b.surface.friction;
+  // Only a point or a line of contact can roll; each carries its share of the normal force.
+  if (count <= 2) {
+    law.rolling = a.surface.rolling_friction + b.surface.rolling_friction;
+    law.spinning = a.surface.spinning_friction + b.surface.spinning_friction;
   }
-  if (pairs_[place].seen != substep_) pairs_[place].earlier.setZero();
-  pairs_[place].seen = substep_;
-  return pairs_[place];
+  law.restitution = std::max(a.surface.restitution, b.surface.restitution);
+  return law;
 }
 
 std::span<dynamics::Contact> Contacts::find(double length) {
@@ -113,11 +119,12 @@ void Contacts::meet_all(double length) {
   owner_.clear();
   turned_.clear();
   met_.clear();
+  floor_pairs_.resize(colliders_.all.size(), 0);
+  lists_.resize(colliders_.all.size());
   for (const Near& near : near_) {
     meet(pair_of(near.a, near.b, places_[key_of(near.a, near.b)]), length);
   }
   if (!colliders_.floor) return;
-  floor_pairs_.resize(colliders_.all.size(), 0);
   for (const std::size_t index : colliders_.followed()) {
     const ColliderGroup& group = colliders_.groups[index];
     for (std::size_t i = group.first; i < group.first + group.count; ++i) {
@@ -132,7 +139,7 @@ std::span<dynamics::Contact> Contacts::add_resting() {
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     if (!pair.live || pair.seen == substep_) continue;
-    pair.first = contacts_.size();
+    pair.first = static_cast<std::uint32_t>(contacts_.size());
     emit(pair);
   }
   return contacts_;
@@ -170,13 +177,13 @@ bool Contacts::covers(const Pair& seen, const Pair& hidden, std::size_t mover) c
   const Collider& other = colliders_.all[hidden_first ? hidden.a : hidden.b];
   const btVector3 up = to_bullet(seen_first ? math::Vector3(-seen.normal) : seen.normal);
   const Remembered& on = seen.points[0];
-  const btScalar height = up.dot(cover.pose * (seen_first ? on.on_a : on.on_b));
+  const btScalar height = up.dot(cover.pose * to_bullet(seen_first ? on.on_a : on.on_b));
   const btVector3 in_other = other.pose.getBasis().transpose() * up;
   const btScalar top = up.dot(other.pose.getOrigin()) + contact::reach_along(other.shape, in_other);
   if (top > height + flush) return false;
   for (int i = 0; i < hidden.count; ++i) {
     const Remembered& point = hidden.points[i];
-    const btVector3 at = other.pose * (hidden_first ? point.on_a : point.on_b);
+    const btVector3 at = other.pose * to_bullet(hidden_first ? point.on_a : point.on_b);
     if (!contact::holds(cover.shape, cover.pose.invXform(at), slack)) return false;
   }
   return true;
@@ -234,37 +241,12 @@ void Contacts::keep_if(IsKept is_kept) {
     Pair& pair = pairs_[owner_[i]];
     const bool first = pair.first == i;
     if (!is_kept(i)) continue;
-    if (first) pair.first = kept;
+    if (first) pair.first = static_cast<std::uint32_t>(kept);
     contacts_[kept] = contacts_[i];
     owner_[kept++] = owner_[i];
   }
   contacts_.resize(kept);
   owner_.resize(kept);
-}
-
-void Contacts::drop(std::size_t number) {
-  Pair& pair = pairs_[number];
-  pair.live = false;
-  pair.count = 0;
-  --live_;
-  resting_ -= pair.rests;
-  unused_.push_back(static_cast<int>(number));
-  if (colliders_.floor != pair.b) {
-    places_.erase(key_of(pair.a, pair.b));
-  } else if (pair.a < floor_pairs_.size()) {
-    floor_pairs_[pair.a] = 0;
-  }
-}
-
-/// Pairs that came apart lose their memory.
-void Contacts::drop_unseen() {
-  for (std::size_t i = 1; i < pairs_.size(); ++i) {
-    const Pair& pair = pairs_[i];
-    if (!pair.live || pair.seen == substep_) continue;
-    const bool rests =
-        colliders_.rests(colliders_.all[pair.a]) && colliders_.rests(colliders_.all[pair.b]);
-    if (!rests) drop(i);
-  }
 }
 
 void Contacts::meet(Pair& pair, double length) {
@@ -305,14 +287,13 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
   std::array<bool, most_points> taken{};
   pair.count = found.count;
   pair.normal = from_bullet(found.normal);
-  pair.first = contacts_.size();
-  const bool rolls = rolls_on(a, found.normal) || rolls_on(b, found.normal);
+  pair.first = static_cast<std::uint32_t>(contacts_.size());
   for (int i = 0; i < found.count; ++i) {
     const contact::Point& point = found.points[i];
     const btVector3 on_a = point.on_b + found.normal * point.distance;
     Remembered& now = pair.points[i];
-    now.on_a = a.pose.invXform(on_a);
-    now.on_b = b.pose.invXform(point.on_b);
+    now.on_a = from_bullet(a.pose.invXform(on_a));
+    now.on_b = from_bullet(b.pose.invXform(point.on_b));
     now.point = from_bullet(!b.moves ? on_a : !a.moves ? point.on_b : (point.on_b + on_a) / 2);
     now.gap = point.distance;
     now.impulse.setZero();
@@ -321,7 +302,7 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
     double least = same;
     for (int j = 0; j < old_count; ++j) {
       const double away =
-          std::min((old[j].on_a - now.on_a).length2(), (old[j].on_b - now.on_b).length2());
+          std::min(square_between(old[j].on_a, now.on_a), square_between(old[j].on_b, now.on_b));
       if (!taken[j] && away < least) least = away, nearest = j;
     }
     if (nearest >= 0) {
@@ -330,25 +311,17 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
       now.angular_impulse = old[nearest].angular_impulse;
     }
   }
-  pair.law = {};
-  pair.law.a = link_of(a);
-  pair.law.b = link_of(b);
-  pair.law.normal = pair.normal;
-  pair.law.friction = rolls ? 0 : a.surface.friction * b.surface.friction;
-  // Only a point or a line of contact can roll; each carries its share of the normal force.
-  if (found.count <= 2) {
-    pair.law.rolling = a.surface.rolling_friction + b.surface.rolling_friction;
-    pair.law.spinning = a.surface.spinning_friction + b.surface.spinning_friction;
-  }
-  pair.law.restitution = std::max(a.surface.restitution, b.surface.restitution);
   emit(pair);
 }
 
 /// Appends the contacts of a pair's points to the list.
 void Contacts::emit(const Pair& pair) {
   check_contact_points(contacts_.size());
+  if (pair.count == 0) return;
+  const dynamics::Contact law =
+      law_of(colliders_.all[pair.a], colliders_.all[pair.b], pair.normal, pair.count);
   for (int i = 0; i < pair.count; ++i) {
-    dynamics::Contact& contact = contacts_.emplace_back(pair.law);
+    dynamics::Contact& contact = contacts_.emplace_back(law);
     contact.point = pair.points[i].point;
     contact.gap = pair.points[i].gap;
     contact.impulse = share_ * pair.points[i].impulse;
@@ -366,18 +339,6 @@ void Contacts::remember(bool more) {
     point.impulse = contacts_[i].impulse / share_;
     point.angular_impulse = contacts_[i].angular_impulse / share_;
     pair.share = share_;
-  }
-}
-
-void Contacts::forget(std::size_t entity, dynamics::System& system) {
-  for (std::size_t i = 1; i < pairs_.size(); ++i) {
-    const Pair& pair = pairs_[i];
-    if (!pair.live) continue;
-    const std::size_t a = colliders_.all[pair.a].entity, b = colliders_.all[pair.b].entity;
-    if (a != entity && b != entity) continue;
-    if (a != Collider::floor) system.wake(static_cast<int>(a));
-    if (b != Collider::floor) system.wake(static_cast<int>(b));
-    drop(i);
   }
 }
 

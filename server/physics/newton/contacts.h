@@ -9,12 +9,18 @@
 
 #include "dynamics/constraint.h"
 #include "physics/newton/colliders.h"
+#include "physics/newton/pair_lists.h"
 #include "physics/plugin.h"
 
 namespace ziggurat::physics {
 
 /// Of a pair of colliders.
 inline std::uint64_t key_of(std::size_t a, std::size_t b) { return std::uint64_t{a} << 32 | b; }
+
+/// What all contacts of a pair have in common, where they are now.
+/// @param count  of its points
+dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
+                         int count);
 
 class Contacts {
  public:
@@ -53,25 +59,25 @@ class Contacts {
  private:
   static constexpr int most_points = 8;  // of a pair; 4 unless it tumbles
   struct Remembered {
-    btVector3 on_a{0, 0, 0}, on_b{0, 0, 0};  // in the colliders' frames [m]
+    math::Vector3 on_a{0, 0, 0}, on_b{0, 0, 0};  // in the colliders' frames [m]
     math::Vector3 point{0, 0, 0};
     math::Vector3 impulse{0, 0, 0}, angular_impulse{0, 0, 0};  // for all forces of a substep
     double gap = 0;
     void archive(math::Archive& archive);
   };
-  struct Pair {
-    std::size_t a = 0, b = 0;  // colliders
+  // Begins a line of the cache: of a pair with one point three are read.
+  struct alignas(64) Pair {
+    std::uint32_t a = 0, b = 0;  // colliders
     bool live = false;
-    unsigned seen = 0;      // the substep in which it was near last
-    unsigned met = 0;       // likewise, counting parts as substeps
-    bool rests = false;     // both sides did in the substep in which it was seen last
-    dynamics::Contact law;  // what all its contacts have in common
+    bool rests = false;       // both sides did in the substep in which it was seen last
+    unsigned seen = 0;        // the substep in which it was near last
+    unsigned met = 0;         // likewise, counting parts as substeps
+    std::uint32_t first = 0;  // of its contacts in the list
+    int count = 0;
     math::Vector3 normal{0, 0, 1};
     math::Vector3 earlier{0, 0, 0};  // impulse in earlier parts of the substep [N s]
     double share = 1;                // of the substep's forces, that acted in its last part
-    int count = 0;
     std::array<Remembered, most_points> points;
-    std::size_t first = 0;  // of its contacts in the list
     void archive(math::Archive& archive);
   };
 
@@ -101,6 +107,8 @@ class Contacts {
   std::vector<int> met_, met_before_;  // pairs, by the last find() and the one before
   std::vector<Near> near_;
   std::vector<int> floor_pairs_;  // of each collider
+  PairLists lists_;               // of all colliders but the floor
+  std::vector<int> forgotten_;    // pairs, in forget()
   std::vector<dynamics::Contact> contacts_;
   std::vector<int> owner_;                      // pair of each contact
   std::array<Remembered, most_points> before_;  // of the pair under way, a substep ago
@@ -108,9 +116,9 @@ class Contacts {
   std::vector<dynamics::Contact> overlaps_;     // of these
   /// A pair of a collider that moves and one of a body that has, or may have, others beside it.
   struct OnBase {
-    std::size_t mover = 0;                   // a collider
-    std::size_t entity = 0;                  // of the base; Collider::floor: all that stands
-    std::size_t part = 0;                    // of it
+    std::size_t mover = 0;   // a collider
+    std::size_t entity = 0;  // of the base; Collider::floor: all that stands
+    std::size_t part = 0;    // of it
     int pair = 0;
     auto operator<=>(const OnBase&) const = default;
   };

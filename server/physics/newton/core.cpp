@@ -37,6 +37,20 @@ std::vector<CoordinateJoint> make_joints(const scene::Entity& entity, const Body
   return made;
 }
 
+/// Those of an entity: joints stand in the order of their entities.
+std::span<CoordinateJoint> joints_of(std::size_t entity, std::vector<CoordinateJoint>& joints) {
+  return {std::ranges::lower_bound(joints, entity, {}, &CoordinateJoint::entity),
+          std::ranges::upper_bound(joints, entity, {}, &CoordinateJoint::entity)};
+}
+
+/// Entities of a kind mostly come one after the other, or by turns with a few others.
+void share_mechanism(dynamics::Tree& tree, const std::vector<dynamics::Tree>& trees) {
+  constexpr std::size_t most = 8;
+  for (std::size_t i = 0; i < std::min(most, trees.size()); ++i) {
+    if (tree.share(trees[trees.size() - 1 - i])) return;
+  }
+}
+
 /// Those of all trees, if none are chosen.
 template <class Item, class Visit>
 void each_of(std::vector<Item>& items, const TreeSet* chosen, Visit visit) {
@@ -66,6 +80,7 @@ Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
   forget_usual_damping(body, settings_);
   dynamics::Tree tree = make_tree(body, entity, settings_);
   const std::vector<CoordinateJoint> joints = make_joints(entity, body);
+  share_mechanism(tree, system_.trees);
   make_room(system_.trees, 1);
   make_room(joints_, joints.size());
   make_room(held_, 1);
@@ -87,8 +102,7 @@ void NewtonCore::detach(std::size_t entity) {
 void NewtonCore::remove(Body& body) {
   detach(body.entity);
   system_.trees[body.entity].take_apart();
-  for (CoordinateJoint& joint : joints_) {
-    if (joint.entity != body.entity) continue;
+  for (CoordinateJoint& joint : joints_of(body.entity, joints_)) {
     joint.present = false;
     joint.mode = scene::JointMode::disabled;
     joint.limit.reset();
@@ -105,11 +119,11 @@ void NewtonCore::take_back(Body& body) {
 
 void NewtonCore::move(Body& body) {
   dynamics::Tree& old = system_.trees[body.entity];
-  dynamics::Tree tree(old.links, base_pose(body), old.freedoms);
+  dynamics::Tree tree(old, base_pose(body));
   tree.gravity = old.gravity;
   old = std::move(tree);
-  for (CoordinateJoint& joint : joints_) {
-    if (joint.entity == body.entity) joint.limit_impulse = joint.motor_impulse = 0;
+  for (CoordinateJoint& joint : joints_of(body.entity, joints_)) {
+    joint.limit_impulse = joint.motor_impulse = 0;
   }
   for (Held& held : held_) {
     if (held.entity == body.entity) held.impulses = {};
@@ -133,7 +147,8 @@ std::optional<std::size_t> NewtonCore::overlapped_by(
 }
 
 JointIndex NewtonCore::joint(std::size_t entity, std::size_t joint) const {
-  std::size_t i = 0;
+  std::size_t i = static_cast<std::size_t>(
+      std::ranges::lower_bound(joints_, entity, {}, &CoordinateJoint::entity) - joints_.begin());
   while (joints_[i].entity != entity || joints_[i].index != joint) ++i;
   return {i};
 }
@@ -163,11 +178,11 @@ void NewtonCore::set_servos_and_limits(std::span<Body> bodies, const Share& shar
   std::size_t entity = 0;  // joints of an entity stand together
   bool is_factored = false;
   each_of(joints_, share.chosen, [&](const CoordinateJoint& joint) {
-    dynamics::Tree& tree = system_.trees[joint.entity];
+    const dynamics::Tree& tree = system_.trees[joint.entity];
     if (std::exchange(entity, joint.entity) != joint.entity) is_factored = false;
     if (joint.mode != scene::JointMode::disabled) {
       const double impulse = joint.max_impulse / share.splits * share.of_impulses;
-      servos_.push_back(servo_of(joint, tree, share.length, impulse, is_factored));
+      servos_.push_back(servo_of(joint, tree, work_, share.length, impulse, is_factored));
       servos_.back().impulse *= share.of_impulses;
     }
     if (joint.limit) {

@@ -73,6 +73,7 @@ class NewtonCore {
 
   scene::Physics settings_;
   dynamics::System system_;
+  dynamics::Workspace work_;
   Colliders colliders_;
   Contacts contacts_{colliders_};
   std::vector<CoordinateJoint> joints_;

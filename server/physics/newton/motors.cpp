@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "dynamics/equations.h"
 #include "physics/convert.h"
 #include "physics/newton/tree.h"
 
@@ -19,31 +18,32 @@ double stoppable_velocity(double distance, double deceleration, double length) {
 }
 
 /// The velocity of a motor that seeks a position.
-double approach(double error, dynamics::Tree& tree, int dof, double length, double impulse,
-                bool& is_factored) {
+double approach(double error, const dynamics::Tree& tree, dynamics::Workspace& work, int dof,
+                double length, double impulse, bool& is_factored) {
   const double velocity = error / length;
   if (impulse == 0 || error == 0) return velocity;
   if (!std::exchange(is_factored, true)) {
-    compute_mass(tree);
-    factor_mass(tree, length);
+    compute_mass(tree, work);
+    factor_mass(tree, work, length);
   }
   // Half the strength for braking leaves the other half for gravity and other loads.
-  const double deceleration = 0.5 * impulse * mobility(tree, dof) / length;
+  const double deceleration = 0.5 * impulse * mobility(tree, work, dof) / length;
   const double most = stoppable_velocity(std::abs(error), deceleration, length);
   return std::clamp(velocity, -most, most);
 }
 
 }  // namespace
 
-dynamics::Servo servo_of(const CoordinateJoint& joint, dynamics::Tree& tree, double length,
-                         double impulse, bool& is_factored) {
+dynamics::Servo servo_of(const CoordinateJoint& joint, const dynamics::Tree& tree,
+                         dynamics::Workspace& work, double length, double impulse,
+                         bool& is_factored) {
   dynamics::Servo servo;
   servo.tree = static_cast<int>(joint.entity);
   servo.dof = dof_of(tree, joint.part);
   servo.speed = joint.target;
   if (joint.mode == scene::JointMode::position) {
     const double error = joint.target - tree.q[place_of(tree, joint.part)];
-    servo.speed = approach(error, tree, servo.dof, length, impulse, is_factored);
+    servo.speed = approach(error, tree, work, servo.dof, length, impulse, is_factored);
   }
   servo.lower = -impulse;
   servo.upper = impulse;

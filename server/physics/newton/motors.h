@@ -24,11 +24,12 @@ struct CoordinateJoint {
 };
 
 /// The servo of a motor for the coming substep.
-/// @param length     of the (internal) substep [s]
-/// @param impulse    its limit in that substep [N s] or [N m s]
-/// @param is_factored  whether the tree's mass is, as it is now; in and out
-dynamics::Servo servo_of(const CoordinateJoint& joint, dynamics::Tree& tree, double length,
-                         double impulse, bool& is_factored);
+/// @param length       of the (internal) substep [s]
+/// @param impulse      its limit in that substep [N s] or [N m s]
+/// @param is_factored  whether `work` has the factors of the tree's mass as it is now; in and out
+dynamics::Servo servo_of(const CoordinateJoint& joint, const dynamics::Tree& tree,
+                         dynamics::Workspace& work, double length, double impulse,
+                         bool& is_factored);
 
 /// What holds a body to its GroundMotion: speeds along and across, turn rate about the vertical.
 /// @param impulses  of the last substep

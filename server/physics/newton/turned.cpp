@@ -32,8 +32,9 @@ std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& syste
     const contact::Contacts found =
         contact::find(a.shape, pose(a), b.shape, pose(b), close, contact::Support::all);
     if (!is_deep(found)) continue;
+    const dynamics::Contact law = law_of(a, b, pair.normal, pair.count);
     for (int i = 0; i < found.count; ++i) {
-      dynamics::Contact& contact = overlaps_.emplace_back(pair.law);
+      dynamics::Contact& contact = overlaps_.emplace_back(law);
       contact.normal = from_bullet(found.normal);
       contact.point = from_bullet(found.points[i].on_b);
       contact.gap = found.points[i].distance;

@@ -23,11 +23,12 @@ Vector3 angular_momentum(const Tree& tree) {
 }
 
 TEST(Flight, FallsAlongAParabolaWhateverTheStep) {
+  Workspace work;
   for (const double hz : {50.0, 100.0, 1000.0}) {
     Tree body = testing::box({0.1, 0.2, 0.3}, 2, {});
     body.v[3] = 1;
     testing::weigh(body);
-    for (int i = 0; i < hz; ++i) fly(body, 1 / hz);
+    for (int i = 0; i < hz; ++i) fly(body, work, 1 / hz);
     EXPECT_NEAR(body.position[0].x(), 1, 1e-12);
     EXPECT_NEAR(body.position[0].z(), -g / 2, 1e-11);
   }
@@ -36,6 +37,7 @@ TEST(Flight, FallsAlongAParabolaWhateverTheStep) {
 // L. D. Landau, E. M. Lifshitz, Mechanics, section 37: the components of the angular velocity in
 // the body are Jacobi's elliptic functions, of period 4 K(k) / rate.
 TEST(Flight, AnAsymmetricBodyKeepsEnergyAndMomentumForAMinuteAndFlipsOnTime) {
+  Workspace work;
   Tree body = testing::box({0.1, 0.2, 0.3}, 1, {});
   const Vector3 inertia = body.links[0].inertia;  // falls: about x most
   body.v[0] = 0.01, body.v[1] = 8, body.v[2] = 0.02;
@@ -56,7 +58,7 @@ TEST(Flight, AnAsymmetricBodyKeepsEnergyAndMomentumForAMinuteAndFlipsOnTime) {
   double first = 0, last = 0, before = 8;
   int flips = 0;
   for (int i = 1; i <= 6000; ++i) {
-    fly(body, 0.01);
+    fly(body, work, 0.01);
     const double middle = (body.rotation[0].transpose() * body.motion[0].angular).y();
     if (middle * before < 0) {
       last = 0.01 * (i - middle / (middle - before));
@@ -71,9 +73,10 @@ TEST(Flight, AnAsymmetricBodyKeepsEnergyAndMomentumForAMinuteAndFlipsOnTime) {
 }
 
 TEST(Flight, TurnsExactlyAtAnySpeed) {
+  Workspace work;
   Tree ball = testing::box({0.1, 0.1, 0.1}, 1, {});
   ball.v[2] = 526;
-  for (int i = 0; i < 100; ++i) fly(ball, 0.01);
+  for (int i = 0; i < 100; ++i) fly(ball, work, 0.01);
   const Matrix3 turned = Eigen::AngleAxisd(526, Vector3::UnitZ()).toRotationMatrix();
   EXPECT_NEAR((ball.rotation[0] - turned).norm(), 0, 1e-9);
   EXPECT_DOUBLE_EQ(ball.v[2], 526);
@@ -82,6 +85,7 @@ TEST(Flight, TurnsExactlyAtAnySpeed) {
 /// A spinning disc on a rod whose other end is held: at a level axis the steady precession is
 /// m g l / (I spin) exactly.
 double precession_error(double hz, double spin) {
+  Workspace work;
   Link disc;
   disc.mass = 1;
   disc.inertia = Vector3(0.005, 0.0025, 0.0025);  // axis along x
@@ -95,7 +99,7 @@ double precession_error(double hz, double spin) {
   const double seconds = 2;
   double angle = 0, before = 0;
   for (int i = 0; i < seconds * hz; ++i) {
-    fly(top, 1 / hz);
+    fly(top, work, 1 / hz);
     const double now = std::atan2(top.position[1].y(), top.position[1].x());
     angle += std::remainder(now - before, 2 * std::numbers::pi);
     before = now;
@@ -110,11 +114,12 @@ TEST(Flight, AGyroscopePrecesses) {
 }
 
 double energy_error(Tree tree, double seconds, double hz, double scale) {
+  Workspace work;
   testing::weigh(tree);
   const double energy = testing::energy(tree);
   double worst = 0;
   for (int i = 0; i < seconds * hz; ++i) {
-    fly(tree, 1 / hz);
+    fly(tree, work, 1 / hz);
     worst = std::max(worst, std::abs(testing::energy(tree) - energy) / scale);
   }
   return worst;
@@ -128,13 +133,14 @@ TEST(Flight, PendulumsKeepTheirEnergy) {
 
 // A light chain with a load swings down like a pendulum of its length: v = sqrt(2 g l).
 TEST(Flight, ALightChainSwingsAHeavyLoad) {
+  Workspace work;
   constexpr int count = long_runs::links_of_a_chain;
   for (const double hz : {100.0, 1000.0}) {
     Tree tree = testing::chain(count, 1.0 / count, 0.01, 100);
     testing::weigh(tree);
     double fastest = 0;
     for (int i = 0; i < hz; ++i) {
-      fly(tree, 1 / hz);
+      fly(tree, work, 1 / hz);
       fastest = std::max(fastest, tree.velocity(count).norm());
     }
     EXPECT_NEAR(fastest, std::sqrt(2 * g), 0.02 * std::sqrt(2 * g)) << hz;

@@ -1,7 +1,6 @@
 // Entities added to and removed from a running world.
 
 #include <gtest/gtest.h>
-
 #include <time.h>
 
 #include <cmath>
@@ -116,6 +115,24 @@ TEST(AddEntity, OverlapIsTestedAtPresentPoses) {
   EXPECT_EQ(world.overlapped_by(box_at(position(world, 1))), 1u);
   world.remove(0);
   EXPECT_EQ(world.overlapped_by(box_at({0, 0, 0})), std::nullopt);
+}
+
+TEST(RemoveEntity, WakesAllThatRestsOnItAfterOthersCameAndWent) {
+  World world(with_gravity(9.8), 0.01);
+  world.add(single(scene::EntityKind::box, {}, false, scene::Box{{1, 1, 0.1}}, 1));
+  for (int i = 0; i < 9; ++i) world.add(box_at({0.105 * (i - 4), 0, 0.1}));
+  for (int i = 0; i < 100; ++i) world.step();
+  for (const std::size_t gone : {5, 9, 1, 6}) world.remove(gone);  // within its list, both ends
+  world.add(box_at({0, 0, 0.11}));
+  for (int i = 0; i < 100; ++i) world.step();
+  for (const std::size_t rests : {2, 3, 4, 7, 8, 10}) {
+    ASSERT_NEAR(position(world, rests).z(), 0.1, 1e-4) << rests;
+  }
+  world.remove(0);
+  for (int i = 0; i < 20; ++i) world.step();
+  for (const std::size_t falls : {2, 3, 4, 7, 8, 10}) {
+    EXPECT_NEAR(position(world, falls).z(), 0.1 - fall(9.8, 0.01, 20), 1e-3) << falls;
+  }
 }
 
 TEST(RemoveEntity, WakesBodiesThatSleptOnIt) {

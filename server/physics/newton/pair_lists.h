@@ -1,0 +1,38 @@
+#pragma once
+// Which pairs each collider is in, so that one which is removed or moved is forgotten without a
+// look at all other pairs.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace ziggurat::physics {
+
+class PairLists {
+ public:
+  /// Makes lists for this many colliders. Those beyond must be empty.
+  void resize(std::size_t colliders) { first_.resize(colliders, 0); }
+  void clear() { first_.clear(), places_.clear(); }
+  /// Makes memory for pairs with lower numbers than this: add() takes none then.
+  void make_room(std::size_t pairs);
+  /// Puts a pair into the lists of its colliders.
+  /// @param pair  its number, > 0;  @param b  none: what has no list
+  void add(int pair, std::size_t a, std::optional<std::size_t> b);
+  void remove(int pair);
+  /// Appends a collider's pairs to `out`, in any order.
+  void collect(std::size_t collider, std::vector<int>& out) const;
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  /// Where a pair stands in the lists of its two colliders.
+  struct Place {
+    std::array<std::size_t, 2> colliders{none, none};
+    std::array<int, 2> previous{}, next{};  // 0: none
+    std::size_t side(std::size_t collider) const { return colliders[0] == collider ? 0 : 1; }
+  };
+  std::vector<Place> places_;  // by the pairs' numbers
+  std::vector<int> first_;     // of each collider; 0: none
+};
+
+}  // namespace ziggurat::physics
