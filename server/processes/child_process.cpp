@@ -37,9 +37,17 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return result;
 }
 
+// Creates the file, or empties it. @throws std::system_error
+int open_output(const std::string& path) {
+  if (path.empty()) return -1;
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
+  if (file < 0) throw std::system_error(errno, std::generic_category(), path);
+  return file;
+}
+
 // Between fork and exec: async-signal-safe calls only. Reports errno through the pipe.
 [[noreturn]] void become(char* const* arguments, char* const* environment, pid_t parent, int report,
-                         const Guardian* guardian) {
+                         int output, const Guardian* guardian) {
   ::setpgid(0, 0);
   if (guardian) guardian->end_group(::getpid());
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -51,6 +59,10 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   const int empty = ::open("/dev/null", O_RDONLY);
   if (empty >= 0) ::dup2(empty, STDIN_FILENO);
+  if (output >= 0) {
+    ::dup2(output, STDOUT_FILENO);
+    ::dup2(output, STDERR_FILENO);
+  }
   ::execvpe(arguments[0], arguments, environment);
   const int error = errno;
   [[maybe_unused]] const auto written = ::write(report, &error, sizeof error);
@@ -64,14 +76,21 @@ ChildProcess::ChildProcess(const Program& program, const Guardian* guardian) : g
   auto environment = environment_with(program.environment);
   const auto argument_pointers = pointers(arguments);
   const auto environment_pointers = pointers(environment);
+  const int output = open_output(program.output);
   int report[2];
-  if (::pipe2(report, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category());
+  if (::pipe2(report, O_CLOEXEC) != 0) {
+    const int error = errno;
+    if (output >= 0) ::close(output);
+    throw std::system_error(error, std::generic_category());
+  }
   const pid_t parent = ::getpid();
   id_ = ::fork();
   if (id_ == 0) {
-    become(argument_pointers.data(), environment_pointers.data(), parent, report[1], guardian);
+    become(argument_pointers.data(), environment_pointers.data(), parent, report[1], output,
+           guardian);
   }
   const int fork_error = errno;
+  if (output >= 0) ::close(output);
   ::close(report[1]);
   if (id_ < 0) {
     ::close(report[0]);
@@ -129,6 +148,11 @@ std::string ChildProcess::how_it_ended() const {
     return fmt::format("was killed by signal {} ({})", number, ::strsignal(number));
   }
   return fmt::format("ended with exit code {}", WEXITSTATUS(status));
+}
+
+int ChildProcess::exit_code() const {
+  const int status = status_.value();
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
 void ChildProcess::signal(int number) const { ::kill(-id_, number); }

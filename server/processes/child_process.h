@@ -16,13 +16,14 @@ namespace ziggurat::processes {
 struct Program {
   std::vector<std::string> arguments;  ///< [0] is searched in PATH unless it contains a slash
   std::vector<std::pair<std::string, std::string>> environment;  ///< added to that of this program
+  std::string output;  ///< a file that gets its stdout and stderr; empty: those of this program
 };
 
 class ChildProcess {
  public:
-  /// Starts it with an empty stdin, the same stdout and stderr, and no signal blocked or ignored.
+  /// Starts it with an empty stdin, and no signal blocked or ignored.
   /// @param guardian  kills its group if this program is killed; must outlive it; null: none
-  /// @throws std::system_error if it cannot be started
+  /// @throws std::system_error if it cannot be started, or its output not be written
   explicit ChildProcess(const Program& program, const Guardian* guardian = nullptr);
   /// Kills the processes of its group that still run.
   ~ChildProcess();
@@ -35,6 +36,7 @@ class ChildProcess {
   bool poll();
   bool ended() const { return status_.has_value(); }
   bool ended_well() const { return status_ == 0; }  ///< with exit code 0
+  int exit_code() const;  ///< 128 + N if signal N killed it; only after it has ended
 
   /// "ended with exit code 3" or "was killed by signal 9 (Killed)"; only after it has ended.
   std::string how_it_ended() const;

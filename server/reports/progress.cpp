@@ -5,19 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "text/duration.h"
+
 namespace ziggurat::reports {
 namespace {
 
 constexpr std::chrono::milliseconds interval{200};
 constexpr double memory_s = 3;  // of the rate that the time left is computed with
-
-/// `45 s`, `3 min 20 s` or `2 h 5 min`.
-std::string duration(double seconds) {
-  const auto whole = static_cast<std::uint64_t>(std::min(std::ceil(seconds), 1e15));
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
-  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
-}
 
 }  // namespace
 
@@ -48,7 +42,7 @@ std::string reached(std::uint64_t tick, std::optional<std::uint64_t> ticks, doub
   std::string text = fmt::format("t = {:.2f} of {:.2f} s ({:.0f} %)", time,
                                  static_cast<double>(*ticks) * tick_length, std::floor(100 * share));
   if (rate > 0 && tick <= *ticks) {
-    text += fmt::format(", {} left", duration(static_cast<double>(*ticks - tick) / rate));
+    text += fmt::format(", {} left", text::to_duration(static_cast<double>(*ticks - tick) / rate));
   }
   return text;
 }

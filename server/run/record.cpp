@@ -14,10 +14,10 @@
 
 #include "network/glob.h"
 #include "processes/places.h"
+#include "processes/required_scripts.h"
 #include "processes/scripts.h"
 #include "recording/output_file.h"
 #include "run/build.h"
-#include "run/required_scripts.h"
 
 namespace ziggurat::run {
 namespace {
@@ -42,7 +42,7 @@ std::string read(const fs::path& path) {
 /// Each script of the scene, and what it loads from its folders, once.
 void add_scripts(const supervision::World& world, recorder::Start& start) {
   std::vector<fs::path> scripts = processes::scripts_of(world.scene, world.path);
-  add_required(scripts);
+  processes::add_required(scripts);
   for (const fs::path& script : scripts) {
     start.files.push_back({name_of_script(script, world.path), read(script)});
   }

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <vector>
 
-namespace ziggurat::run {
+namespace ziggurat::processes {
 
 /// Appends the files that the scripts name in `require`, `dofile` and `loadfile` as plain texts, and
 /// those that these name, as far as they are found in the folder of a script. Of names that are put
 /// together, as in `require(here .. "tool")`, the end is looked for beside the script; others are not found.
 void add_required(std::vector<std::filesystem::path>& scripts);
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::processes

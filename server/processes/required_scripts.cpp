@@ -1,4 +1,4 @@
-#include "run/required_scripts.h"
+#include "processes/required_scripts.h"
 
 #include <algorithm>
 #include <fstream>
@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-namespace ziggurat::run {
+namespace ziggurat::processes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,4 +63,4 @@ void add_required(std::vector<fs::path>& scripts) {
   }
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::processes
