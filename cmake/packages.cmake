@@ -13,6 +13,8 @@ pkg_check_modules(sodium REQUIRED IMPORTED_TARGET GLOBAL libsodium)
 if(ZIGGURAT_TESTS)
   pkg_check_modules(httplib REQUIRED IMPORTED_TARGET GLOBAL cpp-httplib)
 endif()
+pkg_check_modules(sqlite REQUIRED IMPORTED_TARGET GLOBAL sqlite3)
+find_path(tomlplusplus_include toml++/toml.h REQUIRED)  # headers and no more
 pkg_check_modules(lua REQUIRED IMPORTED_TARGET GLOBAL lua5.3)
 pkg_check_modules(png REQUIRED IMPORTED_TARGET GLOBAL libpng)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET GLOBAL libzstd)

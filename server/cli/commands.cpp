@@ -16,6 +16,8 @@ constexpr Command table[] = {
     {"serve", "run a scene for controllers that connect from outside", help_serve, execute_serve},
     {"check", "report every fault and notice of scene files", help_check, execute_check},
     {"render", "draw a scene at given times", help_render, execute_render},
+    {"sweep", "run a scene with every combination of parameters and seeds", help_sweep,
+     execute_sweep},
     {"replay", "repeat a recorded run, to the bit, without its controllers", help_replay,
      execute_replay},
     {"fork", "go on live from a tick of a recorded run", help_fork, execute_fork},

@@ -16,7 +16,7 @@ namespace ziggurat::processes {
 struct Program {
   std::vector<std::string> arguments;  ///< [0] is searched in PATH unless it contains a slash
   std::vector<std::pair<std::string, std::string>> environment;  ///< added to that of this program
-  std::string output;  ///< a file that gets its stdout and stderr; empty: those of this program
+  std::string output = {};  ///< a file that gets its stdout and stderr; empty: those of this program
 };
 
 class ChildProcess {

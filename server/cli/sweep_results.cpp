@@ -1,0 +1,274 @@
+#include "cli/sweep_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/program_options/options_description.hpp>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "cli/arguments.h"
+#include "reports/console.h"
+#include "scene/values.h"
+#include "sweep/columns.h"
+#include "sweep/folder.h"
+#include "sweep/ledger.h"
+#include "sweep/means.h"
+#include "sweep/plot.h"
+#include "sweep/slurm.h"
+#include "text/names.h"
+#include "text/numbers.h"
+
+namespace ziggurat::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+/// A folder's sweep, as far as it got.
+struct Sofar {
+  sweep::Folder folder;
+  sweep::Experiment experiment;
+  std::vector<sweep::Result> results;
+};
+
+Sofar look(const char* verb, const Parsed& parsed) {
+  if (parsed.positional.size() != 1) {
+    throw text::UsageError(
+        fmt::format("one folder of a sweep is expected; write: ziggurat sweep {} DIR", verb));
+  }
+  sweep::Folder folder(parsed.positional.front());
+  auto experiment = folder.definition().experiment;
+  auto results = folder.results();
+  return {std::move(folder), std::move(experiment), std::move(results)};
+}
+
+std::string option_text(const Parsed& parsed, const char* name) {
+  return parsed.values.count(name) == 0 ? std::string() : parsed.values[name].as<std::string>();
+}
+
+double confidence_of(const Parsed& parsed) {
+  if (parsed.values.count("confidence") == 0) return 0.95;
+  const double value = text::to_number("--confidence", option_text(parsed, "confidence"));
+  if (value > 0 && value < 1) return value;
+  throw text::UsageError(
+      fmt::format("--confidence is {}; it must be between 0 and 1: 0.95", option_text(parsed, "confidence")));
+}
+
+/// @throws text::UsageError if no run has it
+std::string check_measure(const std::string& name, const std::vector<std::string>& known) {
+  if (std::ranges::find(known, name) != known.end()) return name;
+  throw text::UsageError(
+      fmt::format("no run has a metric {}; {}", scene::in_quotes(name),
+                  text::advice(name, known, fmt::format("known here: {}", fmt::join(known, ", ")))));
+}
+
+/// Metrics, and without any of those what every run has.
+std::vector<std::string> usual_measures(const std::vector<sweep::Result>& results) {
+  std::vector<std::string> names;
+  for (const std::string& name : sweep::measures_of(results)) {
+    const auto has_metric = [&](const auto& result) { return result.metrics.contains(name); };
+    if (std::ranges::any_of(results, has_metric)) names.push_back(name);
+  }
+  if (names.empty()) names = {"ticks", "simulated_s"};
+  return names;
+}
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// In columns of equal width.
+std::string aligned(const Rows& rows) {
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format("{:<{}}  ", row[i], widths[i]);
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  text.pop_back();
+  return text;
+}
+
+std::string as_csv(const Rows& rows) {
+  std::string text;
+  for (const auto& row : rows) {
+    std::vector<std::string> fields;
+    std::ranges::transform(row, std::back_inserter(fields), sweep::csv_field);
+    text += fmt::format("{}\n", fmt::join(fields, ","));
+  }
+  text.pop_back();
+  return text;
+}
+
+/// A row for each combination of the axes, with means and halves of their intervals.
+Rows table_of_means(const Sofar& sofar, const std::vector<std::size_t>& axes,
+                    const std::vector<std::string>& measures, double confidence) {
+  Rows rows(1);
+  for (const std::size_t axis : axes) rows[0].push_back(sofar.experiment.axes[axis].name);
+  rows[0].insert(rows[0].end(), {"runs", "failed"});
+  for (const std::string& measure : measures) {
+    rows[0].insert(rows[0].end(), {measure, fmt::format("+-{:g}%", 100 * confidence)});
+  }
+  for (const auto& group :
+       sweep::group(sofar.experiment, sofar.results, axes, measures, confidence)) {
+    auto& row = rows.emplace_back(group.values);
+    row.push_back(fmt::format("{}", group.finished));
+    row.push_back(fmt::format("{}", group.failed));
+    for (const auto& estimate : group.estimates) {
+      row.insert(row.end(), {number(estimate.mean), number(estimate.half_width)});
+    }
+  }
+  return rows;
+}
+
+/// Writes what tasks of a cluster found into the one table, unless a sweep works on it now.
+void gather(const Sofar& sofar) {
+  if (!std::filesystem::exists(sofar.folder.of_tasks())) return;
+  if (sweep::Lock::is_held(sofar.folder.path() / "lock")) return;
+  const sweep::Lock lock(sofar.folder.path() / "lock");
+  sweep::Ledger ledger(sofar.folder.ledger().string());
+  std::map<std::size_t, sweep::Outcome> known;
+  for (const auto& each : ledger.read()) known[each.run] = each.outcome;
+  for (const auto& each : sofar.results) {
+    const auto found = known.find(each.run);
+    if (found == known.end() || found->second != each.outcome) ledger.write(each, sofar.experiment);
+  }
+  ledger.make_view(sofar.experiment);
+}
+
+po::options_description results_options() {
+  po::options_description options("Options", 96);
+  options.add_options()  //
+      ("runs", "a row per run as CSV, not means")  //
+      ("csv", "the means as CSV")                  //
+      ("by", po::value<std::vector<std::string>>()->composing()->value_name("AXIS"),
+       "means over all runs with the same value of this axis; may be repeated; default: all axes")  //
+      ("metric", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
+       "this metric only, or another number of runs as ticks or wall_s; may be repeated")  //
+      ("confidence", po::value<std::string>()->value_name("P"),
+       "of the intervals; default 0.95");
+  return options;
+}
+
+po::options_description plot_options() {
+  po::options_description options("Options", 96);
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  options.add_options()                                                                     //
+      ("y", text("METRIC"), "what is averaged: a metric, or ticks, wall_s, …")              //
+      ("x", text("AXIS"), "from left to right; default: the first axis with two values or more")  //
+      ("by", text("AXIS"), "a curve for each value of this axis")                           //
+      ("confidence", text("P"), "of the error bars; default 0.95")                          //
+      ("file", text("FILE.svg"), "the picture; default: METRIC.svg in the folder");
+  return options;
+}
+
+std::size_t usual_abscissa(const sweep::Experiment& experiment) {
+  const auto found = std::ranges::find_if(experiment.axes,
+                                          [](const auto& axis) { return axis.values.size() > 1; });
+  if (found != experiment.axes.end()) {
+    return static_cast<std::size_t>(found - experiment.axes.begin());
+  }
+  throw text::UsageError("the sweep has no axis with two values or more, so no axis can go "
+                         "from left to right");
+}
+
+}  // namespace
+
+int sweep_status(const Arguments& arguments) {
+  const Parsed parsed = parse(arguments, po::options_description());
+  const Sofar sofar = look("status", parsed);
+  reports::Console console;
+  const std::size_t total = run_count(sofar.experiment);
+  std::vector<sweep::Result> failed;
+  std::ranges::copy_if(sofar.results, std::back_inserter(failed), [](const auto& each) {
+    return each.outcome != sweep::Outcome::finished;
+  });
+  const bool works = sweep::Lock::is_held(sofar.folder.path() / "lock");
+  console.result(fmt::format("{} of {} runs are done, {} of them failed{}", sofar.results.size(),
+                             total, failed.size(), works ? "; a sweep works on the others" : ""));
+  constexpr std::size_t most = 20;
+  for (std::size_t i = 0; i < std::min(most, failed.size()); ++i) {
+    console.result(fmt::format("  run {}: {}, exit code {}: {}", failed[i].run,
+                               to_text(failed[i].outcome), failed[i].exit_code,
+                               sofar.folder.log_of(failed[i].run).string()));
+  }
+  if (failed.size() > most) console.result(fmt::format("  and {} more", failed.size() - most));
+  const auto queued = sweep::slurm_status(sofar.folder);
+  if (queued) console.result(*queued);
+  if (sofar.results.size() < total && !works && !queued) {
+    console.result(fmt::format("to go on: ziggurat sweep resume {}", parsed.positional.front()));
+  }
+  console.flush();
+  return exit_code::finished;
+}
+
+int sweep_results(const Arguments& arguments) {
+  const Parsed parsed = parse(arguments, results_options());
+  const Sofar sofar = look("results", parsed);
+  sofar.folder.write_csv(sofar.experiment, sofar.results);
+  gather(sofar);
+  reports::Console console;
+  if (parsed.values.count("runs")) {
+    std::string csv = to_csv(sofar.experiment, sofar.results);
+    csv.pop_back();
+    console.result(csv);
+    console.flush();
+    return exit_code::finished;
+  }
+  std::vector<std::size_t> axes(sofar.experiment.axes.size());
+  std::iota(axes.begin(), axes.end(), std::size_t{0});
+  if (parsed.values.count("by")) {
+    axes.clear();
+    for (const auto& name : parsed.values["by"].as<std::vector<std::string>>()) {
+      axes.push_back(axis_named(sofar.experiment, name));
+    }
+  }
+  std::vector<std::string> measures = usual_measures(sofar.results);
+  if (parsed.values.count("metric")) {
+    measures = parsed.values["metric"].as<std::vector<std::string>>();
+    for (const auto& name : measures) check_measure(name, sweep::measures_of(sofar.results));
+  }
+  const Rows rows = table_of_means(sofar, axes, measures, confidence_of(parsed));
+  console.result(parsed.values.count("csv") ? as_csv(rows) : aligned(rows));
+  console.flush();
+  return exit_code::finished;
+}
+
+int sweep_plot(const Arguments& arguments) {
+  const Parsed parsed = parse(arguments, plot_options());
+  const Sofar sofar = look("plot", parsed);
+  sweep::Plot plot;
+  plot.confidence = confidence_of(parsed);
+  plot.x = parsed.values.count("x") ? axis_named(sofar.experiment, option_text(parsed, "x"))
+                                    : usual_abscissa(sofar.experiment);
+  if (parsed.values.count("by")) plot.series = axis_named(sofar.experiment, option_text(parsed, "by"));
+  const auto usual = usual_measures(sofar.results);
+  if (parsed.values.count("y")) {
+    plot.measure = check_measure(option_text(parsed, "y"), sweep::measures_of(sofar.results));
+  } else if (usual.size() == 1) {
+    plot.measure = usual.front();
+  } else {
+    throw text::UsageError(
+        fmt::format("what to plot? Write --y METRIC, as --y {}; known here: {}", usual.front(),
+                    fmt::join(sweep::measures_of(sofar.results), ", ")));
+  }
+  std::string name = plot.measure;
+  std::ranges::replace(name, '/', '_');
+  const auto file = parsed.values.count("file") ? std::filesystem::path(option_text(parsed, "file"))
+                                                : sofar.folder.path() / (name + ".svg");
+  if (file.extension() != ".svg") {
+    throw text::UsageError(fmt::format("--file is '{}'; its name must end with .svg", file.string()));
+  }
+  sweep::draw(sofar.experiment, sofar.results, plot, file);
+  reports::Console console;
+  console.result(file.string());
+  console.flush();
+  return exit_code::finished;
+}
+
+}  // namespace ziggurat::cli

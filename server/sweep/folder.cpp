@@ -1,0 +1,152 @@
+#include "sweep/folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <system_error>
+#include <thread>
+
+#include "sweep/columns.h"
+#include "sweep/ledger.h"
+#include "text/numbers.h"
+
+namespace ziggurat::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds lock_patience{5};  // for the runs of a program that was killed
+
+fs::path definition_file(const fs::path& folder) { return folder / "experiment.json"; }
+
+[[noreturn]] void fail_at(const fs::path& path) {
+  throw std::system_error(errno, std::generic_category(), path.string());
+}
+
+void write_all(int file, std::string_view text, const fs::path& path) {
+  while (!text.empty()) {
+    const ssize_t count = ::write(file, text.data(), text.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail_at(path);
+    text.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_file(const fs::path& path, const std::string& text) {
+  fs::path draft = path;
+  draft += fmt::format(".{}.new", ::getpid());
+  const int file = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) fail_at(draft);
+  try {
+    write_all(file, text, draft);
+    if (::fsync(file) != 0) fail_at(draft);
+    if (::rename(draft.c_str(), path.c_str()) != 0) fail_at(path);
+  } catch (...) {
+    ::close(file);
+    ::unlink(draft.c_str());
+    throw;
+  }
+  ::close(file);
+}
+
+Definition Folder::definition() const {
+  const fs::path path = definition_file(path_);
+  if (!fs::exists(path)) {
+    throw text::UsageError(fmt::format("{} is no folder of a sweep: it has no experiment.json; write "
+                                       "the folder of --out",
+                                       path_.string()));
+  }
+  return definition_from_json(read_file(path), path.string());
+}
+
+void Folder::begin(const Definition& definition) const {
+  if (fs::exists(definition_file(path_))) {
+    check_same(this->definition(), definition, path_.string());
+    return;
+  }
+  fs::create_directories(path_);
+  const bool has_others = std::any_of(fs::directory_iterator(path_), {}, [](const auto& entry) {
+    const std::string name = entry.path().filename();
+    return name != "lock" && !name.starts_with("experiment.json.");
+  });
+  if (has_others) {
+    throw text::UsageError(fmt::format("{} has files that are no sweep's; write an empty or a new "
+                                       "folder with --out",
+                                       path_.string()));
+  }
+  write_file(definition_file(path_), to_json(definition));
+}
+
+std::vector<Result> Folder::results() const {
+  std::vector<fs::path> ledgers;
+  if (fs::exists(of_tasks())) {
+    for (const auto& entry : fs::directory_iterator(of_tasks())) {
+      if (entry.path().extension() == ".sqlite") ledgers.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(ledgers);
+  if (fs::exists(ledger())) ledgers.push_back(ledger());
+  std::map<std::size_t, Result> by_run;
+  for (const fs::path& path : ledgers) {
+    for (Result& result : Ledger(path.string()).read()) {
+      auto& known = by_run[result.run];
+      // Of a run that failed here and finished there, the end counts.
+      if (known.run == 0 || known.outcome != Outcome::finished) known = std::move(result);
+    }
+  }
+  std::vector<Result> results;
+  for (auto& [run, result] : by_run) results.push_back(std::move(result));
+  return results;
+}
+
+void Folder::write_csv(const Experiment& experiment, const std::vector<Result>& results) const {
+  write_file(csv(), to_csv(experiment, results));
+}
+
+fs::path Folder::of_run(std::size_t run) const { return path_ / "runs" / fmt::format("{:06}", run); }
+
+fs::path Folder::task_ledger(std::size_t task) const {
+  return of_tasks() / fmt::format("{:04}.sqlite", task);
+}
+
+Lock::Lock(const fs::path& path) {
+  // Without O_CLOEXEC: runs hold it, too.
+  file_ = ::open(path.c_str(), O_RDWR | O_CREAT, 0644);
+  if (file_ < 0) fail_at(path);
+  const auto end = std::chrono::steady_clock::now() + lock_patience;
+  while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    if (std::chrono::steady_clock::now() > end) {
+      ::close(file_);
+      throw text::UsageError(fmt::format("another program works on this sweep now: it holds {}; wait "
+                                         "for it, or end it",
+                                         path.string()));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+Lock::~Lock() { ::close(file_); }
+
+bool Lock::is_held(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool is_free = ::flock(file, LOCK_SH | LOCK_NB) == 0;
+  ::close(file);
+  return !is_free;
+}
+
+}  // namespace ziggurat::sweep

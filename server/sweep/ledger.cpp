@@ -1,0 +1,238 @@
+#include "sweep/ledger.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "sweep/columns.h"
+
+namespace ziggurat::sweep {
+namespace {
+
+constexpr int busy_ms = 10'000;  // wait for another program that reads or writes
+
+constexpr const char* schema = R"(
+CREATE TABLE IF NOT EXISTS runs (
+  run INTEGER PRIMARY KEY, seed INTEGER NOT NULL, outcome TEXT NOT NULL, exit_code INTEGER NOT NULL,
+  ending TEXT NOT NULL, ticks INTEGER, simulated_s REAL, hash TEXT NOT NULL, robots INTEGER,
+  failures INTEGER, dropped INTEGER, solver_not_converged INTEGER, solver_worst_residual REAL,
+  wall_s REAL NOT NULL, version TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS parameters (
+  run INTEGER NOT NULL REFERENCES runs, name TEXT NOT NULL, value NUMERIC NOT NULL,
+  PRIMARY KEY (run, name)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS metrics (
+  run INTEGER NOT NULL REFERENCES runs, name TEXT NOT NULL, value REAL,
+  PRIMARY KEY (run, name)) WITHOUT ROWID;
+)";
+
+/// As SQL writes a name or a text: in these quotes, which are doubled inside.
+std::string sql_text(std::string_view text, char quote) {
+  std::string result(1, quote);
+  for (const char c : text) {
+    if (c == quote) result += c;
+    result += c;
+  }
+  return result + quote;
+}
+
+}  // namespace
+
+class Ledger::Statement {
+ public:
+  Statement(const Ledger& ledger, const std::string& sql) : ledger_(ledger) {
+    if (sqlite3_prepare_v2(ledger.database_, sql.c_str(), -1, &statement_, nullptr) != SQLITE_OK) {
+      ledger.fail();
+    }
+  }
+  ~Statement() { sqlite3_finalize(statement_); }
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  void bind(std::int64_t value) { sqlite3_bind_int64(statement_, ++bound_, value); }
+  void bind(double value) { sqlite3_bind_double(statement_, ++bound_, value); }
+  void bind(const std::string& text) {
+    sqlite3_bind_text(statement_, ++bound_, text.data(), static_cast<int>(text.size()),
+                      SQLITE_TRANSIENT);
+  }
+  void bind(const std::optional<std::uint64_t>& value) {
+    if (!value) return static_cast<void>(++bound_);  // NULL
+    bind(static_cast<std::int64_t>(*value));
+  }
+  void bind(const std::optional<double>& value) {
+    if (!value) return static_cast<void>(++bound_);
+    bind(*value);
+  }
+
+  /// False behind the last row.
+  bool step() {
+    const int result = sqlite3_step(statement_);
+    if (result != SQLITE_ROW && result != SQLITE_DONE) ledger_.fail();
+    column_ = -1;
+    return result == SQLITE_ROW;
+  }
+  void run() {
+    step();
+    sqlite3_reset(statement_);
+    sqlite3_clear_bindings(statement_);
+    bound_ = 0;
+  }
+
+  std::int64_t integer() { return sqlite3_column_int64(statement_, ++column_); }
+  double number() { return sqlite3_column_double(statement_, ++column_); }
+  std::string text() {
+    const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, ++column_));
+    if (bytes == nullptr) return {};
+    return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column_))};
+  }
+  std::optional<std::uint64_t> count_or_null() {
+    const auto value = static_cast<std::uint64_t>(integer());
+    return is_null() ? std::nullopt : std::optional(value);
+  }
+  std::optional<double> number_or_null() {
+    const double value = number();
+    return is_null() ? std::nullopt : std::optional(value);
+  }
+
+ private:
+  bool is_null() const { return sqlite3_column_type(statement_, column_) == SQLITE_NULL; }
+
+  const Ledger& ledger_;
+  sqlite3_stmt* statement_ = nullptr;
+  int bound_ = 0, column_ = -1;
+};
+
+Ledger::Ledger(const std::string& path) : path_(path) {
+  constexpr int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  try {
+    if (sqlite3_open_v2(path.c_str(), &database_, flags, nullptr) != SQLITE_OK) fail();
+    sqlite3_busy_timeout(database_, busy_ms);
+    execute("PRAGMA synchronous=FULL");
+    execute(schema);
+  } catch (...) {
+    sqlite3_close(database_);
+    throw;
+  }
+}
+
+Ledger::~Ledger() { sqlite3_close(database_); }
+
+Ledger::Ledger(Ledger&& other) noexcept
+    : path_(std::move(other.path_)), database_(std::exchange(other.database_, nullptr)) {}
+
+void Ledger::fail() const {
+  throw LedgerError(fmt::format("{}: {}", path_, sqlite3_errmsg(database_)));
+}
+
+void Ledger::execute(const std::string& sql) const {
+  if (sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+}
+
+Ledger::Statement Ledger::prepare(const std::string& sql) const { return Statement(*this, sql); }
+
+void Ledger::write(const Result& result, const Experiment& experiment) {
+  execute("BEGIN IMMEDIATE");
+  try {
+    for (const char* table : {"metrics", "parameters", "runs"}) {
+      execute(fmt::format("DELETE FROM {} WHERE run = {}", table, result.run));
+    }
+    const auto run = static_cast<std::int64_t>(result.run);
+    auto row = prepare("INSERT INTO runs VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+    row.bind(run);
+    row.bind(static_cast<std::int64_t>(result.seed));
+    row.bind(std::string(to_text(result.outcome)));
+    row.bind(std::int64_t{result.exit_code});
+    row.bind(result.ending);
+    row.bind(result.ticks);
+    row.bind(result.simulated_s);
+    row.bind(result.hash);
+    row.bind(result.robots);
+    row.bind(result.failures);
+    row.bind(result.dropped);
+    row.bind(result.not_converged);
+    row.bind(result.worst_residual);
+    row.bind(result.wall_s);
+    row.bind(result.version);
+    row.run();
+    auto value = prepare("INSERT INTO parameters VALUES (?,?,?)");
+    const Combination values = combination(experiment, result.run);
+    for (std::size_t i = 0; i < experiment.axes.size(); ++i) {
+      value.bind(run);
+      value.bind(experiment.axes[i].name);
+      value.bind(values.values[i]);
+      value.run();
+    }
+    auto metric = prepare("INSERT INTO metrics VALUES (?,?,?)");
+    for (const auto& [name, number] : result.metrics) {
+      metric.bind(run);
+      metric.bind(name);
+      metric.bind(number);
+      metric.run();
+    }
+    execute("COMMIT");
+  } catch (const LedgerError&) {
+    sqlite3_exec(database_, "ROLLBACK", nullptr, nullptr, nullptr);
+    throw;
+  }
+}
+
+std::vector<Result> Ledger::read() const {
+  std::vector<Result> results;
+  execute("BEGIN");  // runs and metrics of one moment
+  auto row = prepare("SELECT * FROM runs ORDER BY run");
+  std::map<std::size_t, std::size_t> place_of;
+  while (row.step()) {
+    Result& result = results.emplace_back();
+    result.run = static_cast<std::size_t>(row.integer());
+    result.seed = static_cast<std::uint64_t>(row.integer());
+    result.outcome = to_outcome(row.text()).value_or(Outcome::failed);
+    result.exit_code = static_cast<int>(row.integer());
+    result.ending = row.text();
+    result.ticks = row.count_or_null();
+    result.simulated_s = row.number_or_null();
+    result.hash = row.text();
+    result.robots = row.count_or_null();
+    result.failures = row.count_or_null();
+    result.dropped = row.count_or_null();
+    result.not_converged = row.count_or_null();
+    result.worst_residual = row.number_or_null();
+    result.wall_s = row.number();
+    result.version = row.text();
+    place_of[result.run] = results.size() - 1;
+  }
+  auto metric = prepare("SELECT run, name, value FROM metrics");
+  while (metric.step()) {
+    const auto found = place_of.find(static_cast<std::size_t>(metric.integer()));
+    std::string name = metric.text();
+    const auto value = metric.number_or_null();
+    if (found != place_of.end() && value) results[found->second].metrics[name] = *value;
+  }
+  execute("COMMIT");
+  return results;
+}
+
+void Ledger::make_view(const Experiment& experiment) {
+  const Columns columns = columns_of(experiment, read());
+  std::string select = "runs.run AS run", joins;
+  for (std::size_t i = 0; i < experiment.axes.size(); ++i) {
+    select += fmt::format(", p{}.value AS {}", i, sql_text(columns.axes[i], '"'));
+    joins += fmt::format(" LEFT JOIN parameters AS p{0} ON p{0}.run = runs.run AND p{0}.name = {1}", i,
+                         sql_text(experiment.axes[i].name, '\''));
+  }
+  for (const char* name : result_columns) select += fmt::format(", runs.{0} AS {0}", name);
+  for (const auto& [metric, column] : columns.metrics) {
+    select += fmt::format(", (SELECT value FROM metrics WHERE metrics.run = runs.run AND name = {}) AS {}",
+                          sql_text(metric, '\''), sql_text(column, '"'));
+  }
+  for (const char* name : last_columns) select += fmt::format(", runs.{0} AS {0}", name);
+  execute("BEGIN IMMEDIATE");
+  execute("DROP VIEW IF EXISTS results");
+  execute(fmt::format("CREATE VIEW results AS SELECT {} FROM runs{}", select, joins));
+  execute("COMMIT");
+}
+
+}  // namespace ziggurat::sweep

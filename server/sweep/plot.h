@@ -1,0 +1,30 @@
+#pragma once
+// Means with error bars as a picture, drawn by gnuplot.
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "sweep/experiment.h"
+#include "sweep/result.h"
+
+namespace ziggurat::sweep {
+
+struct Plot {
+  std::size_t x = 0;                  ///< the axis from left to right: into Experiment::axes
+  std::optional<std::size_t> series;  ///< a curve for each value of this axis
+  std::string measure;                ///< from bottom to top
+  double confidence = 0.95;           ///< of the error bars, in (0, 1)
+};
+
+/// A program for gnuplot that writes an SVG file.
+std::string gnuplot_program(const Experiment& experiment, std::span<const Result> results,
+                            const Plot& plot, const std::filesystem::path& svg);
+
+/// Writes the picture, and the program for gnuplot beside it, with the ending .gnuplot.
+/// @throws text::UsageError if gnuplot is missing or fails
+void draw(const Experiment& experiment, std::span<const Result> results, const Plot& plot,
+          const std::filesystem::path& svg);
+
+}  // namespace ziggurat::sweep

@@ -1,0 +1,97 @@
+#include "sweep/scene_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "math/hash.h"
+#include "processes/required_scripts.h"
+#include "processes/scripts.h"
+#include "scene/reader.h"
+#include "sweep/folder.h"
+
+namespace ziggurat::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string hash_of(std::string_view bytes) {
+  math::Hash hash;
+  hash.add(bytes);
+  return math::to_hex(hash.digest());
+}
+
+/// The scene's values where an axis has fewer values than another are its last ones.
+scene::Variation variation(const Experiment& experiment, std::size_t index) {
+  scene::Variation variation;
+  for (const Axis& axis : experiment.axes) {
+    const std::string& value = axis.values[std::min(index, axis.values.size() - 1)];
+    if (axis.kind == Axis::Kind::parameter) {
+      variation.parameters.emplace_back(axis.name, value);
+    } else {
+      variation.settings.push_back({axis.name, value});
+    }
+  }
+  return variation;
+}
+
+/// What the reader says of `--set` was written as `--axis` here.
+void name_option(std::vector<scene::Problem>& problems) {
+  for (scene::Problem& problem : problems) {
+    for (std::size_t at = 0; (at = problem.text.find("--set '", at)) != std::string::npos;) {
+      problem.text.replace(at, 5, "--axis");
+    }
+  }
+}
+
+void refuse_faults(std::vector<scene::Problem> problems) {
+  std::erase_if(problems, [](const auto& each) {
+    return each.severity != scene::Problem::Severity::fault;
+  });
+  if (problems.empty()) return;
+  name_option(problems);
+  throw scene::SceneError(std::move(problems));
+}
+
+}  // namespace
+
+SceneFiles read_scene(const Experiment& experiment) {
+  SceneFiles files;
+  const auto keep = [&](const fs::path& path, std::size_t max_size) {
+    auto opened = scene::open_file(path, max_size);
+    if (const auto* file = std::get_if<scene::File>(&opened)) {
+      files.hashes[fs::absolute(path).lexically_normal().string()] = hash_of(file->text);
+    }
+    return opened;
+  };
+  std::size_t most_values = 1;
+  for (const Axis& axis : experiment.axes) most_values = std::max(most_values, axis.values.size());
+  std::vector<fs::path> scripts;
+  for (std::size_t i = 0; i < most_values; ++i) {
+    scene::ReadOptions options;
+    options.lenient = std::ranges::find(experiment.run_arguments, "--lenient") !=
+                      experiment.run_arguments.end();
+    options.variation = variation(experiment, i);
+    options.open = keep;
+    auto scene = scene::read_file(experiment.scene, options);
+    if (scene.ok()) {
+      auto more = processes::check_scripts(scene.scene, experiment.scene);
+      std::ranges::move(more, std::back_inserter(scene.problems));
+    }
+    refuse_faults(std::move(scene.problems));
+    files.seed = scene.scene.experiment.random_seed;
+    files.length = scene.scene.experiment.length;
+    std::ranges::move(processes::scripts_of(scene.scene, experiment.scene),
+                      std::back_inserter(scripts));
+  }
+  processes::add_required(scripts);
+  for (const fs::path& script : scripts) files.hashes[script.string()] = hash_of(read_file(script));
+  return files;
+}
+
+}  // namespace ziggurat::sweep

@@ -1,0 +1,108 @@
+#include "sweep/ledger.h"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace ziggurat::sweep {
+namespace {
+
+class LedgerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (std::filesystem::temp_directory_path() / "ledgerXXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    path_ = (folder_ / "sweep.sqlite").string();
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// The first value of the first row, as text.
+  std::string ask(const std::string& sql) const {
+    sqlite3* database = nullptr;
+    sqlite3_open(path_.c_str(), &database);
+    std::string answer;
+    const auto keep = [](void* to, int, char** values, char**) {
+      if (values[0]) *static_cast<std::string*>(to) = values[0];
+      return 1;
+    };
+    sqlite3_exec(database, sql.c_str(), keep, &answer, nullptr);
+    sqlite3_close(database);
+    return answer;
+  }
+
+  const Experiment experiment_{
+      "/s.argos", {{Axis::Kind::parameter, "gain", {"0.5", "it's"}}}, {1, 2}, {}};
+  std::filesystem::path folder_;
+  std::string path_;
+};
+
+Result full() {
+  Result result;
+  result.run = 3;
+  result.seed = (std::uint64_t{1} << 63) - 1;
+  result.outcome = Outcome::timed_out;
+  result.exit_code = 143;
+  result.ending = "interrupted";
+  result.ticks = 17;
+  result.simulated_s = 0.1;
+  result.hash = "0123456789abcdef";
+  result.robots = 4;
+  result.worst_residual = 1e-300;
+  result.metrics = {{"a", 0.1}, {"b", -3}};
+  result.wall_s = 2.5;
+  result.version = "0.1.0";
+  return result;
+}
+
+TEST_F(LedgerTest, ReadsWhatWasWritten) {
+  Ledger(path_).write(full(), experiment_);
+  const auto results = Ledger(path_).read();
+  ASSERT_EQ(results.size(), 1u);
+  const Result& r = results[0];
+  const Result e = full();
+  EXPECT_EQ(std::tie(r.run, r.seed, r.outcome, r.exit_code, r.ending, r.ticks, r.simulated_s, r.hash, r.robots),
+            std::tie(e.run, e.seed, e.outcome, e.exit_code, e.ending, e.ticks, e.simulated_s, e.hash, e.robots));
+  EXPECT_EQ(std::tie(r.failures, r.worst_residual, r.metrics, r.wall_s, r.version),
+            std::tie(e.failures, e.worst_residual, e.metrics, e.wall_s, e.version));
+}
+
+TEST_F(LedgerTest, ARunIsThereOnce) {
+  Ledger ledger(path_);
+  ledger.write(full(), experiment_);
+  Result again;
+  again.run = 3;
+  again.metrics = {{"c", 1}};
+  ledger.write(again, experiment_);
+  const auto results = ledger.read();
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_EQ(results[0].outcome, Outcome::finished);
+  EXPECT_EQ(results[0].metrics, (std::map<std::string, double>{{"c", 1}}));
+}
+
+TEST_F(LedgerTest, TheViewHasAColumnPerAxisAndMetric) {
+  Ledger ledger(path_);
+  ledger.write(full(), experiment_);
+  Result first;
+  first.run = 1;
+  ledger.write(first, experiment_);
+  ledger.make_view(experiment_);
+  ledger.make_view(experiment_);
+  EXPECT_EQ(ask("SELECT gain || ' ' || a || ' ' || ticks FROM results WHERE run = 3"), "it's 0.1 17");
+  EXPECT_EQ(ask("SELECT typeof(gain) FROM results WHERE run = 1"), "real");
+}
+
+TEST_F(LedgerTest, AFileThatIsNoneIsNamed) {
+  std::filesystem::create_directory(path_);
+  try {
+    Ledger ledger(path_);
+    FAIL();
+  } catch (const LedgerError& error) {
+    EXPECT_NE(std::string(error.what()).find("sweep.sqlite"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace ziggurat::sweep
