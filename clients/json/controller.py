@@ -75,7 +75,7 @@ class Controller:
 
     def hello(self):
         self.connection.send(hello={
-            "version": {"major": 1, "minor": 2}, "role": "ROLE_CONTROLLER", "clientName": "json", "robots": ["*"],
+            "version": {"major": 1, "minor": 3}, "role": "ROLE_CONTROLLER", "clientName": "json", "robots": ["*"],
             "canRestore": True,  # it has no state but what it was told
             "controller": os.environ.get("ZIGGURAT_CONTROLLER", ""), "sessionToken": self.token})
 

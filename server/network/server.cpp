@@ -265,6 +265,14 @@ Performance Server::performance() const {
   return result;
 }
 
+std::vector<world::Metric> Server::metrics_of_tick() const {
+  return named(state_->barrier, state_->barrier.metrics.of_tick());
+}
+
+std::vector<world::Metric> Server::metrics() const {
+  return named(state_->barrier, state_->barrier.metrics.last());
+}
+
 Report Server::take_report() {
   Report report = state_->barrier.journal.take();
   std::ranges::move(state_->socket.take_notices(), std::back_inserter(report.notices));

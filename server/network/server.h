@@ -144,6 +144,10 @@ class Server {
   void fill(wire::Status& status) const;
   std::vector<RobotStatus> status() const;       ///< per robot of the layout
   Performance performance() const;
+  // What controllers and the director have measured: at the tick that was collected last, and the last
+  // values of all. The director's first, then robots in scene order, each sorted by name.
+  std::vector<world::Metric> metrics_of_tick() const;
+  std::vector<world::Metric> metrics() const;
   Report take_report();
 
  private:

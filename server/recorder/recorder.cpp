@@ -78,6 +78,11 @@ void Recorder::tick(const channels::Moment& moment) {
       size);
 }
 
+void Recorder::measured(std::vector<world::Metric> metrics) {
+  const std::size_t size = metrics.size() * sizeof(world::Metric);
+  add([metrics = std::move(metrics)](Recording& to) { to.measured(metrics); }, size);
+}
+
 void Recorder::step(const world::Commands& commands) {
   auto copied = std::make_shared<channels::TickCopy>(take_copy());
   copied->commands = commands;

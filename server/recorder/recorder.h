@@ -48,6 +48,7 @@ class Recorder {
   void restored(const std::string& snapshot, std::span<const std::byte> bytes);
   void set_paused(bool is_paused);
   void log(channels::Severity severity, std::string_view name, std::string_view text);
+  void measured(std::vector<world::Metric> metrics);
   void step(const world::Commands& commands);
 
   /// Completes the file, and waits for that.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "world/state.h"
+#include "ziggurat/v1/envelope.h"
 
 namespace ziggurat::recorder {
 namespace {
@@ -123,6 +124,15 @@ void Recording::log(channels::Severity severity, const std::string& name,
   if (!std::ranges::binary_search(wanted_, id)) return;
   write(channels_of_.at(id),
         channels_.log(tick_.state.time_ns, severity, name, text).content->bytes());
+}
+
+void Recording::measured(const std::vector<world::Metric>& metrics) {
+  for (const world::Metric& metric : metrics) {
+    v1::Inputs::Metric& to = *inputs_.add_metrics();
+    to.set_robot(v1::valid_utf8(metric.robot));
+    to.set_name(metric.name);
+    to.set_value(metric.value);
+  }
 }
 
 void Recording::step(const world::Commands& commands) {

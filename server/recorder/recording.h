@@ -16,6 +16,7 @@
 #include "mcap/writer.h"
 #include "recording/inputs.h"
 #include "recorder/start.h"
+#include "world/metric.h"
 
 namespace ziggurat::recorder {
 
@@ -40,6 +41,8 @@ class Recording {
   void add(v1::Act act);
   void log(channels::Severity severity, const std::string& name, const std::string& text);
   void attach(const EmbeddedFile& file);
+  /// What controllers and the director have measured, between the last tick and the next.
+  void measured(const std::vector<world::Metric>& metrics);
   /// The world is stepped with these commands.
   void step(const world::Commands& commands);
   /// A new epoch begins: after a reset, for example.

@@ -2,10 +2,12 @@
 // What robots sensed and what they answered: `--readings`.
 
 #include <string>
+#include <vector>
 
 #include "recording/output_file.h"
 #include "world/commands.h"
 #include "world/layout.h"
+#include "world/metric.h"
 #include "world/state.h"
 
 namespace ziggurat::recording {
@@ -18,8 +20,9 @@ class Readings {
   Readings(std::string path, const world::Layout& layout);
 
   /// What was true and observed at a tick, and the commands that answered it. @throws WriteError
+  /// @param metrics  that were set then, of the director and of robots
   void write(const world::State& state, const world::Observations& observations,
-             const world::Commands& commands);
+             const world::Commands& commands, const std::vector<world::Metric>& metrics = {});
   void flush() { file_.flush(); }  ///< @throws WriteError
   void close() { file_.close(); }
 

@@ -105,6 +105,13 @@ std::string to_prometheus(const wire::Status& status) {
     gauge("ziggurat_solver_worst_residual",
           "Largest violation of the laws of contact [m/s or rad/s].", status.solver.worst_residual);
   }
+  if (!status.metrics.empty()) {
+    head(out, "ziggurat_metric", "gauge", "What controllers and the director have measured last.");
+  }
+  for (const world::Metric& metric : status.metrics) {
+    out += fmt::format("ziggurat_metric{{robot={},name={}}} {}\n", quoted(metric.robot),
+                       quoted(metric.name), metric.value);
+  }
   head(out, "ziggurat_tick_phase_seconds", "gauge",
        "Where the wall time of a tick goes, over the last 1000 ticks.");
   for (const auto& phase : status.budget) {

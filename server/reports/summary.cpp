@@ -49,6 +49,20 @@ std::string failed(const std::vector<Summary::Failure>& failures) {
   return text + "\n";
 }
 
+/// A line with the first metrics.
+std::string metrics(const std::map<std::string, double>& all) {
+  constexpr std::size_t most = 8;
+  if (all.empty()) return {};
+  std::string text = "  metrics: ";
+  std::size_t count = 0;
+  for (const auto& [name, value] : all) {
+    if (count == most) break;
+    text += fmt::format("{}{} = {}", count++ == 0 ? "" : ", ", name, value);
+  }
+  if (all.size() > most) text += fmt::format(" and {} more", all.size() - most);
+  return text + "\n";
+}
+
 bool is_by_controller(Ending ending) {
   return ending == Ending::controller_vanished || ending == Ending::failed_fast ||
          ending == Ending::deadline_missed;
@@ -88,6 +102,7 @@ std::string to_text(const Summary& summary) {
         "rad/s\n",
         summary.solver_name, solver.not_converged, solver.islands, solver.worst_residual);
   }
+  text += metrics(summary.metrics);
   text += fmt::format("  seed {}, hash {}", summary.seed, math::to_hex(summary.hash));
   return text;
 }
@@ -126,6 +141,7 @@ std::string to_json(const Summary& summary) {
       {"missed_deadlines", missed},
       {"dropped", summary.dropped},
       {"vanished", summary.vanished}};
+  json["metrics"] = summary.metrics;
   if (!summary.shutdown_reason.empty()) json["shutdown_reason"] = summary.shutdown_reason;
   json["solver"]["name"] = summary.solver_name;
   if (summary.solver.islands > 0) {

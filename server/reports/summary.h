@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,8 @@ struct Summary {
     std::uint64_t ticks = 0;  ///< at which at least one of its robots missed a deadline
   };
   std::vector<Missed> missed;  ///< controllers that missed any, in scene order
+  /// Last values, by `name` of the director's and `ROBOT/name` of controllers'.
+  std::map<std::string, double> metrics;
 };
 
 /// Several lines without line feed at the end, without the failures.

@@ -59,10 +59,11 @@ void Recorders::tick(const simulation::Simulation& simulation) {
 }
 
 void Recorders::exchange(const world::State& state, const world::Observations& observations,
-                         const world::Commands& commands) {
+                         const world::Commands& commands,
+                         const std::vector<world::Metric>& metrics) {
   const std::lock_guard lock(mutex_);
   report_failed_flush();
-  if (readings_) readings_->write(state, observations, commands);
+  if (readings_) readings_->write(state, observations, commands, metrics);
 }
 
 void Recorders::close() {

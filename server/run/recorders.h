@@ -37,7 +37,7 @@ class Recorders {
 
   /// Writes the readings and commands of a tick. @throws recording::WriteError
   void exchange(const world::State& state, const world::Observations& observations,
-                const world::Commands& commands);
+                const world::Commands& commands, const std::vector<world::Metric>& metrics);
 
   /// Completes every file except the summary and the report card, also if one of them fails.
   /// @throws recording::WriteError, render::RenderError

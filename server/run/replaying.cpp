@@ -140,6 +140,7 @@ Replaying::End Replaying::repeat() {
     const v1::Inputs& inputs = replay_.inputs();
     if (same_ == 1 || inputs.epoch() != epoch) schedule_.begin(inputs.tick(), steering_.paused_for());
     if (showing_ && inputs.epoch() != epoch) showing_->restarted();
+    if (inputs.epoch() != epoch) summary_.metrics.clear();
     epoch = inputs.epoch();
     steering_.stepped(inputs.tick());
     recorders_.tick(simulation);
@@ -150,7 +151,8 @@ Replaying::End Replaying::repeat() {
     if (!wait()) return End::stopped;
     timer_.end_phase(Phase::pacing, summary_);
     replay_.act();
-    recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands());
+    recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
+                        take_metrics());
     if (showing_) {
       showing_->answered();
       showing_->update();
@@ -160,6 +162,16 @@ Replaying::End Replaying::repeat() {
     timer_.end_phase(Phase::recording, summary_);
   }
   return End::complete;
+}
+
+/// Those of the present inputs.
+std::vector<world::Metric> Replaying::take_metrics() {
+  std::vector<world::Metric> metrics;
+  for (const v1::Inputs::Metric& from : replay_.inputs().metrics()) {
+    metrics.push_back({from.robot(), from.name(), from.value()});
+    summary_.metrics.insert_or_assign(world::key_of(metrics.back()), from.value());
+  }
+  return metrics;
 }
 
 void Replaying::serve() {

@@ -48,6 +48,7 @@ class Replaying {
   End repeat();
   bool wait();
   bool may_step(clock::time_point now, int& timeout_ms);
+  std::vector<world::Metric> take_metrics();
   void serve();
   void show_end();
   void tell(End end);

@@ -227,6 +227,7 @@ int Run::execute() {
   }
   complete_summary();
   watch_.end_run(end_message(summary_));
+  complete_metrics();
   if (recorded_) recorded_->close();
   summary_.failures = watch_.failures();
   recorders_.write_summary(summary_);
@@ -302,7 +303,9 @@ Ending Run::run_world() {
     }
     if (stopped) return *stopped;
     radio_watch_.tick(simulation.observations(), simulation.commands());
-    recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands());
+    const std::vector<world::Metric> metrics = server_.metrics_of_tick();
+    recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(), metrics);
+    if (recorded_ && !metrics.empty()) recorded_->measured(metrics);
     if (showing_) showing_->answered();
     timer_.end_phase(Phase::recording, summary_);
     if (is_last) return Ending::finished;

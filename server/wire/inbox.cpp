@@ -8,6 +8,7 @@
 
 #include "wire/command.h"
 #include "wire/cost.h"
+#include "wire/metrics.h"
 #include "wire/read_json.h"
 #include "wire/response.h"
 #include "ziggurat/v1/envelope.h"
@@ -45,6 +46,10 @@ struct Inbox::Message {
   InArena<v1::ClientMessage> other;
   const v1::Command* command = nullptr;  // of that kind: in one of the two
   std::string complaint;
+
+  const google::protobuf::RepeatedPtrField<v1::Metric>& metrics() const {
+    return kind == Kind::command ? command->metrics() : other.content().leave().metrics();
+  }
 
   // What protobuf keeps for reuse is as large as the largest of each part ever was. Peers decide
   // on that, so now and then both messages begin anew.
@@ -192,6 +197,16 @@ std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& lay
   if (message_->kind == Kind::command)
     return wire::check(*message_->command, roster, layout);
   return wire::check(message_->other.content().leave(), roster, layout);
+}
+
+std::optional<Fault> Inbox::check_metrics(const Roster& roster) const {
+  return wire::check(message_->metrics(), roster);
+}
+
+std::vector<Metric> Inbox::metrics(const Roster& roster) const {
+  std::vector<Metric> metrics;
+  append(message_->metrics(), roster, metrics);
+  return metrics;
 }
 
 void Inbox::apply(const Roster& roster, world::Commands& commands) const {

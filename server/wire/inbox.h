@@ -50,10 +50,14 @@ class Inbox {
 
   /// What is wrong with the current command or leave, if anything. Its tick is not checked.
   std::optional<Fault> check(const Roster& roster, const world::Layout& layout) const;
+  /// The same for its metrics, which sessions of earlier versions do not have.
+  std::optional<Fault> check_metrics(const Roster& roster) const;
   /// Writes the checked command's values; those of robots that left are skipped.
   void apply(const Roster& roster, world::Commands& commands) const;
   /// Appends the lines that the checked command or leave brings.
   void append_log(const Roster& roster, std::vector<LogLine>& lines) const;
+  /// Its checked metrics.
+  std::vector<Metric> metrics(const Roster& roster) const;
 
  private:
   struct Message;

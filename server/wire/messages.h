@@ -35,12 +35,14 @@ struct Version {
 };
 
 /// Version of the server. A client must have the same major version.
-inline constexpr Version version{1, 2};
+inline constexpr Version version{1, 3};
 /// From this minor version on a session is told of dropped and spawned robots, and what was commanded
 /// before it was resumed.
 inline constexpr std::uint32_t minor_with_events = 1;
 /// From this minor version on ticks have an epoch, and a session may be told that the world went back.
 inline constexpr std::uint32_t minor_with_epochs = 2;
+/// From this minor version on there are metrics and directors.
+inline constexpr std::uint32_t minor_with_metrics = 3;
 
 enum class Role { unspecified, controller, supervisor, observer };
 
@@ -67,6 +69,13 @@ struct LogLine {
   std::size_t robot = 0;  ///< into Layout::robots
   bool error = false;     ///< logerr()
   std::string text;       ///< UTF-8 without a line feed at the end
+};
+
+/// A figure of the run that a controller or director has set.
+struct Metric {
+  std::optional<std::size_t> robot;  ///< into Layout::robots; none: the director's
+  std::string name;                  ///< 1 to 64 letters, digits, `_`, `-`, `.`
+  double value = 0;                  ///< finite
 };
 
 enum class LeaveReason { unspecified, done, failed };

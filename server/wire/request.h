@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "wire/messages.h"
+#include "world/metric.h"
 
 namespace ziggurat::wire {
 
@@ -83,6 +84,7 @@ struct Status {
   std::vector<PhaseBudget> budget;
   double wall_uptime_s = 0;
   SolverStatus solver;  ///< without islands: the solver does not tell
+  std::vector<world::Metric> metrics;  ///< last values; the director's first, then robots in scene order
 };
 
 /// As protobuf's JSON, on one line.

@@ -16,7 +16,7 @@ namespace ziggurat {
 
 // Of the protocol.
 inline constexpr std::uint32_t version_major = 1;
-inline constexpr std::uint32_t version_minor = 2;
+inline constexpr std::uint32_t version_minor = 3;
 
 class Connection {
  public:

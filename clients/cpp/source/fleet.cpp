@@ -1,8 +1,11 @@
 #include "fleet.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "layout.h"
+#include "metric.h"
 
 namespace ziggurat {
 
@@ -31,6 +34,7 @@ void Fleet::read(const v1::Observation& observation) {
 void Fleet::write(v1::Command& command) {
   for (const auto& channel : channels_) channel->write(command);
   move_log_to(*command.mutable_log());
+  move_metrics_to(*command.mutable_metrics());
 }
 
 void Fleet::sent() {
@@ -53,6 +57,31 @@ void Fleet::remove(const google::protobuf::RepeatedField<std::uint32_t>& robots)
   for (const std::uint32_t position : robots) {
     if (position < robots_.size()) robots_[position].is_gone_ = true;
   }
+}
+
+void Fleet::move_metrics_to(google::protobuf::RepeatedPtrField<v1::Metric>& metrics) {
+  for (const auto& [key, value] : log_.metrics) {
+    v1::Metric& metric = *metrics.Add();
+    metric.set_robot(key.first);
+    metric.set_name(key.second);
+    metric.set_value(value);
+  }
+  log_.metrics.clear();
+}
+
+void check_metric(std::string_view name, double value) {
+  constexpr std::size_t longest = 64;
+  const bool is_name = !name.empty() && name.size() <= longest &&
+                       std::all_of(name.begin(), name.end(), [](char c) {
+                         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                                (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+                       });
+  if (!is_name) {
+    throw std::invalid_argument("the name of a metric must have 1 to " + std::to_string(longest) +
+                                " letters, digits, '_', '-' or '.', not '" +
+                                std::string(name.substr(0, longest)) + "'");
+  }
+  check_finite(value, "the value of metric", name);
 }
 
 void Fleet::move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines) {

@@ -35,6 +35,8 @@ class Fleet {
   /// These robots (positions) have left the run. Positions that the session does not have are ignored.
   void remove(const google::protobuf::RepeatedField<std::uint32_t>& robots);
 
+  /// Moves what was measured since the last call.
+  void move_metrics_to(google::protobuf::RepeatedPtrField<v1::Metric>& metrics);
   void move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines);
   /// A message for each robot that failed since the last call.
   std::vector<v1::Leave> take_failures();

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "find.h"
+#include "metric.h"
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat {
@@ -36,6 +37,19 @@ void Robot::add_line(bool error, std::string_view text) {
   }
   log_->lines.push_back({position_, error, v1::valid_utf8(text)});
   log_->bytes += log_->lines.back().text.size() + overhead;
+}
+
+void Robot::metric(std::string_view name, double value) {
+  check_metric(name, value);
+  constexpr std::size_t most_names = 100;  // as the server allows
+  if (!metric_names_.contains(name)) {
+    if (metric_names_.size() == most_names) {
+      throw std::length_error("robot '" + id_ + "' has " + std::to_string(most_names) +
+                              " metrics already; '" + std::string(name) + "' would be one more");
+    }
+    metric_names_.emplace(name);
+  }
+  log_->metrics.insert_or_assign({position_, std::string(name)}, value);
 }
 
 void Robot::fail(std::string_view message) {

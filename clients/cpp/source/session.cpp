@@ -213,6 +213,7 @@ void Session::State::leave(v1::Leave::Reason reason, std::string_view message) {
   leave.set_reason(reason);
   leave.set_message(v1::valid_utf8(message));
   fleet->move_log_to(*leave.mutable_log());
+  fleet->move_metrics_to(*leave.mutable_metrics());
   connection.send(outgoing);
 }
 

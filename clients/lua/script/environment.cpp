@@ -6,6 +6,7 @@
 #include "script/guarded.h"
 #include "script/log_functions.h"
 #include "script/math_random.h"
+#include "script/metric_function.h"
 #include "script/ordered_pairs.h"
 #include "script/robot_random.h"
 #include "script/sandbox.h"
@@ -83,6 +84,7 @@ void push_robot(lua_State* state, Robot& robot) {
   lua_setfield(state, -2, "id");
   push_params(state, robot);
   lua_setfield(state, -2, "params");
+  set_metric_function(state, robot);
   lua_newtable(state);
   for (const DeviceKind* kind : device_kinds()) {
     if (kind->is_present(robot)) add_devices(state, *kind, robot);
@@ -97,6 +99,7 @@ void set_up(lua_State* state, const Environment& environment) {
   prepend_to_package_path(state, environment.folder);
   lua_pushglobaltable(state);
   set_log_functions(state, environment.log);
+  set_metric_function(state, environment.robot);
   lua_pop(state, 1);
   push_robot(state, environment.robot);
   push_robot_random(state, environment.random.robot_random);

@@ -7,6 +7,7 @@ from itertools import accumulate
 from typing import Any, Callable, Dict, Generic, List, Optional, Sequence, Set, Tuple, TypeVar
 
 from . import protocol_pb2 as v1
+from .metrics import Metrics
 
 T = TypeVar("T")
 
@@ -24,6 +25,7 @@ class Exchange:
         self.data = bytearray()  # of all range-and-bearing actuators
         self.messages: List[Tuple[int, bytes]] = []
         self.log: List[v1.LogLine] = []
+        self.metrics = Metrics()
         self._places: Counter = Counter()
         self._initial: Dict[str, List[Any]] = {}
         self._new: Set[str] = set()  # fields that were set after the last command
@@ -102,6 +104,7 @@ class Exchange:
         for radio, payload in self.messages:
             command.radio_messages.add(radio=radio, payload=payload)
         command.log.extend(self.log)
+        command.metrics.extend(self.metrics.take())
         return message
 
     def sent(self) -> None:

@@ -48,6 +48,11 @@ class Robot(Sensors):
         self._exchange.log.append(v1.LogLine(robot=self._position, error=error,
                                              text=text.rstrip("\n")))
 
+    def metric(self, name: str, value: float) -> None:
+        """Sets a figure of the run, which the server keeps for each tick; the last value is the final one, in
+        --summary under ROBOT/name. Sent with the command of this tick."""
+        self._exchange.metrics.set(self._position, name, value)
+
     def leave(self) -> None:
         """Leaves the run forever: the world no longer waits for this robot."""
         self._tell_leave(self, "")

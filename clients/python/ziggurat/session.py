@@ -428,7 +428,8 @@ class Session:
             return
         reason = v1.Leave.FAILED if failure else v1.Leave.DONE
         self._connection.send(v1.ClientMessage(leave=v1.Leave(
-            reason=reason, message=failure, log=self._exchange.log)))
+            reason=reason, message=failure, log=self._exchange.log,
+            metrics=self._exchange.metrics.take())))
         self._exchange.log = []
         self._end()
 

@@ -14,6 +14,7 @@
 #include "network/barrier/connections.h"
 #include "network/barrier/deadlines.h"
 #include "network/barrier/journal.h"
+#include "network/barrier/metrics.h"
 #include "network/barrier/seats.h"
 #include "network/barrier/sessions.h"
 #include "network/barrier/tick_gate.h"
@@ -64,6 +65,7 @@ struct Barrier {
   TickGate gate{seats};
   Calls calls;
   Journal journal;
+  Metrics metrics;
   Reactions reactions;
   std::vector<AnswerTimes> answer_times;  ///< per controller of the scene
 

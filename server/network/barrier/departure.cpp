@@ -95,11 +95,14 @@ void handle_leave(Barrier& barrier, Session& session) {
       session.state == SessionState::draining && session.roster.robots.empty();
   const bool is_waiting = session.state == SessionState::hello;
   if (has_no_robots_left || is_waiting) return erase(barrier, session);
-  if (auto fault = barrier.inbox.check(session.roster, barrier.run->layout)) {
+  auto fault = check_metrics(barrier, session);
+  if (!fault) fault = barrier.inbox.check(session.roster, barrier.run->layout);
+  if (fault) {
     return answer_fault(barrier, session.connection, &session, std::move(*fault));
   }
   session.contact.faults = 0;
   barrier.inbox.append_log(session.roster, barrier.journal.log());
+  take_metrics(barrier, session);
   const wire::Leave leave = barrier.inbox.leave();
   const bool is_whole = leave.robots.empty();
   std::vector<std::size_t> positions(leave.robots.begin(), leave.robots.end());

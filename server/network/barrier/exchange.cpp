@@ -40,6 +40,7 @@ std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& 
   if (!is_collecting) {
     return make_fault(ErrorCode::out_of_state, {}, "No tick is being collected.");
   }
+  if (auto fault = check_metrics(barrier, session)) return fault;
   return barrier.inbox.check(session.roster, barrier.run->layout);
 }
 
@@ -65,6 +66,7 @@ void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
 void publish(Barrier& barrier, const world::Observations& observations,
              const std::vector<std::string>& tag_payloads) {
   barrier.senses = {&observations, &tag_payloads};
+  barrier.metrics.begin_tick();
   barrier.gate.begin(observations.tick);
   barrier.timers.deadline = never;
   barrier.seats.begin_tick();
@@ -100,6 +102,17 @@ bool observe(Barrier& barrier, Session& session) {
   return delivery == Delivery::sent || may_miss;
 }
 
+std::optional<wire::Fault> check_metrics(const Barrier& barrier, const Session& session) {
+  if (session.minor < wire::minor_with_metrics) return std::nullopt;
+  if (auto fault = barrier.inbox.check_metrics(session.roster)) return fault;
+  return barrier.metrics.check(barrier.inbox.metrics(session.roster));
+}
+
+void take_metrics(Barrier& barrier, const Session& session) {
+  if (session.minor < wire::minor_with_metrics) return;
+  barrier.metrics.set(barrier.inbox.metrics(session.roster));
+}
+
 bool handle_command(Barrier& barrier, Session& session, world::Commands* commands) {
   if (session.state == SessionState::draining) {
     keep_log(barrier, session);
@@ -121,6 +134,7 @@ bool handle_command(Barrier& barrier, Session& session, world::Commands* command
   }
   barrier.inbox.apply(session.roster, *commands);
   barrier.inbox.append_log(session.roster, barrier.journal.log());
+  take_metrics(barrier, session);
   barrier.gate.settle(session.turn);
   measure_answer(barrier, session);
   return true;

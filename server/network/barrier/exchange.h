@@ -2,6 +2,7 @@
 // The tick path: observations out, commands in, and pauses between ticks (docs/protocol.md,
 // section 3).
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,11 @@ bool observe(Barrier& barrier, Session& session);
 /// Handles the Command in `barrier.inbox`. True if it is the expected answer.
 /// @param commands  where its values go; null: no tick is being collected
 bool handle_command(Barrier& barrier, Session& session, world::Commands* commands);
+
+/// Why the metrics of the Command or Leave in `barrier.inbox` can't be taken, if they can't.
+std::optional<wire::Fault> check_metrics(const Barrier& barrier, const Session& session);
+/// Takes these metrics, which were checked.
+void take_metrics(Barrier& barrier, const Session& session);
 
 /// The tick is complete: zeroes the targets of robots that have left, or whose deadline policy says
 /// so.

@@ -80,7 +80,18 @@ std::vector<RobotStatus> robot_status(const Barrier& barrier) {
   return result;
 }
 
+std::vector<world::Metric> named(const Barrier& barrier, const std::vector<wire::Metric>& metrics) {
+  std::vector<world::Metric> result;
+  result.reserve(metrics.size());
+  for (const wire::Metric& metric : metrics) {
+    result.push_back({metric.robot ? barrier.run->layout.robots[*metric.robot].id : std::string(),
+                      metric.name, metric.value});
+  }
+  return result;
+}
+
 void fill(const Barrier& barrier, Time now, wire::Status& status) {
+  status.metrics = named(barrier, barrier.metrics.last());
   barrier.sessions.for_each(
       [&](const Session& session) { status.sessions.push_back(status_of(barrier, session, now)); });
   for (std::size_t robot = 0; robot < barrier.seats.size(); ++robot) {

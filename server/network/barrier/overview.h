@@ -15,4 +15,7 @@ std::vector<RobotStatus> robot_status(const Barrier& barrier);
 /// @param now  ages are measured up to then
 void fill(const Barrier& barrier, Time now, wire::Status& status);
 
+/// With the ids of their robots.
+std::vector<world::Metric> named(const Barrier& barrier, const std::vector<wire::Metric>& metrics);
+
 }  // namespace ziggurat::network

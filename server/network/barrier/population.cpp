@@ -123,6 +123,7 @@ void restart(Barrier& barrier, wire::Restart restart) {
   ++barrier.epoch;
   barrier.sessions.for_each([&](Session& session) { give_up_answers(barrier, session); });
   ++barrier.reactions.world;
+  barrier.metrics.clear();
   forget_robots(barrier, restart.snapshot ? restart.snapshot->robots
                                           : barrier.run->layout.robots.size());
   barrier.gate.clear();  // a session that begins now gets no tick of the former world

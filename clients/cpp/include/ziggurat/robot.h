@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -70,6 +73,14 @@ class Robot : public Sensors {
   void log(std::string_view text);
   void log_error(std::string_view text);
 
+  /// Sets a figure of the run, which the server keeps for each tick, with the last value as the final one:
+  /// in `--summary` under `ROBOT/name`, in readings, recordings and `--metrics`. Sent with the answer to
+  /// this tick; of two values for one tick the last counts. Servers before protocol version 1.3 ignore it.
+  /// @param name  1 to 64 letters, digits, `_`, `-`, `.`; at most 100 names a robot
+  /// @throws std::invalid_argument if the name has something else or the value is not finite
+  /// @throws std::length_error if the robot would have more names
+  void metric(std::string_view name, double value);
+
   /// Reports that the controller of this robot failed: with the answer to this tick the robot
   /// leaves the run forever and its commands become zero. The session's other robots continue.
   void fail(std::string_view message);
@@ -90,6 +101,7 @@ class Robot : public Sensors {
     std::vector<Line> lines;
     std::size_t bytes = 0;
     std::size_t max_bytes = 0;
+    std::map<std::pair<std::uint32_t, std::string>, double> metrics;  // by position in the session and name
   };
   void add_line(bool error, std::string_view text);
 
@@ -112,6 +124,7 @@ class Robot : public Sensors {
   bool is_gone_ = false;
   std::string failure_;  // not yet sent; empty if none
   Log* log_ = nullptr;   // the session's
+  std::set<std::string, std::less<>> metric_names_;  // used so far
 };
 
 }  // namespace ziggurat

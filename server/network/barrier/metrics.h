@@ -1,0 +1,38 @@
+#pragma once
+// The metrics that sessions have set: at the tick in hand, and last.
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "wire/messages.h"
+
+namespace ziggurat::network {
+
+class Metrics {
+ public:
+  static constexpr std::size_t most_names = 100;  ///< of a robot, or of the director, in a run
+
+  /// Why these can't be set, if they can't: a robot would have too many names.
+  std::optional<wire::Fault> check(const std::vector<wire::Metric>& metrics) const;
+  /// The last value of a name counts. @param metrics  checked
+  void set(const std::vector<wire::Metric>& metrics);
+
+  void begin_tick() { of_tick_.clear(); }
+  /// The world begins anew.
+  void clear();
+
+  // The director's first, then robots in scene order, each sorted by name.
+  std::vector<wire::Metric> of_tick() const;
+  std::vector<wire::Metric> last() const;
+
+ private:
+  using Key = std::pair<std::optional<std::size_t>, std::string>;  // robot, none: the director
+  std::map<Key, double> last_, of_tick_;
+  std::map<std::optional<std::size_t>, std::size_t> names_;  // how many each has
+};
+
+}  // namespace ziggurat::network

@@ -1,0 +1,61 @@
+#include "wire/metrics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "wire/fault.h"
+
+namespace ziggurat::wire {
+namespace {
+
+constexpr std::size_t longest_name = 64;  // [bytes]
+
+bool is_name(std::string_view text) {
+  const auto may_stand = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
+  };
+  return !text.empty() && text.size() <= longest_name && std::ranges::all_of(text, may_stand);
+}
+
+/// The robots of a session, or its director.
+std::size_t count_of(const Roster& roster) { return roster.directs ? 1 : roster.robots.size(); }
+
+}  // namespace
+
+std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics,
+                           const Roster& roster) {
+  for (const v1::Metric& metric : metrics) {
+    if (metric.robot() >= count_of(roster)) {
+      return make_fault(ErrorCode::unknown_robot, "metrics",
+                        fmt::format("The session has {} robots; there is none at position {}.",
+                                    count_of(roster), metric.robot()));
+    }
+    if (!is_name(metric.name())) {
+      return make_fault(ErrorCode::bad_value, "metrics",
+                        fmt::format("The name of a metric must have 1 to {} letters, digits, '_', "
+                                    "'-' or '.'.",
+                                    longest_name));
+    }
+    if (!std::isfinite(metric.value())) {
+      return make_fault(ErrorCode::bad_value, "metrics",
+                        fmt::format("The metric '{}' must be finite.", metric.name()));
+    }
+  }
+  return std::nullopt;
+}
+
+void append(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics, const Roster& roster,
+            std::vector<Metric>& to) {
+  for (const v1::Metric& metric : metrics) {
+    if (roster.directs) {
+      to.push_back({std::nullopt, metric.name(), metric.value()});
+    } else if (!roster.taken[metric.robot()]) {
+      to.push_back({roster.robots[metric.robot()], metric.name(), metric.value()});
+    }
+  }
+}
+
+}  // namespace ziggurat::wire

@@ -1,0 +1,21 @@
+#pragma once
+// Metrics of commands and leaves -> plain data.
+
+#include <optional>
+#include <vector>
+
+#include "wire/messages.h"
+#include "wire/roster.h"
+#include "ziggurat/v1/protocol.pb.h"
+
+namespace ziggurat::wire {
+
+/// What is wrong with the metrics of a session, if anything.
+std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics,
+                           const Roster& roster);
+
+/// Appends checked metrics. Those of robots that were taken over are skipped.
+void append(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics, const Roster& roster,
+            std::vector<Metric>& to);
+
+}  // namespace ziggurat::wire

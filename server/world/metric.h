@@ -1,0 +1,19 @@
+#pragma once
+// Figures of a run that its controllers and directors measure.
+
+#include <string>
+
+namespace ziggurat::world {
+
+struct Metric {
+  std::string robot;  ///< id; empty: the director's
+  std::string name;   ///< 1 to 64 letters, digits, `_`, `-`, `.`
+  double value = 0;   ///< finite
+};
+
+/// `name`, or `ROBOT/name`: under that a metric stands in outputs for programs.
+inline std::string key_of(const Metric& metric) {
+  return metric.robot.empty() ? metric.name : metric.robot + "/" + metric.name;
+}
+
+}  // namespace ziggurat::world
