@@ -21,11 +21,11 @@ v1::ClientMessage hello(const std::string& robots, std::uint32_t minor,
 }
 
 TEST(LaterVersions, H2_TheLowerMinorVersionCounts) {
-  for (const std::uint32_t minor : {0U, 1U, 2U, 7U}) {
+  for (const std::uint32_t minor : {0U, 1U, 2U, 3U, 7U}) {
     const SmallRun small(1);
     Peers peers(small);
     peers.say("p", hello("*", minor));
-    EXPECT_EQ(peers.told("p").welcome().version().minor(), std::min(minor, 2U));
+    EXPECT_EQ(peers.told("p").welcome().version().minor(), std::min(minor, 3U));
   }
 }
 

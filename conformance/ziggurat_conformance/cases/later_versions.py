@@ -1,6 +1,6 @@
 """What version 1.1 brought: dropped robots (W10), what a resumed session had commanded (L13), spawned robots
 (V15); and 1.2: epochs (S13), snapshots (V11, V16, V17). Sessions of lower versions see none of it: the rules of
-every session say so."""
+every session say so. And 1.3: metrics (S14)."""
 
 from ..case import Case, Level
 from ..messages import answer, hear_error, hello, join, leave, observe, send_hello
@@ -55,7 +55,36 @@ def _paused_12(**fields) -> list:
             told("s", 1), Hear("p", "paused")]
 
 
+_V13 = {"major": 1, "minor": 3}
+
+
+def _joins_13(peer: str, *robots: str, **fields) -> Join:
+    return Join(peer, hello(*robots, version=_V13, **fields), {"version": _V13})
+
+
+def _metric(**fields) -> list:
+    return [{"robot": 0, "name": "x", "value": 1.0, **fields}]
+
+
 CASES = [
+    Case("H2.minor-3", "The version 1.3 is agreed upon with a client of 1.3", (_joins_13("p", "arm0"),)),
+    Case("S14.taken", "A Command may have metrics",
+         (_joins_13("p", "*"), Hear("p", "observation"), answer("p", metrics=_metric(name="a.b-c_9")),
+          Hear("p", "observation"))),
+    Case("S14.name", "The name of a metric is BAD_VALUE if it is no plain one",
+         (_joins_13("p", "*"), Hear("p", "observation"),
+          *[step for name in ("", "two words", "a/b", "x" * 65)
+            for step in (answer("p", metrics=_metric(name=name)), hear_error("p", "BAD_VALUE"))],
+          answer("p"), Hear("p", "observation"))),
+    Case("S14.finite", "A metric that is not finite is BAD_VALUE",
+         (_joins_13("p", "*"), Hear("p", "observation"), answer("p", metrics=_metric(value=float("nan"))),
+          hear_error("p", "BAD_VALUE"), answer("p"), Hear("p", "observation"))),
+    Case("S14.robot", "A metric of a robot that the session does not have is UNKNOWN_ROBOT",
+         (_joins_13("p", "arm0", "arm1"), Hear("p", "observation"), answer("p", metrics=_metric(robot=2)),
+          hear_error("p", "UNKNOWN_ROBOT"), answer("p")), fresh=True),
+    Case("S14.not-for-1.2", "A session of 1.2 has no metrics: the field is unknown and ignored",
+         (_joins_12("p", "*"), Hear("p", "observation"), answer("p", metrics=_metric(name="two words")),
+          Hear("p", "observation"))),
     Case("H2.minor-1", "The version 1.1 is agreed upon with a client of 1.1, and 1.0 with one of 1.0",
          (_joins("p", "arm0"), Join("q", hello("arm1"), {"version": {"major": 1, "minor": 0}}))),
     Case("W10.told", "A session whose robots are dropped is told which",

@@ -1,6 +1,7 @@
 """What a server refuses of a Command or a Leave (S6 to S8, S11, D0 to D7, L1)."""
 
 import math
+import re
 from dataclasses import replace
 from typing import Collection, Iterable, Iterator
 
@@ -12,6 +13,7 @@ LONGEST_RADIO_MESSAGE = 1 << 20  # [bytes]
 LONGEST_RADIO_MESSAGES = 16 << 20  # [bytes] of a robot at a tick
 MOST_RADIO_MESSAGES = 1 << 16  # of a robot at a tick
 _BRIGHTEST = 0xFFFFFF
+_METRIC = re.compile("[A-Za-z0-9_.-]{1,64}")
 _MODES = (protocol.TURRET_PASSIVE, protocol.TURRET_POSITION, protocol.TURRET_SPEED)
 
 
@@ -56,6 +58,17 @@ def leave_faults(count: int, left: Collection[int], leave: protocol.Leave) -> li
         faults.append(Fault("L1", f"a Leave has the reason {leave.reason}; DONE or FAILED is expected",
                             "BAD_VALUE", "reason"))
     return [*faults, *log_faults(count, leave.log)]
+
+
+def metric_faults(count: int, metrics: Iterable) -> Iterator[Fault]:
+    for metric in metrics:
+        if metric.robot >= count:
+            yield Fault("S14", f"a metric is of position {metric.robot}; the session has {count} robots",
+                        "UNKNOWN_ROBOT", "metrics")
+        if not _METRIC.fullmatch(metric.name):
+            yield Fault("S14", f"{metric.name!r} is no name of a metric", "BAD_VALUE", "metrics")
+        if not math.isfinite(metric.value):
+            yield Fault("S14", f"the metric {metric.name} is not finite", "BAD_VALUE", "metrics")
 
 
 def log_faults(count: int, lines: Iterable) -> Iterator[Fault]:

@@ -4,7 +4,7 @@ import enum
 from typing import Iterator, Optional
 
 from ..wire import protocol
-from .command import PER_ROBOT, command_faults, leave_faults
+from .command import PER_ROBOT, command_faults, leave_faults, metric_faults
 from .fault import Fault, musts
 from .hello import hello_faults
 from .observation import observation_faults, welcome_faults
@@ -114,6 +114,8 @@ class Session:
         if self.epoch is not None and not command.HasField("epoch"):
             yield Fault("S13", "a Command without epoch, though its Observation has one", should=True)
         yield from command_faults(self.welcome.robots, self.left, command)
+        if self.welcome.version.minor >= 3:
+            yield from metric_faults(len(self.welcome.robots), command.metrics)
         if self._must_repeat and self.owes and command.tick == self.tick:
             lost = {field for field, _ in self._used - self._commanded(command)}
             if lost:
@@ -126,6 +128,8 @@ class Session:
         elif self.state in (State.NEW, State.HELLO, State.CLOSED):
             return
         yield from leave_faults(len(self.welcome.robots) if self.welcome else 0, self.left, leave)
+        if self.welcome and self.welcome.version.minor >= 3:
+            yield from metric_faults(len(self.welcome.robots), leave.metrics)
 
     def _judge_heartbeat(self, heartbeat: protocol.Heartbeat) -> Iterator[Fault]:
         if self.state in (State.NEW, State.CLOSED):

@@ -60,6 +60,14 @@ TOLD["epoch-not-told"] = clear_fields("observation", "epoch")
 SAID["any-epoch"] = clear_fields("command", "epoch")
 SAID["later-epochs-count"] = in_kind("command", lambda _, command: command.ClearField("epoch")
                                      if command.epoch > 9 else None)
+def _of_metrics(change):
+    return in_kind("command", lambda _, command: [change(metric) for metric in command.metrics] and None)
+
+
+SAID["any-metric-name"] = _of_metrics(lambda metric: setattr(metric, "name", "x"))
+SAID["infinite-metrics"] = _of_metrics(lambda metric: setattr(metric, "value", 0))
+SAID["metrics-of-any-robot"] = _of_metrics(lambda metric: setattr(metric, "robot", 0))
+SAID["no-metric-is-right"] = _of_metrics(lambda metric: setattr(metric, "name", "a b"))
 TOLD["restored-not-told"] = drop("restored")
 SAID["restore-not-done"] = done_without("restore")
 SAID["restores-all"] = in_kind("hello", lambda _, hello: setattr(hello, "can_restore", True))
