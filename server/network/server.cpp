@@ -186,10 +186,13 @@ void Server::publish(const world::Observations& observations,
   network::publish(state_->barrier, observations, tag_payloads);
 }
 
-Outcome Server::collect(world::Commands& commands, const Wait& wait) {
+Outcome Server::collect(world::Commands& commands, const Wait& wait,
+                        std::vector<world::Metric>* metrics) {
   const auto outcome =
       state_->wait_until([this] { return state_->barrier.gate.is_complete(); }, wait, &commands);
-  if (outcome == Outcome::complete) zero_missing(state_->barrier, commands);
+  if (outcome != Outcome::complete) return outcome;
+  zero_missing(state_->barrier, commands);
+  if (metrics != nullptr) *metrics = named(state_->barrier, state_->barrier.metrics.of_tick());
   return outcome;
 }
 
@@ -263,14 +266,6 @@ Performance Server::performance() const {
     result.controllers.push_back({missed[c], lost, barrier.answer_times[c]});
   }
   return result;
-}
-
-std::vector<world::Metric> Server::metrics_of_tick() const {
-  return named(state_->barrier, state_->barrier.metrics.of_tick());
-}
-
-std::vector<world::Metric> Server::metrics() const {
-  return named(state_->barrier, state_->barrier.metrics.last());
 }
 
 Report Server::take_report() {

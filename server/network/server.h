@@ -91,7 +91,10 @@ class Server {
   /// Until every robot that is not gone has answered the published tick; values are written into
   /// `commands` as they arrive, those of robots that are gone become zero. On anything but
   /// `complete` some robots' values may be in already; calling again goes on.
-  Outcome collect(world::Commands& commands, const Wait& wait);
+  /// @param metrics  gets those that were set at the tick, if it is complete: the director's first, then
+  ///                 robots in scene order, each sorted by name; null: not wanted
+  Outcome collect(world::Commands& commands, const Wait& wait,
+                  std::vector<world::Metric>* metrics = nullptr);
 
   /// Tells every session that the run is over. No ticks afterwards.
   void finish(const wire::End& end);
@@ -144,10 +147,6 @@ class Server {
   void fill(wire::Status& status) const;
   std::vector<RobotStatus> status() const;       ///< per robot of the layout
   Performance performance() const;
-  // What controllers and the director have measured: at the tick that was collected last, and the last
-  // values of all. The director's first, then robots in scene order, each sorted by name.
-  std::vector<world::Metric> metrics_of_tick() const;
-  std::vector<world::Metric> metrics() const;
   Report take_report();
 
  private:

@@ -78,20 +78,17 @@ void Recorder::tick(const channels::Moment& moment) {
       size);
 }
 
-void Recorder::measured(std::vector<world::Metric> metrics) {
-  const std::size_t size = metrics.size() * sizeof(world::Metric);
-  add([metrics = std::move(metrics)](Recording& to) { to.measured(metrics); }, size);
-}
-
-void Recorder::step(const world::Commands& commands) {
+void Recorder::step(const world::Commands& commands, std::vector<world::Metric> metrics) {
   auto copied = std::make_shared<channels::TickCopy>(take_copy());
   copied->commands = commands;
+  const std::size_t metrics_size = metrics.size() * sizeof(world::Metric);
   add(
-      [this, copied = std::move(copied)](Recording& to) {
+      [this, copied = std::move(copied), metrics = std::move(metrics)](Recording& to) {
+        to.measured(metrics);
         to.step(copied->commands);
         give_back(std::move(*copied));
       },
-      sizeof(channels::TickCopy) + commands.radio_messages.bytes.size());
+      sizeof(channels::TickCopy) + commands.radio_messages.bytes.size() + metrics_size);
 }
 
 void Recorder::add(v1::Act act) {
@@ -166,7 +163,10 @@ void Recorder::log(channels::Severity severity, std::string_view name, std::stri
       name.size() + text.size());
 }
 
-void Recorder::close() {
+void Recorder::close(std::vector<world::Metric> metrics) {
+  if (!metrics.empty()) {
+    add([metrics = std::move(metrics)](Recording& to) { to.measured(metrics); }, 0);
+  }
   {
     const std::lock_guard lock(mutex_);
     is_closing_ = true;

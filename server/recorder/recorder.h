@@ -48,11 +48,10 @@ class Recorder {
   void restored(const std::string& snapshot, std::span<const std::byte> bytes);
   void set_paused(bool is_paused);
   void log(channels::Severity severity, std::string_view name, std::string_view text);
-  void measured(std::vector<world::Metric> metrics);
-  void step(const world::Commands& commands);
+  void step(const world::Commands& commands, std::vector<world::Metric> metrics = {});
 
-  /// Completes the file, and waits for that.
-  void close();
+  /// Completes the file, and waits for that. @param metrics  that were set since the last tick
+  void close(std::vector<world::Metric> metrics = {});
   /// Why the recording has ended too early; once.
   std::optional<std::string> take_failure();
 

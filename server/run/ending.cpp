@@ -85,14 +85,6 @@ reports::ReportCard Run::report_card() const {
   return card;
 }
 
-/// Controllers may have measured something when they were told the end.
-void Run::complete_metrics() {
-  for (const world::Metric& metric : server_.metrics()) {
-    summary_.metrics.insert_or_assign(world::key_of(metric), metric.value);
-  }
-  if (recorded_) recorded_->measured(server_.metrics_of_tick());
-}
-
 /// Prints and writes the report card, if an option asks for it. False if the gate was missed.
 bool Run::report_hil() {
   if (!config_.keeps_reactions) return true;

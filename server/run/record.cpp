@@ -145,8 +145,8 @@ void RecordedRun::tick() {
       fmt::format("the recording ends before tick {}, the run goes on", simulation.state().tick));
 }
 
-void RecordedRun::close() {
-  recorder_.close();
+void RecordedRun::close(const std::vector<world::Metric>& metrics) {
+  recorder_.close(metrics);
   report_failure("the recording is not complete");
 }
 

@@ -50,12 +50,13 @@ class RecordedRun {
   void log(channels::Severity severity, std::string_view name, std::string_view text) {
     recorder_.log(severity, name, text);
   }
-  /// What controllers and the director have measured since the tick was published.
-  void measured(const std::vector<world::Metric>& metrics) { recorder_.measured(metrics); }
-  /// The world is about to be stepped.
-  void step() { recorder_.step(world_.simulation.commands()); }
-  /// After the last lines of controllers. @throws as tick()
-  void close();
+  /// The world is about to be stepped. @param metrics  that were set since the tick
+  void step(const std::vector<world::Metric>& metrics) {
+    recorder_.step(world_.simulation.commands(), metrics);
+  }
+  /// After the last lines of controllers. @param metrics  that were set since the last tick
+  /// @throws as tick()
+  void close(const std::vector<world::Metric>& metrics = {});
 
  private:
   void report_failure(const std::string& consequence);

@@ -26,6 +26,28 @@ namespace {
 
 constexpr double before_placing = 0.1;  // how far the world is loaded then
 
+void keep(const std::vector<world::Metric>& metrics, reports::Summary& summary) {
+  for (const world::Metric& metric : metrics) {
+    summary.metrics.insert_or_assign(world::key_of(metric), metric.value);
+  }
+}
+
+/// Those of the last tick, and what controllers have set when they were told the end.
+std::vector<world::Metric> last_metrics(const network::Server& server, const Watch& watch,
+                                        reports::Summary& summary) {
+  std::vector<world::Metric> metrics = watch.measured();
+  keep(metrics, summary);
+  wire::Status status;
+  server.fill(status);
+  for (const world::Metric& metric : status.metrics) {
+    const auto known = summary.metrics.find(world::key_of(metric));
+    const bool is_known = known != summary.metrics.end() && known->second == metric.value;
+    if (!is_known) metrics.push_back(metric);
+  }
+  keep(metrics, summary);
+  return metrics;
+}
+
 }  // namespace
 
 Run::Run(const Options& options, Service service, processes::Signals& signals)
@@ -227,8 +249,8 @@ int Run::execute() {
   }
   complete_summary();
   watch_.end_run(end_message(summary_));
-  complete_metrics();
-  if (recorded_) recorded_->close();
+  const std::vector<world::Metric> metrics = last_metrics(server_, watch_, summary_);
+  if (recorded_) recorded_->close(metrics);
   summary_.failures = watch_.failures();
   recorders_.write_summary(summary_);
   for (const auto& picture : recorders_.pictures()) console_.result(picture);
@@ -303,13 +325,13 @@ Ending Run::run_world() {
     }
     if (stopped) return *stopped;
     radio_watch_.tick(simulation.observations(), simulation.commands());
-    const std::vector<world::Metric> metrics = server_.metrics_of_tick();
-    recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(), metrics);
-    if (recorded_ && !metrics.empty()) recorded_->measured(metrics);
+    recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
+                        watch_.measured());
+    keep(watch_.measured(), summary_);
     if (showing_) showing_->answered();
     timer_.end_phase(Phase::recording, summary_);
     if (is_last) return Ending::finished;
-    if (recorded_) recorded_->step();
+    if (recorded_) recorded_->step(watch_.measured());
     simulation.list_contacts((showing_ && showing_->wants_contacts()) ||
                              (recorded_ && recorded_->wants_contacts()));
     simulation.list_rays((showing_ && showing_->wants_rays()) ||
@@ -381,6 +403,7 @@ bool Run::reset_world() {
   watch_.forget_spawned();
   ++resets_;
   if (showing_) showing_->restarted();
+  summary_.metrics.clear();
   return true;
 }
 

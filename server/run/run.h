@@ -84,7 +84,6 @@ class Run {
   // Ending.
   void end_in_failure(const std::exception& error);
   void complete_summary();
-  void complete_metrics();
   bool report_hil();
   reports::ReportCard report_card() const;
   void print_summary();

@@ -73,7 +73,8 @@ std::optional<Ending> Watch::gather() {
 
 std::optional<Ending> Watch::collect(world::Commands& commands, std::uint64_t tick) {
   tick_ = tick;
-  return until([&](const auto& wait) { return server_.collect(commands, wait); });
+  measured_.clear();
+  return until([&](const auto& wait) { return server_.collect(commands, wait, &measured_); });
 }
 
 std::optional<Ending> Watch::sleep_until(const std::function<clock::time_point()>& moment,

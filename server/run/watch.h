@@ -19,6 +19,7 @@
 #include "run/showing.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
+#include "world/metric.h"
 
 namespace ziggurat::run {
 
@@ -51,6 +52,8 @@ class Watch {
   std::optional<reports::Ending> gather();
   /// Until every controller has answered `tick`.
   std::optional<reports::Ending> collect(world::Commands& commands, std::uint64_t tick);
+  /// That were set at that tick.
+  const std::vector<world::Metric>& measured() const { return measured_; }
   /// Until that moment, which may change. A client that connects meanwhile may answer the tick.
   std::optional<reports::Ending> sleep_until(const std::function<clock::time_point()>& moment,
                                              world::Commands& commands);
@@ -107,6 +110,7 @@ class Watch {
   bool gathered_ = false;
   std::uint64_t tick_ = 0;
   std::vector<std::size_t> restarted_;  ///< robots whose process was started again and is still to connect
+  std::vector<world::Metric> measured_;
   std::string vanished_;
   bool child_ended_ = false;                ///< one or more, since the last look
   std::optional<reports::Ending> stopped_;  ///< by a deadline or a failure
