@@ -39,6 +39,21 @@ std::string describe_end(const processes::ControllerProcess& ended, const std::s
                      processes::names_of(ended.robots, layout));
 }
 
+// "r0, r1 (controller 'swing'), r7 (controller 'lift')"
+std::string by_controller(const supervision::World& world, const std::vector<std::size_t>& robots) {
+  const world::Layout& layout = world.simulation.layout();
+  std::string text;
+  for (std::size_t c = 0; c < world.scene.controllers.size(); ++c) {
+    std::vector<std::size_t> controlled;
+    std::ranges::copy_if(robots, std::back_inserter(controlled),
+                         [&](std::size_t robot) { return layout.robots[robot].controller == c; });
+    if (controlled.empty()) continue;
+    text += fmt::format("{}{} (controller '{}')", text.empty() ? "" : ", ",
+                        processes::names_of(controlled, layout), world.scene.controllers[c].id);
+  }
+  return text;
+}
+
 }  // namespace
 
 Watch::Watch(const Settings& settings, const supervision::World& world, network::Server& server,
@@ -190,7 +205,7 @@ std::optional<Ending> Watch::lost_controller() {
     if (restart(*ended)) return std::nullopt;
   } else {
     vanished_ =
-        fmt::format("the controller of {} disconnected at tick {}", by_controller(lost), tick_);
+        fmt::format("the controller of {} disconnected at tick {}", by_controller(world_, lost), tick_);
   }
   return Ending::controller_vanished;
 }
@@ -260,21 +275,6 @@ std::vector<std::size_t> Watch::awaited_robots() const {
   return robots;
 }
 
-// "r0, r1 (controller 'swing'), r7 (controller 'lift')"
-std::string Watch::by_controller(const std::vector<std::size_t>& robots) const {
-  const world::Layout& layout = world_.simulation.layout();
-  std::string text;
-  for (std::size_t c = 0; c < world_.scene.controllers.size(); ++c) {
-    std::vector<std::size_t> controlled;
-    std::ranges::copy_if(robots, std::back_inserter(controlled),
-                         [&](std::size_t robot) { return layout.robots[robot].controller == c; });
-    if (controlled.empty()) continue;
-    text += fmt::format("{}{} (controller '{}')", text.empty() ? "" : ", ",
-                        processes::names_of(controlled, layout), world_.scene.controllers[c].id);
-  }
-  return text;
-}
-
 // "r3: aggregate.lua:41, r7: lift.lua:12"
 /// @param robots  awaited; those whose process runs the script of a robot are taken out
 std::string Watch::busy_scripts(std::vector<std::size_t>& robots) const {
@@ -298,7 +298,7 @@ void Watch::report_awaited() {
   const auto awaited = [&] {
     auto others = robots;
     const auto busy = busy_scripts(others);
-    const auto rest = by_controller(others);
+    const auto rest = by_controller(world_, others);
     return busy.empty() || rest.empty() ? busy + rest : busy + ", " + rest;
   };
   if (progress_.needs_update()) {
@@ -307,7 +307,7 @@ void Watch::report_awaited() {
   const bool client_must_connect = std::ranges::any_of(
       unheld_robots(), [&](std::size_t robot) { return !controllers_.have(robot); });
   if (!client_must_connect && waited < long_wait) return;
-  auto text = by_controller(robots);
+  auto text = by_controller(world_, robots);
   auto others = robots;
   const bool names_script = !busy_scripts(others).empty();
   const bool is_printed = text == printed_ && (printed_script_ || !names_script);

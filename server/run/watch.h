@@ -90,7 +90,6 @@ class Watch {
   bool is_required(const network::RobotStatus& robot) const;
   std::vector<std::size_t> unheld_robots() const;
   std::vector<std::size_t> awaited_robots() const;
-  std::string by_controller(const std::vector<std::size_t>& robots) const;
   std::string busy_scripts(std::vector<std::size_t>& robots) const;
   void report_awaited();
 
