@@ -65,7 +65,7 @@ class Contacts {
     double gap = 0;
     void archive(math::Archive& archive);
   };
-  // Begins a line of the cache: of a pair with one point three are read.
+  // Begins a line of the cache.
   struct alignas(64) Pair {
     std::uint32_t a = 0, b = 0;  // colliders
     bool live = false;
