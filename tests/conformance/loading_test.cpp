@@ -70,7 +70,7 @@ TEST_F(Loading, H12_RefusedIfThereIsNoWorldInTheEnd) {
   EXPECT_EQ(refusal.error().code(), v1::Error::OUT_OF_STATE);
   EXPECT_EQ(refusal.error().severity(), v1::Error::FATAL);
   EXPECT_EQ(refusal.client_version().major(), 1U);
-  EXPECT_EQ(refusal.server_version().minor(), 2U);
+  EXPECT_EQ(refusal.server_version().minor(), wire::version.minor);
 }
 
 TEST_F(Loading, T9_BadMessagesInHelloAreDiscardedAndTheHelloWaits) {

@@ -68,7 +68,8 @@ class Metrics(SceneTest):
         process = self.start("run", self.scene, "--endpoint", endpoint, "--paused", "--summary",
                              self.folder / "summary.json")
         self.wait_for((self.folder / "e").exists, bool, "socket")
-        for arguments in (("step",), ("reset",), ("step",), ("shutdown", "--reason", "seen")):
+        # After a reset the world stands once tick 0 is complete; `pause` waits for that.
+        for arguments in (("pause",), ("step",), ("reset",), ("pause",), ("step",), ("shutdown", "--reason", "seen")):
             outcome = self.ziggurat("ctl", endpoint, *arguments)
             self.assertEqual(outcome.code, 0, outcome.err)
         self.assertEqual(self.finish(process).code, 0)
