@@ -91,8 +91,8 @@ class Server {
   /// Until every robot that is not gone has answered the published tick; values are written into
   /// `commands` as they arrive, those of robots that are gone become zero. On anything but
   /// `complete` some robots' values may be in already; calling again goes on.
-  /// @param metrics  gets those that were set at the tick, if it is complete: the director's first, then
-  ///                 robots in scene order, each sorted by name; null: not wanted
+  /// @param metrics  gets those that were set at the tick, if it is complete: in scene order, sorted by
+  ///                 name for each robot; null: not wanted
   Outcome collect(world::Commands& commands, const Wait& wait,
                   std::vector<world::Metric>* metrics = nullptr);
 

@@ -41,7 +41,7 @@ class Recording {
   void add(v1::Act act);
   void log(channels::Severity severity, const std::string& name, const std::string& text);
   void attach(const EmbeddedFile& file);
-  /// What controllers and the director have measured, between the last tick and the next.
+  /// What controllers have measured, between the last tick and the next.
   void measured(const std::vector<world::Metric>& metrics);
   /// The world is stepped with these commands.
   void step(const world::Commands& commands);

@@ -20,7 +20,7 @@ class Readings {
   Readings(std::string path, const world::Layout& layout);
 
   /// What was true and observed at a tick, and the commands that answered it. @throws WriteError
-  /// @param metrics  that were set then, of the director and of robots
+  /// @param metrics  that were set then
   void write(const world::State& state, const world::Observations& observations,
              const world::Commands& commands, const std::vector<world::Metric>& metrics = {});
   void flush() { file_.flush(); }  ///< @throws WriteError

@@ -106,7 +106,7 @@ std::string to_prometheus(const wire::Status& status) {
           "Largest violation of the laws of contact [m/s or rad/s].", status.solver.worst_residual);
   }
   if (!status.metrics.empty()) {
-    head(out, "ziggurat_metric", "gauge", "What controllers and the director have measured last.");
+    head(out, "ziggurat_metric", "gauge", "What controllers have measured last.");
   }
   for (const world::Metric& metric : status.metrics) {
     out += fmt::format("ziggurat_metric{{robot={},name={}}} {}\n", quoted(metric.robot),

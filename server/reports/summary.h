@@ -69,7 +69,7 @@ struct Summary {
     std::uint64_t ticks = 0;  ///< at which at least one of its robots missed a deadline
   };
   std::vector<Missed> missed;  ///< controllers that missed any, in scene order
-  /// Last values, by `name` of the director's and `ROBOT/name` of controllers'.
+  /// Last values, by `ROBOT/NAME`.
   std::map<std::string, double> metrics;
 };
 

@@ -71,11 +71,11 @@ struct LogLine {
   std::string text;       ///< UTF-8 without a line feed at the end
 };
 
-/// A figure of the run that a controller or director has set.
+/// A figure of the run that a controller has set.
 struct Metric {
-  std::optional<std::size_t> robot;  ///< into Layout::robots; none: the director's
-  std::string name;                  ///< 1 to 64 letters, digits, `_`, `-`, `.`
-  double value = 0;                  ///< finite
+  std::size_t robot = 0;  ///< into Layout::robots
+  std::string name;       ///< 1 to 64 letters, digits, `_`, `-`, `.`
+  double value = 0;       ///< finite
 };
 
 enum class LeaveReason { unspecified, done, failed };

@@ -20,18 +20,15 @@ bool is_name(std::string_view text) {
   return !text.empty() && text.size() <= longest_name && std::ranges::all_of(text, may_stand);
 }
 
-/// The robots of a session, or its director.
-std::size_t count_of(const Roster& roster) { return roster.directs ? 1 : roster.robots.size(); }
-
 }  // namespace
 
 std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics,
                            const Roster& roster) {
   for (const v1::Metric& metric : metrics) {
-    if (metric.robot() >= count_of(roster)) {
+    if (metric.robot() >= roster.robots.size()) {
       return make_fault(ErrorCode::unknown_robot, "metrics",
                         fmt::format("The session has {} robots; there is none at position {}.",
-                                    count_of(roster), metric.robot()));
+                                    roster.robots.size(), metric.robot()));
     }
     if (!is_name(metric.name())) {
       return make_fault(ErrorCode::bad_value, "metrics",
@@ -50,11 +47,8 @@ std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>&
 void append(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics, const Roster& roster,
             std::vector<Metric>& to) {
   for (const v1::Metric& metric : metrics) {
-    if (roster.directs) {
-      to.push_back({std::nullopt, metric.name(), metric.value()});
-    } else if (!roster.taken[metric.robot()]) {
-      to.push_back({roster.robots[metric.robot()], metric.name(), metric.value()});
-    }
+    if (roster.taken[metric.robot()]) continue;
+    to.push_back({roster.robots[metric.robot()], metric.name(), metric.value()});
   }
 }
 

@@ -84,7 +84,7 @@ struct Status {
   std::vector<PhaseBudget> budget;
   double wall_uptime_s = 0;
   SolverStatus solver;  ///< without islands: the solver does not tell
-  std::vector<world::Metric> metrics;  ///< last values; the director's first, then robots in scene order
+  std::vector<world::Metric> metrics;  ///< last values, in scene order
 };
 
 /// As protobuf's JSON, on one line.

@@ -36,7 +36,6 @@ struct Roster {
   std::vector<bool> gone;           ///< per robot: left the barrier for good, or taken over
   std::vector<bool> taken;          ///< per robot: another session has taken it over
   std::size_t gone_count = 0;
-  bool directs = false;             ///< a director's session: it has no robots
   // By the row of a channel in the tables of world/; empty for fields handled by hand.
   std::array<Packing, std::tuple_size_v<decltype(world::sensed)>> sensed;
   std::array<Packing, std::tuple_size_v<decltype(world::commanded)>> commanded;

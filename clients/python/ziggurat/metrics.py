@@ -9,7 +9,7 @@ from typing import Dict, List, Set, Tuple
 from . import protocol_pb2 as v1
 
 _NAME = re.compile(r"[A-Za-z0-9_.-]{1,64}")
-_MOST_NAMES = 100  # of a robot, or of a director
+_MOST_NAMES = 100  # of a robot
 
 
 class Metrics:

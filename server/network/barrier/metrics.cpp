@@ -20,7 +20,7 @@ std::vector<wire::Metric> list(const Values& values) {
 }  // namespace
 
 std::optional<wire::Fault> Metrics::check(const std::vector<wire::Metric>& metrics) const {
-  std::map<std::optional<std::size_t>, std::set<std::string>> added;
+  std::map<std::size_t, std::set<std::string>> added;
   for (const wire::Metric& metric : metrics) {
     if (last_.contains({metric.robot, metric.name})) continue;
     auto& names = added[metric.robot];

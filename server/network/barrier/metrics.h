@@ -14,7 +14,7 @@ namespace ziggurat::network {
 
 class Metrics {
  public:
-  static constexpr std::size_t most_names = 100;  ///< of a robot, or of the director, in a run
+  static constexpr std::size_t most_names = 100;  ///< of a robot in a run
 
   /// Why these can't be set, if they can't: a robot would have too many names.
   std::optional<wire::Fault> check(const std::vector<wire::Metric>& metrics) const;
@@ -25,14 +25,14 @@ class Metrics {
   /// The world begins anew.
   void clear();
 
-  // The director's first, then robots in scene order, each sorted by name.
+  // Of robots in scene order, each sorted by name.
   std::vector<wire::Metric> of_tick() const;
   std::vector<wire::Metric> last() const;
 
  private:
-  using Key = std::pair<std::optional<std::size_t>, std::string>;  // robot, none: the director
+  using Key = std::pair<std::size_t, std::string>;  // robot and name
   std::map<Key, double> last_, of_tick_;
-  std::map<std::optional<std::size_t>, std::size_t> names_;  // how many each has
+  std::map<std::size_t, std::size_t> names_;  // how many each robot has
 };
 
 }  // namespace ziggurat::network

@@ -84,8 +84,7 @@ std::vector<world::Metric> named(const Barrier& barrier, const std::vector<wire:
   std::vector<world::Metric> result;
   result.reserve(metrics.size());
   for (const wire::Metric& metric : metrics) {
-    result.push_back({metric.robot ? barrier.run->layout.robots[*metric.robot].id : std::string(),
-                      metric.name, metric.value});
+    result.push_back({barrier.run->layout.robots[metric.robot].id, metric.name, metric.value});
   }
   return result;
 }
