@@ -31,10 +31,13 @@ class SlurmTest(SweepTest):
     def requeue(self, task):
         """Slurm lets a requeued task wait for two minutes; not here."""
         self.cluster.ask("scontrol", "requeue", task)
-        self.wait_for(lambda: self.cluster.ask("scontrol", "show", "job", task),
-                      lambda text: re.search(r"JobState=(PENDING|RUNNING).*Restarts=[1-9]", text, re.DOTALL),
-                      f"requeued task: {self.cluster.ask('scontrol', 'show', 'job', task)}")
-        self.cluster.ask("scontrol", "update", f"JobId={task}", "StartTime=now")
+
+        def restarted():
+            self.cluster.ask("scontrol", "update", f"JobId={task}", "StartTime=now")  # refused while it still ends
+            return self.cluster.ask("scontrol", "show", "job", task)
+
+        self.wait_for(restarted, lambda text: re.search(r"JobState=(RUNNING|COMPLETED).*Restarts=[1-9]", text, re.DOTALL),
+                      "requeued task")
 
     def tasks(self):
         """Ids of the processes `ziggurat sweep task` of this test."""
