@@ -10,6 +10,8 @@
 #include <ctime>
 #include <filesystem>
 #include <system_error>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace ziggurat::processes {
@@ -56,6 +58,29 @@ void remove_left_folders(const std::string& parent) {
   for (const std::string& folder : found) remove_if_left(folder);
 }
 
+/// The descriptor of the lock of a folder that was just made; -1 if another program took the folder for
+/// one that was left, between the making of its lock and the locking, and removes it.
+int lock_new(const std::string& folder) {
+  const int file = lock(folder, O_CREAT);
+  struct stat status {};
+  if (file < 0 || (::fstat(file, &status) == 0 && status.st_nlink > 0)) return file;
+  ::close(file);
+  return -1;
+}
+
+/// A folder with its lock; an empty path and -1 if the parent takes none.
+std::pair<std::string, int> make_locked(const std::string& parent) {
+  constexpr int most_tries = 100;
+  for (int i = 0; i < most_tries; ++i) {
+    std::string name = parent + "/" + std::string(prefix) + "XXXXXX";
+    if (::mkdtemp(name.data()) == nullptr) break;  // mode 0700
+    const int file = lock_new(name);
+    if (file >= 0) return {name, file};
+    ::rmdir(name.c_str());
+  }
+  return {{}, -1};
+}
+
 }  // namespace
 
 PrivateFolder::PrivateFolder(const Guardian* guardian) {
@@ -67,13 +92,10 @@ PrivateFolder::PrivateFolder(const Guardian* guardian) {
   parents.emplace_back("/tmp");
   for (const auto& parent : parents) {
     remove_left_folders(parent);
-    std::string name = parent + "/" + std::string(prefix) + "XXXXXX";
-    if (::mkdtemp(name.data())) {  // mode 0700
-      path_ = name;
-      lock_ = lock(path_, O_CREAT);
-      if (guardian) guardian->remove_folder(path_);
-      return;
-    }
+    std::tie(path_, lock_) = make_locked(parent);
+    if (lock_ < 0) continue;
+    if (guardian) guardian->remove_folder(path_);
+    return;
   }
   throw std::system_error(errno, std::generic_category(), "cannot make a folder in /tmp");
 }

@@ -235,7 +235,7 @@ class Kills(SweepTest):
                 killed["run"] += 1
                 time.sleep(chance.uniform(0, 0.2))
             if sweep.poll() is not None:
-                self.assertEqual(sweep.returncode, FINISHED, sweep.communicate())
+                self.assertEqual(sweep.returncode, FINISHED, self.logs())
                 shutil.rmtree(self.out)  # all done: once more
                 continue
             sweep.kill()
@@ -251,6 +251,10 @@ class Kills(SweepTest):
         self.wait_for_guardian()
         for left in self.runtime.iterdir():
             left.rmdir()
+
+    def logs(self):
+        """Of the runs that failed."""
+        return "\n".join(f"--- {log}\n{log.read_text()}" for log in self.out.glob("runs/*/log.txt"))
 
     def test_ctrl_c_says_how_to_go_on(self):
         sweep = self.start("sweep", *self.arguments, "--out", self.out, "--timeout", "50")

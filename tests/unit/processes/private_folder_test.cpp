@@ -1,10 +1,14 @@
 #include "processes/private_folder.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 namespace ziggurat::processes {
 namespace {
@@ -40,6 +44,31 @@ TEST(PrivateFolder, RemovesWhatDeadProgramsLeftAndNothingElse) {
   EXPECT_TRUE(fs::exists(unlocked)) << "young: it may be locked in a moment";
   EXPECT_TRUE(fs::exists(other + "/notes"));
   EXPECT_TRUE(fs::exists(first.path())) << "its program runs";
+}
+
+TEST(PrivateFolder, IsNotTakenForOneThatWasLeftWhileItIsMade) {
+  const PrivateFolder parent;
+  constexpr int programs = 8, times = 300;
+  std::vector<pid_t> children;
+  for (int i = 0; i < programs; ++i) {
+    children.push_back(::fork());
+    if (children.back() != 0) continue;
+    ::setenv("XDG_RUNTIME_DIR", parent.path().c_str(), 1);
+    bool all_there = true;
+    for (int k = 0; k < times; ++k) {
+      const PrivateFolder folder;
+      for (int look = 0; look < 3; ++look) {
+        all_there = all_there && fs::exists(folder.path() + "/lock");
+        ::sched_yield();
+      }
+    }
+    ::_exit(all_there ? 0 : 1);
+  }
+  for (const pid_t child : children) {
+    int status = -1;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0) << "another program removed the folder";
+  }
 }
 
 TEST(PrivateFolder, IsShortEvenIfTheRuntimeFolderIsNot) {
