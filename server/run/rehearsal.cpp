@@ -39,7 +39,7 @@ Rehearsal::Rehearsal(const RehearsalOptions& options, processes::Signals& signal
       controllers_(start()),
       callers_(server_),
       supervision_({}, world_, server_, callers_, controllers_, console_),
-      watch_({{}, false, false, false, file_.states()}, world_, server_, controllers_, supervision_,
+      watch_({{}, false, false, false, file_.states(), {}}, world_, server_, controllers_, supervision_,
              signals, console_, nullptr, [](auto...) {}) {}
 
 /// The commands of the recording are replaced by the user's own: none of them is left by itself.
