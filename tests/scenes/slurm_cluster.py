@@ -110,10 +110,10 @@ class Cluster:
                   "idle nodes")
 
     def run(self, program, *arguments):
-        log = open(self.folder / "log" / f"{program}-{len(self.programs)}.out", "wb")
-        self.programs.append(subprocess.Popen(
-            [find(program), *arguments], env=self.environment, stdin=subprocess.DEVNULL, stdout=log,
-            stderr=subprocess.STDOUT))
+        with open(self.folder / "log" / f"{program}-{len(self.programs)}.out", "wb") as log:
+            self.programs.append(subprocess.Popen(
+                [find(program), *arguments], env=self.environment, stdin=subprocess.DEVNULL, stdout=log,
+                stderr=subprocess.STDOUT))
 
     def ask(self, *command):
         return subprocess.run(command, env=self.environment, stdin=subprocess.DEVNULL, text=True, check=False,
