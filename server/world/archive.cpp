@@ -103,7 +103,12 @@ void archive_sights(math::Archive& archive, const Layout& layout, const State& s
     archive("center", reading.center);
     archive("corners", reading.corners);
   });
-  for (Image& image : observations.images) archive.list("image", image.rgb);
+  for (Image& image : observations.images) {
+    archive.list("image", image.rgb);
+    const auto [width, height] = layout.cameras[image.camera].resolution;
+    const std::size_t size = std::size_t{3} * width * height;
+    archive.require(image.rgb.empty() || image.rgb.size() == size, "has another size than its camera");
+  }
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include "physics/archive.h"
 
+#include <algorithm>
+
 #include "physics/newton/core.h"
 
 namespace ziggurat::physics {
@@ -93,23 +95,29 @@ void archive_fields(math::Archive& archive, Contacts& contacts) {
   contacts.turned_.clear();
 }
 
-/// What was read may index lists.
+/// What was read may index lists. A pair must be one that find() can make: of two entities in the
+/// order of their colliders, one of which moves, or of one that moves and the floor.
 void Contacts::check_pairs(const math::Archive& archive) const {
   if (!archive.reads()) return;
-  std::size_t live = 0, resting = 0;
+  const std::size_t most = colliders_.all.size();
+  std::size_t resting = 0;
+  std::vector<std::uint64_t> keys;
   for (const Pair& pair : pairs_) {
     if (!pair.live) continue;
-    ++live;
-    resting += pair.rests;
-    const std::size_t most = colliders_.all.size();
     archive.require(&pair != pairs_.data() && pair.a < most && pair.b < most, "is beyond its list");
-    archive.require(pair.a != pair.b, "touches itself");
     const Collider& a = colliders_.all[pair.a];
     const Collider& b = colliders_.all[pair.b];
     const bool is_floor = pair.b == colliders_.floor;
     archive.require(a.present && (b.present || is_floor), "touches what is not there");
+    archive.require(is_floor || a.entity != b.entity, "touches its own entity");
+    archive.require(is_floor || pair.a < pair.b, "has its colliders in another order");
+    archive.require(a.moves || b.moves, "is of two colliders that stand");
+    keys.push_back(key_of(pair.a, pair.b));
+    resting += pair.rests;
   }
-  archive.require(live == live_ && resting == resting_, "counts wrongly");
+  archive.require(keys.size() == live_ && resting == resting_, "counts wrongly");
+  std::ranges::sort(keys);
+  archive.require(std::ranges::adjacent_find(keys) == keys.end(), "has a pair twice");
   std::vector<bool> is_unused(pairs_.size());
   for (const int place : unused_) {
     const bool is_place = place > 0 && static_cast<std::size_t>(place) < pairs_.size();

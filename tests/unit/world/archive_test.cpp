@@ -1,0 +1,49 @@
+// States as bytes, of anyone: what is written to files and sent to viewers has the size that its camera says.
+
+#include "world/archive.h"
+
+#include <gtest/gtest.h>
+
+#include "world/layout.h"
+
+namespace ziggurat::world {
+namespace {
+
+struct Camera {
+  Camera() {
+    layout.cameras.resize(1);
+    layout.cameras[0].image = true;
+    layout.cameras[0].resolution = {4, 2};
+    observations.images.push_back({0, {}});
+  }
+  /// What is wrong with a picture of so many bytes; empty: nothing.
+  std::string fault_of(std::size_t size) {
+    observations.images[0].rgb.assign(size, 7);
+    std::vector<std::byte> bytes;
+    auto writer = math::Archive::writer(bytes);
+    archive(writer, layout, state, observations);
+    auto reader = math::Archive::reader(bytes);
+    try {
+      archive(reader, layout, state, observations);
+      return {};
+    } catch (const math::ArchiveError& error) {
+      return error.what();
+    }
+  }
+
+  Layout layout;
+  State state;
+  Observations observations;
+};
+
+TEST(Archive, TakesPicturesOfTheSizeOfTheirCameraOnly) {
+  Camera camera;
+  EXPECT_EQ(camera.fault_of(0), "") << "none was taken yet";
+  EXPECT_EQ(camera.fault_of(24), "");
+  for (const std::size_t size : {1, 23, 25, 4096}) {
+    EXPECT_NE(camera.fault_of(size).find("another size than its camera"), std::string::npos) << size;
+  }
+}
+
+}  // namespace
+}  // namespace ziggurat::world
