@@ -14,11 +14,7 @@ std::optional<Fault> check_positions(const google::protobuf::RepeatedField<std::
                                      const Roster& roster, const world::Layout& layout) {
   std::vector<bool> named(robots.empty() ? 0 : roster.robots.size(), false);
   for (const std::uint32_t position : robots) {
-    if (position >= roster.robots.size()) {
-      return make_fault(ErrorCode::unknown_robot, "robots",
-                        fmt::format("The session has {} robots; there is none at position {}.",
-                                    roster.robots.size(), position));
-    }
+    if (auto found = check_position(position, roster, "robots")) return found;
     const std::string& id = layout.robots[roster.robots[position]].id;
     if (roster.gone[position] && !roster.taken[position]) {
       return make_fault(ErrorCode::not_yours, "robots",
@@ -38,11 +34,7 @@ std::optional<Fault> check_positions(const google::protobuf::RepeatedField<std::
 std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::LogLine>& log,
                            const Roster& roster) {
   for (const v1::LogLine& line : log) {
-    if (line.robot() >= roster.robots.size()) {
-      return make_fault(ErrorCode::unknown_robot, "log",
-                        fmt::format("The session has {} robots; there is none at position {}.",
-                                    roster.robots.size(), line.robot()));
-    }
+    if (auto found = check_position(line.robot(), roster, "log")) return found;
   }
   return std::nullopt;
 }

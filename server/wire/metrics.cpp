@@ -25,11 +25,7 @@ bool is_name(std::string_view text) {
 std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics,
                            const Roster& roster) {
   for (const v1::Metric& metric : metrics) {
-    if (metric.robot() >= roster.robots.size()) {
-      return make_fault(ErrorCode::unknown_robot, "metrics",
-                        fmt::format("The session has {} robots; there is none at position {}.",
-                                    roster.robots.size(), metric.robot()));
-    }
+    if (auto found = check_position(metric.robot(), roster, "metrics")) return found;
     if (!is_name(metric.name())) {
       return make_fault(ErrorCode::bad_value, "metrics",
                         fmt::format("The name of a metric must have 1 to {} letters, digits, '_', "

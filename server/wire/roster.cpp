@@ -1,6 +1,10 @@
 #include "wire/roster.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "wire/fault.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -71,6 +75,13 @@ Roster make_roster(const world::Layout& layout, std::span<const std::size_t> rob
     append_cameras(layout, robot, roster);
   }
   return roster;
+}
+
+std::optional<Fault> check_position(std::size_t position, const Roster& roster, std::string field) {
+  if (position < roster.robots.size()) return std::nullopt;
+  return make_fault(ErrorCode::unknown_robot, std::move(field),
+                    fmt::format("The session has {} robots; there is none at position {}.",
+                                roster.robots.size(), position));
 }
 
 }  // namespace ziggurat::wire

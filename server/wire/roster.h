@@ -4,10 +4,13 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <tuple>
 #include <vector>
 
+#include "wire/messages.h"
 #include "world/commands.h"
 #include "world/layout.h"
 
@@ -55,5 +58,9 @@ struct Roster {
 
 /// @param robots  into Layout::robots, ascending
 Roster make_roster(const world::Layout& layout, std::span<const std::size_t> robots);
+
+/// UNKNOWN_ROBOT if the session has no robot at a position that a message names.
+/// @param field  the message's field that names it
+std::optional<Fault> check_position(std::size_t position, const Roster& roster, std::string field);
 
 }  // namespace ziggurat::wire

@@ -1,11 +1,12 @@
 #include "cli/html_export.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+
+#include "temporary_folder.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -14,9 +15,6 @@ namespace fs = std::filesystem;
 
 class HtmlExport : public testing::Test {
  protected:
-  HtmlExport() { fs::create_directories(folder_); }
-  ~HtmlExport() override { fs::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& text) {
     const std::string path = (folder_ / name).string();
     std::ofstream(path, std::ios::binary) << text;
@@ -40,8 +38,7 @@ class HtmlExport : public testing::Test {
   const std::string magic_{"\x89MCAP0\r\n", 8};
 
  private:
-  const fs::path folder_ =
-      fs::temp_directory_path() / ("ziggurat_html_" + std::to_string(::getpid()));
+  TemporaryFolder folder_;
 };
 
 TEST_F(HtmlExport, Base64IsThatOfTheStandard) {  // RFC 4648, section 10

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -15,6 +14,7 @@
 #include "network/keys.h"
 #include "network/local_server.h"
 #include "network/small_run.h"
+#include "temporary_folder.h"
 
 namespace ziggurat::network {
 namespace {
@@ -23,8 +23,6 @@ using std::chrono::milliseconds;
 
 struct CurveRefusals : ::testing::Test {
   CurveRefusals() {
-    std::string pattern = "/tmp/ziggurat-refusals-XXXXXX";
-    folder = ::mkdtemp(pattern.data());
     server_key = write_key_pair(folder / "server");
     listed_key = write_key_pair(folder / "listed");
     other_key = write_key_pair(folder / "other");
@@ -32,7 +30,6 @@ struct CurveRefusals : ::testing::Test {
     config.curve = {secret("server"), {}};
     config.curve->clients.push_back({listed_key, {true, false, false}, ""});
   }
-  ~CurveRefusals() override { std::filesystem::remove_all(folder); }
   std::string secret(const std::string& name) const {
     return read_secret_key(folder / (name + ".secret"));
   }
@@ -71,7 +68,7 @@ struct CurveRefusals : ::testing::Test {
     return {0, 0};
   }
 
-  std::filesystem::path folder;
+  TemporaryFolder folder;
   std::string server_key, listed_key, other_key;
   Config config;
 };

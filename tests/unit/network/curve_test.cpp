@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -12,6 +11,7 @@
 #include "network/keys.h"
 #include "network/local_server.h"
 #include "network/small_run.h"
+#include "temporary_folder.h"
 #include "ziggurat/ziggurat.h"
 
 namespace ziggurat::network {
@@ -20,12 +20,6 @@ namespace {
 using std::chrono::milliseconds;
 
 struct Keys : ::testing::Test {
-  Keys() {
-    std::string pattern = "/tmp/ziggurat-keys-XXXXXX";
-    folder = ::mkdtemp(pattern.data());
-  }
-  ~Keys() override { std::filesystem::remove_all(folder); }
-
   std::string path(const std::string& name) const { return (folder / name).string(); }
   std::string write(const std::string& name, const std::string& text, mode_t mode = 0600) const {
     std::ofstream(path(name)) << text;
@@ -41,7 +35,7 @@ struct Keys : ::testing::Test {
     return "";
   }
 
-  std::filesystem::path folder;
+  TemporaryFolder folder;
 };
 
 TEST_F(Keys, APairIsWrittenOnceAndReadBack) {

@@ -1,13 +1,13 @@
 #include "network/endpoint.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "network/server.h"
 #include "network/small_run.h"
+#include "temporary_folder.h"
 
 namespace ziggurat::network {
 namespace {
@@ -57,12 +57,7 @@ TEST(Endpoint, LongIpcPaths) {
 }
 
 struct EndpointFiles : ::testing::Test {
-  EndpointFiles()
-      : folder(std::filesystem::temp_directory_path() / ("z" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(folder);
-  }
-  ~EndpointFiles() override { std::filesystem::remove_all(folder); }
-  std::filesystem::path folder;
+  TemporaryFolder folder;
 };
 
 TEST_F(EndpointFiles, AFileInTheWayIsNotDeleted) {

@@ -1,12 +1,12 @@
 #include "recording/images.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <string>
 
 #include "recording/output_file.h"
+#include "temporary_folder.h"
 
 namespace ziggurat::recording {
 namespace {
@@ -23,7 +23,7 @@ TEST(ImageName, IsSafeAndUnique) {
 
 class ImagesTest : public testing::Test {
  protected:
-  ImagesTest() : folder_(fs::temp_directory_path() / ("images" + std::to_string(getpid()))) {
+  ImagesTest() {
     layout_.robots.resize(2);
     layout_.robots[0].id = "blind";
     layout_.robots[1].id = "r";
@@ -32,9 +32,9 @@ class ImagesTest : public testing::Test {
     layout_.cameras[1].id = "eye";
     layout_.cameras[1].resolution = {2, 3};
   }
-  ~ImagesTest() override { fs::remove_all(folder_); }
 
-  fs::path folder_;
+  TemporaryFolder parent_;
+  const fs::path folder_ = parent_ / "images";
   world::Layout layout_;
 };
 

@@ -3,7 +3,6 @@
 #include "replay/recording_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -14,6 +13,7 @@
 #include "replay/difference.h"
 #include "replay/export.h"
 #include "replay/recording_error.h"
+#include "temporary_folder.h"
 
 namespace ziggurat::replay {
 namespace {
@@ -25,12 +25,7 @@ using testing::Recording;
 /// A file in a folder of its own.
 class Disk : public ::testing::Test {
  protected:
-  Disk() {
-    std::string name = "/tmp/ztXXXXXX";
-    folder_ = ::mkdtemp(name.data());
-  }
-  ~Disk() override { std::filesystem::remove_all(folder_); }
-  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string path(const std::string& name) const { return folder_ / name; }
 
   /// @param size  of the file's bytes that are written; -1: all
   std::string write(const Recording& recording, long size = -1) const {
@@ -65,7 +60,7 @@ class Disk : public ::testing::Test {
     return path("run.mcap");
   }
 
-  std::string folder_;
+  TemporaryFolder folder_;
 };
 
 std::size_t same_states(const RecordingFile& file) {

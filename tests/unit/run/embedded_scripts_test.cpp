@@ -1,11 +1,12 @@
 #include "run/embedded_scripts.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <set>
 #include <string>
+
+#include "temporary_folder.h"
 
 namespace ziggurat::run {
 namespace {
@@ -13,9 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(EmbeddedScripts, NoNameLeavesTheFolder) {
-  std::string pattern = "/tmp/ziggurat-embedded-XXXXXX";
-  ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-  const fs::path outside = pattern;
+  const TemporaryFolder folder;
+  const fs::path& outside = folder.path;
   replay::EmbeddedFiles files;
   for (const char* name : {"a.lua", "../b.lua", "../../../../../../tmp/c.lua", "/etc/d.lua",
                            "x/../../e.lua", "./y//f.lua"}) {
@@ -30,7 +30,6 @@ TEST(EmbeddedScripts, NoNameLeavesTheFolder) {
     written.insert(entry.path().filename().string());
   }
   EXPECT_EQ(written, (std::set<std::string>{"a.lua", "b.lua", "c.lua", "d.lua", "e.lua", "f.lua"}));
-  fs::remove_all(outside);
 }
 
 }  // namespace

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "scene_text.h"
+#include "temporary_folder.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -27,16 +27,12 @@ bool contains(const std::string& text, const std::string& part) {
 
 class Folder : public testing::Test {
  protected:
-  void SetUp() override {
-    char pattern[] = "/tmp/ziggurat-scene-XXXXXX";
-    path = ::mkdtemp(pattern);
-  }
-  void TearDown() override { std::filesystem::remove_all(path); }
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::ofstream(path / name, std::ios::binary) << text;
     return path / name;
   }
-  std::filesystem::path path;
+  TemporaryFolder folder;
+  std::filesystem::path path = folder.path;
 };
 
 TEST_F(Folder, AValidFileIsRead) {

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "model_files.h"
+#include "temporary_folder.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -44,8 +44,7 @@ TEST(Includes, AreCheckedForSizeAfterOpening) {
 }
 
 TEST(Includes, FromDiskPathsStartAtTheIncludingFile) {
-  char pattern[] = "/tmp/ziggurat-models-XXXXXX";
-  const std::filesystem::path folder = ::mkdtemp(pattern);
+  const TemporaryFolder folder;
   std::filesystem::create_directories(folder / "scenes");
   std::filesystem::create_directories(folder / "models/blocks");
   const auto write = [&](const char* name, const std::string& text) {
@@ -69,7 +68,6 @@ TEST(Includes, FromDiskPathsStartAtTheIncludingFile) {
   EXPECT_EQ(count_containing(faults(read_file(folder / "scenes/folder.argos")),
                              "which is not a regular file"),
             1u);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include "sweep/experiment_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "temporary_folder.h"
 #include "text/numbers.h"
 
 namespace ziggurat::sweep {
@@ -15,13 +15,6 @@ using Texts = std::vector<std::string>;
 
 class ExperimentFileTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "experimentXXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   ExperimentFile read(const std::string& text) const {
     const std::string path = folder_ / "e.toml";
     std::ofstream(path) << text;
@@ -36,7 +29,7 @@ class ExperimentFileTest : public testing::Test {
     return "";
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(ExperimentFileTest, SaysWhatTheCommandLineSays) {

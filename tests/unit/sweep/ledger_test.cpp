@@ -2,23 +2,16 @@
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
-#include <unistd.h>
 
 #include <filesystem>
+
+#include "temporary_folder.h"
 
 namespace ziggurat::sweep {
 namespace {
 
 class LedgerTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (std::filesystem::temp_directory_path() / "ledgerXXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
-    path_ = (folder_ / "sweep.sqlite").string();
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   /// The first value of the first row, as text.
   std::string ask(const std::string& sql) const {
     sqlite3* database = nullptr;
@@ -35,8 +28,8 @@ class LedgerTest : public testing::Test {
 
   const Experiment experiment_{
       "/s.argos", {{Axis::Kind::parameter, "gain", {"0.5", "it's"}}}, {1, 2}, {}};
-  std::filesystem::path folder_;
-  std::string path_;
+  TemporaryFolder folder_;
+  std::string path_ = folder_ / "sweep.sqlite";
 };
 
 Result full() {

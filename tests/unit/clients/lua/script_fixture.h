@@ -2,7 +2,6 @@
 // A robot with two joints whose script is written by the test.
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -13,14 +12,13 @@
 
 #include "clients/one_robot.h"
 #include "script/controller.h"
+#include "temporary_folder.h"
 
 namespace ziggurat::lua {
 
 class ScriptTest : public ::testing::Test {
  protected:
   ScriptTest() {
-    std::string folder = (std::filesystem::temp_directory_path() / "lua-XXXXXX").string();
-    folder_ = ::mkdtemp(folder.data());
     robot_.set_id("r0");
     for (const auto& [name, value] : {std::pair{"script", "main.lua"}, std::pair{"speed", "2"}}) {
       v1::Parameter& param = *robot_.add_params();
@@ -30,11 +28,6 @@ class ScriptTest : public ::testing::Test {
     for (const char* id : {"both", "sensor"}) robot_.add_joint_sensors()->set_id(id);
     for (const char* id : {"both", "motor"}) robot_.add_joint_actuators()->set_id(id);
   }
-  ~ScriptTest() override {
-    controller_.reset();
-    std::filesystem::remove_all(folder_);
-  }
-
   void write(const std::string& file, const std::string& text) {
     std::ofstream(folder_ / file) << text;
   }
@@ -64,13 +57,13 @@ class ScriptTest : public ::testing::Test {
     one_->seen.set_joint_readings(joint, reading);
     one_->sense();
   }
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path; }
 
   v1::RobotDescription robot_;  ///< that start() begins with
   ControllerOptions options_;
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   std::optional<OneRobot> one_;
   std::unique_ptr<Controller> controller_;
 };
