@@ -16,6 +16,24 @@ struct Parsed {
   std::vector<std::string> positional;
 };
 
+/// The values of a parsed command line, by the names of the options.
+class Values {
+ public:
+  explicit Values(const boost::program_options::variables_map& values) : values_(values) {}
+
+  bool has(const char* name) const { return values_.count(name) > 0; }
+  /// Empty without the option.
+  std::string text(const char* name) const {
+    return has(name) ? values_[name].as<std::string>() : std::string();
+  }
+  std::vector<std::string> texts(const char* name) const {
+    return has(name) ? values_[name].as<std::vector<std::string>>() : std::vector<std::string>();
+  }
+
+ private:
+  const boost::program_options::variables_map& values_;
+};
+
 /// Options may stand anywhere, `--` ends them, abbreviations are not guessed. All values are
 /// taken as text. @throws text::UsageError
 Parsed parse(const Arguments& arguments, const boost::program_options::options_description& known);

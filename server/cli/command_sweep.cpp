@@ -8,9 +8,10 @@
 #include "cli/sweep_options.h"
 #include "cli/sweep_results.h"
 #include "reports/console.h"
-#include "sweep/columns.h"
 #include "sweep/folder.h"
+#include "sweep/slurm.h"
 #include "sweep/sweep.h"
+#include "text/quoting.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -18,12 +19,12 @@ namespace {
 void print_runs(const sweep::Experiment& experiment) {
   reports::Console console;
   std::string line = "run";
-  for (const auto& axis : experiment.axes) line += "," + sweep::csv_field(axis.name);
+  for (const auto& axis : experiment.axes) line += "," + text::csv_field(axis.name);
   console.result(line + ",seed");
   for (std::size_t run = 1; run <= run_count(experiment); ++run) {
     const auto each = combination(experiment, run);
     line = fmt::format("{}", run);
-    for (const auto& value : each.values) line += "," + sweep::csv_field(value);
+    for (const auto& value : each.values) line += "," + text::csv_field(value);
     console.result(fmt::format("{},{}", line, each.seed));
   }
   console.flush();
@@ -32,10 +33,12 @@ void print_runs(const sweep::Experiment& experiment) {
 /// The command that goes on with an interrupted sweep.
 std::string resume_command(const SweepOptions& options) {
   const sweep::Settings& settings = options.settings;
-  std::string command = fmt::format("ziggurat sweep resume {} --jobs {}", options.out, settings.jobs);
+  std::string command = fmt::format("ziggurat sweep resume {} --jobs {}",
+                                    text::shell_word(options.out), settings.jobs);
   if (settings.timeout) command += fmt::format(" --timeout {}", *settings.timeout);
   if (settings.record == sweep::Record::failed) command += " --record failed";
   if (settings.record == sweep::Record::all) command += " --record all";
+  if (options.retries_failed) command += " --retry-failed";
   return command;
 }
 
@@ -61,12 +64,13 @@ int execute_local(const SweepOptions& options, processes::Signals& signals) {
   const sweep::Experiment& experiment = options.definition.experiment;
   reports::Console console({options.quiet, false});
   const sweep::Folder folder(options.out);
+  folder.check(options.definition);  // before anything is written there
   std::filesystem::create_directories(folder.path());
   const sweep::Lock lock(folder.path() / "lock");
   folder.begin(options.definition);
+  sweep::refuse_if_queued(folder);
   sweep::Ledger ledger(folder.ledger().string());
   const auto known = folder.results();
-  for (const auto& result : known) tidy(folder, result, options.settings.record);
   std::vector<std::size_t> runs(run_count(experiment));
   std::iota(runs.begin(), runs.end(), std::size_t{1});
   const auto left = sweep::runs_to_do(runs, known, options.retries_failed);
@@ -76,8 +80,8 @@ int execute_local(const SweepOptions& options, processes::Signals& signals) {
   }
   sweep::Sweep sweep(experiment, folder, options.settings, ledger, console, signals);
   const auto counts = sweep.execute(left);
-  ledger.make_view(experiment);
   folder.write_csv(experiment, folder.results());
+  ledger.make_view(experiment);
   const int code = report(options, folder, counts.is_interrupted, console);
   signals.completed(code);
   return code;

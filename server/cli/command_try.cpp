@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "run/rehearsal.h"
 #include "text/numbers.h"
+#include "text/quoting.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -22,13 +23,6 @@ po::options_description try_options() {
       ("differences", text("N"), "print the first N ticks that differ; default 1")  //
       ("quiet", "no progress and no notices");
   return options;
-}
-
-/// A word that /bin/sh takes as it is.
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
 }
 
 }  // namespace
@@ -68,7 +62,7 @@ int execute_try(const Arguments& arguments, processes::Signals& signals) {
   options.script = text("script");
   std::string command;
   for (auto word = end; word != arguments.end(); ++word) {
-    if (word != end) command += (command.empty() ? "" : " ") + quoted(*word);
+    if (word != end) command += (command.empty() ? "" : " ") + text::shell_word(*word);
   }
   if (command.empty() == options.script.empty()) {
     throw text::UsageError("write either -- COMMAND at the end, or --script FILE.lua");

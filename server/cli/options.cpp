@@ -40,23 +40,6 @@ std::pair<std::string, std::string> to_controller(const std::string& value) {
   return {value.substr(0, equals), value.substr(equals + 1)};
 }
 
-/// The values of a parsed command line, by the names of the options.
-class Values {
- public:
-  explicit Values(const po::variables_map& values) : values_(values) {}
-
-  bool has(const char* name) const { return values_.count(name) > 0; }
-  std::string text(const char* name) const {
-    return has(name) ? values_[name].as<std::string>() : std::string();
-  }
-  std::vector<std::string> texts(const char* name) const {
-    return has(name) ? values_[name].as<std::vector<std::string>>() : std::vector<std::string>();
-  }
-
- private:
-  const po::variables_map& values_;
-};
-
 void read_length(const Values& values, run::Options& options) {
   if (values.has("ticks")) options.ticks = text::to_integer("--ticks", values.text("ticks"));
   if (values.has("duration")) {

@@ -10,6 +10,7 @@
 #include "sweep/sweep.h"
 #include "sweep/tasks.h"
 #include "text/numbers.h"
+#include "text/quoting.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -33,8 +34,9 @@ int write_manifest(const SweepOptions& options, const sweep::Folder& folder, std
                     kubernetes_manifest(
                         tasks, task_command(folder, settings, options.retries_failed),
                         settings.jobs, options.kubernetes));
-  console.report(fmt::format("{0}: an indexed Job with {1} tasks; write: kubectl create -f {0}",
-                             options.kubernetes_file, tasks));
+  console.report(fmt::format("{0}: an indexed Job with {1} tasks; write: kubectl create -f {2}",
+                             options.kubernetes_file, tasks,
+                             text::shell_word(options.kubernetes_file)));
   return exit_code::finished;
 }
 
@@ -52,7 +54,7 @@ int submit(const SweepOptions& options, const sweep::Folder& folder, std::size_t
   const std::string id = submit_to_slurm(folder, script);
   console.report(fmt::format(
       "submitted job {} with {} tasks of at most {} runs; how far it is: ziggurat sweep status {}", id,
-      tasks.size(), chunk, options.out));
+      tasks.size(), chunk, text::shell_word(options.out)));
   return exit_code::finished;
 }
 
@@ -66,9 +68,11 @@ int submit_sweep(const SweepOptions& options) {
     check_is_mounted(options.kubernetes.mount, folder.path());
     check_is_mounted(options.kubernetes.mount, options.definition.experiment.scene);
   }
+  folder.check(options.definition);
   fs::create_directories(folder.path());
   const sweep::Lock lock(folder.path() / "lock");
   folder.begin(options.definition);
+  sweep::refuse_if_queued(folder);
   const std::size_t chunk = fix_chunk(folder, options.definition.experiment, options.chunk);
   return for_kubernetes ? write_manifest(options, folder, chunk, console)
                         : submit(options, folder, chunk, console);
@@ -88,8 +92,8 @@ int sweep_task(const Arguments& arguments, processes::Signals& signals) {
   const fs::path path = folder.task_ledger(task);
   const sweep::Lock lock(fs::path(path).replace_extension(".lock"));
   sweep::Ledger ledger(path.string());
-  const auto left = runs_to_do(runs_of_task(definition.experiment, chunk, task), ledger.read(),
-                               options.sweep.retries_failed);
+  const auto left = runs_to_do(runs_of_task(definition.experiment, chunk, task),
+                               folder.results_for_task(task), options.sweep.retries_failed);
   reports::Console console({options.sweep.quiet, false});
   sweep::Sweep sweep(definition.experiment, folder, options.sweep.settings, ledger, console, signals);
   const auto counts = sweep.execute(left);

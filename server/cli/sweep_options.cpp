@@ -37,14 +37,6 @@ auto text_values(const char* name) {
   return po::value<std::vector<std::string>>()->composing()->value_name(name);
 }
 
-std::vector<std::string> texts(const Parsed& parsed, const char* name) {
-  if (parsed.values.count(name) == 0) return {};
-  return parsed.values[name].as<std::vector<std::string>>();
-}
-std::string text_of(const Parsed& parsed, const char* name) {
-  return parsed.values.count(name) == 0 ? std::string() : parsed.values[name].as<std::string>();
-}
-
 /// What stands behind `--` is for `run`.
 std::pair<Arguments, Arguments> split(const Arguments& arguments) {
   const auto end = std::ranges::find(arguments, "--");
@@ -54,8 +46,9 @@ std::pair<Arguments, Arguments> split(const Arguments& arguments) {
 
 void check_run_arguments(const std::vector<std::string>& arguments) {
   const Parsed parsed = parse(arguments, run_options());
+  const Values values(parsed.values);
   for (const char* name : own_options) {
-    if (parsed.values.count(name) == 0) continue;
+    if (!values.has(name)) continue;
     throw text::UsageError(fmt::format("--{} is set by the sweep; write --seeds, --param, --axis or "
                                        "--record before the '--' instead",
                                        name));
@@ -65,11 +58,9 @@ void check_run_arguments(const std::vector<std::string>& arguments) {
                                        parsed.positional.front()));
   }
   for (const char* name : exclusive_options) {
-    const auto found = parsed.values.find(name);
-    if (found == parsed.values.end()) continue;
-    const auto* one = boost::any_cast<std::string>(&found->second.value());
-    const auto values = one ? std::vector{*one} : found->second.as<std::vector<std::string>>();
-    for (const std::string& value : values) {
+    if (!values.has(name)) continue;
+    const auto* one = boost::any_cast<std::string>(&parsed.values[name].value());
+    for (const std::string& value : one ? std::vector{*one} : values.texts(name)) {
       if (value.find("{run}") != value.npos) continue;
       throw text::UsageError(fmt::format(
           "--{0} '{1}' would be the same for all runs; write {{run}} in it, which becomes the number "
@@ -77,6 +68,15 @@ void check_run_arguments(const std::vector<std::string>& arguments) {
           name, value));
     }
   }
+}
+
+/// What the first run is asked for: its arguments are read as `ziggurat run` reads them.
+/// @throws text::UsageError
+run::Options options_of_first_run(const sweep::Experiment& experiment,
+                                  const sweep::Settings& settings) {
+  const auto command = run_command(experiment, combination(experiment, 1), settings.program, ".",
+                                   settings.record != sweep::Record::none);
+  return parse_options({command.begin() + 2, command.end()}, run_options());
 }
 
 sweep::Record to_record(const std::string& text) {
@@ -101,37 +101,37 @@ double to_timeout(const std::string& text) {
 }
 
 /// The command line wins over the file.
-void read_settings(const Parsed& parsed, const sweep::ExperimentFile& file, SweepOptions& options) {
+void read_settings(const Values& values, const sweep::ExperimentFile& file, SweepOptions& options) {
   sweep::Settings& settings = options.settings;
   settings.program = fs::read_symlink("/proc/self/exe").string();
   settings.version = run::version;
   settings.jobs = file.jobs.value_or(std::clamp(std::thread::hardware_concurrency(), 1u, most_jobs));
   settings.timeout = file.timeout;
   settings.record = to_record(file.record);
-  if (parsed.values.count("jobs")) settings.jobs = to_jobs(text_of(parsed, "jobs"));
-  if (parsed.values.count("timeout")) settings.timeout = to_timeout(text_of(parsed, "timeout"));
-  if (parsed.values.count("record")) settings.record = to_record(text_of(parsed, "record"));
-  options.out = parsed.values.count("out") ? text_of(parsed, "out") : file.out;
-  options.retries_failed = parsed.values.count("retry-failed") > 0;
-  options.dry_run = parsed.values.count("dry-run") > 0;
-  options.quiet = parsed.values.count("quiet") > 0;
+  if (values.has("jobs")) settings.jobs = to_jobs(values.text("jobs"));
+  if (values.has("timeout")) settings.timeout = to_timeout(values.text("timeout"));
+  if (values.has("record")) settings.record = to_record(values.text("record"));
+  options.out = values.has("out") ? values.text("out") : file.out;
+  options.retries_failed = values.has("retry-failed");
+  options.dry_run = values.has("dry-run");
+  options.quiet = values.has("quiet");
 }
 
 /// What the options say of the experiment.
-void read_experiment(const Parsed& parsed, const Arguments& for_run, sweep::Experiment& experiment) {
-  for (const std::string& each : texts(parsed, "param")) {
+void read_experiment(const Values& values, const Arguments& for_run, sweep::Experiment& experiment) {
+  for (const std::string& each : values.texts("param")) {
     experiment.axes.push_back(sweep::to_axis(sweep::Axis::Kind::parameter, each));
   }
-  for (const std::string& each : texts(parsed, "axis")) {
+  for (const std::string& each : values.texts("axis")) {
     experiment.axes.push_back(sweep::to_axis(sweep::Axis::Kind::setting, each));
   }
-  if (parsed.values.count("seeds")) {
-    experiment.seeds = sweep::to_seeds("--seeds", text_of(parsed, "seeds"));
+  if (values.has("seeds")) {
+    experiment.seeds = sweep::to_seeds("--seeds", values.text("seeds"));
   }
   for (const char* name : {"ticks", "duration"}) {
-    if (parsed.values.count(name) == 0) continue;
+    if (!values.has(name)) continue;
     experiment.run_arguments.insert(experiment.run_arguments.end(),
-                                    {std::string("--") + name, text_of(parsed, name)});
+                                    {std::string("--") + name, values.text(name)});
   }
   experiment.run_arguments.insert(experiment.run_arguments.end(), for_run.begin(), for_run.end());
 }
@@ -143,37 +143,37 @@ void complete(sweep::Definition& definition, const sweep::Settings& settings) {
   check_run_arguments(experiment.run_arguments);
   auto files = sweep::read_scene(experiment);
   definition.files = std::move(files.hashes);
-  const bool has_length = std::ranges::any_of(experiment.run_arguments, [](const auto& each) {
-    return each.starts_with("--ticks") || each.starts_with("--duration");
-  });
-  if (files.length == 0 && !has_length && !settings.timeout) {
+  if (experiment.seeds.empty()) {
+    if (files.seed == 0) {
+      throw text::UsageError(fmt::format("{} has no random_seed, so that each run would draw its own; "
+                                         "write seeds, as in --seeds 1..10",
+                                         experiment.scene));
+    }
+    experiment.seeds = {files.seed};
+    check(experiment);
+  }
+  const run::Options first = options_of_first_run(experiment, settings);
+  const bool may_never_end = !first.ticks && first.duration.value_or(files.length) == 0;
+  if (may_never_end && !settings.timeout) {
     throw text::UsageError(fmt::format("{} has no length, so that a run may never end; write "
                                        "--duration S or --timeout S",
                                        experiment.scene));
   }
-  if (!experiment.seeds.empty()) return;
-  if (files.seed == 0) {
-    throw text::UsageError(fmt::format("{} has no random_seed, so that each run would draw its own; "
-                                       "write seeds, as in --seeds 1..10",
-                                       experiment.scene));
-  }
-  experiment.seeds = {files.seed};
-  check(experiment);
 }
 
-void read_cluster(const Parsed& parsed, SweepOptions& options) {
-  options.for_slurm = parsed.values.count("slurm") > 0;
-  options.slurm = {text_of(parsed, "partition"), texts(parsed, "slurm-option")};
-  options.kubernetes_file = text_of(parsed, "kubernetes");
-  options.kubernetes = {text_of(parsed, "image"), text_of(parsed, "claim"),
-                        text_of(parsed, "mount")};
+void read_cluster(const Values& values, SweepOptions& options) {
+  options.for_slurm = values.has("slurm");
+  options.slurm = {values.text("partition"), values.texts("slurm-option")};
+  options.kubernetes_file = values.text("kubernetes");
+  options.kubernetes = {values.text("image"), values.text("claim"),
+                        values.text("mount")};
   const bool for_kubernetes = !options.kubernetes_file.empty();
-  if (parsed.values.count("chunk")) {
-    options.chunk = text::to_integer("--chunk", text_of(parsed, "chunk"));
+  if (values.has("chunk")) {
+    options.chunk = text::to_integer("--chunk", values.text("chunk"));
     if (*options.chunk == 0) throw text::UsageError("--chunk is 0; write 1 or more runs");
   }
   const auto needs = [&](const char* name, bool has, const char* other) {
-    if (parsed.values.count(name) == 0 || has) return;
+    if (!values.has(name) || has) return;
     throw text::UsageError(fmt::format("--{} needs --{}", name, other));
   };
   for (const char* name : {"partition", "slurm-option"}) needs(name, options.for_slurm, "slurm");
@@ -183,12 +183,12 @@ void read_cluster(const Parsed& parsed, SweepOptions& options) {
     throw text::UsageError("--slurm and --kubernetes are two clusters; write one of them");
   }
   for (const char* name : {"image", "claim", "mount"}) {
-    if (!for_kubernetes || parsed.values.count(name)) continue;
+    if (!for_kubernetes || values.has(name)) continue;
     throw text::UsageError(fmt::format("--kubernetes needs --{} (ziggurat help sweep)", name));
   }
   // A processor for each run, and one run at a time, unless it is said otherwise.
   const bool is_cluster = options.for_slurm || for_kubernetes;
-  if (is_cluster && parsed.values.count("jobs") == 0) options.settings.jobs = 1;
+  if (is_cluster && !values.has("jobs")) options.settings.jobs = 1;
 }
 
 const std::string& only_word(const Parsed& parsed, const char* missing) {
@@ -203,18 +203,19 @@ const std::string& only_word(const Parsed& parsed, const char* missing) {
 
 /// The experiment of a folder.
 SweepOptions resumed(const Parsed& parsed, const char* verb) {
+  const Values values(parsed.values);
   SweepOptions options;
-  read_settings(parsed, {}, options);
-  read_cluster(parsed, options);
+  read_settings(values, {}, options);
+  read_cluster(values, options);
   options.out = only_word(
       parsed, fmt::format("no folder is given; write: ziggurat sweep {} DIR", verb).c_str());
   for (const char* name : {"param", "axis", "seeds", "ticks", "duration", "out"}) {
-    if (parsed.values.count(name) == 0) continue;
+    if (!values.has(name)) continue;
     throw text::UsageError(
         fmt::format("--{} can't change: {} goes on with the experiment of the folder", name, verb));
   }
   options.definition = sweep::Folder(options.out).definition();
-  options.definition.files = sweep::read_scene(options.definition.experiment).hashes;
+  complete(options.definition, options.settings);
   return options;
 }
 
@@ -258,13 +259,14 @@ po::options_description sweep_options() {
 SweepOptions parse_sweep(const Arguments& arguments) {
   const auto [own, for_run] = split(arguments);
   const Parsed parsed = parse(own, sweep_options());
+  const Values values(parsed.values);
   const std::string& word =
       only_word(parsed, "no scene is given; write: ziggurat sweep SCENE --out DIR, or: ziggurat sweep "
                         "EXPERIMENT.toml");
   sweep::ExperimentFile file;
   if (word.ends_with(".toml")) {
     for (const char* name : {"param", "axis", "seeds", "ticks", "duration"}) {
-      if (parsed.values.count(name) == 0) continue;
+      if (!values.has(name)) continue;
       throw text::UsageError(
           fmt::format("--{} belongs into {}, so that it tells the whole experiment", name, word));
     }
@@ -277,9 +279,9 @@ SweepOptions parse_sweep(const Arguments& arguments) {
   }
   SweepOptions options;
   options.definition.experiment = std::move(file.experiment);
-  read_experiment(parsed, for_run, options.definition.experiment);
-  read_settings(parsed, file, options);
-  read_cluster(parsed, options);
+  read_experiment(values, for_run, options.definition.experiment);
+  read_settings(values, file, options);
+  read_cluster(values, options);
   if (options.out.empty() && !options.dry_run) {
     throw text::UsageError("no folder for the results is given; write --out DIR");
   }
@@ -295,9 +297,10 @@ TaskOptions parse_task(const Arguments& arguments) {
   po::options_description known = sweep_options();
   known.add_options()("task", po::value<std::string>());
   const Parsed parsed = parse(arguments, known);
+  const Values values(parsed.values);
   TaskOptions options{resumed(parsed, "task"), {}};
-  if (parsed.values.count("task")) {
-    options.task = text::to_integer("--task", text_of(parsed, "task"));
+  if (values.has("task")) {
+    options.task = text::to_integer("--task", values.text("task"));
   }
   return options;
 }

@@ -19,6 +19,7 @@
 #include "sweep/slurm.h"
 #include "text/names.h"
 #include "text/numbers.h"
+#include "text/quoting.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -43,16 +44,12 @@ Sofar look(const char* verb, const Parsed& parsed) {
   return {std::move(folder), std::move(experiment), std::move(results)};
 }
 
-std::string option_text(const Parsed& parsed, const char* name) {
-  return parsed.values.count(name) == 0 ? std::string() : parsed.values[name].as<std::string>();
-}
-
-double confidence_of(const Parsed& parsed) {
-  if (parsed.values.count("confidence") == 0) return 0.95;
-  const double value = text::to_number("--confidence", option_text(parsed, "confidence"));
+double confidence_of(const Values& values) {
+  if (!values.has("confidence")) return 0.95;
+  const double value = text::to_number("--confidence", values.text("confidence"));
   if (value > 0 && value < 1) return value;
   throw text::UsageError(
-      fmt::format("--confidence is {}; it must be between 0 and 1: 0.95", option_text(parsed, "confidence")));
+      fmt::format("--confidence is {}; it must be between 0 and 1: 0.95", values.text("confidence")));
 }
 
 /// @throws text::UsageError if no run has it
@@ -65,11 +62,8 @@ std::string check_measure(const std::string& name, const std::vector<std::string
 
 /// Metrics, and without any of those what every run has.
 std::vector<std::string> usual_measures(const std::vector<sweep::Result>& results) {
-  std::vector<std::string> names;
-  for (const std::string& name : sweep::measures_of(results)) {
-    const auto has_metric = [&](const auto& result) { return result.metrics.contains(name); };
-    if (std::ranges::any_of(results, has_metric)) names.push_back(name);
-  }
+  const auto metrics = sweep::metric_names(results);
+  std::vector<std::string> names(metrics.begin(), metrics.end());
   if (names.empty()) names = {"ticks", "simulated_s"};
   return names;
 }
@@ -98,7 +92,7 @@ std::string as_csv(const Rows& rows) {
   std::string text;
   for (const auto& row : rows) {
     std::vector<std::string> fields;
-    std::ranges::transform(row, std::back_inserter(fields), sweep::csv_field);
+    std::ranges::transform(row, std::back_inserter(fields), text::csv_field);
     text += fmt::format("{}\n", fmt::join(fields, ","));
   }
   text.pop_back();
@@ -201,7 +195,7 @@ int sweep_status(const Arguments& arguments) {
   const auto queued = sweep::slurm_status(sofar.folder);
   if (queued) console.result(*queued);
   if (sofar.results.size() < total && !works && !queued) {
-    console.result(fmt::format("to go on: ziggurat sweep resume {}", parsed.positional.front()));
+    console.result(fmt::format("to go on: ziggurat sweep resume {}", text::shell_word(parsed.positional.front())));
   }
   console.flush();
   return exit_code::finished;
@@ -209,11 +203,12 @@ int sweep_status(const Arguments& arguments) {
 
 int sweep_results(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, results_options());
+  const Values values(parsed.values);
   const Sofar sofar = look("results", parsed);
   sofar.folder.write_csv(sofar.experiment, sofar.results);
   gather(sofar);
   reports::Console console;
-  if (parsed.values.count("runs")) {
+  if (values.has("runs")) {
     std::string csv = to_csv(sofar.experiment, sofar.results);
     csv.pop_back();
     console.result(csv);
@@ -222,34 +217,35 @@ int sweep_results(const Arguments& arguments) {
   }
   std::vector<std::size_t> axes(sofar.experiment.axes.size());
   std::iota(axes.begin(), axes.end(), std::size_t{0});
-  if (parsed.values.count("by")) {
+  if (values.has("by")) {
     axes.clear();
-    for (const auto& name : parsed.values["by"].as<std::vector<std::string>>()) {
+    for (const auto& name : values.texts("by")) {
       axes.push_back(axis_named(sofar.experiment, name));
     }
   }
   std::vector<std::string> measures = usual_measures(sofar.results);
-  if (parsed.values.count("metric")) {
-    measures = parsed.values["metric"].as<std::vector<std::string>>();
+  if (values.has("metric")) {
+    measures = values.texts("metric");
     for (const auto& name : measures) check_measure(name, sweep::measures_of(sofar.results));
   }
-  const Rows rows = table_of_means(sofar, axes, measures, confidence_of(parsed));
-  console.result(parsed.values.count("csv") ? as_csv(rows) : aligned(rows));
+  const Rows rows = table_of_means(sofar, axes, measures, confidence_of(values));
+  console.result(values.has("csv") ? as_csv(rows) : aligned(rows));
   console.flush();
   return exit_code::finished;
 }
 
 int sweep_plot(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, plot_options());
+  const Values values(parsed.values);
   const Sofar sofar = look("plot", parsed);
   sweep::Plot plot;
-  plot.confidence = confidence_of(parsed);
-  plot.x = parsed.values.count("x") ? axis_named(sofar.experiment, option_text(parsed, "x"))
+  plot.confidence = confidence_of(values);
+  plot.x = values.has("x") ? axis_named(sofar.experiment, values.text("x"))
                                     : usual_abscissa(sofar.experiment);
-  if (parsed.values.count("by")) plot.series = axis_named(sofar.experiment, option_text(parsed, "by"));
+  if (values.has("by")) plot.series = axis_named(sofar.experiment, values.text("by"));
   const auto usual = usual_measures(sofar.results);
-  if (parsed.values.count("y")) {
-    plot.measure = check_measure(option_text(parsed, "y"), sweep::measures_of(sofar.results));
+  if (values.has("y")) {
+    plot.measure = check_measure(values.text("y"), sweep::measures_of(sofar.results));
   } else if (usual.size() == 1) {
     plot.measure = usual.front();
   } else {
@@ -259,7 +255,7 @@ int sweep_plot(const Arguments& arguments) {
   }
   std::string name = plot.measure;
   std::ranges::replace(name, '/', '_');
-  const auto file = parsed.values.count("file") ? std::filesystem::path(option_text(parsed, "file"))
+  const auto file = values.has("file") ? std::filesystem::path(values.text("file"))
                                                 : sofar.folder.path() / (name + ".svg");
   if (file.extension() != ".svg") {
     throw text::UsageError(fmt::format("--file is '{}'; its name must end with .svg", file.string()));

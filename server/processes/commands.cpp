@@ -12,6 +12,7 @@
 #include "processes/places.h"
 #include "scene/additions.h"
 #include "scene/values.h"
+#include "text/quoting.h"
 
 namespace ziggurat::processes {
 namespace {
@@ -40,21 +41,6 @@ Word word_at(std::string_view command, std::size_t place) {
   return {begin, end - begin};
 }
 
-/// Whether a shell takes the word as it stands.
-bool is_plain(std::string_view word) {
-  return !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("_./+-,:@").find(static_cast<char>(c)) !=
-                                       std::string_view::npos || c >= 0x80;
-  });
-}
-
-std::string quoted(const std::string& path) {
-  if (is_plain(path)) return path;
-  std::string text = "'";
-  for (const char c : path) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 bool is_in_path(const std::string& program) {
   const char* variable = std::getenv("PATH");
   const std::string path = variable == nullptr ? "/usr/local/bin:/usr/bin:/bin" : variable;
@@ -75,7 +61,7 @@ struct Finder {
   std::string text(const Word& word) const { return command.substr(word.begin, word.size); }
 
   std::string replaced(const Word& word, const fs::path& by) const {
-    return command.substr(0, word.begin) + quoted(by.string()) +
+    return command.substr(0, word.begin) + text::shell_word(by.string()) +
            command.substr(word.begin + word.size);
   }
 
@@ -101,7 +87,7 @@ struct Finder {
     }
     const std::string name = text(word);
     const auto ends_name = [&](std::string_view ending) { return name.ends_with(ending); };
-    if (!is_plain(name) || std::ranges::none_of(script_endings, ends_name)) return {command, {}};
+    if (!text::is_plain_word(name) || std::ranges::none_of(script_endings, ends_name)) return {command, {}};
     if (const auto found = find_file(name, naming_file, scene_file)) {
       return {replaced(word, *found), {}};
     }
@@ -118,7 +104,7 @@ FoundCommand find_command(const std::string& command, const fs::path& naming_fil
   Word first = word_at(command, 0);
   if (finder.text(first) == "exec") first = word_at(command, first.begin + first.size);
   const std::string program = finder.text(first);
-  if (!is_plain(program)) return {command, {}};
+  if (!text::is_plain_word(program)) return {command, {}};
   if (program.find('/') != std::string::npos) return finder.program(first);
   if (std::ranges::find(shell_words, program) != shell_words.end()) return {command, {}};
   if (!is_in_path(program)) {

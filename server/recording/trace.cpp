@@ -6,21 +6,9 @@
 #include <string_view>
 #include <utility>
 
+#include "text/quoting.h"
+
 namespace ziggurat::recording {
-namespace {
-
-// A field of RFC 4180: quoted only where it must be.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
-}  // namespace
 
 /// Of those that are new; of all when a world begins or goes back.
 void Trace::name_rows(const world::State& state) {
@@ -31,10 +19,11 @@ void Trace::name_rows(const world::State& state) {
   last_tick_ = state.tick;
   for (; entities_ < layout_.entities.size(); ++entities_) {
     const auto& entity = layout_.entities[entities_];
-    rows_.push_back({fmt::format(",{},,", field(entity.id)), entities_, true, entities_});
+    rows_.push_back({fmt::format(",{},,", text::csv_field(entity.id)), entities_, true, entities_});
     if (!entity.lists_links) continue;
     for (std::size_t l = entity.links.begin; l < entity.links.end(); ++l) {
-      rows_.push_back({fmt::format(",{},{},", field(entity.id), field(layout_.links[l].id)),
+      rows_.push_back({fmt::format(",{},{},", text::csv_field(entity.id),
+                                   text::csv_field(layout_.links[l].id)),
                        entities_, false, l});
     }
   }

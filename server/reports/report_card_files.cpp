@@ -7,6 +7,7 @@
 
 #include "reports/plot.h"
 #include "reports/report_card.h"
+#include "text/quoting.h"
 
 namespace ziggurat::reports {
 namespace {
@@ -78,17 +79,9 @@ ordered_json to_json(const ReportCard& card, const ControllerCard& controller) {
       {"gate", gate}};
 }
 
-/// A field of CSV.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char each : text) result += each == '"' ? "\"\"" : std::string(1, each);
-  return result + '"';
-}
-
 std::string robot_of(const ReportCard& card, const Reaction& one) {
   // A robot that was spawned is forgotten after a reset.
-  return one.robot < card.robots.size() ? csv_field(card.robots[one.robot])
+  return one.robot < card.robots.size() ? text::csv_field(card.robots[one.robot])
                                         : fmt::format("robot {}", one.robot);
 }
 
@@ -173,7 +166,7 @@ std::string to_csv(const ReportCard& card) {
     const TickStart* start = start_of(card, *one);
     text += fmt::format("{},{},{},{},{},{},{},{:.9f}\n", one->world, one->tick,
                         start == nullptr ? "" : fmt::format("{:.9f}", start->late_s),
-                        one->tick < card.warm_up ? 1 : 0, csv_field(controller->controller),
+                        one->tick < card.warm_up ? 1 : 0, text::csv_field(controller->controller),
                         robot_of(card, *one), to_string(one->kind), one->seconds);
   }
   return text;

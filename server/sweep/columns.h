@@ -18,8 +18,8 @@ inline constexpr std::array result_columns = {
     "robots", "failures", "dropped",   "solver_not_converged", "solver_worst_residual", "hash"};
 inline constexpr std::array last_columns = {"wall_s", "version"};
 
-/// Names of columns, each once: an axis that is called as a column of ours gets `param_` before its
-/// name, a metric `metric_`.
+/// Names of columns, each once, as SQLite compares them: without regard to the case of A to Z. An axis that
+/// is called as another column gets `param_` before its name, a metric `metric_`.
 struct Columns {
   std::vector<std::string> axes;               ///< parallel to Experiment::axes
   std::map<std::string, std::string> metrics;  ///< by metric
@@ -29,8 +29,5 @@ Columns columns_of(const Experiment& experiment, std::span<const Result> results
 /// A line of names and a line per run (RFC 4180, but with line feeds only). Numbers have the shortest
 /// digits that give the same number again; what is not known is empty.
 std::string to_csv(const Experiment& experiment, std::span<const Result> results);
-
-/// A field of such a line.
-std::string csv_field(const std::string& text);
 
 }  // namespace ziggurat::sweep

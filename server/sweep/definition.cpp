@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "text/numbers.h"
+#include "text/quoting.h"
 
 namespace ziggurat::sweep {
 namespace {
@@ -20,6 +22,22 @@ const char* to_text(Axis::Kind kind) {
 
 std::string to_text(const Axis& axis) {
   return fmt::format("{}={}", axis.name, fmt::join(axis.values, "|"));
+}
+
+bool is_same_axis(const Axis& a, const Axis& b) {
+  return a.kind == b.kind && a.name == b.name && a.values == b.values;
+}
+
+/// The first argument of runs that differs.
+std::string differing_argument(const std::vector<std::string>& kept,
+                               const std::vector<std::string>& now) {
+  const auto [was, is] = std::ranges::mismatch(kept, now);
+  if (was == kept.end()) return fmt::format("its runs have no argument '{}'", *is);
+  if (is == now.end()) return fmt::format("its runs also have the argument '{}'", *was);
+  const auto name = [&](auto at) {  // of the option whose value it is
+    return at == kept.begin() || at->starts_with("--") ? "" : *std::prev(at) + " ";
+  };
+  return fmt::format("its runs have '{0}{1}', not '{0}{2}'", name(was), *was, *is);
 }
 
 std::string differing(const Experiment& kept, const Experiment& now) {
@@ -39,17 +57,15 @@ std::string differing(const Experiment& kept, const Experiment& now) {
                        kept.seeds.back());
   }
   if (kept.run_arguments != now.run_arguments) {
-    return fmt::format("its runs have the arguments '{}'", fmt::join(kept.run_arguments, " "));
+    return differing_argument(kept.run_arguments, now.run_arguments);
   }
-  return kept.axes.size() == now.axes.size() ? "its axes have another order" : "its axes differ";
+  const auto [first, other] = std::ranges::mismatch(kept.axes, now.axes, is_same_axis);
+  return fmt::format("its axes have another order: '{}' comes before '{}'", first->name, other->name);
 }
 
 bool is_same(const Experiment& a, const Experiment& b) {
-  const auto same_axis = [](const Axis& x, const Axis& y) {
-    return x.kind == y.kind && x.name == y.name && x.values == y.values;
-  };
   return a.scene == b.scene && a.seeds == b.seeds && a.run_arguments == b.run_arguments &&
-         std::ranges::equal(a.axes, b.axes, same_axis);
+         std::ranges::equal(a.axes, b.axes, is_same_axis);
 }
 
 }  // namespace
@@ -101,17 +117,13 @@ void check_same(const Definition& kept, const Definition& now, const std::string
     throw text::UsageError(
         fmt::format("{} has the results of another sweep: {}; write another folder with --out, or "
                     "continue that sweep with: ziggurat sweep resume {}",
-                    folder, differing(kept.experiment, now.experiment), folder));
+                    folder, differing(kept.experiment, now.experiment), text::shell_word(folder)));
   }
   if (kept.files == now.files) return;
-  std::string file;
-  for (const auto& [path, hash] : now.files) {
-    const auto found = kept.files.find(path);
-    if (found == kept.files.end() || found->second != hash) file = path;
-  }
-  for (const auto& [path, hash] : kept.files) {
-    if (!now.files.contains(path)) file = path;
-  }
+  const auto [was, is] = std::ranges::mismatch(kept.files, now.files);
+  // The first by path; one that is new or gone has changed, too.
+  const bool is_new = was == kept.files.end() || (is != now.files.end() && is->first < was->first);
+  const std::string& file = is_new ? is->first : was->first;
   throw text::UsageError(
       fmt::format("{} has changed since the sweep in {} began, so that old and new runs are of "
                   "different worlds; undo the change, or write another folder with --out",

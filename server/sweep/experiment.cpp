@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 #include <variant>
@@ -45,7 +48,27 @@ T value_of(scene::Value<T> read, const char* option, std::string_view text) {
   return std::get<0>(std::move(read));
 }
 
+/// As the C library reads a whole text.
+std::optional<double> to_number(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return end == text.c_str() || *end != '\0' ? std::nullopt : std::optional(value);
+}
+
+/// Among numbers, or alone, "nan" and "inf" are meant as numbers, and none that a scene can have.
+void check_numbers(const Axis& axis) {
+  for (const std::string& value : axis.values) {
+    if (!to_number(value)) return;
+  }
+  for (const std::string& value : axis.values) {
+    if (std::isfinite(*to_number(value))) continue;
+    throw text::UsageError(fmt::format("{} has the value {}, which is no finite number; write one",
+                                       scene::in_quotes(axis.name), scene::in_quotes(value)));
+  }
+}
+
 void check_axis(const Axis& axis) {
+  check_numbers(axis);
   std::set<std::string_view> seen;
   for (const std::string& value : axis.values) {
     if (seen.insert(value).second) continue;

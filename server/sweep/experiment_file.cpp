@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <toml++/toml.h>
@@ -68,7 +68,10 @@ class FileReader {
   std::string text_of(const toml::node& node) const {
     if (const auto* text = node.as_string()) return text->get();
     if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
-    if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+    if (const auto* number = node.as_floating_point()) {
+      if (std::isfinite(number->get())) return fmt::format("{}", number->get());
+      fault(node.source(), "a number must be finite");
+    }
     if (const auto* boolean = node.as_boolean()) return boolean->get() ? "true" : "false";
     fault(node.source(), "a value must be a number, a text in quotes, true or false");
   }
@@ -149,8 +152,8 @@ class FileReader {
     const auto number = [&](const char* name) -> std::optional<double> {
       const auto* node = table[name].node();
       if (node == nullptr) return std::nullopt;
-      if (!node->is_number() || *node->value<double>() <= 0) {
-        fault(node->source(), fmt::format("{} must be a number above 0", name));
+      if (!node->is_number() || !std::isfinite(*node->value<double>()) || *node->value<double>() <= 0) {
+        fault(node->source(), fmt::format("{} must be a finite number above 0", name));
       }
       return node->value<double>();
     };

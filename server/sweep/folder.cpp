@@ -10,8 +10,10 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <span>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "sweep/columns.h"
 #include "sweep/ledger.h"
@@ -37,6 +39,22 @@ void write_all(int file, std::string_view text, const fs::path& path) {
     if (count < 0) fail_at(path);
     text.remove_prefix(static_cast<std::size_t>(count));
   }
+}
+
+/// By number, each run once. Files that are not there have none.
+std::vector<Result> read_ledgers(std::span<const fs::path> paths) {
+  std::map<std::size_t, Result> by_run;
+  for (const fs::path& path : paths) {
+    if (!fs::exists(path)) continue;
+    for (Result& result : Ledger(path.string()).read()) {
+      auto& known = by_run[result.run];
+      // Of a run that failed here and finished there, the end counts.
+      if (known.run == 0 || known.outcome != Outcome::finished) known = std::move(result);
+    }
+  }
+  std::vector<Result> results;
+  for (auto& [run, result] : by_run) results.push_back(std::move(result));
+  return results;
 }
 
 }  // namespace
@@ -73,12 +91,11 @@ Definition Folder::definition() const {
   return definition_from_json(read_file(path), path.string());
 }
 
-void Folder::begin(const Definition& definition) const {
+void Folder::check(const Definition& definition) const {
   if (fs::exists(definition_file(path_))) {
-    check_same(this->definition(), definition, path_.string());
-    return;
+    return check_same(this->definition(), definition, path_.string());
   }
-  fs::create_directories(path_);
+  if (!fs::exists(path_)) return;
   const bool has_others = std::any_of(fs::directory_iterator(path_), {}, [](const auto& entry) {
     const std::string name = entry.path().filename();
     return name != "lock" && !name.starts_with("experiment.json.");
@@ -88,6 +105,12 @@ void Folder::begin(const Definition& definition) const {
                                        "folder with --out",
                                        path_.string()));
   }
+}
+
+void Folder::begin(const Definition& definition) const {
+  check(definition);
+  if (fs::exists(definition_file(path_))) return;
+  fs::create_directories(path_);
   write_file(definition_file(path_), to_json(definition));
 }
 
@@ -99,18 +122,13 @@ std::vector<Result> Folder::results() const {
     }
   }
   std::ranges::sort(ledgers);
-  if (fs::exists(ledger())) ledgers.push_back(ledger());
-  std::map<std::size_t, Result> by_run;
-  for (const fs::path& path : ledgers) {
-    for (Result& result : Ledger(path.string()).read()) {
-      auto& known = by_run[result.run];
-      // Of a run that failed here and finished there, the end counts.
-      if (known.run == 0 || known.outcome != Outcome::finished) known = std::move(result);
-    }
-  }
-  std::vector<Result> results;
-  for (auto& [run, result] : by_run) results.push_back(std::move(result));
-  return results;
+  ledgers.push_back(ledger());
+  return read_ledgers(ledgers);
+}
+
+std::vector<Result> Folder::results_for_task(std::size_t task) const {
+  const std::vector<fs::path> ledgers = {task_ledger(task), ledger()};
+  return read_ledgers(ledgers);
 }
 
 void Folder::write_csv(const Experiment& experiment, const std::vector<Result>& results) const {

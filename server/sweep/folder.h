@@ -25,12 +25,16 @@ class Folder {
 
   /// The sweep that the folder belongs to. @throws text::UsageError if it belongs to none
   Definition definition() const;
-  /// Makes it the folder of this sweep, or checks that it is.
+  /// That it is this sweep's, or free for one; changes nothing.
   /// @throws text::UsageError if it is another's, or has other files
+  void check(const Definition& definition) const;
+  /// Makes it the folder of this sweep, if it is not. @throws text::UsageError as check()
   void begin(const Definition& definition) const;
 
   /// Of all ledgers, by number; a run of several ledgers once. @throws LedgerError
   std::vector<Result> results() const;
+  /// Of the ledgers that a task knows: its own, and that of runs outside of tasks.
+  std::vector<Result> results_for_task(std::size_t task) const;
   /// Writes results.csv. @throws std::system_error
   void write_csv(const Experiment& experiment, const std::vector<Result>& results) const;
 

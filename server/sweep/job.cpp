@@ -104,11 +104,9 @@ void tidy(const Folder& folder, const Result& result, Record record) {
   if (result.outcome != Outcome::finished) return;
   const fs::path path = folder.of_run(result.run);
   std::error_code ignored;
-  if (record != Record::all) {
-    fs::remove_all(path, ignored);
-    return;
-  }
   for (const char* name : {"log.txt", "summary.json"}) fs::remove(path / name, ignored);
+  if (record != Record::all) fs::remove(path / "run.mcap", ignored);
+  fs::remove(path, ignored);  // unless it has other files
 }
 
 }  // namespace ziggurat::sweep

@@ -61,8 +61,8 @@ class Job {
   std::optional<clock::time_point> stopped_at_;  ///< because it took too long
 };
 
-/// Removes what need not be kept of a run that has a row: everything of one that finished, apart
-/// from a recording that was asked for.
+/// Removes the sweep's files of a run that finished, apart from a recording that was asked for, and
+/// its folder if it has nothing else.
 void tidy(const Folder& folder, const Result& result, Record record);
 
 }  // namespace ziggurat::sweep

@@ -40,6 +40,23 @@ std::string sql_text(std::string_view text, char quote) {
   return result + quote;
 }
 
+/// A column of the view: what a table has for the run under a name.
+std::string value_column(const char* table, const std::string& name, const std::string& column) {
+  return fmt::format("(SELECT value FROM {0} WHERE {0}.run = runs.run AND {0}.name = {1}) AS {2}", table,
+                     sql_text(name, '\''), sql_text(column, '"'));
+}
+
+/// Removes the last columns that have no room, and takes the room that the others have.
+void shorten(std::vector<std::string>& columns, std::size_t& room, std::size_t& length) {
+  std::size_t kept = 0;
+  while (kept < columns.size() && room > 0 && columns[kept].size() <= length) {
+    length -= columns[kept].size();
+    --room;
+    ++kept;
+  }
+  columns.resize(kept);
+}
+
 }  // namespace
 
 class Ledger::Statement {
@@ -120,9 +137,6 @@ Ledger::Ledger(const std::string& path) : path_(path) {
 }
 
 Ledger::~Ledger() { sqlite3_close(database_); }
-
-Ledger::Ledger(Ledger&& other) noexcept
-    : path_(std::move(other.path_)), database_(std::exchange(other.database_, nullptr)) {}
 
 void Ledger::fail() const {
   throw LedgerError(fmt::format("{}: {}", path_, sqlite3_errmsg(database_)));
@@ -217,21 +231,27 @@ std::vector<Result> Ledger::read() const {
 
 void Ledger::make_view(const Experiment& experiment) {
   const Columns columns = columns_of(experiment, read());
-  std::string select = "runs.run AS run", joins;
+  std::vector<std::string> values, metrics, numbers, last;
   for (std::size_t i = 0; i < experiment.axes.size(); ++i) {
-    select += fmt::format(", p{}.value AS {}", i, sql_text(columns.axes[i], '"'));
-    joins += fmt::format(" LEFT JOIN parameters AS p{0} ON p{0}.run = runs.run AND p{0}.name = {1}", i,
-                         sql_text(experiment.axes[i].name, '\''));
+    values.push_back(value_column("parameters", experiment.axes[i].name, columns.axes[i]));
   }
-  for (const char* name : result_columns) select += fmt::format(", runs.{0} AS {0}", name);
   for (const auto& [metric, column] : columns.metrics) {
-    select += fmt::format(", (SELECT value FROM metrics WHERE metrics.run = runs.run AND name = {}) AS {}",
-                          sql_text(metric, '\''), sql_text(column, '"'));
+    metrics.push_back(value_column("metrics", metric, column));
   }
-  for (const char* name : last_columns) select += fmt::format(", runs.{0} AS {0}", name);
+  for (const char* name : result_columns) numbers.push_back(fmt::format("runs.{0} AS {0}", name));
+  for (const char* name : last_columns) last.push_back(fmt::format("runs.{0} AS {0}", name));
+  // SQLite bounds the columns of a view and the length of a statement.
+  std::size_t room = static_cast<std::size_t>(sqlite3_limit(database_, SQLITE_LIMIT_COLUMN, -1)) - 1 -
+                     numbers.size() - last.size();
+  std::size_t length = static_cast<std::size_t>(sqlite3_limit(database_, SQLITE_LIMIT_SQL_LENGTH, -1)) / 2;
+  for (auto* each : {&values, &metrics}) shorten(*each, room, length);
+  std::string select = "runs.run AS run";
+  for (const auto* each : {&values, &numbers, &metrics, &last}) {
+    for (const std::string& column : *each) select += ", " + column;
+  }
   execute("BEGIN IMMEDIATE");
   execute("DROP VIEW IF EXISTS results");
-  execute(fmt::format("CREATE VIEW results AS SELECT {} FROM runs{}", select, joins));
+  execute(fmt::format("CREATE VIEW results AS SELECT {} FROM runs", select));
   execute("COMMIT");
 }
 

@@ -25,8 +25,8 @@ class Ledger {
   /// Opens the file, or creates it. @throws LedgerError
   explicit Ledger(const std::string& path);
   ~Ledger();
-  Ledger(Ledger&&) noexcept;
-  Ledger& operator=(Ledger&&) = delete;
+  Ledger(const Ledger&) = delete;
+  Ledger& operator=(const Ledger&) = delete;
 
   /// Adds a run with its values and metrics in one transaction, in place of an earlier one of the
   /// same number. It is on the disk when this returns. @throws LedgerError
@@ -35,7 +35,8 @@ class Ledger {
   /// By number. @throws LedgerError
   std::vector<Result> read() const;
 
-  /// A view `results` for people: a row per run, a column per axis and metric. @throws LedgerError
+  /// A view `results` for people: a row per run, a column per axis and metric. It leaves out the last
+  /// of them if SQLite can't have as many columns. @throws LedgerError
   void make_view(const Experiment& experiment);
 
  private:

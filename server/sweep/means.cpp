@@ -97,10 +97,7 @@ std::vector<Group> group(const Experiment& experiment, std::span<const Result> r
 }
 
 std::vector<std::string> measures_of(std::span<const Result> results) {
-  std::set<std::string> metrics;
-  for (const Result& result : results) {
-    for (const auto& [name, value] : result.metrics) metrics.insert(name);
-  }
+  const std::set<std::string> metrics = metric_names(results);
   std::vector<std::string> names(metrics.begin(), metrics.end());
   for (const auto& [name, read] : own_measures()) {
     if (!metrics.contains(name)) names.push_back(name);

@@ -48,6 +48,14 @@ std::optional<Outcome> to_outcome(const std::string& text) {
   return std::nullopt;
 }
 
+std::set<std::string> metric_names(std::span<const Result> results) {
+  std::set<std::string> names;
+  for (const Result& result : results) {
+    for (const auto& [name, value] : result.metrics) names.insert(name);
+  }
+  return names;
+}
+
 bool read_summary(const std::string& path, Result& result) {
   std::ifstream file(path);
   const json summary = json::parse(file, nullptr, false);

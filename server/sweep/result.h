@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 
 namespace ziggurat::sweep {
@@ -37,6 +39,9 @@ struct Result {
   double wall_s = 0;    ///< from start to end of the process
   std::string version;  ///< of Ziggurat
 };
+
+/// The metrics that a run has.
+std::set<std::string> metric_names(std::span<const Result> results);
 
 /// Reads the file of `ziggurat run --summary` into the result.
 /// @returns whether it is there and whole

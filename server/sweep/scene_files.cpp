@@ -85,7 +85,8 @@ SceneFiles read_scene(const Experiment& experiment) {
     }
     refuse_faults(std::move(scene.problems));
     files.seed = scene.scene.experiment.random_seed;
-    files.length = scene.scene.experiment.length;
+    const double length = scene.scene.experiment.length;
+    files.length = i == 0 ? length : std::min(files.length, length);
     std::ranges::move(processes::scripts_of(scene.scene, experiment.scene),
                       std::back_inserter(scripts));
   }

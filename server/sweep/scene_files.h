@@ -11,7 +11,7 @@ namespace ziggurat::sweep {
 struct SceneFiles {
   std::map<std::string, std::string> hashes;  ///< 16 hexadecimal digits, by path
   std::uint64_t seed = 0;                     ///< of the scene; 0: each run draws one
-  double length = 0;                          ///< of the scene, simulated [s]; 0: without end
+  double length = 0;                          ///< of the scene, simulated [s]: the least, if axes set it; 0: without end
 };
 
 /// Reads the scene, with each value of each axis at least once, and all that it includes, its meshes

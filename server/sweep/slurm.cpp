@@ -1,6 +1,7 @@
 #include "sweep/slurm.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <map>
 #include <sstream>
@@ -8,6 +9,7 @@
 
 #include "processes/child_process.h"
 #include "text/numbers.h"
+#include "text/quoting.h"
 #include "text/trim.h"
 
 namespace ziggurat::sweep {
@@ -16,13 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int patience_of_slurm_ms = 60'000;
-
-/// For a shell: in single quotes.
-std::string shell_word(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
 
 struct Said {
   bool well = false;  ///< exit code 0
@@ -45,6 +40,17 @@ std::optional<Said> run_program(const std::vector<std::string>& arguments, const
 }
 
 fs::path id_file(const Folder& folder) { return folder.of_cluster() / "slurm_job"; }
+
+/// In a pattern of sbatch for the names of files, between double quotes.
+std::string in_pattern(const std::string& path) {
+  std::string text;
+  for (const char c : path) {
+    if (c == '%') text += '%';
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text;
+}
 
 /// `0-2,5`.
 std::string to_ranges(const std::vector<std::size_t>& numbers) {
@@ -72,21 +78,24 @@ std::string slurm_script(const Folder& folder, const std::vector<std::size_t>& t
   option(fmt::format("--cpus-per-task={}", jobs));
   option("--requeue");
   option("--open-mode=append");
-  option(fmt::format("--output=\"{}\"", (folder.of_cluster() / "task-%a.log").string()));
+  option(fmt::format("--output=\"{}/task-%a.log\"", in_pattern(folder.of_cluster().string())));
   if (!options.partition.empty()) option("--partition=" + options.partition);
   for (const std::string& each : options.options) option(each);
   text += "# A task that is submitted again, or requeued, goes on with the runs that it has not yet "
           "written down.\nexec";
-  for (const std::string& word : command) text += " " + shell_word(word);
+  for (const std::string& word : command) text += " " + text::shell_word(word);
   return text + "\n";
 }
 
+void refuse_if_queued(const Folder& folder) {
+  const auto queued = slurm_status(folder);
+  if (!queued) return;
+  throw text::UsageError(fmt::format("the tasks of {} are still queued ({}); wait for them, or end them "
+                                     "with scancel",
+                                     folder.path().string(), *queued));
+}
+
 std::string submit_to_slurm(const Folder& folder, const std::string& script) {
-  if (const auto queued = slurm_status(folder)) {
-    throw text::UsageError(fmt::format("the tasks of {} are still queued ({}); wait for them, or "
-                                       "end them with scancel",
-                                       folder.path().string(), *queued));
-  }
   const fs::path path = folder.of_cluster() / "job.sh";
   write_file(path, script);
   const auto said =
@@ -108,7 +117,7 @@ std::optional<std::string> slurm_status(const Folder& folder) {
   const std::string id(text::trimmed(read_file(id_file(folder))));
   if (id.empty()) return std::nullopt;
   const auto said = run_program({"squeue", "--noheader", "--array", "--jobs", id, "--format", "%T"},
-                                folder.of_cluster() / "squeue.log");
+                                folder.of_cluster() / fmt::format("squeue.{}.log", ::getpid()));
   if (!said || !said->well || said->text.empty()) return std::nullopt;
   std::map<std::string, int> counts;
   std::istringstream lines(said->text);

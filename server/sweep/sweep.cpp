@@ -79,8 +79,9 @@ void Sweep::collect(Job& job) {
     return;
   }
   const Result result = job.result();
-  ledger_.write(result, experiment_);
+  // First tidy, then write: a run with a row is never looked at again, and one without is repeated.
   tidy(folder_, result, settings_.record);
+  ledger_.write(result, experiment_);
   wall_s_ += result.wall_s;
   if (result.outcome == Outcome::finished) {
     ++counts_.finished;

@@ -6,6 +6,7 @@ import json
 import os
 import random
 import re
+import shlex
 import shutil
 import signal
 import sqlite3
@@ -152,6 +153,22 @@ class Failures(SweepTest):
         kept = sorted(path.parent.name for path in self.out.glob("runs/*/run.mcap"))
         self.assertEqual(kept, [f"{run:06}" for run in range(7, 13)], outcome.err)
 
+    def test_resume_keeps_recordings(self):
+        """Of runs that are done, whatever the second command says of recordings."""
+        self.write("flag", "")
+        self.sweep("--out", self.out, self.scene, *self.grid, "--record", "all", "--", "--trust-scripts", out=False,
+                   code=CONTROLLER_FAILED)
+        self.assertEqual(len(list(self.out.glob("runs/*/run.mcap"))), 12)
+        notes = self.out / "runs/000001/notes"
+        notes.write_text("mine")
+        self.sweep("resume", self.out, out=False, code=CONTROLLER_FAILED)
+        (self.folder / "flag").unlink()
+        self.sweep("resume", self.out, "--retry-failed", out=False)
+        kept = sorted(path.parent.name for path in self.out.glob("runs/*/run.mcap"))
+        self.assertEqual(kept, [f"{run:06}" for run in range(1, 7)], "the runs that were repeated record nothing")
+        self.assertEqual(notes.read_text(), "mine")
+        self.assertEqual(sorted(path.name for path in (self.out / "runs").iterdir()), kept)
+
     def test_a_run_that_takes_too_long_is_ended(self):
         start = time.monotonic()
         outcome = self.sweep(self.scene, "--seeds", "1..2", "--duration", "100000000", "--timeout", "0.5",
@@ -177,11 +194,50 @@ class Refusals(SweepTest):
                 ((*good, "--record", "some"), "write failed or all"),
                 ((*good, "--", "--seed", "3"), "--seed is set by the sweep"),
                 ((*good, "--", "--trace", "a.csv"), r"write \{run\} in it"),
-                ((*good, "--", "--sumary", "a"), "unknown option '--sumary'")):
+                ((*good, "--", "--sumary", "a"), "unknown option '--sumary'"),
+                (("--seeds", "1", "--ticks", "many"), "--ticks is 'many'"),
+                ((*good, "--", "--deadline", "soon"), "soon"),
+                ((*good, "--", "--record-every", "2"), "--record-every needs --record"),
+                (("--seeds", "1", "--duration", "0"), "has no length, so that a run may never end"),
+                ((*good, "--param", "gain=1|nan"), ".gain. has the value .nan., which is no finite number")):
             outcome = self.ziggurat("sweep", "--out", self.out, self.scene, *arguments)
             self.assertEqual(outcome.code, FAULT, arguments)
             self.assert_is_sentence(outcome, pattern)
             self.assertFalse(self.out.exists(), arguments)
+
+    def test_a_folder_with_other_files_stays_as_it_is(self):
+        self.out.mkdir()
+        (self.out / "mine").write_text("")
+        outcome = self.sweep(self.scene, "--seeds", "1", "--ticks", "2", code=FAULT)
+        self.assert_is_sentence(outcome, "has files that are no sweep's")
+        self.assertEqual([path.name for path in self.out.iterdir()], ["mine"])
+
+    def test_a_resumed_sweep_must_end_too(self):
+        self.sweep(self.scene, "--seeds", "1", "--duration", "0", "--timeout", "0.5", code=CONTROLLER_FAILED)
+        outcome = self.sweep("resume", self.out, "--retry-failed", out=False, code=FAULT)
+        self.assert_is_sentence(outcome, "may never end; write --duration S or --timeout S")
+
+    def test_nothing_runs_beside_tasks_that_are_queued(self):
+        self.sweep(self.scene, "--seeds", "1..2", "--ticks", "2")
+        (self.out / "cluster").mkdir()
+        (self.out / "cluster/slurm_job").write_text("17\n")
+        squeue = self.write("squeue", "#!/bin/sh\necho PENDING\necho RUNNING\n")
+        squeue.chmod(0o755)
+        self.environment["PATH"] = f"{self.folder}:{self.environment['PATH']}"
+        for arguments in (("resume", self.out), (self.scene, "--seeds", "1..2", "--ticks", "2", "--out", self.out)):
+            outcome = self.sweep(*arguments, out=False, code=FAULT)
+            self.assert_is_sentence(outcome, r"still queued \(Slurm job 17: 1 PENDING, 1 RUNNING\)")
+        self.assertEqual([path.name for path in (self.out / "cluster").iterdir()], ["slurm_job"])
+        squeue.write_text("#!/bin/sh\n")
+        self.sweep("resume", self.out, out=False)
+
+    def test_tasks_repeat_no_run_of_this_machine(self):
+        self.sweep(self.scene, *self.grid)
+        (self.out / "cluster").mkdir()
+        (self.out / "tasks").mkdir()
+        (self.out / "cluster/chunk").write_text("5\n")
+        outcome = self.sweep("task", self.out, "--task", "1", out=False)
+        self.assertIn("task 1: 0 runs finished", outcome.err)
 
     def test_folders_of_others(self):
         self.sweep(self.scene, "--seeds", "1..2", "--ticks", "2")
@@ -257,15 +313,18 @@ class Kills(SweepTest):
         return "\n".join(f"--- {log}\n{log.read_text()}" for log in self.out.glob("runs/*/log.txt"))
 
     def test_ctrl_c_says_how_to_go_on(self):
-        sweep = self.start("sweep", *self.arguments, "--out", self.out, "--timeout", "50")
+        self.out = self.folder / "my results"
+        sweep = self.start("sweep", *self.arguments, "--out", self.out, "--timeout", "50", "--retry-failed")
         self.wait_for(lambda: self.runs_of(sweep), lambda runs: runs, "runs")
         start = time.monotonic()
         self.interrupt(sweep)
         outcome = self.finish(sweep)
         self.assertLess(time.monotonic() - start, 2)
         self.assertEqual(outcome.code, INTERRUPTED)
-        command = re.search(r"to go on: ziggurat (sweep resume .*)", outcome.err)[1].split()
-        self.assertEqual(command[-2:], ["--timeout", "50"])
+        command = re.search(r"to go on: ziggurat (sweep resume .*)", outcome.err)[1]
+        command = shlex.split(command)
+        self.assertEqual(command[2], str(self.out))
+        self.assertEqual(command[-3:], ["--timeout", "50", "--retry-failed"])
         self.assertIn("to go on", self.sweep("status", self.out, out=False).out)
         self.assertEqual(self.ziggurat(*command).code, FINISHED)
         self.assert_whole(self.count)

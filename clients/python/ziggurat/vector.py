@@ -3,6 +3,7 @@ numpy."""
 
 from __future__ import annotations
 
+import operator
 import os
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -60,7 +61,8 @@ class _World:
         self.agents: List[Robot] = [robot for robot in self.session.robots
                                     if any(fnmatchcase(robot.id, each) for each in patterns)]
         self.supervisor = Supervisor(self.server.endpoint, name="vector_env")
-        self.begin = ""  # the name of the snapshot of tick 0 with the present seed
+        self._has_begin = False  # a snapshot of tick 0 with the present seed, under the name _begin
+        self._begin = f"vector-{os.getpid()}-begin"
         self._seed = self.session.seed
         self._kept = 0
 
@@ -88,11 +90,12 @@ class _World:
             self.supervisor.reset(seed)
             self.session.expect_reset()
             self.advance()
-            self.begin = ""
+            self._has_begin = False
             self._seed = seed
-        elif self.begin:
-            return self.restore(self.begin)
-        self.begin, _ = self.snapshot()
+        elif self._has_begin:
+            return self.restore(self._begin)
+        self.supervisor.snapshot(self._begin)  # in place of that of another seed
+        self._has_begin = True
 
     def close(self) -> None:
         for part in (self.session, self.supervisor, self.server):
@@ -193,18 +196,23 @@ class VectorEnv:
         mask = numpy.asarray(options.get("mask", [True] * self.num_envs), bool)
         if mask.shape != (self.num_envs,):
             raise ValueError(f"the mask has the shape {mask.shape}; it must have {self.num_envs} values")
-        if isinstance(seed, int):
-            seed = [seed + number for number in range(self.num_envs)]
-        if seed is not None and len(seed) != self.num_envs:
-            raise ValueError(f"there are {len(seed)} seeds for {self.num_envs} worlds")
+        seeds = None if seed is None else self._seeds(seed)
         for number in numpy.flatnonzero(mask):
             world = self._worlds[number]
             if snapshot is not None:
                 world.restore(snapshot.names[number])
             else:
-                world.reset(None if seed is None else seed[number])
+                world.reset(None if seeds is None else seeds[number])
             self._read(number)
         return self._shaped(self._observations.copy()), self._infos()
+
+    def _seeds(self, seed: Union[int, Sequence[int]]) -> List[int]:
+        """By world. Takes numpy's integers, too."""
+        if numpy.ndim(seed) == 0:
+            return [operator.index(seed) + number for number in range(self.num_envs)]
+        if len(seed) != self.num_envs:
+            raise ValueError(f"there are {len(seed)} seeds for {self.num_envs} worlds")
+        return [operator.index(each) for each in seed]
 
     def snapshot(self) -> VectorSnapshot:
         """All worlds as they are, to go back to: what follows is what followed then, bit for bit, with the same

@@ -38,5 +38,18 @@ TEST(Columns, HaveNamesOfTheirOwn) {
   EXPECT_EQ(columns.metrics.at("fine"), "fine");
 }
 
+TEST(Columns, DifferInMoreThanTheCaseOfLetters) {
+  const Experiment experiment{"/s.argos", {{Axis::Kind::parameter, "Seed", {"1"}}}, {5}, {}};
+  Result result;
+  result.run = 1;
+  result.metrics = {{"Load", 1}, {"load", 2}, {"LOAD", 3}};
+  const std::vector<Result> results = {result};
+  const Columns columns = columns_of(experiment, results);
+  EXPECT_EQ(columns.axes[0], "param_Seed");
+  EXPECT_EQ(columns.metrics.at("LOAD"), "LOAD");
+  EXPECT_EQ(columns.metrics.at("Load"), "metric_Load");
+  EXPECT_EQ(columns.metrics.at("load"), "metric_metric_load");
+}
+
 }  // namespace
 }  // namespace ziggurat::sweep

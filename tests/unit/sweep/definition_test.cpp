@@ -40,9 +40,37 @@ TEST(Definition, AnotherSweepIsRefusedAndItsDifferenceNamed) {
   has(refusal([](Definition& d) { d.experiment.scene = "/t.argos"; }), "its scene is /s.argos");
   has(refusal([](Definition& d) { d.experiment.axes[0].values.pop_back(); }), "it has 'a/@b=1|2'");
   has(refusal([](Definition& d) { d.experiment.seeds = {1}; }), "2 seeds from 1 to 2");
-  has(refusal([](Definition& d) { d.experiment.run_arguments.clear(); }), "'--ticks 5'");
+  has(refusal([](Definition& d) { d.experiment.run_arguments.clear(); }),
+      "its runs also have the argument '--ticks'");
+  has(refusal([](Definition& d) { d.experiment.run_arguments[1] = "6"; }),
+      "its runs have '--ticks 5', not '--ticks 6'");
+  has(refusal([](Definition& d) { d.experiment.run_arguments.push_back("--lenient"); }),
+      "its runs have no argument '--lenient'");
   has(refusal([](Definition& d) { d.files["/c.lua"] = "cc"; }), "/c.lua has changed");
   has(refusal([](Definition& d) { d.files.erase("/c.lua"); }), "/c.lua has changed");
+  has(refusal([](Definition& d) { d.files["/b.lua"] = "cc"; }), "/b.lua has changed");
+  has(refusal([](Definition& d) { d.files["/z.lua"] = "cc"; }), "/z.lua has changed");
+}
+
+TEST(Definition, TheFirstDifferenceIsNamed) {
+  Definition kept = example(), now = example();
+  for (const char* name : {"/a", "/b", "/x"}) kept.files[name] = "1", now.files[name] = "2";
+  try {
+    check_same(kept, now, "my out");
+    FAIL();
+  } catch (const text::UsageError& error) {
+    EXPECT_EQ(std::string(error.what()).find("/a has changed"), 0u) << error.what();
+  }
+  kept.experiment.axes.push_back({Axis::Kind::parameter, "gain", {"1"}});
+  now.experiment.axes.insert(now.experiment.axes.begin(), kept.experiment.axes.back());
+  try {
+    check_same(kept, now, "my out");
+    FAIL();
+  } catch (const text::UsageError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("another order: 'a/@b' comes before 'gain'"), text.npos) << text;
+    EXPECT_NE(text.find("ziggurat sweep resume 'my out'"), text.npos) << text;
+  }
 }
 
 TEST(Definition, FilesThatAreNoneAreRefused) {

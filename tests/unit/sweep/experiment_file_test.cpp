@@ -74,11 +74,14 @@ TEST_F(ExperimentFileTest, FaultsNameTheirLine) {
   has(refusal("scene = \"s\"\nsedes = \"1..3\""), "e.toml:2:1: unknown key \"sedes\"; did you mean 'seeds'?");
   has(refusal("seeds = 1"), "there is no scene");
   has(refusal("scene = \"s\"\nseeds = -1"), "e.toml:2:");
-  has(refusal("scene = \"s\"\njobs = 0"), "jobs must be a number above 0");
+  has(refusal("scene = \"s\"\njobs = 0"), "jobs must be a finite number above 0");
   has(refusal("scene = \"s\"\njobs = 1.5"), "jobs must be a whole number");
   has(refusal("scene = \"s\"\nrecord = \"some\""), "record must be");
   has(refusal("scene = \"s\"\n[parameters]\na = [[1]]"), "e.toml:3:");
   has(refusal("scene = \"s\"\n[parameters]\na = []"), "has no values");
+  has(refusal("scene = \"s\"\n[parameters]\na = [1, nan]"), "e.toml:3:9: a number must be finite");
+  has(refusal("scene = \"s\"\nduration = inf"), "e.toml:2:");
+  has(refusal("scene = \"s\"\ntimeout = nan"), "timeout must be a finite number");
   has(refusal("scene = "), "e.toml:1:");
 }
 

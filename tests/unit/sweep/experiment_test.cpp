@@ -82,6 +82,13 @@ TEST(Experiment, ThatCantBeRunIsRefused) {
   refused([](Experiment& e) { e.axes[0].values.push_back("1"); });
   refused([](Experiment& e) { e.axes[1].name = "gain"; });
   refused([](Experiment& e) { e.axes[0].values.clear(); });
+  for (const char* value : {"nan", "inf", "-inf", "1e999"}) {
+    refused([&](Experiment& e) { e.axes[0].values.push_back(value); });  // among numbers
+    refused([&](Experiment& e) { e.axes[0].values = {value}; });
+  }
+  Experiment words = grid();
+  words.axes[0].values = {"none", "inf"};
+  EXPECT_NO_THROW(check(words));
   refused([](Experiment& e) {
     e.seeds = to_seeds("--seeds", "1..5000000");
   });

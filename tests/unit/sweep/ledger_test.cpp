@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <filesystem>
+#include <type_traits>
 
 #include "temporary_folder.h"
 
@@ -86,6 +87,36 @@ TEST_F(LedgerTest, TheViewHasAColumnPerAxisAndMetric) {
   EXPECT_EQ(ask("SELECT gain || ' ' || a || ' ' || ticks FROM results WHERE run = 3"), "it's 0.1 17");
   EXPECT_EQ(ask("SELECT typeof(gain) FROM results WHERE run = 1"), "real");
 }
+
+TEST_F(LedgerTest, TheViewHasManyAxesAndAsManyMetricsAsItCan) {
+  Experiment experiment{"/s.argos", {}, {1}, {}};
+  for (int i = 0; i < 100; ++i) {
+    experiment.axes.push_back({Axis::Kind::parameter, "axis" + std::to_string(i), {std::to_string(i)}});
+  }
+  Result result;
+  result.run = 1;
+  result.hash = "00ff";
+  result.version = "1.0";
+  for (int i = 1000; i < 4000; ++i) result.metrics["m" + std::to_string(i)] = i;
+  Ledger ledger(path_);
+  ledger.write(result, experiment);
+  ledger.make_view(experiment);
+  EXPECT_EQ(ask("SELECT (axis0 + axis99 + m1000) || ' ' || hash || ' ' || version FROM results"), "1099.0 00ff 1.0");
+  EXPECT_EQ(ask("SELECT count(*) FROM pragma_table_info('results')"), "2000");
+  EXPECT_EQ(ask("SELECT count(*) FROM metrics"), "3000");
+}
+
+TEST_F(LedgerTest, TheViewHasMetricsThatDifferInCase) {
+  Result result;
+  result.run = 1;
+  result.metrics = {{"Load", 1}, {"load", 2}};
+  Ledger ledger(path_);
+  ledger.write(result, experiment_);
+  ledger.make_view(experiment_);
+  EXPECT_EQ(ask("SELECT load || ' ' || metric_load FROM results"), "1.0 2.0");
+}
+
+static_assert(!std::is_move_constructible_v<Ledger> && !std::is_copy_constructible_v<Ledger>);
 
 TEST_F(LedgerTest, AFileThatIsNoneIsNamed) {
   std::filesystem::create_directory(path_);

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import tempfile
 import unittest
 
 try:
@@ -80,6 +81,26 @@ class Vector(unittest.TestCase):
         self.assertTrue((futures[0] == futures[1]).all() and (futures[0] == futures[2]).all())
         _, infos = env.reset(options={"snapshot": moment, "mask": [True, False]})
         self.assertEqual(infos["tick"].tolist(), [4, 8])
+
+    def test_seeds_may_be_of_numpy(self):
+        env = self.make(VEHICLE, 2)
+        seeds = []
+        for seed in (7, numpy.int64(7), numpy.arange(7, 9, dtype=numpy.uint32), [7, numpy.int32(8)]):
+            env.reset(seed=seed)
+            seeds.append([each.status().seed for each in env.supervisors()])
+        self.assertEqual(seeds, [[7, 8]] * 4)
+        with self.assertRaises(TypeError):
+            env.reset(seed=1.5)
+
+    def test_the_server_keeps_one_begin(self):
+        with tempfile.TemporaryDirectory() as folder:
+            env = self.make(VEHICLE, 1, arguments=["--snapshot-folder", folder])
+            for seed in (1, 2, 3, 1, None):
+                env.reset(seed=seed)
+                env.step(numpy.full(env.action_space.shape, 0.5))
+            self.assertEqual(len(os.listdir(folder)), 1)
+            env.snapshot()
+            self.assertEqual(len(os.listdir(folder)), 2)
 
     def test_episodes_end_and_begin_again(self):
         env = self.make(VEHICLE, 2, max_ticks=3)

@@ -1,0 +1,18 @@
+#pragma once
+// Texts as other programs read them: words of a shell, fields of CSV.
+
+#include <string>
+#include <string_view>
+
+namespace ziggurat::text {
+
+/// Whether a shell takes the word as it stands.
+bool is_plain_word(std::string_view word);
+
+/// A word for /bin/sh: in single quotes, unless it is plain.
+std::string shell_word(std::string_view word);
+
+/// A field of CSV (RFC 4180): in double quotes only if it must be.
+std::string csv_field(const std::string& text);
+
+}  // namespace ziggurat::text
