@@ -38,7 +38,7 @@ MODULES = {
     "reports": ["http", "text", "scene", "wire", "network", "math"],
     "processes": ["scene", "world", "recording", "text"],
     "supervision": ["reports", "processes", "network", "simulation", "wire", "scene", "math"],
-    "recorder": ["mcap", "channels", "recording", "world", "protocol"],
+    "recorder": ["mcap", "channels", "recording", "world", "protocol", "math"],
     "run": ["supervision", "recorder", "mcap", "view", "channels", "reports", "processes", "network", "replay", "recording",
             "simulation", "render", "scene", "world", "math", "text"],
     "sweep": ["reports", "processes", "scene", "text", "math"],

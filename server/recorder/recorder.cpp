@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "math/hash.h"
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat::recorder {
@@ -141,10 +142,15 @@ void Recorder::restored(const std::string& snapshot, std::span<const std::byte> 
   v1::Act act;
   act.mutable_restore()->set_name(snapshot);
   if (!bytes.empty()) {
-    const std::string file = std::to_string(++snapshots_);
-    const auto* begin = reinterpret_cast<const char*>(bytes.data());
-    EmbeddedFile embedded{"snapshot/" + file, std::string(begin, bytes.size())};
-    add([embedded = std::move(embedded)](Recording& to) { to.attach(embedded); }, bytes.size());
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    math::Hash hash;
+    hash.add(text);
+    const std::string file = math::to_hex(hash.digest());
+    if (snapshots_.insert(file).second) {
+      add([embedded = EmbeddedFile{"snapshot/" + file, std::string(text)}](
+              Recording& to) { to.attach(embedded); },
+          bytes.size());
+    }
     act.mutable_restore()->set_file(file);
   }
   add(std::move(act));

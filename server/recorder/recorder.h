@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,7 +45,7 @@ class Recorder {
   void removed(const std::string& entity);
   void reset(std::uint64_t seed);
   void kept(const std::string& snapshot);
-  /// @param bytes  of its file; empty: it was kept in this run
+  /// @param bytes  of its file, which is embedded once; empty: it was kept in this run
   void restored(const std::string& snapshot, std::span<const std::byte> bytes);
   void set_paused(bool is_paused);
   void log(channels::Severity severity, std::string_view name, std::string_view text);
@@ -82,7 +83,7 @@ class Recorder {
   std::vector<channels::TickCopy> copies_;  // free ones, whose memory is used again
   std::size_t waiting_ = 0;       // of all tasks that are not done [bytes]
   std::size_t unfinished_ = 0;    // their number
-  std::uint32_t snapshots_ = 0;   // embedded so far, of files
+  std::set<std::string> snapshots_;  // embedded so far: the hashes of their files
   bool is_closing_ = false, has_failed_ = false;
   std::optional<std::string> failure_;
   std::thread thread_;  // the last: it uses the others

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t most = 1024;                          // snapshots in memory
 constexpr std::size_t most_bytes = std::size_t{1} << 30;    // of all of them
-constexpr std::size_t longest_file = std::size_t{1} << 30;  // [bytes]
+constexpr std::size_t longest_file = std::size_t{512} << 20;  // what a recording can embed [bytes]
 constexpr std::size_t longest_element = std::size_t{64}
                                         << 20;  // spawned, models written out [bytes]
 constexpr std::size_t longest_name = 64;
@@ -107,6 +107,11 @@ std::optional<wire::Fault> Snapshots::keep(const std::string& name, const World&
 /// A file is there whole or not at all.
 void Snapshots::write(const std::string& name, const Snapshot& snapshot, const World& world) const {
   const std::vector<std::byte> bytes = simulation::to_bytes(snapshot, {world.scene_hash, build_});
+  if (bytes.size() > longest_file) {
+    throw simulation::SnapshotError(
+        fmt::format("The snapshot has more than {} MiB, the most that a file may have.",
+                    longest_file >> 20));
+  }
   const std::filesystem::path path = path_of(name), partial = path.string() + ".part";
   std::ofstream file(partial, std::ios::binary | std::ios::trunc);
   file.write(reinterpret_cast<const char*>(bytes.data()),

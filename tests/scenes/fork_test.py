@@ -214,8 +214,9 @@ class Kept(Fork):
         self.finish(process)
         recording = self.folder / "run.mcap"
         process, url = self.serve("--snapshot-folder", snapshots, "--record", recording)
-        self.ctl(url, "step", 2)
-        self.ctl(url, "restore", "here")
+        for steps in (2, 1):
+            self.ctl(url, "step", steps)
+            self.ctl(url, "restore", "here")
         self.ctl(url, "step", 6)
         state = json.loads(self.ctl(url, "read", "--json"))
         self.ctl(url, "shutdown")

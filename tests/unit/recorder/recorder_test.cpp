@@ -178,6 +178,31 @@ TEST(Recorder, KeepsOnlyWhatIsWanted) {
   EXPECT_EQ(topics, (std::vector<std::string>{"/run", "/inputs", "/poses"}));
 }
 
+TEST(Recorder, EmbedsASnapshotOnceHoweverOftenItIsRestored) {
+  const File file;
+  Recorded run(file.path);
+  const std::vector<std::byte> one(1000, std::byte{1}), other(1000, std::byte{2});
+  for (const auto& bytes : {one, other, one}) {
+    run.publish();
+    run.recorder.restored("a name", bytes);
+  }
+  run.publish();
+  run.recorder.close();
+  const mcap::Reader reader(mcap::open_file(file.path));
+  std::vector<std::string> names;
+  for (const auto& each : reader.contents().attachments) names.push_back(each.name);
+  std::vector<std::string> restored;
+  for (const v1::Inputs& inputs : read<v1::Inputs>(reader, "/inputs")) {
+    for (const v1::Act& act : inputs.acts()) restored.push_back("snapshot/" + act.restore().file());
+  }
+  ASSERT_EQ(restored.size(), 3u);
+  EXPECT_EQ(names, (std::vector<std::string>{"small.argos", restored[0], restored[1]}));
+  EXPECT_EQ(restored[2], restored[0]);
+  const auto* index = reader.contents().attachment_named(restored[1]);
+  ASSERT_TRUE(index);
+  EXPECT_EQ(reader.attachment(*index), std::string(1000, '\2'));
+}
+
 TEST(Recorder, AFullDiskHoldsUpNothing) {
   Recorded run("/dev/full");
   for (int i = 0; i < 2000; ++i) {  // more than may wait
