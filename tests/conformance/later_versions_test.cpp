@@ -272,6 +272,72 @@ TEST(LaterVersions, L6_ARestoreTellsTheTickTheNameAndWhatWasCommanded) {
   EXPECT_EQ(last(peers).observation().tick(), 3U);
 }
 
+/// One robot whose client can go back; at tick 5 its world goes back to tick 3, which is not published yet.
+struct Back {
+  Back() : small(1), peers(small) {
+    auto begin = hello("*", 2);
+    begin.mutable_hello()->set_can_restore(true);
+    peers.say("p", begin);
+    token = peers.inboxes["p"].front().welcome().session_token();
+    peers.publish(5);
+  }
+  void restore() {
+    then = peers.commands;
+    then.joint_targets = {0.5};
+    wire::Restart back{7};
+    back.snapshot = {"here", 3, &then, 1};
+    restart(peers.barrier, back);
+    peers.inboxes.clear();
+  }
+  SmallRun small;
+  Peers peers;
+  world::Commands then;
+  std::string token;
+};
+
+TEST(LaterVersions, L13_ASessionThatIsResumedRightAfterARestoreIsToldWhatWasCommanded) {
+  Back run;
+  run.restore();
+  // While the server gathers, it does not collect commands.
+  const auto resume = [&](const std::string& peer) {
+    receive(run.peers.barrier, {peer, bytes_of(hello("*", 2, run.token), run.peers.json), true, Access{}},
+            nullptr);
+    return run.peers.told(peer).welcome();
+  };
+  const v1::Welcome welcome = resume("q");
+  ASSERT_EQ(welcome.resumed().commanded().joint_targets_size(), 1);
+  EXPECT_EQ(welcome.resumed().commanded().joint_targets(0), 0.5);
+  restart(run.peers.barrier, {7});
+  run.peers.inboxes.clear();
+  EXPECT_FALSE(resume("new").resumed().has_commanded()) << "after a reset nothing was commanded";
+  run.peers.publish(0);
+  EXPECT_EQ(run.peers.told("new").observation().tick(), 0U);
+}
+
+TEST(LaterVersions, V15_ARobotThatIsBackAfterARestoreHasTheTickOfTheSnapshot) {
+  Back run;
+  run.restore();
+  run.small.add_robot();  // of another controller
+  run.small.add_robot();
+  run.peers.commands.joint_targets.resize(3);
+  run.peers.add_robots("/scenes/spawned.lua", run.small.observations(3));
+  const v1::RobotSpawned told = run.peers.told("p").robot_spawned();
+  EXPECT_EQ(told.robot(), "robot2");
+  EXPECT_EQ(told.tick(), 3U);
+}
+
+TEST(LaterVersions, V16_ASessionWithoutATickYetIsNotToldOfARestore) {
+  Back run;
+  run.small.add_robot();
+  run.peers.commands.joint_targets.resize(2);
+  run.restore();
+  run.peers.add_robots("/scenes/spawned.lua", run.small.observations(3));
+  run.peers.say("late", hello("robot1", 2));
+  ASSERT_EQ(run.peers.inboxes["late"].size(), 1U) << "the Welcome only";
+  run.restore();
+  EXPECT_TRUE(run.peers.inboxes["late"].empty());
+}
+
 TEST(LaterVersions, V17_OnlyASessionOf12CanSayThatItGoesBack) {
   for (const std::uint32_t minor : {0U, 1U, 2U}) {
     const SmallRun small(1);

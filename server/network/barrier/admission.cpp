@@ -129,7 +129,7 @@ void set_policies(Barrier& barrier, const Session& session, const wire::Hello& h
 }
 
 /// @param is_resumed  the session was there before
-/// @param commands    of the tick that is being collected; null: nothing was commanded yet
+/// @param commands    of the tick that is being collected; null: none is
 bool welcome(Barrier& barrier, Session& session, bool is_resumed, const world::Commands* commands) {
   wire::Welcome welcome;
   welcome.token = session.token;
@@ -142,7 +142,7 @@ bool welcome(Barrier& barrier, Session& session, bool is_resumed, const world::C
     welcome.deadlines.push_back(barrier.deadlines.policy(robot));
   }
   welcome.is_resumed = is_resumed && session.minor >= wire::minor_with_events;
-  welcome.commands = commands;
+  welcome.commands = !commands && barrier.begin.commands ? &*barrier.begin.commands : commands;
   barrier.outbox.welcome(*barrier.run, session.roster, welcome);
   return send(barrier, session) == Delivery::sent;
 }

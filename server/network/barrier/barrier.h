@@ -37,6 +37,12 @@ struct Senses {
   const std::vector<std::string>* tag_payloads = nullptr;  ///< for each of Layout::tags
 };
 
+/// Where the world stands after a reset or a restore, until its first tick is published.
+struct Begin {
+  std::uint64_t tick = 0;
+  std::optional<world::Commands> commands = {};  ///< that hold there; none: nothing was commanded
+};
+
 /// When timing.h has something to do next.
 struct Timers {
   Time deadline = never;
@@ -70,6 +76,7 @@ struct Barrier {
   std::vector<AnswerTimes> answer_times;  ///< per controller of the scene
 
   Senses senses;
+  Begin begin;
   Timers timers;
   std::uint64_t heartbeats = 0;  // sent so far
   std::uint64_t epoch = 0;       // of the tick in hand: resets and restores so far

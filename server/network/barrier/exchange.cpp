@@ -66,6 +66,7 @@ void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
 void publish(Barrier& barrier, const world::Observations& observations,
              const std::vector<std::string>& tag_payloads) {
   barrier.senses = {&observations, &tag_payloads};
+  barrier.begin = {};
   barrier.metrics.begin_tick();
   barrier.gate.begin(observations.tick);
   barrier.timers.deadline = never;

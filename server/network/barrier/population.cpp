@@ -128,6 +128,8 @@ void restart(Barrier& barrier, wire::Restart restart) {
                                           : barrier.run->layout.robots.size());
   barrier.gate.clear();  // a session that begins now gets no tick of the former world
   barrier.senses = {};
+  barrier.begin = {};
+  if (restart.snapshot) barrier.begin = {restart.snapshot->tick, *restart.snapshot->commands};
   barrier.deadlines.reset();
   barrier.sessions.for_each([&](Session& session) {
     barrier.gate.settle(session.turn);

@@ -79,7 +79,7 @@ std::size_t longest_message(const Barrier& barrier, const Session* session) {
                                        : most);
 }
 
-std::uint64_t tick_of(const Barrier& barrier) { return barrier.gate.tick().value_or(0); }
+std::uint64_t tick_of(const Barrier& barrier) { return barrier.gate.tick().value_or(barrier.begin.tick); }
 
 std::string names_of(const Barrier& barrier, std::span<const std::size_t> robots) {
   std::string text;
