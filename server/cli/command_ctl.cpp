@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/supervision_client.h"
 #include "reports/console.h"
+#include "scene/files.h"
 #include "scene/values.h"
 #include "text/names.h"
 #include "text/numbers.h"
@@ -82,8 +83,10 @@ void restore(const Call& call) {
 
 std::string contents_of(const std::string& path) {
   if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  if (const auto fault = scene::fault_of_file(path)) {
+    throw text::UsageError("'" + path + "' " + *fault + ", or write - to read from standard input");
+  }
   std::ifstream file(path);
-  if (!file) throw text::UsageError("'" + path + "' cannot be read");
   return {std::istreambuf_iterator<char>(file), {}};
 }
 

@@ -4,6 +4,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "processes/scripts.h"
 #include "run/rehearsal.h"
 #include "text/numbers.h"
 #include "text/quoting.h"
@@ -66,6 +67,9 @@ int execute_try(const Arguments& arguments, processes::Signals& signals) {
   }
   if (command.empty() == options.script.empty()) {
     throw text::UsageError("write either -- COMMAND at the end, or --script FILE.lua");
+  }
+  if (const auto fault = command.empty() ? processes::compile_error(options.script) : std::nullopt) {
+    throw text::UsageError("--script: " + *fault);
   }
   options.command = command;
   options.quiet = parsed.values.count("quiet") > 0;

@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include "network/glob.h"
+#include "scene/files.h"
 
 namespace ziggurat::network {
 namespace {
@@ -29,6 +30,7 @@ bool is_key(const std::string& text) {
 }
 
 std::string read_text(const std::string& path) {
+  if (const auto fault = scene::fault_of_file(path)) throw KeyError(path + ": " + *fault);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw KeyError(fmt::format("{}: can't be read: {}", path, std::strerror(errno)));
   std::string text(longest_file + 1, '\0');

@@ -38,7 +38,7 @@ struct ControllerProcess {
 /// A script that runs now.
 struct BusyScript {
   std::string robot;  ///< its id
-  std::string place;  ///< `FILE:LINE`, once that takes long
+  std::string place;  ///< `FILE`, and `:LINE` once that takes long, unless it sleeps
 };
 
 /// How the controllers of a run are started.

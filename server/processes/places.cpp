@@ -24,7 +24,8 @@ std::string similar(const fs::path& missing) {
   std::error_code error;
   for (fs::directory_iterator file(missing.parent_path(), error), end; !error && file != end;
        file.increment(error)) {
-    if (names.size() < most_compared) names.push_back(file->path().filename().string());
+    if (names.size() >= most_compared) break;
+    if (file->is_regular_file(error)) names.push_back(file->path().filename().string());
   }
   std::ranges::sort(names);
   const std::vector<std::string_view> views(names.begin(), names.end());
@@ -65,6 +66,9 @@ std::string looked_for(const std::string& name, const fs::path& naming_file,
   if (fs::path(name).is_absolute()) return "; check its path";
   const fs::path beside = folder_of(naming_file), of_scene = folder_of(scene_file);
   std::error_code error;
+  if (fs::exists(beside / name, error)) {
+    return fmt::format(": in {} it is not a regular file", beside.string());
+  }
   const fs::path here = fs::current_path(error);
   std::string text = fmt::format(" in {}", beside.string());
   if (beside != of_scene) text += fmt::format(", nor in {}", of_scene.string());

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "processes/places.h"
+#include "scene/files.h"
 
 namespace ziggurat::processes {
 namespace {
@@ -96,6 +97,9 @@ void check(const scene::Scene& scene, const Use& use, const fs::path& scene_file
 }  // namespace
 
 std::optional<std::string> compile_error(const fs::path& script) {
+  if (const auto fault = scene::fault_of_file(script)) {
+    return fmt::format("'{}' {}", script.string(), *fault);
+  }
   const std::unique_ptr<lua_State, decltype(&lua_close)> lua(luaL_newstate(), lua_close);
   if (luaL_loadfilex(lua.get(), script.c_str(), "t") == LUA_OK) return std::nullopt;
   return lua_tostring(lua.get(), -1);

@@ -75,10 +75,9 @@ std::string Past::embedded_script(const std::string& name) const {
 
 void Past::use_own_scripts() {
   for (const auto& [name, path] : fork_.scripts) {
+    if (const auto fault = processes::compile_error(path)) throw text::UsageError("--script: " + *fault);
     std::ifstream file(path, std::ios::binary);
     std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    if (!file.is_open()) throw text::UsageError(fmt::format("--script: '{}' cannot be read", path));
-    if (const auto fault = processes::compile_error(path)) throw text::UsageError("--script: " + *fault);
     files_.add(embedded_script(name), std::move(bytes));
   }
 }

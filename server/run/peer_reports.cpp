@@ -49,9 +49,9 @@ void PeerReports::print_log(std::uint64_t tick) {
 }
 
 void PeerReports::forget_spawned() {
-  const std::size_t left = world_.simulation.layout().robots.size();
+  const auto& robots = world_.simulation.layout().robots;
   for (auto& [robot, failure] : failures_) {
-    if (robot && *robot >= left) robot.reset();
+    if (robot && (*robot >= robots.size() || robots[*robot].id != failure.robot)) robot.reset();
   }
 }
 

@@ -35,7 +35,8 @@ class PeerReports {
   /// Prints the log lines of a tick, in the order of the robots.
   void print_log(std::uint64_t tick);
 
-  /// The world was reset: its spawned robots are gone, and others may take their places.
+  /// The world was reset, or is that of a snapshot again: spawned robots are gone, and others may be at
+  /// their places.
   void forget_spawned();
 
   /// Whether the controller of one of these robots failed.

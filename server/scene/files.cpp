@@ -100,12 +100,18 @@ std::string too_large(std::size_t max_size) {
                      max_size);
 }
 
-std::variant<File, std::string> open_file(const fs::path& path, std::size_t max_size) {
+std::optional<std::string> fault_of_file(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) return "does not exist; check its path";
   if (error) return fmt::format("cannot be read: {}", error.message());
   if (status.type() != fs::file_type::regular) return "is not a regular file; check its path";
+  return std::nullopt;
+}
+
+std::variant<File, std::string> open_file(const fs::path& path, std::size_t max_size) {
+  if (auto fault = fault_of_file(path)) return *std::move(fault);
+  std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);
   if (!error && size > max_size) return too_large(max_size);
   std::ifstream file(path, std::ios::binary);

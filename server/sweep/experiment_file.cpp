@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/files.h"
 #include "scene/values.h"
 #include "text/names.h"
 #include "text/numbers.h"
@@ -53,13 +54,13 @@ class FileReader {
   }
 
   toml::table parse() const {
+    if (const auto wrong = scene::fault_of_file(path_)) {
+      throw text::UsageError(fmt::format("'{}' {}; write the path of a scene or of an experiment file "
+                                         "(.toml)", path_, *wrong));
+    }
     try {
       return toml::parse_file(path_);
     } catch (const toml::parse_error& error) {
-      if (!fs::exists(path_)) {
-        throw text::UsageError(fmt::format("'{}' does not exist; write the path of a scene or of an "
-                                           "experiment file (.toml)", path_));
-      }
       fault(error.source(), error.description());
     }
   }

@@ -160,7 +160,7 @@ Lock::Lock(const fs::path& path) {
 Lock::~Lock() { ::close(file_); }
 
 bool Lock::is_held(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) return false;
   const bool is_free = ::flock(file, LOCK_SH | LOCK_NB) == 0;
   ::close(file);

@@ -1,9 +1,10 @@
 """Faults of an author: each gives one clear message and exit code 1, never a hang or a crash."""
 
+import os
 import socket
 import subprocess
 
-from harness import FAULT, FINISHED, ZIGGURAT, SceneTest, main
+from harness import FAULT, FINISHED, LUA, ZIGGURAT, SceneTest, main
 
 
 class BrokenScene(SceneTest):
@@ -187,6 +188,36 @@ class BrokenArguments(SceneTest):
             clients.chmod(mode)
             self.refuses(r"--curve-clients is 'clients', which other users can write.*chmod go-w", "serve",
                          self.scene, "--curve-secret", "k.secret", "--curve-clients", "clients")
+
+    def test_files_that_nothing_can_be_read_from(self):
+        """To open a pipe without writer would wait without end, and a device has none."""
+        self.run_scene("--ticks", 2, "--quiet", "--record", "run.mcap")
+        subprocess.run([str(ZIGGURAT), "keygen", "--out", "k"], cwd=self.folder, check=True, capture_output=True)
+        key = (self.folder / "k.public").read_text().strip()
+        self.write("clients", f"{key} controller\n").chmod(0o600)
+        os.mkfifo(self.folder / "pipe", 0o600)
+        os.mkfifo(self.folder / "pipe.toml")
+        (self.folder / "folder").mkdir(mode=0o700)
+        keys = ("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--curve-secret")
+        for path in ("pipe", "folder"):
+            for arguments in (("run", path), ("render", path, "--out", "a.png"), ("info", path), ("replay", path),
+                              ("verify", path), ("diff", "run.mcap", path), ("fork", path, "--at", 1),
+                              ("export", path, "--jsonl", "o.jsonl"), ("export", path, "--html", "o.html"),
+                              ("try", "run.mcap", "--robot", "r0", "--script", path),
+                              ("fork", "run.mcap", "--at", 1, "--script", f"swing.lua={path}"),
+                              (*keys, "k.secret", "--curve-clients", path),
+                              (*keys, path, "--curve-clients", "clients"),
+                              ("run", self.scene, "--set", f"//params/@script={path}")):
+                with self.subTest(arguments):
+                    self.refuses("not a regular file", *arguments)
+            self.refuses("not a file with one secret key", "ctl", "tcp://127.0.0.1:1", "status",
+                         "--curve-secret", path, "--server-key", key)
+        self.refuses("not a regular file", "sweep", "pipe.toml")
+        for option, value in (("--robots-file", "pipe"), ("--curve-secret", "pipe")):
+            lua = subprocess.run([str(LUA), "--connect", "tcp://127.0.0.1:1", option, value, "--server-key", key],
+                                 cwd=self.folder, timeout=60, capture_output=True, text=True)
+            self.assertEqual(lua.returncode, FAULT)
+            self.assertIn("pipe", lua.stderr)
 
     def test_numbers_that_cannot_be_meant(self):
         for value in ("1e-300", "0", "1e300", "nan", "-1"):

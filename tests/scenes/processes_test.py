@@ -136,6 +136,17 @@ end
 """)
         self.expect_waiting_for_line_4()
 
+    def test_a_blocked_call_is_named_with_robot_and_file(self):
+        self.write("swing.lua", """function init() end
+function step()
+   if robot.id == "r1" then os.execute("sleep 1000") end
+end
+""")
+        process = self.start("run", self.scene, *ENDLESS, "--trust-scripts")
+        self.read_until(process.stderr, r"waiting for r1: .*swing\.lua$")
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
     def expect_waiting_for_line_4(self):
         process = self.start("run", self.scene, *ENDLESS, "--trust-scripts")
         self.read_until(process.stderr, r"waiting for r1: .*swing\.lua:4$")

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <zmq.hpp>
@@ -92,7 +93,9 @@ void ZeroMq::set_keys(const Options& options) {
     throw std::invalid_argument(
         "only one of server_key and curve_secret is set; an encrypted connection needs both");
   }
-  std::ifstream file(options.curve_secret);
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(options.curve_secret, error);  // no pipe: it could wait
+  std::ifstream file(is_file ? options.curve_secret : "");
   std::string secret, more;
   std::array<char, 41> own;
   if (!(file >> secret) || file >> more || zmq_curve_public(own.data(), secret.c_str()) != 0) {

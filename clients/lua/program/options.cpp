@@ -2,6 +2,7 @@
 
 #include <boost/program_options.hpp>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -80,8 +81,10 @@ std::string help() {
 }
 
 void append_robots(const std::string& path, std::vector<std::string>& robots) {
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error("--robots-file " + path + ": can't be read");
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(path, error);  // a pipe may never have a writer
+  std::ifstream file(is_file ? path : "");
+  if (!file) throw std::runtime_error("--robots-file " + path + ": can't be read, or is not a regular file");
   const auto before = robots.size();
   for (std::string line; std::getline(file, line);) {
     if (const auto id = trimmed(line); !id.empty()) robots.emplace_back(id);

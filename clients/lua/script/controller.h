@@ -69,7 +69,7 @@ class Controller {
   Failure call(const char* function, bool is_required, const std::string& moment);
   Failure call_prepared(const std::string& moment);
   void push_protected(int (*function)(lua_State*));
-  Calling calling() const { return {robot_.id().c_str(), state_.get(), max_instructions_}; }
+  Calling calling() const { return {robot_.id().c_str(), script_.c_str(), state_.get(), max_instructions_}; }
   std::string describe_error(const std::string& moment);
 
   Robot& robot_;

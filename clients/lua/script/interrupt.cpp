@@ -146,7 +146,7 @@ Running::Running(const Calling& calling) noexcept : state_(calling.state) {
   watch = {};
   watch.robot = calling.robot;
   watch.max_instructions = calling.max_instructions;
-  write_place(calling.robot, "");
+  write_place(calling.robot, calling.script);
   running = calling.state;
   if (interrupted) set_hook(calling.state);
 }

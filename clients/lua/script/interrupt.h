@@ -23,7 +23,8 @@ void allow_scripts() noexcept;
 /// From now on a signal (SIGVTALRM) looks at the running call each time that this process has
 /// computed for 50 ms. A call that lasts longer counts its instructions from there on: counting all
 /// of them would make every script slower. Its file and line are then in the place file, if there
-/// is one, and those of a library function that computes for half a second. A call with a limit that
+/// is one, and those of a library function that computes for half a second; of one that sleeps, only
+/// the script's file is. A call with a limit that
 /// then runs no instruction for 5 s of computing is in a library function that can't be ended: the
 /// process ends with a message.
 void watch_scripts();
@@ -31,6 +32,7 @@ void watch_scripts();
 /// A call of a script.
 struct Calling {
   const char* robot = "";              ///< id, for messages
+  const char* script = "";             ///< file, in the place file until a line is known
   lua_State* state = nullptr;          ///< of the script
   std::uint64_t max_instructions = 0;  ///< 0 = any number
 };

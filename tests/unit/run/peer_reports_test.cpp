@@ -14,14 +14,15 @@ constexpr const char* scene_text = R"(<a><framework><experiment ticks_per_second
 <controllers><external_controller id="c"><actuators/><sensors/></external_controller></controllers>
 <media/><physics_engines><dynamics3d id="d"/></physics_engines>
 <arena size="9,9,9"/></a>)";
-constexpr const char* robot_text =
-    R"(<foot-bot id="late"><body/><controller config="c"/></foot-bot>)";
+std::string robot_named(const std::string& id) {
+  return "<foot-bot id=\"" + id + R"("><body/><controller config="c"/></foot-bot>)";
+}
 
 /// A world without robots, and one that is spawned.
 struct Spawning : ::testing::Test {
-  Spawning() { spawn(); }
-  void spawn() {
-    const scene::Addition robot = world.additions.read(robot_text, world.scene, 10000,
+  Spawning() { spawn("late"); }
+  void spawn(const std::string& id) {
+    const scene::Addition robot = world.additions.read(robot_named(id), world.scene, 10000,
                                                        [](const std::string&) { return false; });
     ASSERT_TRUE(robot.ok());
     world.simulation.spawn(world.scene, robot.entity);
@@ -46,10 +47,24 @@ TEST_F(Spawning, AFailureBeforeAResetIsNotThatOfALaterRobotAtItsPlace) {
   EXPECT_TRUE(reports.has_failure(robots));
   world.reset(1);
   reports.forget_spawned();
-  spawn();
+  spawn("late");
   EXPECT_FALSE(reports.has_failure(robots));
   ASSERT_EQ(reports.failures().size(), 1U);
   EXPECT_EQ(reports.failures()[0].robot, "late");
+  testing::internal::GetCapturedStderr();
+}
+
+TEST_F(Spawning, AFailureIsNotThatOfARobotOfASnapshotAtItsPlace) {
+  testing::internal::CaptureStderr();
+  const std::vector<std::size_t> robots{0};
+  network::Report report;
+  report.failures.push_back({0, "broken", 7});
+  reports.take(std::move(report), 7);
+  world.reset(1);
+  spawn("other");  // as a restore does
+  reports.forget_spawned();
+  EXPECT_FALSE(reports.has_failure(robots));
+  EXPECT_EQ(reports.failures().size(), 1U);
   testing::internal::GetCapturedStderr();
 }
 
@@ -57,7 +72,7 @@ TEST(PeerReports, LinesOfARobotThatAResetTookAreStillItsOwn) {
   auto read = scene::read_text(scene_text, "a.argos");
   for (const auto& problem : read.problems) ADD_FAILURE() << scene::to_string(problem);
   supervision::World world("a.argos", {std::move(read.scene), std::move(read.additions)}, 1);
-  const scene::Addition robot = world.additions.read(robot_text, world.scene, 10000,
+  const scene::Addition robot = world.additions.read(robot_named("late"), world.scene, 10000,
                                                      [](const std::string&) { return false; });
   ASSERT_TRUE(robot.ok());
   world.simulation.spawn(world.scene, robot.entity);
