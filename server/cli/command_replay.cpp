@@ -21,6 +21,8 @@ supervisors, without controllers. The hash of each state is compared with the re
       write files that were not asked for when it ran
   ziggurat replay run.mcap --until 500 --hash
       up to tick 500
+  ziggurat replay run.mcap --from-poses --view
+      show the recorded poses, without simulating
 
 The recording alone is read: no file that its scene names, and none of its commands is started.
 
@@ -37,6 +39,7 @@ int execute_replay(const Arguments& arguments, processes::Signals& signals) {
   options.run = parse_options(arguments, known);
   options.recording = only_recording("replay", options.run.scenes);
   const auto values = parse(arguments, known).values;
+  options.from_poses = values.count("from-poses") > 0;
   if (values.count("until")) {
     options.until = text::to_integer("--until", values["until"].as<std::string>());
   }

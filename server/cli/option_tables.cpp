@@ -218,6 +218,9 @@ po::options_description replay_options() {
   po::options_description replay("The replay", width);
   replay.add_options()                                                         //
       ("until", text("TICK"), "end at the first state with this tick")  //
+      ("from-poses",
+       "show the recorded poses and simulate nothing: with --view and --trace; what robots sense is "
+       "not shown, and nothing is compared")  //
       ("real-time", po::value<std::string>()->implicit_value("1")->value_name("FACTOR"),
        "pace to the wall clock, FACTOR times as fast (default 1)")  //
       ("view", po::value<std::string>()->implicit_value("")->value_name("HOST:PORT"),

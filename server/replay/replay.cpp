@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "recording/inputs.h"
 #include "replay/recording_error.h"
 #include "scene/reader.h"
+#include "simulation/show.h"
 #include "ziggurat/v1/run.pb.h"
 
 namespace ziggurat::replay {
@@ -36,18 +38,29 @@ bool Replay::advance() {
   if (!next) return false;
   if (!is_first && next->epoch() == epoch_) {
     if (!has_commands_) fail("they have no commands, and yet there is a next tick");
-    world_.simulation.step();
+    if (!links_) world_.simulation.step();
   }
   inputs_ = next;
   epoch_ = next->epoch();
   tick_ = next->tick();
   has_commands_ = next->has_commands();
   acted_ = false;
+  if (links_) show_state();
   if (world_.simulation.state().tick != tick_) {
     fail(fmt::format("the tick {} was expected", world_.simulation.state().tick));
   }
-  hash_ = world_.simulation.hash();
+  hash_ = links_ ? next->hash() : world_.simulation.hash();
   return true;
+}
+
+void Replay::show_state() {
+  const auto* links = links_();
+  if (!links) fail("there are no poses in /state for them");
+  try {
+    simulation::show(world_.simulation, tick_, *links);
+  } catch (const simulation::SnapshotError& error) {
+    fail(error.what());
+  }
 }
 
 bool Replay::is_same() const { return inputs_->hash() == hash_; }
@@ -73,8 +86,7 @@ void Replay::apply(const v1::Act& act) {
     case v1::Act::kSpawn:
       return spawn(act.spawn().xml());
     case v1::Act::kRemove:
-      ++changes_;
-      return world_.simulation.remove(entity_named(act.remove().entity()));
+      return remove(act.remove().entity());
     case v1::Act::kReset:
       return reset(act.reset().seed());
     case v1::Act::kSnapshot:
@@ -116,6 +128,11 @@ void Replay::move(const v1::Act::Move& move) {
   world_.simulation.move(entity, pose);
 }
 
+void Replay::remove(const std::string& id) {
+  ++changes_;
+  world_.simulation.remove(entity_named(id));
+}
+
 void Replay::spawn(const std::string& xml) {
   const auto& entities = world_.simulation.layout().entities;
   const auto is_taken = [&](const std::string& id) {
@@ -129,7 +146,13 @@ void Replay::spawn(const std::string& xml) {
   try {
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
     ++changes_;
-    world_.simulation.spawn(world_.scene, addition.entity, xml);
+    if (links_) {  // wherever others were when the world was built
+      simulation::repeat(world_.simulation, world_.scene,
+                         {simulation::Act::Kind::spawn, tick_, entities.size(), {},
+                          std::make_shared<const scene::Entity>(std::move(addition.entity)), xml});
+    } else {
+      world_.simulation.spawn(world_.scene, addition.entity, xml);
+    }
   } catch (const scene::SceneError& error) {
     fail(fmt::format("an entity cannot be spawned: {}", error.what()));
   }
@@ -149,7 +172,13 @@ void Replay::reset(std::uint64_t seed) {
 void Replay::snapshot(const std::string& name) {
   simulation::Snapshot& place = snapshots_[name];
   snapshots_size_ -= place.size();
-  place = world_.simulation.snapshot();
+  if (links_) {  // who is in the world; poses come with the states
+    place = {};
+    place.seed = world_.seed;
+    place.history = world_.simulation.history();
+  } else {
+    place = world_.simulation.snapshot();
+  }
   snapshots_size_ += place.size();
   if (snapshots_.size() > most_snapshots) {
     fail(fmt::format("they take more than {} snapshots", most_snapshots));
@@ -160,16 +189,28 @@ void Replay::snapshot(const std::string& name) {
 }
 
 void Replay::restore(const v1::Act::Restore& restore) {
-  if (!restore.file().empty() && open_snapshot_) return restore_to(open_snapshot_(restore.file()));
   const auto found = snapshots_.find(restore.name());
-  if (found == snapshots_.end()) {
+  const bool is_file = !restore.file().empty() && open_snapshot_;
+  if (!is_file && found == snapshots_.end()) {
     fail(fmt::format("they restore '{}', of which this recording has no snapshot", restore.name()));
   }
-  restore_to(found->second);
+  try {
+    restore_to(is_file ? open_snapshot_(restore.file()) : found->second);
+  } catch (const simulation::SnapshotError& error) {
+    fail(error.what());
+  }
 }
 
 void Replay::restore_to(const simulation::Snapshot& snapshot) {
-  world_.simulation.restore(world_.scene, snapshot);
+  if (links_) {
+    world_.simulation.reset(world_.scene, {snapshot.seed, {}});
+    for (const simulation::Act& act : snapshot.history.acts) {
+      if (act.kind == simulation::Act::Kind::move) continue;
+      simulation::repeat(world_.simulation, world_.scene, act);
+    }
+  } else {
+    world_.simulation.restore(world_.scene, snapshot);
+  }
   world_.seed = snapshot.seed;
   ++changes_;
 }

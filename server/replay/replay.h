@@ -13,6 +13,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scene/additions.h"
 #include "scene/files.h"
@@ -20,6 +21,7 @@
 #include "simulation/simulation.h"
 #include "simulation/snapshot.h"
 #include "world/commands.h"
+#include "world/state.h"
 
 namespace ziggurat::v1 {
 class Act;
@@ -61,19 +63,29 @@ class Replay {
   using OpenSnapshot = std::function<simulation::Snapshot(const std::string& file)>;
   void open_snapshots_by(OpenSnapshot open) { open_snapshot_ = std::move(open); }
 
+  /// The poses and velocities of the present inputs' state; null: they were not recorded.
+  using Links = std::function<const std::vector<world::LinkState>*()>;
+  /// Nothing is simulated: the recorded states are shown one after the other. What robots sense stays
+  /// as at the begin, and no hash is computed. @pre nothing was repeated yet
+  void show(Links links) { links_ = std::move(links); }
+  /// Puts the world where the recording begins. @throws RecordingError if it does not fit
+  void begin_at(const simulation::Snapshot& snapshot) { restore_to(snapshot); }
+
   /// Told of each act, after it was done.
   void tell(std::function<void(const v1::Act&)> told) { told_ = std::move(told); }
 
   /// Of the present state.
   const v1::Inputs& inputs() const { return *inputs_; }
-  std::uint64_t hash() const { return hash_; }  ///< as computed
+  std::uint64_t hash() const { return hash_; }  ///< as computed; if it is shown, as recorded
   bool is_same() const;                         ///< the recorded hash is the same
   /// How many resets and restores, moves, spawns and removals there were.
   std::uint64_t changes() const { return changes_; }
 
  private:
+  void show_state();
   void apply(const v1::Act& act);
   void move(const v1::Act_Move& move);
+  void remove(const std::string& id);
   void spawn(const std::string& xml);
   void reset(std::uint64_t seed);
   void snapshot(const std::string& name);
@@ -91,6 +103,7 @@ class Replay {
   std::map<std::string, simulation::Snapshot> snapshots_;  // by name
   std::size_t snapshots_size_ = 0;                         // of all of them [bytes]
   OpenSnapshot open_snapshot_;
+  Links links_;  // empty: it is simulated
   std::uint64_t hash_ = 0, changes_ = 0;
   std::uint64_t epoch_ = 0, tick_ = 0;  // of the present state
   bool has_commands_ = false, acted_ = false;

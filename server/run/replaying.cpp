@@ -14,6 +14,7 @@
 #include "run/recorded_world.h"
 #include "run/replay_difference.h"
 #include "run/setup.h"
+#include "text/numbers.h"
 
 namespace ziggurat::run {
 
@@ -34,8 +35,22 @@ supervision::World build_world(const replay::RecordingFile& file) {
   return {run.scene(), replay::read_scene(run, file.files()), run.seed(), {}, run.scene_hash()};
 }
 
+/// What needs more than poses can't be had without simulating.
+void check_poses_suffice(const Options& options) {
+  const std::pair<const char*, bool> others[] = {
+      {"--readings", !options.readings.empty()}, {"--rays", !options.rays.empty()},
+      {"--images", !options.images.empty()},     {"--summary", !options.summary.empty()},
+      {"--hash-file", !options.hash_file.empty()}, {"--hash", options.hash}};
+  for (const auto& [option, is_given] : others) {
+    if (!is_given) continue;
+    throw text::UsageError(fmt::format(
+        "--from-poses simulates nothing, and {} needs more than poses; leave out one of them", option));
+  }
+}
+
 /// Checks the names of all files before any is created.
 std::string checked(const ReplayOptions& options) {
+  if (options.from_poses) check_poses_suffice(options.run);
   Options files = options.run;
   files.scenes = {options.recording};
   check_files(files);
@@ -57,11 +72,23 @@ Replaying::Replaying(const ReplayOptions& options, processes::Signals& signals)
       schedule_(factor_of(options.run), world_.simulation.tick_length()),
       showing_(make_showing(options.run, shown())),
       progress_(console_, world_.simulation.tick_length(), file_.states()) {
-  begin_as_recorded(file_, world_);
   replay_.open_snapshots_by(embedded_snapshots(file_, world_));
+  options.from_poses ? show_poses() : begin_as_recorded(file_, world_);
   summary_.scene = world_.path;
   summary_.robots = world_.simulation.layout().robots.size();
   if (showing_) waits_for_viewer_until_ = clock::now() + longest_wait_for_viewer;
+}
+
+void Replaying::show_poses() {
+  if (!file_.reader().contents().channel_of("/state")) {
+    throw text::UsageError(fmt::format(
+        "--from-poses: {} has no topic /state, in which the poses are (--record-topics); replay it without",
+        file_.path()));
+  }
+  replay_.show([this] { return states_.links(); });
+  const std::string& begin = file_.run().snapshot();
+  if (begin.empty()) return;
+  replay_.begin_at(replay::read_snapshot(file_, begin, world_.scene, world_.additions));
 }
 
 Showing::Run Replaying::shown() {
@@ -105,7 +132,7 @@ int Replaying::execute() {
   recorders_.close();
   complete_summary(end);
   recorders_.write_summary(summary_);
-  if (!options_.verifies) {
+  if (!options_.verifies && !options_.from_poses) {
     console_.report(options_.run.json ? to_json(summary_) : to_text(summary_));
   }
   tell(end);
@@ -243,6 +270,10 @@ void Replaying::tell(End end) {
   const std::string states = fmt::format("{} state{}", same_, same_ == 1 ? "" : "s");
   std::string verdict = end == End::differs ? "differs" : "identical";
   std::string text = states + " as recorded";
+  if (options_.from_poses) {
+    verdict = "shown";
+    text = states + ", nothing simulated";
+  }
   if (end == End::differs) {
     text = fmt::format("{}; {} before it as recorded", difference_, states);
     for (const auto& cause : likely_causes(file_.run())) text += "\n  " + cause;

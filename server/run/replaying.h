@@ -28,6 +28,7 @@ struct ReplayOptions {
   Options run;                         ///< outputs, view, pacing
   std::optional<std::uint64_t> until;  ///< the last tick; of the last epoch that has it
   bool verifies = false;               ///< the verdict is the result, on stdout
+  bool from_poses = false;             ///< nothing is simulated: the recorded poses are shown
 };
 
 class Replaying {
@@ -43,6 +44,7 @@ class Replaying {
   using clock = std::chrono::steady_clock;
   enum class End { complete, differs, damaged, stopped };
 
+  void show_poses();
   Showing::Run shown();
   std::unique_ptr<Showing> make_shown();
   End repeat();

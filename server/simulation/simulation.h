@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -108,6 +109,10 @@ class Simulation {
 
   double tick_length() const;      ///< simulated time per tick by the clock on the wall [s]
   double physical_length() const;  ///< physical time per tick: shorter under beta50 [s]
+
+  // show.h
+  friend void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> links);
+  friend void repeat(Simulation& to, const scene::Scene& scene, const Act& act);
 
  private:
   struct Parts;

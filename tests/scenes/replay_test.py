@@ -188,6 +188,41 @@ class Supervised(Recorded):
         self.assertEqual(f"hash 6 {state['hash']}", outcome.lines[-1])
 
 
+class FromPoses(Recorded):
+    def test_the_recorded_poses_are_written_without_simulating(self):
+        """Also those of a recording whose commands are wrong: a replay of it would differ."""
+        recording, _ = self.record("--ticks", "20", "--trace", "run.csv", "--record-compression", "none")
+        change_inputs(recording, struct.pack("<3d", 2, 2, -3), struct.pack("<3d", 2, 2.25, -3))
+        self.ask("verify", recording, code=DIFFERS)
+        outcome = self.ask("replay", recording, "--from-poses", "--trace", "shown.csv")
+        self.assertIn("shown: 21 states, nothing simulated", outcome.err)
+        with open(self.folder / "run.csv") as a, open(self.folder / "shown.csv") as b:
+            before, after = list(csv.DictReader(a)), list(csv.DictReader(b))
+        self.assertEqual(len(before), len(after))
+        for one, other in zip(before, after):
+            for name in one:
+                if name in ("tick", "time_s", "entity", "link") or one["link"]:
+                    self.assertEqual(one[name], other[name], (name, one))
+                else:
+                    self.assertAlmostEqual(float(one[name]), float(other[name]), places=12)
+
+    def test_it_is_shown(self):
+        recording, _ = self.record("--ticks", "5")
+        process = self.start("replay", recording, "--from-poses", "--view", "127.0.0.1:0", "--real-time", "1000")
+        self.assertIn("http://127.0.0.1:", process.stderr.readline())
+        self.interrupt(process)
+        self.finish(process)
+
+    def test_what_needs_more_than_poses_is_refused(self):
+        recording, _ = self.record("--ticks", "3")
+        for option in (["--hash"], ["--hash-file", "x"], ["--readings", "x.jsonl"], ["--rays", "x.jsonl"],
+                       ["--images", "x"], ["--summary", "x.json"]):
+            outcome = self.ask("replay", recording, "--from-poses", *option, code=FAULT)
+            self.assert_is_sentence(outcome, f"--from-poses simulates nothing, and {option[0]} needs more")
+        recording, _ = self.record("--ticks", "3", "--record-topics", "/poses")
+        self.assert_is_sentence(self.ask("replay", recording, "--from-poses", code=FAULT), "no topic /state")
+
+
 class Compare(Recorded):
     def test_diff_names_the_first_difference_and_draws_it(self):
         a, _ = self.record("--ticks", "20", "--seed", "3", name="a.mcap")

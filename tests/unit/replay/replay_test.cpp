@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "recorded_run.h"
@@ -52,6 +53,66 @@ TEST(Replay, RepeatsSnapshotsAndRestores) {
   EXPECT_EQ(same_states(run.recording), run.recording.inputs.size());
   run.recording.inputs.front().add_acts()->mutable_restore()->set_name("other");
   EXPECT_NE(error_of(run.recording).find("no snapshot"), std::string::npos);
+}
+
+/// What was done, also where a world that did not move has no room: what is shown is what was recorded.
+TEST(Replay, ShowsRecordedPosesWithoutSimulating) {
+  testing::Recorder run;
+  for (int i = 0; i < 3; ++i) run.step();
+  math::Pose away;
+  away.position = {2, 2, 0.1};
+  run.move("high", away);
+  run.snapshot("before");
+  run.spawn(R"(<box id="new" size=".2,.2,.2" movable="true" mass="1"><body position="0.05,0,0.5"/></box>)");
+  for (int i = 0; i < 4; ++i) run.step();
+  run.remove("low");
+  run.step();
+  run.restore("before");
+  for (int i = 0; i < 2; ++i) run.step();
+  run.reset(7);
+  run.step();
+
+  OwnWorld world, other;
+  std::size_t at = 0;
+  Replay shown = world.replay(run.recording);
+  shown.show([&] { return &run.recording.links[at]; });
+  Replay repeated = other.replay(run.recording);
+  for (; shown.advance(); ++at) {
+    ASSERT_TRUE(repeated.advance() && repeated.is_same());
+    const world::State &a = world.simulation.state(), &b = other.simulation.state();
+    ASSERT_FALSE(first_difference(a.links, b.links)) << at;
+    ASSERT_EQ(a.time_ns, b.time_ns);
+    ASSERT_EQ(a.origins.size(), b.origins.size());
+    for (std::size_t i = 0; i < a.origins.size(); ++i) {
+      ASSERT_EQ(a.is_absent(i), b.is_absent(i)) << at;
+      if (a.is_absent(i)) continue;
+      ASSERT_LT((a.origins[i].position - b.origins[i].position).norm(), 1e-12) << at;
+      ASSERT_LT(a.origins[i].orientation.angularDistance(b.origins[i].orientation), 1e-7) << at;
+    }
+  }
+  EXPECT_EQ(at, run.recording.inputs.size());
+}
+
+TEST(Replay, PosesThatDoNotFitAreRefused) {
+  const auto error_with = [](const std::vector<world::LinkState>* links) -> std::string {
+    const Recording recording = eventful_run();
+    OwnWorld world;
+    Replay replay = world.replay(recording);
+    replay.show([&] { return links; });
+    try {
+      replay.advance();
+      return "";
+    } catch (const RecordingError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_NE(error_with(nullptr).find("no poses in /state"), std::string::npos);
+  std::vector<world::LinkState> links = eventful_run().links.front();
+  EXPECT_EQ(error_with(&links), "");
+  links[1].velocity.x() = std::nan("");
+  EXPECT_NE(error_with(&links).find("is not finite"), std::string::npos);
+  links.pop_back();
+  EXPECT_NE(error_with(&links).find("poses of 3 links"), std::string::npos);
 }
 
 TEST(Replay, GivesTheSameCommandsBeforeEachStep) {
