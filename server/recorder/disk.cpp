@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -13,8 +14,10 @@
 namespace ziggurat::recorder {
 
 Disk::Disk(std::string path) : path_(std::move(path)) {
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  // A pipe without a reader is an error, not a wait.
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
   if (descriptor_ < 0) fail(errno);
+  ::fcntl(descriptor_, F_SETFL, 0);  // from now on writes wait
 }
 
 Disk::~Disk() {
@@ -26,12 +29,14 @@ void Disk::fail(int error) {
 }
 
 void Disk::write(std::string_view bytes) {
+  constexpr std::size_t piece = std::size_t{1} << 20;  // at once, so that a slow disk is seen to go on
   for (std::string_view left = bytes; !left.empty();) {
-    const ssize_t count = ::write(descriptor_, left.data(), left.size());
-    if (count >= 0) {
+    const ssize_t count = ::write(descriptor_, left.data(), std::min(left.size(), piece));
+    if (count >= 0 && !is_abandoned_) {
       left.remove_prefix(static_cast<std::size_t>(count));
-    } else if (errno != EINTR) {
-      const int error = errno;
+      taken_ += static_cast<std::uint64_t>(count);
+    } else if (is_abandoned_ || errno != EINTR) {
+      const int error = is_abandoned_ ? ECANCELED : errno;
       // Of a pipe nothing can be taken back; its reader sees the end of the file.
       [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(size_));
       fail(error);

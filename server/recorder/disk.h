@@ -1,6 +1,7 @@
 #pragma once
 // The file on disk, which has whole records only, also if the disk is full.
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,7 +10,7 @@ namespace ziggurat::recorder {
 
 class Disk {
  public:
-  /// Creates the file, or empties it. @throws recording::WriteError
+  /// Creates the file, or empties it. @throws recording::WriteError, also for a pipe without a reader
   explicit Disk(std::string path);
   ~Disk();
   Disk(const Disk&) = delete;
@@ -20,12 +21,21 @@ class Disk {
   /// @throws recording::WriteError
   void close();
 
+  // The other threads may call these while one writes.
+  const std::string& path() const { return path_; }
+  std::uint64_t taken() const { return taken_; }  ///< by the disk so far [bytes]
+  /// A write that is under way fails when it returns, and all later ones do.
+  void abandon() { is_abandoned_ = true; }
+  bool is_abandoned() const { return is_abandoned_; }
+
  private:
   [[noreturn]] void fail(int error);
 
   std::string path_;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;  // of what was written whole [bytes]
+  std::atomic<std::uint64_t> taken_ = 0;
+  std::atomic<bool> is_abandoned_ = false;
 };
 
 }  // namespace ziggurat::recorder

@@ -1,10 +1,16 @@
 #include "recorder/recorder.h"
 
+#include <fmt/format.h>
+
+#include <condition_variable>
+#include <deque>
 #include <exception>
-#include <memory>
+#include <mutex>
 #include <utility>
 
 #include "math/hash.h"
+#include "recorder/disk.h"
+#include "recording/output_file.h"
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat::recorder {
@@ -20,46 +26,102 @@ constexpr std::chrono::milliseconds interval{10};
 constexpr std::size_t many_tasks = most_tasks / 4;
 constexpr std::size_t much_waiting = most_waiting / 4;  // [bytes]
 
+// Patience is counted in parts: a program that was stopped for a while has waited for one of them.
+constexpr int parts_of_patience = 100;
+
 }  // namespace
+
+/// What the run's thread and the recorder's share.
+struct Recorder::Shared {
+  explicit Shared(const Settings& settings) : patience(settings.patience), disk(settings.path) {}
+
+  // The run's thread.
+  void add(Task task);
+  channels::TickCopy take_copy();
+  bool wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& is_done);
+  void give_up();
+
+  // The recorder's.
+  void work(Start start, Settings settings);
+  std::deque<Task> next();
+  void done(std::size_t size);
+  void give_back(channels::TickCopy copy);
+  bool is_over();
+
+  void fail(std::string why);
+
+  const std::chrono::milliseconds patience;
+  Disk disk;
+  std::mutex mutex;  // of all below
+  std::condition_variable wake, has_room;
+  std::deque<Task> tasks;
+  std::vector<channels::TickCopy> copies;  // free ones, whose memory is used again
+  std::size_t waiting = 0;                 // of all tasks that are not done [bytes]
+  std::size_t unfinished = 0;              // their number
+  std::uint64_t finished = 0;              // the number of those that are done
+  bool is_closing = false, has_failed = false, has_ended = false;
+  std::optional<std::string> failure;
+};
 
 Recorder::Recorder(Settings settings, Start start)
     : wants_(settings.contents.wants),
       picture_interval_(settings.contents.picture_interval),
-      disk_(settings.path),
-      thread_([this, begun = std::move(start), with = std::move(settings)]() mutable {
-        work(std::move(begun), std::move(with));
+      shared_(std::make_shared<Shared>(settings)),
+      thread_([shared = shared_, begun = std::move(start), with = std::move(settings)]() mutable {
+        shared->work(std::move(begun), std::move(with));
       }) {}
 
 Recorder::~Recorder() { close(); }
 
 // --- the run's thread -----------------------------------------------------------------------------
 
-void Recorder::add(std::function<void(Recording&)> run, std::size_t size) {
-  std::unique_lock lock(mutex_);
-  has_room_.wait(lock, [&] {
-    return has_failed_ || unfinished_ == 0 ||
-           (waiting_ + size <= most_waiting && unfinished_ < most_tasks);
-  });
-  if (has_failed_ || is_closing_) return;
-  waiting_ += size;
-  ++unfinished_;
-  tasks_.push_back({std::move(run), size});
-  const bool wakes = tasks_.size() >= many_tasks || waiting_ >= much_waiting;
-  lock.unlock();
-  if (wakes) wake_.notify_one();
+/// Waits for the recorder's thread as long as that, or the disk, gets on.
+/// @return  false: it does not any more
+bool Recorder::Shared::wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& is_done) {
+  std::uint64_t seen = finished + disk.taken();
+  for (int part = 0; part < parts_of_patience; ++part) {
+    if (has_room.wait_for(lock, patience / parts_of_patience, is_done)) return true;
+    const std::uint64_t now = finished + disk.taken();
+    if (std::exchange(seen, now) != now) part = 0;
+  }
+  return false;
 }
 
-channels::TickCopy Recorder::take_copy() {
-  const std::lock_guard lock(mutex_);
-  if (copies_.empty()) return {};
-  channels::TickCopy copy = std::move(copies_.back());
-  copies_.pop_back();
+void Recorder::Shared::add(Task task) {
+  std::unique_lock lock(mutex);
+  const bool gets_on = wait(lock, [&] {
+    return has_failed || unfinished == 0 ||
+           (waiting + task.size <= most_waiting && unfinished < most_tasks);
+  });
+  if (!gets_on) {
+    lock.unlock();
+    return give_up();
+  }
+  if (has_failed || is_closing) return;
+  waiting += task.size;
+  ++unfinished;
+  tasks.push_back(std::move(task));
+  const bool wakes = tasks.size() >= many_tasks || waiting >= much_waiting;
+  lock.unlock();
+  if (wakes) wake.notify_one();
+}
+
+void Recorder::Shared::give_up() {
+  disk.abandon();
+  fail(fmt::format("{}: cannot be written: the disk has taken nothing for {} s", disk.path(),
+                   static_cast<double>(patience.count()) / 1000));
+}
+
+channels::TickCopy Recorder::Shared::take_copy() {
+  const std::lock_guard lock(mutex);
+  if (copies.empty()) return {};
+  channels::TickCopy copy = std::move(copies.back());
+  copies.pop_back();
   return copy;
 }
 
-void Recorder::give_back(channels::TickCopy copy) {
-  const std::lock_guard lock(mutex_);
-  copies_.push_back(std::move(copy));
+void Recorder::add(std::function<void(Recording&)> run, std::size_t size) {
+  shared_->add({std::move(run), size});
 }
 
 void Recorder::populate(const channels::Population& population) {
@@ -68,26 +130,26 @@ void Recorder::populate(const channels::Population& population) {
 }
 
 void Recorder::tick(const channels::Moment& moment) {
-  auto copied = std::make_shared<channels::TickCopy>(take_copy());
+  auto copied = std::make_shared<channels::TickCopy>(shared_->take_copy());
   channels::copy(moment, moment.state.tick % picture_interval_ == 0, *copied);
   const std::size_t size = size_of(*copied);
   add(
-      [this, copied = std::move(copied)](Recording& to) {
+      [shared = shared_.get(), copied = std::move(copied)](Recording& to) {
         to.tick(*copied);
-        give_back(std::move(*copied));
+        shared->give_back(std::move(*copied));
       },
       size);
 }
 
 void Recorder::step(const world::Commands& commands, std::vector<world::Metric> metrics) {
-  auto copied = std::make_shared<channels::TickCopy>(take_copy());
+  auto copied = std::make_shared<channels::TickCopy>(shared_->take_copy());
   copied->commands = commands;
   const std::size_t metrics_size = metrics.size() * sizeof(world::Metric);
   add(
-      [this, copied = std::move(copied), metrics = std::move(metrics)](Recording& to) {
+      [shared = shared_.get(), copied = std::move(copied), metrics = std::move(metrics)](Recording& to) {
         to.measured(metrics);
         to.step(copied->commands);
-        give_back(std::move(*copied));
+        shared->give_back(std::move(*copied));
       },
       sizeof(channels::TickCopy) + commands.radio_messages.bytes.size() + metrics_size);
 }
@@ -173,63 +235,75 @@ void Recorder::close(std::vector<world::Metric> metrics) {
   if (!metrics.empty()) {
     add([metrics = std::move(metrics)](Recording& to) { to.measured(metrics); }, 0);
   }
-  {
-    const std::lock_guard lock(mutex_);
-    is_closing_ = true;
-  }
-  wake_.notify_one();
-  if (thread_.joinable()) thread_.join();
+  if (!thread_.joinable()) return;
+  std::unique_lock lock(shared_->mutex);
+  shared_->is_closing = true;
+  shared_->wake.notify_one();
+  // A thread that waits for the disk was waited for already.
+  const bool is_stuck = shared_->disk.is_abandoned();
+  const bool has_ended = !is_stuck && shared_->wait(lock, [this] { return shared_->has_ended; });
+  lock.unlock();
+  if (has_ended) return thread_.join();
+  if (!is_stuck) shared_->give_up();
+  thread_.detach();  // it ends when the disk lets it go on
 }
 
 std::optional<std::string> Recorder::take_failure() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(failure_, std::nullopt);
+  const std::lock_guard lock(shared_->mutex);
+  return std::exchange(shared_->failure, std::nullopt);
 }
 
 // --- the recorder's thread ------------------------------------------------------------------------
 
-void Recorder::fail(std::string why) {
+void Recorder::Shared::give_back(channels::TickCopy copy) {
+  const std::lock_guard lock(mutex);
+  copies.push_back(std::move(copy));
+}
+
+/// The first reason counts.
+void Recorder::Shared::fail(std::string why) {
   {
-    const std::lock_guard lock(mutex_);
-    has_failed_ = true;
-    failure_ = std::move(why);
-    tasks_.clear();
+    const std::lock_guard lock(mutex);
+    if (!std::exchange(has_failed, true)) failure = std::move(why);
+    tasks.clear();
   }
-  has_room_.notify_all();
+  has_room.notify_all();
 }
 
 /// All tasks that wait, after a while if there are none; none and the end: nothing follows.
-std::deque<Recorder::Task> Recorder::next() {
-  std::unique_lock lock(mutex_);
-  if (tasks_.empty() && !is_closing_) {
-    wake_.wait_for(lock, interval, [this] {
-      return is_closing_ || tasks_.size() >= many_tasks || waiting_ >= much_waiting;
+std::deque<Recorder::Task> Recorder::Shared::next() {
+  std::unique_lock lock(mutex);
+  if (tasks.empty() && !is_closing) {
+    wake.wait_for(lock, interval, [this] {
+      return is_closing || tasks.size() >= many_tasks || waiting >= much_waiting;
     });
   }
-  return std::exchange(tasks_, {});
+  return std::exchange(tasks, {});
 }
 
 /// @param size  of the task's memory
-void Recorder::done(std::size_t size) {
+void Recorder::Shared::done(std::size_t size) {
   {
-    const std::lock_guard lock(mutex_);
-    waiting_ -= size;
-    --unfinished_;
+    const std::lock_guard lock(mutex);
+    waiting -= size;
+    --unfinished;
+    ++finished;
   }
-  has_room_.notify_one();
+  has_room.notify_one();
 }
 
-bool Recorder::is_over() {
-  const std::lock_guard lock(mutex_);
-  return is_closing_ && tasks_.empty();
+bool Recorder::Shared::is_over() {
+  const std::lock_guard lock(mutex);
+  return is_closing && tasks.empty();
 }
 
-void Recorder::work(Start start, Settings settings) {
+void Recorder::Shared::work(Start start, Settings settings) {
   try {
-    Recording recording([this](std::string_view bytes) { disk_.write(bytes); },
-                        settings.compression, std::move(settings.contents), start);
+    Recording recording([this](std::string_view bytes) { disk.write(bytes); }, settings.compression,
+                        std::move(settings.contents), start);
     while (!is_over()) {
       for (Task& task : next()) {
+        if (disk.is_abandoned()) throw recording::WriteError("given up");  // the run may be gone
         task.run(recording);
         task.run = nullptr;
         done(task.size);
@@ -237,10 +311,13 @@ void Recorder::work(Start start, Settings settings) {
       recording.end_old_chunk();
     }
     recording.close();
-    disk_.close();
+    disk.close();
   } catch (const std::exception& error) {
     fail(error.what());
   }
+  const std::lock_guard lock(mutex);
+  has_ended = true;
+  has_room.notify_all();
 }
 
 }  // namespace ziggurat::recorder

@@ -1,11 +1,11 @@
 #pragma once
 // A run on its way into a recording, on a thread of its own. The run's thread only copies. If the
-// disk is slower than the run, the run waits: a recording is whole.
+// disk is slower than the run, the run waits: a recording is whole. A disk that takes nothing any more
+// ends the recording.
 
-#include <condition_variable>
-#include <deque>
+#include <chrono>
 #include <functional>
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -14,7 +14,6 @@
 #include <thread>
 #include <vector>
 
-#include "recorder/disk.h"
 #include "recorder/recording.h"
 
 namespace ziggurat::recorder {
@@ -23,6 +22,7 @@ struct Settings {
   std::string path;
   mcap::Compression compression = mcap::Compression::zstd;
   Contents contents;
+  std::chrono::milliseconds patience{30'000};  ///< how long the disk may take nothing
 };
 
 class Recorder {
@@ -51,7 +51,8 @@ class Recorder {
   void log(channels::Severity severity, std::string_view name, std::string_view text);
   void step(const world::Commands& commands, std::vector<world::Metric> metrics = {});
 
-  /// Completes the file, and waits for that. @param metrics  that were set since the last tick
+  /// Completes the file, and waits for that, as long as the disk takes something.
+  /// @param metrics  that were set since the last tick
   void close(std::vector<world::Metric> metrics = {});
   /// Why the recording has ended too early; once.
   std::optional<std::string> take_failure();
@@ -62,31 +63,17 @@ class Recorder {
     std::function<void(Recording&)> run;
     std::size_t size = 0;  // memory that it holds, about [bytes]
   };
+  struct Shared;
 
   void add(std::function<void(Recording&)> run, std::size_t size);
   void add(v1::Act act);
-  channels::TickCopy take_copy();
-  void give_back(channels::TickCopy copy);
-  void work(Start start, Settings settings);
-  void fail(std::string why);
-  std::deque<Task> next();
-  void done(std::size_t size);
-  bool is_over();
 
   const std::function<bool(std::string_view)> wants_;
   const std::uint64_t picture_interval_;
   const clock::time_point begin_ = clock::now();
-  Disk disk_;
-  std::mutex mutex_;  // of all below
-  std::condition_variable wake_, has_room_;
-  std::deque<Task> tasks_;
-  std::vector<channels::TickCopy> copies_;  // free ones, whose memory is used again
-  std::size_t waiting_ = 0;       // of all tasks that are not done [bytes]
-  std::size_t unfinished_ = 0;    // their number
   std::set<std::string> snapshots_;  // embedded so far: the hashes of their files
-  bool is_closing_ = false, has_failed_ = false;
-  std::optional<std::string> failure_;
-  std::thread thread_;  // the last: it uses the others
+  const std::shared_ptr<Shared> shared_;  // also the thread's, which may wait for a disk forever
+  std::thread thread_;
 };
 
 }  // namespace ziggurat::recorder

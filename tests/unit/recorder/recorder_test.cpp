@@ -2,11 +2,17 @@
 
 #include "recorder/recorder.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "mcap/messages.h"
@@ -26,8 +32,9 @@ struct File {
 
 /// A world on its way into a recording.
 struct Recorded : ShownWorld {
-  explicit Recorded(const std::string& path, Contents contents = {})
-      : recorder({path, mcap::Compression::zstd, std::move(contents)}, start()) {
+  explicit Recorded(const std::string& path, Contents contents = {},
+                    std::chrono::milliseconds patience = std::chrono::seconds(30))
+      : recorder({path, mcap::Compression::none, std::move(contents), patience}, start()) {
     populate();
   }
   static Start start() {
@@ -214,6 +221,83 @@ TEST(Recorder, AFullDiskHoldsUpNothing) {
   ASSERT_TRUE(why);
   EXPECT_EQ(*why, "/dev/full: cannot be written: No space left on device");
   EXPECT_FALSE(run.recorder.take_failure()) << "once";
+}
+
+/// A disk that takes what its pipe holds, and more only when it is read.
+struct Pipe {
+  Pipe() {
+    std::signal(SIGPIPE, SIG_IGN);  // as the program does
+    EXPECT_EQ(::mkfifo(file.path.c_str(), 0600), 0);
+    reader = ::open(file.path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    EXPECT_GE(reader, 0);
+  }
+  ~Pipe() { ::close(reader); }
+  File file;
+  int reader = -1;
+};
+constexpr std::chrono::milliseconds short_patience{300};
+
+TEST(Recorder, ADiskThatTakesNothingIsWaitedForForAWhileOnly) {
+  const Pipe pipe;
+  Recorded run(pipe.file.path, {}, short_patience);
+  for (int i = 0; i < 5000; ++i) {  // more than may wait: the run waits once
+    run.publish();
+    run.recorder.step(run.simulation.commands());
+  }
+  const auto why = run.recorder.take_failure();
+  ASSERT_TRUE(why);
+  EXPECT_EQ(*why, pipe.file.path + ": cannot be written: the disk has taken nothing for 0.3 s");
+  run.recorder.close();  // at once
+  EXPECT_FALSE(run.recorder.take_failure()) << "once";
+}
+
+TEST(Recorder, ADiskThatTakesNothingAtTheEndDoesNotHoldUpTheEnd) {
+  const Pipe pipe;
+  Recorded run(pipe.file.path, {}, short_patience);
+  for (int i = 0; i < 400; ++i) {
+    run.publish();
+    run.recorder.step(run.simulation.commands());
+  }
+  EXPECT_FALSE(run.recorder.take_failure());
+  run.recorder.close();
+  const auto why = run.recorder.take_failure();
+  ASSERT_TRUE(why);
+  EXPECT_NE(why->find("the disk has taken nothing for"), std::string::npos) << *why;
+}
+
+TEST(Recorder, ASlowDiskIsWaitedFor) {
+  Pipe pipe;
+  std::string got;
+  std::atomic<bool> is_over = false;
+  std::thread disk([&] {
+    std::string block(4096, '\0');
+    while (!is_over) {
+      std::this_thread::sleep_for(short_patience / 100);
+      const ssize_t count = ::read(pipe.reader, block.data(), block.size());
+      if (count > 0) got.append(block, 0, static_cast<std::size_t>(count));
+    }
+    for (ssize_t count; (count = ::read(pipe.reader, block.data(), block.size())) > 0;) {
+      got.append(block, 0, static_cast<std::size_t>(count));
+    }
+  });
+  Recorded run(pipe.file.path, {}, short_patience);
+  for (int i = 0; i < 500; ++i) {
+    run.publish();
+    run.recorder.step(run.simulation.commands());
+  }
+  run.recorder.close();
+  is_over = true;
+  disk.join();
+  EXPECT_FALSE(run.recorder.take_failure());
+  EXPECT_GT(got.size(), 400'000u);
+  EXPECT_TRUE(mcap::check(mcap::bytes_of(got)).faults.empty());
+}
+
+TEST(Recorder, APipeWithoutAReaderIsReportedAtOnce) {
+  Pipe pipe;
+  ::close(pipe.reader);
+  EXPECT_THROW(Recorded(pipe.file.path), std::runtime_error);
+  pipe.reader = -1;
 }
 
 TEST(Recorder, APathThatCannotBeWrittenIsReportedAtOnce) {
