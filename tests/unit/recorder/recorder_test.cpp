@@ -265,14 +265,16 @@ TEST(Recorder, ADiskThatTakesNothingAtTheEndDoesNotHoldUpTheEnd) {
   EXPECT_NE(why->find("the disk has taken nothing for"), std::string::npos) << *why;
 }
 
+/// Longer in all than the patience, which counts from the last byte on.
 TEST(Recorder, ASlowDiskIsWaitedFor) {
+  constexpr std::chrono::milliseconds patience{3000};
   Pipe pipe;
   std::string got;
   std::atomic<bool> is_over = false;
   std::thread disk([&] {
     std::string block(4096, '\0');
     while (!is_over) {
-      std::this_thread::sleep_for(short_patience / 100);
+      std::this_thread::sleep_for(patience / 100);
       const ssize_t count = ::read(pipe.reader, block.data(), block.size());
       if (count > 0) got.append(block, 0, static_cast<std::size_t>(count));
     }
@@ -280,7 +282,7 @@ TEST(Recorder, ASlowDiskIsWaitedFor) {
       got.append(block, 0, static_cast<std::size_t>(count));
     }
   });
-  Recorded run(pipe.file.path, {}, short_patience);
+  Recorded run(pipe.file.path, {}, patience);
   for (int i = 0; i < 500; ++i) {
     run.publish();
     run.recorder.step(run.simulation.commands());
