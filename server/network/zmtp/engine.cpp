@@ -41,21 +41,22 @@ Taken Engine::take_greeting(Bytes input, std::string& reply) {
 
 bool Engine::take_handshake(Bytes body, std::string& reply) {
   if (stage_ == Stage::hello) {
-    stage_ = Stage::ready;
     const bool is_ours = curve_->hello(body, reply);
+    if (is_ours) stage_ = Stage::ready;
     if (!is_ours) refusal_ = "it expects another server key";
     return is_ours;
   }
-  stage_ = Stage::open;
-  if (curve_) {
-    const bool is_listed = curve_->initiate(body, reply);
+  if (!curve_) {
+    const auto data = command_data(body, "READY");
+    if (!data || !is_of_client(read_metadata(*data))) return false;
+  } else if (!curve_->initiate(body, reply)) {
     if (const auto& key = curve_->unlisted_key(); !key.empty()) {
       refusal_ = "its key " + key + " is not in --curve-clients";
     }
-    return is_listed;
+    return false;
   }
-  const auto data = command_data(body, "READY");
-  return data && is_of_client(read_metadata(*data));
+  stage_ = Stage::open;
+  return true;
 }
 
 Taken Engine::take(std::span<std::uint8_t> input, std::size_t limit, std::string& reply) {
