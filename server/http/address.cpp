@@ -20,10 +20,9 @@ std::string_view without_brackets(std::string_view host) {
 
 std::string_view without_port(std::string_view host) {
   const std::size_t colon = host.rfind(':');
-  if (colon == std::string_view::npos || host.find(']', colon) != std::string_view::npos) {
-    return host;
-  }
-  return host.substr(0, colon);
+  if (colon == std::string_view::npos) return host;
+  const bool is_port = host.find_first_not_of("0123456789", colon + 1) == std::string_view::npos;
+  return is_port ? host.substr(0, colon) : host;
 }
 
 bool is_number(std::string_view host) {

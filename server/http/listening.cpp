@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -71,7 +72,15 @@ std::thread serve(asio::io_context& io) {
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  std::thread thread([&io] { io.run(); });
+  std::thread thread([&io] {
+    for (;;) {
+      try {
+        io.run();
+        return;
+      } catch (const std::bad_alloc&) {  // the connection that needed it has ended
+      }
+    }
+  });
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   return thread;
 }

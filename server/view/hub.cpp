@@ -196,6 +196,9 @@ void Hub::handle(Viewer& viewer, const CallService& message) {
   if (!viewer.may_steer) {
     return refuse("Services need the token: open the address that the program printed.");
   }
+  if (message.payload.size() > largest_queued && viewer.unanswered > 0) {
+    return refuse("Other calls wait for their answers: a large one must wait, too.");
+  }
   auto call = read_call(message);
   if (const auto* why = std::get_if<std::string>(&call)) return refuse(*why);
   if (viewer.unanswered >= most_unanswered) {

@@ -34,6 +34,7 @@ class Hub {
  public:
   static constexpr unsigned most_faults = 100;
   static constexpr unsigned most_unanswered = 64;
+  static constexpr std::size_t largest_queued = std::size_t{64} << 10;  ///< a call behind others [bytes]
 
   /// @param parameters  at the start
   /// @param desk  must outlive this

@@ -22,6 +22,7 @@ struct Service {
 };
 
 constexpr const char* no_fields = R"({"type":"object"})";
+constexpr std::size_t most_values = 100'000;  // of a message in JSON: each takes some 100 bytes
 /// By id minus 1.
 constexpr std::array services{
     Service{"/pause", Kind::pause, no_fields},
@@ -81,6 +82,24 @@ std::string base64(std::string_view bytes) {
     }
   }
   return text;
+}
+
+/// None if it is no JSON, or has so many values that they would take much memory.
+std::optional<Json> parse(std::string_view text) {
+  std::size_t values = 0;
+  bool is_in_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (is_in_text && text[i] == '\\') {
+      ++i;
+    } else if (text[i] == '"') {
+      is_in_text = !is_in_text;
+    } else if (!is_in_text && std::string_view("[{,").find(text[i]) != std::string_view::npos) {
+      if (++values > most_values) return std::nullopt;
+    }
+  }
+  Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return std::nullopt;
+  return json;
 }
 
 // --- reading; each of these throws Wrong ----------------------------------------------------------
@@ -226,10 +245,12 @@ void read_fields(const Json& json, Call& call) {
 }  // namespace
 
 Incoming read_text(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) return Wrong{"the message is no JSON object"};
+  const auto json = parse(text);
+  if (!json || !json->is_object()) {
+    return Wrong{fmt::format("the message is no JSON object of at most {} values", most_values)};
+  }
   try {
-    return read_object(json);
+    return read_object(*json);
   } catch (const Wrong& wrong) {
     return wrong;
   }
@@ -255,10 +276,12 @@ std::variant<Call, std::string> read_call(const CallService& from) {
   Call call{.service = from.service, .number = from.call, .request = {}, .speed = {}};
   call.request.kind = service.kind;
   call.request.id = from.call;
-  const Json json = from.payload.empty() ? Json::object() : Json::parse(from.payload, nullptr, false);
-  if (!json.is_object()) return fmt::format("The request of {} must be a JSON object.", service.name);
+  const auto json = from.payload.empty() ? Json::object() : parse(from.payload);
+  if (!json || !json->is_object()) {
+    return fmt::format("The request of {} must be a JSON object of at most {} values.", service.name, most_values);
+  }
   try {
-    read_fields(json, call);
+    read_fields(*json, call);
   } catch (const Wrong& wrong) {
     return fmt::format("{}: {}.", service.name, wrong.why);
   }

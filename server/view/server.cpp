@@ -9,6 +9,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <list>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -74,7 +75,10 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
       : socket_(std::move(stream)), shared_(shared) {
     ++shared_.connections;
   }
-  ~ViewerConnection() { --shared_.connections; }
+  ~ViewerConnection() {
+    close();
+    --shared_.connections;
+  }
 
   void start(const http::Request& request, bool may_steer) {
     websocket::stream_base::timeout times{request_time, shared_.silence, true};
@@ -129,7 +133,8 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
 
  private:
   void opened(bool may_steer) {
-    if (shared_.is_closing || shared_.hub.size() >= Server::most_viewers) {
+    const std::size_t most = may_steer ? Server::most_viewers : Server::most_lookers;
+    if (shared_.is_closing || shared_.hub.size() >= most) {
       return socket_.async_close(websocket::close_code::try_again_later,
                                  [self = shared_from_this()](Error) {});
     }
@@ -248,10 +253,17 @@ struct Server::State {
         thread(http::serve(io)) {}
 
   void take(http::Tcp::socket socket) {
-    if (shared.connections >= most_connections) return;
+    std::erase_if(exchanges, [](const auto& each) { return each.expired(); });
+    if (shared.connections >= most_connections) {
+      if (exchanges.empty()) return;
+      if (const auto oldest = exchanges.front().lock()) oldest->close();
+      exchanges.pop_front();
+    }
     ++shared.connections;
-    std::make_shared<http::Exchange>(std::move(socket), service, [this] { --shared.connections; })
-        ->start();
+    const auto exchange = std::make_shared<http::Exchange>(std::move(socket), service,
+                                                           [this] { --shared.connections; });
+    exchanges.push_back(exchange);
+    exchange->start();
   }
 
   void pump() {
@@ -307,6 +319,7 @@ struct Server::State {
   Desk desk;
   Shared shared;
   http::Service service = service_of(shared);
+  std::list<std::weak_ptr<http::Exchange>> exchanges;  // the oldest first
   asio::io_context io{1};  // behind what its connections use
   http::Listening listening;
   asio::steady_timer pause, next_look;

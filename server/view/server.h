@@ -30,7 +30,8 @@ struct Settings {
 class Server {
  public:
   static constexpr std::size_t most_viewers = 64;
-  static constexpr std::size_t most_connections = 128;
+  static constexpr std::size_t most_lookers = 48;  ///< of them, without token
+  static constexpr std::size_t most_connections = 128;  ///< the oldest that is no viewer makes place
 
   /// Listens at once. @throws text::UsageError; std::runtime_error if it can't listen
   explicit Server(const Settings& settings);

@@ -119,5 +119,38 @@ TEST(Hub, ChannelsComeAndGo) {
   EXPECT_TRUE(bench.sent(viewer).empty());
 }
 
+std::string call_of(std::uint32_t service, const std::string& payload) {
+  return std::string("\x02") + static_cast<char>(service) + std::string(3, '\0') + std::string(4, '\7') +
+         std::string("\4\0\0\0json", 8) + payload;
+}
+
+TEST(Hub, ALargeCallWaitsForTheAnswersOfOthers) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(true);
+  bench.sent(viewer);
+  const std::string large = R"({"xml":")" + std::string(Hub::largest_queued, 'x') + "\"}";
+  const std::string spawn = call_of(7, large);
+  for (int i = 0; i < 3; ++i) bench.hub.receive(viewer, spawn, false);
+  EXPECT_EQ(bench.desk.take().calls.size(), 1U);
+  EXPECT_EQ(bench.sent(viewer), (Sent{"serviceCallFailure", "serviceCallFailure"}));
+  EXPECT_FALSE(viewer.is_over);
+}
+
+TEST(Hub, JsonWithVeryManyValuesIsNotRead) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(true);
+  bench.sent(viewer);
+  const std::string brackets(200'000, '[');
+  bench.hub.receive(viewer, call_of(6, R"({"entity":"e","position":)" + brackets), false);
+  std::string numbers = R"({"entity":"e","position":[0)";
+  for (int i = 0; i < 200'000; ++i) numbers += ",0";
+  bench.hub.receive(viewer, call_of(6, numbers + "]}"), false);
+  const std::string text = R"({"xml":"\",[[[)" + std::string(200'000, ',') + "\"}";
+  bench.hub.receive(viewer, call_of(7, text), false);
+  const auto calls = bench.desk.take().calls;
+  ASSERT_EQ(calls.size(), 1U) << "commas of a text are no values";
+  EXPECT_EQ(calls[0].request.text.size(), 200'005U);
+}
+
 }  // namespace
 }  // namespace ziggurat::view
