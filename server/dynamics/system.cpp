@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "dynamics/equations.h"
+#include "dynamics/fetch.h"
 #include "dynamics/flight.h"
 
 namespace ziggurat::dynamics {
@@ -137,6 +138,22 @@ void System::find_awake() {
   });
 }
 
+/// Asks for the memory of the islands after one: for the trees of the second, and, when they are there,
+/// for all that the first is made of.
+void System::fetch_after(std::size_t island) const {
+  constexpr int most = 4;  // trees or items: a large island does not fit anyway
+  const auto each = [](const std::vector<int>& first, std::size_t i, auto visit) {
+    if (i + 1 >= first.size()) return;
+    for (int k = first[i]; k < std::min(first[i + 1], first[i] + most); ++k) visit(k);
+  };
+  each(first_tree_, island + 1, [&](int k) { fetch(trees[tree_order_[k]]); });
+  each(first_tree_, island + 2, [&](int k) { fetch(&trees[tree_order_[k]], sizeof(Tree)); });
+  each(first_item_, island + 1, [&](int k) {
+    if (item_order_[k].kind != contact_item) return;
+    fetch(&contacts_[item_order_[k].index], sizeof(Contact));
+  });
+}
+
 Report System::step(double length, std::span<Contact> contacts, std::span<Servo> servos,
                     std::span<Limit> limits, std::span<const int> chosen) {
   limits_ = limits;
@@ -148,6 +165,7 @@ Report System::step(double length, std::span<Contact> contacts, std::span<Servo>
   gather(contacts, servos, limits);
   for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
     const int first = first_tree_[i], last = first_tree_[i + 1];
+    fetch_after(i);
     if (fly_island(first, last, first_item_[i], first_item_[i + 1])) {
       settle(first, last, false);
     } else {

@@ -98,6 +98,7 @@ class System {
   void find_awake();
   void gather(std::span<const Contact> contacts, std::span<const Servo> servos,
               std::span<const Limit> limits);
+  void fetch_after(std::size_t island) const;
   void gather_island(int first_tree, int last_tree, int first_item, int last_item);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
   bool fly_island(int first_tree, int last_tree, int first_item, int last_item);

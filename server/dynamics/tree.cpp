@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "dynamics/fetch.h"
 #include "dynamics/rotation.h"
 
 namespace ziggurat::dynamics {
@@ -236,6 +237,16 @@ void move(Tree& tree) {
     }
     tree.motion[i] = motion;
   }
+}
+
+void fetch(const Tree& tree) {
+  fetch(tree.q);
+  fetch(tree.v);
+  fetch(tree.external);
+  fetch(tree.rotation);
+  fetch(tree.position);
+  fetch(tree.axes);
+  fetch(tree.motion);
 }
 
 void displace(Tree& tree, std::span<const double> step) {

@@ -133,6 +133,9 @@ class Tree {
   friend void place(Tree& tree);
 };
 
+/// Asks for the memory of a tree's state and of what follows from it: see fetch.h.
+void fetch(const Tree& tree);
+
 /// Poses, axes and origin from q.
 void place(Tree& tree);
 /// Motions of links from v; needs place().

@@ -105,6 +105,7 @@ std::optional<std::string> fault_of_file(const fs::path& path) {
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) return "does not exist; check its path";
   if (error) return fmt::format("cannot be read: {}", error.message());
+  if (status.type() == fs::file_type::directory) return "is a folder; write the path of a file in it";
   if (status.type() != fs::file_type::regular) return "is not a regular file; check its path";
   return std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "dynamics/fetch.h"
 #include "physics/convert.h"
 #include "physics/make_room.h"
 #include "physics/most_contacts.h"
@@ -56,6 +57,15 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   collider.half = to_bullet(placed.half_extents);
   collider.radius = contact::bounding_radius(collider.shape);
   return collider;
+}
+
+/// Asks for the memory that follow() reads of the trees after one.
+void fetch_after(std::size_t number, const std::vector<dynamics::Tree>& trees) {
+  if (number + 2 < trees.size()) dynamics::fetch(&trees[number + 2], sizeof(dynamics::Tree));
+  if (number + 1 >= trees.size()) return;
+  dynamics::fetch(trees[number + 1].rotation);
+  dynamics::fetch(trees[number + 1].position);
+  dynamics::fetch(trees[number + 1].motion);
 }
 
 }  // namespace
@@ -238,6 +248,7 @@ void Colliders::follow(const dynamics::System& system, double length, const Tree
 /// @return  how far it moves [m]
 double Colliders::follow(ColliderGroup& group, const dynamics::System& system, double length) {
   double fastest = 0;
+  if (group.moves) fetch_after(group.entity, system.trees);
   for (std::size_t i = group.first; i < group.first + group.count; ++i) {
     Collider& collider = all[i];
     collider.reach = least_reach(length);

@@ -44,7 +44,7 @@ TEST_F(Folder, AValidFileIsRead) {
 
 TEST_F(Folder, MissingFilesAndOtherKindsOfFilesAreFaults) {
   EXPECT_TRUE(contains(only_fault(read_file(path / "none.argos")), "does not exist"));
-  EXPECT_TRUE(contains(only_fault(read_file(path)), "not a regular file"));
+  EXPECT_TRUE(contains(only_fault(read_file(path)), "is a folder"));
   ASSERT_EQ(::mkfifo((path / "fifo").c_str(), 0600), 0);
   EXPECT_TRUE(contains(only_fault(read_file(path / "fifo")), "not a regular file"));
   EXPECT_TRUE(contains(only_fault(read_file("/dev/zero")), "not a regular file"));

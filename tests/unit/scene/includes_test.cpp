@@ -66,7 +66,7 @@ TEST(Includes, FromDiskPathsStartAtTheIncludingFile) {
   EXPECT_EQ(count_containing(faults(read_file(folder / "scenes/cycle.argos")), "closes a cycle"),
             1u);
   EXPECT_EQ(count_containing(faults(read_file(folder / "scenes/folder.argos")),
-                             "which is not a regular file"),
+                             "which is a folder; write the path of a file"),
             1u);
 }
 
