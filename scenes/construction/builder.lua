@@ -13,7 +13,8 @@ builder.block = 0.055             -- edge of a block
 builder.tag_side = 0.024
 builder.face_height = 0.0555      -- of the end effector's face above the floor, lift at 0
 builder.reach = 0.080             -- from the robot's centre to the face of a held block
-local wheel_radius, half_track = 0.025, 0.052
+builder.wheel_radius = 0.025
+local wheel_radius, half_track = builder.wheel_radius, 0.052
 -- Rotation of the wheels / rotation of the robot, as they skid: without a block, and with one,
 -- whose weight reduces the load on the rear wheels.
 local slip = {[false] = 1.335, [true] = 1.12}
@@ -112,7 +113,8 @@ end
 
 -------------------------------------------------------------------------------------------- camera
 
--- The colour of the LEDs around a tag, as {red, green, blue}; nil if they are off.
+-- The colour of the LEDs around a tag, as {red, green, blue}; nil if they are off. They are 20 mm from the
+-- tag's centre, in both directions; farther out are those of the neighbouring faces.
 local function color_around(centre, normal)
   local along = centre[1] * normal[1] + centre[2] * normal[2] + centre[3] * normal[3]
   for _, led in ipairs(robot.cameras.camera.directional_led_detector) do
@@ -120,7 +122,7 @@ local function color_around(centre, normal)
     local y = (led.center.y - camera.principal_point[2]) / camera.focal_length[2]
     local depth = along / (x * normal[1] + y * normal[2] + normal[3])  -- the ray meets the face
     local dx, dy, dz = x * depth - centre[1], y * depth - centre[2], depth - centre[3]
-    if dx * dx + dy * dy + dz * dz < 0.032 ^ 2 then return led.color end
+    if math.abs(dy) < 0.024 and dx * dx + dz * dz < 0.024 ^ 2 then return led.color end
   end
 end
 
@@ -164,10 +166,11 @@ local function steer(face, speed)
 end
 
 -- Drives to a face; call it in every step with the present face. Returns "docked" when the face is
--- under the end effector, "askew" if the robot came close but is not on the line. With `touch` the
--- proximity sensors measure the last part of the distance.
-function builder.dock_at(face, fastest, touch)
-  local to_go = math.min(face.forward, touch and builder.ahead() or math.huge) - builder.reach
+-- under the end effector, or at another distance from the robot's centre; "askew" if the robot came close
+-- but is not on the line. With `touch` the proximity sensors measure the last part of the distance.
+function builder.dock_at(face, fastest, touch, distance)
+  local to_go = math.min(face.forward, touch and builder.ahead() or math.huge) -
+                (distance or builder.reach)
   if to_go < 0.03 and (math.abs(builder.offset(face)) > 0.006 or math.abs(face.heading) > 0.12) then
     builder.stop()
     return "askew"

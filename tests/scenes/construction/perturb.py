@@ -4,16 +4,20 @@
     tests/scenes/construction/perturb.py --runs 100
     tests/scenes/construction/perturb.py --wide --runs 100
     tests/scenes/construction/perturb.py --staircase --runs 20 --least 0.8
+    tests/scenes/construction/perturb.py --steps rules_cross --runs 20 --least 0.9
 
 Perturbation number K is always the same. Stacking scene: the robot up to 3 cm farther back and turned
 by up to 3 degrees, both blocks shifted by up to 1 cm in x and in y and turned by up to 3 degrees, another
 seed, and half, the same or twice the number of iterations. With --wide: robot and blocks shifted by up to
 3 cm in x and y and turned by up to 12 degrees instead. Staircase: the robot shifted by up to 2 cm and
 turned by up to 5 degrees, every block shifted by up to 1.5 cm and turned by up to 8 degrees, another seed.
+With --steps RULES: robots and blocks anywhere between 0.4 and 0.8 m from the structure's first block, which
+stays, all turned by any angle, and half, the same or twice the number of iterations.
 """
 
 import argparse
 import concurrent.futures
+import math
 import os
 import pathlib
 import random
@@ -24,10 +28,12 @@ import tempfile
 import xml.etree.ElementTree as ElementTree
 
 import judge
+import structure
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 STACKING = ROOT / "scenes/prototype_srocs_system.argos"
 STAIRCASE = ROOT / "scenes/construction/staircase.argos"
+STEPS = ROOT / "scenes/construction/steps.argos"
 BIN = pathlib.Path(os.environ.get("ZIGGURAT_BIN", ROOT / "build/release/bin"))
 
 
@@ -82,10 +88,55 @@ def perturb_staircase(tree, number):
     return f"perturbation {number}"
 
 
+def scatter(draw, count, reach, apart, others=()):
+    """Random points between two distances from the origin, each with its least distance from the others [m]."""
+    points = list(others)
+    while len(points) < count + len(others):
+        angle, distance = draw.uniform(0, 2 * math.pi), draw.uniform(*reach)
+        point = (distance * math.cos(angle), distance * math.sin(angle))
+        if all(math.dist(point, other) > apart for other in points):
+            points.append(point)
+    return points[len(others):]
+
+
+def perturb_steps(rules):
+    """The change for the scene of two robots with a rule table."""
+    def change(tree, number):
+        arena = tree.getroot().find("arena")
+        tree.find("parameters").set("rules", rules)
+        if number == 0:
+            return "unchanged"
+        draw = random.Random(number)
+        entities = list(arena.iter("prototype"))
+        robots = [entity for entity in entities if entity.get("id").startswith("robot")]
+        blocks = [entity for entity in entities if entity not in robots]
+        places = scatter(draw, len(blocks) - 1, (0.4, 0.8), 0.25)
+        places += scatter(draw, len(robots), (0.4, 0.9), 0.3, places)
+        for entity, place in zip(blocks + robots, [(0, 0), *places]):
+            entity.find("body").set("position", f"{place[0]:.6f},{place[1]:.6f},0")
+            entity.find("body").set("orientation", f"{draw.uniform(0, 360):.4f},0,0")
+        tree.find("framework/experiment").set("random_seed", str(1000 + number))
+        engine = tree.find("physics_engines/dynamics3d")
+        factor = draw.choice([0.5, 1, 2])
+        engine.set("iterations", str(round(factor * int(engine.get("iterations")))))
+        return f"scattered, iterations x {factor:g}"
+    change.rules = rules
+    return change
+
+
+def last_words_fault(log, robots):
+    """A fault if a robot's last log line is not 'done'; None if all are."""
+    last = {line.split("] ")[0].split()[-1]: line for line in log if "] " in line}
+    for robot in robots:
+        if not last.get(robot, "").split("] ")[-1].startswith("done"):
+            return f"the last log line of {robot} is not 'done': {last.get(robot)}"
+    return None
+
+
 def run(number, options=(), change=perturb, solver=None, keep=None):
     """Runs and judges one perturbation: (verdict, description of the changes, log lines)."""
-    staircase = change is perturb_staircase
-    scene = STAIRCASE if staircase else STACKING
+    rules = getattr(change, "rules", None)
+    scene = STEPS if rules else STAIRCASE if change is perturb_staircase else STACKING
     with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
         shutil.copytree(ROOT / "scenes", pathlib.Path(folder) / "scenes")
         copy = pathlib.Path(folder) / scene.relative_to(ROOT)
@@ -97,16 +148,22 @@ def run(number, options=(), change=perturb, solver=None, keep=None):
         trace, readings = (pathlib.Path(folder) / name for name in ("trace.csv", "readings.jsonl"))
         outcome = subprocess.run(
             [BIN / "ziggurat", "run", copy, "--trace", trace, *options,
-             *([] if staircase else ["--readings", readings])],
+             *(["--readings", readings] if scene == STACKING else [])],
             capture_output=True, text=True, timeout=3600,
             env=dict(os.environ, XDG_RUNTIME_DIR=folder))
         if outcome.returncode != 0:
             verdict = judge.Verdict([f"exit code {outcome.returncode}: {outcome.stderr[-500:]}"])
+        elif rules:
+            verdict = structure.judge_structure(copy, trace, rules)
+            changes += f", finished at {verdict.finished:.0f} s, turned {math.degrees(verdict.turn):.2f} deg"
         else:
-            verdict = (judge.judge_stairs if staircase else judge.judge)(copy, trace, readings)
+            verdict = (judge.judge_stairs if scene == STAIRCASE else judge.judge)(copy, trace, readings)
         log = outcome.stdout.splitlines()
-        if log and not log[-1].split("] ")[-1].startswith("done"):
-            verdict.faults.append(f"the last log line is not 'done': {log[-1]}")
+        robots = [entity.get("id") for entity in tree.find("arena").iter("prototype")
+                  if entity.get("id").startswith("robot")]
+        fault = outcome.returncode == 0 and last_words_fault(log, robots)
+        if fault:
+            verdict.faults.append(fault)
         if keep and not verdict.good:
             shutil.copytree(folder, pathlib.Path(keep) / str(number), dirs_exist_ok=True)
             (pathlib.Path(keep) / str(number) / "log").write_text(outcome.stdout)
@@ -133,6 +190,8 @@ def main():
                       default=perturb, help="larger perturbations of the stack")
     kind.add_argument("--staircase", dest="change", action="store_const", const=perturb_staircase,
                       help="the staircase, not the stack")
+    kind.add_argument("--steps", dest="change", type=perturb_steps, metavar="RULES",
+                      help="two robots with the rule table rules_cross or rules_stairs")
     parser.add_argument("--solver", help="written into the scene: newton or sweeps")
     parser.add_argument("--controller", action="append", default=[], metavar="ID=CMD",
                         help="passed on to ziggurat run")

@@ -1,0 +1,139 @@
+-- A robot that builds, with any number of others, what a rule table says (the script's parameter
+-- `rules`). It knows neither positions nor the plan's progress: the colour of a column's side says what
+-- may be attached there (rules.lua). Dark blocks are material.
+--
+-- A state machine. Each state is a function, called at every tick; it returns the name of the next.
+
+local assembly = require "assembly"
+local builder = require "builder"
+local fetching = require "fetching"
+local memory = require "memory"
+local odometry = require "odometry"
+local placing = require "placing"
+local traffic = require "traffic"
+local travel = require "travel"
+
+local job = assembly.job
+local states = {}
+
+function states.start()
+  if robot.first_tick > 0 and builder.holds() then return "resume" end
+  builder.current(-1)
+  if builder.lift_to(assembly.clearance, 0.05) then return "scan" end
+end
+
+function states.scan()
+  if job.seconds() <= builder.tick then job.turned = 0 end
+  travel.spin(0.45)
+  job.turned = job.turned + 0.45 * builder.tick
+  if job.turned > 2 * math.pi + 0.3 then
+    travel.wait()
+    return job.after_scan or assembly.decide()
+  end
+end
+
+-- No lit block was ever seen: looks from somewhere else.
+function states.wander()
+  if memory.middle() then return assembly.decide() end
+  if job.seconds() <= builder.tick then
+    local direction = robot.random.uniform(-math.pi, math.pi)
+    job.points = {{x = builder.pose.x + 0.35 * math.cos(direction), y = builder.pose.y + 0.35 * math.sin(direction)}}
+  end
+  if travel.to(job.points[1].x, job.points[1].y) or job.seconds() > 30 then return "scan" end
+end
+
+-- Looks for material from places around the structure. When it finds neither material nor a side that
+-- waits for some, the structure is complete.
+function states.search()
+  if #memory.material > 0 then
+    local chosen = states.choose_block()
+    if chosen == "fetch" then return chosen end
+  end
+  if #job.points == 0 then
+    job.rounds = job.rounds + 1
+    if job.rounds > 4 or (job.rounds > 1 and #memory.open_sides(900) == 0) then return "park" end
+    job.points = assembly.ring(assembly.search_ring, 5)
+  end
+  if assembly.go_to_ring(job.points[1]) or job.seconds() > 40 then
+    table.remove(job.points, 1)
+    job.after_scan = "search"
+    return "scan"
+  end
+end
+
+function states.park()
+  local middle = memory.middle()
+  if not job.points[1] or not job.points[1].parking then
+    job.points = assembly.ring(assembly.parking_ring, 12)
+    job.points[1].parking = true
+  end
+  local x = middle.x + job.points[1].radius * math.cos(job.points[1].angle)
+  local y = middle.y + job.points[1].radius * math.sin(job.points[1].angle)
+  if assembly.taken({x = x, y = y}, 0.35) then
+    table.remove(job.points, 1)
+    if job.points[1] then job.points[1].parking = true end
+    return
+  end
+  local outcome = travel.to(x, y)
+  if outcome == "there" or job.seconds() > 90 then return builder.loaded and "put_down" or "done" end
+end
+
+-- A block that is left over goes back to the floor.
+function states.put_down()
+  if builder.lift_to(0.0002, 0.02) then return "let_left_over_go" end
+end
+
+function states.let_left_over_go()
+  builder.current(math.max(-1, -2 * job.seconds()))
+  if job.seconds() < 1.5 then return end
+  builder.loaded = false
+  if builder.lift_to(assembly.clearance, 0.03) then
+    builder.drive(-0.05, 0)
+    if job.seconds() > 6 then return "done" end
+  end
+end
+
+function states.done() builder.stop() end
+
+-- Started again while it holds a block, which remembers which side looks at the robot.
+function states.resume()
+  builder.loaded = true
+  builder.current(0)
+  for _, message in ipairs(robot.radios.nfc.rx_data) do
+    if message[1] == 4 then job.payload = message[2] end
+  end
+  if builder.lift_to(assembly.carrying, 0.02) and (job.payload or job.seconds() > 3) then
+    job.payload = job.payload or 0
+    return "scan"
+  end
+end
+
+-- In these others keep out of the robot's way.
+local working = {}
+for _, name in ipairs({"approach", "retreat", "lower", "energise", "let_go", "raise", "aim_at_side", "attach",
+                       "retreat_from_side", "place", "tell", "release", "rise", "back_off"}) do
+  working[name] = true
+end
+
+for _, others in ipairs({fetching, placing}) do
+  for name, state in pairs(others) do states[name] = state end
+end
+
+function init() log("start") end
+
+function step()
+  job.since = job.since + 1
+  odometry.reckon()
+  traffic.sense()
+  local faces = builder.faces()
+  memory.update(faces, assembly.plan)
+  local next_state = states[job.state](faces)
+  if next_state then
+    if next_state ~= job.state then log(next_state) end
+    job.state, job.since = next_state, 0
+    travel.forget()
+  end
+  traffic.working = working[job.state] or false
+  traffic.tell()
+  builder.move_lift()
+end

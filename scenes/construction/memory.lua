@@ -1,0 +1,215 @@
+-- What a robot remembers of what it saw, in a frame of its own: where the structure's columns are, what
+-- their sides showed, where material lies. Columns stand on a square lattice; so every lit side that the
+-- camera sees corrects the odometry.
+
+local builder = require "builder"
+local odometry = require "odometry"
+
+local memory = {}
+
+memory.pitch = 0.078   -- distance of columns [m]
+memory.anchor = nil    -- the first column that was seen: {x, y, yaw}
+memory.columns = {}    -- by "i,j": {i, j, x, y, sides}; sides[0 to 3] = {row or false, seen}
+memory.material = {}   -- {x, y, yaw, seen}: dark blocks; yaw is a side's outward normal
+memory.now = 0         -- ticks
+
+local last_lit = {}    -- the side that corrected the odometry last
+local astray = 0       -- ticks in a row in which a lit side was seen where no column can be
+
+-- A face in the robot's frame, in the frame of memory: centre of its block and outward normal.
+local function block_of(face)
+  local pose = builder.pose
+  local heading = pose.yaw + face.heading
+  local c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+  return {x = pose.x + c * face.forward - s * face.left + 0.5 * builder.block * math.cos(heading),
+          y = pose.y + s * face.forward + c * face.left + 0.5 * builder.block * math.sin(heading),
+          yaw = builder.wrapped(heading + math.pi)}
+end
+
+local function point_of(i, j)
+  local anchor = memory.anchor
+  local c, s = math.cos(anchor.yaw) * memory.pitch, math.sin(anchor.yaw) * memory.pitch
+  return anchor.x + i * c - j * s, anchor.y + i * s + j * c
+end
+
+-- The lattice column nearest to a block, its side, and how far the block is off: {x, y, yaw}.
+local function column_of(block)
+  local anchor = memory.anchor
+  local dx, dy = block.x - anchor.x, block.y - anchor.y
+  local c, s = math.cos(anchor.yaw) / memory.pitch, math.sin(anchor.yaw) / memory.pitch
+  local i = math.floor(c * dx + s * dy + 0.5)
+  local j = math.floor(-s * dx + c * dy + 0.5)
+  local quarters = (block.yaw - anchor.yaw) / (math.pi / 2)
+  local x, y = point_of(i, j)
+  local side = math.floor(quarters + 0.5)
+  return i, j, side % 4,
+         {x = block.x - x, y = block.y - y, yaw = (quarters - side) * math.pi / 2}
+end
+
+-- Shifts and turns the robot's pose so that a block that is off would be where it should.
+local function correct(off, block)
+  local pose = builder.pose
+  local c, s = math.cos(-off.yaw), math.sin(-off.yaw)
+  local dx, dy = pose.x - block.x, pose.y - block.y
+  pose.x = block.x - off.x + c * dx - s * dy
+  pose.y = block.y - off.y + s * dx + c * dy
+  pose.yaw = pose.yaw - off.yaw
+end
+
+local function fits(off)
+  return math.abs(off.yaw) < 0.35 and off.x * off.x + off.y * off.y < 0.035 ^ 2
+end
+
+-- Corrects the odometry by the nearest lit face; starts anew if that doesn't fit for a second.
+local function find_oneself(face)
+  local block = block_of(face)
+  if not memory.anchor then
+    memory.anchor = block
+    return
+  end
+  local i, j, side, off = column_of(block)
+  if fits(off) then
+    astray = 0
+    local key = i .. "," .. j .. "," .. side
+    if last_lit.key == key and last_lit.seen == memory.now - 1 then
+      odometry.learn(off.x, off.y)
+    end
+    last_lit = {key = key, seen = memory.now}
+    correct(off, block)
+  else
+    astray = astray + 1
+    if astray > 10 then
+      log("lost: starts a new map")
+      memory.anchor, memory.columns, astray = block, {}, 0
+    end
+  end
+end
+
+local function remember_side(face, plan)
+  local i, j, side, off = column_of(block_of(face))
+  if not fits(off) then return end
+  local key = i .. "," .. j
+  local column = memory.columns[key]
+  if not column then
+    column = {i = i, j = j, sides = {}}
+    column.x, column.y = point_of(i, j)
+    memory.columns[key] = column
+  end
+  memory.forget(column)
+  column.sides[side] = {row = plan.row_shown(face.color) or false, seen = memory.now}
+end
+
+local function remember_material(face)
+  local block = block_of(face)
+  if memory.anchor then
+    for _, column in pairs(memory.columns) do
+      if (block.x - column.x) ^ 2 + (block.y - column.y) ^ 2 < 0.11 ^ 2 then return end  -- perhaps just being placed
+    end
+  end
+  block.seen, block.times = memory.now, 1
+  for n, known in ipairs(memory.material) do
+    if (block.x - known.x) ^ 2 + (block.y - known.y) ^ 2 < 0.04 ^ 2 then
+      block.times = known.times + 1
+      if known.seen == memory.now - 1 then odometry.learn(block.x - known.x, block.y - known.y) end
+      block.avoid = known.avoid
+      memory.material[n] = block
+      return
+    end
+  end
+  memory.material[#memory.material + 1] = block
+end
+
+-- Takes in what the camera sees: faces as of builder.faces(). Nearer than 13 cm the LEDs are out
+-- of the image.
+function memory.update(faces, plan)
+  memory.now = memory.now + 1
+  local found_oneself = false
+  for _, face in ipairs(faces) do
+    if math.abs(face.up) < 0.02 and face.color and face.forward > 0.13 and face.forward < 0.95 then
+      if not found_oneself then
+        found_oneself = true
+        find_oneself(face)
+      end
+      if math.abs(face.heading) < 1.1 then remember_side(face, plan) end
+    end
+  end
+  for _, face in ipairs(faces) do
+    if math.abs(face.up) < 0.02 and not face.color and face.forward > 0.14 and face.forward < 0.8 then
+      remember_material(face)
+    end
+  end
+end
+
+function memory.forget(block)
+  for n, known in ipairs(memory.material) do
+    if (block.x - known.x) ^ 2 + (block.y - known.y) ^ 2 < 0.05 ^ 2 then
+      table.remove(memory.material, n)
+      return
+    end
+  end
+end
+
+-- The middle of all known columns; nil if none is known.
+function memory.middle()
+  local x, y, count = 0, 0, 0
+  for _, column in pairs(memory.columns) do x, y, count = x + column.x, y + column.y, count + 1 end
+  if count == 0 then return memory.anchor end
+  return {x = x / count, y = y / count}
+end
+
+-- The distance from the middle of the farthest column.
+function memory.extent()
+  local middle, most = memory.middle(), 0
+  for _, column in pairs(memory.columns) do
+    most = math.max(most, math.sqrt((column.x - middle.x) ^ 2 + (column.y - middle.y) ^ 2))
+  end
+  return most
+end
+
+-- All sides where something may be attached, seen in the last so many ticks: {column, side, row, yaw (outward), x, y (of the face)}.
+function memory.open_sides(ticks)
+  local open = {}
+  for _, column in pairs(memory.columns) do
+    for side, look in pairs(column.sides) do
+      if look.row and memory.now - look.seen < (ticks or math.huge) then
+        local yaw = memory.anchor.yaw + side * math.pi / 2
+        open[#open + 1] = {column = column, side = side, row = look.row, yaw = yaw,
+                           seen = look.seen,
+                           x = column.x + 0.5 * builder.block * math.cos(yaw),
+                           y = column.y + 0.5 * builder.block * math.sin(yaw)}
+      end
+    end
+  end
+  return open
+end
+
+-- As obstacles for path.find.
+function memory.obstacles(list)
+  for _, column in pairs(memory.columns) do
+    list[#list + 1] = {x = column.x, y = column.y, hard = 0.185, soft = 0.26}
+  end
+  for _, block in ipairs(memory.material) do
+    list[#list + 1] = {x = block.x, y = block.y, hard = 0.13, soft = 0.18}
+  end
+  return list
+end
+
+-- The seen face nearest to a place {x, y, yaw (outward)} of a block's side, within 4 cm; nil if none is.
+function memory.seen_at(faces, place)
+  local best, nearest = nil, 0.04
+  for _, face in ipairs(faces) do
+    if math.abs(face.up) < 0.02 then
+      local block = block_of(face)
+      local x = block.x + 0.5 * builder.block * math.cos(block.yaw)
+      local y = block.y + 0.5 * builder.block * math.sin(block.yaw)
+      local distance = math.sqrt((x - place.x) ^ 2 + (y - place.y) ^ 2)
+      if distance < nearest and math.abs(builder.wrapped(block.yaw - place.yaw)) < 0.5 then
+        best, nearest = face, distance
+        face.place = {x = x, y = y, yaw = block.yaw}
+      end
+    end
+  end
+  return best
+end
+
+return memory
