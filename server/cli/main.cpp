@@ -15,6 +15,7 @@
 #include "reports/console.h"
 #include "run/version.h"
 #include "scene/reader.h"
+#include "text/standard_streams.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -57,6 +58,7 @@ int dispatch(Arguments arguments, std::span<char*> texts, reports::Console& cons
 
 int main(int count, char** texts) {
   using namespace ziggurat;
+  text::open_standard_streams();
   const cli::Arguments arguments(texts + std::min(count, 1), texts + count);
   reports::Console::Style style;
   style.json = std::ranges::find(arguments, "--json") != arguments.end();

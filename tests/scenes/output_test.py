@@ -5,8 +5,9 @@ import json
 import os
 import pty
 import re
+import subprocess
 
-from harness import FAULT, FINISHED, SceneTest, main
+from harness import FAULT, FINISHED, LIMIT, SceneTest, ZIGGURAT, main
 
 
 class Log(SceneTest):
@@ -45,6 +46,17 @@ end""")
         self.assertEqual(outcome.out, "")
         self.assertEqual(outcome.err.splitlines(),
                          [f"[{tick} r{i}] oh" for tick in (1, 2) for i in range(3)])
+
+    def test_streams_that_are_closed_are_no_others(self):
+        """What is printed must not go to the first file or socket that is opened."""
+        for closed in ("<&-", ">&-", "2>&-", "<&- >&- 2>&-"):
+            with self.subTest(closed):
+                run = subprocess.run(["sh", "-c", f'exec "$0" run "$1" --ticks 3 --quiet --trace t.csv 2>errors {closed}',
+                                      str(ZIGGURAT), str(self.scene)], cwd=self.folder, env=self.environment,
+                                     stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, timeout=LIMIT)
+                self.assertEqual(run.returncode, FINISHED)
+                lines = (self.folder / "t.csv").read_text().splitlines()
+                self.assertTrue(all(line.count(",") == 10 for line in lines), lines[:5])
 
     def test_a_closed_pipe_ends_the_run(self):
         read, write = os.pipe()

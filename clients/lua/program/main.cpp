@@ -13,6 +13,7 @@
 #include "program/terminal.h"
 #include "script/interrupt.h"
 #include "script/place_file.h"
+#include "text/standard_streams.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 
@@ -74,6 +75,7 @@ int run_and_report(const lua::ProgramOptions& options) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  text::open_standard_streams();
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   try {
     const auto request = lua::read_arguments(count, arguments, ::isatty(STDOUT_FILENO) != 0);

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -135,7 +136,7 @@ struct Protected : Keys {
   }
   /// Serves clients for as long as `client` takes.
   void meanwhile(Server& server, auto client) const {
-    bool is_done = false;
+    std::atomic<bool> is_done = false;
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     std::thread thread([&] {

@@ -1,0 +1,16 @@
+#include "text/standard_streams.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace ziggurat::text {
+
+void open_standard_streams() {
+  int file = 0;
+  do {
+    file = ::open("/dev/null", O_RDWR);  // the lowest number that is free
+  } while (file >= 0 && file <= STDERR_FILENO);
+  if (file > STDERR_FILENO) ::close(file);
+}
+
+}  // namespace ziggurat::text
