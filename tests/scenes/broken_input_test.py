@@ -209,7 +209,7 @@ class BrokenArguments(SceneTest):
                               (*keys, path, "--curve-clients", "clients"),
                               ("run", self.scene, "--set", f"//params/@script={path}")):
                 with self.subTest(arguments):
-                    self.refuses("not a regular file", *arguments)
+                    self.refuses("not a regular file|is a folder", *arguments)
             self.refuses("not a file with one secret key", "ctl", "tcp://127.0.0.1:1", "status",
                          "--curve-secret", path, "--server-key", key)
         self.refuses("not a regular file", "sweep", "pipe.toml")
