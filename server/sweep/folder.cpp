@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "scene/files.h"
 #include "sweep/columns.h"
 #include "sweep/ledger.h"
 #include "text/numbers.h"
@@ -60,6 +61,8 @@ std::vector<Result> read_ledgers(std::span<const fs::path> paths) {
 }  // namespace
 
 std::string read_file(const fs::path& path) {
+  const auto fault = scene::fault_of_file(path);
+  if (fault && fs::exists(path)) throw text::UsageError(path.string() + " " + *fault);
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }

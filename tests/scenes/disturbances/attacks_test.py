@@ -3,6 +3,7 @@
 import os
 import pathlib
 import random
+import shutil
 import socket
 import subprocess
 import sys
@@ -121,6 +122,28 @@ class Attacks(SceneTest):
             outcome = self.ziggurat(command, hostile, *more)
             self.assertIn(outcome.code, range(7), f"{command} {outcome.err}")
             self.assert_is_sentence(outcome, ".|^$")
+
+    def test_hostile_sweep_folders(self):
+        self.assertEqual(self.ziggurat("sweep", self.scene, "--seeds", 1, "--ticks", 2, "--out", "whole", "--quiet").code, 0)
+        kept = (self.folder / "whole" / "experiment.json").read_text()
+        for file in ("experiment.json", "sweep.sqlite"):
+            for name, make in {"pipe": os.mkfifo, "folder": os.mkdir, "none": lambda path: None,
+                               "device": lambda path: path.symlink_to("/dev/zero"),
+                               "brackets": lambda path: path.write_text("[" * 1_000_000),
+                               "cut": lambda path: path.write_text(kept[:len(kept) // 2]),
+                               "colors": lambda path: path.write_text(kept.replace('"axes": []', '"axes": "\x1b[31m"')),
+                               }.items():
+                hostile = self.folder / f"{file}-{name}"
+                shutil.copytree(self.folder / "whole", hostile)
+                (hostile / file).unlink()
+                make(hostile / file)
+                for command in ("status", "results", "resume"):
+                    with self.subTest(file=file, name=name, command=command):
+                        outcome = self.ziggurat("sweep", command, hostile)
+                        self.assertIn(outcome.code, (0, 1), outcome.err)
+                        self.assertEqual(outcome.code, 1 if file == "experiment.json" else outcome.code)
+                        self.assert_is_sentence(outcome, ".|^$")
+                        self.assertNotRegex(outcome.out + outcome.err, "[\x00-\x08\x0b-\x1f\x7f-\x9f]|basic_")
 
     # --- the network ----------------------------------------------------------------------------
 
