@@ -62,22 +62,18 @@ Compressor::Compressor(Compression compression) : compression_(compression) {
 
 Compressor::~Compressor() { ZSTD_freeCCtx(zstd_); }
 
-void Compressor::compress(std::string_view bytes, std::string& to) {
-  if (compression_ == Compression::none) {
-    to += bytes;
-    return;
-  }
+std::string_view Compressor::compress(std::string_view bytes) {
+  if (compression_ == Compression::none) return bytes;
   const bool is_zstd = compression_ == Compression::zstd;
-  const std::size_t begin = to.size();
-  to.resize(begin + (is_zstd ? ZSTD_compressBound(bytes.size())
-                             : LZ4F_compressFrameBound(bytes.size(), nullptr)));
-  const std::size_t most = to.size() - begin;
+  const std::size_t most =
+      is_zstd ? ZSTD_compressBound(bytes.size()) : LZ4F_compressFrameBound(bytes.size(), nullptr);
+  if (compressed_.size() < most) compressed_.resize(most);
   const std::size_t size =
-      is_zstd ? ZSTD_compress2(zstd_, to.data() + begin, most, bytes.data(), bytes.size())
-              : LZ4F_compressFrame(to.data() + begin, most, bytes.data(), bytes.size(), nullptr);
+      is_zstd ? ZSTD_compress2(zstd_, compressed_.data(), most, bytes.data(), bytes.size())
+              : LZ4F_compressFrame(compressed_.data(), most, bytes.data(), bytes.size(), nullptr);
   // The result fits, so that memory is all that may be missing.
   if (is_zstd ? ZSTD_isError(size) : LZ4F_isError(size)) throw std::bad_alloc();
-  to.resize(begin + size);
+  return std::string_view(compressed_).substr(0, size);
 }
 
 std::string decompress(std::string_view name, std::string_view bytes, std::size_t size,

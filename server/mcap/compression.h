@@ -20,12 +20,13 @@ class Compressor {
   Compressor& operator=(const Compressor&) = delete;
 
   Compression compression() const { return compression_; }
-  /// Appends the compressed bytes. @throws std::bad_alloc
-  void compress(std::string_view bytes, std::string& to);
+  /// The compressed bytes, which stay until the next call. @throws std::bad_alloc
+  std::string_view compress(std::string_view bytes);
 
  private:
   const Compression compression_;
   ZSTD_CCtx_s* zstd_ = nullptr;
+  std::string compressed_;  // its memory is used again
 };
 
 /// Undoes it.

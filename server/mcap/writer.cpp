@@ -78,8 +78,7 @@ void Writer::end_chunk() {
   index.offset = size_;
   index.compression = name_of(compressor_.compression());
   index.uncompressed_size = chunk_.size();
-  std::string compressed;
-  compressor_.compress(chunk_, compressed);
+  const std::string_view compressed = compressor_.compress(chunk_);
   index.compressed_size = compressed.size();
   record_.clear();
   append_chunk(index, crc32(chunk_), compressed, record_);

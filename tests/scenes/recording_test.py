@@ -9,6 +9,7 @@ import pathlib
 import random
 import resource
 import signal
+import struct
 import subprocess
 import time
 import unittest
@@ -122,9 +123,25 @@ class RecordingTest(SceneTest):
         self.assertEqual(code, FAULT, err)
         self.assertIn("File too large", err)
 
+    def chunks(self, path):
+        """How many states each chunk of a file has that was cut off anywhere: by the times in their heads."""
+        data, at, states = path.read_bytes(), 8, []
+        while at + 9 <= len(data):
+            op, length = data[at], int.from_bytes(data[at + 1:at + 9], "little")
+            begin, at = at + 9, at + 9 + length
+            if op != 0x06 or at > len(data):
+                continue
+            first, last = struct.unpack_from("<2Q", data, begin)
+            states.append(1 + (last - first) // 100_000_000)  # 10 ticks a second
+        return states
+
     def test_a_killed_run_loses_a_chunk_at_most(self):
-        """Against the hash file of the same run: what is missing is less than 2 s of wall time."""
+        """Against the hash file of the same run. A chunk has a second of wall time, 200 states at this pace, or
+        more where a run that fell behind catches up. On a busy machine the recorder's thread may come late: two
+        chunks are the bound; what was lost is printed."""
         choose = random.Random(1)
+        second = 200
+        lost_chunks = []
         for number in range(KILLS):
             path = self.folder / f"{number}.mcap"
             process = self.start("run", "arms.argos", "--duration", 0, "--quiet", "--real-time", "20",
@@ -138,13 +155,19 @@ class RecordingTest(SceneTest):
             self.assertFalse(info["has_end"])
             hashes = [line.split() for line in (self.folder / f"{number}.hash").read_text().splitlines()]
             full = [line for line in hashes if len(line) == 3 and len(line[2]) == 16]
-            lost = len(full) - info["states"]
-            self.assertLessEqual(lost, 20 * 10 * 4, f"run {number}: {info['states']} of {len(full)} states")
+            chunks = self.chunks(path)[1:]  # the first has the start
+            self.assertEqual(sum(chunks), info["states"])
+            lost_chunks.append(max(0, len(full) - info["states"]) / max([second, *chunks]))
+            self.assertLessEqual(lost_chunks[-1], 2, f"run {number}: {info['states']} of {len(full)} states, "
+                                                     f"chunks of {chunks}")
             saved = self.folder / "saved.mcap"
             done = subprocess.run([str(ZIGGURAT), "info", str(path), "--repair", str(saved)], capture_output=True)
             self.assertEqual(done.returncode, FINISHED, done.stderr)
             self.assertEqual(self.info(saved, code=FINISHED)["states"], info["states"])
             path.unlink()
+        more = sum(1 for each in lost_chunks if each > 1)
+        print(f"{KILLS} runs killed: lost {max(lost_chunks):.2f} chunks at most, "
+              f"{sum(lost_chunks) / len(lost_chunks):.2f} on average; {more} lost more than one")
 
     def test_secrets_are_not_recorded(self):
         keys = [self.folder / "server", self.folder / "client"]

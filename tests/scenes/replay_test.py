@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import pathlib
 import re
 import signal
@@ -186,6 +187,93 @@ class Supervised(Recorded):
         self.finish(process)
         outcome = self.ask("replay", recording, "--hash", "--quiet")
         self.assertEqual(f"hash 6 {state['hash']}", outcome.lines[-1])
+
+
+class OtherBuild(Recorded):
+    """A recording that another build made: clang 14 with -O1. Where physics changes on purpose, make it anew:
+    `ziggurat run arms.argos --ticks 40 --seed 3 --record arms.mcap --record-topics /state` in tests/scenes."""
+
+    RECORDING = ROOT / "tests/recording/data/arms.mcap"
+
+    def test_it_verifies(self):
+        build = json.loads(self.ask("info", self.RECORDING, "--json").out)["run"]["build"]
+        recording, _ = self.record("--ticks", "1")
+        own = json.loads(self.ask("info", recording, "--json").out)["run"]["build"]
+        if build["libm"] != own["libm"]:
+            self.skipTest(f"made with the C library {build['libm']}, here is {own['libm']}: sin() and others may differ")
+        self.assertRegex(self.ask("verify", self.RECORDING).out, r"^identical: 41 states as recorded")
+
+
+class Disturbed(Recorded):
+    ROBOT = """<prototype id="s{n}"><body position="{x},1.7,0"/><controller config="swing"/><links ref="base">
+        <link id="base" geometry="box" size="0.1,0.1,0.05" mass="2"/><link id="arm" geometry="box"
+        size="0.2,0.02,0.02" mass="0.1" position="0,0,0.05"/></links><joints><joint id="shoulder"
+        type="revolute" axis="0,0,1"><parent link="base" position="0,0,0.05"/><child link="arm"
+        position="0,0,0"/></joint></joints></prototype>"""
+
+    def ctl(self, *words, code=0):
+        outcome = subprocess.run([ZIGGURAT, "ctl", self.endpoint, *map(str, words)], capture_output=True,
+                                 text=True, timeout=LIMIT, env=self.environment)
+        self.assertEqual(outcome.returncode, code, f"{words}: {outcome.stderr}")
+        return outcome.stdout
+
+    def tick(self):
+        return int(json.loads(self.ctl("status", "--json"))["tick"])  # 64 bits are texts in JSON
+
+    def go_on(self, ticks=3):
+        begin = self.tick()
+        self.wait_for(self.tick, lambda now: now >= begin + ticks or now < begin, "more ticks")
+
+    def disturb(self, n):
+        """Kills a controller, which is started again and resumes; stops another, which misses deadlines;
+        meanwhile a supervisor does what it can."""
+        killed, stopped, *_ = self.lua_processes(3)
+        os.kill(killed, signal.SIGKILL)
+        os.kill(stopped, signal.SIGSTOP)
+        self.ctl("move", "box0", f"0.3,{0.1 * n},0.5", "30,20,10")
+        self.ctl("spawn", self.write("robot.xml", self.ROBOT.format(n=n, x=n)))
+        self.go_on()
+        os.kill(stopped, signal.SIGCONT)
+        self.ctl("pause")
+        self.ctl("remove", f"s{n}")
+        self.ctl("step", 2)
+        self.ctl("resume")
+        self.go_on()
+
+    def test_a_run_with_everything_that_disturbs_it_is_repeated(self):
+        self.endpoint = f"ipc://{self.runtime}/supervisor"
+        recording = self.folder / "run.mcap"
+        process = self.start("run", self.scene, "--duration", 0, "--lua-processes", 0, "--restart", "swing=9",
+                             "--deadline", "swing=hold:100:1000", "--inject", "swing=latency=3ms,jitter=2ms,loss=2%",
+                             "--endpoint", self.endpoint, "--record", recording, "--hash-file", "run.hashes",
+                             "--quiet", "--real-time", "2", "--seed", "5")
+        self.lua_processes(3)
+        self.wait_for(lambda: pathlib.Path(self.endpoint[6:]).exists(), bool, "endpoint")
+        self.go_on()
+        self.disturb(0)
+        self.ctl("snapshot", "here")
+        self.ctl("reset", "--seed", 9)
+        self.disturb(1)
+        self.ctl("spawn", self.write("robot.xml", self.ROBOT.format(n=2, x=-1)))
+        self.go_on()
+        self.ctl("reset")
+        self.go_on()
+        self.ctl("shutdown")
+        self.finish(process)
+        info = json.loads(self.ask("info", recording, "--json").out)
+        self.assertTrue(info["is_whole"])
+        self.assertEqual(info["epochs"], 3)
+        self.ask("replay", recording, "--hash-file", "again.hashes", "--quiet")
+        before, after = ((self.folder / name).read_text() for name in ("run.hashes", "again.hashes"))
+        self.assertEqual(before, after)
+        self.assertEqual(len(before.splitlines()), info["states"])
+        self.assertRegex(self.ask("verify", recording).out, rf"^identical: {info['states']} states")
+        kinds = set()
+        self.ask("export", recording, "--jsonl", "inputs.jsonl", "--topics", "/inputs")
+        for line in (self.folder / "inputs.jsonl").read_text().splitlines():
+            for act in json.loads(line)["message"].get("acts", []):
+                kinds |= set(act)
+        self.assertTrue({"move", "spawn", "remove", "reset", "snapshot", "pause", "resume"} <= kinds, kinds)
 
 
 class FromPoses(Recorded):
