@@ -42,6 +42,9 @@ constexpr std::size_t longest_element = std::size_t{64} << 20;  // spawned [byte
 
 scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files,
                             const scene::Variation& more) {
+  if (run.scene().find('\0') != std::string::npos) {
+    throw RecordingError("the name of the recording's scene has a zero byte");
+  }
   if (run.seed() == 0) throw RecordingError("the recording's seed is 0, which no run has");
   scene::ReadOptions options;
   options.lenient = run.lenient();

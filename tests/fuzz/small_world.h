@@ -1,6 +1,6 @@
 #pragma once
-// A small world with most of what has a state: a robot with an arm, an LED, a tag, a magnet, a battery, a radio,
-// range and bearing, proximity and a camera, and boxes that fall on a floor.
+// A small world with much of what has a state: a robot with an arm, a tag, a magnet, a battery, a radio and
+// sensors with noise, another magnet beside it, and boxes that fall on a floor.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,25 +16,30 @@
 
 namespace ziggurat::fuzz {
 
-inline constexpr const char* small_world =
-    R"(<argos><framework><experiment ticks_per_second="10" random_seed="3"/></framework><controllers>)"
-    R"(<external_controller id="c"><actuators><joints implementation="default"><joint id="hinge" )"
-    R"(mode="velocity" max_impulse="20"/></joints><radios implementation="default"/>)"
-    R"(<leds implementation="default"/><tags implementation="default"/>)"
-    R"(<electromagnets implementation="default"/></actuators><sensors><joints implementation="default">)"
-    R"(<joint id="hinge" mode="position"/></joints><radios implementation="default"/>)"
-    R"(<proximity implementation="default" noise_level="0.1"/><battery implementation="default"/>)"
-    R"(<positioning implementation="default" pos_noise_range="-0.1:0.1"/></sensors><params/>)"
-    R"(</external_controller></controllers><arena size="9,9,9"><prototype id="r" movable="true">)"
-    R"(<body position="1,0,0"/><links ref="base"><link id="base" geometry="box" size=".3,.3,.1" mass="1"/>)"
-    R"(<link id="arm" geometry="box" size=".5,.1,.1" mass="1"/></links><joints><joint id="hinge" )"
-    R"(type="revolute" axis="0,1,0"><parent link="base" position="0,0,.4"/><child link="arm" )"
-    R"(position="-.25,0,0"/></joint></joints><devices><radios medium="air"><radio id="rx" anchor="base" )"
-    R"(position="0,0,.1" range="9"/></radios></devices><controller config="c"/></prototype>)"
-    R"(<box id="low" size=".4,.4,.4" movable="true" mass="1"><body position="0,0,0"/></box>)"
-    R"(<box id="high" size=".2,.2,.2" movable="true" mass="1"><body position="0.05,0,0.42"/></box>)"
-    R"(</arena><physics_engines><dynamics3d id="d" iterations="2"><floor/><gravity g="9.8"/></dynamics3d>)"
-    R"(</physics_engines><media><radio id="air"/></media></argos>)";
+inline constexpr const char* small_world = R"(<argos><framework><experiment ticks_per_second="10" random_seed="3"/>
+  </framework><controllers><external_controller id="c"><actuators>
+  <joints implementation="default"><joint id="hinge" mode="velocity" max_impulse="20"/></joints>
+  <radios implementation="default"/><tags implementation="default"/></actuators><sensors>
+  <joints implementation="default"><joint id="hinge" mode="position"/></joints><radios implementation="default"/>
+  <proximity implementation="default" noise_level="0.1"/><battery implementation="default"/>
+  <positioning implementation="default" pos_noise_range="-0.1:0.1"/></sensors><params/></external_controller>
+  </controllers><arena size="9,9,9"><prototype id="r" movable="true"><body position="1,0,0"/><links ref="base">
+  <link id="base" geometry="box" size=".3,.3,.1" mass="1"/><link id="arm" geometry="box" size=".5,.1,.1" mass="1"/>
+  </links><joints><joint id="hinge" type="revolute" axis="0,1,0"><parent link="base" position="0,0,.4"/>
+  <child link="arm" position="-.25,0,0"/></joint></joints><devices>
+  <radios medium="air"><radio id="rx" anchor="base" position="0,0,.1" range="9"/></radios>
+  <tags medium="tags"><tag anchor="base" position="0,0,.1" orientation="0,0,0" observable_angle="80"
+  side_length="0.04" payload="0"/></tags>
+  <proximity_sensors><sensor anchor="base" offset="0.2,0,0.05" direction="1,0,0" range="0.4"/></proximity_sensors>
+  <magnets><magnet id="m" passive_field="-100,0,0" anchor="base" offset="0,0,.05"/></magnets>
+  <battery discharge_model="time" full_charge="40" factor="1"/></devices><controller config="c"/></prototype>
+  <prototype id="m" movable="true"><body position="1.3,0,0"/><links ref="base"><link id="base" geometry="box"
+  size=".1,.1,.1" mass="1"/></links><devices><magnets><magnet id="m" passive_field="-100,0,0" anchor="base"
+  offset="0,0,.05"/></magnets></devices></prototype>
+  <box id="low" size=".4,.4,.4" movable="true" mass="1"><body position="0,0,0"/></box>
+  <box id="high" size=".2,.2,.2" movable="true" mass="1"><body position="0.05,0,0.42"/></box></arena>
+  <physics_engines><dynamics3d id="d" iterations="2"><floor/><gravity g="9.8"/><magnetism max_distance="0.5"/>
+  </dynamics3d></physics_engines><media><radio id="air"/><tag id="tags"/></media></argos>)";
 inline constexpr const char* small_box =
     R"(<box id="new" size=".1,.1,.1" movable="true" mass="1"><body position="-1,-1,.2"/></box>)";
 

@@ -156,7 +156,7 @@ class RecordingTest(SceneTest):
             hashes = [line.split() for line in (self.folder / f"{number}.hash").read_text().splitlines()]
             full = [line for line in hashes if len(line) == 3 and len(line[2]) == 16]
             chunks = self.chunks(path)[1:]  # the first has the start
-            self.assertEqual(sum(chunks), info["states"])
+            self.assertGreaterEqual(sum(chunks), info["states"])  # a chunk may end within a tick
             lost_chunks.append(max(0, len(full) - info["states"]) / max([second, *chunks]))
             self.assertLessEqual(lost_chunks[-1], 2, f"run {number}: {info['states']} of {len(full)} states, "
                                                      f"chunks of {chunks}")
