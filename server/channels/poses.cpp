@@ -1,6 +1,6 @@
 #include "channels/poses.h"
 
-#include "channels/joints.h"
+#include "scene/joint_coordinates.h"
 #include "channels/world_message.h"
 #include "magnetism/dipole.h"
 #include "magnetism/shape.h"

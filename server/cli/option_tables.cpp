@@ -64,10 +64,12 @@ po::options_description world_options() {
       ("curve-secret", text("FILE"), "protect endpoints with this key ('ziggurat keygen')")  //
       ("curve-clients", text("FILE"),
        "the allowed clients: lines KEY ROLE[,ROLE] [robots=GLOB,..] [controllers=GLOB,..] "
-       "[takeover=yes|no] [NAME]; a ROLE is controller, supervisor or observer")            //
+       "[takeover=yes|no] [NAME]; a ROLE is controller, director, supervisor or observer")            //
       ("paused", "stand at tick 0 until a supervisor resumes ('ziggurat ctl URL resume')")  //
       ("fail-fast", "end when the first controller fails or the first robot is dropped")    //
       ("allow-drops", "robots that a deadline dropped do not make the exit code 3")         //
+      ("allow-director",
+       "clients may direct the world although the scene has no <director> for them")          //
       ("insecure", "allow endpoints that other machines can reach")                         //
       ("allow-spawned-scripts", texts("DIR"),
        "robots that a supervisor spawns may use the scripts and files below DIR, too; otherwise "

@@ -110,6 +110,7 @@ void read_network(const Values& values, run::Options& options) {
     throw text::UsageError("--curve-secret and --curve-clients need each other; give both");
   }
   options.insecure = values.has("insecure");
+  options.allows_directors = values.has("allow-director");
   options.paused = values.has("paused");
   options.spawned_script_folders = values.texts("allow-spawned-scripts");
   options.snapshot_folder = values.text("snapshot-folder");

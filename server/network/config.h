@@ -22,10 +22,12 @@ struct Config {
   // Sessions with a connection, by role: so that no role uses up the places of another.
   std::size_t max_sessions = 4096;  ///< of controllers
   std::size_t max_supervisors = 64;
+  std::size_t max_directors = 8;  ///< more than directors: one that is resumed has two for a moment
   std::size_t max_observers = 256;
   unsigned max_faults = 100;  ///< bad messages in a row before a session is closed
   Rate rate;                  ///< of a connection's messages, besides expected answers
   std::chrono::milliseconds heartbeat{1000};  ///< of wall time that a session hears nothing; > 0
+  bool allows_directors = false;  ///< also those that the scene does not name
   bool keeps_reactions = false;               ///< each by itself, for a report card
   std::chrono::milliseconds lease{0};         ///< how long robots of a lost session are kept for it
 

@@ -57,6 +57,8 @@ std::optional<Roles> to_roles(const std::string& text) {
       roles.supervisor = true;
     } else if (word == "observer") {
       roles.observer = true;
+    } else if (word == "director") {
+      roles.director = true;
     } else {
       return std::nullopt;
     }
@@ -197,7 +199,7 @@ std::vector<ClientKey> parse_client_keys(const std::string& text, const std::str
       fault("not a public key of 40 characters; 'ziggurat keygen' makes one");
     } else if (roles.empty() || !found) {
       fault(
-          fmt::format("'{}' are no roles; controller, supervisor or observer, "
+          fmt::format("'{}' are no roles; controller, director, supervisor or observer, "
                       "separated by commas, follow the key",
                       roles.substr(0, 100)));
     } else if (!seen.insert(client.public_key).second) {

@@ -22,15 +22,16 @@ class KeyError : public std::runtime_error {
 
 /// Roles that a connection may have.
 struct Roles {
-  bool controller = false, supervisor = false, observer = false;
+  bool controller = false, supervisor = false, observer = false, director = false;
 
   bool allow(wire::Role role) const {
     return (role == wire::Role::controller && controller) ||
            (role == wire::Role::supervisor && supervisor) ||
-           (role == wire::Role::observer && observer);
+           (role == wire::Role::observer && observer) ||
+           (role == wire::Role::director && director);
   }
 };
-inline constexpr Roles all_roles{true, true, true};
+inline constexpr Roles all_roles{true, true, true, true};
 
 /// What a connection may do, and by which key.
 struct Access {

@@ -13,7 +13,7 @@ enum class Standing {
   waiting,     ///< its Hello waits for the world
   observer,    ///< with a session of that role
   supervisor,  ///< likewise
-  controller,  ///< likewise: the tick path
+  controller,  ///< likewise, or a director: the tick path
 };
 
 inline constexpr std::size_t kibibyte = std::size_t{1} << 10, mebibyte = std::size_t{1} << 20;

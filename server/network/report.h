@@ -11,6 +11,7 @@
 #include "network/link.h"
 #include "network/reactions.h"
 #include "scene/deadline.h"
+#include "wire/direction.h"
 #include "wire/messages.h"
 #include "wire/request.h"
 
@@ -33,6 +34,25 @@ struct RobotStatus {
   scene::DeadlinePolicy deadline;  ///< what happens if it is not answered for in time
   bool was_held = false;           ///< a session has had it
   bool can_restore = true;  ///< held, or of a lost session: its controller can go back to a snapshot
+};
+
+/// Whether a director is there, and whether the tick waits for it.
+struct DirectorStatus {
+  std::string id;
+  bool is_held = false;   ///< a session has it
+  bool has_left = false;  ///< the barrier, for good
+  bool was_held = false;  ///< a session has had it
+  bool waits = true;      ///< by its policy the world waits for it without end
+  bool is_awaited = false;  ///< by the tick
+  std::string client;     ///< name and version of the one that has it, or may resume it
+  bool can_restore = true;      ///< that client can go back to a snapshot
+  bool wants_contacts = false;  ///< it subscribed to them
+};
+
+/// What a director wants done between the tick in hand and the next.
+struct Directed {
+  std::string director;  ///< id
+  wire::Direction direction;
 };
 
 /// How well controllers answered.
@@ -59,11 +79,27 @@ struct Failure {
   std::uint64_t tick = 0;  ///< of the observation that it failed on
 };
 
+/// The same of a director.
+struct DirectorFailure {
+  std::string director;  ///< id
+  std::string message;
+  std::uint64_t tick = 0;
+};
+
+/// A line that a director logged.
+struct DirectorLine {
+  std::string director;  ///< id
+  bool error = false;
+  std::string text;
+};
+
 /// What happened since the last report.
 struct Report {
   std::vector<wire::LogLine> log;    ///< robots in scene order, then as given: independent of which
                                      ///< process runs where and which answers first
   std::vector<Failure> failures;     ///< in scene order
+  std::vector<DirectorLine> log_of_directors;     ///< those of each as given
+  std::vector<DirectorFailure> failed_directors;
   std::string stopped;               ///< the sentence on the deadline that stops the run, if any
   std::vector<std::string> dropped;  ///< sentences on robots that a deadline took out: one for each
                                      ///< robot at most, so that no peer's noise can hide them

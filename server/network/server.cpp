@@ -8,6 +8,7 @@
 #include "network/answers.h"
 #include "network/barrier/admission.h"
 #include "network/barrier/departure.h"
+#include "network/barrier/directing.h"
 #include "network/barrier/dispatch.h"
 #include "network/barrier/exchange.h"
 #include "network/barrier/overview.h"
@@ -37,7 +38,8 @@ std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::
 /// No tick goes on before a message of one that is no controller yet: the world stands, or a robot is
 /// free that the tick waits for without end.
 bool waits_for_newcomer(const Barrier& barrier) {
-  const bool waits_for_robot = barrier.seats.is_awaited() && barrier.timers.deadline == never;
+  const bool has_free = barrier.seats.is_awaited() || barrier.directors.seats.is_awaited();
+  const bool waits_for_robot = has_free && barrier.timers.deadline == never;
   return barrier.gate.is_standing() || waits_for_robot;
 }
 
@@ -100,7 +102,7 @@ bool Server::State::take_messages(Done done, world::Commands* into) {
   for (int i = 0; i < messages_at_once && socket.receive(received); ++i) {
     if (!link || link->arrives(received, barrier.now)) receive(barrier, received, into);
     socket.handled();
-    if (barrier.inbox.is_command()) {
+    if (barrier.inbox.is_answer()) {
       ++commands;
     } else {
       changes += barrier.inbox.is_question() ? 0 : 1;
@@ -176,14 +178,18 @@ void Server::open(const wire::Run& run, const Config& config) {
 }
 
 Outcome Server::gather(const Wait& wait) {
-  return state_->wait_until([this] { return state_->barrier.seats.all_taken(); }, wait, nullptr);
+  const Barrier& barrier = state_->barrier;
+  const auto is_gathered = [&] {
+    return barrier.seats.all_taken() && barrier.directors.seats.all_taken();
+  };
+  return state_->wait_until(is_gathered, wait, nullptr);
 }
 
 void Server::publish(const world::Observations& observations,
-                     const std::vector<std::string>& tag_payloads) {
+                     const std::vector<std::string>& tag_payloads, const wire::Truth* truth) {
   state_->advance();
   ++state_->changes;
-  network::publish(state_->barrier, observations, tag_payloads);
+  network::publish(state_->barrier, observations, tag_payloads, truth);
 }
 
 Outcome Server::collect(world::Commands& commands, const Wait& wait,
@@ -192,7 +198,7 @@ Outcome Server::collect(world::Commands& commands, const Wait& wait,
       state_->wait_until([this] { return state_->barrier.gate.is_complete(); }, wait, &commands);
   if (outcome != Outcome::complete) return outcome;
   zero_missing(state_->barrier, commands);
-  if (metrics != nullptr) *metrics = named(state_->barrier, state_->barrier.metrics.of_tick());
+  if (metrics != nullptr) *metrics = metrics_of_tick(state_->barrier);
   return outcome;
 }
 
@@ -274,6 +280,23 @@ Report Server::take_report() {
   if (state_->link)
     std::ranges::move(state_->link->take_notices(), std::back_inserter(report.notices));
   return report;
+}
+
+void DirectorsDesk::check_by(
+    std::function<std::optional<wire::Fault>(const wire::Direction&)> check) {
+  state_.barrier.directors.check = std::move(check);
+}
+
+std::vector<Directed> DirectorsDesk::directions() const {
+  return network::directions(state_.barrier);
+}
+
+void DirectorsDesk::warn(const std::string& director, wire::Fault fault) {
+  warn_director(state_.barrier, director, std::move(fault));
+}
+
+std::vector<DirectorStatus> DirectorsDesk::status() const {
+  return director_status(state_.barrier);
 }
 
 }  // namespace ziggurat::network

@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -81,8 +82,9 @@ class Server {
   /// the tick before. Nothing is copied: both must stay as they are until the next publish(),
   /// add_robots() or reset(), for sessions that begin meanwhile.
   /// @param tag_payloads  of the same tick, for each of Layout::tags
+  /// @param truth  that directors are told, which must stay likewise; null: none
   void publish(const world::Observations& observations,
-               const std::vector<std::string>& tag_payloads);
+               const std::vector<std::string>& tag_payloads, const wire::Truth* truth = nullptr);
   template <class Seen, class Payloads>
   requires(!std::is_lvalue_reference_v<Seen> ||
            !std::is_lvalue_reference_v<Payloads>) void publish(Seen&& temporary,
@@ -150,8 +152,28 @@ class Server {
   Report take_report();
 
  private:
+  friend class DirectorsDesk;
   struct State;
   std::unique_ptr<State> state_;
+};
+
+/// The directors of a server.
+class DirectorsDesk {
+ public:
+  /// @param server  must outlive this
+  explicit DirectorsDesk(Server& server) : state_(*server.state_) {}
+
+  /// Told of each Direction that arrives, before it is taken: what is wrong with it in the present world.
+  void check_by(std::function<std::optional<wire::Fault>(const wire::Direction&)> check);
+  /// What directors want done between the published tick, which is complete, and the next: in the order of
+  /// their ids.
+  std::vector<Directed> directions() const;
+  /// Tells a director, if it is connected, that one of its acts was not done.
+  void warn(const std::string& director, wire::Fault fault);
+  std::vector<DirectorStatus> status() const;
+
+ private:
+  Server::State& state_;
 };
 
 }  // namespace ziggurat::network

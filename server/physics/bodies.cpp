@@ -39,6 +39,11 @@ void Body::apply_torque(std::size_t part, const btVector3& torque) {
 
 bool Body::sleeps() const { return mechanism ? mechanism->sleeps() : articulation->sleeps(); }
 
+/// A tree of dynamics/ wakes by itself when the forces on it are not those that it rests under.
+void Body::wake() {
+  if (mechanism && mechanism->rigid) mechanism->rigid->activate(true);
+}
+
 void Body::update_poses() {
   if (mechanism) mechanism->update_poses();
 }

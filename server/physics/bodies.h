@@ -121,6 +121,7 @@ struct Body {
   void apply_force(std::size_t part, const btVector3& force);    ///< at the centre of mass [N]
   void apply_torque(std::size_t part, const btVector3& torque);  ///< [N m]
   bool sleeps() const;  ///< at rest until something touches it
+  void wake();          ///< what pushes it is to be felt
 
   /// Must be called once after substeps, before transforms of several links are asked for.
   void update_poses();

@@ -1,5 +1,6 @@
 #include "physics/world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "physics/core.h"
 #include "physics/magnets.h"
 #include "physics/plugins.h"
+#include "physics/pushes.h"
 
 namespace ziggurat::physics {
 
@@ -39,6 +41,9 @@ struct World::Parts {
     auto list = std::make_unique<ContactList>();
     contacts = list.get();
     plugins.add(std::move(list));
+    auto pushed = std::make_unique<Pushes>();
+    pushes = pushed.get();
+    plugins.add(std::move(pushed));
   }
   ~Parts() { core.take_apart(bodies); }
 
@@ -53,6 +58,7 @@ struct World::Parts {
   Core core;
   Plugins plugins;
   ContactList* contacts = nullptr;  // one of the plug-ins
+  Pushes* pushes = nullptr;         // another one
   std::vector<world::Contact>* listed = nullptr;
 
   /// Writes the contacts of the last substep, if they are wanted.
@@ -156,6 +162,17 @@ void World::set_currents(std::span<const double> currents) {
       body.magnets[i].current = currents[body.first_magnet + i];
     }
   }
+}
+
+void set_pushes(World& world, std::span<const world::Push> pushes) {
+  const std::vector<Body>& bodies = world.parts_->bodies;
+  std::vector<Pushes::Push> list;
+  for (const world::Push& push : pushes) {
+    const auto behind = std::ranges::upper_bound(bodies, push.link, {}, &Body::first_link);
+    const std::size_t entity = static_cast<std::size_t>(behind - bodies.begin()) - 1;
+    list.push_back({entity, push.link - bodies[entity].first_link, push.force, push.torque});
+  }
+  world.parts_->pushes->set(std::move(list));
 }
 
 void World::watch_contacts(std::size_t entity, std::size_t link) {

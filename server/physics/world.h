@@ -10,6 +10,7 @@
 
 #include "physics/values.h"
 #include "scene/scene.h"
+#include "world/commands.h"
 #include "world/contact.h"
 #include "world/state.h"
 
@@ -69,6 +70,10 @@ class World {
   /// passive one. 0 at the start; without effect where the scene has no magnetism.
   /// @param currents  of the magnets of all entities, in order of adding
   void set_currents(std::span<const double> currents);
+
+  /// Puts forces and torques on links in the substeps from the next one on, instead of those of the call
+  /// before.
+  friend void set_pushes(World& world, std::span<const world::Push> pushes);
 
   /// Begins to watch what touches a link of an entity added before.
   /// @param link  index into Entity::links

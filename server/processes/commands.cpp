@@ -118,17 +118,19 @@ FoundCommand find_command(const std::string& command, const fs::path& naming_fil
 
 std::vector<scene::Problem> find_commands(scene::Scene& scene, const fs::path& scene_file) {
   std::vector<scene::Problem> problems;
-  for (scene::Controller& controller : scene.controllers) {
-    if (controller.command.empty()) continue;
-    const std::string file = scene::file_of(scene, controller.where);
-    FoundCommand found = find_command(controller.command, file, scene_file);
+  const auto find = [&](auto& starter, const std::string& element) {
+    if (starter.command.empty()) return;
+    const std::string file = scene::file_of(scene, starter.where);
+    FoundCommand found = find_command(starter.command, file, scene_file);
     if (!found.missing.empty()) {
-      problems.push_back({scene::Problem::Severity::warning, file, controller.where,
-                          fmt::format("command={} of <{}>: {}", scene::in_quotes(controller.command),
-                                      controller.type, found.missing)});
+      problems.push_back({scene::Problem::Severity::warning, file, starter.where,
+                          fmt::format("command={} of <{}>: {}", scene::in_quotes(starter.command),
+                                      element, found.missing)});
     }
-    controller.command = std::move(found.text);
-  }
+    starter.command = std::move(found.text);
+  };
+  for (scene::Controller& controller : scene.controllers) find(controller, controller.type);
+  for (scene::Director& director : scene.directors) find(director, "director");
   return problems;
 }
 

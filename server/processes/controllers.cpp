@@ -75,6 +75,25 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
   return launches;
 }
 
+Launch plan_director(const scene::Director& director, const LaunchSettings& settings) {
+  Launch launch;
+  launch.name = fmt::format("director '{}'", director.id);
+  launch.director = director.id;
+  launch.program.environment = no_keys;
+  if (director.command.empty()) {
+    launch.program.arguments = {settings.lua_runner, "--connect",  settings.endpoint,
+                                "--director",        director.id, "--quiet"};
+    launch.program.arguments.insert(launch.program.arguments.end(), settings.lua_arguments.begin(),
+                                    settings.lua_arguments.end());
+    return launch;
+  }
+  launch.program.arguments = {"/bin/sh", "-c", director.command};
+  launch.program.environment.insert(
+      launch.program.environment.end(),
+      {{"ZIGGURAT_ENDPOINT", settings.endpoint}, {"ZIGGURAT_DIRECTOR", director.id}});
+  return launch;
+}
+
 ControllerProcess start(const Launch& launch, const world::Layout& layout,
                         const Guardian* guardian) {
   if (!launch.robots_file.empty()) {
@@ -88,7 +107,8 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout,
     std::optional<RobotPipe> pipe;
     if (!launch.robot_pipe.empty()) pipe.emplace(launch.robot_pipe);
     return {launch.name,       launch.robots,  ChildProcess(launch.program, guardian),
-            launch.place_file, std::move(pipe), launch.program};
+            launch.place_file, std::move(pipe), launch.program,
+            0,                 launch.director};
   } catch (const std::system_error& error) {
     throw std::runtime_error(fmt::format("{} cannot be started ({}): {}", launch.name,
                                          launch.program.arguments[0], error.code().message()));
@@ -123,6 +143,11 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
     launch.program.environment.insert(launch.program.environment.end(), no_keys.begin(),
                                       no_keys.end());
     launches.push_back(std::move(launch));
+  }
+  for (const scene::Director& director : settings.directors) {
+    if (!director.script.empty() || !director.command.empty()) {
+      launches.push_back(plan_director(director, settings));
+    }
   }
   return launches;
 }
@@ -200,6 +225,11 @@ bool Controllers::have(std::size_t robot) const {
   return std::ranges::any_of(processes_, [&](const ControllerProcess& each) {
     return std::ranges::find(each.robots, robot) != each.robots.end();
   });
+}
+
+bool Controllers::have_director(const std::string& id) const {
+  return std::ranges::any_of(
+      processes_, [&](const ControllerProcess& each) { return each.director == id; });
 }
 
 const ControllerProcess& Controllers::restart(const ControllerProcess& ended,

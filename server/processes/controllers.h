@@ -23,6 +23,7 @@ struct Launch {
   std::string robots_file;  ///< written before the start, one id per line; empty = none
   std::string robot_pipe;   ///< made before the start: robots that come later; empty = none
   std::string place_file;   ///< written by it: which script runs, and where; empty = none
+  std::string director = {};  ///< id of the director that it is; it has no robots then
 };
 
 struct ControllerProcess {
@@ -33,6 +34,7 @@ struct ControllerProcess {
   std::optional<RobotPipe> pipe;  ///< for robots that come later; none: it has its robots for good
   Program program;                ///< that it runs
   unsigned restarts = 0;          ///< how often it was started again
+  std::string director = {};      ///< as Launch::director
 };
 
 /// A script that runs now.
@@ -49,11 +51,12 @@ struct LaunchSettings {
   unsigned lua_processes;                  ///< 0 = one per robot
   std::vector<std::string> lua_arguments;  ///< more arguments for ziggurat-lua
   const Guardian* guardian = nullptr;      ///< ends them if this program is killed; null: none
+  std::vector<scene::Director> directors = {};  ///< to start, too; their scripts are resolved paths
 };
 
 /// The processes that control the scene's robots. Lua robots that have a script are shared among
 /// Lua processes in contiguous blocks whose sizes differ by at most one. Other controllers that
-/// have robots and a command follow, one process each.
+/// have robots and a command follow, one process each, then the directors that have a script or command.
 /// @param scripts  per robot, empty = none
 std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Layout& layout,
                                      const std::vector<std::string>& scripts,
@@ -94,6 +97,9 @@ class Controllers {
 
   /// Whether a process was started for this robot.
   bool have(std::size_t robot) const;
+
+  /// Whether a process was started for this director.
+  bool have_director(const std::string& id) const;
 
   /// Starts an ended process again, with the same robots, in the place of the one that ended.
   /// @param ended  as first_ended() returns it; not valid afterwards. Not one for spawned robots

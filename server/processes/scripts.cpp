@@ -125,6 +125,13 @@ std::string file_of_params(const scene::Scene& scene, const scene::Entity& entit
 std::vector<scene::Problem> check_scripts(const scene::Scene& scene, const fs::path& scene_file) {
   std::vector<scene::Problem> problems;
   for (const Use& use : uses(scene)) check(scene, use, scene_file, problems);
+  for (const scene::Director& director : scene.directors) {
+    const auto file = scene::file_of(scene, director.where);
+    if (director.script.empty()) continue;
+    if (auto text = fault(director.script, file, scene_file)) {
+      problems.push_back({scene::Problem::Severity::fault, file, director.where, *text});
+    }
+  }
   return problems;
 }
 
@@ -137,6 +144,11 @@ std::vector<fs::path> scripts_of(const scene::Scene& scene, const fs::path& scen
       scripts.push_back(std::move(*found));
     }
   }
+  for (const scene::Director& director : scene.directors) {
+    if (auto path = script_path(scene, director, scene_file); !path.empty()) {
+      scripts.emplace_back(std::move(path));
+    }
+  }
   return scripts;
 }
 
@@ -146,6 +158,13 @@ std::string script_path(const scene::Scene& scene, const scene::Entity& entity,
   const auto script = script_of(entity.overrides_params ? entity.params : controller.params);
   if (!controller.lua || script.empty()) return {};
   const auto found = find_file(script, file_of_params(scene, entity), scene_file);
+  return found ? found->string() : std::string();
+}
+
+std::string script_path(const scene::Scene& scene, const scene::Director& director,
+                        const fs::path& scene_file) {
+  if (director.script.empty()) return {};
+  const auto found = find_file(director.script, scene::file_of(scene, director.where), scene_file);
   return found ? found->string() : std::string();
 }
 

@@ -25,13 +25,17 @@ bool runs_script(const scene::Controller& controller);
 /// The file with the params of an entity that has a controller.
 std::string file_of_params(const scene::Scene& scene, const scene::Entity& entity);
 
-/// The scripts that the controllers and entities of a scene name, as absolute paths; those that are
+/// The scripts that the controllers, entities and directors of a scene name, as absolute paths; those that are
 /// not found are left out.
 std::vector<std::filesystem::path> scripts_of(const scene::Scene& scene,
                                               const std::filesystem::path& scene_file);
 
 /// The path of the script that an entity's Lua controller runs; empty if it names none.
 std::string script_path(const scene::Scene& scene, const scene::Entity& entity,
+                        const std::filesystem::path& scene_file);
+
+/// The path of the script that a director runs; empty if it names none, or it is not found.
+std::string script_path(const scene::Scene& scene, const scene::Director& director,
                         const std::filesystem::path& scene_file);
 
 /// A fault for each script that would run and is missing or does not compile, with the line

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <tuple>
@@ -190,6 +191,24 @@ std::optional<std::string> read_radio_messages(const Commands& from, const world
   return std::nullopt;
 }
 
+std::optional<std::string> read_pushes(const Commands& from, const world::Layout& layout,
+                                       const world::State& state, std::vector<world::Push>& to) {
+  to.clear();
+  for (const auto& push : from.pushes()) {
+    if (push.link() >= layout.links.size() || state.is_absent(layout.links[push.link()].entity)) {
+      return fmt::format("there is no link number {} to push", push.link());
+    }
+    const auto& v = push.values();
+    const auto is_bounded = [](double value) { return std::abs(value) <= world::largest_push; };
+    if (v.size() != 6 || !std::ranges::all_of(v, is_bounded)) {
+      return fmt::format("the push on link number {} must have six values from -1e6 to 1e6",
+                         push.link());
+    }
+    to.push_back({push.link(), {v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+  }
+  return std::nullopt;
+}
+
 // --- states -------------------------------------------------------------------------------------
 
 constexpr std::size_t link_width = 13;
@@ -233,6 +252,12 @@ void CommandPacker::pack(const world::Commands& commands, v1::Commands& to) {
     const auto payload = commands.radio_messages.payload(entry);
     message.set_payload(payload.data(), payload.size());
   }
+  for (const world::Push& push : commands.pushes) {
+    auto& written = *to.add_pushes();
+    written.set_link(static_cast<std::uint32_t>(push.link));
+    for (const double value : push.force) written.add_values(value);
+    for (const double value : push.torque) written.add_values(value);
+  }
   is_first_ = false;
 }
 
@@ -250,7 +275,8 @@ std::optional<std::string> unpack(const v1::Commands& from, const world::Layout&
     fault = fmt::format("the array {} has {} values; the world has {} {}", channel.recorded, count,
                         expected, channel.device_words);
   });
-  return fault ? fault : read_radio_messages(from, layout, state, to.radio_messages);
+  if (!fault) fault = read_radio_messages(from, layout, state, to.radio_messages);
+  return fault ? fault : read_pushes(from, layout, state, to.pushes);
 }
 
 void StatePacker::pack(std::uint64_t epoch, const world::State& state, bool is_complete,

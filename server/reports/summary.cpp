@@ -90,6 +90,10 @@ std::string to_text(const Summary& summary) {
   if (!summary.shutdown_reason.empty()) {
     text += fmt::format("  shut down by a supervisor: {}\n", summary.shutdown_reason);
   }
+  if (summary.result) {
+    text += fmt::format("  director '{}' ended the run: {}\n", summary.result->director,
+                        summary.result->text);
+  }
   for (const auto& each : summary.missed) {
     text += fmt::format("  controller '{}' missed its deadline at {} tick{}\n", each.controller,
                         each.ticks, each.ticks == 1 ? "" : "s");
@@ -143,6 +147,10 @@ std::string to_json(const Summary& summary) {
       {"vanished", summary.vanished}};
   json["metrics"] = summary.metrics;
   if (!summary.shutdown_reason.empty()) json["shutdown_reason"] = summary.shutdown_reason;
+  if (summary.result) {
+    json["director"] = summary.result->director;
+    json["result"] = summary.result->text;
+  }
   json["solver"]["name"] = summary.solver_name;
   if (summary.solver.islands > 0) {
     json["solver"]["islands"] = summary.solver.islands;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,12 @@ struct Summary {
   };
   std::vector<Failure> failures;     ///< robots whose controller failed, in order of time
   std::string shutdown_reason;       ///< shut_down: why
+  /// How a director has ended the run.
+  struct Result {
+    std::string director;  ///< id
+    std::string text;
+  };
+  std::optional<Result> result;
   std::vector<std::string> dropped;  ///< a sentence on each robot that a deadline took out
   bool drops_are_failures = true;
   std::string vanished;  ///< the sentence on the controller that ended the run; empty: none did

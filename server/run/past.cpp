@@ -111,6 +111,11 @@ supervision::World Past::build(const simulation::TellPlaced& tell) const {
   const v1::RunStart& run = file_.run();
   scene::OpenScene opened = replay::read_scene(run, files_, options_.scene_file.variation);
   set_commands(opened.scene);
+  if (!opened.scene.directors.empty() && !options_.without_controllers) {
+    throw text::UsageError(
+        "the scene has directors, which cannot go on from a recorded state; write --without-controllers, "
+        "or replay the recording");
+  }
   const std::string hash = changes_world() ? replay::scene_hash(opened.scene, files_) : run.scene_hash();
   return {run.scene(), std::move(opened), seed_, tell, hash};
 }
@@ -221,6 +226,7 @@ std::optional<Ending> Past::relive(supervision::World& world, const Retelling::P
   if (const world::Commands* commanded = retelling.commanded()) {
     world.simulation.commands() = *commanded;  // values stay until a controller changes them
     world.simulation.commands().radio_messages.clear();
+    world.simulation.commands().pushes.clear();
   }
   if (!fork_.fresh) report(retelling, console);
   return std::nullopt;

@@ -8,6 +8,7 @@
 namespace ziggurat::run {
 namespace {
 
+constexpr std::size_t behind_robots = static_cast<std::size_t>(-1);  // lines of directors
 constexpr int most_notices = 1000;  // so that a hostile peer cannot fill a log
 
 }  // namespace
@@ -25,6 +26,17 @@ void PeerReports::take(network::Report report, std::uint64_t tick) {
   }
   const auto& robots = world_.simulation.layout().robots;
   for (wire::LogLine& line : report.log) log_.push_back({std::move(line), robots[line.robot].id});
+  for (network::DirectorLine& line : report.log_of_directors) {
+    log_.push_back({{behind_robots, line.error, std::move(line.text)}, std::move(line.director)});
+  }
+  for (auto& failure : report.failed_directors) {
+    print_log(tick);
+    const auto text =
+        fmt::format("director '{}' failed at tick {}: {}", failure.director, failure.tick, failure.message);
+    console_.fault(text);
+    tell_(channels::Severity::error, failure.director, text);
+    failures_.push_back({std::nullopt, {failure.director, {}, failure.tick, std::move(failure.message)}});
+  }
   for (auto& failure : report.failures) {
     const auto& robot = robots[failure.robot];
     const auto& controller = world_.scene.controllers[robot.controller].id;
@@ -39,7 +51,8 @@ void PeerReports::take(network::Report report, std::uint64_t tick) {
 }
 
 void PeerReports::print_log(std::uint64_t tick) {
-  std::ranges::stable_sort(log_, {}, [](const Line& each) { return each.line.robot; });
+  std::ranges::stable_sort(
+      log_, {}, [](const Line& each) { return std::tie(each.line.robot, each.robot); });
   for (const auto& [line, robot] : log_) {
     console_.log_line(tick, robot, line.text, line.error);
     tell_(line.error ? channels::Severity::error : channels::Severity::info, robot, line.text);

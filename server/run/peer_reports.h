@@ -59,7 +59,7 @@ class PeerReports {
   reports::Console& console_;
   const TellLine tell_;
   std::vector<Line> log_;
-  /// With the robot: none if a reset took it.
+  /// With the robot: none if a reset took it, or of a director.
   std::vector<std::pair<std::optional<std::size_t>, reports::Summary::Failure>> failures_;
   int notices_ = 0;  ///< printed so far
 };

@@ -38,7 +38,8 @@ Rehearsal::Rehearsal(const RehearsalOptions& options, processes::Signals& signal
       server_(config(), description_of(world_, scripts_)),
       controllers_(start()),
       callers_(server_),
-      supervision_({}, world_, server_, callers_, controllers_, console_),
+      population_({}, world_, server_, callers_, controllers_, console_),
+      supervision_({}, world_, server_, callers_, population_),
       watch_({{}, false, false, false, file_.states(), {}}, world_, server_, controllers_, supervision_,
              signals, console_, nullptr, [](auto...) {}) {}
 

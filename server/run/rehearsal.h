@@ -69,6 +69,7 @@ class Rehearsal {
   network::Server server_;
   processes::Controllers controllers_;
   supervision::Callers callers_;
+  supervision::Population population_;
   supervision::Supervision supervision_;
   Watch watch_;
   std::optional<Retelling> retelling_;

@@ -75,7 +75,10 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
                                         robots_without_controller(), nullptr, console_)),
       controllers_(start_controllers()),
       callers_(server_),
-      supervision_(supervision_settings(), world_, server_, callers_, controllers_, console_),
+      population_({options.scene_file.max_size, with_controllers_, options.spawned_script_folders},
+                  world_, server_, callers_, controllers_, console_),
+      supervision_(supervision_settings(), world_, server_, callers_, population_),
+      directing_(world_, server_, callers_, population_, console_),
       schedule_(plan_.real_time, world_.simulation.tick_length()),
       showing_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
                                            plan_.ticks.value_or(0)))),
@@ -191,6 +194,7 @@ std::vector<std::size_t> Run::robots_without_controller() const {
 processes::Controllers Run::start_controllers() {
   wire::Run run = description_of(world_, scripts_);
   run.is_hardware_in_the_loop = options_.hil;
+  if (with_controllers_) run.directors = directors_of(world_);
   server_.open(std::move(run), complete_config());
   server_.remove_robots(robots_without_controller());
   if (service_ == Service::serve || !with_controllers_) return {};
@@ -200,7 +204,8 @@ processes::Controllers Run::start_controllers() {
 processes::LaunchSettings Run::launch_settings() const {
   processes::LaunchSettings settings{server_.endpoints().front(),  folder_.path(),
                                      processes::find_lua_runner(), options_.lua_processes,
-                                     options_.lua_arguments,       signals_.guardian()};
+                                     options_.lua_arguments,       signals_.guardian(),
+                                     directors_of(world_)};
   const auto allow = [&](const std::string& folder) {
     settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
   };
@@ -213,9 +218,7 @@ processes::LaunchSettings Run::launch_settings() const {
 }
 
 supervision::Supervision::Settings Run::supervision_settings() const {
-  return {options_.scene_file.max_size, plan_.ticks.value_or(0), options_.hil, with_controllers_,
-          options_.spawned_script_folders,
-          options_.snapshot_folder,
+  return {plan_.ticks.value_or(0), options_.hil, options_.snapshot_folder,
           fmt::format("{}, {}", version, __VERSION__)};
 }
 
@@ -304,10 +307,12 @@ Ending Run::run_to_end() {
 /// One world, from tick 0 or a snapshot on.
 Ending Run::run_world() {
   simulation::Simulation& simulation = world_.simulation;
+  const wire::Truth truth{simulation.layout(), simulation.entities(), simulation.state(),
+                          simulation.observations(), simulation.contacts()};
   schedule_.begin(simulation.state().tick, supervision_.paused_for());
   for (;;) {
     // Controllers compute while the files are written.
-    server_.publish(simulation.observations(), simulation.state().tag_payloads);
+    server_.publish(simulation.observations(), simulation.state().tag_payloads, &truth);
     supervision_.published();
     timer_.end_phase(Phase::exchange, summary_);
     recorders_.tick(simulation);
@@ -330,10 +335,13 @@ Ending Run::run_world() {
     keep(watch_.measured(), summary_);
     if (showing_) showing_->answered();
     timer_.end_phase(Phase::recording, summary_);
-    if (is_last) return Ending::finished;
+    summary_.result = directing_.result();
+    if (is_last || summary_.result) return Ending::finished;
+    directing_.act();
     if (recorded_) recorded_->step(watch_.measured());
     simulation.list_contacts((showing_ && showing_->wants_contacts()) ||
-                             (recorded_ && recorded_->wants_contacts()));
+                             (recorded_ && recorded_->wants_contacts()) ||
+                             directing_.wants_contacts());
     simulation.list_rays((showing_ && showing_->wants_rays()) ||
                          (options_.pictures && options_.pictures->view.layers.rays));
     simulation.step();

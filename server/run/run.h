@@ -25,6 +25,7 @@
 #include "run/schedule.h"
 #include "run/showing.h"
 #include "run/watch.h"
+#include "supervision/directing.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
 
@@ -109,7 +110,9 @@ class Run {
   std::unique_ptr<RecordedRun> recorded_;  ///< null: not recorded; of a fork, once it begins
   processes::Controllers controllers_;
   supervision::Callers callers_;
+  supervision::Population population_;
   supervision::Supervision supervision_;
+  supervision::Directing directing_;
   Schedule schedule_;
   const std::unique_ptr<Showing> showing_;  ///< null: not shown
   Watch watch_;

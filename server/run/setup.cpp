@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "processes/scripts.h"
 #include "run/files.h"
 #include "run/loading.h"
 #include "run/version.h"
@@ -48,6 +49,7 @@ std::string existing_scene(const Options& options, bool is_serve, reports::Conso
 network::Config network_config(const Options& options, bool is_serve, LocalEndpoints& local) {
   network::Config config;
   config.insecure = options.insecure;
+  config.allows_directors = options.allows_directors;
   config.lease = std::chrono::milliseconds(static_cast<std::int64_t>(options.lease * 1000));
   if (!options.curve_secret.empty()) {
     config.curve = {network::read_secret_key(options.curve_secret),
@@ -97,6 +99,14 @@ wire::Run description_of(const supervision::World& world, const std::vector<std:
   return run;
 }
 
+std::vector<scene::Director> directors_of(const supervision::World& world) {
+  std::vector<scene::Director> directors = world.scene.directors;
+  for (scene::Director& director : directors) {
+    director.script = processes::script_path(world.scene, director, world.path);
+  }
+  return directors;
+}
+
 wire::End end_message(const reports::Summary& summary) {
   using reports::Ending;
   wire::End end;
@@ -105,6 +115,7 @@ wire::End end_message(const reports::Summary& summary) {
   switch (summary.ending) {
     case Ending::finished:
       end.reason = wire::EndReason::finished;
+      if (summary.result) end.message = summary.result->text;
       break;
     case Ending::shut_down:
       end.reason = wire::EndReason::finished;

@@ -40,6 +40,9 @@ void announce(const Options& options, const std::vector<std::string>& endpoints,
 /// @param scripts  per robot of the scene; empty = none
 wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts);
 
+/// Those of the scene, with the paths of their scripts.
+std::vector<scene::Director> directors_of(const supervision::World& world);
+
 /// What clients are told at the end of the run.
 wire::End end_message(const reports::Summary& summary);
 

@@ -1,6 +1,7 @@
 #include "run/watch.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <poll.h>
 
 #include <algorithm>
@@ -34,9 +35,34 @@ constexpr Patience interrupted{milliseconds{400}, 100};
 /// @param when  "at tick 3"
 std::string describe_end(const processes::ControllerProcess& ended, const std::string& when,
                          const world::Layout& layout) {
+  if (!ended.director.empty()) {
+    return fmt::format("{} (process {}) {} {}", ended.name, ended.process.id(),
+                       ended.process.how_it_ended(), when);
+  }
   return fmt::format("{} (process {}) {} {}; it controlled {}", ended.name, ended.process.id(),
                      ended.process.how_it_ended(), when,
                      processes::names_of(ended.robots, layout));
+}
+
+/// Directors without session that the run can't go on without.
+/// @param gathered  every robot and director was there
+std::vector<std::string> lost_directors(const std::vector<network::DirectorStatus>& directors,
+                                        bool gathered) {
+  std::vector<std::string> lost;
+  for (const network::DirectorStatus& each : directors) {
+    const bool is_gone = !each.is_held && !each.has_left;
+    if (is_gone && (!gathered || each.waits)) lost.push_back(each.id);
+  }
+  return lost;
+}
+
+/// "director 'judge'", for each that the tick waits for.
+std::vector<std::string> awaited_of(const std::vector<network::DirectorStatus>& directors) {
+  std::vector<std::string> names;
+  for (const network::DirectorStatus& each : directors) {
+    if (each.is_awaited) names.push_back(fmt::format("director '{}'", each.id));
+  }
+  return names;
 }
 
 // "r0, r1 (controller 'swing'), r7 (controller 'lift')"
@@ -62,6 +88,7 @@ Watch::Watch(const Settings& settings, const supervision::World& world, network:
              TellLine tell)
     : world_(world),
       server_(server),
+      directors_(server),
       controllers_(controllers),
       supervision_(supervision),
       signals_(signals),
@@ -177,7 +204,10 @@ std::optional<Ending> Watch::lost_controller() {
   child_ended_ = false;
   if (waits_for_clients_) return std::nullopt;
   const auto status = server_.status();
+  const auto directors = directors_.status();
+  auto free_directors = lost_directors(directors, gathered_);
   const auto is_needed = [&](const processes::ControllerProcess& process) {
+    if (std::ranges::find(free_directors, process.director) != free_directors.end()) return true;
     // One that was ended from outside took leave perhaps; its own failures are reported already.
     const bool was_ended = !process.process.ended_well() && !peers_.has_failure(process.robots);
     return std::ranges::any_of(process.robots, [&](std::size_t robot) {
@@ -193,7 +223,10 @@ std::optional<Ending> Watch::lost_controller() {
   std::erase_if(lost, [&](std::size_t robot) {  // those whose controller is still to come
     return !status[robot].was_held || std::ranges::find(restarted_, robot) != restarted_.end();
   });
-  if (!ended && lost.empty()) {
+  std::erase_if(free_directors, [&](const std::string& id) {  // those that are still to come
+    return !std::ranges::find(directors, id, &network::DirectorStatus::id)->was_held;
+  });
+  if (!ended && lost.empty() && free_directors.empty()) {
     missed_since_.reset();
     return std::nullopt;
   }
@@ -203,6 +236,8 @@ std::optional<Ending> Watch::lost_controller() {
     vanished_ = describe_end(*ended, gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick",
                              world_.simulation.layout());
     if (restart(*ended)) return std::nullopt;
+  } else if (!free_directors.empty()) {
+    vanished_ = fmt::format("director '{}' disconnected at tick {}", free_directors.front(), tick_);
   } else {
     vanished_ =
         fmt::format("the controller of {} disconnected at tick {}", by_controller(world_, lost), tick_);
@@ -295,19 +330,25 @@ std::string Watch::busy_scripts(std::vector<std::size_t>& robots) const {
 void Watch::report_awaited() {
   const auto waited = clock::now() - waiting_since_;
   const auto robots = awaited_robots();
+  const auto directors = awaited_of(directors_.status());
   const auto awaited = [&] {
     auto others = robots;
     const auto busy = busy_scripts(others);
-    const auto rest = by_controller(world_, others);
+    auto rest = by_controller(world_, others);
+    if (!directors.empty()) {
+      rest += fmt::format("{}{}", rest.empty() ? "" : ", ", fmt::join(directors, ", "));
+    }
     return busy.empty() || rest.empty() ? busy + rest : busy + ", " + rest;
   };
   if (progress_.needs_update()) {
     progress_.show(tick_, waited > noticeable ? awaited() : std::string());
   }
   const bool client_must_connect = std::ranges::any_of(
-      unheld_robots(), [&](std::size_t robot) { return !controllers_.have(robot); });
+      unheld_robots(), [&](std::size_t robot) { return !controllers_.have(robot); }) ||
+      std::ranges::any_of(lost_directors(directors_.status(), gathered_),
+                          [&](const auto& id) { return !controllers_.have_director(id); });
   if (!client_must_connect && waited < long_wait) return;
-  auto text = by_controller(world_, robots);
+  auto text = by_controller(world_, robots) + fmt::format("{}", fmt::join(directors, ", "));
   auto others = robots;
   const bool names_script = !busy_scripts(others).empty();
   const bool is_printed = text == printed_ && (printed_script_ || !names_script);

@@ -143,6 +143,7 @@ void read_framework(Draft& draft, Element& root);
 void read_engines(Draft& draft, Element& root);
 void read_media(Draft& draft, Element& root);
 void read_controllers(Draft& draft, Element& root, std::span<Element> included);
+void read_directors(Draft& draft, Element& root);
 void read_models(Draft& draft, Element& list);
 void read_arena(Draft& draft, Element& root);
 
@@ -177,7 +178,6 @@ Entity read_entity(Draft& draft, Element& element, Placement placement);
 std::optional<EntityKind> entity_kind(std::string_view name);
 /// The names of all kinds of entities, and others behind them.
 std::vector<std::string_view> entity_names(std::initializer_list<std::string_view> others = {});
-std::string_view to_string(EntityKind kind);
 bool may_have_controller(EntityKind kind);
 
 /// Reads what a model and an entity without a model have in common: all but id, pose and

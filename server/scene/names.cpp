@@ -19,7 +19,7 @@ using Reason = std::pair<std::string_view, std::string_view>;
 using Reasons = std::span<const Reason>;
 
 constexpr auto element_reasons = std::to_array<Reason>({
-    {"loop_functions", "user libraries are not loaded into the server; connect a controller"},
+    {"loop_functions", "write <director id=\"…\" script=\"…\"/> under the root"},
     {"eye-bot", "its flight model does not exist here; model it as a <prototype>"},
     {"spiri", "its flight model does not exist here; model it as a <prototype>"},
     {"quadrotor", "its flight model does not exist here; model it as a <prototype>"},

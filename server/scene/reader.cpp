@@ -84,6 +84,7 @@ void read_scene(Draft& draft, File file, const std::string& name) {
   read_engines(draft, root);
   read_media(draft, root);
   read_controllers(draft, root, parts.controllers);
+  read_directors(draft, root);
   for (Element& models : parts.models) read_models(draft, models);
   read_arena(draft, root);
   root.child_without_effect("visualization", "use the web viewer");

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -111,6 +112,9 @@ struct Joint {
 };
 
 enum class EntityKind { box, cylinder, sphere, prototype, foot_bot, e_puck };
+
+/// The name of its element.
+std::string_view to_string(EntityKind kind);
 
 /// Whether it is one body and no more, without joints, controller or name for its link.
 constexpr bool is_single(EntityKind kind) {
@@ -233,6 +237,18 @@ struct Controller {
   Location params_where;                                    ///< of <params>
 };
 
+/// A program that watches the whole world and acts on it between ticks.
+struct Director {
+  static constexpr std::size_t most = 4;  ///< of a world
+
+  std::string id;
+  std::string script;   ///< that ziggurat-lua runs, as written; empty: none
+  std::string command;  ///< what `run` starts; empty: none, and without script a client connects
+  std::optional<DeadlinePolicy> deadline;  ///< for when it is late; nothing: the scene has no say
+  std::vector<std::pair<std::string, std::string>> params;  ///< all attributes of <params>
+  Location where;
+};
+
 /// Something that many entities are alike in, `<models>` in the file.
 struct ModelName {
   std::string id;
@@ -245,6 +261,7 @@ struct Scene {
   std::vector<std::string> files;  ///< what Location::file counts; [0] is the scene file
   Experiment experiment;
   std::vector<Controller> controllers;
+  std::vector<Director> directors;
   std::vector<ModelName> models;
   Arena arena;
   std::vector<Entity> entities;  ///< explicitly placed, in document order

@@ -132,6 +132,7 @@ void Simulation::Parts::remove(std::size_t entity) {
   std::erase_if(commands.radio_messages.entries, [&](const auto& message) {
     return layout.radios[message.radio].mount.entity == entity;
   });
+  std::erase_if(commands.pushes, [&](const auto& push) { return layout.links[push.link].entity == entity; });
   look_around();
 }
 
@@ -200,10 +201,12 @@ void Simulation::Parts::step() {
   all_rays.clear();
   state.frusta.clear();
   devices.apply(now);
+  set_pushes(physics, commands.pushes);
   for (unsigned i = 0; i < substeps; ++i) {
     physics.step();
     devices.after_substep(now);
   }
+  commands.pushes.clear();
   state.tick += 1;
   state.time_ns = std::llround(static_cast<long double>(state.tick) * 1e9L / ticks_per_second);
   physics.read(state);

@@ -42,7 +42,9 @@ class Callers {
     if (tell_act_) tell_act_(act);
   }
 
-  /// How many calls have changed the world beside a tick: moves, spawns, removals.
+  /// The world was changed beside a tick by another than a caller.
+  void note_change() { ++changes_; }
+  /// How often the world was changed beside a tick: by moves, spawns, removals.
   std::uint64_t changes() const { return changes_; }
 
  private:

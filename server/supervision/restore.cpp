@@ -34,11 +34,15 @@ std::size_t common_robots(const simulation::History& now, const simulation::Hist
       layout.robots, [&](const world::RobotLayout& robot) { return robot.entity < entities; }));
 }
 
-std::vector<std::string> clients_without_restore(const network::Server& server) {
+std::vector<std::string> clients_without_restore(network::Server& server) {
   std::vector<std::string> clients;
   for (const network::RobotStatus& robot : server.status()) {
     const bool is_known = std::ranges::find(clients, robot.holder) != clients.end();
     if (!robot.can_restore && !is_known) clients.push_back(robot.holder);
+  }
+  for (const network::DirectorStatus& director :
+       network::DirectorsDesk(server).status()) {
+    if (!director.can_restore) clients.push_back(director.client);
   }
   return clients;
 }
@@ -51,19 +55,6 @@ std::string list_of(const std::vector<std::string>& clients) {
   }
   if (clients.size() > most) text += fmt::format(" and {} more", clients.size() - most);
   return text;
-}
-
-/// The script of a robot that is back; empty if it has none, or none any more.
-std::string script_of(const World& world, const scene::Entity& entity,
-                      const processes::AllowedFiles& allowed, reports::Console& console) {
-  try {
-    const auto script = processes::spawned_script(world.scene, entity, world.path, allowed);
-    if (script.fault) console.notice(script.details.value_or(*script.fault));
-    return script.path;
-  } catch (const std::runtime_error& error) {  // its file is gone
-    console.notice(error.what());
-    return {};
-  }
 }
 
 }  // namespace
@@ -85,7 +76,7 @@ Supervision::Reply Supervision::restore(const network::Call& call) {
                                        "clients that set can_restore in their Hello.",
                                        list_of(clients))));
   }
-  auto found = snapshots_.find(call.request.text, world_, opener(allowed_, world_.path));
+  auto found = snapshots_.find(call.request.text, world_, opener(population_.allowed(), world_.path));
   if (auto* fault = std::get_if<wire::Fault>(&found)) return fail(call, std::move(*fault));
   restoring_ = std::get<FoundSnapshot>(std::move(found));
   resetting_ = call;
@@ -118,38 +109,13 @@ bool Supervision::restart() {
   } else {
     callers_.tell(WasReset{world_.seed});
   }
-  welcome_back(restart.snapshot ? restart.snapshot->robots : simulation.layout().robots.size());
+  population_.restart(restart.snapshot ? restart.snapshot->robots
+                                       : simulation.layout().robots.size());
   is_gathered_ = false;  // until every robot has its controller again
-  spawned_ = 0;
-  spawnable_size_ = settings_.max_spawned_size;
-  for (const simulation::Act& act : simulation.history().acts) {
-    if (act.kind != simulation::Act::Kind::spawn) continue;
-    ++spawned_;
-    spawnable_size_ -= std::min(spawnable_size_, act.xml.size());
-  }
   done(*resetting_);
   resetting_.reset();
   restoring_.reset();
   return true;
-}
-
-/// Processes of robots that are gone end by themselves; robots that are back are free.
-/// @param robots  the first ones, which are the same as before
-void Supervision::welcome_back(std::size_t robots) {
-  const simulation::Simulation& simulation = world_.simulation;
-  const auto& all = simulation.layout().robots;
-  controllers_.forget_robots(robots);
-  std::vector<std::size_t> absent;
-  for (std::size_t i = 0; i < robots; ++i) {
-    if (simulation.state().is_absent(all[i].entity)) absent.push_back(i);
-  }
-  server_.remove_robots(absent);
-  if (robots == all.size()) return;
-  std::vector<std::string> scripts;
-  for (std::size_t i = robots; i < all.size(); ++i) {
-    scripts.push_back(script_of(world_, simulation.entities()[all[i].entity], allowed_, console_));
-  }
-  add_controllers(robots, scripts);
 }
 
 }  // namespace ziggurat::supervision

@@ -10,6 +10,7 @@
 
 #include "math/hash.h"
 #include "network/glob.h"
+#include "supervision/moves.h"
 #include "wire/fault.h"
 
 namespace ziggurat::supervision {
@@ -60,21 +61,6 @@ std::optional<wire::Fault> fault_of_reason(const std::string& reason) {
 
 }  // namespace
 
-wire::Fault no_entity(std::string field, const std::string& id) {
-  return wire::make_fault(
-      ErrorCode::unknown_entity, std::move(field),
-      fmt::format("There is no entity '{}'.", id.substr(0, network::longest_pattern)));
-}
-
-std::optional<std::size_t> entity_named(const simulation::Simulation& world,
-                                        const std::string& id) {
-  const auto& entities = world.layout().entities;
-  for (std::size_t i = 0; i < entities.size(); ++i) {
-    if (entities[i].id == id && !world.state().is_absent(i)) return i;
-  }
-  return std::nullopt;
-}
-
 void PauseTimer::update(bool is_paused) {
   if (is_paused == paused_since_.has_value()) return;
   if (is_paused) {
@@ -90,17 +76,13 @@ PauseTimer::clock::duration PauseTimer::total() const {
 }
 
 Supervision::Supervision(const Settings& settings, World& world, network::Server& server,
-                         Callers& callers, processes::Controllers& controllers,
-                         reports::Console& console)
+                         Callers& callers, Population& population)
     : settings_(settings),
-      allowed_(processes::allowed_files(world.scene, world.path, settings.spawned_script_folders)),
       world_(world),
       server_(server),
       callers_(callers),
-      controllers_(controllers),
-      console_(console),
-      snapshots_(settings.snapshot_folder, settings.build),
-      spawnable_size_(settings.max_spawned_size) {}
+      population_(population),
+      snapshots_(settings.snapshot_folder, settings.build) {}
 
 /// Requests of one connection are answered in their order; different connections do not wait for
 /// each other.
@@ -229,32 +211,23 @@ Supervision::Reply Supervision::read(const network::Call& call) {
 }
 
 Supervision::Reply Supervision::move(const network::Call& call) {
-  const wire::Request& request = call.request;
-  const auto entity = entity_named(world_.simulation, request.text);
-  if (!entity) return fail(call, no_entity("move.entity", request.text));
-  constexpr double farthest = 1e6;  // [m], as in scenes
-  const auto is_near = [](double value) { return std::abs(value) <= farthest; };
-  if (request.position.size() != 3 || !std::ranges::all_of(request.position, is_near)) {
-    return fail(call, wire::make_fault(
-                          ErrorCode::bad_value, "move.position",
-                          "A position must be three numbers x, y, z from -1e6 to 1e6 metres."));
-  }
-  math::Pose pose = world_.simulation.state().origins[*entity];
-  pose.position = {request.position[0], request.position[1], request.position[2]};
-  if (!request.orientation.empty()) {
-    const auto& q = request.orientation;
-    const double norm = std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), 0.0));
-    if (q.size() != 4 || !std::isfinite(norm) || norm < 1e-6) {
-      return fail(
-          call,
-          wire::make_fault(ErrorCode::bad_value, "move.orientation",
-                           "An orientation must be a quaternion w, x, y, z, finite and not zero."));
-    }
-    pose.orientation = math::Quaternion(q[0], q[1], q[2], q[3]).normalized();
-  }
-  world_.simulation.move(*entity, pose);
-  callers_.tell(Moved{request.text, pose});
+  const auto entity = entity_named(world_.simulation, call.request.text);
+  if (!entity) return fail(call, no_entity("move.entity", call.request.text));
+  auto pose = pose_of_move(world_.simulation.state().origins[*entity], call.request);
+  if (auto* fault = std::get_if<wire::Fault>(&pose)) return fail(call, std::move(*fault));
+  world_.simulation.move(*entity, std::get<math::Pose>(pose));
+  callers_.tell(Moved{call.request.text, std::get<math::Pose>(pose)});
   return done(call);
+}
+
+Supervision::Reply Supervision::spawn(const network::Call& call) {
+  auto fault = population_.spawn(call.request.text);
+  return fault ? fail(call, std::move(*fault)) : done(call);
+}
+
+Supervision::Reply Supervision::remove(const network::Call& call) {
+  auto fault = population_.remove(call.request.text);
+  return fault ? fail(call, std::move(*fault)) : done(call);
 }
 
 Supervision::Reply Supervision::fail(const network::Call& call, wire::Fault fault) {

@@ -10,22 +10,13 @@
 #include <vector>
 
 #include "network/server.h"
-#include "processes/controllers.h"
-#include "processes/spawned_scripts.h"
-#include "reports/console.h"
 #include "supervision/callers.h"
+#include "supervision/population.h"
 #include "supervision/snapshots.h"
 #include "supervision/tick_budget.h"
 #include "supervision/world.h"
 
 namespace ziggurat::supervision {
-
-/// The fault of a request for an entity that is not there.
-/// @param field  of the request
-wire::Fault no_entity(std::string field, const std::string& id);
-
-/// The entity of that id that is in the world, into Layout::entities.
-std::optional<std::size_t> entity_named(const simulation::Simulation& world, const std::string& id);
 
 /// How long a paced run has been paused: its schedule shifts by that.
 class PauseTimer {
@@ -44,19 +35,16 @@ class Supervision {
   using clock = std::chrono::steady_clock;
 
   struct Settings {
-    std::size_t max_spawned_size = 0;  ///< of all spawned elements, models written out [bytes]
     std::uint64_t last_tick = 0;       ///< 0: until stopped
     bool is_hardware_in_the_loop = false;
-    bool with_controllers = true;  ///< otherwise spawned robots have no controller either
-    std::vector<std::string> spawned_script_folders;  ///< whose files spawned robots may use, too
     std::string snapshot_folder;  ///< where snapshots are written to and read from; empty: nowhere
     std::string build;            ///< of this program
   };
 
-  /// Everything but the settings must outlive this. Notices on spawned entities go to the console.
+  /// Everything but the settings must outlive this.
   /// @throws std::runtime_error if a folder of the settings is none
   Supervision(const Settings& settings, World& world, network::Server& server, Callers& callers,
-              processes::Controllers& controllers, reports::Console& console);
+              Population& population);
 
   /// Answers the requests that can be answered now; the others wait for their tick. Call it
   /// whenever the server wakes, never while physics runs.
@@ -91,25 +79,19 @@ class Supervision {
   Reply remove(const network::Call& call);
   Reply snapshot(const network::Call& call);
   Reply restore(const network::Call& call);
-  void welcome_back(std::size_t robots);
-  void add_controllers(std::size_t first, std::span<const std::string> scripts);
   Reply fail(const network::Call& call, wire::Fault fault);
   Reply done(const network::Call& call);
 
   const Settings settings_;
-  const processes::AllowedFiles allowed_;  ///< for spawned entities
   World& world_;
   network::Server& server_;
   Callers& callers_;
-  processes::Controllers& controllers_;
-  reports::Console& console_;
+  Population& population_;
   std::vector<network::Call> waiting_;  ///< unanswered, in order of arrival
   std::optional<network::Call> stepping_, resetting_;
   Snapshots snapshots_;
   std::optional<FoundSnapshot> restoring_;  ///< with resetting_
   std::uint64_t steps_left_ = 0;
-  std::size_t spawned_ = 0;     ///< entities, since the start or the last reset
-  std::size_t spawnable_size_;  ///< left for more entities [bytes]
   bool is_gathered_ = false, is_pause_asked_ = false;
   std::optional<std::string> shutdown_;  // the reason
   clock::time_point start_ = clock::now();

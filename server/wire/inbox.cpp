@@ -3,11 +3,13 @@
 #include <google/protobuf/arena.h>
 #include <google/protobuf/stubs/logging.h>
 
+#include <algorithm>
 #include <limits>
 #include <new>
 
 #include "wire/command.h"
 #include "wire/cost.h"
+#include "wire/fault.h"
 #include "wire/metrics.h"
 #include "wire/read_json.h"
 #include "wire/response.h"
@@ -15,6 +17,28 @@
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
+
+namespace {
+
+Subscription read(const v1::Subscription& from) {
+  using Wanted = v1::Subscription;
+  Subscription to;
+  to.entities.assign(from.entities().begin(), from.entities().end());
+  const auto wants = [&](Wanted::Group group) {
+    return std::ranges::find(from.groups(), static_cast<int>(group)) != from.groups().end();
+  };
+  to.poses = wants(Wanted::POSES);
+  to.links = wants(Wanted::LINKS);
+  to.joints = wants(Wanted::JOINTS);
+  to.leds = wants(Wanted::LEDS);
+  to.tags = wants(Wanted::TAGS);
+  to.magnets = wants(Wanted::MAGNETS);
+  to.radio_messages = wants(Wanted::RADIO_MESSAGES);
+  to.contacts = wants(Wanted::CONTACTS);
+  return to;
+}
+
+}  // namespace
 
 struct Inbox::Message {
   /// A message in an arena: if decoding runs out of memory, it must not be destroyed, because
@@ -129,6 +153,9 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
       in.kind = Kind::command;
       in.command = &message.command();
       break;
+    case v1::ClientMessage::kDirection:
+      in.kind = Kind::direction;
+      break;
     case v1::ClientMessage::MESSAGE_NOT_SET:
       break;
   }
@@ -159,6 +186,8 @@ Hello Inbox::hello() const {
   }
   hello.takeover = from.takeover();
   hello.can_restore = from.can_restore();
+  hello.director = from.director();
+  if (from.has_subscription()) hello.subscription = read(from.subscription());
   return hello;
 }
 
@@ -183,14 +212,43 @@ bool Inbox::is_question() const {
          (request == v1::Request::kStatus || request == v1::Request::kRead);
 }
 
-bool Inbox::is_command() const { return message_->kind == Kind::command; }
+bool Inbox::is_answer() const {
+  return message_->kind == Kind::command || message_->kind == Kind::direction;
+}
 
-std::uint64_t Inbox::command_tick() const { return message_->command->tick(); }
+std::uint64_t Inbox::command_tick() const {
+  return message_->kind == Kind::command ? message_->command->tick()
+                                         : message_->other.content().direction().tick();
+}
 
 std::optional<std::uint64_t> Inbox::command_epoch() const {
-  const v1::Command& command = *message_->command;
-  if (!command.has_epoch()) return std::nullopt;
-  return command.epoch();
+  const auto epoch_of = [](const auto& answer) {
+    return answer.has_epoch() ? std::optional(answer.epoch()) : std::nullopt;
+  };
+  return message_->kind == Kind::command ? epoch_of(*message_->command)
+                                         : epoch_of(message_->other.content().direction());
+}
+
+std::optional<Fault> Inbox::check_direction() const {
+  if (message_->kind == Kind::direction) {
+    return wire::check(message_->other.content().direction());
+  }
+  const v1::Leave& leave = message_->other.content().leave();
+  if (leave.reason() != v1::Leave::DONE && leave.reason() != v1::Leave::FAILED) {
+    return make_fault(ErrorCode::bad_value, "reason", "The reason of a Leave must be DONE or FAILED.");
+  }
+  if (!leave.robots().empty()) {
+    return make_fault(ErrorCode::unknown_robot, "robots", "A director has no robots.");
+  }
+  return check_names_and_values(leave.metrics());
+}
+
+Direction Inbox::direction() const {
+  if (message_->kind == Kind::direction) return read(message_->other.content().direction());
+  v1::Direction last;
+  *last.mutable_log() = message_->other.content().leave().log();
+  *last.mutable_metrics() = message_->other.content().leave().metrics();
+  return read(last);
 }
 
 std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {

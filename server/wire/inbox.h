@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "wire/direction.h"
 #include "wire/messages.h"
 #include "wire/request.h"
 #include "wire/roster.h"
@@ -26,6 +27,7 @@ class Inbox {
     leave,
     heartbeat,
     request,
+    direction,
   };
 
   Inbox();
@@ -41,12 +43,18 @@ class Inbox {
   Hello hello() const;
   Leave leave() const;
   std::uint64_t heartbeat() const;  ///< its sequence
-  std::uint64_t command_tick() const;
-  std::optional<std::uint64_t> command_epoch() const;  ///< none: it does not say
+  std::uint64_t command_tick() const;  ///< of a command or direction
+  std::optional<std::uint64_t> command_epoch() const;  ///< likewise; none: it does not say
   std::uint64_t request_id() const;
   Request request() const;
   bool is_question() const;  ///< a Request that changes nothing
-  bool is_command() const;
+  bool is_answer() const;    ///< a command or direction
+
+  /// What is wrong with the current direction, or with the leave of a director, if anything. What only the
+  /// world can tell is not checked, nor its tick.
+  std::optional<Fault> check_direction() const;
+  /// The checked direction; of a leave its last words.
+  Direction direction() const;
 
   /// What is wrong with the current command or leave, if anything. Its tick is not checked.
   std::optional<Fault> check(const Roster& roster, const world::Layout& layout) const;

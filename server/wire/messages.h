@@ -35,16 +35,25 @@ struct Version {
 };
 
 /// Version of the server. A client must have the same major version.
-inline constexpr Version version{1, 3};
+inline constexpr Version version{1, 4};
 /// From this minor version on a session is told of dropped and spawned robots, and what was commanded
 /// before it was resumed.
 inline constexpr std::uint32_t minor_with_events = 1;
 /// From this minor version on ticks have an epoch, and a session may be told that the world went back.
 inline constexpr std::uint32_t minor_with_epochs = 2;
-/// From this minor version on there are metrics and directors.
+/// From this minor version on there are metrics.
 inline constexpr std::uint32_t minor_with_metrics = 3;
+/// From this minor version on there are directors.
+inline constexpr std::uint32_t minor_with_directors = 4;
 
-enum class Role { unspecified, controller, supervisor, observer };
+enum class Role { unspecified, controller, supervisor, observer, director };
+
+/// What a director wants to be told at each tick.
+struct Subscription {
+  bool poses = false, links = false, joints = false, leds = false, tags = false, magnets = false,
+       radio_messages = false, contacts = false;
+  std::vector<std::string> entities;  ///< ids or globs; empty: all
+};
 
 using scene::DeadlineAction;
 using scene::DeadlinePolicy;
@@ -62,6 +71,8 @@ struct Hello {
   std::optional<DeadlinePolicy> deadline;
   bool takeover = false;  ///< take robots from other sessions too
   bool can_restore = false;  ///< its controllers can go back to a snapshot
+  std::string director;      ///< of that role: its id
+  std::optional<Subscription> subscription;  ///< likewise; none: it is told of no entity
 };
 
 /// A line that a controller logged.
@@ -147,6 +158,7 @@ struct Welcome {
   std::vector<DeadlinePolicy> deadlines = {};  ///< per robot of the session; empty: all wait
   bool is_resumed = false;  ///< and its client is told of the present state
   const world::Commands* commands = nullptr;  ///< resumed: of all robots; null: nothing was commanded
+  const scene::Director* director = nullptr;  ///< of that role: which; its script is a path
 };
 
 /// A robot that came while the world runs.
@@ -189,6 +201,7 @@ struct Run {
   std::string scene_hash;  ///< 16 hexadecimal digits
   std::string server_version;
   bool is_hardware_in_the_loop = false;  ///< paced by the clock; no session is waited for
+  std::vector<scene::Director> directors = {};  ///< of the scene; their scripts are resolved paths
 };
 
 /// The name in docs/protocol.md, for example "ROBOT_TAKEN".

@@ -26,6 +26,13 @@ std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>&
                            const Roster& roster) {
   for (const v1::Metric& metric : metrics) {
     if (auto found = check_position(metric.robot(), roster, "metrics")) return found;
+  }
+  return check_names_and_values(metrics);
+}
+
+std::optional<Fault> check_names_and_values(
+    const google::protobuf::RepeatedPtrField<v1::Metric>& metrics) {
+  for (const v1::Metric& metric : metrics) {
     if (!is_name(metric.name())) {
       return make_fault(ErrorCode::bad_value, "metrics",
                         fmt::format("The name of a metric must have 1 to {} letters, digits, '_', "

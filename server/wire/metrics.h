@@ -14,6 +14,10 @@ namespace ziggurat::wire {
 std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics,
                            const Roster& roster);
 
+/// The same for their names and values only.
+std::optional<Fault> check_names_and_values(
+    const google::protobuf::RepeatedPtrField<v1::Metric>& metrics);
+
 /// Appends checked metrics. Those of robots that were taken over are skipped.
 void append(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics, const Roster& roster,
             std::vector<Metric>& to);

@@ -66,6 +66,16 @@ void fill(const Roster& roster, const world::Commands* commands, v1::Resumed& re
   if (!fill(roster, *commands, *resumed.mutable_commanded())) resumed.clear_commanded();
 }
 
+void fill(const scene::Director& from, v1::DirectorDescription& to) {
+  to.set_id(v1::valid_utf8(from.id));
+  for (const auto& [name, value] : from.params) {
+    v1::Parameter& parameter = *to.add_params();
+    parameter.set_name(v1::valid_utf8(name));
+    parameter.set_value(v1::valid_utf8(value));
+  }
+  to.set_script(v1::valid_utf8(from.script));
+}
+
 v1::End::Reason reason_of(EndReason reason) {
   switch (reason) {
     case EndReason::finished:
@@ -123,7 +133,9 @@ void Outbox::encode(Encoding encoding) {
 
 const v1::ServerMessage& Outbox::message() const { return message_->message; }
 
-bool Outbox::is_observation() const { return message_->message.has_observation(); }
+bool Outbox::is_observation() const {
+  return message_->message.has_observation() || message_->message.has_world_state();
+}
 
 std::size_t Outbox::size() const {
   return message_->text.empty() ? message_->size : message_->text.size();
@@ -155,6 +167,7 @@ void Outbox::welcome(const Run& run, const Roster& roster, const Welcome& sessio
   welcome.set_server_version(run.server_version);
   for (const std::size_t robot : roster.robots) describe(run, robot, *welcome.add_robots());
   fill(session.deadlines, welcome);
+  if (session.director) fill(*session.director, *welcome.mutable_director());
   if (session.is_resumed) fill(roster, session.commands, *welcome.mutable_resumed());
   finish();
 }
@@ -182,6 +195,26 @@ bool Outbox::observation(const Roster& roster, const world::Observations& observ
   if (epoch) observation.set_epoch(*epoch);
   finish();
   return message_->size <= limit;
+}
+
+void world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView& view) {
+  v1::WorldLayout& layout = *outbox.message_->message.mutable_world_layout();
+  layout.Clear();
+  fill(view, truth, run.controllers, layout);
+  outbox.finish();
+}
+
+bool world_state(Outbox& outbox, const Truth& truth, const WorldView& view, std::size_t limit,
+                 std::uint64_t epoch) {
+  const std::size_t changing = payload_bytes(view, truth);
+  if (changing > limit) return false;
+  outbox.message_->forget(changing);
+  v1::WorldState& state = *outbox.message_->message.mutable_world_state();
+  state.Clear();
+  fill(view, truth, state);
+  state.set_epoch(epoch);
+  outbox.finish();
+  return outbox.message_->size <= limit;
 }
 
 void Outbox::end(const End& from) {

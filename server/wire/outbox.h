@@ -13,6 +13,7 @@
 #include "wire/messages.h"
 #include "wire/request.h"
 #include "wire/roster.h"
+#include "wire/world_view.h"
 #include "world/state.h"
 
 namespace ziggurat::v1 {
@@ -47,6 +48,11 @@ class Outbox {
                    std::span<const std::string> tag_payloads,
                    std::size_t limit = max_observation_bytes,
                    std::optional<std::uint64_t> epoch = {});
+  /// Before a director's first state, and whenever what it is told of has changed.
+  friend void world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView& view);
+  /// False if it would have more than `limit` bytes in binary form; then there is no message.
+  friend bool world_state(Outbox& outbox, const Truth& truth, const WorldView& view,
+                          std::size_t limit, std::uint64_t epoch);
   void end(const End& end);
   void error(const Fault& fault);
   void heartbeat(std::uint64_t sequence);
@@ -71,7 +77,7 @@ class Outbox {
   void encode(Encoding encoding);
 
   const v1::ServerMessage& message() const;  ///< the current one
-  bool is_observation() const;               ///< the current one is
+  bool is_observation() const;               ///< the current one is, or a WorldState
   std::size_t size() const;                  ///< of the current message [bytes]
   void write(std::uint8_t* to) const;        ///< writes size() bytes
 

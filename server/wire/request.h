@@ -56,6 +56,7 @@ struct SessionStatus {
   Latency latency;                  ///< from observation to command
   std::uint64_t misses = 0;         ///< deadlines missed
   scene::DeadlinePolicy deadline;
+  std::string director;  ///< its id
 };
 
 /// How well the physics' solver did since the world began.

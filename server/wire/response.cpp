@@ -27,6 +27,7 @@ void fill(const SessionStatus& from, v1::SessionStatus& to) {
   deadline.set_action(static_cast<v1::DeadlinePolicy::Action>(from.deadline.action));
   deadline.set_wall_deadline_ms(from.deadline.wall_deadline_ms);
   deadline.set_miss_budget(from.deadline.miss_budget);
+  to.set_director(v1::valid_utf8(from.director));
 }
 
 void add(const math::Vector3& from, google::protobuf::RepeatedField<double>& to) {

@@ -140,7 +140,7 @@ void archive(math::Archive& archive, const Layout& layout, const State& state,
 }
 
 void archive(math::Archive& archive, const Layout& layout, Commands& commands) {
-  static_assert(field_count<Commands>() == 11);
+  static_assert(field_count<Commands>() == 12);
   archive("joint_targets", commands.joint_targets);
   archive("led_colors", commands.led_colors);
   archive("directional_led_colors", commands.directional_led_colors);
@@ -154,6 +154,11 @@ void archive(math::Archive& archive, const Layout& layout, Commands& commands) {
   archive("turret_rotations", commands.turret_rotations);
   archive("turret_speeds", commands.turret_speeds);
   archive_messages(archive, layout, commands.radio_messages);
+  archive.list("pushes", commands.pushes, [&](Push& push) {
+    math::archive_index(archive, "link", push.link, layout.links.size());
+    archive("force", push.force);
+    archive("torque", push.torque);
+  });
 }
 
 }  // namespace ziggurat::world

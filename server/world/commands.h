@@ -22,6 +22,13 @@ struct WheelsCommand {
   double left = 0, right = 0;  ///< speed over the floor [m/s]
 };
 
+/// A force and a torque on a link.
+struct Push {
+  std::size_t link = 0;                          ///< into Layout::links
+  math::Vector3 force = math::Vector3::Zero();   ///< at its centre of mass, in W [N]
+  math::Vector3 torque = math::Vector3::Zero();  ///< in W [N m]
+};
+
 /// What all robots want. Values persist until changed; initially they are those of the scene.
 /// Values of entities that no robot may set stay.
 struct Commands {
@@ -38,6 +45,8 @@ struct Commands {
   /// Sent at the start of the next tick, which empties it: entries of one radio in the order of
   /// sending, those of different radios in any order. Only radios that send.
   RadioMessages radio_messages;
+  /// By directors, during the next tick, which empties it; no robot sets any.
+  std::vector<Push> pushes;
 };
 
 /// The bytes that a robot broadcasts, if its controller has the actuator.
@@ -99,6 +108,7 @@ inline constexpr std::tuple commanded{
         "turret speed", "turrets with an actuator",
         driven_turret, nullptr, finite, Released::zeroed},
     ByHand{&Commands::radio_messages, Hashed::no},
+    ByHand{&Commands::pushes, Hashed::no},
 };
 // clang-format on
 static_assert(lists_all_fields<Commands>(commanded),

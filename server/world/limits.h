@@ -1,5 +1,5 @@
 #pragma once
-// Limits of what a robot may send in one tick. More is an error of its controller.
+// Limits of what a robot may send, or a director do, in one tick. More is an error of the client.
 
 #include <cstddef>
 
@@ -10,5 +10,7 @@ inline constexpr std::size_t most_radio_bytes_per_robot = std::size_t{16} << 20;
 /// An empty message costs no byte: their number is bounded too, per robot and tick.
 inline constexpr std::size_t most_radio_messages_per_robot = std::size_t{1} << 16;
 inline constexpr std::size_t most_tag_payload_bytes = std::size_t{64} << 10;
+/// Of each component of what a director pushes with, in newtons and newton metres.
+inline constexpr double largest_push = 1e6;
 
 }  // namespace ziggurat::world

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "network/barrier/departure.h"
+#include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
 #include "network/barrier/granting.h"
 #include "network/barrier/talk.h"
 #include "network/barrier/timing.h"
+#include "wire/direction.h"
 #include "wire/fault.h"
 #include "wire/longest_command.h"
 
@@ -72,7 +74,7 @@ Granted begin_with_robots(Barrier& barrier, const wire::Hello& hello, const Acce
 /// The session that has the Hello's token. Its older connection, if it still has one, is displaced.
 Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access& access) {
   Session* session = barrier.sessions.with_token(hello.session_token);
-  if (session == nullptr) {
+  if (session == nullptr || session->role != hello.role) {
     return make_refusal(ErrorCode::no_such_session, "session_token",
                         "No session of this run has that token, or none any more.");
   }
@@ -97,11 +99,23 @@ Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access&
   return session;
 }
 
+/// A new session of a director.
+Granted start_directing(Barrier& barrier, const wire::Hello& hello) {
+  auto begun = begin_directing(barrier, hello, label_of(hello));
+  if (auto* refusal = std::get_if<wire::Refusal>(&begun)) return std::move(*refusal);
+  Session& session = *std::get<Session*>(begun);
+  session.token = new_token();
+  return &session;
+}
+
 Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) {
   if (auto refusal = check_hello(barrier, hello, access.roles)) return std::move(*refusal);
-  if (hello.role != wire::Role::controller) return begin_without_robots(barrier, hello);
-  return hello.session_token.empty() ? begin_with_robots(barrier, hello, access)
-                                     : resume_session(barrier, hello, access);
+  const bool has_ticks =
+      hello.role == wire::Role::controller || hello.role == wire::Role::director;
+  if (!has_ticks) return begin_without_robots(barrier, hello);
+  if (!hello.session_token.empty()) return resume_session(barrier, hello, access);
+  if (hello.role == wire::Role::director) return start_directing(barrier, hello);
+  return begin_with_robots(barrier, hello, access);
 }
 
 /// Binds the session to its connection.
@@ -111,6 +125,7 @@ void bind(Barrier& barrier, Session& session, const std::string& connection) {
     session.longest_command = wire::longest_command(
         session.roster, barrier.run->layout, barrier.connections.find(connection)->encoding);
   }
+  if (session.role == wire::Role::director) session.longest_command = wire::longest_direction;
   if (barrier.on_standing) {
     barrier.on_standing(connection, standing_of(&session), longest_message(barrier, &session));
   }
@@ -140,6 +155,10 @@ bool welcome(Barrier& barrier, Session& session, bool is_resumed, const world::C
   welcome.wall_heartbeat_ms = static_cast<std::uint32_t>(barrier.config.heartbeat.count());
   for (const std::size_t robot : session.roster.robots) {
     welcome.deadlines.push_back(barrier.deadlines.policy(robot));
+  }
+  if (session.director) {
+    welcome.director = &barrier.directors.all[*session.director];
+    welcome.deadlines.push_back(barrier.directors.deadlines.policy(*session.director));
   }
   welcome.is_resumed = is_resumed && session.minor >= wire::minor_with_events;
   welcome.commands = !commands && barrier.begin.commands ? &*barrier.begin.commands : commands;
@@ -173,11 +192,12 @@ void admit(Barrier& barrier, const std::string& connection, const Access& access
   session.state = SessionState::ready;
   session.key = access.key;
   bind(barrier, session, connection);
+  if (session.director) take_director(barrier, session, hello);
   set_policies(barrier, session, hello);
   update_patience(barrier, session);
   const bool is_welcomed = welcome(barrier, session, !hello.session_token.empty(), commands) &&
                            tell_taken(barrier, session, "Another client");
-  const bool has_tick = barrier.gate.tick() && !session.roster.empty();
+  const bool has_tick = barrier.gate.tick() && session.has_ticks();
   const bool is_there = is_welcomed && (!has_tick || observe(barrier, session));
   session.turn.is_repeated = true;
   if (!is_there) lose(barrier, session, "its connection is gone");

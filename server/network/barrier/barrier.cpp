@@ -9,9 +9,11 @@ Barrier::Barrier(const Config& from, Send to, Time at, OnStanding told)
       send(std::move(to)),
       on_standing(std::move(told)),
       now(at),
-      connections(from.rate, 2 * (from.max_sessions + from.max_supervisors + from.max_observers)),
+      connections(from.rate, 2 * (from.max_sessions + from.max_supervisors + from.max_observers +
+                                  from.max_directors)),
       timers{never, at + from.heartbeat} {
   reactions.are_kept = from.keeps_reactions;
+  directors.are_allowed = from.allows_directors;
 }
 
 }  // namespace ziggurat::network

@@ -13,6 +13,7 @@
 #include "network/barrier/calls.h"
 #include "network/barrier/connections.h"
 #include "network/barrier/deadlines.h"
+#include "network/barrier/directors.h"
 #include "network/barrier/journal.h"
 #include "network/barrier/metrics.h"
 #include "network/barrier/seats.h"
@@ -68,7 +69,8 @@ struct Barrier {
   Sessions sessions;
   Seats seats;
   Deadlines deadlines;
-  TickGate gate{seats};
+  Directors directors;
+  TickGate gate{seats, directors.seats};
   Calls calls;
   Journal journal;
   Metrics metrics;

@@ -36,6 +36,13 @@ void Deadlines::add(std::size_t controller) {
   robots_.push_back({controller, defaults_[controller].policy, 0, false});
 }
 
+void Deadlines::grow() {
+  defaults_.emplace_back();
+  missed_ticks_.push_back(0);
+  last_missed_.emplace_back();
+  add(defaults_.size() - 1);
+}
+
 void Deadlines::set_policy(std::size_t robot, const std::optional<scene::DeadlinePolicy>& policy) {
   Robot& one = robots_[robot];
   one.policy = policy.value_or(defaults_[one.controller].policy);

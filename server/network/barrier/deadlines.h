@@ -28,6 +28,8 @@ class Deadlines {
 
   /// One more robot, with the policy of its controller.
   void add(std::size_t controller);
+  /// One more robot with a controller of its own, which is waited for.
+  void grow();
   /// Forgets robots behind the first `count`.
   void shrink(std::size_t count) { robots_.resize(count); }
 

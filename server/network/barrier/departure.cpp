@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
 #include "network/barrier/measuring.h"
 #include "network/barrier/talk.h"
@@ -31,7 +32,8 @@ std::size_t position_of(const Session& session, std::size_t robot) {
   return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());
 }
 
-void release_all(Barrier& barrier, const Session& holder, bool may_resume) {
+void release_all(Barrier& barrier, Session& holder, bool may_resume) {
+  release_director(barrier, holder, may_resume);
   for (const std::size_t robot : holder.roster.robots) {
     if (barrier.seats[robot].holder == holder.id) release(barrier, holder, robot, may_resume);
   }
@@ -94,7 +96,9 @@ void handle_leave(Barrier& barrier, Session& session) {
   const bool has_no_robots_left =
       session.state == SessionState::draining && session.roster.robots.empty();
   const bool is_waiting = session.state == SessionState::hello;
-  if (has_no_robots_left || is_waiting) return erase(barrier, session);
+  if (is_waiting) return erase(barrier, session);
+  if (session.role == wire::Role::director) return leave_directing(barrier, session);
+  if (has_no_robots_left) return erase(barrier, session);
   auto fault = check_metrics(barrier, session);
   if (!fault) fault = barrier.inbox.check(session.roster, barrier.run->layout);
   if (fault) {
@@ -124,7 +128,7 @@ void lose(Barrier& barrier, Session& session, std::string_view why) {
     barrier.journal.note(
         fmt::format("{} ({}) is lost: {}", session.client, robots_of(barrier, session), why));
   }
-  const bool may_resume = session.state != SessionState::draining && !session.roster.empty();
+  const bool may_resume = session.state != SessionState::draining && session.has_ticks();
   if (!may_resume) return erase(barrier, session);
   barrier.gate.settle(session.turn);
   unbind(barrier, session);
@@ -189,7 +193,7 @@ void finish(Barrier& barrier, const wire::End& end) {
     barrier.gate.settle(session.turn);
     barrier.outbox.end(end);
     const bool is_told = send(barrier, session) == Delivery::sent;
-    const bool may_answer = session.role == wire::Role::controller;  // with its last log lines
+    const bool may_answer = session.has_ticks() || session.role == wire::Role::controller;  // with its last log lines
     if (!is_told || !may_answer) return erase(barrier, session);
     session.state = SessionState::draining;
   });

@@ -6,6 +6,7 @@
 
 #include "network/barrier/admission.h"
 #include "network/barrier/departure.h"
+#include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
 #include "network/barrier/talk.h"
 #include "wire/fault.h"
@@ -86,6 +87,8 @@ bool handle(Barrier& barrier, Session& session, InboxKind kind, world::Commands*
                                        : "This session has had its Hello already."));
   } else if (kind == InboxKind::request) {
     handle_request(barrier, session);
+  } else if (kind == InboxKind::direction) {
+    return handle_direction(barrier, session, commands != nullptr);
   } else {
     return handle_command(barrier, session, commands);
   }

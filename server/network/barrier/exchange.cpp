@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "network/barrier/departure.h"
+#include "network/barrier/directing.h"
 #include "network/barrier/measuring.h"
 #include "network/barrier/talk.h"
 #include "network/barrier/timing.h"
@@ -64,16 +65,20 @@ void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
 }  // namespace
 
 void publish(Barrier& barrier, const world::Observations& observations,
-             const std::vector<std::string>& tag_payloads) {
+             const std::vector<std::string>& tag_payloads, const wire::Truth* truth) {
   barrier.senses = {&observations, &tag_payloads};
   barrier.begin = {};
+  truth != nullptr ? void(barrier.directors.truth.emplace(*truth)) : barrier.directors.truth.reset();
+  for (auto& answer : barrier.directors.answers) answer.reset();
+  barrier.directors.metrics.begin_tick();
+  barrier.directors.seats.begin_tick();
   barrier.metrics.begin_tick();
   barrier.gate.begin(observations.tick);
   barrier.timers.deadline = never;
   barrier.seats.begin_tick();
-  if (!barrier.seats.all_taken()) check_soon(barrier);
+  if (!barrier.seats.all_taken() || !barrier.directors.seats.all_taken()) check_soon(barrier);
   barrier.sessions.for_each([&](Session& session) {
-    if (session.state == SessionState::lost || session.roster.empty()) return;
+    if (session.state == SessionState::lost || !session.has_ticks()) return;
     session.turn.is_repeated = false;
     if (observe(barrier, session)) return;
     lose(barrier, session, "its connection is gone, or it does not read");
@@ -82,6 +87,7 @@ void publish(Barrier& barrier, const world::Observations& observations,
 }
 
 bool observe(Barrier& barrier, Session& session) {
+  if (session.director) return show_world(barrier, session);
   const Connection* connection = barrier.connections.find(session.connection);
   const bool is_json = connection->encoding == wire::Encoding::json;
   const std::size_t limit =
@@ -115,6 +121,12 @@ void take_metrics(Barrier& barrier, const Session& session) {
 }
 
 bool handle_command(Barrier& barrier, Session& session, world::Commands* commands) {
+  if (session.role == wire::Role::director) {
+    answer_fault(barrier, session.connection, &session,
+                 make_fault(ErrorCode::out_of_state, {},
+                            "A director answers with a Direction, not with a Command."));
+    return false;
+  }
   if (session.state == SessionState::draining) {
     keep_log(barrier, session);
     return false;
@@ -163,7 +175,7 @@ void stand_if_paused(Barrier& barrier) {
   gate.set_standing(true);
   barrier.sessions.for_each([&](Session& session) {
     const bool has_answered = session.state == SessionState::stepping && !session.turn.owes;
-    if (!has_answered || session.roster.empty()) return;
+    if (!has_answered || !session.has_ticks()) return;
     session.state = SessionState::paused;
     barrier.outbox.paused(tick_of(barrier));
     if (send(barrier, session) == Delivery::unreachable) {
@@ -177,6 +189,7 @@ void resume(Barrier& barrier) {
   if (!barrier.gate.is_standing()) return;
   barrier.gate.set_standing(false);
   barrier.seats.restart(barrier.now);
+  barrier.directors.seats.restart(barrier.now);
   barrier.sessions.for_each([&](Session& session) { session.turn.owes_since = barrier.now; });
   check_soon(barrier);
 }

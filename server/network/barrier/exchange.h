@@ -15,8 +15,9 @@ namespace ziggurat::network {
 /// A tick begins: every session that has robots is sent what they sense. Both stay as they are
 /// until the next tick, or reset().
 /// @param tag_payloads  for each of Layout::tags
+/// @param truth  that directors are told, likewise; null: none
 void publish(Barrier& barrier, const world::Observations& observations,
-             const std::vector<std::string>& tag_payloads);
+             const std::vector<std::string>& tag_payloads, const wire::Truth* truth = nullptr);
 /// Sends a session what its robots sense at the tick in hand. False if it can't be reached.
 bool observe(Barrier& barrier, Session& session);
 

@@ -14,14 +14,6 @@ using wire::ErrorCode;
 
 namespace {
 
-/// Asks the connection itself: a session without one is lost from then on.
-bool is_reachable(Barrier& barrier, Session& session) {
-  barrier.outbox.heartbeat(++barrier.heartbeats);
-  if (send(barrier, session) != Delivery::unreachable) return true;
-  lose(barrier, session, "its connection is gone");
-  return false;
-}
-
 wire::Refusal refuse_robot(const std::string& id, ErrorCode code, std::string message) {
   auto refusal = make_refusal(code, "robots", std::move(message));
   refusal.fault.robot = id;
@@ -96,6 +88,13 @@ std::optional<wire::Refusal> check_robot(Barrier& barrier, std::size_t robot, bo
 
 }  // namespace
 
+bool is_reachable(Barrier& barrier, Session& session) {
+  barrier.outbox.heartbeat(++barrier.heartbeats);
+  if (send(barrier, session) != Delivery::unreachable) return true;
+  lose(barrier, session, "its connection is gone");
+  return false;
+}
+
 wire::Refusal make_refusal(ErrorCode code, std::string field, std::string message) {
   return {wire::make_fault(code, std::move(field), std::move(message)), {}, {}};
 }
@@ -109,7 +108,9 @@ std::optional<wire::Refusal> check_hello(const Barrier& barrier, const wire::Hel
                     hello.version.major, hello.version.minor, wire::version.major,
                     wire::version.minor));
   }
-  const bool is_role = hello.role == wire::Role::controller ||
+  const bool is_director =
+      hello.role == wire::Role::director && hello.version.minor >= wire::minor_with_directors;
+  const bool is_role = hello.role == wire::Role::controller || is_director ||
                        hello.role == wire::Role::supervisor || hello.role == wire::Role::observer;
   if (!is_role) return make_refusal(ErrorCode::bad_value, "role", "A Hello must name its role.");
   if (!roles.allow(hello.role)) {
@@ -127,6 +128,7 @@ std::optional<wire::Refusal> check_places(const Barrier& barrier, wire::Role rol
   const auto [most, name] =
       role == wire::Role::controller   ? std::pair(config.max_sessions, "controllers")
       : role == wire::Role::supervisor ? std::pair(config.max_supervisors, "supervisors")
+      : role == wire::Role::director   ? std::pair(config.max_directors, "directors")
                                        : std::pair(config.max_observers, "observers");
   const std::size_t connected = barrier.sessions.connected(role);
   if (connected < most) return std::nullopt;

@@ -15,6 +15,9 @@ namespace ziggurat::network {
 
 wire::Refusal make_refusal(wire::ErrorCode code, std::string field, std::string message);
 
+/// Asks the session's connection itself: without one it is lost from then on.
+bool is_reachable(Barrier& barrier, Session& session);
+
 // Why the Hello is refused, if it is; in the order of rule H15.
 
 /// Because of its version or role, or for lack of room.

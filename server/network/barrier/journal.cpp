@@ -30,6 +30,11 @@ void Journal::fail(std::size_t robot, std::string_view message, std::uint64_t ti
   report_.failures.push_back({robot, std::string(message.substr(0, max_failure)), tick});
 }
 
+void Journal::fail(std::string director, std::string_view message, std::uint64_t tick) {
+  report_.failed_directors.push_back(
+      {std::move(director), std::string(message.substr(0, max_failure)), tick});
+}
+
 void Journal::stop(std::string text) {
   if (report_.stopped.empty()) report_.stopped = std::move(text);
 }

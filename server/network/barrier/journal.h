@@ -22,6 +22,9 @@ class Journal {
   /// A robot's controller has failed.
   /// @param tick  of the observation that it failed on
   void fail(std::size_t robot, std::string_view message, std::uint64_t tick);
+  /// The same for a director.
+  void fail(std::string director, std::string_view message, std::uint64_t tick);
+  std::vector<DirectorLine>& log_of_directors() { return report_.log_of_directors; }
   /// A deadline took a robot out of the barrier.
   void drop(std::string text) { report_.dropped.push_back(std::move(text)); }
   /// A deadline stops the run. The first sentence counts.

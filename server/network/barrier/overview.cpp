@@ -31,6 +31,10 @@ wire::SessionStatus status_of(const Barrier& barrier, const Session& session, Ti
   status.role = session.role;
   status.state = state_of(session);
   status.tick = session.turn.tick;
+  if (session.director) {
+    status.director = barrier.directors.all[*session.director].id;
+    status.deadline = barrier.directors.deadlines.policy(*session.director);
+  }
   const auto& robots = session.roster.robots;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (session.roster.gone[i]) continue;
@@ -40,6 +44,9 @@ wire::SessionStatus status_of(const Barrier& barrier, const Session& session, Ti
   if (session.turn.owes) status.wall_waiting_s = seconds(now - session.turn.owes_since);
   if (session.state == SessionState::lost && !robots.empty()) {
     status.wall_waiting_s = seconds(now - barrier.seats[robots.front()].free_since);
+  }
+  if (session.state == SessionState::lost && session.director) {
+    status.wall_waiting_s = seconds(now - barrier.directors.seats[*session.director].free_since);
   }
   status.wall_last_message_s = seconds(now - session.contact.last_received);
   status.latency = session.latencies.recent();
@@ -80,6 +87,21 @@ std::vector<RobotStatus> robot_status(const Barrier& barrier) {
   return result;
 }
 
+namespace {
+
+/// Those of directors follow, in the order of their ids.
+void append_named(const Directors& directors, const std::vector<wire::Metric>& metrics,
+                  std::vector<world::Metric>& to) {
+  for (const std::size_t director : directors.by_id()) {
+    for (const wire::Metric& metric : metrics) {
+      if (metric.robot != director) continue;
+      to.push_back({directors.all[director].id, metric.name, metric.value});
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<world::Metric> named(const Barrier& barrier, const std::vector<wire::Metric>& metrics) {
   std::vector<world::Metric> result;
   result.reserve(metrics.size());
@@ -89,8 +111,15 @@ std::vector<world::Metric> named(const Barrier& barrier, const std::vector<wire:
   return result;
 }
 
+std::vector<world::Metric> metrics_of_tick(const Barrier& barrier) {
+  auto metrics = named(barrier, barrier.metrics.of_tick());
+  append_named(barrier.directors, barrier.directors.metrics.of_tick(), metrics);
+  return metrics;
+}
+
 void fill(const Barrier& barrier, Time now, wire::Status& status) {
   status.metrics = named(barrier, barrier.metrics.last());
+  append_named(barrier.directors, barrier.directors.metrics.last(), status.metrics);
   barrier.sessions.for_each(
       [&](const Session& session) { status.sessions.push_back(status_of(barrier, session, now)); });
   for (std::size_t robot = 0; robot < barrier.seats.size(); ++robot) {

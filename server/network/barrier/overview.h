@@ -17,5 +17,7 @@ void fill(const Barrier& barrier, Time now, wire::Status& status);
 
 /// With the ids of their robots.
 std::vector<world::Metric> named(const Barrier& barrier, const std::vector<wire::Metric>& metrics);
+/// That were set at the tick in hand: in scene order, then those of directors.
+std::vector<world::Metric> metrics_of_tick(const Barrier& barrier);
 
 }  // namespace ziggurat::network

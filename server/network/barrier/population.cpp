@@ -5,6 +5,7 @@
 
 #include "network/barrier/admission.h"
 #include "network/barrier/departure.h"
+#include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
 #include "network/barrier/measuring.h"
 #include "network/barrier/talk.h"
@@ -90,6 +91,7 @@ void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Dead
   barrier.deadlines = Deadlines(deadlines, run.controllers.size());
   barrier.answer_times.resize(run.controllers.size());
   add_robots(barrier, run.scripts, {});
+  add_directors(barrier);
 }
 
 void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Senses& senses) {
@@ -124,6 +126,7 @@ void restart(Barrier& barrier, wire::Restart restart) {
   barrier.sessions.for_each([&](Session& session) { give_up_answers(barrier, session); });
   ++barrier.reactions.world;
   barrier.metrics.clear();
+  forget_directions(barrier);
   forget_robots(barrier, restart.snapshot ? restart.snapshot->robots
                                           : barrier.run->layout.robots.size());
   barrier.gate.clear();  // a session that begins now gets no tick of the former world
@@ -135,7 +138,7 @@ void restart(Barrier& barrier, wire::Restart restart) {
     barrier.gate.settle(session.turn);
     const bool has_ticks =
         session.state == SessionState::stepping || session.state == SessionState::paused;
-    if (!has_ticks || session.roster.empty()) return;
+    if (!has_ticks || !session.has_ticks()) return;
     session.turn.late_commands = 0;
     restart.epoch = epoch_for(barrier, session);
     barrier.outbox.restart(session.roster, restart);

@@ -12,6 +12,7 @@
 #include "wire/messages.h"
 #include "wire/outbox.h"
 #include "wire/roster.h"
+#include "wire/world_view.h"
 
 namespace ziggurat::network {
 
@@ -54,6 +55,8 @@ struct Session {
   std::uint32_t minor = 0;  ///< of the protocol, as agreed
   bool can_restore = false;  ///< its controllers can go back to a snapshot
   wire::Roster roster;      ///< of other roles: empty
+  std::optional<std::size_t> director;  ///< of that role: its number; none: it has left
+  wire::WorldView view;                 ///< of that role: what it is told
   std::size_t longest_command = 0;  ///< that its robots can need, in its form [bytes]
   Turn turn;
   Contact contact;
@@ -67,6 +70,9 @@ struct Session {
   Time lease_end;            ///< lost: until then no other session gets its robots
   wire::Outbox observation;  ///< long-lived, for the tick path
   Application application;   ///< in HELLO
+
+  /// It has a part in each tick.
+  bool has_ticks() const { return !roster.empty() || director.has_value(); }
 };
 
 }  // namespace ziggurat::network

@@ -21,7 +21,7 @@ const Session* Sessions::find(SessionId id) const {
 
 Session* Sessions::with_token(std::string_view token) {
   for (auto& [id, session] : sessions_) {
-    const bool is_over = session.roster.empty() || session.state == SessionState::draining;
+    const bool is_over = !session.has_ticks() || session.state == SessionState::draining;
     if (session.token == token && !is_over) return &session;
   }
   return nullptr;

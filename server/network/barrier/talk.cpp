@@ -67,7 +67,9 @@ void answer_malformed(Barrier& barrier, const std::string& connection, Session* 
 Standing standing_of(const Session* session) {
   if (session == nullptr) return Standing::none;
   if (session->state == SessionState::hello) return Standing::waiting;
-  if (session->role == wire::Role::controller) return Standing::controller;
+  const bool has_ticks =
+      session->role == wire::Role::controller || session->role == wire::Role::director;
+  if (has_ticks) return Standing::controller;
   return session->role == wire::Role::supervisor ? Standing::supervisor : Standing::observer;
 }
 
@@ -91,6 +93,9 @@ std::string names_of(const Barrier& barrier, std::span<const std::size_t> robots
 }
 
 std::string robots_of(const Barrier& barrier, const Session& session) {
+  if (session.director) {
+    return fmt::format("director '{}'", barrier.directors.all[*session.director].id);
+  }
   std::vector<std::size_t> robots;
   for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
     if (!session.roster.gone[i]) robots.push_back(session.roster.robots[i]);

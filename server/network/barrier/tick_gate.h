@@ -13,8 +13,8 @@ namespace ziggurat::network {
 
 class TickGate {
  public:
-  /// @param seats  must outlive the gate
-  explicit TickGate(const Seats& seats) : seats_(seats) {}
+  /// @param seats, directors  must outlive the gate
+  TickGate(const Seats& seats, const Seats& directors) : seats_(seats), directors_(directors) {}
 
   /// A tick begins: it is published to all sessions.
   void begin(std::uint64_t tick);
@@ -43,14 +43,17 @@ class TickGate {
   void set_standing(bool is_standing) { is_standing_ = is_standing; }
   bool is_standing() const { return is_standing_; }
 
-  /// No session owes an answer, and no free robot is waited for.
-  bool is_answered() const { return owing_ == 0 && !seats_.is_awaited(); }
+  /// No session owes an answer, and no free robot or director is waited for.
+  bool is_answered() const {
+    return owing_ == 0 && !seats_.is_awaited() && !directors_.is_awaited();
+  }
   bool is_complete() const {
     return is_answered() && !is_held(Hold::paused) && !is_held(Hold::stopped);
   }
 
  private:
   const Seats& seats_;
+  const Seats& directors_;
   std::optional<std::uint64_t> tick_;
   std::size_t owing_ = 0;  // sessions that owe an answer
   bool holds_[3] = {};     // by Hold

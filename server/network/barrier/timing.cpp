@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "network/barrier/departure.h"
+#include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
 #include "network/barrier/measuring.h"
 #include "network/barrier/talk.h"
@@ -58,6 +59,31 @@ void miss(Barrier& barrier, std::size_t robot) {
   }
 }
 
+/// The tick goes on without the director.
+/// @returns  it has left the barrier for good
+bool miss_director(Barrier& barrier, std::size_t director) {
+  Directors& directors = barrier.directors;
+  const std::string& id = directors.all[director].id;
+  const std::string policy = to_text(directors.deadlines.policy(director));
+  switch (directors.deadlines.miss(director, tick_of(barrier))) {
+    case Consequence::none:
+    case Consequence::zero:
+      return false;
+    case Consequence::drop:
+      barrier.journal.drop(
+          fmt::format("director '{}' is dropped at tick {}: {} missed in a row, {}", id,
+                      tick_of(barrier), directors.deadlines.misses_in_row(director), policy));
+      return true;
+    case Consequence::stop:
+      barrier.gate.hold(TickGate::Hold::stopped);
+      barrier.journal.stop(
+          fmt::format("director '{}' did not answer at tick {}: its deadline policy {} stops the run",
+                      id, tick_of(barrier), policy));
+      return false;
+  }
+  return false;
+}
+
 /// Sends a warning on the session's tick. False if the session can't be told.
 bool warn(Barrier& barrier, Session& session, wire::Fault fault) {
   fault.severity = wire::Severity::warning;
@@ -71,9 +97,9 @@ bool tell_missed(Barrier& barrier, Session& session, milliseconds deadline) {
               wire::make_fault(wire::ErrorCode::deadline_missed, {},
                                fmt::format("Tick {} went on without an answer after {} ms.{}",
                                            session.turn.tick, deadline.count(),
-                                           session.roster.empty()
-                                               ? " The robots have left the barrier."
-                                               : "")));
+                                           session.has_ticks()
+                                               ? ""
+                                               : " What it drives has left the barrier.")));
 }
 
 /// @param robots  positions in the session
@@ -116,6 +142,9 @@ void miss(Barrier& barrier, Session& session) {
     miss(barrier, robots[i]);
     if (session.roster.gone[i]) dropped.push_back(static_cast<std::uint32_t>(i));
   }
+  if (session.director && miss_director(barrier, *session.director)) {
+    remove_director(barrier, session);
+  }
   const bool is_told = tell_missed(barrier, session, deadline) &&
                        tell_dropped(barrier, session, std::move(dropped));
   if (!is_told) {
@@ -157,6 +186,27 @@ void check_free_robots(Barrier& barrier) {
   }
 }
 
+void check_free_directors(Barrier& barrier) {
+  Directors& directors = barrier.directors;
+  for (std::size_t i = 0; i < directors.all.size(); ++i) {
+    const Seats::Seat seat = directors.seats[i];
+    const scene::DeadlinePolicy& policy = directors.deadlines.policy(i);
+    const bool is_awaited =
+        seat.holder == SessionId::none && !seat.has_left && !seat.is_skipped;
+    if (!is_awaited || policy.action == DeadlineAction::wait) continue;
+    const Time deadline = seat.free_since + milliseconds(policy.wall_deadline_ms);
+    if (deadline > barrier.now) {
+      wake_at(barrier, deadline);
+      continue;
+    }
+    directors.seats.skip(i);
+    if (!miss_director(barrier, i)) continue;
+    Session* claimant = barrier.sessions.find(seat.claimant);
+    directors.seats.leave(i);
+    if (claimant != nullptr) erase(barrier, *claimant);
+  }
+}
+
 void check_deadlines(Barrier& barrier) {
   barrier.timers.deadline = never;
   const TickGate& gate = barrier.gate;
@@ -166,6 +216,7 @@ void check_deadlines(Barrier& barrier) {
   if (!is_running) return;
   check_sessions(barrier);
   check_free_robots(barrier);
+  check_free_directors(barrier);
   stand_if_paused(barrier);
 }
 
@@ -217,6 +268,13 @@ void expect_answer(Barrier& barrier, const Session& session) {
 }
 
 void update_patience(Barrier& barrier, Session& session) {
+  if (session.director) {
+    const auto& policy = barrier.directors.deadlines.policy(*session.director);
+    session.turn.patience.reset();
+    if (policy.action != DeadlineAction::wait) {
+      session.turn.patience = milliseconds(policy.wall_deadline_ms);
+    }
+  }
   // With its last robot gone, what it still owes keeps its deadline.
   if (session.roster.empty()) return;
   milliseconds longest{0};

@@ -149,7 +149,9 @@ class Peers {
     network::add_robots(barrier, {&script, 1}, {&observations, &payloads});
   }
   bool is_complete() const { return barrier.gate.is_complete(); }
-  bool is_gathered() const { return barrier.seats.all_taken(); }
+  bool is_gathered() const {
+    return barrier.seats.all_taken() && barrier.directors.seats.all_taken();
+  }
   std::vector<RobotStatus> status() const { return robot_status(barrier); }
   Report take_report() { return barrier.journal.take(); }
 

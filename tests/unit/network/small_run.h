@@ -46,8 +46,11 @@ class SmallRun {
     for (const auto& robot : layout_.robots) {
       run.scripts.push_back(robot.controller == 0 ? "/scenes/drive.lua" : "");
     }
+    run.directors = directors;
     return run;
   }
+
+  std::vector<scene::Director> directors;  ///< none at first
 
   world::Layout& layout() { return layout_; }
 

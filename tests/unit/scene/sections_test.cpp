@@ -76,6 +76,26 @@ TEST(Controllers, DeadlinesAsText) {
   EXPECT_EQ(to_text({DeadlineAction::stop, 7, 10}), "stop:7:10");
 }
 
+TEST(Directors, AreReadWithWhatStartsThem) {
+  SceneText text;
+  text.rest = R"(<parameters height="0.3"/><director id="judge" script="judge.lua" deadline="drop")"
+              R"( deadline_ms="9"><params height="${height}"/></director>)"
+              R"(<director id="feeder" command="./feed"/><loop_functions script="rule.lua"/>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  const auto& directors = result.scene.directors;
+  ASSERT_EQ(directors.size(), 3u);
+  EXPECT_EQ(directors[0].id, "judge");
+  EXPECT_EQ(directors[0].script, "judge.lua");
+  EXPECT_EQ(directors[0].deadline, (DeadlinePolicy{DeadlineAction::drop, 9, 0}));
+  EXPECT_EQ(directors[0].params.at(0).second, "0.3");
+  EXPECT_EQ(directors[1].command, "./feed");
+  EXPECT_EQ(directors[2].id, "loop_functions");
+  EXPECT_EQ(directors[2].script, "rule.lua");
+  EXPECT_NE(all_problems(result).find("<loop_functions> is read as <director id=\"loop_functions\">"),
+            std::string::npos);
+}
+
 TEST(Engines, DefaultsAndValues) {
   SceneText text;
   const ReadResult plain = text.read();

@@ -16,7 +16,8 @@ struct Gate : ::testing::Test {
   }
   Time now{};
   Seats seats;
-  TickGate gate{seats};
+  Seats directors;
+  TickGate gate{seats, directors};
   Turn first, second;
 };
 

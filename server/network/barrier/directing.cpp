@@ -1,0 +1,386 @@
+#include "network/barrier/directing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "network/barrier/departure.h"
+#include "network/barrier/exchange.h"
+#include "network/barrier/granting.h"
+#include "network/barrier/measuring.h"
+#include "network/barrier/talk.h"
+#include "network/barrier/timing.h"
+#include "network/glob.h"
+#include "wire/fault.h"
+
+namespace ziggurat::network {
+
+using wire::ErrorCode;
+using wire::make_fault;
+
+namespace {
+
+constexpr std::size_t longest_id = 64;  // of a director from outside [bytes]
+
+wire::Refusal refuse(ErrorCode code, std::string field, std::string message) {
+  return make_refusal(code, std::move(field), std::move(message));
+}
+
+bool is_id(std::string_view text) {
+  return !text.empty() && text.size() <= longest_id && std::ranges::all_of(text, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
+  });
+}
+
+/// What is wrong with what a director asks for, also for no director of the scene.
+std::optional<wire::Refusal> check_wishes(const Barrier& barrier, const wire::Hello& hello) {
+  if (!hello.robots.empty() || !hello.controller.empty() || hello.lua_only) {
+    return refuse(ErrorCode::bad_value, "robots", "A director asks for no robots.");
+  }
+  if (hello.director.empty()) {
+    return refuse(ErrorCode::bad_value, "director", "A Hello of a director says which it is.");
+  }
+  if (hello.subscription) {
+    const auto& patterns = hello.subscription->entities;
+    const auto is_long = [](const std::string& text) { return text.size() > longest_pattern; };
+    if (patterns.size() > most_patterns || std::ranges::any_of(patterns, is_long)) {
+      return refuse(ErrorCode::too_many, "subscription.entities",
+                    fmt::format("A subscription may have {} patterns of {} bytes at most.",
+                                most_patterns, longest_pattern));
+    }
+  }
+  return check_policy(barrier, hello, {});
+}
+
+/// The director of that id; one from outside, if these are allowed, is a new one.
+std::variant<std::size_t, wire::Refusal> find_director(Barrier& barrier, const std::string& id) {
+  Directors& directors = barrier.directors;
+  const auto found = std::ranges::find(directors.all, id, &scene::Director::id);
+  if (found != directors.all.end()) {
+    return static_cast<std::size_t>(found - directors.all.begin());
+  }
+  const std::string shown = id.substr(0, longest_id);
+  if (!directors.are_allowed) {
+    return refuse(ErrorCode::forbidden, "director",
+                  fmt::format("The scene has no director '{}', and --allow-director was not given.",
+                              shown));
+  }
+  if (!is_id(id)) {
+    return refuse(ErrorCode::bad_value, "director",
+                  fmt::format("The id of a director must have 1 to {} letters, digits, '_', '-' or "
+                              "'.'.",
+                              longest_id));
+  }
+  if (directors.all.size() >= scene::Director::most) {
+    return refuse(ErrorCode::too_many, "director",
+                  fmt::format("The world has {} directors and takes no more.",
+                              directors.all.size()));
+  }
+  directors.all.push_back({.id = id});
+  directors.answers.emplace_back();
+  directors.seats.add(barrier.now, true);
+  directors.deadlines.grow();
+  return directors.all.size() - 1;
+}
+
+std::optional<wire::Refusal> check_seat(Barrier& barrier, std::size_t director, bool is_takeover) {
+  const std::string& id = barrier.directors.all[director].id;
+  const Seats::Seat& seat = barrier.directors.seats[director];
+  if (seat.has_left) {
+    return refuse(ErrorCode::not_yours, "director",
+                  fmt::format("The director '{}' has left the run for good.", id));
+  }
+  if (is_takeover) return std::nullopt;
+  Session* holder = barrier.sessions.find(seat.holder);
+  const bool is_held = holder != nullptr && is_reachable(barrier, *holder);
+  const Session* claimant = barrier.sessions.find(seat.claimant);
+  const bool is_kept = claimant != nullptr && barrier.now < claimant->lease_end;
+  if (!is_held && !is_kept) return std::nullopt;
+  auto refusal = refuse(ErrorCode::robot_taken, "director",
+                        is_held ? fmt::format("The director '{}' is {}.", id, holder->client)
+                                : fmt::format("The director '{}' is kept for {}, which is lost.", id,
+                                              claimant->client));
+  refusal.fault.retryable = true;
+  refusal.holder = is_held ? holder->client : claimant->client;
+  return refusal;
+}
+
+/// The sessions that have the director, or may resume it, lose it to another client.
+void displace(Barrier& barrier, std::size_t director, const std::string& by) {
+  const Seats::Seat& seat = barrier.directors.seats[director];
+  Session* session =
+      barrier.sessions.find(seat.holder == SessionId::none ? seat.claimant : seat.holder);
+  if (session == nullptr) return;
+  if (session->state != SessionState::lost) {
+    barrier.outbox.displaced(by, fmt::format("{} is director '{}' now.", by,
+                                             barrier.directors.all[director].id));
+    send(barrier, *session);
+  }
+  erase(barrier, *session);
+}
+
+/// The world has grown: what fits the subscription is told.
+void update_view(wire::WorldView& view, const wire::Truth& truth) {
+  const auto& patterns = view.subscription.entities;
+  for (std::size_t i = view.considered; i < truth.layout.entities.size(); ++i) {
+    const std::string& id = truth.layout.entities[i].id;
+    const bool is_wanted =
+        patterns.empty() || std::ranges::any_of(patterns, [&](const std::string& pattern) {
+          return pattern == id || (has_wildcards(pattern) && matches(pattern, id));
+        });
+    consider(view, truth, i, is_wanted && !truth.state.is_absent(i));
+  }
+}
+
+void keep_words(Barrier& barrier, std::size_t director, std::vector<wire::LogLine> lines) {
+  for (wire::LogLine& line : lines) {
+    barrier.journal.log_of_directors().push_back(
+        {barrier.directors.all[director].id, line.error, std::move(line.text)});
+  }
+}
+
+/// Its number stands in place of a robot's.
+std::vector<wire::Metric> numbered(std::vector<wire::Metric> metrics, std::size_t director) {
+  for (wire::Metric& metric : metrics) metric.robot = director;
+  return metrics;
+}
+
+std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
+                                 bool is_collecting) {
+  if (!session.director || session.state == SessionState::ready) {
+    return make_fault(ErrorCode::out_of_state, {},
+                      "A Direction answers a WorldState; none was sent.");
+  }
+  if (auto fault = check_epoch(session.turn, barrier.inbox.command_epoch())) return fault;
+  if (auto fault = check_tick(session.turn, barrier.inbox.command_tick())) return fault;
+  if (!is_collecting) {
+    return make_fault(ErrorCode::out_of_state, {}, "No tick is being collected.");
+  }
+  return barrier.inbox.check_direction();
+}
+
+/// What the world has to say.
+std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
+                                 const wire::Direction& direction) {
+  auto fault = barrier.directors.metrics.check(numbered(direction.metrics, *session.director));
+  if (fault || !barrier.directors.check) return fault;
+  return barrier.directors.check(direction);
+}
+
+void answer_bad_direction(Barrier& barrier, Session& session, wire::Fault fault) {
+  const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
+  if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
+  --session.turn.late_commands;  // it was told of its miss already: no bad message
+  fault.tick = tick_of(barrier);
+  barrier.outbox.error(fault);
+  send(barrier, session);
+}
+
+}  // namespace
+
+std::vector<std::size_t> Directors::by_id() const {
+  std::vector<std::size_t> numbers(all.size());
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  std::ranges::sort(numbers, {}, [&](std::size_t each) -> const std::string& { return all[each].id; });
+  return numbers;
+}
+
+void add_directors(Barrier& barrier) {
+  Directors& directors = barrier.directors;
+  directors.all = barrier.run->directors;
+  directors.answers.resize(directors.all.size());
+  std::vector<Config::Deadline> policies;
+  for (const scene::Director& director : directors.all) {
+    policies.push_back({director.deadline.value_or(scene::DeadlinePolicy{}), false});
+    directors.seats.add(barrier.now, false);
+  }
+  directors.deadlines = Deadlines(policies, policies.size());
+  for (std::size_t i = 0; i < directors.all.size(); ++i) directors.deadlines.add(i);
+}
+
+std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wire::Hello& hello,
+                                                      const std::string& client) {
+  if (auto refusal = check_wishes(barrier, hello)) return std::move(*refusal);
+  auto found = find_director(barrier, hello.director);
+  if (auto* refusal = std::get_if<wire::Refusal>(&found)) return std::move(*refusal);
+  const std::size_t director = std::get<std::size_t>(found);
+  if (auto refusal = check_seat(barrier, director, hello.takeover)) return std::move(*refusal);
+  displace(barrier, director, client);
+  Session& session = barrier.sessions.add();
+  session.director = director;
+  return &session;
+}
+
+void take_director(Barrier& barrier, Session& session, const wire::Hello& hello) {
+  wire::Subscription subscription = hello.subscription.value_or(session.view.subscription);
+  const bool is_of_none = !hello.subscription && hello.session_token.empty();
+  session.view = {std::move(subscription)};
+  if (is_of_none) session.view.subscription.entities = {std::string()};  // no entity has that id
+  barrier.directors.seats.take(*session.director, session.id);
+  if (hello.deadline || hello.session_token.empty()) {
+    barrier.directors.deadlines.set_policy(*session.director, hello.deadline);
+  }
+}
+
+void release_director(Barrier& barrier, Session& session, bool may_resume) {
+  if (!session.director) return;
+  Seats& seats = barrier.directors.seats;
+  if (seats[*session.director].holder != session.id) {
+    if (!may_resume && seats[*session.director].claimant == session.id) {
+      seats.drop_claim(*session.director);
+    }
+    return;
+  }
+  const bool is_skipped = barrier.gate.has_missed(session.turn);
+  const Time since = is_skipped ? session.turn.owes_since : barrier.now;
+  seats.release(*session.director, may_resume ? session.id : SessionId::none, since, is_skipped);
+  if (!is_skipped) check_soon(barrier);
+}
+
+void remove_director(Barrier& barrier, Session& session) {
+  if (!session.director) return;
+  barrier.directors.seats.leave(*session.director);
+  barrier.directors.answers[*session.director].reset();
+  session.director.reset();
+}
+
+bool show_world(Barrier& barrier, Session& session) {
+  const Connection* connection = barrier.connections.find(session.connection);
+  const bool is_json = connection->encoding == wire::Encoding::json;
+  const std::size_t limit =
+      is_json ? wire::max_json_observation_bytes : wire::max_observation_bytes;
+  session.turn.epoch = barrier.epoch;
+  session.state = SessionState::stepping;
+  barrier.gate.await(session.turn, barrier.now);
+  expect_answer(barrier, session);
+  if (!barrier.directors.truth) return true;
+  const wire::Truth& truth = *barrier.directors.truth;
+  update_view(session.view, truth);
+  if (has_news(session.view, truth.state)) {
+    world_layout(barrier.outbox, *barrier.run, truth, session.view);
+    if (send(barrier, session) == Delivery::unreachable) return false;
+  }
+  if (!world_state(session.observation, truth, session.view, limit, barrier.epoch)) {
+    auto fault = make_fault(ErrorCode::too_large, {},
+                            "What this director subscribed to is more than a message can hold.");
+    fault.severity = wire::Severity::fatal;
+    fault.tick = tick_of(barrier);
+    barrier.outbox.error(fault);
+    send(barrier, session);
+    return false;
+  }
+  session.contact.last_sent = barrier.now;
+  session.observation.encode(connection->encoding);
+  const Delivery delivery = barrier.send(session.connection, session.observation);
+  const bool may_miss = delivery == Delivery::congested && session.turn.patience;
+  return delivery == Delivery::sent || may_miss;
+}
+
+bool handle_direction(Barrier& barrier, Session& session, bool is_collecting) {
+  if (session.state == SessionState::draining) {
+    if (session.director && !barrier.inbox.check_direction()) {
+      keep_words(barrier, *session.director, barrier.inbox.direction().log);
+    }
+    return false;
+  }
+  if (auto fault = check(barrier, session, is_collecting)) {
+    answer_bad_direction(barrier, session, std::move(*fault));
+    return false;
+  }
+  wire::Direction direction = barrier.inbox.direction();
+  if (auto fault = check(barrier, session, direction)) {
+    answer_bad_direction(barrier, session, std::move(*fault));
+    return false;
+  }
+  session.contact.faults = 0;
+  session.turn.late_commands = 0;
+  barrier.directors.deadlines.forgive(*session.director);
+  barrier.directors.metrics.set(numbered(direction.metrics, *session.director));
+  keep_words(barrier, *session.director, std::move(direction.log));
+  barrier.directors.answers[*session.director] = std::move(direction);
+  barrier.gate.settle(session.turn);
+  measure_answer(barrier, session);
+  return true;
+}
+
+void leave_directing(Barrier& barrier, Session& session) {
+  auto fault = barrier.inbox.check_direction();
+  if (!fault && session.director) {
+    fault = barrier.directors.metrics.check(
+        numbered(barrier.inbox.direction().metrics, *session.director));
+  }
+  if (fault) return answer_fault(barrier, session.connection, &session, std::move(*fault));
+  if (session.director) {
+    wire::Direction last = barrier.inbox.direction();
+    keep_words(barrier, *session.director, std::move(last.log));
+    barrier.directors.metrics.set(numbered(std::move(last.metrics), *session.director));
+    const wire::Leave leave = barrier.inbox.leave();
+    if (leave.reason == wire::LeaveReason::failed) {
+      barrier.journal.fail(barrier.directors.all[*session.director].id, leave.message,
+                           session.turn.tick);
+    }
+    remove_director(barrier, session);
+  }
+  erase(barrier, session);
+}
+
+void forget_directions(Barrier& barrier) {
+  Directors& directors = barrier.directors;
+  for (auto& answer : directors.answers) answer.reset();
+  directors.metrics.clear();
+  directors.deadlines.reset();
+  directors.truth.reset();
+  barrier.sessions.for_each([](Session& session) {
+    session.view = {std::move(session.view.subscription)};
+  });
+}
+
+std::vector<Directed> directions(const Barrier& barrier) {
+  std::vector<Directed> result;
+  for (const std::size_t director : barrier.directors.by_id()) {
+    const auto& answer = barrier.directors.answers[director];
+    if (answer) result.push_back({barrier.directors.all[director].id, *answer});
+  }
+  return result;
+}
+
+void warn_director(Barrier& barrier, const std::string& director, wire::Fault fault) {
+  const auto& all = barrier.directors.all;
+  const auto found = std::ranges::find(all, director, &scene::Director::id);
+  if (found == all.end()) return;
+  const auto number = static_cast<std::size_t>(found - all.begin());
+  Session* session = barrier.sessions.find(barrier.directors.seats[number].holder);
+  if (session == nullptr) return;
+  fault.severity = wire::Severity::warning;
+  fault.tick = tick_of(barrier);
+  barrier.outbox.error(fault);
+  if (send(barrier, *session) != Delivery::unreachable) return;
+  lose(barrier, *session, "its connection is gone");
+}
+
+std::vector<DirectorStatus> director_status(const Barrier& barrier) {
+  std::vector<DirectorStatus> result;
+  const Directors& directors = barrier.directors;
+  for (std::size_t i = 0; i < directors.all.size(); ++i) {
+    const Seats::Seat& seat = directors.seats[i];
+    const Session* session =
+        barrier.sessions.find(seat.holder == SessionId::none ? seat.claimant : seat.holder);
+    DirectorStatus status{directors.all[i].id, seat.holder != SessionId::none, seat.has_left,
+                          seat.was_held};
+    status.waits = directors.deadlines.policy(i).action == scene::DeadlineAction::wait;
+    if (session != nullptr) {
+      status.client = session->client;
+      status.can_restore = session->can_restore;
+      status.wants_contacts = session->view.subscription.contacts;
+    }
+    status.is_awaited = seat.holder == SessionId::none ? !seat.has_left && !seat.is_skipped
+                                                       : session->turn.owes;
+    result.push_back(std::move(status));
+  }
+  return result;
+}
+
+}  // namespace ziggurat::network

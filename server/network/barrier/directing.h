@@ -1,0 +1,42 @@
+#pragma once
+// The rules for directors (docs/protocol.md, section 9.1), where they differ from those for controllers.
+
+#include <string_view>
+#include <variant>
+
+#include "network/barrier/barrier.h"
+#include "network/report.h"
+
+namespace ziggurat::network {
+
+/// The world is loaded: its directors are awaited.
+void add_directors(Barrier& barrier);
+
+/// A new session of the director that the Hello asks for.
+std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wire::Hello& hello,
+                                                      const std::string& client);
+/// It has its director from now on.
+void take_director(Barrier& barrier, Session& session, const wire::Hello& hello);
+/// It has none any more; the director is free. No effect without one.
+/// @param may_resume  the session may have it back
+void release_director(Barrier& barrier, Session& session, bool may_resume);
+/// The director leaves the barrier for good, and its session goes on without it.
+void remove_director(Barrier& barrier, Session& session);
+
+/// Sends what the director is told of the tick in hand. False if it can't be reached.
+bool show_world(Barrier& barrier, Session& session);
+/// Handles the Direction in `barrier.inbox`. True if it is the expected answer.
+bool handle_direction(Barrier& barrier, Session& session, bool is_collecting);
+/// The same for the Leave of a director.
+void leave_directing(Barrier& barrier, Session& session);
+
+/// The world begins anew or has gone back.
+void forget_directions(Barrier& barrier);
+
+/// What they want done before the next tick, in the order of their ids.
+std::vector<Directed> directions(const Barrier& barrier);
+/// Tells a director that is connected of an act that was not done.
+void warn_director(Barrier& barrier, const std::string& director, wire::Fault fault);
+std::vector<DirectorStatus> director_status(const Barrier& barrier);
+
+}  // namespace ziggurat::network

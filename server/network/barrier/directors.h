@@ -1,0 +1,38 @@
+#pragma once
+// The directors of a world: who may direct it, who does, and what they want done.
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/barrier/deadlines.h"
+#include "network/barrier/metrics.h"
+#include "network/barrier/seats.h"
+#include "scene/scene.h"
+#include "wire/direction.h"
+#include "wire/world_view.h"
+
+namespace ziggurat::network {
+
+/// What is wrong with a Direction in the present world, if anything.
+using CheckDirection = std::function<std::optional<wire::Fault>(const wire::Direction&)>;
+
+/// Each director has the same number in all lists. Those of the scene come first, then those from outside in
+/// the order in which they came.
+struct Directors {
+  std::vector<scene::Director> all;
+  Seats seats;
+  Deadlines deadlines;  ///< each director is a controller of its own
+  Metrics metrics;
+  std::vector<std::optional<wire::Direction>> answers;  ///< to the tick in hand; none yet, or missed
+  bool are_allowed = false;  ///< from outside, that the scene does not name
+  CheckDirection check;      ///< may be empty
+  std::optional<wire::Truth> truth;  ///< of the tick in hand; none: there is none to tell
+
+  /// Their numbers, in the order of their ids.
+  std::vector<std::size_t> by_id() const;
+};
+
+}  // namespace ziggurat::network

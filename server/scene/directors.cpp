@@ -1,0 +1,62 @@
+// <director>, and <loop_functions> as one: programs that watch the world and act on it between ticks.
+
+#include <algorithm>
+
+#include "scene/draft.h"
+
+namespace ziggurat::scene {
+namespace {
+
+void read_director(Draft& draft, Element& element, Director director) {
+  director.where = element.where();
+  director.script = element.optional("script", path, "");
+  director.command = element.optional("command", text, "");
+  director.deadline = read_deadline(element, std::nullopt);
+  if (auto params = element.child("params")) {
+    director.params = with_parameters(params->all_attributes(), draft.parameters);
+    params->done();
+  }
+  element.done();
+  if (!director.script.empty() && !director.command.empty()) {
+    element.fault("has a script and a command; write one of them");
+  }
+  auto& directors = draft.scene.directors;
+  const auto earlier = std::ranges::find(directors, director.id, &Director::id);
+  if (!director.id.empty() && earlier != directors.end()) {
+    refuse_id(element, "director", earlier->where);
+  }
+  if (directors.size() == Director::most) {
+    element.fault(fmt::format("is one too many; a scene has {} directors at most", Director::most));
+  }
+  directors.push_back(std::move(director));
+}
+
+/// That of a scene for ARGoS is a library, which a server does not load.
+void read_loop_functions(Draft& draft, Element& element) {
+  element.without_effect("label", text, "a director has an id");
+  if (element.has("library") || !element.has("script")) {
+    element.fault(
+        "has no script, and libraries are not loaded into the server; write its rule as a Lua script "
+        "and name it in <director id=\"…\" script=\"…\"/>, or write a director in C++ or Python and "
+        "name it in command=\"…\"");
+    return;
+  }
+  Director director;
+  director.id = element.optional("id", identifier, "loop_functions");
+  draft.report.notice(element.where(), fmt::format("<loop_functions> is read as <director id={}>",
+                                                   in_quotes(director.id)));
+  read_director(draft, element, std::move(director));
+}
+
+}  // namespace
+
+void read_directors(Draft& draft, Element& root) {
+  for (Element& element : root.children("director")) {
+    Director director;
+    director.id = element.required("id", identifier);
+    read_director(draft, element, std::move(director));
+  }
+  for (Element& element : root.children("loop_functions")) read_loop_functions(draft, element);
+}
+
+}  // namespace ziggurat::scene

@@ -1,0 +1,83 @@
+#pragma once
+// Entities that are added to the world and removed from it while it runs (docs/protocol.md, V9 and V13).
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "network/server.h"
+#include "processes/controllers.h"
+#include "processes/spawned_scripts.h"
+#include "reports/console.h"
+#include "scene/additions.h"
+#include "supervision/act.h"
+#include "supervision/callers.h"
+#include "supervision/world.h"
+
+namespace ziggurat::supervision {
+
+/// The fault of an act on an entity that is not there.
+/// @param field  of the request
+wire::Fault no_entity(std::string field, const std::string& id);
+
+/// The entity of that id that is in the world, into Layout::entities.
+std::optional<std::size_t> entity_named(const simulation::Simulation& world, const std::string& id);
+
+/// What is about to be spawned before something else.
+struct EarlierSpawns {
+  std::size_t count = 0;  ///< entities
+  std::size_t size = 0;   ///< of their elements, models written out [bytes]
+};
+
+class Population {
+ public:
+  struct Settings {
+    std::size_t max_size = 0;      ///< of all spawned elements, models written out [bytes]
+    bool with_controllers = true;  ///< otherwise spawned robots have no controller either
+    std::vector<std::string> script_folders;  ///< whose files spawned robots may use, too
+  };
+
+  /// All must outlive this. Notices on spawned entities go to the console.
+  Population(const Settings& settings, World& world, network::Server& server, Callers& callers,
+             processes::Controllers& controllers, reports::Console& console);
+
+  /// An element that may be added, if its place is free.
+  struct Candidate {
+    scene::Addition addition;
+    processes::SpawnedScript script;
+    Spawned act;
+  };
+  /// Reads an element. @param is_taken  whether an id is that of an entity that will be there then
+  std::variant<Candidate, wire::Fault> read(const std::string& xml,
+                                            const std::function<bool(const std::string&)>& is_taken,
+                                            const EarlierSpawns& earlier = {}) const;
+
+  // Each returns why it can't be done; then nothing has changed.
+  std::optional<wire::Fault> spawn(const std::string& xml);
+  std::optional<wire::Fault> remove(const std::string& id);
+
+  /// The world has begun anew or gone back. @param robots  the first ones, which are the same as before
+  void restart(std::size_t robots);
+
+  /// Files that spawned elements may name.
+  const processes::AllowedFiles& allowed() const { return allowed_; }
+
+ private:
+  void add_controllers(std::size_t first, std::span<const std::string> scripts);
+
+  const Settings settings_;
+  const processes::AllowedFiles allowed_;
+  World& world_;
+  network::Server& server_;
+  Callers& callers_;
+  processes::Controllers& controllers_;
+  reports::Console& console_;
+  std::size_t spawned_ = 0;  ///< entities, since the start or the last reset
+  std::size_t size_left_;    ///< for more entities [bytes]
+};
+
+}  // namespace ziggurat::supervision

@@ -1,0 +1,57 @@
+#pragma once
+// What directors do to the world, as plain data.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "wire/messages.h"
+#include "wire/request.h"
+#include "world/state.h"
+
+namespace ziggurat::v1 {
+class Direction;
+}
+
+namespace ziggurat::wire {
+
+inline constexpr std::size_t most_acts = 10'000;         // of a Direction
+inline constexpr std::size_t most_direction_logs = 1000;  // lines of a Direction
+inline constexpr std::size_t longest_direction = std::size_t{4} << 20;  // [bytes]
+inline constexpr std::size_t longest_result = 1024;                     // of a run [bytes]
+
+/// LEDs and tags of an entity. Each list is empty or has a value for each of its devices.
+struct Show {
+  std::string entity;
+  std::vector<world::Color> led_colors, directional_led_colors;  ///< at most 0xFFFFFF
+  std::vector<std::string> tag_payloads;
+};
+
+/// A force and a torque on a link during the next tick.
+struct Push {
+  std::string entity;
+  std::string link;                ///< id; empty: the entity's first one
+  std::array<double, 3> force{};   ///< at its centre of mass, in W [N]
+  std::array<double, 3> torque{};  ///< in W [N m]
+};
+
+/// A Request is one to move, spawn or remove.
+using DirectorAct = std::variant<Request, Show, Push>;
+
+/// Checked, but for what only the world can tell.
+struct Direction {
+  std::vector<DirectorAct> acts;
+  std::vector<Metric> metrics;  ///< `robot` has no meaning
+  std::vector<LogLine> log;     ///< likewise
+  std::optional<std::string> finish;  ///< the run ends with this result
+};
+
+/// What is wrong with a Direction, whatever the world is. Its tick is not checked.
+std::optional<Fault> check(const v1::Direction& direction);
+/// @param direction  checked
+Direction read(const v1::Direction& direction);
+
+}  // namespace ziggurat::wire
