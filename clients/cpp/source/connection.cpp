@@ -16,7 +16,7 @@ constexpr milliseconds slice{500};  // between checks of whether the connection 
 
 }  // namespace
 
-Connection::Connection(const Options& options)
+Connection::Connection(const SessionOptions& options)
     : options_(options), transport_(make_transport(options)) {}
 
 Connection::~Connection() {

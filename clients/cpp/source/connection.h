@@ -16,7 +16,7 @@ namespace ziggurat {
 
 // Of the protocol.
 inline constexpr std::uint32_t version_major = 1;
-inline constexpr std::uint32_t version_minor = 3;
+inline constexpr std::uint32_t version_minor = 4;
 
 class Connection {
  public:
@@ -24,7 +24,7 @@ class Connection {
 
   /// Starts to connect; the server may start later.
   /// @throws std::invalid_argument for an unusable endpoint or keys
-  explicit Connection(const Options& options);
+  explicit Connection(const SessionOptions& options);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -52,9 +52,10 @@ class Connection {
   std::optional<Kind> receive(std::optional<std::chrono::milliseconds> timeout,
                               const std::function<bool()>& is_interrupted);
 
-  // The last message, valid until the next is received. Observations are in a separate message,
-  // which keeps its memory.
+  // The last message, valid until the next is received. Observations and states of the world are in separate
+  // messages, which keep their memory.
   const v1::Observation& observation() const { return observation_; }
+  const v1::WorldState& world_state() const { return world_state_; }
   const v1::ServerMessage& message() const { return message_; }
 
  private:
@@ -62,14 +63,15 @@ class Connection {
   void forget(std::size_t size);
   void check_alive(std::chrono::milliseconds waited);
 
-  Options options_;  // where to connect
+  SessionOptions options_;  // where to connect
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<Transport> lost_transport_;  // until the session goes on
   bool is_lost_ = false;
   std::chrono::milliseconds longest_silence_{0};
   std::chrono::milliseconds silence_{0};  // waited without a message
   v1::Observation observation_;
-  std::size_t parsed_ = 0;  // [bytes] since observation_ last released its memory
+  v1::WorldState world_state_;
+  std::size_t parsed_ = 0;  // [bytes] since these two last released their memory
   v1::ServerMessage message_;
 };
 

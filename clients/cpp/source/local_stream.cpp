@@ -23,7 +23,7 @@ constexpr std::size_t most_kept = 1 << 20;  // of a buffer that is empty [bytes]
 
 }  // namespace
 
-std::optional<std::string> LocalStream::path_of(const Options& options) {
+std::optional<std::string> LocalStream::path_of(const SessionOptions& options) {
   constexpr std::string_view scheme = "ipc://";
   if (!options.endpoint.starts_with(scheme)) return std::nullopt;
   if (!options.server_key.empty() || !options.curve_secret.empty()) return std::nullopt;
@@ -33,7 +33,7 @@ std::optional<std::string> LocalStream::path_of(const Options& options) {
   return path;
 }
 
-LocalStream::LocalStream(const Options& options) : path_(path_of(options).value()) { connect(); }
+LocalStream::LocalStream(const SessionOptions& options) : path_(path_of(options).value()) { connect(); }
 
 LocalStream::~LocalStream() {
   const auto end = Clock::now() + longest_linger;

@@ -16,10 +16,10 @@ namespace ziggurat {
 class LocalStream final : public Transport {
  public:
   /// The path of an endpoint that this class can connect to.
-  static std::optional<std::string> path_of(const Options& options);
+  static std::optional<std::string> path_of(const SessionOptions& options);
 
   /// Starts to connect; the server may start later.
-  explicit LocalStream(const Options& options);
+  explicit LocalStream(const SessionOptions& options);
   ~LocalStream() override;
   LocalStream(const LocalStream&) = delete;
   LocalStream& operator=(const LocalStream&) = delete;

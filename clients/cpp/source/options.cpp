@@ -30,14 +30,18 @@ std::string from_hexadecimal(std::string_view text) {
 
 }  // namespace
 
+void SessionOptions::read_environment() {
+  const char* from = std::getenv("ZIGGURAT_ENDPOINT");
+  endpoint = from == nullptr || *from == '\0' ? find_server() : from;
+  if (const char* key = std::getenv("ZIGGURAT_SERVER_KEY")) server_key = key;
+  if (const char* secret = std::getenv("ZIGGURAT_CURVE_SECRET")) curve_secret = secret;
+  session_token = take_session_token();
+}
+
 Options Options::from_environment() {
-  const char* endpoint = std::getenv("ZIGGURAT_ENDPOINT");
   Options options;
-  options.endpoint = endpoint == nullptr || *endpoint == '\0' ? find_server() : endpoint;
+  options.read_environment();
   if (const char* controller = std::getenv("ZIGGURAT_CONTROLLER")) options.controller = controller;
-  if (const char* key = std::getenv("ZIGGURAT_SERVER_KEY")) options.server_key = key;
-  if (const char* secret = std::getenv("ZIGGURAT_CURVE_SECRET")) options.curve_secret = secret;
-  options.session_token = take_session_token();
   return options;
 }
 

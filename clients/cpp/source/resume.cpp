@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "session_state.h"
+#include "session_core.h"
 
 namespace ziggurat {
 namespace {
@@ -17,11 +17,11 @@ constexpr unsigned most_in_vain = 3;
 
 }  // namespace
 
-milliseconds Session::State::patience() const {
+milliseconds SessionCore::patience() const {
   return options.resume_timeout.value_or(std::max(lease, usual_patience));
 }
 
-bool Session::State::resume(const std::string& loss) {
+bool SessionCore::resume(const std::string& loss) {
   const auto end = Clock::now() + patience();
   // The answer itself may be why the server closes the connection.
   if (token.empty() || patience().count() == 0 || ++resumes_in_vain > most_in_vain) {
@@ -52,7 +52,7 @@ bool Session::State::resume(const std::string& loss) {
 }
 
 /// As long as the server accepts the connection and is silent, it is slow: that has no time-out.
-bool Session::State::hear_welcome(Clock::time_point end) {
+bool SessionCore::hear_welcome(Clock::time_point end) {
   for (;;) {
     const auto kind = connection.receive(between_attempts, options.is_interrupted);
     if (!kind && is_interrupted()) return false;
@@ -69,46 +69,41 @@ bool Session::State::hear_welcome(Clock::time_point end) {
   }
 }
 
-/// The session has the robots that it had, in their order (H9): their handles stay.
-void Session::State::go_on(const v1::Welcome& welcome) {
-  const auto robots = fleet->robots();
-  const bool are_the_same = std::equal(
-      robots.begin(), robots.end(), welcome.robots().begin(), welcome.robots().end(),
-      [](const Robot& ours, const v1::RobotDescription& theirs) { return ours.id() == theirs.id(); });
-  if (!are_the_same) {
+void SessionCore::go_on(const v1::Welcome& welcome) {
+  try {
+    part.go_on(welcome, failures);
+  } catch (const ProtocolError&) {
     is_over = true;
-    throw ProtocolError("the resumed session has other robots than before", {});
+    throw;
   }
   const std::uint64_t seed_before = seed;
   read(welcome);
   if (seed != seed_before) read_reset();
-  fleet->remove(welcome.resumed().gone_robots());
   commanded = welcome.resumed().commanded();
-  std::erase_if(failures, [&](const v1::Leave& leave) { return robots[leave.robots(0)].gone(); });
-  fleet->repeat();
+  part.repeat();
   ++resumes;
   is_resumed = has_begun && !is_reset;
 }
 
-/// The first observation of a resumed session may be the one that was answered before: the controller must
+/// The first message of a resumed session may be the one that was answered before: the caller must
 /// not see it twice, and the answer may have been lost. The same answer is sent again; the server takes it
 /// or ignores it (L9).
-bool Session::State::repeats_answer(const v1::Observation& observation) {
+bool SessionCore::repeats_answer(const Moment& next) {
   if (!is_resumed) return false;
   is_resumed = false;
-  const bool is_other = epoch && observation.has_epoch() && observation.epoch() != *epoch;
-  if (observation.tick() < tick || is_other) {  // while there was no connection
+  const bool is_other = now.epoch && next.epoch && *next.epoch != *now.epoch;
+  if (next.tick < now.tick || is_other) {  // while there was no connection
     read_reset();
-    is_restored = is_other && options.can_restore && observation.tick() > 0;
-    if (is_restored) fleet->resume(commanded);
+    is_restored = is_other && options.can_restore && next.tick > 0;
+    if (is_restored) part.restore(commanded);
   }
-  if (observation.tick() != tick || is_reset) return false;
+  if (next.tick != now.tick || is_reset) return false;
   send_answer();
   return true;
 }
 
 /// @return  false if it was interrupted
-bool Session::State::pause(milliseconds length) {
+bool SessionCore::pause(milliseconds length) {
   const auto end = Clock::now() + length;
   while (!is_interrupted() && Clock::now() < end) {
     std::this_thread::sleep_for(std::min(length, between_attempts));

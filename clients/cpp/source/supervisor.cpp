@@ -5,7 +5,7 @@
 
 #include "connection.h"
 #include "convert.h"
-#include "session_state.h"
+#include "session_core.h"
 #include "ziggurat/error.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
@@ -92,8 +92,8 @@ EntityState entity_of(const v1::States::Entity& from) {
   return to;
 }
 
-Options where(const SupervisorOptions& wanted) {
-  Options options;
+SessionOptions where(const SupervisorOptions& wanted) {
+  SessionOptions options;
   options.endpoint = wanted.endpoint;
   options.server_key = wanted.server_key;
   options.curve_secret = wanted.curve_secret;

@@ -38,7 +38,7 @@ bool receive_from(zmq::socket_t& socket, zmq::message_t& message, zmq::recv_flag
 /// A DEALER of libzmq: over networks, and encrypted.
 class ZeroMq final : public Transport {
  public:
-  explicit ZeroMq(const Options& options);
+  explicit ZeroMq(const SessionOptions& options);
 
   void send(std::size_t size, const std::function<void(char*)>& write) override;
   bool receive(milliseconds timeout) override;
@@ -49,7 +49,7 @@ class ZeroMq final : public Transport {
   void linger() override;
 
  private:
-  void set_keys(const Options& options);
+  void set_keys(const SessionOptions& options);
   void take_events();
   void take_event(std::uint16_t event, std::uint32_t value);
 
@@ -67,7 +67,7 @@ class ZeroMq final : public Transport {
   zmq::message_t frame_;
 };
 
-ZeroMq::ZeroMq(const Options& options)
+ZeroMq::ZeroMq(const SessionOptions& options)
     : endpoint_(options.endpoint),
       socket_(context_, zmq::socket_type::dealer),
       monitor_(context_, zmq::socket_type::pair) {
@@ -87,7 +87,7 @@ ZeroMq::ZeroMq(const Options& options)
 }
 
 /// Encrypts the connection, if the options name keys.
-void ZeroMq::set_keys(const Options& options) {
+void ZeroMq::set_keys(const SessionOptions& options) {
   if (options.server_key.empty() && options.curve_secret.empty()) return;
   if (options.server_key.empty() || options.curve_secret.empty()) {
     throw std::invalid_argument(
@@ -200,7 +200,7 @@ void ZeroMq::take_event(std::uint16_t event, std::uint32_t value) {
 
 }  // namespace
 
-std::unique_ptr<Transport> make_transport(const Options& options) {
+std::unique_ptr<Transport> make_transport(const SessionOptions& options) {
   if (LocalStream::path_of(options)) return std::make_unique<LocalStream>(options);
   return std::make_unique<ZeroMq>(options);
 }

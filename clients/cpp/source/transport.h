@@ -45,6 +45,6 @@ inline constexpr const char* keys_are_missing =
     "and a secret key";
 
 /// @throws std::invalid_argument for an unusable endpoint or keys
-std::unique_ptr<Transport> make_transport(const Options& options);
+std::unique_ptr<Transport> make_transport(const SessionOptions& options);
 
 }  // namespace ziggurat

@@ -2,30 +2,18 @@
 
 #include <algorithm>
 
-#include "session_state.h"
+#include "session_core.h"
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat {
 namespace {
 
-const std::string usual_name = "controller";  // of a client that names neither itself nor a controller
-
-void fill(const Options& options, v1::Hello& hello) {
+void fill(const SessionOptions& options, v1::Hello& hello) {
   hello.mutable_version()->set_major(version_major);
   hello.mutable_version()->set_minor(version_minor);
-  hello.set_role(v1::ROLE_CONTROLLER);
-  for (const std::string& robot : options.robots) hello.add_robots(v1::valid_utf8(robot));
-  hello.set_controller(v1::valid_utf8(options.controller));
-  hello.set_lua_only(options.lua_only);
-  const std::string& id = options.controller;
-  const std::string& name = !options.name.empty() ? options.name : id.empty() ? usual_name : id;
-  hello.set_client_name(v1::valid_utf8(name));
+  hello.set_client_name(v1::valid_utf8(options.name));
   hello.set_client_version(v1::valid_utf8(options.version));
-  if (options.robots.empty() && options.controller.empty() && !options.lua_only) {
-    hello.add_robots("*");
-  }
   hello.set_session_token(options.session_token);
-  hello.set_takeover(options.takeover);
   hello.set_can_restore(options.can_restore);
   if (options.deadline) {
     v1::DeadlinePolicy& policy = *hello.mutable_deadline_policy();
@@ -36,7 +24,7 @@ void fill(const Options& options, v1::Hello& hello) {
 }
 
 /// How long a connection is silent at most unless it is lost (docs/protocol.md, M3); 0 = any time.
-std::chrono::milliseconds longest_silence(const v1::Welcome& welcome, const Options& options) {
+std::chrono::milliseconds longest_silence(const v1::Welcome& welcome, const SessionOptions& options) {
   // The end of a local connection is always told, so a server that is silent there is slow.
   if (welcome.wall_heartbeat_ms() == 0 || options.endpoint.starts_with("ipc://")) return {};
   return std::max(std::chrono::milliseconds(3000),
@@ -45,13 +33,14 @@ std::chrono::milliseconds longest_silence(const v1::Welcome& welcome, const Opti
 
 }  // namespace
 
-void Session::State::send_hello() {
+void SessionCore::send_hello() {
   v1::ClientMessage message;
   fill(options, *message.mutable_hello());
+  part.ask(*message.mutable_hello());
   connection.send(message);
 }
 
-void Session::State::open() {
+void SessionCore::open() {
   send_hello();
   for (;;) {
     const auto kind = connection.receive(options.connect_timeout, options.is_interrupted);
@@ -66,23 +55,18 @@ void Session::State::open() {
       check_not_refused(*kind, connection.message());
       continue;  // still loading, or a message of a later version
     }
-    begin(connection.message().welcome());
+    const v1::Welcome& welcome = connection.message().welcome();
+    read(welcome);
+    try {
+      part.begin(welcome);
+    } catch (const std::runtime_error& error) {
+      throw ConnectionError(options.endpoint + ": " + error.what());
+    }
     return;
   }
 }
 
-void Session::State::begin(const v1::Welcome& welcome) {
-  read(welcome);
-  try {
-    fleet.emplace(welcome);
-    fleet->resume(welcome.resumed().commanded());
-    fleet->remove(welcome.resumed().gone_robots());
-  } catch (const std::runtime_error& error) {
-    throw ConnectionError(options.endpoint + ": " + error.what());
-  }
-}
-
-void Session::State::read(const v1::Welcome& welcome) {
+void SessionCore::read(const v1::Welcome& welcome) {
   tick_length = std::chrono::nanoseconds(welcome.tick_ns());
   ticks_per_second = welcome.ticks_per_second();
   seed = welcome.seed();

@@ -43,11 +43,7 @@ void set_description(lua_State* state, const Camera& camera) {
   lua_setfield(state, -2, "anchor");
   push_vector(state, camera.position());
   lua_setfield(state, -2, "position");
-  const AngleAxis orientation = to_angle_axis(camera.orientation());
-  lua_createtable(state, 0, 2);
-  set_number(state, "angle", orientation.angle);
-  push_vector(state, orientation.axis);
-  lua_setfield(state, -2, "axis");
+  push_orientation(state, camera.orientation());
   lua_setfield(state, -2, "orientation");
   set_number(state, "near", camera.near());
   set_number(state, "far", camera.far());

@@ -8,6 +8,7 @@
 #include "module/options.h"
 #include "script/arguments.h"
 #include "script/environment.h"
+#include "script/robot_table.h"
 #include "script/guarded.h"
 #include "script/log_functions.h"
 #include "script/tables.h"
@@ -80,7 +81,7 @@ int next(lua_State* state) {
   auto& connected = upvalue<Connected>(state);
   move_logs(connected);
   if (!connected.session->next()) return 0;
-  for (const auto& seat : connected.seats) refresh(state, *seat->robot);
+  for (const auto& seat : connected.seats) refresh_robot(state, *seat->robot);
   lua_pushinteger(state, static_cast<lua_Integer>(connected.session->tick()));
   lua_pushstring(state, name_of(connected.session->event()));
   return 2;

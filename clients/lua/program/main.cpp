@@ -4,8 +4,10 @@
 
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <string>
 
+#include "program/director_runner.h"
 #include "program/host.h"
 #include "program/options.h"
 #include "program/runner.h"
@@ -14,6 +16,7 @@
 #include "script/interrupt.h"
 #include "script/place_file.h"
 #include "text/standard_streams.h"
+#include "ziggurat/director.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 
@@ -23,23 +26,33 @@ using namespace ziggurat;
 
 enum ExitCode { exit_finished = 0, exit_fault = 1, exit_failed_script = 3, exit_signal = 128 };
 
-Options session_options(const lua::ProgramOptions& from) {
-  Options options;
+template <typename Wanted>
+Wanted where(const lua::ProgramOptions& from) {
+  Wanted options;
   options.endpoint = from.endpoint;
   options.server_key = from.server_key;
   options.curve_secret = from.curve_secret;
   options.session_token = from.session_token;
-  options.controller = from.controller;
-  options.robots = from.robots;
-  options.lua_only = !from.script;  // --script runs robots with any controller
   options.name = from.name;
   options.version = ZIGGURAT_VERSION;
   options.is_interrupted = [] { return lua::arrived_signal() != 0; };
   return options;
 }
 
-int run(const lua::ProgramOptions& options) {
-  Session session(session_options(options));
+int exit_code(const std::optional<Ending>& ending, bool has_failed, const lua::ProgramOptions& options) {
+  if (const int number = lua::arrived_signal()) return exit_signal + number;
+  if (ending && ending->reason == Ending::Reason::failed && !options.quiet) {
+    std::fprintf(stderr, "ziggurat-lua: the server ended the run: %s\n", ending->message.c_str());
+  }
+  return has_failed ? exit_failed_script : exit_finished;
+}
+
+int run_robots(const lua::ProgramOptions& options) {
+  auto wanted = where<Options>(options);
+  wanted.controller = options.controller;
+  wanted.robots = options.robots;
+  wanted.lua_only = !options.script;  // --script runs robots with any controller
+  Session session(wanted);
   if (!options.quiet) {
     const std::size_t robots = session.robots().size();
     std::fprintf(stderr, "ziggurat-lua: runs %zu %s at %s, seed %llu\n", robots,
@@ -49,12 +62,24 @@ int run(const lua::ProgramOptions& options) {
   lua::Runner runner(session, options);
   runner.run();
   session.leave();
-  if (const int number = lua::arrived_signal()) return exit_signal + number;
-  const auto& ending = session.ending();
-  if (ending && ending->reason == Ending::Reason::failed && !options.quiet) {
-    std::fprintf(stderr, "ziggurat-lua: the server ended the run: %s\n", ending->message.c_str());
+  return exit_code(session.ending(), runner.has_failures(), options);
+}
+
+int direct(const lua::ProgramOptions& options) {
+  auto wanted = where<DirectorOptions>(options);
+  wanted.director = *options.director;
+  wanted.groups.assign(wanted.all_groups.begin(), wanted.all_groups.end());
+  Director director(wanted);
+  if (!options.quiet) {
+    std::fprintf(stderr, "ziggurat-lua: directs as '%s' at %s, seed %llu\n", director.id().c_str(),
+                 options.endpoint.c_str(), static_cast<unsigned long long>(director.seed()));
   }
-  return runner.has_failures() ? exit_failed_script : exit_finished;
+  const bool is_well = lua::run_director(director, options);
+  return exit_code(director.ending(), !is_well, options);
+}
+
+int run(const lua::ProgramOptions& options) {
+  return options.director ? direct(options) : run_robots(options);
 }
 
 void report(const std::exception& error) {

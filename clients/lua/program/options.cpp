@@ -28,7 +28,7 @@ usage: ziggurat-lua [--connect URL] [--robot GLOB]... [--script FILE]
       a server that was started with --endpoint, or one of several
 
 `ziggurat run` starts this program itself. A script has robot, log and logerr, and defines init,
-step, reset and destroy: see docs/lua-api.md. A script that fails ends only its own robot.
+step, reset and destroy; that of a director has world: see docs/lua-api.md. A script that fails ends only its own robot.
 A script can't start programs, and uses only files below the working directory, unless --trust-scripts
 or --script-folder allows more.
 
@@ -49,6 +49,8 @@ po::options_description description() {
       ("robots-from", text("PIPE"),
        "run each robot whose id arrives on this named pipe, one a line, in a session of its own")  //
       ("controller", text("ID"), "robots that have this controller in the scene")              //
+      ("director", text("ID"),
+       "run the script of the scene's director ID, no robots; with --script another")  //
       ("server-key", text("KEY"), "public key of a server with an encrypted endpoint")         //
       ("curve-secret", text("FILE"), "secret key of this program for it ('ziggurat keygen')")  //
       ("script", text("FILE"), "run this script instead of those of the scene")                //
@@ -180,8 +182,13 @@ Request read_arguments(int count, const char* const* arguments, bool is_terminal
   if (!options.robots_from.empty() && !options.robots.empty()) {
     throw std::runtime_error("--robots-from and --robot or --robots-file exclude each other");
   }
+  if (found.count("director")) options.director = value("director");
+  if (options.director && (!options.robots.empty() || !options.robots_from.empty() || found.count("controller"))) {
+    throw std::runtime_error("--director runs no robots: remove --robot, --robots-file, --robots-from and --controller");
+  }
   options.controller = value("controller");
-  if (options.controller.empty() && options.robots.empty() && options.robots_from.empty()) {
+  if (options.controller.empty() && options.robots.empty() && options.robots_from.empty() &&
+      !options.director) {
     options.controller = environment("ZIGGURAT_CONTROLLER");
   }
   options.server_key = value("server-key", environment("ZIGGURAT_SERVER_KEY"));

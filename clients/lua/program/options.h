@@ -15,6 +15,7 @@ struct ProgramOptions {
   std::vector<std::string> robots;  ///< ids or globs, with those of --robots-file
   std::string robots_from;          ///< pipe with ids of robots that come later; empty: none
   std::string controller;           ///< id in the scene; empty for all
+  std::optional<std::string> director;  ///< runs this director of the scene, and no robots
   std::optional<std::filesystem::path> script;  ///< instead of the scene's
   std::string server_key, curve_secret;         ///< as in ziggurat::Options
   std::string session_token;                    ///< the same; empty with robots_from

@@ -2,6 +2,7 @@
 
 #include <new>
 
+#include "program/echo.h"
 #include "program/find_script.h"
 #include "program/terminal.h"
 #include "program/turn.h"
@@ -38,7 +39,7 @@ void Runner::start(Seat& seat) {
   if (script.path.empty()) return fail(seat, script.fault);
   try {
     seat.controller = std::make_unique<Controller>(
-        *seat.robot, ControllerOptions{script.path, session_.seed(), session_.tick(),
+        *seat.robot, ScriptOptions{script.path, session_.seed(), session_.tick(),
                                        options_.max_memory, options_.max_instructions,
                                        options_.trusts_scripts ? nullptr : &folders_});
   } catch (const std::bad_alloc&) {
@@ -72,10 +73,9 @@ void Runner::finish() {
 
 void Runner::hand_over_log(Seat& seat) {
   LogLines& log = seat.controller->log();
-  if (options_.echo) echo(seat, log);
+  if (options_.echo) echo(log, session_.tick(), seat.robot->id());
   if (move_log(log, *seat.robot)) return;
-  std::fprintf(stderr, "ziggurat-lua: tick %llu: more log lines than a message can hold; dropped\n",
-               static_cast<unsigned long long>(session_.tick()));
+  report_lost_log(session_.tick());
 }
 
 // A script that was ended by a signal has not failed.
@@ -86,16 +86,6 @@ void Runner::fail(Seat& seat, const std::string& message) {
   seat.robot->fail(message);
   if (options_.quiet) return;  // the server prints it
   std::fprintf(stderr, "robot '%s': %s\n", seat.robot->id().c_str(), message.c_str());
-}
-
-void Runner::echo(const Seat& seat, const LogLines& log) const {
-  for (const LogLine& line : log.lines) {
-    std::FILE* const to = line.is_error ? stderr : stdout;
-    std::fprintf(to, "[%llu %s] ", static_cast<unsigned long long>(session_.tick()),
-                 seat.robot->id().c_str());
-    std::fwrite(line.text.data(), 1, line.text.size(), to);
-    std::fputc('\n', to);
-  }
 }
 
 }  // namespace ziggurat::lua

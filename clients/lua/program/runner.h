@@ -37,7 +37,6 @@ class Runner {
   Failure call(Controller& controller);
   void hand_over_log(Seat& seat);
   void fail(Seat& seat, const std::string& message);
-  void echo(const Seat& seat, const LogLines& log) const;
 
   ziggurat::Session& session_;
   const ProgramOptions& options_;

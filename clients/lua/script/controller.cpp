@@ -1,61 +1,18 @@
 #include "script/controller.h"
 
-#include <string_view>
-#include <system_error>
-
-#include "script/error_message.h"
-#include "script/guarded.h"
+#include "script/metric_function.h"
+#include "script/robot_random.h"
+#include "script/robot_table.h"
 
 namespace ziggurat::lua {
-namespace {
 
-namespace fs = std::filesystem;
-
-constexpr int handler = 1;  // stack index of keep_traceback during every call
-
-// In messages the path is relative to the working directory if the script is below it: Lua shortens
-// paths of more than 60 bytes.
-fs::path shown(const fs::path& script) {
-  std::error_code error;
-  const fs::path here = fs::current_path(error);
-  if (error) return script;
-  const fs::path relative = (here / script).lexically_normal().lexically_proximate(here);
-  return relative.empty() || *relative.begin() == ".." ? script : relative;
-}
-
-int get_global(lua_State* state) {
-  lua_getglobal(state, lua_tostring(state, 1));
-  return 1;
-}
-
-// A metatable of _G may raise an error for an unknown global: then there is none.
-void get_global_if_any(lua_State* state, const char* name) {
-  lua_pushcfunction(state, get_global);
-  lua_pushstring(state, name);
-  if (lua_pcall(state, 1, 1, 0) == LUA_OK) return;
-  lua_pop(state, 1);
-  lua_pushnil(state);
-}
-
-}  // namespace
-
-Controller::Controller(Robot& robot, const ControllerOptions& options)
-    : robot_(robot),
-      random_(options.seed, robot_.id()),
-      first_tick_(options.first_tick),
-      max_memory_(options.max_memory),
-      max_instructions_(options.max_instructions),
-      folders_(options.folders),
-      script_(shown(options.script).string()),
-      folder_(shown(options.script).parent_path().string()),
-      state_(options.max_memory) {
-  if (folder_.empty()) folder_ = ".";
-}
+Controller::Controller(Robot& robot, const ScriptOptions& options)
+    : Script(robot.id(), options), robot_(robot) {}
 
 Failure Controller::start() {
   const Running running(calling());
   if (auto failure = run_chunk()) return failure;
-  return call("init", true, "init, tick " + std::to_string(first_tick_));
+  return call("init", true, "init, tick " + std::to_string(first_tick()));
 }
 
 Failure Controller::step(std::uint64_t tick) {
@@ -64,7 +21,7 @@ Failure Controller::step(std::uint64_t tick) {
 }
 
 Failure Controller::reset(std::uint64_t seed) {
-  random_ = RandomStreams(seed, robot_.id());
+  begin_anew(seed);
   const Running running(calling());
   return call("reset", false, "reset, tick 0");
 }
@@ -74,81 +31,18 @@ Failure Controller::destroy(std::uint64_t last_tick) {
   return call("destroy", false, "destroy, after tick " + std::to_string(last_tick));
 }
 
-Failure Controller::run_chunk() {
-  lua_State* const state = state_.get();
-  lua_settop(state, 0);
-  push_protected(build);
-  if (lua_pcall(state, 1, 0, 0) != LUA_OK) return describe_error("its beginning");
-  lua_pushcfunction(state, keep_traceback);
-  push_protected(load);
-  if (lua_pcall(state, 1, 1, 0) != LUA_OK) return describe_error("its beginning");
-  return call_prepared("its chunk, tick " + std::to_string(first_tick_));
+void Controller::set_up(lua_State* state) {
+  lua_pushglobaltable(state);
+  set_metric_function(state, robot_);
+  lua_pop(state, 1);
+  push_robot(state, robot_);
+  push_robot_random(state, random().robot_random);
+  lua_setfield(state, -2, "random");
+  lua_pushinteger(state, static_cast<lua_Integer>(first_tick()));
+  lua_setfield(state, -2, "first_tick");
+  lua_setglobal(state, "robot");
 }
 
-// Also refreshes the tables. A function that is not required may be missing.
-Failure Controller::call(const char* function, bool is_required, const std::string& moment) {
-  lua_State* const state = state_.get();
-  wanted_ = {function, is_required};
-  lua_settop(state, 0);
-  lua_pushcfunction(state, keep_traceback);
-  push_protected(prepare);
-  if (lua_pcall(state, 1, 1, handler) != LUA_OK) return describe_error(moment);
-  if (lua_isnil(state, -1)) {
-    if (!is_required) return std::nullopt;
-    return script_ + ": the script has no function " + function + "() (in " + moment + ")";
-  }
-  return call_prepared(moment);
-}
-
-Failure Controller::call_prepared(const std::string& moment) {
-  if (lua_pcall(state_.get(), 0, 0, handler) != LUA_OK) return describe_error(moment);
-  return std::nullopt;
-}
-
-// Everything that may raise a Lua error runs as a protected function; its argument is this object.
-void Controller::push_protected(int (*function)(lua_State*)) {
-  lua_pushcfunction(state_.get(), function);
-  lua_pushlightuserdata(state_.get(), this);
-}
-
-int Controller::build(lua_State* state) {
-  auto& self = *static_cast<Controller*>(lua_touserdata(state, 1));
-  prepare_error_messages(state);
-  set_up(state, {self.robot_, self.log_, self.random_, self.folder_, self.folders_,
-                 self.first_tick_});
-  return 0;
-}
-
-int Controller::load(lua_State* state) {
-  auto& self = *static_cast<Controller*>(lua_touserdata(state, 1));
-  // Text only: precompiled chunks can crash the interpreter.
-  if (luaL_loadfilex(state, self.script_.c_str(), "t") != LUA_OK) return lua_error(state);
-  return 1;
-}
-
-int Controller::prepare(lua_State* state) {
-  auto& self = *static_cast<Controller*>(lua_touserdata(state, 1));
-  refresh(state, self.robot_);
-  if (self.wanted_.is_required) {
-    lua_getglobal(state, self.wanted_.name);
-  } else {
-    get_global_if_any(state, self.wanted_.name);
-  }
-  return 1;
-}
-
-std::string Controller::describe_error(const std::string& moment) {
-  auto [text, traceback] = take_error_message(state_.get());
-  // Most messages of Lua begin with file and line (long paths are shortened), some have neither.
-  const auto end = script_.size() < LUA_IDSIZE ? script_ : script_.substr(script_.size() - 40);
-  if (text.substr(0, LUA_IDSIZE + 1).find(end + ":") == std::string::npos) {
-    text = script_ + ": " + text;
-  }
-  if (text.ends_with("not enough memory")) {
-    text += " (it may have " + std::to_string(max_memory_ >> 20) + " MiB)";
-  }
-  text += " (in " + moment + ")";
-  return traceback.empty() ? text : text + "\n" + traceback;
-}
+void Controller::refresh(lua_State* state) { refresh_robot(state, robot_); }
 
 }  // namespace ziggurat::lua

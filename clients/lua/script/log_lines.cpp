@@ -4,6 +4,23 @@
 #include <utility>
 
 namespace ziggurat::lua {
+namespace {
+
+template <typename Owner>
+bool move_lines(LogLines& from, Owner& to) {
+  bool fits = true;
+  try {
+    for (const LogLine& line : from.lines) {
+      line.is_error ? to.log_error(line.text) : to.log(line.text);
+    }
+  } catch (const std::length_error&) {
+    fits = false;
+  }
+  from.clear();
+  return fits;
+}
+
+}  // namespace
 
 void LogLines::add(bool is_error, std::string text) {
   if (is_full) return;
@@ -22,17 +39,7 @@ void LogLines::clear() {
   is_full = false;
 }
 
-bool move_log(LogLines& from, Robot& to) {
-  bool fits = true;
-  try {
-    for (const LogLine& line : from.lines) {
-      line.is_error ? to.log_error(line.text) : to.log(line.text);
-    }
-  } catch (const std::length_error&) {
-    fits = false;
-  }
-  from.clear();
-  return fits;
-}
+bool move_log(LogLines& from, Robot& to) { return move_lines(from, to); }
+bool move_log(LogLines& from, Director& to) { return move_lines(from, to); }
 
 }  // namespace ziggurat::lua

@@ -37,6 +37,22 @@ void set_element(lua_State* state, int table, std::string_view key) {
   lua_rawset(state, table - 1);
 }
 
+void push_params(lua_State* state, const std::vector<std::pair<std::string, std::string>>& params) {
+  lua_createtable(state, 0, static_cast<int>(params.size()));
+  for (const auto& [name, value] : params) {
+    lua_pushlstring(state, value.data(), value.size());
+    set_element(state, -2, name);
+  }
+}
+
+void push_orientation(lua_State* state, const std::array<double, 4>& quaternion) {
+  const auto [angle, axis] = to_angle_axis(quaternion);
+  lua_createtable(state, 0, 2);
+  set_number(state, "angle", angle);
+  push_vector(state, axis);
+  lua_setfield(state, -2, "axis");
+}
+
 AngleAxis to_angle_axis(const std::array<double, 4>& quaternion) {
   const auto [w, x, y, z] = quaternion;
   const double sine = std::hypot(x, y, z);  // of half the angle

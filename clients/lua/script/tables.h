@@ -3,7 +3,10 @@
 
 #include <array>
 #include <lua.hpp>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace ziggurat::lua {
 
@@ -41,10 +44,17 @@ void set_elements(lua_State* state, const Values& values, Push push) {
   }
 }
 
+/// Pushes a table with these values, all strings.
+void push_params(lua_State* state, const std::vector<std::pair<std::string, std::string>>& params);
+
 struct AngleAxis {
   double angle = 0;                     ///< [0, 2 pi] [rad]
   std::array<double, 3> axis{0, 0, 1};  ///< unit
 };
+
+/// Pushes {angle, axis = {x, y, z}}.
+/// @param quaternion  unit, w, x, y, z
+void push_orientation(lua_State* state, const std::array<double, 4>& quaternion);
 
 /// @param quaternion  unit, w, x, y, z
 AngleAxis to_angle_axis(const std::array<double, 4>& quaternion);

@@ -39,7 +39,7 @@ class Devices : public ::testing::Test {
   Failure start(const std::string& script) {
     std::ofstream(path_) << prelude << script;
     one_.emplace(robot_);
-    controller_ = std::make_unique<Controller>(one_->robot(), ControllerOptions{path_});
+    controller_ = std::make_unique<Controller>(one_->robot(), ScriptOptions{path_});
     return controller_->start();
   }
   Failure step() {

@@ -80,7 +80,7 @@ TEST(Session, AResumedOneBeginsWithWhatWasCommanded) {
   FakeServer server([](FakeServer& self) {
     const v1::Hello hello = self.receive().hello();
     EXPECT_EQ(hello.session_token(), "token");
-    EXPECT_EQ(hello.version().minor(), 3U);
+    EXPECT_EQ(hello.version().minor(), 4U);
     v1::ServerMessage message;
     for (const char* id : {"a", "b"}) {
       v1::RobotDescription& robot = *message.mutable_welcome()->add_robots();

@@ -30,31 +30,25 @@ struct Deadline {
   std::uint32_t miss_budget = 0;
 };
 
-/// The server to connect to, and the robots to control.
-struct Options {
+/// The server to connect to, and how: of controllers and directors.
+struct SessionOptions {
   std::string endpoint;  ///< `ipc://…` or `tcp://host:port`
 
   // Keys, for a server with an encrypted endpoint (--curve-secret). Both or none.
   std::string server_key;    ///< the server's public key, Z85: 40 characters
   std::string curve_secret;  ///< path of a file with this client's secret key, Z85
 
-  // The robots that match all of these; if none is set, all robots of the scene.
-  std::string controller;           ///< robots of this controller of the scene
-  std::vector<std::string> robots;  ///< ids or globs (`*`, `?`, `[a-z]`)
-  bool lua_only = false;            ///< only robots with a Lua script as controller
-
-  /// Session::token() of an earlier session: resumes it with its robots at the present tick.
-  /// Controller, robots and lua_only are ignored then. The values of the last commands stay, and
-  /// the handles of the new session begin with them; a server of protocol version 1.0 does not send
-  /// them, and the handles begin with the scene's values: set all values again then.
+  /// token() of an earlier session: resumes it at the present tick. What it asks for otherwise is ignored
+  /// then. The values of a controller's last commands stay, and the handles of the new session begin with them;
+  /// a server of protocol version 1.0 does not send them, and the handles begin with the scene's values: set all
+  /// values again then.
   std::string session_token;
-  bool takeover = false;             ///< also robots of other sessions, which keep the rest
-  /// Whether this controller can go back: at Event::restored it takes the state that it had at the tick
+  /// Whether this client can go back: at Event::restored it takes the state that it had at the tick
   /// of the snapshot. Without, the server refuses to restore the world while this session is there.
   bool can_restore = false;
   std::optional<Deadline> deadline;  ///< a wish; none = as the scene or the server's options say
 
-  std::string name;  ///< of this program, for the server's messages; empty: `controller`
+  std::string name;  ///< of this program, for the server's messages; empty: the controller, or `director`
   std::string version;              ///< of this program, for the server's messages
 
   std::chrono::milliseconds connect_timeout{10'000};  ///< wall time until the server's welcome
@@ -64,17 +58,28 @@ struct Options {
   /// connection and is slow to answer is waited for. Over tcp a connection is lost, too, if the server is
   /// silent for three times its heartbeat (3 s).
   std::optional<std::chrono::milliseconds> resume_timeout;
-  /// Wall time that next() waits for an observation; none = forever, as other sessions may be slow.
+  /// Wall time that next() waits for the next tick; none = forever, as other sessions may be slow.
   std::optional<std::chrono::milliseconds> wait_timeout;
   /// Called while waiting, after each signal and at least every half second of wall time: true ends
   /// the wait. next() then returns false without an ending, and the session can still leave; the
   /// constructor throws ConnectionError. None = no interruption.
   std::function<bool()> is_interrupted;
 
-  /// The endpoint is ZIGGURAT_ENDPOINT, otherwise that of find_server(), the controller
-  /// ZIGGURAT_CONTROLLER: `ziggurat run` sets both for the controllers that it starts. Keys are
-  /// ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET, the token is that of take_session_token().
-  /// @throws std::invalid_argument, see find_server() and take_session_token()
+  /// The endpoint is ZIGGURAT_ENDPOINT, otherwise that of find_server(). Keys are ZIGGURAT_SERVER_KEY and
+  /// ZIGGURAT_CURVE_SECRET, the token is that of take_session_token(). `ziggurat run` sets them for the programs
+  /// that it starts. @throws std::invalid_argument, see find_server() and take_session_token()
+  void read_environment();
+};
+
+/// Of a controller: the robots.
+struct Options : SessionOptions {
+  // The robots that match all of these; if none is set, all robots of the scene.
+  std::string controller;           ///< robots of this controller of the scene
+  std::vector<std::string> robots;  ///< ids or globs (`*`, `?`, `[a-z]`)
+  bool lua_only = false;            ///< only robots with a Lua script as controller
+  bool takeover = false;             ///< also robots of other sessions, which keep the rest
+
+  /// As read_environment(); the controller is ZIGGURAT_CONTROLLER.
   static Options from_environment();
 };
 

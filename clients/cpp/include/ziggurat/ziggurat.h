@@ -1,7 +1,9 @@
 #pragma once
-// The C++ client library: all headers that a controller needs. See docs/cpp-client.md.
+// The C++ client library: all headers that a controller or a director needs. See docs/cpp-client.md.
 
 #include "ziggurat/camera.h"
+#include "ziggurat/director.h"
+#include "ziggurat/entity.h"
 #include "ziggurat/error.h"
 #include "ziggurat/joint.h"
 #include "ziggurat/led.h"

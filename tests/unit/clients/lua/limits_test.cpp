@@ -70,7 +70,7 @@ TEST_F(Limits, OfOneRobotDoNotAffectAnother) {
   ASSERT_EQ(start("function step() log('here') end"), std::nullopt);
   write("loop.lua", "function init() end function step() while true do end end");
   OneRobot another(robot_);
-  ControllerOptions options = options_;
+  ScriptOptions options = options_;
   options.script = folder() / "loop.lua";
   Controller loop(another.robot(), options);
   ASSERT_EQ(loop.start(), std::nullopt);

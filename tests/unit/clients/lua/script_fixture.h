@@ -60,7 +60,7 @@ class ScriptTest : public ::testing::Test {
   const std::filesystem::path& folder() const { return folder_.path; }
 
   v1::RobotDescription robot_;  ///< that start() begins with
-  ControllerOptions options_;
+  ScriptOptions options_;
 
  private:
   TemporaryFolder folder_;

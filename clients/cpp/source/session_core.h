@@ -1,23 +1,26 @@
 #pragma once
-// The members of a Session.
+// What sessions of controllers and directors have in common: Hello and Welcome, ticks and their answers, the end,
+// and the way back after a lost connection.
 
 #include <exception>
 
 #include "connection.h"
-#include "fleet.h"
+#include "part.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 
 namespace ziggurat {
 
-struct Session::State {
+struct SessionCore {
   using Clock = std::chrono::steady_clock;
 
-  explicit State(const Options& from) : options(from), connection(from) {}
+  /// @param part  outlives this
+  SessionCore(const SessionOptions& from, Part& of) : options(from), connection(from), part(of) {}
+  SessionCore(const SessionCore&) = delete;
+  SessionCore& operator=(const SessionCore&) = delete;
 
   // welcome.cpp
   void open();  // Hello … Welcome
-  void begin(const v1::Welcome& welcome);
   void read(const v1::Welcome& welcome);
   void send_hello();
 
@@ -27,42 +30,42 @@ struct Session::State {
   bool hear_welcome(Clock::time_point end);
   void go_on(const v1::Welcome& welcome);
   bool pause(std::chrono::milliseconds length);
-  bool repeats_answer(const v1::Observation& observation);
+  bool repeats_answer(const Moment& next);
 
-  // session.cpp
-  void answer();  // with a Command, after the Leaves of robots that failed
+  // session_core.cpp
+  bool next();  // answers, and waits for the next message to answer
+  void answer();
   void send_answer();
-  bool wait();  // for the next observation; false if there is none
+  bool wait();  // false if there is none
+  bool hear(Connection::Kind kind);  // a message that is not to be answered; false after the last one
+  void take(const Moment& next);
   void take(const v1::Error& error);
   bool is_interrupted() const { return options.is_interrupted && options.is_interrupted(); }
-  void read(const v1::Observation& observation);
   void read(const v1::End& end);
   void read(const v1::Reset& reset);
   void read_reset();
   void read(const v1::Restored& restored);
-  void read(const v1::RobotSpawned& robot);
   void leave(v1::Leave::Reason reason, std::string_view message);
+  void leave_at_the_end() noexcept;  // of its owner: as failed if an exception is the cause
 
-  Options options;
+  SessionOptions options;
   Connection connection;
+  Part& part;
   int exceptions = std::uncaught_exceptions();  // when the session began
 
-  std::optional<Fleet> fleet;  // from Welcome on
-  v1::ClientMessage outgoing;  // the last Command; long-lived: keeps its memory
+  v1::ClientMessage outgoing;  // the last answer; long-lived: keeps its memory
   std::vector<v1::Leave> failures;  // that were sent before it
 
   Event event = Event::init;
-  bool has_begun = false;  // an observation was delivered
-  bool is_reset = false;   // the next observation is the first after a reset
+  bool has_begun = false;  // a message to answer was delivered
+  bool is_reset = false;   // the next one is the first after a reset
   v1::Command commanded;               // when the session was resumed last
   bool is_restored = false;            // or after a restore
   std::string snapshot;                // that was restored last
-  std::optional<std::uint64_t> epoch;  // of the current observation
+  Moment now;                          // of the message to answer
   bool was_reset = false;  // at some time
-  bool owes = false;       // the current observation is not answered yet
+  bool owes = false;       // the present message is not answered yet
   bool is_over = false;    // nothing is sent any more
-  std::uint64_t tick = 0;
-  std::chrono::nanoseconds time{0};
   std::optional<Ending> ending;
 
   std::chrono::nanoseconds tick_length{0};
@@ -74,9 +77,8 @@ struct Session::State {
   std::chrono::milliseconds lease{0};
   std::uint64_t missed = 0;
   std::uint64_t resumes = 0;
-  unsigned resumes_in_vain = 0;  // without an observation that is new
-  bool is_resumed = false;       // the next observation may be the last one again
-  std::vector<SpawnedRobot> spawned;
+  unsigned resumes_in_vain = 0;  // without a message that is new
+  bool is_resumed = false;       // the next message may be the last one again
 };
 
 /// @throws ProtocolError if the message is a Refusal or an Error

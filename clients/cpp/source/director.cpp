@@ -1,0 +1,145 @@
+#include "ziggurat/director.h"
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "directing.h"
+#include "layout.h"
+#include "session_core.h"
+#include "ziggurat/v1/envelope.h"
+
+namespace ziggurat {
+
+struct Director::State {
+  explicit State(const DirectorOptions& from) : options(from), part(options), core(options, part) {}
+
+  DirectorOptions options;
+  Directing part;
+  SessionCore core;
+};
+
+namespace {
+
+std::uint32_t packed(Color color) {
+  return std::uint32_t{color.red} << 16 | std::uint32_t{color.green} << 8 | color.blue;
+}
+
+template <typename Numbers>
+void add_numbers(const Numbers& from, const char* what, std::string_view entity,
+                 google::protobuf::RepeatedField<double>& to) {
+  for (const double number : from) {
+    check_finite(number, what, entity);
+    to.Add(number);
+  }
+}
+
+/// @throws std::invalid_argument without an id
+const DirectorOptions& checked(const DirectorOptions& options) {
+  if (!options.director.empty() || !options.session_token.empty()) return options;
+  throw std::invalid_argument("DirectorOptions::director is empty; it is the id of a director in the scene");
+}
+
+}  // namespace
+
+DirectorOptions DirectorOptions::from_environment() {
+  DirectorOptions options;
+  options.read_environment();
+  if (const char* director = std::getenv("ZIGGURAT_DIRECTOR")) options.director = director;
+  return options;
+}
+
+Director::Director(const DirectorOptions& options) : state_(std::make_unique<State>(checked(options))) {
+  state_->core.open();
+}
+
+Director::~Director() { state_->core.leave_at_the_end(); }
+
+bool Director::next() { return state_->core.next(); }
+void Director::leave() { state_->core.leave(v1::Leave::DONE, {}); }
+void Director::leave_failed(std::string_view message) {
+  state_->core.leave(v1::Leave::FAILED, message);
+}
+
+Event Director::event() const noexcept { return state_->core.event; }
+std::uint64_t Director::tick() const noexcept { return state_->core.now.tick; }
+std::chrono::nanoseconds Director::time() const noexcept {
+  return std::chrono::nanoseconds(state_->core.now.time_ns);
+}
+const std::optional<Ending>& Director::ending() const noexcept { return state_->core.ending; }
+std::uint64_t Director::missed() const noexcept { return state_->core.missed; }
+std::uint64_t Director::resumes() const noexcept { return state_->core.resumes; }
+std::vector<std::string> Director::take_warnings() { return state_->part.take_warnings(); }
+const std::string& Director::id() const noexcept { return state_->part.id(); }
+const std::vector<std::pair<std::string, std::string>>& Director::params() const noexcept {
+  return state_->part.params();
+}
+const std::string& Director::script() const noexcept { return state_->part.script(); }
+std::uint64_t Director::seed() const noexcept { return state_->core.seed; }
+std::chrono::nanoseconds Director::tick_length() const noexcept { return state_->core.tick_length; }
+const std::string& Director::token() const noexcept { return state_->core.token; }
+
+std::span<Entity* const> Director::entities() const noexcept { return state_->part.world().present(); }
+bool Director::entities_have_changed() const noexcept { return state_->part.world().has_changed(); }
+const Entity* Director::find(std::string_view id) const noexcept { return state_->part.world().find(id); }
+const Entity& Director::entity(std::string_view id) const {
+  if (const Entity* found = find(id)) return *found;
+  throw std::out_of_range("the director is told of no entity '" + std::string(id) + "' in the world");
+}
+std::span<const Contact> Director::contacts() const noexcept { return state_->part.world().contacts(); }
+std::span<const RadioMessage> Director::radio_messages() const noexcept {
+  return state_->part.world().radio_messages();
+}
+
+void Director::move(std::string_view entity, const std::array<double, 3>& position,
+                    const std::optional<std::array<double, 4>>& orientation) {
+  v1::MoveRequest move;
+  move.set_entity(v1::valid_utf8(entity));
+  add_numbers(position, "the position of", entity, *move.mutable_position());
+  if (orientation) add_numbers(*orientation, "the orientation of", entity, *move.mutable_orientation());
+  state_->part.add_act(entity.size()).mutable_move()->Swap(&move);
+}
+
+void Director::spawn(std::string_view xml) {
+  state_->part.add_act(xml.size()).mutable_spawn()->set_xml(v1::valid_utf8(xml));
+}
+
+void Director::remove(std::string_view entity) {
+  state_->part.add_act(entity.size()).mutable_remove()->set_entity(v1::valid_utf8(entity));
+}
+
+void Director::push(std::string_view entity, const std::array<double, 3>& force,
+                    const std::array<double, 3>& torque, std::string_view link) {
+  v1::Push push;
+  push.set_entity(v1::valid_utf8(entity));
+  push.set_link(v1::valid_utf8(link));
+  add_numbers(force, "the force on", entity, *push.mutable_force());
+  add_numbers(torque, "the torque on", entity, *push.mutable_torque());
+  state_->part.add_act(entity.size() + link.size()).mutable_push()->Swap(&push);
+}
+
+void Director::set_leds(std::string_view entity, std::span<const Color> colors) {
+  v1::Show& show = *state_->part.add_act(entity.size() + 4 * colors.size()).mutable_show();
+  show.set_entity(v1::valid_utf8(entity));
+  for (const Color color : colors) show.add_led_colors(packed(color));
+}
+
+void Director::set_directional_leds(std::string_view entity, std::span<const Color> colors) {
+  v1::Show& show = *state_->part.add_act(entity.size() + 4 * colors.size()).mutable_show();
+  show.set_entity(v1::valid_utf8(entity));
+  for (const Color color : colors) show.add_directional_led_colors(packed(color));
+}
+
+void Director::set_tags(std::string_view entity, std::span<const std::string> payloads) {
+  std::size_t bytes = entity.size();
+  for (const std::string& payload : payloads) bytes += payload.size();
+  v1::Show& show = *state_->part.add_act(bytes).mutable_show();
+  show.set_entity(v1::valid_utf8(entity));
+  for (const std::string& payload : payloads) show.add_tag_payloads(payload);
+}
+
+void Director::metric(std::string_view name, double value) { state_->part.set_metric(name, value); }
+void Director::log(std::string_view text) { state_->part.add_line(false, text); }
+void Director::log_error(std::string_view text) { state_->part.add_line(true, text); }
+void Director::finish(std::string_view result) { state_->part.finish(result); }
+
+}  // namespace ziggurat

@@ -1,0 +1,21 @@
+#include "program/echo.h"
+
+#include <cstdio>
+
+namespace ziggurat::lua {
+
+void echo(const LogLines& log, std::uint64_t tick, const std::string& whose) {
+  for (const LogLine& line : log.lines) {
+    std::FILE* const to = line.is_error ? stderr : stdout;
+    std::fprintf(to, "[%llu %s] ", static_cast<unsigned long long>(tick), whose.c_str());
+    std::fwrite(line.text.data(), 1, line.text.size(), to);
+    std::fputc('\n', to);
+  }
+}
+
+void report_lost_log(std::uint64_t tick) {
+  std::fprintf(stderr, "ziggurat-lua: tick %llu: more log lines than a message can hold; dropped\n",
+               static_cast<unsigned long long>(tick));
+}
+
+}  // namespace ziggurat::lua

@@ -1,0 +1,63 @@
+#include "script/director_script.h"
+
+#include <algorithm>
+#include <array>
+
+#include "script/world_table.h"
+
+namespace ziggurat::lua {
+
+DirectorScript::DirectorScript(Director& director, const ScriptOptions& options)
+    : Script("director/" + director.id(), options), director_(director) {}
+
+Failure DirectorScript::start() {
+  const Running running(calling());
+  if (auto failure = run_chunk()) return failure;
+  constexpr std::array usual = {"init", "pre_step", "post_step", "is_finished"};
+  if (std::ranges::none_of(usual, [this](const char* name) { return has(name); })) {
+    return path() + ": the script has none of the functions init(), pre_step(tick), post_step(tick) and is_finished()";
+  }
+  if (auto failure = call("init", false, "init, tick " + std::to_string(first_tick()))) return failure;
+  return prepare_next();
+}
+
+Failure DirectorScript::step() {
+  const Running running(calling());
+  const std::uint64_t tick = director_.tick();
+  if (auto failure = call({"post_step", false, tick}, "post_step " + std::to_string(tick))) return failure;
+  bool is_finished = false;
+  if (auto failure = call({"is_finished", false, {}}, "is_finished, tick " + std::to_string(tick), &is_finished)) {
+    return failure;
+  }
+  if (!is_finished) return prepare_next();
+  director_.finish("is_finished() of " + path());
+  return std::nullopt;
+}
+
+Failure DirectorScript::prepare_next() {
+  const std::uint64_t next = director_.tick() + 1;
+  return call({"pre_step", false, next}, "pre_step " + std::to_string(next));
+}
+
+Failure DirectorScript::reset(std::uint64_t seed) {
+  begin_anew(seed);
+  const Running running(calling());
+  if (auto failure = call("reset", false, "reset, tick 0")) return failure;
+  return prepare_next();
+}
+
+Failure DirectorScript::destroy() {
+  const Running running(calling());
+  return call("destroy", false, "destroy, after tick " + std::to_string(director_.tick()));
+}
+
+void DirectorScript::set_up(lua_State* state) {
+  push_world(state, {director_, log(), random().robot_random, first_tick()});
+  lua_getfield(state, -1, "metric");
+  lua_setglobal(state, "metric");
+  lua_setglobal(state, "world");
+}
+
+void DirectorScript::refresh(lua_State* state) { refresh_world(state, director_); }
+
+}  // namespace ziggurat::lua

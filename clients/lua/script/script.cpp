@@ -1,0 +1,151 @@
+#include "script/script.h"
+
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "script/error_message.h"
+#include "script/guarded.h"
+
+namespace ziggurat::lua {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int handler = 1;  // stack index of keep_traceback during every call
+
+// In messages the path is relative to the working directory if the script is below it: Lua shortens
+// paths of more than 60 bytes.
+fs::path shown(const fs::path& script) {
+  std::error_code error;
+  const fs::path here = fs::current_path(error);
+  if (error) return script;
+  const fs::path relative = (here / script).lexically_normal().lexically_proximate(here);
+  return relative.empty() || *relative.begin() == ".." ? script : relative;
+}
+
+int get_global(lua_State* state) {
+  lua_getglobal(state, lua_tostring(state, 1));
+  return 1;
+}
+
+// A metatable of _G may raise an error for an unknown global: then there is none.
+void get_global_if_any(lua_State* state, const char* name) {
+  lua_pushcfunction(state, get_global);
+  lua_pushstring(state, name);
+  if (lua_pcall(state, 1, 1, 0) == LUA_OK) return;
+  lua_pop(state, 1);
+  lua_pushnil(state);
+}
+
+}  // namespace
+
+Script::Script(std::string name, const ScriptOptions& options)
+    : random_(options.seed, name),
+      name_(std::move(name)),
+      first_tick_(options.first_tick),
+      max_memory_(options.max_memory),
+      max_instructions_(options.max_instructions),
+      folders_(options.folders),
+      script_(shown(options.script).string()),
+      folder_(shown(options.script).parent_path().string()),
+      state_(options.max_memory) {
+  if (folder_.empty()) folder_ = ".";
+}
+
+Failure Script::run_chunk() {
+  lua_State* const state = state_.get();
+  lua_settop(state, 0);
+  push_protected(build);
+  if (lua_pcall(state, 1, 0, 0) != LUA_OK) return describe_error("its beginning");
+  lua_pushcfunction(state, keep_traceback);
+  push_protected(load);
+  if (lua_pcall(state, 1, 1, 0) != LUA_OK) return describe_error("its beginning");
+  return call_prepared("its chunk, tick " + std::to_string(first_tick_), 0, 0);
+}
+
+bool Script::has(const char* function) {
+  lua_State* const state = state_.get();
+  lua_settop(state, 0);
+  get_global_if_any(state, function);
+  const bool is_there = !lua_isnil(state, -1);
+  lua_settop(state, 0);
+  return is_there;
+}
+
+// Also refreshes the tables.
+Failure Script::call(const char* function, bool is_required, const std::string& moment) {
+  return call(Wanted{function, is_required, {}}, moment);
+}
+
+Failure Script::call(const Wanted& wanted, const std::string& moment, bool* answer) {
+  lua_State* const state = state_.get();
+  wanted_ = wanted;
+  lua_settop(state, 0);
+  lua_pushcfunction(state, keep_traceback);
+  push_protected(prepare);
+  if (lua_pcall(state, 1, 1, handler) != LUA_OK) return describe_error(moment);
+  if (lua_isnil(state, -1)) {
+    if (!wanted.is_required) return std::nullopt;
+    return script_ + ": the script has no function " + wanted.name + "() (in " + moment + ")";
+  }
+  if (wanted.tick) lua_pushinteger(state, static_cast<lua_Integer>(*wanted.tick));
+  if (auto failure = call_prepared(moment, wanted.tick ? 1 : 0, answer != nullptr ? 1 : 0)) {
+    return failure;
+  }
+  if (answer != nullptr) *answer = lua_toboolean(state, -1) != 0;
+  return std::nullopt;
+}
+
+Failure Script::call_prepared(const std::string& moment, int arguments, int results) {
+  if (lua_pcall(state_.get(), arguments, results, handler) != LUA_OK) return describe_error(moment);
+  return std::nullopt;
+}
+
+// Everything that may raise a Lua error runs as a protected function; its argument is this object.
+void Script::push_protected(int (*function)(lua_State*)) {
+  lua_pushcfunction(state_.get(), function);
+  lua_pushlightuserdata(state_.get(), this);
+}
+
+int Script::build(lua_State* state) {
+  auto& self = *static_cast<Script*>(lua_touserdata(state, 1));
+  prepare_error_messages(state);
+  open_libraries(state, {self.log_, self.random_, self.folder_, self.folders_});
+  self.set_up(state);
+  return 0;
+}
+
+int Script::load(lua_State* state) {
+  auto& self = *static_cast<Script*>(lua_touserdata(state, 1));
+  // Text only: precompiled chunks can crash the interpreter.
+  if (luaL_loadfilex(state, self.script_.c_str(), "t") != LUA_OK) return lua_error(state);
+  return 1;
+}
+
+int Script::prepare(lua_State* state) {
+  auto& self = *static_cast<Script*>(lua_touserdata(state, 1));
+  self.refresh(state);
+  if (self.wanted_.is_required) {
+    lua_getglobal(state, self.wanted_.name);
+  } else {
+    get_global_if_any(state, self.wanted_.name);
+  }
+  return 1;
+}
+
+std::string Script::describe_error(const std::string& moment) {
+  auto [text, traceback] = take_error_message(state_.get());
+  // Most messages of Lua begin with file and line (long paths are shortened), some have neither.
+  const auto end = script_.size() < LUA_IDSIZE ? script_ : script_.substr(script_.size() - 40);
+  if (text.substr(0, LUA_IDSIZE + 1).find(end + ":") == std::string::npos) {
+    text = script_ + ": " + text;
+  }
+  if (text.ends_with("not enough memory")) {
+    text += " (it may have " + std::to_string(max_memory_ >> 20) + " MiB)";
+  }
+  text += " (in " + moment + ")";
+  return traceback.empty() ? text : text + "\n" + traceback;
+}
+
+}  // namespace ziggurat::lua
