@@ -10,17 +10,12 @@ local fetching = require "fetching"
 local memory = require "memory"
 local odometry = require "odometry"
 local placing = require "placing"
+local starting = require "starting"
 local traffic = require "traffic"
 local travel = require "travel"
 
 local job = assembly.job
 local states = {}
-
-function states.start()
-  if robot.first_tick > 0 and builder.holds() then return "resume" end
-  builder.current(-1)
-  if builder.lift_to(assembly.clearance, 0.05) then return "scan" end
-end
 
 function states.scan()
   if job.seconds() <= builder.tick then job.turned = 0 end
@@ -32,12 +27,18 @@ function states.scan()
   end
 end
 
--- No lit block was ever seen: looks from somewhere else.
+-- No lit block was ever seen: looks from somewhere else. Around the places of the dark blocks that it saw, at
+-- first near their middle, then farther out.
 function states.wander()
   if memory.middle() then return assembly.decide() end
   if job.seconds() <= builder.tick then
+    local x, y, count = 0, 0, 0
+    for _, block in ipairs(memory.material) do x, y, count = x + block.x, y + block.y, count + 1 end
+    if count > 0 then x, y = x / count, y / count end
     local direction = robot.random.uniform(-math.pi, math.pi)
-    job.points = {{x = builder.pose.x + 0.35 * math.cos(direction), y = builder.pose.y + 0.35 * math.sin(direction)}}
+    local radius = 0.1 + 0.15 * job.rounds
+    job.rounds = job.rounds < 6 and job.rounds + 1 or 0
+    job.points = {{x = x + radius * math.cos(direction), y = y + radius * math.sin(direction)}}
   end
   if travel.to(job.points[1].x, job.points[1].y) or job.seconds() > 30 then return "scan" end
 end
@@ -95,27 +96,14 @@ end
 
 function states.done() builder.stop() end
 
--- Started again while it holds a block, which remembers which side looks at the robot.
-function states.resume()
-  builder.loaded = true
-  builder.current(0)
-  for _, message in ipairs(robot.radios.nfc.rx_data) do
-    if message[1] == 4 then job.payload = message[2] end
-  end
-  if builder.lift_to(assembly.carrying, 0.02) and (job.payload or job.seconds() > 3) then
-    job.payload = job.payload or 0
-    return "scan"
-  end
-end
-
 -- In these others keep out of the robot's way.
 local working = {}
 for _, name in ipairs({"approach", "retreat", "lower", "energise", "let_go", "raise", "aim_at_side", "attach",
-                       "retreat_from_side", "place", "tell", "release", "rise", "back_off"}) do
+                       "retreat_from_side", "place", "tell", "release", "rise", "back_off", "sense", "withdraw"}) do
   working[name] = true
 end
 
-for _, others in ipairs({fetching, placing}) do
+for _, others in ipairs({starting, fetching, placing}) do
   for name, state in pairs(others) do states[name] = state end
 end
 

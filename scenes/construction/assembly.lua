@@ -12,7 +12,8 @@ assembly.plan = rules.load(robot.params.rules)
 
 assembly.clearance = 0.03     -- lift, without a block [m]
 assembly.carrying = 0.075     -- lift, with a block, out of the camera's sight
-assembly.run_up = 0.13        -- straight way to a face, for the steering to settle
+assembly.run_up = 0.13        -- straight way to a dark block, for the steering to settle
+assembly.last_way = 0.17      -- and to the structure
 assembly.waiting_ring = 0.62  -- distance from the structure's outermost column where robots wait
 assembly.survey_ring = 0.42   -- from where they look at it
 assembly.search_ring = 0.55   -- from where they look for material

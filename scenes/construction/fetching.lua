@@ -118,7 +118,11 @@ function states.lower()
   if builder.lift_to(gap - 0.0005, 0.03) then return "energise" end
 end
 
+-- The block remembers for the robot which of its sides looks at it.
+local function tell_side() robot.radios.nfc.tx_data({3, tonumber(job.payload)}) end
+
 function states.energise()
+  tell_side()
   builder.current(math.min(1, -1 + job.seconds()))
   if job.seconds() > 2.5 then return builder.holds() and "raise" or "let_go" end
 end
@@ -137,8 +141,7 @@ function states.raise()
     job.points, job.rounds = {}, 0
     return "choose_side"
   end
-  -- The block remembers for the robot which of its sides looks at it.
-  robot.radios.nfc.tx_data({3, tonumber(job.payload)})
+  tell_side()
 end
 
 return states

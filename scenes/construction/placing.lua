@@ -20,7 +20,7 @@ function states.choose_side()
   local obstacles = {}
   for _, block in ipairs(memory.material) do obstacles[#obstacles + 1] = block end
   for _, side in ipairs(memory.open_sides()) do
-    local x, y = assembly.ahead_of(side, distance_of(side.row) + assembly.run_up)
+    local x, y = assembly.ahead_of(side, distance_of(side.row) + assembly.last_way)
     local cost = assembly.distance_to({x = x, y = y}) + assembly.hindrance(side, obstacles)
     if not least or cost < least then least, job.place = cost, side end
   end
@@ -68,16 +68,21 @@ function states.claim()
   end
 end
 
+-- What the side shows does not count until it is seen again.
+local function forget_color()
+  local look = job.place.column and job.place.column.sides[job.place.side]
+  if look then look.row = false end
+end
+
 local function give_up_side()
   traffic.leave_structure()
-  local look = job.place.column.sides[job.place.side]
-  if look then look.row = false end  -- until it is seen again
+  forget_color()
   return "choose_side"
 end
 
 function states.enter()
   builder.lift_to(assembly.carrying + math.max(0, job.place.row.height - 1) * builder.block, 0.05)
-  local x, y = assembly.ahead_of(job.place, distance_of(job.place.row) + assembly.run_up)
+  local x, y = assembly.ahead_of(job.place, distance_of(job.place.row) + assembly.last_way)
   local outcome = travel.to(x, y)
   if outcome == "there" then return "aim_at_side" end
   if outcome == "stuck" or job.seconds() > 60 then return give_up_side() end
@@ -109,7 +114,7 @@ function states.attach(faces)
   local now = assembly.face_of(job.place)
   local outcome = builder.dock_at(now, 0.05, above, distance_of(job.place.row))
   if outcome == "docked" and
-     (math.abs(builder.offset(now)) > 0.0015 or math.abs(now.heading) > 0.02) then
+     (math.abs(builder.offset(now)) > 0.001 or math.abs(now.heading) > 0.015) then
     outcome = "askew"
   end
   if outcome == "docked" then
@@ -122,7 +127,7 @@ end
 function states.retreat_from_side()
   if traffic.blocked(-1) and job.seconds() < 15 then return builder.stop() end
   builder.drive(-0.05, 0)
-  if job.seconds() > 2.6 then
+  if job.seconds() > 3.3 then
     job.tries = job.tries + 1
     if job.tries > 5 then return give_up_side() end
     return "enter"
@@ -130,6 +135,8 @@ function states.retreat_from_side()
 end
 
 function states.place()
+  -- The block remembers for the robot what it was at.
+  robot.radios.nfc.tx_data({3, tonumber(job.payload), job.place.row.index})
   local height = job.place.row.place == "above" and job.place.row.height * builder.block or 0
   if builder.lift_to(math.max(0.0002, height - 0.0002), height > 0 and 0.01 or 0.02) then return "tell" end
 end
@@ -155,10 +162,9 @@ function states.back_off()
   if traffic.blocked(-1) and job.seconds() < 20 then return builder.stop() end
   builder.drive(-0.05, 0)
   if job.seconds() > 3.5 then
-    local look = job.place.column.sides[job.place.side]
-    if look then look.row = false end
+    forget_color()
     traffic.leave_structure()
-    return "choose_block"
+    return job.place.column and "choose_block" or "scan"
   end
 end
 

@@ -12,9 +12,10 @@ local side_numbers = {front = 0, left = 1, back = 2, right = 3}
 
 function rules.load(name)
   local rows = require(name)
-  local plan = {seed = rows.seed, complete = rows.complete, states = {rows.seed}}
+  local plan = {rows = rows, seed = rows.seed, complete = rows.complete, states = {rows.seed}}
   local numbers = {[rows.seed] = 1}
-  for _, row in ipairs(rows) do
+  for index, row in ipairs(rows) do
+    row.index = index
     if not numbers[row.becomes] then
       plan.states[#plan.states + 1] = row.becomes
       numbers[row.becomes] = #plan.states

@@ -12,24 +12,32 @@ traffic.holding = false  -- it works there; others stay away from it
 
 local claim, asked = 1, 0 -- of two that ask, the one with the greater claim may; ticks since it asked
 
+-- A robot whose controller has died goes on sending its last bytes: the third is random at each tick.
+local unchanged = {}      -- ticks for which the same bytes have come, by the bytes
+local dead = 50           -- after so many it counts as an obstacle only
+
 -- Reads what the others say; call it first in every step.
 function traffic.sense()
   traffic.others = {}
+  local now = {}
   for i, packet in ipairs(robot.range_and_bearing) do
     local range, bearing, flags = packet.range / 100, packet.horizontal_bearing, packet.data[1]
+    local bytes = table.concat(packet.data, ",")
+    now[bytes] = (unchanged[bytes] or 0) + 1
+    if now[bytes] > dead then flags = 0 end
     traffic.others[i] = {
       forward = range * math.cos(bearing), left = range * math.sin(bearing), range = range,
       working = flags % 2 == 1, asking = flags // 2 % 2 == 1, holding = flags // 4 == 1,
       claim = packet.data[2]}
   end
+  unchanged = now
 end
 
 -- Tells the others; call it last in every step.
 function traffic.tell()
   local flags = (traffic.working and 1 or 0) + (traffic.asking and 2 or 0) +
                 (traffic.holding and 4 or 0)
-  robot.range_and_bearing.set_data(1, flags)
-  robot.range_and_bearing.set_data(2, claim)
+  robot.range_and_bearing.set_data({flags, claim, robot.random.uniform_int(256)})
 end
 
 -- Asks for the structure; call it in every step. True when this robot may go there: for half a second

@@ -56,11 +56,19 @@ def read_trace(path):
     return ticks
 
 
+def at_rest(before, now):
+    """Whether nothing at all moved from tick to tick."""
+    return all(before[key].position == pose.position and before[key].quaternion == pose.quaternion
+               for key, pose in now.items())
+
+
 def judge_motion(ticks, scene, limits, verdict):
     """Depths, drifts and energies over all ticks."""
     joints = geometry.Joints(scene, ticks[0][1])
     deepest = (0.0, "")
     for number, (time, poses) in enumerate(ticks):
+        if number and at_rest(ticks[number - 1][1], poses):
+            continue
         depth, names = geometry.deepest_overlap(scene, poses)
         if depth > deepest[0]:
             deepest = depth, f"{names} at {time:g} s"

@@ -5,6 +5,7 @@
     tests/scenes/construction/perturb.py --wide --runs 100
     tests/scenes/construction/perturb.py --staircase --runs 20 --least 0.8
     tests/scenes/construction/perturb.py --steps rules_cross --runs 20 --least 0.9
+    tests/scenes/construction/perturb.py --steps rules_cross --kills 2 --runs 20 --least 0.9
 
 Perturbation number K is always the same. Stacking scene: the robot up to 3 cm farther back and turned
 by up to 3 degrees, both blocks shifted by up to 1 cm in x and in y and turned by up to 3 degrees, another
@@ -17,11 +18,13 @@ stays, all turned by any angle, and half, the same or twice the number of iterat
 
 import argparse
 import concurrent.futures
+import dataclasses
 import math
 import os
 import pathlib
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -110,8 +113,9 @@ def perturb_steps(rules):
         entities = list(arena.iter("prototype"))
         robots = [entity for entity in entities if entity.get("id").startswith("robot")]
         blocks = [entity for entity in entities if entity not in robots]
-        places = scatter(draw, len(blocks) - 1, (0.4, 0.8), 0.25)
-        places += scatter(draw, len(robots), (0.4, 0.9), 0.3, places)
+        farther = 0.15 if len(blocks) > 8 else 0
+        places = scatter(draw, len(blocks) - 1, (0.4, 0.8 + farther), 0.25)
+        places += scatter(draw, len(robots), (0.4, 0.9 + farther), 0.3, places)
         for entity, place in zip(blocks + robots, [(0, 0), *places]):
             entity.find("body").set("position", f"{place[0]:.6f},{place[1]:.6f},0")
             entity.find("body").set("orientation", f"{draw.uniform(0, 360):.4f},0,0")
@@ -133,7 +137,49 @@ def last_words_fault(log, robots):
     return None
 
 
-def run(number, options=(), change=perturb, solver=None, keep=None):
+@dataclasses.dataclass
+class Outcome:
+    returncode: int
+    stdout: str
+    stderr: str
+    victims: list   # "robot0 killed at 'claim'"
+
+
+def process_of(folder, index):
+    """The process of a Lua robot, by its place in the scene; its runtime folder tells it from other runs'."""
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            command = (entry / "cmdline").read_text().split("\0") if entry.name.isdigit() else []
+        except OSError:
+            continue
+        if any("ziggurat-lua" in word for word in command) and \
+           any(folder in word and word.endswith(f"/robots-{index}") for word in command):
+            return int(entry.name)
+    return None
+
+
+def run_and_kill(command, folder, draw, robots, kills):
+    """Runs a command; ends so many robots' processes with SIGKILL, each when that robot logs a random line.
+    robots: their places in the scene by id."""
+    plans = {(draw.choice(sorted(robots)), draw.randint(4, 30)) for _ in range(kills)}
+    with open(pathlib.Path(folder) / "stderr", "w+") as errors, subprocess.Popen(
+            [str(word) for word in command], stdout=subprocess.PIPE, stderr=errors, text=True,
+            env=dict(os.environ, XDG_RUNTIME_DIR=folder)) as process:
+        lines, counts, victims = [], {}, []
+        for line in process.stdout:
+            lines.append(line)
+            robot = line.split("]")[0].split()[-1]
+            counts[robot] = counts.get(robot, 0) + 1
+            victim = process_of(folder, robots[robot]) if (robot, counts[robot]) in plans else None
+            if victim:
+                os.kill(victim, signal.SIGKILL)
+                victims.append(f"{robot} killed at '{line.split('] ')[-1].strip()}'")
+        code = process.wait()
+        errors.seek(0)
+        return Outcome(code, "".join(lines), errors.read(), victims)
+
+
+def run(number, options=(), change=perturb, solver=None, keep=None, kills=0):
     """Runs and judges one perturbation: (verdict, description of the changes, log lines)."""
     rules = getattr(change, "rules", None)
     scene = STEPS if rules else STAIRCASE if change is perturb_staircase else STACKING
@@ -146,11 +192,14 @@ def run(number, options=(), change=perturb, solver=None, keep=None):
             tree.find("physics_engines/dynamics3d").set("solver", solver)
         tree.write(copy)
         trace, readings = (pathlib.Path(folder) / name for name in ("trace.csv", "readings.jsonl"))
-        outcome = subprocess.run(
+        robots = {entity.get("id"): index for index, entity in
+                  enumerate(tree.find("arena").iter("prototype")) if entity.get("id").startswith("robot")}
+        outcome = run_and_kill(
             [BIN / "ziggurat", "run", copy, "--trace", trace, *options,
-             *(["--readings", readings] if scene == STACKING else [])],
-            capture_output=True, text=True, timeout=3600,
-            env=dict(os.environ, XDG_RUNTIME_DIR=folder))
+             *(["--readings", readings] if scene == STACKING else []),
+             *(["--lua-processes", "0", "--restart", "robot=9"] if kills else [])],
+            folder, random.Random(number), robots, kills)
+        changes += "".join(f", {victim}" for victim in outcome.victims)
         if outcome.returncode != 0:
             verdict = judge.Verdict([f"exit code {outcome.returncode}: {outcome.stderr[-500:]}"])
         elif rules:
@@ -159,8 +208,6 @@ def run(number, options=(), change=perturb, solver=None, keep=None):
         else:
             verdict = (judge.judge_stairs if scene == STAIRCASE else judge.judge)(copy, trace, readings)
         log = outcome.stdout.splitlines()
-        robots = [entity.get("id") for entity in tree.find("arena").iter("prototype")
-                  if entity.get("id").startswith("robot")]
         fault = outcome.returncode == 0 and last_words_fault(log, robots)
         if fault:
             verdict.faults.append(fault)
@@ -195,6 +242,8 @@ def main():
     parser.add_argument("--solver", help="written into the scene: newton or sweeps")
     parser.add_argument("--controller", action="append", default=[], metavar="ID=CMD",
                         help="passed on to ziggurat run")
+    parser.add_argument("--kills", type=int, default=0,
+                        help="robots' processes to kill in each run; they are started again")
     parser.add_argument("--keep", metavar="DIR", help="keep scene and trace of bad runs")
     arguments = parser.parse_args()
     options = [f"--controller={controller}" for controller in arguments.controller]
@@ -204,7 +253,7 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         runs = pool.map(
             lambda number: run(number, options, arguments.change, arguments.solver,
-                               arguments.keep), numbers)
+                               arguments.keep, arguments.kills), numbers)
         for number, (verdict, changes, _) in zip(numbers, runs):
             print(table_line(number, verdict, changes), flush=True)
             good += verdict.good

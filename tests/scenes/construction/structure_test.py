@@ -102,15 +102,19 @@ class WrongStructures(unittest.TestCase):
 
 
 class Building(unittest.TestCase):
-    def assert_built(self, number, rules):
-        verdict, changes, log = perturb.run(number, change=perturb.perturb_steps(rules))
+    def assert_built(self, number, rules, kills=0):
+        verdict, changes, log = perturb.run(number, change=perturb.perturb_steps(rules), kills=kills)
         self.assertEqual(verdict.faults, [], f"{changes}\n" + "\n".join(log))
+        self.assertEqual(changes.count("killed"), kills, changes)
 
     def test_a_stepped_pyramid(self):
         self.assert_built(4, "rules_cross")
 
     def test_another_table_gives_a_staircase(self):
         self.assert_built(0, "rules_stairs")
+
+    def test_robots_that_are_killed_and_started_again(self):
+        self.assert_built(2, "rules_stairs", kills=2)
 
     def test_a_run_that_ends_too_early(self):
         verdict, _, _ = perturb.run(0, ["--duration", "60"], perturb.perturb_steps("rules_cross"))
