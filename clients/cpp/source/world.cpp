@@ -33,7 +33,9 @@ void expect_all_or_none(int received, std::size_t each, std::size_t count, const
 
 template <typename T>
 std::span<const T> part_of(const std::vector<T>& all, std::size_t first, std::size_t count) {
-  return all.empty() ? std::span<const T>() : std::span(all).subspan(first, count);
+  // Nothing that was asked for, or of an entity of an earlier world.
+  if (first + count > all.size()) return {};
+  return std::span(all).subspan(first, count);
 }
 
 std::string id_of(const std::string& id) { return id; }
@@ -91,7 +93,8 @@ void World::begin_anew() {
   contacts_.clear();
   messages_.clear();
   counts_ = {};
-  entities_.clear();
+  former_ = std::exchange(entities_, {});
+  for (Entity& entity : former_) entity.is_removed_ = true;
 }
 
 void World::read(const v1::WorldLayout& layout) {

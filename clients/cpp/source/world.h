@@ -50,6 +50,7 @@ class World {
   void read_messages(const v1::WorldState& state);
 
   std::deque<Entity> entities_;  // by place; these do not move
+  std::deque<Entity> former_;    // of the world before: a handle that is kept for too long is of one that is gone
   std::vector<Entity*> present_;
   std::unordered_map<std::string_view, Entity*> by_id_;
   std::vector<Place> link_places_, radio_places_;

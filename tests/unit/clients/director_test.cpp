@@ -172,6 +172,9 @@ TEST(Director, EntitiesComeAndGo) {
   EXPECT_EQ(director.seed(), 8U);
   EXPECT_EQ(director.find("ball"), nullptr);
   EXPECT_NE(director.find("box"), nullptr);
+  EXPECT_TRUE(box.is_removed()) << "the handle of the world before";
+  EXPECT_NE(director.find("box"), &box);
+  EXPECT_TRUE(box.links().empty());
 }
 
 TEST(Director, AStateThatWasNotAnnouncedIsRefused) {

@@ -33,9 +33,9 @@ struct JointState {
   double velocity;  ///< [m/s] or [rad/s]
 };
 
-/// A handle into its director, valid until the world begins anew with other entities (Event::reset,
-/// Event::restored). Lists of states are as long as those of ids, and empty if
-/// the director did not ask for them (DirectorOptions::groups).
+/// A handle into its director. When the world begins anew with other entities (Event::reset, Event::restored, or a
+/// session that was resumed), earlier handles are of removed entities: look them up again. Lists of states are
+/// as long as those of ids, and empty if the director did not ask for them (DirectorOptions::groups).
 class Entity {
  public:
   const std::string& id() const noexcept { return id_; }
