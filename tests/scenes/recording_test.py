@@ -13,6 +13,7 @@ import struct
 import subprocess
 import time
 import unittest
+import zlib
 
 from harness import FAULT, FINISHED, INTERRUPTED, ZIGGURAT, SceneTest
 
@@ -168,6 +169,55 @@ class RecordingTest(SceneTest):
         more = sum(1 for each in lost_chunks if each > 1)
         print(f"{KILLS} runs killed: lost {max(lost_chunks):.2f} chunks at most, "
               f"{sum(lost_chunks) / len(lost_chunks):.2f} on average; {more} lost more than one")
+
+    @staticmethod
+    def records(data):
+        """(op code, begin, end) of the content of each record."""
+        at = 8
+        while at + 9 <= len(data):
+            op, begin = data[at], at + 9
+            at = begin + int.from_bytes(data[at + 1:begin], "little")
+            yield op, begin, at
+
+    def damaged(self, data, choose):
+        """Cut off, or bits flipped, or other contents with the right checksums and no summary."""
+        data = bytearray(data)
+        kind = choose.choice(["cut", "flip", "contents", "contents"])
+        if kind == "cut":
+            return data[:choose.randrange(len(data))]
+        records = [each for each in self.records(data) if each[0] in (0x03, 0x04, 0x06, 0x09)]
+        for _ in range(choose.choice([1, 2, 5])):
+            if kind == "flip":
+                data[choose.randrange(len(data))] ^= 1 << choose.randrange(8)
+                continue
+            op, begin, end = choose.choice(records)
+            at = choose.randrange(begin + 40 if op == 0x06 else begin, end - 8)
+            value = choose.choice([b"\xff" * 4, bytes(8), bytes([choose.randrange(256)]),
+                                   struct.pack("<d", choose.choice([float("nan"), 1e308]))])
+            data[at:at + len(value)] = value
+        if kind == "flip":
+            return data
+        for op, begin, end in records:
+            if op == 0x06:
+                data[begin + 24:begin + 28] = zlib.crc32(data[begin + 40:end]).to_bytes(4, "little")
+            elif op == 0x09:
+                data[end - 4:end] = zlib.crc32(data[begin:end - 4]).to_bytes(4, "little")
+        end = next(begin for op, begin, _ in self.records(data) if op == 0x0F)  # the end of the data
+        return data[:end - 9]
+
+    def test_damaged_recordings_end_every_command_with_words(self):
+        self.outcome("run", "arms.argos", "--ticks", 12, "--record", "a.mcap", "--record-compression", "none")
+        whole = (self.folder / "a.mcap").read_bytes()
+        choose = random.Random(1)
+        for number in range(12):
+            (self.folder / "x.mcap").write_bytes(self.damaged(whole, choose))
+            for command in (["info", "--repair", "saved.mcap"], ["verify"], ["replay", "--from-poses", "--quiet"],
+                            ["export", "--csv", "x.csv"], ["diff", "a.mcap"],
+                            ["fork", "--at", "5", "--ticks", "8", "--without-controllers", "--quiet"]):
+                with self.subTest(number=number, command=command[0]):
+                    code, _, err = self.outcome(command[0], "x.mcap", *command[1:])
+                    self.assertIn(code, (FINISHED, FAULT, 5, 6), err)
+                    self.assertNotRegex(err, r"terminate called|Assertion|std::|Sanitizer")
 
     def test_secrets_are_not_recorded(self):
         keys = [self.folder / "server", self.folder / "client"]
