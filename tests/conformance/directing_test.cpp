@@ -502,6 +502,15 @@ TEST_F(Directing, R9_ALeaveHasTheLastWords) {
   EXPECT_TRUE(peers.is_complete());
 }
 
+TEST_F(Directing, R9_ADirectionCountsAlthoughItsDirectorLeaves) {
+  begin();
+  peers.say("p", direction(5));
+  peers.say("p", Peers::leave());
+  peers.say("q", direction(5));
+  EXPECT_TRUE(peers.is_complete());
+  EXPECT_EQ(answered(), (Ids{"hasty", "judge"}));
+}
+
 TEST_F(Directing, R10_AResultHas1KiB) {
   begin();
   auto finish = direction(5);

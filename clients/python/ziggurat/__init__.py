@@ -15,6 +15,7 @@ except ImportError as error:
 
 from .connection import Curve
 from .devices import *
+from .direct import World, direct
 from .errors import ConnectionLost, Displaced, ProtocolError, Refused, Timeout, ZigguratError
 from .find_server import find_server
 from .named import Named

@@ -14,7 +14,7 @@ from . import protocol_pb2 as v1
 from .errors import ConnectionLost, Refused, Timeout
 from .find_server import find_server
 
-VERSION = v1.Version(major=1, minor=3)
+VERSION = v1.Version(major=1, minor=4)
 SLICE = 0.5  # [s] of a wait
 LINGER_MS = 1000  # time to send the last messages when a session is closed
 MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL

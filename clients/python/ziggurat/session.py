@@ -224,10 +224,11 @@ class Session:
                 self._resume(loss)
                 continue
             kind = message.WhichOneof("message")
-            if kind == "observation" and self._repeats_answer(message.observation):
-                continue
-            if kind == "observation":
-                return self._observe(message.observation)
+            if kind in ("observation", "world_state"):  # a director is told the latter
+                seen = getattr(message, kind)
+                if self._repeats_answer(seen):
+                    continue
+                return self._observe(seen)
             if kind == "end":
                 self.ending = Ending(name_of(v1.End.Reason, message.end.reason).lower(),
                                      message.end.message, message.end.tick)
@@ -387,8 +388,9 @@ class Session:
             self._exchange.repeat()
         raise ProtocolError(error)
 
-    def _observe(self, observation: v1.Observation) -> Tick:
-        self._exchange.observe(observation)
+    def _observe(self, observation: Union[v1.Observation, v1.WorldState]) -> Tick:
+        if isinstance(observation, v1.Observation):
+            self._exchange.observe(observation)
         self._owes = observation.tick
         self.paused = self._is_resumed = False
         self._resumed_in_vain = 0

@@ -243,7 +243,6 @@ void release_director(Barrier& barrier, Session& session, bool may_resume) {
 void remove_director(Barrier& barrier, Session& session) {
   if (!session.director) return;
   barrier.directors.seats.leave(*session.director);
-  barrier.directors.answers[*session.director].reset();
   session.director.reset();
 }
 
