@@ -6,7 +6,7 @@ import math
 import re
 import subprocess
 
-from harness import BIN, CONTROLLER_FAILED, FAULT, FINISHED, HERE, SceneTest, main
+from harness import BIN, CONTROLLER_FAILED, FAULT, FINISHED, HERE, LIMIT, LUA, SceneTest, main
 
 ROOT = HERE.parents[1]
 EXPERIMENTS = ROOT / "scenes/experiments"
@@ -108,6 +108,37 @@ class Experiments(SceneTest):
         self.with_director("function post_step(tick) world.remove('missing') end")
         _, outcome = self.summary(self.scene, "--ticks", "5", code=CONTROLLER_FAILED)
         self.assert_is_sentence(outcome, r"director 'judge'.*There is no entity 'missing'.*what the script did at tick 1")
+
+    def test_an_endless_loop_is_ended(self):
+        self.with_director("function post_step(tick) while tick == 2 do end end")
+        _, outcome = self.summary(self.scene, "--ticks", "5", "--lua-instructions", "2", code=CONTROLLER_FAILED)
+        self.assert_is_sentence(outcome, r"director 'judge'.*judge\.lua:1: runs more than 2 million instructions")
+
+    def test_a_reset_begins_anew(self):
+        """With the director started by hand, and a supervisor that resets the world."""
+        self.with_director("""
+            local spawned = 0
+            local function begin()
+              spawned = spawned + 1
+              world.spawn('<box id="marker" size="0.1,0.1,0.1" movable="false"><body position="9,9,0"/></box>')
+              log("begin ", spawned, " at ", world.tick)
+            end
+            init, reset = begin, begin
+            function post_step(tick) log("marker ", world.entities.marker.position.x) end
+        """)
+        url = f"ipc://{self.runtime}/s"
+        server = self.start("serve", self.scene, "--endpoint", url, "--ticks", "1000000", "--real-time", "2")
+        programs = [subprocess.Popen([LUA, "--connect", url, "--quiet", *more], env=self.environment, cwd=self.folder,
+                                     stdout=subprocess.PIPE, text=True) for more in ((), ("--director", "judge", "--echo"))]
+        self.started += programs
+        self.read_until(programs[1].stdout, r"marker 9")
+        self.assertEqual(self.ziggurat("ctl", url, "reset").code, FINISHED)
+        self.read_until(programs[1].stdout, r"\[0 judge\] begin 2 at 0")
+        self.read_until(programs[1].stdout, r"marker 9")
+        self.assertEqual(self.ziggurat("ctl", url, "shutdown").code, FINISHED)
+        for program in programs:
+            program.communicate(timeout=LIMIT)
+        self.finish(server)
 
     def test_the_sandbox_is_that_of_controllers(self):
         self.with_director("function init() os.execute('touch escaped') end")
