@@ -64,13 +64,15 @@ TEST_F(Keys, TheListHasKeysRolesAndNames) {
   const std::string a = write_key_pair(path("a")), b = write_key_pair(path("b"));
   const auto clients = read_client_keys(write("list", "# who may connect\n\n" + a +
                                                           " controller,observer Alice's robots\n" +
-                                                          b + "\tsupervisor\n"));
+                                                          b + "\tsupervisor,director\n"));
   ASSERT_EQ(clients.size(), 2U);
   EXPECT_EQ(clients[0].public_key, a);
   EXPECT_EQ(clients[0].name, "Alice's robots");
   EXPECT_TRUE(clients[0].roles.allow(wire::Role::observer));
   EXPECT_FALSE(clients[0].roles.allow(wire::Role::supervisor));
   EXPECT_FALSE(clients[1].roles.allow(wire::Role::controller));
+  EXPECT_FALSE(clients[0].roles.allow(wire::Role::director));
+  EXPECT_TRUE(clients[1].roles.allow(wire::Role::director));
 }
 
 TEST_F(Keys, EveryFaultOfTheListIsNamedWithItsLine) {
