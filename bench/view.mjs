@@ -2,13 +2,13 @@
 // the page does, and memory of ten that never read. The kinds of runs are done by turns, so that what else the
 // machine does falls on all of them.
 //
-// usage: node view.mjs ZIGGURAT SCENE TICKS    in a folder with the packages of tests/view
+// usage: node view.mjs ZIGGURAT SCENE TICKS [TURNS]    in a folder with the packages of tests/view (npm ci)
 import foxglove from "@foxglove/ws-protocol";
 import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import WebSocket from "ws";
 
-const [program, scene, ticks] = process.argv.slice(2);
+const [program, scene, ticks, turns = 5] = process.argv.slice(2);
 const protocol = foxglove.FoxgloveClient.SUPPORTED_SUBPROTOCOL;
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const page = ["/world", "/poses", "/detections", "/radio", "/contacts", "/barrier", "/phases", "/log"];
@@ -57,7 +57,6 @@ async function measure(factor, topics) {
   return used;
 }
 
-const turns = 7;
 const median = (list) => list.toSorted((a, b) => a - b)[Math.floor(list.length / 2)];
 for (const factor of [10, 1e6]) {
   const without = [], page_ = [], each = [];
