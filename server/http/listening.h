@@ -35,7 +35,8 @@ class Listening {
   Take take_;
 };
 
-/// A thread that serves. Signals are for the main thread: it gets none.
+/// A thread that serves, at a lower priority than the others: clients that keep it busy leave the processors to
+/// the run. Signals are for the main thread: it gets none.
 std::thread serve(boost::asio::io_context& io);
 
 }  // namespace ziggurat::http

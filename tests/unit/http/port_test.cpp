@@ -1,7 +1,14 @@
 #include "http/port.h"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <stdexcept>
 
 namespace ziggurat::http {
@@ -30,6 +37,34 @@ TEST(Port, TellsWhatIsWrongWithARequest) {
   EXPECT_TRUE(answer("GET / HTTP/1.1\r\nX: " + std::string(9000, 'x')).starts_with("HTTP/1.1 431"));
   EXPECT_TRUE(answer("GET / HTTP/1.1\r\nno colon\r\n\r\n").starts_with("HTTP/1.1 400"));
   EXPECT_TRUE(answer(std::string(3, '\0')).starts_with("HTTP/1.1 400"));
+}
+
+/// Sends a request to a port of this machine, and waits for the end of the answer.
+void ask(std::uint16_t port, const std::string& request) {
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(port);
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const int client = ::socket(AF_INET, SOCK_STREAM, 0);
+  EXPECT_EQ(::connect(client, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+  EXPECT_EQ(::send(client, request.data(), request.size(), MSG_NOSIGNAL), static_cast<ssize_t>(request.size()));
+  std::array<char, 1000> answer;
+  while (::recv(client, answer.data(), answer.size(), 0) > 0) {
+  }
+  ::close(client);
+}
+
+TEST(Port, ItsThreadIsLessImportantThanOthers) {
+  const int ours = ::getpriority(PRIO_PROCESS, 0);  // of this thread
+  std::atomic<int> theirs = ours;
+  const auto note = [&](std::string_view) {
+    theirs = ::getpriority(PRIO_PROCESS, 0);
+    return Answer{};
+  };
+  const Port port("--metrics", {"127.0.0.1", 0}, false, note);
+  ask(port.number(), "GET / HTTP/1.1\r\n\r\n");
+  EXPECT_EQ(theirs, std::min(ours + 10, 19));
+  EXPECT_EQ(::getpriority(PRIO_PROCESS, 0), ours);
 }
 
 TEST(Port, ATakenAddressIsAnErrorThatNamesTheOption) {

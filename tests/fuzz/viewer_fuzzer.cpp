@@ -1,0 +1,107 @@
+// What viewers send to the live server, behind WebSocket: messages of three viewers, two of them with the token,
+// between ticks, spawns and answers. What waits for a viewer is bounded, calls are only those of viewers with
+// the token, and each is answered once.
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "require.h"
+#include "view/hub.h"
+
+namespace {
+
+using namespace ziggurat;
+using channels::Kind;
+using fuzz::require;
+
+const channels::Schema schema{"ziggurat.v1.Poses", "descriptors"};
+
+std::vector<channels::Channel> channel_list(bool is_later) {
+  std::vector<channels::Channel> list{{1, "/world", Kind::world, &schema, 0},
+                                      {2, "/poses", Kind::poses, &schema, 0},
+                                      {3, "/log", Kind::log, &schema, 0}};
+  if (is_later) list[1] = {4, "/rays", Kind::rays, &schema, 0};
+  std::ranges::sort(list, {}, &channels::Channel::id);
+  return list;
+}
+
+class Play {
+ public:
+  Play() {
+    hub_.set_channels(channel_list(false));
+    for (const bool may_steer : {false, true, true}) ids_.push_back(hub_.add(may_steer).id);
+  }
+
+  /// @param what  its lowest two bits: the viewer, the third: text
+  void receive(std::uint8_t what, std::string_view message) {
+    view::Viewer* viewer = hub_.find(ids_[what % 3]);
+    if (!viewer) return;
+    hub_.receive(*viewer, message, (what & 4) != 0);
+    require(viewer->unanswered <= view::Hub::most_unanswered);
+    require(viewer->may_steer || viewer->unanswered == 0);
+    if (viewer->output.size() > view::Output::most_answers + view::Output::most_frames + message.size() + 4096) {
+      require(viewer->is_over);
+    }
+    if (viewer->is_over) hub_.remove(viewer->id);
+  }
+
+  void happen(std::uint8_t what) {
+    if ((what & 8) != 0) show();
+    if ((what & 16) != 0) hub_.set_channels(channel_list((what & 1) != 0));
+    if ((what & 32) != 0) answer((what & 2) != 0);
+    if ((what & 64) != 0) read();
+  }
+
+ private:
+  void show() {
+    const std::string bytes(100, 'x');
+    std::vector<channels::Message> messages;
+    for (const std::uint32_t id : {1, 2, 3, 4}) {
+      messages.push_back({id, time_, std::make_shared<const channels::Content>(bytes)});
+    }
+    hub_.show(++time_, messages);
+  }
+
+  void answer(bool is_done) {
+    const view::Desk::News news = desk_.take();
+    require(std::ranges::is_sorted(news.wanted));
+    for (const view::Call& call : news.calls) {
+      require(call.viewer != ids_[0]);
+      hub_.answer(call, is_done, "{}");
+    }
+    for (const view::Parameter& wish : news.wishes) hub_.set_parameter(wish);
+  }
+
+  void read() {
+    hub_.for_each([](view::Viewer& viewer) {
+      while (viewer.output.next()) {
+      }
+      require(viewer.output.size() == 0);
+    });
+  }
+
+  view::Desk desk_;
+  view::Hub hub_{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, desk_};
+  std::vector<std::uint64_t> ids_;
+  std::int64_t time_ = 0;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Play play;
+  std::span<const std::uint8_t> rest(data, size);
+  while (rest.size() >= 3) {
+    const std::uint8_t what = rest[0];
+    const std::size_t length = std::min<std::size_t>(rest[1] | rest[2] << 8, rest.size() - 3);
+    play.receive(what, {reinterpret_cast<const char*>(rest.data() + 3), length});
+    play.happen(what);
+    rest = rest.subspan(3 + length);
+  }
+  return 0;
+}
