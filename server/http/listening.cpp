@@ -17,7 +17,7 @@ namespace asio = boost::asio;
 using Tcp = asio::ip::tcp;
 using Error = boost::system::error_code;
 
-constexpr int least_important = 10;  // a tenth of the weight of the run's threads, where processors are scarce
+constexpr int less_important = 5;  // a third of the weight of the run's threads, where processors are scarce
 
 Tcp::acceptor listen(asio::io_context& io, std::string_view option, const Address& address) {
   Error error;
@@ -76,7 +76,7 @@ std::thread serve(asio::io_context& io) {
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
   std::thread thread([&io] {
-    [[maybe_unused]] const int niceness = ::nice(least_important);  // of this thread
+    [[maybe_unused]] const int niceness = ::nice(less_important);  // of this thread
     for (;;) {
       try {
         io.run();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "run/page_folder.h"
@@ -13,6 +14,7 @@ namespace {
 
 using channels::Kind;
 
+constexpr std::chrono::milliseconds fresh_interval(16);  // a viewer could subscribe again and again
 constexpr std::chrono::milliseconds barrier_interval{250};
 constexpr const char* over = "The run is over: its last state is shown, and nothing changes it.";
 constexpr const char* over_for_good =
@@ -156,10 +158,7 @@ void Showing::serve() {
       calls_.push_back(std::move(call));
     }
   }
-  if (!news.fresh.empty()) {
-    show(news.fresh, true);
-    last_barrier_ = {};
-  }
+  fresh_.insert(fresh_.end(), news.fresh.begin(), news.fresh.end());
 }
 
 void Showing::apply(const view::Parameter& wish) {
@@ -188,6 +187,15 @@ void Showing::update() {
   }
   if (!has_viewers()) return;
   const auto now = clock::now();
+  if (!fresh_.empty() && now - last_fresh_ >= fresh_interval) {
+    last_fresh_ = now;
+    last_barrier_ = {};
+    std::ranges::sort(fresh_);
+    std::vector<std::uint32_t> still_wanted;
+    std::ranges::set_intersection(wanted_, fresh_, std::back_inserter(still_wanted));
+    fresh_.clear();
+    show(still_wanted, true);
+  }
   const std::chrono::duration<double> least(0.9 / frames_per_second_);
   if (!is_current_ && !wanted_.empty() && now - last_frame_ >= least) {  // while the world waits
     last_frame_ = now;

@@ -89,12 +89,13 @@ class Showing {
   channels::Layers layers_;
   std::vector<std::uint32_t> wanted_;               ///< ids of channels, ascending
   channels::Kinds kinds_;                           ///< of these
+  std::vector<std::uint32_t> fresh_;                ///< of these: not shown since a viewer subscribed
   std::vector<view::Call> calls_;                   ///< not taken yet
   std::map<std::uint64_t, view::Call> unanswered_;  ///< by Request::id
   std::uint64_t next_call_ = 1, seen_changes_ = 0;
   channels::PhaseTimes phases_;
   double frames_per_second_ = 60;
-  clock::time_point last_frame_{}, last_barrier_{};
+  clock::time_point last_frame_{}, last_barrier_{}, last_fresh_{};
   bool is_current_ = false;  ///< the present tick was shown
   bool is_gathered_ = false, is_over_ = false, shutdown_ = false;
   std::optional<wire::Status::Phase> phase_;

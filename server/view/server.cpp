@@ -35,6 +35,9 @@ constexpr std::uint16_t usual_port = 8765;
 constexpr std::chrono::seconds request_time{10};  // for a request and for its answer
 constexpr std::size_t longest_message_to_look = std::size_t{64} << 10;     // [bytes]
 constexpr std::size_t longest_message_to_steer = std::size_t{2} << 20;     // [bytes]
+// Messages of a viewer: 50 a second, with the token 500, as who drags an entity sends them.
+constexpr std::chrono::milliseconds time_of_a_message_to_look{20}, time_of_a_message_to_steer{2};
+constexpr int most_messages_at_once = 100;
 constexpr std::array protocols{"foxglove.websocket.v1", "foxglove.sdk.v1"};
 // While ticks come, the server's thread looks for them so often: to wake it for each would cost the
 // run more than to copy it.
@@ -72,7 +75,7 @@ struct Shared {
 class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
  public:
   ViewerConnection(http::Stream stream, Shared& shared)
-      : socket_(std::move(stream)), shared_(shared) {
+      : socket_(std::move(stream)), shared_(shared), turn_(socket_.get_executor()) {
     ++shared_.connections;
   }
   ~ViewerConnection() {
@@ -120,6 +123,7 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
   void close() {
     if (!viewer_) return;
     shared_.open.erase(this);
+    turn_.cancel();
     shared_.hub.remove(std::exchange(viewer_, nullptr)->id);
     beast::get_lowest_layer(socket_).close();
   }
@@ -154,7 +158,19 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
                                 self->socket_.got_text());
       self->buffer_.consume(self->buffer_.size());
       self->pump();
-      if (self->viewer_) self->read();
+      if (self->viewer_) self->read_in_time();
+    });
+  }
+
+  /// Reads on; later if more messages came than a viewer needs, so that each waits its turn in the system.
+  void read_in_time() {
+    const auto now = std::chrono::steady_clock::now();
+    const auto each = viewer_->may_steer ? time_of_a_message_to_steer : time_of_a_message_to_look;
+    paid_until_ = std::max(paid_until_, now - most_messages_at_once * each) + each;
+    if (paid_until_ <= now) return read();
+    turn_.expires_at(paid_until_);
+    turn_.async_wait([self = shared_from_this()](Error error) {
+      if (!error && self->viewer_) self->read();
     });
   }
 
@@ -164,6 +180,8 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
   Viewer* viewer_ = nullptr;
   Item sent_;
   bool is_writing_ = false;
+  asio::steady_timer turn_;
+  std::chrono::steady_clock::time_point paid_until_{};  // the time of all messages so far
 };
 
 // --- the port -------------------------------------------------------------------------------------

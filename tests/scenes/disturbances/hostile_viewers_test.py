@@ -115,6 +115,18 @@ class HostileViewers(SceneTest):
                     viewer.socket.close()
         self.assert_unharmed()
 
+    def test_who_asks_without_end_waits(self):
+        begin = time.monotonic()
+        with RawViewer(self.port) as viewer:
+            question = json.dumps({"op": "getParameters", "parameterNames": ["phase"], "id": "x"}).encode()
+            viewer.send(frame(TEXT, question) * 1000)
+            heard = 0
+            while heard < 150:
+                viewer.hear_operation("parameterValues")
+                heard += 1
+            self.assertLess(heard, 100 + 51 * (time.monotonic() - begin) + 2)
+        self.assert_unharmed()
+
     def test_places_are_kept_for_those_with_the_token(self):
         """Any number of connections without token, with and without handshake."""
         lookers = [RawViewer(self.port, request=handshake()) for _ in range(70)]

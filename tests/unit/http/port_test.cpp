@@ -63,7 +63,7 @@ TEST(Port, ItsThreadIsLessImportantThanOthers) {
   };
   const Port port("--metrics", {"127.0.0.1", 0}, false, note);
   ask(port.number(), "GET / HTTP/1.1\r\n\r\n");
-  EXPECT_EQ(theirs, std::min(ours + 10, 19));
+  EXPECT_EQ(theirs, std::min(ours + 5, 19));
   EXPECT_EQ(::getpriority(PRIO_PROCESS, 0), ours);
 }
 
