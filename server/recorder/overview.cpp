@@ -4,6 +4,7 @@
 #include <map>
 
 #include "mcap/messages.h"
+#include "recording/inputs.h"
 
 namespace ziggurat::recorder {
 namespace {
@@ -32,6 +33,7 @@ Start to_start(const v1::RunStart& from) {
 
 void add_inputs(const mcap::Message& message, Overview& to) {
   v1::Inputs inputs;
+  if (message.data.size() > recording::longest_message) return;
   if (!inputs.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) return;
   ++to.states;
   to.epochs = std::max(to.epochs, inputs.epoch() + 1);

@@ -113,6 +113,10 @@ States::States(const RecordingFile& file)
 
 const v1::Inputs* States::next() {
   const auto parse = [&](const mcap::Message& message, auto& to, const char* topic) {
+    if (message.data.size() > recording::longest_message) {
+      throw RecordingError(fmt::format("{}: a message of {} has {} bytes; at most {} are read", file_.path(),
+                                       topic, message.data.size(), recording::longest_message));
+    }
     if (to.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) return;
     throw RecordingError(fmt::format("{}: a message of {} is damaged", file_.path(), topic));
   };
