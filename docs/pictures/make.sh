@@ -3,7 +3,7 @@
 #
 # usage: docs/pictures/make.sh [FOLDER OF THE PROGRAMS [FOLDER OF THE RESULTS]]
 #
-# It needs ffmpeg, and for the screenshots Chromium and the packages of tests/web (the build's target
+# It needs ffmpeg, gnuplot, and for the screenshots Chromium and the packages of tests/web (the build's target
 # web_tests); what can't be made for want of these is named and left as it is.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -26,6 +26,16 @@ film() {  # NAME SCENE OPTION...
 picture drop dynamics3d_single_body_test --at 0.1 --eye 0.52,-0.69,0.56 --look-at 0,-0.04,0.04 --fov 48
 picture vehicle dynamics3d_multi_body_test --at 3 --eye 0.3,-0.46,0.28 --look-at -0.02,-0.01,0.01 --fov 46
 picture layers footbot_camera_prototype_example --at 2 --layers rays,frusta,labels
+
+if command -v gnuplot > /dev/null; then  # one minute of wall time on two cores (docs/experiments.md)
+  sweep=$(mktemp -d)
+  "$ziggurat" sweep scenes/experiments/aggregation.toml --out "$sweep/out" --quiet
+  "$ziggurat" sweep plot "$sweep/out" --x share --y swarm/time_to_aggregate --file "$sweep/aggregation.svg"
+  cp "$sweep/aggregation.svg" "$results"
+  rm -r "$sweep"
+else
+  echo "make.sh: no plot without gnuplot (sudo apt install gnuplot-nox)" >&2
+fi
 
 if command -v ffmpeg > /dev/null; then
   film stacking.webp prototype_srocs_system --from 5 --to 33 --speed 4 --fps 12 \
