@@ -41,8 +41,9 @@ class Verdict:
 
 
 def read_trace(path):
-    """[(time, {(entity, link): Pose})] in the order of ticks; origins have the link ''."""
-    ticks = []
+    """[(time, {(entity, link): Pose})] in the order of ticks; origins have the link ''. What did not move from tick
+    to tick is the same object."""
+    ticks, latest = [], {}
     with open(path, newline="") as file:
         rows = csv.reader(file)
         next(rows)
@@ -51,15 +52,18 @@ def read_trace(path):
             if tick != last:
                 ticks.append((float(time), {}))
                 last = tick
-            x, y, z, w, i, j, k = map(float, numbers)
-            ticks[-1][1][entity, link] = geometry.Pose((x, y, z), (w, i, j, k))
+            key, texts, pose = latest.get((entity, link), ((entity, link), None, None))
+            if texts != numbers:
+                x, y, z, w, i, j, k = map(float, numbers)
+                pose = geometry.Pose((x, y, z), (w, i, j, k))
+                latest[key] = key, numbers, pose
+            ticks[-1][1][key] = pose
     return ticks
 
 
 def at_rest(before, now):
     """Whether nothing at all moved from tick to tick."""
-    return all(before[key].position == pose.position and before[key].quaternion == pose.quaternion
-               for key, pose in now.items())
+    return all(before[key] is pose for key, pose in now.items())
 
 
 def judge_motion(ticks, scene, limits, verdict):

@@ -13,11 +13,13 @@ seed, and half, the same or twice the number of iterations. With --wide: robot a
 3 cm in x and y and turned by up to 12 degrees instead. Staircase: the robot shifted by up to 2 cm and
 turned by up to 5 degrees, every block shifted by up to 1.5 cm and turned by up to 8 degrees, another seed.
 With --steps RULES: robots and blocks anywhere between 0.4 and 0.8 m from the structure's first block, which
-stays, all turned by any angle, and half, the same or twice the number of iterations.
+stays, all turned by any angle, and half, the same or twice the number of iterations; with --pyramid and
+--robots N 0.15 m farther.
 """
 
 import argparse
 import concurrent.futures
+import copy
 import dataclasses
 import math
 import os
@@ -37,6 +39,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 STACKING = ROOT / "scenes/prototype_srocs_system.argos"
 STAIRCASE = ROOT / "scenes/construction/staircase.argos"
 STEPS = ROOT / "scenes/construction/steps.argos"
+PYRAMID = ROOT / "scenes/construction/pyramid.argos"
 BIN = pathlib.Path(os.environ.get("ZIGGURAT_BIN", ROOT / "build/release/bin"))
 
 
@@ -124,7 +127,31 @@ def perturb_steps(rules):
         factor = draw.choice([0.5, 1, 2])
         engine.set("iterations", str(round(factor * int(engine.get("iterations")))))
         return f"scattered, iterations x {factor:g}"
-    change.rules = rules
+    change.rules, change.scene = rules, STEPS
+    return change
+
+
+def perturb_pyramid(tree, number, robots=None):
+    """The change for the pyramid; robots: how many, if not as in the scene."""
+    arena = tree.getroot().find("arena")
+    if robots:
+        first, *others = [entity for entity in arena.iter("prototype") if entity.get("id").startswith("robot")]
+        for other in others:
+            arena.remove(other)
+        for index in range(1, robots):
+            arena.append(copy.deepcopy(first))
+            arena[-1].set("id", f"robot{index}")
+    return perturb_steps("rules_pyramid")(tree, number)
+
+
+perturb_pyramid.rules, perturb_pyramid.scene = "rules_pyramid", PYRAMID
+
+
+def with_robots(count):
+    """The change for the pyramid with so many robots."""
+    def change(tree, number):
+        return perturb_pyramid(tree, number, int(count))
+    change.rules, change.scene = "rules_pyramid", PYRAMID
     return change
 
 
@@ -182,20 +209,20 @@ def run_and_kill(command, folder, draw, robots, kills):
 def run(number, options=(), change=perturb, solver=None, keep=None, kills=0):
     """Runs and judges one perturbation: (verdict, description of the changes, log lines)."""
     rules = getattr(change, "rules", None)
-    scene = STEPS if rules else STAIRCASE if change is perturb_staircase else STACKING
+    scene = change.scene if rules else STAIRCASE if change is perturb_staircase else STACKING
     with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
         shutil.copytree(ROOT / "scenes", pathlib.Path(folder) / "scenes")
-        copy = pathlib.Path(folder) / scene.relative_to(ROOT)
-        tree = ElementTree.parse(copy)
+        scene_file = pathlib.Path(folder) / scene.relative_to(ROOT)
+        tree = ElementTree.parse(scene_file)
         changes = change(tree, number)
         if solver:
             tree.find("physics_engines/dynamics3d").set("solver", solver)
-        tree.write(copy)
+        tree.write(scene_file)
         trace, readings = (pathlib.Path(folder) / name for name in ("trace.csv", "readings.jsonl"))
         robots = {entity.get("id"): index for index, entity in
                   enumerate(tree.find("arena").iter("prototype")) if entity.get("id").startswith("robot")}
         outcome = run_and_kill(
-            [BIN / "ziggurat", "run", copy, "--trace", trace, *options,
+            [BIN / "ziggurat", "run", scene_file, "--trace", trace, *options,
              *(["--readings", readings] if scene == STACKING else []),
              *(["--lua-processes", "0", "--restart", "robot=9"] if kills else [])],
             folder, random.Random(number), robots, kills)
@@ -203,10 +230,10 @@ def run(number, options=(), change=perturb, solver=None, keep=None, kills=0):
         if outcome.returncode != 0:
             verdict = judge.Verdict([f"exit code {outcome.returncode}: {outcome.stderr[-500:]}"])
         elif rules:
-            verdict = structure.judge_structure(copy, trace, rules)
+            verdict = structure.judge_structure(scene_file, trace, rules)
             changes += f", finished at {verdict.finished:.0f} s, turned {math.degrees(verdict.turn):.2f} deg"
         else:
-            verdict = (judge.judge_stairs if scene == STAIRCASE else judge.judge)(copy, trace, readings)
+            verdict = (judge.judge_stairs if scene == STAIRCASE else judge.judge)(scene_file, trace, readings)
         log = outcome.stdout.splitlines()
         fault = outcome.returncode == 0 and last_words_fault(log, robots)
         if fault:
@@ -239,6 +266,10 @@ def main():
                       help="the staircase, not the stack")
     kind.add_argument("--steps", dest="change", type=perturb_steps, metavar="RULES",
                       help="two robots with the rule table rules_cross or rules_stairs")
+    kind.add_argument("--pyramid", dest="change", action="store_const", const=perturb_pyramid,
+                      help="the pyramid of four robots, scattered in the same way")
+    kind.add_argument("--robots", dest="change", type=with_robots, metavar="N",
+                      help="the pyramid with N robots instead of four")
     parser.add_argument("--solver", help="written into the scene: newton or sweeps")
     parser.add_argument("--controller", action="append", default=[], metavar="ID=CMD",
                         help="passed on to ziggurat run")

@@ -1,6 +1,10 @@
 """Two robots build two structures by different rule tables, and wrong structures that the judge must find."""
 
 import math
+import os
+import pathlib
+import subprocess
+import tempfile
 import unittest
 
 import geometry
@@ -99,6 +103,40 @@ class WrongStructures(unittest.TestCase):
         verdict = judge.Verdict([])
         structure.judge_robots([(0.1, poses)], scene, structure.Limits(), verdict)
         self.assertRegex("\n".join(verdict.faults), r"2\.00 mm deep: robot1 and robot0 at 0.1 s")
+
+
+def blocks_beside(gap):
+    """A scene of two blocks with a gap between them [m]."""
+    blocks = "".join(f'''<prototype id="block{n}" model="block"><body position="{n * (0.055 + gap)},0,0"/>
+        <controller config="block"/></prototype>''' for n in (0, 1))
+    return f'''<argos-configuration>
+        <include file="{perturb.ROOT}/scenes/models/block.argos"/>
+        <framework><experiment length="4" ticks_per_second="10" random_seed="1"/></framework><controllers/>
+        <arena size="4,4,2" center="0,0,1">{blocks}</arena>
+        <physics_engines><dynamics3d id="dyn3d" iterations="20"><floor/><gravity g="9.8"/>
+          <magnetism max_distance="0.1"/></dynamics3d></physics_engines>
+        <media><directional_led id="directional_leds"/><tag id="tags"/><radio id="nfc"/></media>
+        </argos-configuration>'''
+
+
+class Gap(unittest.TestCase):
+    """The smallest gap between columns: where the magnets pull less than friction holds (construction.md)."""
+
+    def moved(self, gap):
+        with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
+            scene, trace = pathlib.Path(folder) / "gap.argos", pathlib.Path(folder) / "trace.csv"
+            scene.write_text(blocks_beside(gap))
+            subprocess.run([perturb.BIN / "ziggurat", "run", scene, "--trace", trace, "--quiet"], check=True,
+                           capture_output=True, env=dict(os.environ, XDG_RUNTIME_DIR=folder))
+            ticks = judge.read_trace(trace)
+            return max(math.dist(ticks[0][1][key].position, ticks[-1][1][key].position)
+                       for key in ticks[0][1] if key[1] == "base")
+
+    def test_at_12_millimetres_two_blocks_join(self):
+        self.assertAlmostEqual(self.moved(0.012), 0.006, delta=2e-4)
+
+    def test_at_14_millimetres_they_stand(self):
+        self.assertLess(self.moved(0.014), 1e-5)
 
 
 class Building(unittest.TestCase):
