@@ -13,6 +13,10 @@ memory.columns = {}    -- by "i,j": {i, j, x, y, sides}; sides[0 to 3] = {row or
 memory.material = {}   -- {x, y, yaw, seen}: dark blocks; yaw is a side's outward normal
 memory.now = 0         -- ticks
 
+-- A dark block nearer to a column than this is left alone: it is just being placed, or was dropped, and to
+-- fetch it a robot would have to turn beside the structure [m].
+local apart = 0.2
+
 local last_lit = {}    -- the side that corrected the odometry last
 local astray = 0       -- ticks in a row in which a lit side was seen where no column can be
 
@@ -95,7 +99,13 @@ local function remember_side(face, plan)
     column.x, column.y = point_of(i, j)
     memory.columns[key] = column
   end
-  memory.forget(column)
+  for n = #memory.material, 1, -1 do
+    local block = memory.material[n]
+    if (block.x - column.x) ^ 2 + (block.y - column.y) ^ 2 < apart ^ 2 then
+      table.remove(memory.material, n)
+    end
+  end
+  column.seen = memory.now
   column.sides[side] = {row = plan.row_shown(face.color) or false, seen = memory.now}
 end
 
@@ -103,7 +113,7 @@ local function remember_material(face)
   local block = block_of(face)
   if memory.anchor then
     for _, column in pairs(memory.columns) do
-      if (block.x - column.x) ^ 2 + (block.y - column.y) ^ 2 < 0.11 ^ 2 then return end  -- perhaps just being placed
+      if (block.x - column.x) ^ 2 + (block.y - column.y) ^ 2 < apart ^ 2 then return end
     end
   end
   block.seen, block.times = memory.now, 1
@@ -166,12 +176,27 @@ function memory.extent()
   return most
 end
 
--- All sides where something may be attached, seen in the last so many ticks: {column, side, row, yaw (outward), x, y (of the face)}.
+local directions = {[0] = {1, 0}, {0, 1}, {-1, 0}, {0, -1}}
+
+-- Whether what a side showed is out of date: a column was seen before it since, or another side of its
+-- column showed another row.
+local function is_old(column, side, look)
+  local to = directions[side]
+  local beside = memory.columns[column.i + to[1] .. "," .. column.j + to[2]]
+  if look.row.place == "before" and beside and beside.seen > look.seen then return true end
+  for _, other in pairs(column.sides) do
+    if other.row and other.row ~= look.row and other.seen > look.seen + 50 then return true end
+  end
+  return false
+end
+
+-- All sides where something may be attached, seen in the last so many ticks: {column, side, row, yaw (outward),
+-- x, y (of the face)}.
 function memory.open_sides(ticks)
   local open = {}
   for _, column in pairs(memory.columns) do
     for side, look in pairs(column.sides) do
-      if look.row and memory.now - look.seen < (ticks or math.huge) then
+      if look.row and memory.now - look.seen < (ticks or math.huge) and not is_old(column, side, look) then
         local yaw = memory.anchor.yaw + side * math.pi / 2
         open[#open + 1] = {column = column, side = side, row = look.row, yaw = yaw,
                            seen = look.seen,

@@ -12,24 +12,22 @@ local states = {}
 
 local function distance_of(row) return row.place == "above" and builder.reach or before end
 
+-- The side with the shortest free way of those that may get a block; nil if none is known.
+local function nearest_side()
+  local least, nearest
+  for _, side in ipairs(memory.open_sides()) do
+    local x, y = assembly.ahead_of(side, distance_of(side.row) + assembly.last_way)
+    local cost = assembly.distance_to({x = x, y = y}) + assembly.hindrance(side, memory.material)
+    if not least or cost < least then least, nearest = cost, side end
+  end
+  return nearest
+end
+
 function states.choose_side()
   job.after_scan = nil
   if not memory.middle() then return "wander" end
-  local least
-  job.place = nil
-  local obstacles = {}
-  for _, block in ipairs(memory.material) do obstacles[#obstacles + 1] = block end
-  for _, side in ipairs(memory.open_sides()) do
-    local x, y = assembly.ahead_of(side, distance_of(side.row) + assembly.last_way)
-    local cost = assembly.distance_to({x = x, y = y}) + assembly.hindrance(side, obstacles)
-    if not least or cost < least then least, job.place = cost, side end
-  end
-  if job.place then
-    job.tries = 0
-    return "claim"
-  end
-  job.points = {}
-  return "survey"
+  job.tries, job.points = 0, {}
+  return nearest_side() and "claim" or "survey"
 end
 
 -- Looks at the structure from all sides. When no side may get a block, it is complete.
@@ -57,7 +55,12 @@ end
 
 -- Waits outside until no other robot works at the structure.
 function states.claim()
-  if traffic.may_build() then return "enter" end
+  if traffic.may_build() then
+    job.place, job.tries = nearest_side(), 0  -- by what it has seen since
+    if job.place then return "enter" end
+    traffic.leave_structure()
+    return "survey"
+  end
   local middle = memory.middle()
   local ring_radius = assembly.waiting_ring + memory.extent()
   if assembly.distance_to(middle) < ring_radius - 0.05 then

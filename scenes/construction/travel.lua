@@ -83,11 +83,22 @@ local function evaded()
   return true
 end
 
--- Drives straight away from a robot that is very near; true while it does.
+-- Whether a column is so near that the robot would touch it when it turns; how far it is in front [m].
+local function column_beside()
+  for _, column in pairs(memory.columns) do
+    local dx, dy = column.x - here().x, column.y - here().y
+    if dx * dx + dy * dy < 0.16 ^ 2 then
+      return dx * math.cos(here().yaw) + dy * math.sin(here().yaw)
+    end
+  end
+end
+
+-- Drives straight away from a robot or a column that is very near; true while it does.
 local function keep_distance()
-  local other = traffic.nearest()
-  if other and other.range < 0.27 and evading.ticks <= 0 and not traffic.working then
-    evade(other.forward > 0 and -1 or 1, 15)
+  if evading.ticks <= 0 and not traffic.working then
+    local other = traffic.nearest()
+    local forward = other and other.range < 0.27 and other.forward or column_beside()
+    if forward then evade(forward > 0 and -1 or 1, 15) end
   end
   return evaded()
 end
