@@ -37,7 +37,7 @@ constexpr std::size_t longest_message_to_look = std::size_t{64} << 10;     // [b
 constexpr std::size_t longest_message_to_steer = std::size_t{2} << 20;     // [bytes]
 // Messages of a viewer: 50 a second, with the token 500, as who drags an entity sends them.
 constexpr std::chrono::milliseconds time_of_a_message_to_look{20}, time_of_a_message_to_steer{2};
-constexpr int most_messages_at_once = 100;
+constexpr int most_messages_at_once = 1000;  // some clients subscribe to each topic by itself
 constexpr std::array protocols{"foxglove.websocket.v1", "foxglove.sdk.v1"};
 // While ticks come, the server's thread looks for them so often: to wake it for each would cost the
 // run more than to copy it.
