@@ -37,13 +37,15 @@ double ratio(double numerator, double denominator) {
   return denominator > 0 ? numerator / denominator : 0;
 }
 
-/// Which robots failed; their messages were printed when they did.
+/// Which robots and directors failed; their messages were printed when they did.
 std::string failed(const std::vector<Summary::Failure>& failures) {
   constexpr std::size_t most = 8;
-  std::string text = fmt::format("  {} robot{} failed: ", failures.size(),
-                                 failures.size() == 1 ? "" : "s");
+  std::string text = fmt::format("  {} failed: ", failures.size());
   for (std::size_t i = 0; i < std::min(most, failures.size()); ++i) {
-    text += fmt::format("{}{} at tick {}", i == 0 ? "" : ", ", failures[i].robot, failures[i].tick);
+    const Summary::Failure& failure = failures[i];
+    text += fmt::format("{}{} {} at tick {}", i == 0 ? "" : ", ",
+                        failure.director.empty() ? "robot" : "director",
+                        failure.director.empty() ? failure.robot : failure.director, failure.tick);
   }
   if (failures.size() > most) text += fmt::format(" and {} more", failures.size() - most);
   return text + "\n";
@@ -114,10 +116,15 @@ std::string to_text(const Summary& summary) {
 std::string to_json(const Summary& summary) {
   auto failures = nlohmann::ordered_json::array();
   for (const auto& failure : summary.failures) {
-    failures.push_back({{"robot", failure.robot},
-                        {"controller", failure.controller},
-                        {"tick", failure.tick},
-                        {"message", failure.message}});
+    nlohmann::ordered_json entry;
+    if (failure.director.empty()) {
+      entry = {{"robot", failure.robot}, {"controller", failure.controller}};
+    } else {
+      entry = {{"director", failure.director}};
+    }
+    entry["tick"] = failure.tick;
+    entry["message"] = failure.message;
+    failures.push_back(std::move(entry));
   }
   auto missed = nlohmann::ordered_json::array();
   for (const auto& each : summary.missed) {

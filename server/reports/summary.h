@@ -58,8 +58,9 @@ struct Summary {
     std::string controller;
     std::uint64_t tick = 0;
     std::string message;
+    std::string director = {};  ///< that failed; empty: a robot's controller did
   };
-  std::vector<Failure> failures;     ///< robots whose controller failed, in order of time
+  std::vector<Failure> failures;     ///< in order of time
   std::string shutdown_reason;       ///< shut_down: why
   /// How a director has ended the run.
   struct Result {

@@ -35,7 +35,8 @@ void PeerReports::take(network::Report report, std::uint64_t tick) {
         fmt::format("director '{}' failed at tick {}: {}", failure.director, failure.tick, failure.message);
     console_.fault(text);
     tell_(channels::Severity::error, failure.director, text);
-    failures_.push_back({std::nullopt, {failure.director, {}, failure.tick, std::move(failure.message)}});
+    failures_.push_back(
+        {std::nullopt, {{}, {}, failure.tick, std::move(failure.message), failure.director}});
   }
   for (auto& failure : report.failures) {
     const auto& robot = robots[failure.robot];

@@ -1,6 +1,7 @@
 // <director>, and <loop_functions> as one: programs that watch the world and act on it between ticks.
 
 #include <algorithm>
+#include <utility>
 
 #include "scene/draft.h"
 
@@ -12,10 +13,12 @@ void read_director(Draft& draft, Element& element, Director director) {
   director.script = element.optional("script", path, "");
   director.command = element.optional("command", text, "");
   director.deadline = read_deadline(element, std::nullopt);
-  if (auto params = element.child("params")) {
-    director.params = with_parameters(params->all_attributes(), draft.parameters);
-    params->done();
+  Params params;
+  if (auto given = element.child("params")) {
+    params = given->all_attributes();
+    given->done();
   }
+  director.params = with_parameters(std::move(params), draft.parameters);
   element.done();
   if (!director.script.empty() && !director.command.empty()) {
     element.fault("has a script and a command; write one of them");

@@ -100,7 +100,7 @@ class Failing(SceneTest):
         self.assertIn("[6 r0] 6", outcome.lines)
         self.assertRegex(outcome.err, r"r1.*tick 3.*out of luck")
         self.assertEqual(outcome.err.count("out of luck"), 1, "printed once")
-        self.assertIn("1 robot failed: r1 at tick 3", outcome.err)
+        self.assertIn("1 failed: robot r1 at tick 3", outcome.err)
 
     def test_a_stuck_robot_is_named_with_file_and_line(self):
         self.write("swing.lua", """function init() end
@@ -159,7 +159,7 @@ end
         outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
         self.assertRegex(outcome.err, r"robot r1 .* failed at tick 2: .*no end")
         self.assertEqual((outcome.out + outcome.err).count("no end"), 1, "printed once")
-        self.assertIn("1 robot failed: r1 at tick 2", outcome.err)
+        self.assertIn("1 failed: robot r1 at tick 2", outcome.err)
         self.assertIn("[2 r2] last", outcome.lines)
 
     def test_fail_fast_ends_at_the_first_error(self):

@@ -95,8 +95,8 @@ void set_hook(lua_State* state) {
   note_place(state);
   char text[512];
   const int size = std::snprintf(text, sizeof text,
-                                 "ziggurat-lua: robot '%.100s': %s: calls a library function that "
-                                 "does not end; this process ends with all of its robots\n",
+                                 "ziggurat-lua: '%.100s': %s: calls a library function that "
+                                 "does not end; this process ends with all of its scripts\n",
                                  watch.robot, watch.place);
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, static_cast<size_t>(size));
   ::_exit(exit_failed_script);

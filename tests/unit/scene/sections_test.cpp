@@ -90,6 +90,7 @@ TEST(Directors, AreReadWithWhatStartsThem) {
   EXPECT_EQ(directors[0].deadline, (DeadlinePolicy{DeadlineAction::drop, 9, 0}));
   EXPECT_EQ(directors[0].params.at(0).second, "0.3");
   EXPECT_EQ(directors[1].command, "./feed");
+  EXPECT_EQ(directors[1].params.at(0).second, "0.3") << "the scene's parameters are all directors'";
   EXPECT_EQ(directors[2].id, "loop_functions");
   EXPECT_EQ(directors[2].script, "rule.lua");
   EXPECT_NE(all_problems(result).find("<loop_functions> is read as <director id=\"loop_functions\">"),

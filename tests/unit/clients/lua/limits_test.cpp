@@ -99,7 +99,7 @@ TEST_F(Limits, ALibraryFunctionThatDoesNotEndNamesTheRobotAndItsLine) {
         watch_scripts();  // a child process has no timer yet
         start("\nlocal t = {}\ntable.move(t, 1, math.maxinteger - 9, 2, {})");
       },
-      testing::ExitedWithCode(3), "robot 'r0': .*main.lua:3: calls a library function");
+      testing::ExitedWithCode(3), "'r0': .*main.lua:3: calls a library function");
 }
 
 }  // namespace
