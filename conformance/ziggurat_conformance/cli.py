@@ -50,7 +50,7 @@ def _parser() -> argparse.ArgumentParser:
     server.add_argument("target", nargs="*", metavar="URL | -- COMMAND",
                         help="where a server listens, or how to start one")
     server.add_argument("--variant", action="append", default=[], metavar="NAME=COMMAND",
-                        help="how to start a server for the cases of this variant: lease, curve")
+                        help="how to start a server for the cases of this variant: lease, curve, director")
     client = modes.add_parser("client", help="play a server against a controller program",
                               epilog=_EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter)
     client.add_argument("target", nargs="*", metavar="-- COMMAND")

@@ -114,3 +114,5 @@ class Peer:
         if message.HasField("observation"):
             self.observation = message.observation
             self.tick = message.observation.tick
+        if message.HasField("world_state"):
+            self.tick = message.world_state.tick

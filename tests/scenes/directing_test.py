@@ -5,7 +5,7 @@ import os
 import sys
 import time
 
-from harness import CONTROLLER_FAILED, FAULT, SceneTest, main
+from harness import CONTROLLER_FAILED, FAULT, HERE, SceneTest, main
 
 sys.path.insert(0, os.environ["ZIGGURAT_PYTHON_PACKAGE"])
 
@@ -389,6 +389,17 @@ class Directing(SceneTest):
         outcome = self.ziggurat("fork", self.record, "--at", "1")
         self.assertEqual(outcome.code, FAULT)
         self.assert_is_sentence(outcome, "the scene has directors, which cannot go on from a recorded state")
+
+    def test_the_judge_of_the_example_ends_the_stacking_scene(self):
+        examples = HERE.parents[1] / "clients/python/examples"
+        self.environment["PYTHONPATH"] = os.environ["ZIGGURAT_PYTHON_PACKAGE"]
+        self.environment["PATH"] = f"{os.path.dirname(sys.executable)}:{self.environment['PATH']}"
+        outcome = self.run_scene("--summary", self.folder / "summary.json", scene=examples / "judge.argos")
+        summary = json.loads((self.folder / "summary.json").read_text())
+        self.assertRegex(summary["result"], r"^block1 stands on block2, \d+\.\d mm aside$", outcome.err)
+        self.assertLess(summary["ticks"], 600)
+        self.assertLess(summary["metrics"]["judge/aside_mm"], 6)
+        self.assertLess(summary["metrics"]["judge/turned_deg"], 10)
 
     def test_libraries_are_refused_with_what_to_do(self):
         self.write_scene('<loop_functions library="libfood.so" label="food" />')

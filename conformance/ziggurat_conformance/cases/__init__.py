@@ -1,6 +1,6 @@
 """All cases for servers, in the order of the document's sections."""
 
-from . import (deadlines, hello, later_versions, leaving, results, rovers, security, states, supervision, tick,
+from . import (deadlines, directing, hello, later_versions, leaving, results, rovers, security, states, supervision, tick,
                transport)
 
 SERVER_CASES = [
@@ -15,4 +15,5 @@ SERVER_CASES = [
     *security.CASES,
     *supervision.CASES,
     *later_versions.CASES,
+    *directing.CASES,
 ]

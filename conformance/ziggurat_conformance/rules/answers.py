@@ -25,7 +25,7 @@ class Answers:
         broken = musts(faults)
         if kind == "hello":
             self._hello = broken
-        elif kind in ("command", "leave") and state in (State.STEPPING, State.PAUSED):
+        elif kind in ("command", "direction", "leave") and state in (State.STEPPING, State.PAUSED):
             if any(fault.code for fault in broken):
                 self._refused.append(broken)
 
@@ -36,7 +36,7 @@ class Answers:
             yield from self._refusal_faults(message.error, self._refused.pop(0))
         elif kind in ("welcome", "refusal"):
             yield from self._hello_faults(message)
-        elif kind == "observation" and self._refused and session.owes and _waits(session):
+        elif kind in ("observation", "world_state") and self._refused and session.owes and _waits(session):
             fault = self._refused.pop(0)[0]
             yield Fault(fault.rule, f"the tick went on with a message that must be refused: {fault.text}")
         elif kind in ("reset", "end", "displaced"):

@@ -16,11 +16,14 @@ def hello_faults(hello: protocol.Hello) -> Iterator[Fault]:
     if hello.version.major != _MAJOR:
         yield Fault("H2", f"a Hello has version.major {hello.version.major}; {_MAJOR} is expected",
                     "VERSION_MISMATCH")
-    if hello.role not in _ROLES:
+    is_director = hello.role == protocol.ROLE_DIRECTOR and hello.version.minor >= 4
+    if hello.role not in _ROLES and not is_director:
         yield Fault("H3", f"a Hello has the role {hello.role}", "BAD_VALUE", "role")
     has_criteria = bool(hello.robots or hello.controller or hello.lua_only)
     if hello.role == protocol.ROLE_CONTROLLER and not has_criteria and not hello.session_token:
         yield Fault("H4", "a Hello asks for no robots", "BAD_VALUE", "robots")
+    if is_director and (has_criteria or not (hello.director or hello.session_token)):
+        yield Fault("R1", "a Hello of a director asks for robots, or names no director", "BAD_VALUE")
     if hello.role in (protocol.ROLE_SUPERVISOR, protocol.ROLE_OBSERVER) and has_criteria:
         yield Fault("V1", "a Hello without the role of a controller asks for robots", "BAD_VALUE", "robots")
     if (len(hello.robots) > _MOST_PATTERNS

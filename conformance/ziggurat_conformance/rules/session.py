@@ -5,6 +5,7 @@ from typing import Iterator, Optional
 
 from ..wire import protocol
 from .command import PER_ROBOT, command_faults, leave_faults, metric_faults
+from .directing import direction_faults, last_words_faults, world_state_faults
 from .fault import Fault, musts
 from .hello import hello_faults
 from .observation import observation_faults, welcome_faults
@@ -25,12 +26,13 @@ class State(enum.Enum):
 
 
 _ANY_STATE = {"error", "heartbeat", "response"}
-_RUNNING = {"observation", "paused", "reset", "restored", "end", "displaced", "robot_spawned"}
+_DIRECTED = {"world_layout", "world_state"}
+_RUNNING = {*_DIRECTED, "observation", "paused", "reset", "restored", "end", "displaced", "robot_spawned"}
 # Section 4: what a client may receive. What is on its way in DRAINING and CLOSED is not judged.
 _RECEIVED = {
     State.NEW: {"refusal"},
     State.HELLO: {"loading", "welcome", "refusal"},
-    State.READY: {"observation", "end", "displaced", "robot_spawned"},
+    State.READY: {*_DIRECTED, "observation", "end", "displaced", "robot_spawned"},
     State.STEPPING: _RUNNING,
     State.PAUSED: _RUNNING,
 }
@@ -53,6 +55,7 @@ class Session:
         self.is_refused = False  # and no retry is promised to help
         self.is_certain = True  # False: bytes were sent that may have changed its state
         self._is_new_world = True  # the next Observation may have any tick
+        self._world: Optional[list] = None  # what a director was told of; None: nothing yet
         self._used: set = set()  # (field, position) that were commanded since the start or a reset
         self._must_repeat = False  # W6: the next Command should have them all
         self._heartbeats: list[int] = []  # sequences that the server sent
@@ -96,6 +99,9 @@ class Session:
             rule = "H1" if self.state is State.NEW else "M0"
             yield Fault(rule, f"a Command in {self.state.value}", "OUT_OF_STATE")
             return
+        if self.welcome.role == protocol.ROLE_DIRECTOR:
+            yield Fault("R2", "a Command of a director", "OUT_OF_STATE")
+            return
         if self.state is State.DRAINING and command.tick in self.missed:
             return  # it was on its way (M1)
         if self.state is State.DRAINING:
@@ -122,10 +128,35 @@ class Session:
                 yield Fault("W6", f"after a missed deadline the next Command has no {', '.join(sorted(lost))}, "
                             "which were commanded before", should=True)
 
+    def _judge_direction(self, direction: protocol.Direction) -> Iterator[Fault]:
+        if self.state in (State.NEW, State.HELLO, State.READY, State.CLOSED):
+            yield Fault("M0", f"a Direction in {self.state.value}", "OUT_OF_STATE")
+            return
+        if self.welcome.role != protocol.ROLE_DIRECTOR:
+            yield Fault("R2", "a Direction of a session that is no director", "OUT_OF_STATE")
+            return
+        if self.state is State.DRAINING:
+            return
+        if direction.HasField("epoch") and direction.epoch != self.epoch:
+            yield Fault("S13", f"a Direction of epoch {direction.epoch}; the last WorldState is of {self.epoch}",
+                        "FUTURE_TICK" if direction.epoch > self.epoch else "STALE_TICK", "epoch")
+        elif direction.tick > self.tick:
+            yield Fault("R2", f"a Direction for tick {direction.tick}; the last WorldState is of {self.tick}",
+                        "FUTURE_TICK", "tick")
+        elif direction.tick < self.tick and direction.tick not in self.missed:
+            yield Fault("R2", f"a Direction for tick {direction.tick}; the last WorldState is of {self.tick}",
+                        "STALE_TICK", "tick")
+        elif direction.tick == self.tick and not self.owes and direction.tick not in self.missed:
+            yield Fault("R2", f"a second Direction for tick {direction.tick}", "DUPLICATE_TICK", "tick")
+        yield from direction_faults(direction)
+
     def _judge_leave(self, leave: protocol.Leave) -> Iterator[Fault]:
         if self.state in (State.NEW, State.CLOSED) and not self.is_lost:
             yield Fault("M0", f"a Leave in {self.state.value}", "OUT_OF_STATE")
         elif self.state in (State.NEW, State.HELLO, State.CLOSED):
+            return
+        if self.welcome and self.welcome.role == protocol.ROLE_DIRECTOR:
+            yield from last_words_faults(leave)
             return
         yield from leave_faults(len(self.welcome.robots) if self.welcome else 0, self.left, leave)
         if self.welcome and self.welcome.version.minor >= 3:
@@ -140,8 +171,8 @@ class Session:
     def _judge_request(self, request: protocol.Request) -> Iterator[Fault]:
         if self.state in (State.NEW, State.HELLO, State.CLOSED):
             yield Fault("M0", f"a Request in {self.state.value}", "OUT_OF_STATE")
-        elif self.welcome.role == protocol.ROLE_CONTROLLER:
-            yield Fault("M8", "a Request of a controller", "FORBIDDEN")
+        elif self.welcome.role in (protocol.ROLE_CONTROLLER, protocol.ROLE_DIRECTOR):
+            yield Fault("M8", "a Request of a controller or director", "FORBIDDEN")
 
     def _commanded(self, command: protocol.Command) -> set:
         positions = list(command.robots) or range(len(self.welcome.robots))
@@ -164,6 +195,11 @@ class Session:
         self._used |= self._commanded(command)
         self._must_repeat = False
 
+    def _directed(self, direction: protocol.Direction) -> None:
+        self.missed.discard(direction.tick)
+        if direction.tick == self.tick:
+            self.owes = False
+
     def _left(self, leave: protocol.Leave) -> None:
         if self.state is State.HELLO or not leave.robots:
             self.state = State.CLOSED
@@ -185,6 +221,8 @@ class Session:
             faults.append(Fault("H2", f"{kind} has what version 1.2 brought, in a session of 1.{welcome.version.minor}"))
         if _is_since_1_1(message) and welcome is not None and welcome.version.minor < 1:
             faults.append(Fault("H2", f"{kind} has what version 1.1 brought, in a session of 1.0"))
+        if _is_since_1_4(message) and (welcome is None or welcome.version.minor < 4):
+            faults.append(Fault("H2", f"{kind} has what version 1.4 brought, in a session of an earlier one"))
         faults += _told.get(kind, lambda *_: ())(self, getattr(message, kind)) or ()
         return faults
 
@@ -194,6 +232,7 @@ class Session:
         self.tick, self.owes, self._is_new_world = None, False, True
         self.left, self.missed, self._used = set(), set(), set()
         self._must_repeat = False
+        self._world = None
         return faults
 
     def _take_refusal(self, refusal: protocol.Refusal) -> list:
@@ -214,6 +253,32 @@ class Session:
         faults = list(observation_faults(self.welcome, told)) if self.welcome is not None else []
         if not self._is_new_world and self.tick is not None and told.tick <= self.tick:
             faults.append(Fault("S1", f"Observation {told.tick} follows Observation {self.tick}"))
+        if self.owes and self.tick is not None:
+            self.missed.add(self.tick)
+        self.tick, self.owes, self._is_new_world = told.tick, True, False
+        self.epoch = told.epoch if told.HasField("epoch") else None
+        if self.state is not State.DRAINING:
+            self.state = State.STEPPING
+        return faults
+
+    def _take_world_layout(self, layout: protocol.WorldLayout) -> Iterator[Fault]:
+        if layout.first == 0 or self._world is None:
+            self._world = []
+        if layout.first != len(self._world):
+            yield Fault("R4", f"a WorldLayout begins at {layout.first}; {len(self._world)} entities were told before")
+        if any(place >= len(self._world) for place in layout.removed):
+            yield Fault("R4", f"the places {list(layout.removed)} are removed; {len(self._world)} are known")
+        self._world.extend(layout.entities)
+
+    def _take_world_state(self, told: protocol.WorldState) -> list:
+        faults = []
+        if self._world is None:
+            faults.append(Fault("R4", "a WorldState without a WorldLayout before it"))
+        elif self.hello is not None:
+            groups = set(self.hello.subscription.groups)
+            faults += world_state_faults(self._world, groups if self.hello.HasField("subscription") else None, told)
+        if not self._is_new_world and self.tick is not None and told.tick <= self.tick:
+            faults.append(Fault("R5", f"WorldState {told.tick} follows WorldState {self.tick}"))
         if self.owes and self.tick is not None:
             self.missed.add(self.tick)
         self.tick, self.owes, self._is_new_world = told.tick, True, False
@@ -269,6 +334,7 @@ class Session:
                 yield Fault("V2", "a Response has an error and a result")
 
     def _take_reset(self, _: protocol.Reset) -> None:
+        self._world = None
         self.owes, self._is_new_world = False, True
         self.missed.clear()
         self._used.clear()
@@ -299,6 +365,11 @@ def _is_since_1_2(message: protocol.ServerMessage) -> bool:
             or message.reset.HasField("epoch"))
 
 
+def _is_since_1_4(message: protocol.ServerMessage) -> bool:
+    return (message.HasField("world_layout") or message.HasField("world_state")
+            or message.welcome.HasField("director"))
+
+
 def _error_faults(error: protocol.Error) -> Iterator[Fault]:
     if error.code not in _Error.Code.values() or not error.code:
         yield Fault("M0", f"an Error has the code {error.code} (section 6)")
@@ -311,12 +382,15 @@ def _error_faults(error: protocol.Error) -> Iterator[Fault]:
 _said = {
     "hello": Session._judge_hello, "command": Session._judge_command, "leave": Session._judge_leave,
     "heartbeat": Session._judge_heartbeat, "request": Session._judge_request,
+    "direction": Session._judge_direction,
 }
-_after_said = {"hello": Session._greeted, "command": Session._answered, "leave": Session._left}
+_after_said = {"hello": Session._greeted, "command": Session._answered, "leave": Session._left,
+               "direction": Session._directed}
 _told = {
     "welcome": Session._take_welcome, "refusal": Session._take_refusal, "loading": Session._take_loading,
     "observation": Session._take_observation, "error": Session._take_error,
     "heartbeat": Session._take_heartbeat, "response": Session._take_response, "reset": Session._take_reset,
     "restored": Session._take_reset, "paused": Session._take_paused, "end": Session._take_end,
-    "displaced": Session._take_displaced,
+    "displaced": Session._take_displaced, "world_layout": Session._take_world_layout,
+    "world_state": Session._take_world_state,
 }

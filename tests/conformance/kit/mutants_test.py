@@ -46,7 +46,8 @@ def _right_server(program: str, form: str, ids: list) -> list:
 
 def _play_server(cases: list, program: str, bug: str, patience: float) -> list:
     command = shlex.join([sys.executable, "-B", str(HERE / program), "{endpoint}", "{scene}", bug])
-    variants = {"curve": f"{command} {{curve_secret}} {{curve_clients}}", "lease": f"{command} --lease 2"}
+    variants = {"curve": f"{command} {{curve_secret}} {{curve_clients}}", "lease": f"{command} --lease 2",
+                "director": f"{command} --allow-director"}
     return server_mode.play(cases, server_mode.Servers(command, variants, patience), patience,
                             lambda outcome: None)
 

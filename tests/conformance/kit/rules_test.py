@@ -12,6 +12,7 @@ DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "protocol.md"
 # Rules that no case can hold, and why.
 REASONS = {
     "T11": "a matter of the command line, too: tests/unit/processes/private_folder_test.cpp",
+    "R11": "the environment of programs that a server starts: tests/scenes/directing_test.py",
     "K10": "a matter of the file of --curve-clients: tests/unit/network/curve_test.cpp",
 }
 
