@@ -147,7 +147,7 @@ CASES = [
          (Join("d", _hello(subscription={"groups": ["CONTACTS"]})), join("p", "*"), *observe("p"),
           Hear("d", "world_layout"), Hear("d", "world_state", {"tick": 0, "contacts": Count(0)}), _NEXT),
          fresh=True, variant=VARIANT),
-    Case("R6.order", "Acts of several directors are done in the order of their ids, whoever answers first",
+    Case("R6.order", "Acts of several directors are done in the order of their ids, whichever answers first",
          (join("p", "*"), *observe("p"), *_directs("d", "b"),
           *_directs("e", "a"), answer("p"), _says("d", acts=[_spawn("crate", "30,0,0")]), Pause(0.05), _says("e"),
           *observe("p"), Hear("d", "world_layout"), *_sees("d"), Hear("e", "world_layout"), *_sees("e"), answer("p"),
