@@ -163,7 +163,7 @@ TEST(Sessions, ThousandsComeAndGo) {
   const SmallRun small(3);
   Config config;
   config.max_sessions = 4;
-  config.max_supervisors = config.max_observers = 0;
+  config.max_supervisors = config.max_observers = config.max_directors = 0;
   config.lease = milliseconds{1};
   Peers peers(small, config);
   peers.publish(0);
