@@ -62,6 +62,14 @@ function states.search()
   end
 end
 
+-- Whether no dark block is remembered under or near the one that the robot carries.
+local function is_free()
+  for _, block in ipairs(memory.material) do
+    if assembly.distance_to(block) < 0.25 then return false end
+  end
+  return true
+end
+
 function states.park()
   local middle = memory.middle()
   if not job.points[1] or not job.points[1].parking then
@@ -76,7 +84,8 @@ function states.park()
     return
   end
   local outcome = travel.to(x, y)
-  if outcome == "there" or job.seconds() > 90 then return builder.loaded and "put_down" or "done" end
+  if outcome == "there" and builder.loaded and is_free() then return "put_down" end
+  if outcome == "there" or job.seconds() > 90 then return "done" end
 end
 
 -- A block that is left over goes back to the floor.

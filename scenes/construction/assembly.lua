@@ -39,6 +39,11 @@ function assembly.distance_to(thing)
   return math.sqrt((thing.x - builder.pose.x) ^ 2 + (thing.y - builder.pose.y) ^ 2)
 end
 
+function assembly.from_middle(thing)
+  local middle = memory.middle()
+  return math.sqrt((thing.x - middle.x) ^ 2 + (thing.y - middle.y) ^ 2)
+end
+
 -- The point in front of a side {x, y, yaw (outward)}.
 function assembly.ahead_of(thing, distance)
   return thing.x + distance * math.cos(thing.yaw), thing.y + distance * math.sin(thing.yaw)
@@ -69,7 +74,7 @@ function assembly.hindrance(thing, obstacles)
     local dx, dy = obstacle.x - thing.x, obstacle.y - thing.y
     local out = dx * math.cos(thing.yaw) + dy * math.sin(thing.yaw)
     local aside = math.abs(dy * math.cos(thing.yaw) - dx * math.sin(thing.yaw))
-    if out > 0.04 and out < 0.34 and aside < 0.14 then sum = sum + 1 end
+    if out > 0.04 and out < 0.42 and aside < 0.14 then sum = sum + 1 end
   end
   return sum
 end

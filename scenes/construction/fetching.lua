@@ -27,7 +27,8 @@ function states.choose_block()
         local face = {yaw = block.yaw + side * math.pi / 2, block = block}
         face.x, face.y = assembly.ahead_of({x = block.x, y = block.y, yaw = face.yaw}, builder.block / 2)
         local x, y = assembly.ahead_of(face, builder.reach + assembly.run_up)
-        local cost = assembly.distance_to({x = x, y = y}) + assembly.hindrance(face, obstacles)
+        local cost = assembly.distance_to({x = x, y = y}) + assembly.hindrance(face, obstacles) +
+                     assembly.from_middle(block)  -- those that stand in the way of building first
         if not least or cost < least then least, job.target = cost, face end
       end
     end

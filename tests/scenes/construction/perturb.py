@@ -14,7 +14,7 @@ seed, and half, the same or twice the number of iterations. With --wide: robot a
 turned by up to 5 degrees, every block shifted by up to 1.5 cm and turned by up to 8 degrees, another seed.
 With --steps RULES: robots and blocks anywhere between 0.4 and 0.8 m from the structure's first block, which
 stays, all turned by any angle, and half, the same or twice the number of iterations; with --pyramid and
---robots N 0.15 m farther.
+--robots N between 0.48 and 0.95 m.
 """
 
 import argparse
@@ -116,9 +116,9 @@ def perturb_steps(rules):
         entities = list(arena.iter("prototype"))
         robots = [entity for entity in entities if entity.get("id").startswith("robot")]
         blocks = [entity for entity in entities if entity not in robots]
-        farther = 0.15 if len(blocks) > 8 else 0
-        places = scatter(draw, len(blocks) - 1, (0.4, 0.8 + farther), 0.25)
-        places += scatter(draw, len(robots), (0.4, 0.9 + farther), 0.3, places)
+        nearest, farther = (0.48, 0.15) if len(blocks) > 8 else (0.4, 0)
+        places = scatter(draw, len(blocks) - 1, (nearest, 0.8 + farther), 0.25)
+        places += scatter(draw, len(robots), (nearest, 0.9 + farther), 0.3, places)
         for entity, place in zip(blocks + robots, [(0, 0), *places]):
             entity.find("body").set("position", f"{place[0]:.6f},{place[1]:.6f},0")
             entity.find("body").set("orientation", f"{draw.uniform(0, 360):.4f},0,0")
