@@ -1,6 +1,5 @@
 // <director>, and <loop_functions> as one: programs that watch the world and act on it between ticks.
 
-#include <algorithm>
 #include <utility>
 
 #include "scene/draft.h"
@@ -23,11 +22,9 @@ void read_director(Draft& draft, Element& element, Director director) {
   if (!director.script.empty() && !director.command.empty()) {
     element.fault("has a script and a command; write one of them");
   }
+  // An entity's id, too: metrics are told by the id of who sets them.
+  take_id(element, draft.entity_ids, director.id, "director");
   auto& directors = draft.scene.directors;
-  const auto earlier = std::ranges::find(directors, director.id, &Director::id);
-  if (!director.id.empty() && earlier != directors.end()) {
-    refuse_id(element, "director", earlier->where);
-  }
   if (directors.size() == Director::most) {
     element.fault(fmt::format("is one too many; a scene has {} directors at most", Director::most));
   }

@@ -78,9 +78,13 @@ class Ctl(unittest.TestCase):
             moved = server.read(entity)["entities"][0]
             self.assertEqual([0.1, 0.2, 0.3], [round(v, 9) for v in moved["position"]])
             self.assertAlmostEqual(0.5**0.5, moved["orientation"][3], places=9)
+            with tempfile.NamedTemporaryFile() as empty:
+                spawned = server.ask("ctl", "spawn", empty.name, check=False)
+            self.assertEqual(1, spawned.returncode)
+            self.assertIn("BAD_VALUE", spawned.stderr)
             for words, reason in ((("move", "unknown", "0,0,0"), "UNKNOWN_ENTITY"),
                                   (("step", "0"), "BAD_VALUE"),
-                                  (("spawn", os.devnull), "BAD_VALUE"),
+                                  (("spawn", os.devnull), "not a regular file"),
                                   (("paus",), "did you mean 'pause'?")):
                 outcome = server.ask("ctl", *words, check=False)
                 self.assertEqual(1, outcome.returncode, words)

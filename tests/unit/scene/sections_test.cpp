@@ -97,6 +97,17 @@ TEST(Directors, AreReadWithWhatStartsThem) {
             std::string::npos);
 }
 
+TEST(Directors, HaveNoIdOfAnEntity) {
+  SceneText text;
+  text.rest = R"(<director id="p" command="./feed"/>)";
+  text.arena = R"(<arena size="2,2,1" center="0,0,0.5"><prototype id="p" movable="false"><links ref="l">)"
+               R"(<link id="l" geometry="box" size="1,1,1" mass="1"/></links><body/></prototype></arena>)";
+  const ReadResult result = text.read();
+  EXPECT_NE(all_problems(result).find("id=\"p\" of <prototype> is the id of an earlier entity"),
+            std::string::npos)
+      << all_problems(result);
+}
+
 TEST(Engines, DefaultsAndValues) {
   SceneText text;
   const ReadResult plain = text.read();
