@@ -5,7 +5,7 @@ import os
 import sys
 import time
 
-from harness import CONTROLLER_FAILED, FAULT, HERE, SceneTest, main
+from harness import BIN, CONTROLLER_FAILED, FAULT, HERE, SceneTest, main
 
 sys.path.insert(0, os.environ["ZIGGURAT_PYTHON_PACKAGE"])
 
@@ -26,6 +26,8 @@ SCENE = """<argos-configuration>
   <media><led id="leds" /></media>
 </argos-configuration>
 """
+EXAMPLES = HERE.parents[1] / "clients/python/examples"
+EXPERIMENTS = HERE.parents[1] / "scenes/experiments"
 EVERYTHING = ("poses", "links", "joints", "leds", "contacts")
 
 
@@ -390,16 +392,39 @@ class Directing(SceneTest):
         self.assertEqual(outcome.code, FAULT)
         self.assert_is_sentence(outcome, "the scene has directors, which cannot go on from a recorded state")
 
-    def test_the_judge_of_the_example_ends_the_stacking_scene(self):
-        examples = HERE.parents[1] / "clients/python/examples"
+    def run_example(self, scene, *arguments):
+        """The summary of a run that may start the Python examples."""
         self.environment["PYTHONPATH"] = os.environ["ZIGGURAT_PYTHON_PACKAGE"]
         self.environment["PATH"] = f"{os.path.dirname(sys.executable)}:{self.environment['PATH']}"
-        outcome = self.run_scene("--summary", self.folder / "summary.json", scene=examples / "judge.argos")
-        summary = json.loads((self.folder / "summary.json").read_text())
-        self.assertRegex(summary["result"], r"^block1 stands on block2, \d+\.\d mm aside$", outcome.err)
-        self.assertLess(summary["ticks"], 600)
-        self.assertLess(summary["metrics"]["judge/aside_mm"], 6)
-        self.assertLess(summary["metrics"]["judge/turned_deg"], 10)
+        self.run_scene("--summary", self.folder / "summary.json", *arguments, scene=scene)
+        return json.loads((self.folder / "summary.json").read_text())
+
+    def test_the_judges_of_the_examples_end_the_stacking_scene(self):
+        scene = EXAMPLES / "judge.argos"
+        lua = ("--set", "director/@command=", "--set", f"director/@script={EXPERIMENTS}/judge.lua")
+        in_python, in_lua, again = (self.run_example(scene, *arguments) for arguments in ((), lua, lua))
+        for summary in (in_python, in_lua):
+            self.assertRegex(summary["result"], r"^block1 stands on block2, \d+\.\d mm aside$")
+            self.assertLess(summary["ticks"], 600)
+            self.assertLess(summary["metrics"]["judge/aside_mm"], 6)
+            self.assertLess(summary["metrics"]["judge/turned_deg"], 10)
+        self.assertEqual(in_lua["hash"], again["hash"])
+        self.assertEqual((in_lua["result"], in_lua["hash"]), (in_python["result"], in_python["hash"]))
+        for name, value in in_python["metrics"].items():
+            self.assertAlmostEqual(in_lua["metrics"][name], value, places=3)
+
+    def test_food_in_python_and_cpp_is_collected_and_placed_anew(self):
+        text = (EXPERIMENTS / "foraging.argos").read_text()
+        text = text.replace("foraging_robot.lua", f"{EXPERIMENTS}/foraging_robot.lua")
+        for command in (f"{sys.executable} {EXAMPLES}/foraging.py", f"{BIN}/example_foraging"):
+            self.assertIn('script="foraging.lua"', text)
+            scene = self.write("foraging.argos", text.replace('script="foraging.lua"', f'command="{command}"'))
+            first, again, other = (self.run_example(scene, "--param", "goal=8", "--seed", seed) for seed in (3, 3, 4))
+            for summary in (first, other):
+                self.assertEqual((summary["ending"], summary["director"]), ("finished", "food"))
+                self.assertEqual(summary["metrics"]["food/collected"], 8, "more than the 6 of the beginning")
+            self.assertEqual(first["hash"], again["hash"], command)
+            self.assertNotEqual(first["hash"], other["hash"], command)
 
     def test_libraries_are_refused_with_what_to_do(self):
         self.write_scene('<loop_functions library="libfood.so" label="food" />')
