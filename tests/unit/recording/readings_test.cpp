@@ -104,6 +104,23 @@ TEST(Readings, HasALinePerRobotInSceneOrderWithNamesOfTheProto) {
   EXPECT_NE(second.find(R"("command":{"joint_targets":{"arm":-2})"), std::string::npos) << second;
 }
 
+TEST(Readings, HasALineOfADirectorThatSetMetrics) {
+  const auto path = scratch("jsonl");
+  const auto robots = layout();
+  Readings readings(path, robots);
+  const World world = joints_only(3, {0.5, 0.25, 0}, {1.5, -2});
+  readings.write(world.state, world.observations, world.commands,
+                 {{"r1", "blocks", 2}, {"judge", "gap", 0.5}, {"judge", "blocks", 4}});
+  readings.close();
+  std::istringstream lines(text_of(path));
+  std::vector<std::string> all;
+  for (std::string line; std::getline(lines, line);) all.push_back(line);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].find("metrics"), std::string::npos);
+  EXPECT_NE(all[1].find(R"("metrics":{"blocks":2})"), std::string::npos) << all[1];
+  EXPECT_EQ(all[2], R"({"tick":"3","time_s":0.3,"robot":"judge","metrics":{"blocks":4,"gap":0.5}})");
+}
+
 TEST(Readings, NamesEveryDevice) {
   const auto path = scratch("jsonl");
   auto robots = layout();
