@@ -1,8 +1,9 @@
 // Foraging with items that respawn: a director with the rule of scenes/experiments/foraging.lua.
 //   ziggurat serve scenes/experiments/foraging.argos --endpoint tcp://127.0.0.1:7400
-//   ziggurat-lua --connect tcp://127.0.0.1:7400                                              the robots
-//   ZIGGURAT_ENDPOINT=tcp://127.0.0.1:7400 ZIGGURAT_DIRECTOR=food example_foraging           the food
-// With command="example_foraging" in place of script="foraging.lua" in the scene, `ziggurat run` starts it.
+//   ziggurat-lua --connect tcp://127.0.0.1:7400                                       the robots
+//   ZIGGURAT_ENDPOINT=tcp://127.0.0.1:7400 ZIGGURAT_DIRECTOR=food example_foraging    the food
+// With command="example_foraging" in place of script="foraging.lua" in the scene, `ziggurat run`
+// starts it.
 
 #include <ziggurat/ziggurat.h>
 
