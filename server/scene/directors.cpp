@@ -51,9 +51,12 @@ void read_loop_functions(Draft& draft, Element& element) {
 }  // namespace
 
 void read_directors(Draft& draft, Element& root) {
+  bool has_unnamed = false;
   for (Element& element : root.children("director")) {
     Director director;
-    director.id = element.required("id", identifier);
+    const bool may_be_unnamed = element.has("id") || !std::exchange(has_unnamed, true);
+    director.id = may_be_unnamed ? element.optional("id", identifier, "director")
+                                 : element.required("id", identifier);
     read_director(draft, element, std::move(director));
   }
   for (Element& element : root.children("loop_functions")) read_loop_functions(draft, element);

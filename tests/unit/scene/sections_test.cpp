@@ -97,6 +97,14 @@ TEST(Directors, AreReadWithWhatStartsThem) {
             std::string::npos);
 }
 
+TEST(Directors, OneNeedsNoId) {
+  SceneText text;
+  text.rest = R"(<director script="judge.lua"/><director id="feeder" command="./feed"/>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(result.scene.directors.at(0).id, "director");
+}
+
 TEST(Directors, HaveNoIdOfAnEntity) {
   SceneText text;
   text.rest = R"(<director id="p" command="./feed"/>)";
