@@ -59,7 +59,7 @@ class Mistakes(unittest.TestCase):
 
     def test_cases_variants_and_lists_that_are_not_there(self):
         self.expect("no case matches --only nonsense", "server", "--only", "nonsense", "--", *TINY)
-        self.expect("no case asks for 'leas'; the variants are curve, lease", "server", "--variant", "leas=x", "--", *TINY)
+        self.expect("no case asks for 'leas'; the variants are curve, director, lease", "server", "--variant", "leas=x", "--", *TINY)
         self.expect("--variant 'lease': write NAME=COMMAND", "server", "--variant", "lease", "--", *TINY)
         self.expect("--known-failing nowhere: No such file", "server", "--known-failing", "nowhere", "--",
                     *TINY)
