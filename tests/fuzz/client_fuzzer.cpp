@@ -71,7 +71,7 @@ class Input final : public Transport {
 
 }  // namespace
 
-std::unique_ptr<Transport> make_transport(const Options&) { return std::make_unique<Input>(); }
+std::unique_ptr<Transport> make_transport(const SessionOptions&) { return std::make_unique<Input>(); }
 
 }  // namespace ziggurat
 

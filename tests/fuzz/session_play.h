@@ -26,7 +26,8 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t robots = 4;
 constexpr std::size_t seats = 5;  // peers at a time
-constexpr std::size_t most_sessions = 3;
+constexpr std::size_t most_controllers = 3, most_supervisors = 1;
+constexpr std::size_t most_sessions = most_controllers + most_supervisors;
 
 struct Input {
   const std::uint8_t* data;
@@ -55,7 +56,9 @@ struct Told {
 
 inline Config make_config(Input& input) {
   Config config;
-  config.max_sessions = most_sessions;
+  config.max_sessions = most_controllers;
+  config.max_supervisors = most_supervisors;
+  config.max_observers = config.max_directors = 0;
   config.max_faults = 3;
   config.rate = {20, 12};
   const std::uint8_t bits = input.byte();
