@@ -32,6 +32,18 @@ assembly.job = job
 
 function job.seconds() return job.since * builder.tick end
 
+-- Drives back for some seconds. Then: whether it may try again, which it may so often.
+function job.retreat(seconds, most)
+  if traffic.blocked(-1) and job.seconds() < 15 then
+    builder.stop()
+    return nil
+  end
+  builder.drive(-0.05, 0)
+  if job.seconds() <= seconds then return nil end
+  job.tries = job.tries + 1
+  return job.tries <= most
+end
+
 -- Where a free robot and one with a block begin.
 function assembly.decide() return builder.loaded and "choose_side" or "choose_block" end
 

@@ -94,13 +94,9 @@ end
 
 -- Back to where the run-up begins.
 function states.retreat()
-  if traffic.blocked(-1) and job.seconds() < 15 then return builder.stop() end
-  builder.drive(-0.05, 0)
-  if job.seconds() > 2.5 then
-    job.tries = job.tries + 1
-    if job.tries > 4 then return give_up_block(600) end
-    return "fetch"
-  end
+  local may_try = job.retreat(2.5, 4)
+  if may_try == false then return give_up_block(600) end
+  return may_try and "fetch" or nil
 end
 
 -- Whether the block below says that it has been placed.

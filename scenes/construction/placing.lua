@@ -128,13 +128,9 @@ function states.attach(faces)
 end
 
 function states.retreat_from_side()
-  if traffic.blocked(-1) and job.seconds() < 15 then return builder.stop() end
-  builder.drive(-0.05, 0)
-  if job.seconds() > 3.3 then
-    job.tries = job.tries + 1
-    if job.tries > 5 then return give_up_side() end
-    return "enter"
-  end
+  local may_try = job.retreat(3.3, 5)
+  if may_try == false then return give_up_side() end
+  return may_try and "enter" or nil
 end
 
 function states.place()

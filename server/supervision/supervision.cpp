@@ -169,7 +169,9 @@ Supervision::Reply Supervision::step(const network::Call& call) {
     return fail(call, wire::make_fault(ErrorCode::bad_value, "step.ticks",
                                        "A step has at least one tick."));
   }
-  if (!is_gathered_ && is_pause_asked_) return Reply::later;  // the world stands at tick 0, then
+  // It will stand: at tick 0, or when the tick in hand is complete.
+  const bool will_stand = !is_gathered_ || (steps_left_ == 0 && !server_.paused());
+  if (is_pause_asked_ && will_stand) return Reply::later;
   if (!server_.paused()) {
     return fail(call,
                 wire::make_fault(ErrorCode::out_of_state, {},

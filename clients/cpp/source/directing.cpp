@@ -11,7 +11,7 @@ namespace {
 
 // As the server allows, in one answer.
 constexpr int most_acts = 10'000;
-constexpr std::size_t most_act_bytes = std::size_t{3} << 20;  // of texts; the rest of 4 MiB is for numbers
+constexpr std::size_t most_act_bytes = std::size_t{2} << 20;  // of texts; the rest of 4 MiB is for numbers and the log
 constexpr int most_lines = 1000;
 constexpr std::size_t most_log_bytes = std::size_t{1} << 20;
 constexpr std::size_t longest_result = 1024;
@@ -106,7 +106,7 @@ void Directing::reset() {
 v1::DirectorAct& Directing::add_act(std::size_t bytes) {
   if (draft_.acts_size() == most_acts || act_bytes_ + bytes > most_act_bytes) {
     throw std::length_error("a director does at most " + std::to_string(most_acts) +
-                            " things at one tick, with texts of 3 MiB together");
+                            " things at one tick, with texts of 2 MiB together");
   }
   act_bytes_ += bytes;
   return *draft_.add_acts();

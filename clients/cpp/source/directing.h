@@ -38,6 +38,7 @@ class Directing final : public Part {
   void add_line(bool is_error, std::string_view text);
   void set_metric(std::string_view name, double value);
   void finish(std::string_view result);
+  bool wants_finish() const { return draft_.has_finish(); }
 
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   const World& world() const { return world_; }

@@ -122,6 +122,10 @@ void SessionCore::take(const v1::Error& error) {
     connection.lose("the server does not know the connection");
   }
   is_over = is_fatal;
+  if (!is_fatal && has_begun) {  // the answer was discarded as a whole: the tick still waits for one
+    owes = true;
+    part.repeat();
+  }
   throw to_exception(error);
 }
 

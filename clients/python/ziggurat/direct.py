@@ -70,6 +70,8 @@ class Entity:
 
     def _values(self, group: str, field: str, kind: str, count: int, width: int = 1) -> Sequence[Any]:
         self._world._check_group(group)
+        if self._world.entities.get(self.id) is not self:
+            raise ValueError(f"entity {self.id!r} is not in the world any more; look it up again")
         begin = self._begin[kind] * width
         return getattr(self._world.state, field)[begin:begin + count * width]
 

@@ -106,17 +106,8 @@ class Session:
             return  # it was on its way (M1)
         if self.state is State.DRAINING:
             yield Fault("L5", f"a Command for tick {command.tick} after the End")
-        elif command.HasField("epoch") and self.epoch is not None and command.epoch != self.epoch:
-            yield Fault("S13", f"a Command of epoch {command.epoch}; the last Observation is of {self.epoch}",
-                        "FUTURE_TICK" if command.epoch > self.epoch else "STALE_TICK", "epoch")
-        elif command.tick > self.tick:
-            yield Fault("S9", f"a Command for tick {command.tick}; the last Observation is of {self.tick}",
-                        "FUTURE_TICK", "tick")
-        elif command.tick < self.tick and command.tick not in self.missed:
-            yield Fault("S9", f"a Command for tick {command.tick}; the last Observation is of {self.tick}",
-                        "STALE_TICK", "tick")
-        elif command.tick == self.tick and not self.owes and command.tick not in self.missed:
-            yield Fault("S9", f"a second Command for tick {command.tick}", "DUPLICATE_TICK", "tick")
+        else:
+            yield from self._tick_faults(command, "Command", "Observation", "S9")
         if self.epoch is not None and not command.HasField("epoch"):
             yield Fault("S13", "a Command without epoch, though its Observation has one", should=True)
         yield from command_faults(self.welcome.robots, self.left, command)
@@ -137,18 +128,22 @@ class Session:
             return
         if self.state is State.DRAINING:
             return
-        if direction.HasField("epoch") and direction.epoch != self.epoch:
-            yield Fault("S13", f"a Direction of epoch {direction.epoch}; the last WorldState is of {self.epoch}",
-                        "FUTURE_TICK" if direction.epoch > self.epoch else "STALE_TICK", "epoch")
-        elif direction.tick > self.tick:
-            yield Fault("R2", f"a Direction for tick {direction.tick}; the last WorldState is of {self.tick}",
-                        "FUTURE_TICK", "tick")
-        elif direction.tick < self.tick and direction.tick not in self.missed:
-            yield Fault("R2", f"a Direction for tick {direction.tick}; the last WorldState is of {self.tick}",
-                        "STALE_TICK", "tick")
-        elif direction.tick == self.tick and not self.owes and direction.tick not in self.missed:
-            yield Fault("R2", f"a second Direction for tick {direction.tick}", "DUPLICATE_TICK", "tick")
+        yield from self._tick_faults(direction, "Direction", "WorldState", "R2")
         yield from direction_faults(direction)
+
+    def _tick_faults(self, answer, name: str, told: str, rule: str) -> Iterator[Fault]:
+        """What is wrong with the epoch and the tick of an answer to what was told."""
+        if answer.HasField("epoch") and self.epoch is not None and answer.epoch != self.epoch:
+            yield Fault("S13", f"a {name} of epoch {answer.epoch}; the last {told} is of {self.epoch}",
+                        "FUTURE_TICK" if answer.epoch > self.epoch else "STALE_TICK", "epoch")
+        elif answer.tick > self.tick:
+            yield Fault(rule, f"a {name} for tick {answer.tick}; the last {told} is of {self.tick}",
+                        "FUTURE_TICK", "tick")
+        elif answer.tick < self.tick and answer.tick not in self.missed:
+            yield Fault(rule, f"a {name} for tick {answer.tick}; the last {told} is of {self.tick}",
+                        "STALE_TICK", "tick")
+        elif answer.tick == self.tick and not self.owes and answer.tick not in self.missed:
+            yield Fault(rule, f"a second {name} for tick {answer.tick}", "DUPLICATE_TICK", "tick")
 
     def _judge_leave(self, leave: protocol.Leave) -> Iterator[Fault]:
         if self.state in (State.NEW, State.CLOSED) and not self.is_lost:

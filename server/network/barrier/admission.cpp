@@ -100,7 +100,8 @@ Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access&
 }
 
 /// A new session of a director.
-Granted start_directing(Barrier& barrier, const wire::Hello& hello) {
+Granted start_directing(Barrier& barrier, const wire::Hello& hello, const Access& access) {
+  if (auto refusal = check_takeover(barrier, hello, access)) return std::move(*refusal);
   auto begun = begin_directing(barrier, hello, label_of(hello));
   if (auto* refusal = std::get_if<wire::Refusal>(&begun)) return std::move(*refusal);
   Session& session = *std::get<Session*>(begun);
@@ -114,7 +115,7 @@ Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) 
       hello.role == wire::Role::controller || hello.role == wire::Role::director;
   if (!has_ticks) return begin_without_robots(barrier, hello);
   if (!hello.session_token.empty()) return resume_session(barrier, hello, access);
-  if (hello.role == wire::Role::director) return start_directing(barrier, hello);
+  if (hello.role == wire::Role::director) return start_directing(barrier, hello, access);
   return begin_with_robots(barrier, hello, access);
 }
 

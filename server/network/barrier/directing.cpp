@@ -260,7 +260,11 @@ bool show_world(Barrier& barrier, Session& session) {
   update_view(session.view, truth);
   if (has_news(session.view, truth.state)) {
     world_layout(barrier.outbox, *barrier.run, truth, session.view);
-    if (send(barrier, session) == Delivery::unreachable) return false;
+    const Delivery told = send(barrier, session);
+    if (told != Delivery::sent) {  // all of it is told with the next tick
+      session.view = {std::move(session.view.subscription)};
+      return told == Delivery::congested && session.turn.patience;
+    }
   }
   if (!world_state(session.observation, truth, session.view, limit, barrier.epoch)) {
     auto fault = make_fault(ErrorCode::too_large, {},

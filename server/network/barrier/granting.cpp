@@ -165,6 +165,14 @@ std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::He
   return std::nullopt;
 }
 
+std::optional<wire::Refusal> check_takeover(const Barrier& barrier, const wire::Hello& hello,
+                                            const Access& access) {
+  const Scope* scope = scope_of(barrier, access);
+  if (!hello.takeover || scope == nullptr || scope->may_take_over) return std::nullopt;
+  return make_refusal(ErrorCode::forbidden, "takeover",
+                      "The key of this connection may take nothing over from others.");
+}
+
 std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barrier,
                                                                    const wire::Hello& hello,
                                                                    const Access& access) {
@@ -175,10 +183,7 @@ std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barr
   }
   auto allowed = allowed_robots(barrier, std::get<std::vector<Selected>>(selection), scope);
   if (auto* refusal = std::get_if<wire::Refusal>(&allowed)) return std::move(*refusal);
-  if (hello.takeover && scope != nullptr && !scope->may_take_over) {
-    return make_refusal(ErrorCode::forbidden, "takeover",
-                        "The key of this connection may not take robots over.");
-  }
+  if (auto refusal = check_takeover(barrier, hello, access)) return std::move(*refusal);
   const auto& robots = std::get<std::vector<std::size_t>>(allowed);
   if (auto refusal = check_policy(barrier, hello, robots)) return std::move(*refusal);
   for (const std::size_t robot : robots) {

@@ -25,6 +25,9 @@ std::optional<wire::Refusal> check_hello(const Barrier& barrier, const wire::Hel
                                          const Roles& roles);
 /// Because all places of this role are taken.
 std::optional<wire::Refusal> check_places(const Barrier& barrier, wire::Role role);
+/// Because its key may take nothing over, and it asks for that.
+std::optional<wire::Refusal> check_takeover(const Barrier& barrier, const wire::Hello& hello,
+                                            const Access& access);
 /// Because of the deadline policy that it asks for.
 /// @param robots  that it is to hold for
 std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::Hello& hello,

@@ -63,6 +63,7 @@ void miss(Barrier& barrier, std::size_t robot) {
 /// @returns  it has left the barrier for good
 bool miss_director(Barrier& barrier, std::size_t director) {
   Directors& directors = barrier.directors;
+  directors.answers[director].reset();  // also of a session before, which answered and was lost
   const std::string& id = directors.all[director].id;
   const std::string policy = to_text(directors.deadlines.policy(director));
   switch (directors.deadlines.miss(director, tick_of(barrier))) {

@@ -188,13 +188,17 @@ def process_of(folder, index):
 def run_and_kill(command, folder, draw, robots, kills):
     """Runs a command; ends so many robots' processes with SIGKILL, each when that robot logs a random line.
     robots: their places in the scene by id."""
-    plans = {(draw.choice(sorted(robots)), draw.randint(4, 30)) for _ in range(kills)}
+    plans = set()
+    while len(plans) < kills:
+        plans.add((draw.choice(sorted(robots)), draw.randint(4, 30)))
     with open(pathlib.Path(folder) / "stderr", "w+") as errors, subprocess.Popen(
             [str(word) for word in command], stdout=subprocess.PIPE, stderr=errors, text=True,
             env=dict(os.environ, XDG_RUNTIME_DIR=folder)) as process:
         lines, counts, victims = [], {}, []
         for line in process.stdout:
             lines.append(line)
+            if "] " not in line:
+                continue
             robot = line.split("]")[0].split()[-1]
             counts[robot] = counts.get(robot, 0) + 1
             victim = process_of(folder, robots[robot]) if (robot, counts[robot]) in plans else None
@@ -234,6 +238,8 @@ def run(number, options=(), change=perturb, solver=None, keep=None, kills=0):
             changes += f", finished at {verdict.finished:.0f} s, turned {math.degrees(verdict.turn):.2f} deg"
         else:
             verdict = (judge.judge_stairs if scene == STAIRCASE else judge.judge)(scene_file, trace, readings)
+        if len(outcome.victims) < kills:
+            verdict.faults.append(f"only {len(outcome.victims)} of {kills} robots were killed")
         log = outcome.stdout.splitlines()
         fault = outcome.returncode == 0 and last_words_fault(log, robots)
         if fault:

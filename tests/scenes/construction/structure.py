@@ -1,6 +1,7 @@
 """Judges what several robots built, by the trace alone: every block in its place relative to the structure's
 own frame, at rest, and nothing deep or fast on the way."""
 
+import dataclasses
 import math
 
 import geometry
@@ -16,9 +17,10 @@ STRUCTURES = {
 }
 
 
+@dataclasses.dataclass
 class Limits(judge.Limits):
-    aside = 0.004             # of a block from its place, horizontally [m]
-    turn = math.radians(3)    # about z from the structure's axes
+    aside: float = 0.004             # of a block from its place, horizontally [m]
+    turn: float = math.radians(3)    # about z from the structure's axes
 
 
 def yaw(pose):
@@ -104,7 +106,7 @@ def judge_robots(ticks, scene, limits, verdict):
                             f"{1000 * depth:.2f} mm deep: {one} and {other} at {time:g} s")
 
 
-def finished_at(ticks, heights):
+def finished_at(ticks):
     """The time from which on the blocks are where they are at the end, within 1 mm [s]."""
     last = ticks[-1][1]
     blocks = [key for key in last if key[0].startswith("block") and key[1] == ""]
@@ -125,5 +127,5 @@ def judge_structure(scene_file, trace_file, table, limits=Limits()):
     judge.judge_rest(ticks, scene, limits, verdict)
     judge.judge_motion(ticks, scene, limits, verdict)
     judge_robots(ticks, scene, limits, verdict)
-    verdict.finished = finished_at(ticks, STRUCTURES[table])
+    verdict.finished = finished_at(ticks)
     return verdict

@@ -76,6 +76,12 @@ class WrongStructures(unittest.TestCase):
         poses[3] = moved(poses[3], x=0.008)
         self.assertRegex(faults_of(poses, "rules_cross"), r"^the block at .* is \d\.\d mm off$")
 
+    def test_a_block_six_millimetres_off(self):
+        self.assertEqual(structure.Limits().aside, 0.004)
+        poses = built("rules_cross")
+        poses[3] = moved(poses[3], x=0.006)  # 5 mm after the fit to all blocks
+        self.assertRegex(faults_of(poses, "rules_cross"), r"^the block at .* is \d\.\d mm off$")
+
     def test_a_turned_block(self):
         poses = built("rules_stairs", turn=0)
         poses[4] = block(*poses[4].position[:2], round(poses[4].position[2] / 0.055), turn=86.5)
@@ -152,7 +158,7 @@ class Building(unittest.TestCase):
         self.assert_built(0, "rules_stairs")
 
     def test_robots_that_are_killed_and_started_again(self):
-        self.assert_built(2, "rules_stairs", kills=2)
+        self.assert_built(4, "rules_cross", kills=2)
 
     def test_a_run_that_ends_too_early(self):
         verdict, _, _ = perturb.run(0, ["--duration", "60"], perturb.perturb_steps("rules_cross"))

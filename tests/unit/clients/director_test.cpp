@@ -91,20 +91,7 @@ TEST(Director, IsToldOfAllGroups) {
     EXPECT_EQ(self.receive().hello().subscription().groups_size(), 8);
     self.send(judge());
     self.send(arm_and_box());
-    auto message = state(0, 2);
-    v1::WorldState& all = *message.mutable_world_state();
-    for (int i = 0; i < 13 * 3; ++i) all.add_links(i);
-    all.add_joints(0.5);
-    all.add_joints(-2);
-    all.add_led_colors(0xff0000);
-    all.add_led_colors(0x0000ff);
-    for (const int link : {1, 2, 2, -1}) all.add_contact_links(link);
-    for (int i = 0; i < 18; ++i) all.add_contacts(i);
-    v1::ReceivedMessage& radio = *all.add_radio_messages();
-    radio.set_radio(0);
-    radio.set_sender(-2);
-    radio.set_payload("hi");
-    self.send(message);
+    self.send(full_state(0, -2));
     self.receive();
   });
   DirectorOptions options = options_of(server);
@@ -132,6 +119,45 @@ TEST(Director, IsToldOfAllGroups) {
   EXPECT_EQ(director.radio_messages()[0].receiver, &arm);
   EXPECT_EQ(director.radio_messages()[0].sender, nullptr);
   EXPECT_EQ(director.radio_messages()[0].payload[1], 'i');
+}
+
+TEST(Director, AnswersATickAgainWhoseAnswerWasWrong) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome(judge());
+    self.send(arm_and_box());
+    self.send(state(0, 2));
+    EXPECT_EQ(self.receive().direction().acts_size(), 1);
+    v1::ServerMessage message;
+    message.mutable_error()->set_code(v1::Error::UNKNOWN_ENTITY);
+    message.mutable_error()->set_severity(v1::Error::DISCARD);
+    self.send(message);
+    const auto again = self.receive().direction();
+    EXPECT_EQ(again.tick(), 0U);
+    EXPECT_EQ(again.acts(0).remove().entity(), "box");
+    self.send(state(1, 2));
+    self.receive();
+  });
+  Director director(options_of(server));
+  ASSERT_TRUE(director.next());
+  director.remove("bocks");
+  EXPECT_THROW(director.next(), ProtocolError);
+  director.remove("box");
+  ASSERT_TRUE(director.next());
+  EXPECT_EQ(director.tick(), 1U);
+}
+
+TEST(Director, MayLeaveAfterItHasFinishedTheRun) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome(judge());
+    self.send(arm_and_box());
+    self.send(state(0, 2));
+    EXPECT_EQ(self.receive().direction().finish().result(), "stands");
+    EXPECT_EQ(self.receive().leave().reason(), v1::Leave::DONE);
+  });
+  Director director(options_of(server));
+  ASSERT_TRUE(director.next());
+  director.finish("stands");
+  director.leave();
 }
 
 TEST(Director, EntitiesComeAndGo) {

@@ -54,6 +54,24 @@ inline v1::ServerMessage state(std::uint64_t tick, int entities) {
   return message;
 }
 
+/// All groups of such a tick: each number is its place in its array.
+/// @param sender  of the radio message
+inline v1::ServerMessage full_state(std::uint64_t tick, int sender) {
+  auto message = state(tick, 2);
+  v1::WorldState& all = *message.mutable_world_state();
+  for (int i = 0; i < 13 * 3; ++i) all.add_links(i);
+  all.add_joints(0.5);
+  all.add_joints(-2);
+  all.add_led_colors(0xff0000);
+  all.add_led_colors(0x0000ff);
+  for (const int link : {1, 2, 2, -1}) all.add_contact_links(link);
+  for (int i = 0; i < 18; ++i) all.add_contacts(i);
+  v1::ReceivedMessage& radio = *all.add_radio_messages();
+  radio.set_sender(sender);
+  radio.set_payload("hi");
+  return message;
+}
+
 inline DirectorOptions options_of(const FakeServer& server) {
   DirectorOptions options;
   options.endpoint = server.endpoint;

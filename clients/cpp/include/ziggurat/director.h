@@ -35,10 +35,11 @@ struct DirectorOptions : SessionOptions {
   static DirectorOptions from_environment();
 };
 
-/// Directs a world in lock-step: the world waits for it, as for a controller. What it does takes effect between
-/// this tick and the next, in the order of the calls. The server checks it whole: if anything is wrong with it, as an
-/// entity that is not there, nothing of it is done and next() throws ProtocolError. Leaves the run when destroyed: as failed if an exception is the cause, otherwise as
-/// done. Not thread-safe.
+/// Directs a world in lock-step: the world waits for it, as for a controller. What it does takes effect
+/// between this tick and the next, in the order of the calls. The server checks it whole: if anything is
+/// wrong with it, as an entity that is not there, nothing of it is done and next() throws ProtocolError.
+/// Leaves the run when destroyed: as failed if an exception is the cause, otherwise as done. Not
+/// thread-safe.
 class Director {
  public:
   /// Connects and waits for the server's welcome.
@@ -87,7 +88,7 @@ class Director {
   std::span<const Contact> contacts() const noexcept;
   std::span<const RadioMessage> radio_messages() const noexcept;
 
-  // --- What is done before the next tick: at most 10 000 acts of 4 MiB together, else std::length_error.
+  // --- What is done before the next tick: at most 10 000 acts, with texts of 2 MiB together, else std::length_error.
   // --- Numbers that are not finite are std::invalid_argument.
 
   /// The entity is at rest at the pose, its joints in their initial positions; no orientation = the present one.

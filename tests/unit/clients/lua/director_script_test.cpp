@@ -32,22 +32,6 @@ struct Directed {
   }
 };
 
-v1::ServerMessage full_state(std::uint64_t tick) {
-  auto message = state(tick, 2);
-  v1::WorldState& all = *message.mutable_world_state();
-  for (int i = 0; i < 13 * 3; ++i) all.add_links(i);
-  all.add_joints(0.5);
-  all.add_joints(-2);
-  all.add_led_colors(0xff0000);
-  all.add_led_colors(0x0000ff);
-  for (const int link : {1, 2, 2, -1}) all.add_contact_links(link);
-  for (int i = 0; i < 18; ++i) all.add_contacts(i);
-  v1::ReceivedMessage& radio = *all.add_radio_messages();
-  radio.set_sender(0);
-  radio.set_payload("hi");
-  return message;
-}
-
 /// Runs a script for some ticks.
 Directed run(const std::string& script, std::uint64_t ticks = 1,
              const std::function<void(FakeServer&, std::uint64_t)>& before_tick = {}) {
@@ -65,7 +49,7 @@ Directed run(const std::string& script, std::uint64_t ticks = 1,
       self.send(arm_and_box());
       for (std::uint64_t tick = 0; tick <= ticks; ++tick) {
         if (before_tick) before_tick(self, tick);
-        self.send(full_state(tick));
+        self.send(full_state(tick, 0));
         const auto answer = self.receive();
         if (answer.has_leave()) {
           directed.leave = answer.leave();
