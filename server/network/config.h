@@ -40,8 +40,10 @@ struct Config {
     scene::DeadlinePolicy policy;
     bool is_fixed = false;  ///< no Hello may ask for another
   };
-  std::vector<Deadline> deadlines;    ///< per controller of the scene; missing: wait
-  std::vector<Injection> injections;  ///< per controller of the scene; missing: none
+  std::vector<Deadline> deadlines;    ///< of the scene's controllers, then of its directors; missing: as the
+                                      ///< scene says, or to wait
+  Deadline deadline_of_others;        ///< of directors that the scene does not name
+  std::vector<Injection> injections;  ///< of the scene's controllers, then of its directors; missing: none
 };
 
 }  // namespace ziggurat::network

@@ -54,16 +54,26 @@ DisturbedLink::Line* DisturbedLink::find(const std::string& connection) {
   return found == lines_.end() ? nullptr : &found->second;
 }
 
-/// A session begins: the line has a path for each of its controllers that are disturbed.
-void DisturbedLink::begin(const std::string& connection, const v1::Welcome& welcome) {
+/// One for each controller, and for the director, that the session has and that is disturbed.
+std::vector<DisturbedLink::Path> DisturbedLink::paths_of(const v1::Welcome& welcome) const {
   std::vector<Path> paths;
-  for (const v1::RobotDescription& robot : welcome.robots()) {
-    const auto target = std::ranges::find(targets_, robot.controller(), &Target::controller);
-    if (target == targets_.end() || !target->injection.any()) continue;
+  const auto add = [&](const std::string& id, bool is_director, const std::string& name) {
+    const auto target = std::ranges::find_if(targets_, [&](const Target& each) {
+      return each.is_director == is_director && each.id == id;
+    });
+    if (target == targets_.end() || !target->injection.any()) return;
     const auto index = static_cast<std::size_t>(target - targets_.begin());
-    if (std::ranges::find(paths, index, &Path::target) != paths.end()) continue;
-    paths.push_back({index, robot.controller() + "/" + robot.id()});
+    if (std::ranges::find(paths, index, &Path::target) == paths.end()) paths.push_back({index, name});
+  };
+  for (const v1::RobotDescription& robot : welcome.robots()) {
+    add(robot.controller(), false, robot.controller() + "/" + robot.id());
   }
+  if (welcome.has_director()) add(welcome.director().id(), true, welcome.director().id());
+  return paths;
+}
+
+void DisturbedLink::begin(const std::string& connection, const v1::Welcome& welcome) {
+  std::vector<Path> paths = paths_of(welcome);
   if (paths.empty()) {
     lines_.erase(connection);
     return;
@@ -106,6 +116,8 @@ Delivery DisturbedLink::send(const std::string& connection, const wire::Outbox& 
   Effect effect;
   if (message.has_observation()) {
     effect = draw(*line, Direction::observations, message.observation().tick());
+  } else if (message.has_world_state()) {
+    effect = draw(*line, Direction::observations, message.world_state().tick());
   }
   if (effect.is_lost) return Delivery::sent;
   const Delivery delivery = pass(connection, *line, bytes_of(out), now + effect.delay, now);
@@ -141,7 +153,8 @@ bool DisturbedLink::arrives(const Received& received, Time now) {
   if (line == nullptr) return true;
   const Kind kind = received.is_single_frame ? inbox_.parse(received.bytes) : Kind::malformed;
   Effect effect;
-  if (kind == Kind::command) effect = draw(*line, Direction::commands, inbox_.command_tick());
+  const bool is_answer = kind == Kind::command || kind == Kind::direction;
+  if (is_answer) effect = draw(*line, Direction::commands, inbox_.command_tick());
   if (effect.is_lost) return false;
   const bool is_last = kind == Kind::leave && inbox_.leave().robots.empty();
   if (is_last) line->paths.clear();

@@ -29,10 +29,11 @@ class DisturbedLink {
   using SendBytes = std::function<Delivery(const std::string& connection, std::string_view bytes)>;
 
   struct Target {
-    std::string controller;  ///< id in the scene
+    std::string id;  ///< in the scene: of a controller or director
     Injection injection;
+    bool is_director = false;
   };
-  /// @param targets     all controllers of the scene
+  /// @param targets     all controllers of the scene, then its directors
   /// @param most_bytes  that are held back of one client's messages; more arrive early
   DisturbedLink(std::vector<Target> targets, std::uint64_t seed, std::size_t most_bytes,
                 SendBytes send);
@@ -83,6 +84,7 @@ class DisturbedLink {
   };
 
   Line* find(const std::string& connection);
+  std::vector<Path> paths_of(const v1::Welcome& welcome) const;
   void begin(const std::string& connection, const v1::Welcome& welcome);
   Effect draw(const Line& line, Direction direction, std::uint64_t tick);
   Delivery pass(const std::string& connection, Line& line, std::string bytes, Time arrival,

@@ -45,14 +45,13 @@ struct DirectorStatus {
   bool waits = true;      ///< by its policy the world waits for it without end
   bool is_awaited = false;  ///< by the tick
   std::string client;     ///< name and version of the one that has it, or may resume it
-  bool can_restore = true;      ///< that client can go back to a snapshot
-  bool wants_contacts = false;  ///< it subscribed to them
+  bool can_restore = true;  ///< that client can go back to a snapshot
 };
 
-/// What a director wants done between the tick in hand and the next.
+/// What a director wants done between the tick in hand and the next. Seen, not owned.
 struct Directed {
-  std::string director;  ///< id
-  wire::Direction direction;
+  const std::string& director;  ///< id
+  const wire::Direction& direction;
 };
 
 /// How well controllers answered.

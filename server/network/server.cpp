@@ -28,10 +28,12 @@ constexpr int messages_at_once = 1000;
 
 std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::Run& run) {
   std::vector<DisturbedLink::Target> targets;
-  for (std::size_t c = 0; c < run.controllers.size(); ++c) {
-    const bool is_named = c < config.injections.size();
-    targets.push_back({run.controllers[c].id, is_named ? config.injections[c] : Injection{}});
-  }
+  const auto add = [&](const std::string& id, bool is_director) {
+    const bool is_given = targets.size() < config.injections.size();
+    targets.push_back({id, is_given ? config.injections[targets.size()] : Injection{}, is_director});
+  };
+  for (const scene::Controller& controller : run.controllers) add(controller.id, false);
+  for (const scene::Director& director : run.directors) add(director.id, true);
   return targets;
 }
 
@@ -173,7 +175,7 @@ void Server::open(const wire::Run& run, const Config& config) {
                        });
   }
   state.barrier.now = Clock::now();
-  network::open(state.barrier, run, config.deadlines);
+  network::open(state.barrier, run, config.deadlines, config.deadline_of_others);
   state.is_opened = true;
 }
 
@@ -287,8 +289,15 @@ void DirectorsDesk::check_by(
   state_.barrier.directors.check = std::move(check);
 }
 
-std::vector<Directed> DirectorsDesk::directions() const {
+const std::vector<Directed>& DirectorsDesk::directions() const {
   return network::directions(state_.barrier);
+}
+
+bool DirectorsDesk::wants_contacts() const { return network::wants_contacts(state_.barrier); }
+
+bool DirectorsDesk::has(const std::string& id) const {
+  return std::ranges::find(state_.barrier.directors.all, id, &scene::Director::id) !=
+         state_.barrier.directors.all.end();
 }
 
 void DirectorsDesk::warn(const std::string& director, wire::Fault fault) {

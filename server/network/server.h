@@ -166,8 +166,10 @@ class DirectorsDesk {
   /// Told of each Direction that arrives, before it is taken: what is wrong with it in the present world.
   void check_by(std::function<std::optional<wire::Fault>(const wire::Direction&)> check);
   /// What directors want done between the published tick, which is complete, and the next: in the order of
-  /// their ids.
-  std::vector<Directed> directions() const;
+  /// their ids. Valid until the server waits again.
+  const std::vector<Directed>& directions() const;
+  bool wants_contacts() const;             ///< a director subscribed to them
+  bool has(const std::string& id) const;  ///< a director of that id is there, or was
   /// Tells a director, if it is connected, that one of its acts was not done.
   void warn(const std::string& director, wire::Fault fault);
   std::vector<DirectorStatus> status() const;

@@ -61,16 +61,20 @@ DeadlineOption to_deadline(const std::string& value) {
   return option;
 }
 
-std::vector<network::Config::Deadline> deadlines_of(const std::vector<DeadlineOption>& options,
-                                                    const scene::Scene& scene) {
-  std::vector<network::Config::Deadline> deadlines;
-  for (const auto& controller : scene.controllers) {
-    deadlines.push_back({controller.deadline.value_or(scene::DeadlinePolicy{}), false});
+DeadlinesOfRun deadlines_of(const std::vector<DeadlineOption>& options, const scene::Scene& scene) {
+  DeadlinesOfRun deadlines;
+  const auto add = [&](const auto& from) {
+    deadlines.all.push_back({from.deadline.value_or(scene::DeadlinePolicy{}), false});
+  };
+  std::ranges::for_each(scene.controllers, add);
+  std::ranges::for_each(scene.directors, add);
+  apply_by_awaited("--deadline", options, scene,
+                   [&](const DeadlineOption& option, std::size_t i) {
+                     deadlines.all[i] = {option.policy, true};
+                   });
+  for (const DeadlineOption& option : options) {
+    if (option.controller.empty()) deadlines.of_others = {option.policy, true};
   }
-  apply_by_controller("--deadline", options, scene,
-                      [&](const DeadlineOption& option, std::size_t controller) {
-                        deadlines[controller] = {option.policy, true};
-                      });
   return deadlines;
 }
 

@@ -11,17 +11,21 @@
 namespace ziggurat::run {
 
 struct DeadlineOption {
-  std::string controller;  ///< id in the scene; empty: all
+  std::string controller;  ///< id in the scene, or of a director; empty: all
   scene::DeadlinePolicy policy;
 };
 
 /// @throws text::UsageError
 DeadlineOption to_deadline(const std::string& value);
 
-/// For each controller of the scene. Later options win over earlier ones, those that name a
-/// controller over those for all, and all of them over the scene.
-/// @throws text::UsageError if the scene has no such controller
-std::vector<network::Config::Deadline> deadlines_of(const std::vector<DeadlineOption>& options,
-                                                    const scene::Scene& scene);
+struct DeadlinesOfRun {
+  std::vector<network::Config::Deadline> all;  ///< of the scene's controllers, then of its directors
+  network::Config::Deadline of_others;         ///< of directors that the scene does not name
+};
+
+/// Later options win over earlier ones, those that name a controller or director over those for all, and all
+/// of them over the scene.
+/// @throws text::UsageError if the scene has none of that name
+DeadlinesOfRun deadlines_of(const std::vector<DeadlineOption>& options, const scene::Scene& scene);
 
 }  // namespace ziggurat::run

@@ -132,11 +132,10 @@ InjectOption to_injection(const std::string& value) {
 
 std::vector<network::Injection> injections_of(const std::vector<InjectOption>& options,
                                               const scene::Scene& scene) {
-  std::vector<network::Injection> injections(scene.controllers.size());
-  apply_by_controller("--inject", options, scene,
-                      [&](const InjectOption& option, std::size_t controller) {
-                        inject(option, injections[controller]);
-                      });
+  std::vector<network::Injection> injections(scene.controllers.size() + scene.directors.size());
+  apply_by_awaited("--inject", options, scene, [&](const InjectOption& option, std::size_t i) {
+    inject(option, injections[i]);
+  });
   return injections;
 }
 
@@ -146,9 +145,10 @@ void check_losses(const std::vector<network::Injection>& injections, const scene
     const bool loses = injections[c].observations.loss > 0 || injections[c].commands.loss > 0;
     if (!loses || deadlines[c].policy.action != scene::DeadlineAction::wait) continue;
     throw text::UsageError(
-        fmt::format("--inject loses messages of controller '{0}', for which the world would "
-                    "wait forever; add --hil, or --deadline '{0}=hold:50'",
-                    scene.controllers[c].id));
+        fmt::format("--inject loses messages of {0} '{1}', for which the world would "
+                    "wait forever; add --hil, or --deadline '{1}=hold:50'",
+                    c < scene.controllers.size() ? "controller" : "director",
+                    ids_of_awaited(scene)[c]));
   }
 }
 

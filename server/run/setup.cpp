@@ -22,16 +22,20 @@ namespace ziggurat::run {
 namespace {
 
 /// Hardware in the loop does not wait: a controller without a policy of its own holds its last
-/// command after nine tenths of a tick.
-void hold_late_controllers(const Options& options, const scene::Scene& scene,
-                           std::vector<network::Config::Deadline>& deadlines) {
+/// command after nine tenths of a tick, and a director without one has no acts in that tick.
+void hold_late(const Options& options, const scene::Scene& scene, DeadlinesOfRun& deadlines) {
   const double factor = options.real_time.value_or(1);
   const double tick_ms = 1000.0 / scene.experiment.ticks_per_second / factor;
   const auto ms = static_cast<std::uint32_t>(std::max(1.0, std::floor(0.9 * tick_ms)));
-  for (std::size_t c = 0; c < deadlines.size(); ++c) {
-    if (deadlines[c].is_fixed || scene.controllers[c].deadline) continue;
-    deadlines[c].policy = {scene::DeadlineAction::hold, ms, 0};
+  const auto hold = [&](network::Config::Deadline& deadline, bool has_own) {
+    if (!deadline.is_fixed && !has_own) deadline.policy = {scene::DeadlineAction::hold, ms, 0};
+  };
+  const std::size_t controllers = scene.controllers.size();
+  for (std::size_t i = 0; i < deadlines.all.size(); ++i) {
+    hold(deadlines.all[i], i < controllers ? scene.controllers[i].deadline.has_value()
+                                           : scene.directors[i - controllers].deadline.has_value());
   }
+  hold(deadlines.of_others, false);
 }
 
 }  // namespace
@@ -67,8 +71,10 @@ network::Config network_config(const Options& options, bool is_serve, LocalEndpo
 }
 
 void add_controllers(const Options& options, const scene::Scene& scene, network::Config& config) {
-  config.deadlines = deadlines_of(options.deadlines, scene);
-  if (options.hil) hold_late_controllers(options, scene, config.deadlines);
+  auto deadlines = deadlines_of(options.deadlines, scene);
+  if (options.hil) hold_late(options, scene, deadlines);
+  config.deadlines = std::move(deadlines.all);
+  config.deadline_of_others = deadlines.of_others;
   config.injections = injections_of(options.injections, scene);
   check_losses(config.injections, scene, config.deadlines);
 }

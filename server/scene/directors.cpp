@@ -9,7 +9,7 @@ namespace {
 
 void read_director(Draft& draft, Element& element, Director director) {
   director.where = element.where();
-  director.script = element.optional("script", path, "");
+  director.script = element.optional("script", text, "");  // empty: it comes from outside
   director.command = element.optional("command", text, "");
   director.deadline = read_deadline(element, std::nullopt);
   Params params;

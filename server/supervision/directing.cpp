@@ -84,8 +84,9 @@ std::optional<wire::Fault> check_values(std::size_t given, std::size_t devices, 
 std::optional<wire::Fault> check_show(const world::Layout& layout, std::size_t index,
                                       const wire::Show& show) {
   const world::EntityLayout& entity = layout.entities[index];
-  const auto robot = std::ranges::find(layout.robots, index, &world::RobotLayout::entity);
-  const bool is_robot = robot != layout.robots.end();
+  // Robots ascend by entity.
+  const auto robot = std::ranges::lower_bound(layout.robots, index, {}, &world::RobotLayout::entity);
+  const bool is_robot = robot != layout.robots.end() && robot->entity == index;
   auto fault = check_values(show.led_colors.size(), entity.leds.count,
                             is_robot && robot->leds.count > 0, show, "led_colors");
   if (!fault) {
@@ -233,21 +234,29 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
 void Directing::act() {
   Names names(world_.simulation);
   bool has_changed = false;
-  for (network::Directed& each : desk_.directions()) {
+  for (const network::Directed& each : desk_.directions()) {
     for (std::size_t i = 0; i < each.direction.acts.size(); ++i) {
       auto fault = apply(each.direction.acts[i], names);
       has_changed = true;
       if (!fault) continue;
-      console_.notice(fmt::format("director '{}', tick {}: {}", each.director,
-                                  world_.simulation.state().tick, fault->message));
+      note_left_out(each.director, fault->message);
       desk_.warn(each.director, at(i, std::move(*fault)));
     }
   }
   if (has_changed) callers_.note_change();
 }
 
-bool Directing::wants_contacts() const {
-  return std::ranges::any_of(desk_.status(), &network::DirectorStatus::wants_contacts);
+/// At once, unless the last notice is too fresh: then with the next one.
+void Directing::note_left_out(const std::string& director, const std::string& why) {
+  constexpr std::chrono::seconds between_notices{10};
+  ++untold_;
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_notice_) return;
+  const auto others = untold_ == 1 ? std::string() : fmt::format(" ({} acts were left out since the last line)", untold_);
+  console_.notice(fmt::format("director '{}', tick {}: {}{}", director, world_.simulation.state().tick,
+                              why, others));
+  untold_ = 0;
+  next_notice_ = now + between_notices;
 }
 
 }  // namespace ziggurat::supervision

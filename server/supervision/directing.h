@@ -1,6 +1,8 @@
 #pragma once
 // Does what directors want between two ticks (docs/protocol.md, section 9.1).
 
+#include <chrono>
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -26,18 +28,21 @@ class Directing {
   /// told.
   void act();
   /// A director subscribed to contacts.
-  bool wants_contacts() const;
+  bool wants_contacts() const { return desk_.wants_contacts(); }
 
  private:
   class Names;
   std::optional<wire::Fault> check(const wire::Direction& direction) const;
   std::optional<wire::Fault> apply(const wire::DirectorAct& act, Names& names);
+  void note_left_out(const std::string& director, const std::string& why);
 
   World& world_;
   network::DirectorsDesk desk_;
   Callers& callers_;
   Population& population_;
   reports::Console& console_;
+  std::size_t untold_ = 0;  ///< acts that were left out since the last notice on one
+  std::chrono::steady_clock::time_point next_notice_{};
 };
 
 }  // namespace ziggurat::supervision

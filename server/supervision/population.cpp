@@ -122,11 +122,13 @@ std::variant<Population::Candidate, wire::Fault> Population::read(
                     "spawn more.",
                     most_spawned));
   }
+  const network::DirectorsDesk directors(server_);
+  const auto is_used = [&](const std::string& id) { return is_taken(id) || directors.has(id); };
   Candidate candidate{.act = {xml, {}}};
   scene::Addition& addition = candidate.addition;
   try {
     addition = world_.additions.read(xml, world_.scene, size_left_ - std::min(size_left_, earlier.size),
-                                     is_taken, opener(allowed_, world_.path, &candidate.act));
+                                     is_used, opener(allowed_, world_.path, &candidate.act));
     const scene::Entity& entity = addition.entity;
     if (addition.ok()) {
       candidate.script = processes::spawned_script(world_.scene, entity, world_.path, allowed_);

@@ -197,11 +197,16 @@ bool Outbox::observation(const Roster& roster, const world::Observations& observ
   return message_->size <= limit;
 }
 
-void world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView& view) {
+bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView& view,
+                  std::size_t limit) {
   v1::WorldLayout& layout = *outbox.message_->message.mutable_world_layout();
   layout.Clear();
-  fill(view, truth, run.controllers, layout);
+  const bool is_short = fill(view, truth, run.controllers, limit, layout);
   outbox.finish();
+  const std::size_t size = outbox.message_->size;
+  if (!is_short || size > limit) layout.Clear();
+  outbox.message_->forget(size);
+  return is_short && size <= limit;
 }
 
 bool world_state(Outbox& outbox, const Truth& truth, const WorldView& view, std::size_t limit,

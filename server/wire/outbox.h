@@ -48,8 +48,10 @@ class Outbox {
                    std::span<const std::string> tag_payloads,
                    std::size_t limit = max_observation_bytes,
                    std::optional<std::uint64_t> epoch = {});
-  /// Before a director's first state, and whenever what it is told of has changed.
-  friend void world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView& view);
+  /// Before a director's first state, and whenever what it is told of has changed. False if it would have
+  /// more than `limit` bytes in binary form; then there is no message, and the view is of no use any more.
+  friend bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView& view,
+                           std::size_t limit);
   /// False if it would have more than `limit` bytes in binary form; then there is no message.
   friend bool world_state(Outbox& outbox, const Truth& truth, const WorldView& view,
                           std::size_t limit, std::uint64_t epoch);

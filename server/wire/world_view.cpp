@@ -153,11 +153,15 @@ bool has_news(const WorldView& view, const world::State& state) {
   return false;
 }
 
-void fill(WorldView& view, const Truth& truth, const std::vector<scene::Controller>& controllers,
-          v1::WorldLayout& to) {
+bool fill(WorldView& view, const Truth& truth, const std::vector<scene::Controller>& controllers,
+          std::size_t limit, v1::WorldLayout& to) {
   to.set_first(static_cast<std::uint32_t>(view.told));
+  std::size_t size = 0;
   for (std::size_t i = view.told; i < view.entities.size(); ++i) {
-    describe(truth, view.entities[i], controllers, *to.add_entities());
+    v1::EntityDescription& description = *to.add_entities();
+    describe(truth, view.entities[i], controllers, description);
+    size += description.ByteSizeLong();
+    if (size > limit) return false;
   }
   for (std::size_t i = 0; i < view.entities.size(); ++i) {
     if (view.removed[i] || !truth.state.is_absent(view.entities[i])) continue;
@@ -166,6 +170,7 @@ void fill(WorldView& view, const Truth& truth, const std::vector<scene::Controll
   }
   view.told = view.entities.size();
   view.is_new = false;
+  return true;
 }
 
 std::size_t payload_bytes(const WorldView& view, const Truth& truth) {

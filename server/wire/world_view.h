@@ -50,8 +50,9 @@ void consider(WorldView& view, const Truth& truth, std::size_t entity, bool is_w
 /// Whether the client must be told of the view before the next state.
 bool has_news(const WorldView& view, const world::State& state);
 /// Tells what it does not know yet. `to` is clear.
-void fill(WorldView& view, const Truth& truth, const std::vector<scene::Controller>& controllers,
-          v1::WorldLayout& to);
+/// @returns  false if that would be more than `limit` bytes; then `to` has only a part
+bool fill(WorldView& view, const Truth& truth, const std::vector<scene::Controller>& controllers,
+          std::size_t limit, v1::WorldLayout& to);
 
 /// Bytes of radio messages and of payloads of tags in a state.
 std::size_t payload_bytes(const WorldView& view, const Truth& truth);

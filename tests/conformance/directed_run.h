@@ -66,8 +66,7 @@ inline v1::ClientMessage pushes(std::uint64_t tick, std::vector<double> force) {
 
 /// Two robots that "c" has, and the directors `judge` and, with a deadline of 50 ms, `hasty`.
 struct Directing : ::testing::Test {
-  explicit Directing(bool allows_others = false)
-      : small(make_run()), peers(small, make_config(allows_others)), boxes(2) {
+  explicit Directing(const Config& config = {}) : small(make_run()), peers(small, config), boxes(2) {
     peers.say("c", Peers::hello("*"));
     peers.inboxes.clear();
   }
@@ -79,11 +78,6 @@ struct Directing : ::testing::Test {
     run.directors.push_back({.id = "hasty"});
     run.directors.back().deadline = {scene::DeadlineAction::hold, 50, 2};
     return run;
-  }
-  static Config make_config(bool allows_others) {
-    Config config;
-    config.allows_directors = allows_others;
-    return config;
   }
   /// Both directors are there; tick 5 is published, and "c" has answered it.
   void begin() {

@@ -10,7 +10,20 @@ namespace {
 using std::chrono::milliseconds;
 
 struct DirectingFromOutside : Directing {
-  DirectingFromOutside() : Directing(true) {}
+  DirectingFromOutside() : Directing(Config{.allows_directors = true}) {}
+};
+
+/// Policies of the command line, and a link that delays what the judge is told by 5 ms, and what it answers.
+struct DirectingByOptions : Directing {
+  static Config make_config() {
+    const Config::Deadline fixed{{scene::DeadlineAction::hold, 50, 0}, true};
+    const Disturbance late{milliseconds(5), {}, 0};
+    return {.allows_directors = true,
+            .deadlines = {{}, {}, fixed, fixed},
+            .deadline_of_others = fixed,
+            .injections = {{}, {}, {late, late}, {}}};
+  }
+  DirectingByOptions() : Directing(make_config()) {}
 };
 
 TEST_F(Directing, R1_AHelloNamesADirectorOfTheScene) {
@@ -57,6 +70,65 @@ TEST_F(DirectingFromOutside, R1_OthersComeIfTheServerAllowsIt) {
   peers.say("s", director("fourth"));
   EXPECT_TRUE(peers.told("s").has_welcome());
   EXPECT_EQ(refused(peers, director("fifth")).code(), v1::Error::TOO_MANY);
+}
+
+TEST_F(DirectingFromOutside, R1_OneThatHasLeftMakesPlaceForAnother) {
+  begin();
+  const auto come = [&](const std::string& peer, const std::string& id) {
+    peers.inboxes.clear();
+    peers.say(peer, director(id));
+    return peers.inboxes[peer].at(0);
+  };
+  EXPECT_TRUE(come("third", "third").has_welcome());
+  for (int i = 0; i < 61; ++i) {
+    const std::string id = "one" + std::to_string(i);
+    ASSERT_TRUE(come(id, id).has_welcome()) << id;
+    EXPECT_EQ(come("s", "another").refusal().error().code(), v1::Error::TOO_MANY);
+    peers.say(id, Peers::leave());
+    EXPECT_EQ(come("s", id).refusal().error().code(), v1::Error::NOT_YOURS);
+  }
+  EXPECT_EQ(come("s", "another").refusal().error().code(), v1::Error::TOO_MANY) << "64 in a run";
+}
+
+TEST_F(DirectingFromOutside, R1_ItsIdIsThatOfNoEntity) {
+  small.layout().entities = {{"robot0"}};
+  Peers others(small, Config{.allows_directors = true});
+  others.say("r", director("robot0"));
+  EXPECT_EQ(others.told("r").refusal().error().code(), v1::Error::BAD_VALUE);
+}
+
+TEST_F(DirectingByOptions, H8_APolicyOfTheCommandLineIsFixedForDirectorsToo) {
+  auto hello = director("judge");
+  hello.mutable_hello()->mutable_deadline_policy()->set_action(v1::DeadlinePolicy::WAIT);
+  EXPECT_EQ(refused(peers, hello).code(), v1::Error::FORBIDDEN);
+  hello.mutable_hello()->set_director("from_outside");
+  EXPECT_EQ(refused(peers, hello).code(), v1::Error::FORBIDDEN);
+  peers.say("r", director("from_outside"));
+  EXPECT_EQ(peers.told("r").welcome().deadline_policy().wall_deadline_ms(), 50U);
+  peers.say("p", director("judge"));
+  const v1::Welcome welcome = peers.told("p").welcome();
+  EXPECT_EQ(welcome.deadline_policy().wall_deadline_ms(), 50U);
+  hello.mutable_hello()->set_director("judge");
+  hello.mutable_hello()->set_session_token(welcome.session_token());
+  peers.say("s", hello);
+  EXPECT_EQ(peers.told("s").refusal().error().code(), v1::Error::FORBIDDEN);
+}
+
+TEST_F(DirectingByOptions, R2_WhatADirectorIsToldAndAnswersIsDelayedToo) {
+  peers.say("p", director("judge"));
+  peers.say("q", director("hasty"));
+  peers.inboxes.clear();
+  publish(5);
+  EXPECT_TRUE(told().back().has_world_layout()) << "its state comes later";
+  EXPECT_EQ(peers.inboxes["q"].size(), 2U);
+  peers.pass(milliseconds(5));
+  EXPECT_TRUE(peers.told("p").has_world_state());
+  peers.say("c", Peers::command(5));
+  peers.say("q", direction(5));
+  peers.say("p", direction(5));
+  EXPECT_FALSE(peers.is_complete());
+  peers.pass(milliseconds(5));
+  EXPECT_TRUE(peers.is_complete());
 }
 
 TEST_F(DirectingFromOutside, R2_TheWorldWaitsForOneThatHasCome) {

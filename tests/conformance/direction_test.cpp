@@ -34,6 +34,20 @@ TEST_F(Directing, R3_ADirectorIsToldWhatItSubscribedTo) {
   EXPECT_TRUE(state.joints().empty());
 }
 
+TEST_F(Directing, R5_ALayoutThatNoMessageCanHoldIsAFatalError) {
+  boxes = Boxes(65);
+  for (auto& entity : boxes.layout.entities) entity.id += std::string(1 << 20, 'x');
+  peers.json = true;  // which has 64 MiB
+  peers.say("p", director("judge"));
+  peers.inboxes.clear();
+  publish(5);
+  const auto messages = told();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].error().code(), v1::Error::TOO_LARGE);
+  EXPECT_EQ(messages[0].error().severity(), v1::Error::FATAL);
+  EXPECT_EQ(messages[0].error().field(), "subscription");
+}
+
 TEST_F(Directing, R3_WithoutSubscriptionItIsToldOfNothing) {
   auto hello = director("judge");
   hello.mutable_hello()->clear_subscription();

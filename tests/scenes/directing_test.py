@@ -173,6 +173,7 @@ class Directing(SceneTest):
             ("BAD_VALUE", lambda world: world.move("b2", (float("nan"), 0, 0))),
             ("BAD_VALUE", lambda world: world.spawn("<box/>")),
             ("BAD_VALUE", lambda world: world.spawn(box("b1", "7,7,0"))),
+            ("BAD_VALUE", lambda world: world.spawn(box("judge", "7,7,0"))),
             ("BAD_VALUE", lambda world: world.spawn(box("heavy", "7,7,0", mass="2e6"))),
             ("TOO_LARGE", lambda world: world.spawn(box("x", "7,7,0") + " " * (1 << 20))),
             ("UNKNOWN_ENTITY", lambda world: world.remove("")),
@@ -211,6 +212,39 @@ class Directing(SceneTest):
             self.assertEqual(world.left_out, [])
             world.finish()
         self.end()
+
+    def test_acts_that_are_left_out_fill_no_terminal(self):
+        self.begin()
+        with self.direct() as world:
+            for tick in world:
+                for i in range(20):
+                    world.spawn(box(f"n{tick.number}_{i}", "0,0,0"))  # where b1 stands
+                if tick.number == 20:
+                    self.assertEqual(len(world.left_out), 20, "it is told of each")
+                    world.finish()
+        self.end()
+        lines = [line for line in self.outcome.err.splitlines() if "director 'judge', tick" in line]
+        self.assertIn(len(lines), range(1, 10), "one in 10 s, of 400")
+
+    def test_options_name_directors(self):
+        command = self.program("world = ziggurat.direct()\nnext(world)\ntime.sleep(1000)\n")
+        self.write_scene(f'<director id="judge" {command} />', length=1)
+        for arguments in (("--deadline", "judge=hold:50"), ("--hil",)):
+            self.assertRegex(self.run_scene(*arguments).err, r"\(director 'judge'\) missed its deadline of (50|90) ms")
+        self.assert_is_sentence(self.run_scene("--inject", "judge=loss=1%", code=FAULT),
+                                "loses messages of director 'judge', for which the world would wait forever")
+        for option in ("--deadline", "--inject"):
+            value = "juge=" + ("hold:50" if option == "--deadline" else "latency=1ms")
+            self.assert_is_sentence(self.run_scene(option, value, code=FAULT),
+                                    f"{option}: the scene has no controller or director 'juge'; did you mean 'judge'")
+
+    def test_an_empty_script_is_a_director_from_outside(self):
+        self.write_scene('<director id="judge" script="nothere.lua" />')
+        self.begin("--set", "director/@script=")
+        with self.direct() as world:
+            next(world)
+            world.finish("from outside")
+        self.assertEqual(self.end()["result"], "from outside")
 
     def hash_of_two(self, first, second):
         """Two directors that move the same box; they answer in this order."""

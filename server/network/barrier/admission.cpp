@@ -87,6 +87,9 @@ Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access&
     if (!session->roster.gone[i]) robots.push_back(session->roster.robots[i]);
   }
   if (auto refusal = check_policy(barrier, hello, robots)) return std::move(*refusal);
+  if (session->director) {
+    if (auto refusal = check_fixed(barrier, *session->director, hello)) return std::move(*refusal);
+  }
   if (session->state != SessionState::lost) {
     barrier.outbox.displaced(label_of(hello), "The session was taken up over another connection.");
     send(barrier, *session);

@@ -27,6 +27,12 @@ Consequence consequence_of(const scene::DeadlinePolicy& policy, std::uint32_t mi
 
 }  // namespace
 
+std::optional<scene::DeadlinePolicy> fixed_against(const Config::Deadline& deadline,
+                                                   const scene::DeadlinePolicy& wish) {
+  if (!deadline.is_fixed || deadline.policy == wish) return std::nullopt;
+  return deadline.policy;
+}
+
 Deadlines::Deadlines(std::vector<Config::Deadline> policies, std::size_t controllers)
     : defaults_(std::move(policies)), missed_ticks_(controllers), last_missed_(controllers) {
   defaults_.resize(controllers);
@@ -36,8 +42,8 @@ void Deadlines::add(std::size_t controller) {
   robots_.push_back({controller, defaults_[controller].policy, 0, false});
 }
 
-void Deadlines::grow() {
-  defaults_.emplace_back();
+void Deadlines::grow(const Config::Deadline& deadline) {
+  defaults_.push_back(deadline);
   missed_ticks_.push_back(0);
   last_missed_.emplace_back();
   add(defaults_.size() - 1);
@@ -50,9 +56,7 @@ void Deadlines::set_policy(std::size_t robot, const std::optional<scene::Deadlin
 
 std::optional<scene::DeadlinePolicy> Deadlines::fixed_against(
     std::size_t robot, const scene::DeadlinePolicy& wish) const {
-  const Config::Deadline& deadline = defaults_[robots_[robot].controller];
-  if (!deadline.is_fixed || deadline.policy == wish) return std::nullopt;
-  return deadline.policy;
+  return network::fixed_against(defaults_[robots_[robot].controller], wish);
 }
 
 Consequence Deadlines::miss(std::size_t robot, std::uint64_t tick) {

@@ -19,6 +19,10 @@ enum class Consequence {
   stop,  ///< the run ends
 };
 
+/// The policy, if it is fixed and another than this one.
+std::optional<scene::DeadlinePolicy> fixed_against(const Config::Deadline& deadline,
+                                                   const scene::DeadlinePolicy& wish);
+
 class Deadlines {
  public:
   Deadlines() = default;
@@ -28,8 +32,8 @@ class Deadlines {
 
   /// One more robot, with the policy of its controller.
   void add(std::size_t controller);
-  /// One more robot with a controller of its own, which is waited for.
-  void grow();
+  /// One more robot with a controller of its own.
+  void grow(const Config::Deadline& deadline);
   /// Forgets robots behind the first `count`.
   void shrink(std::size_t count) { robots_.resize(count); }
 

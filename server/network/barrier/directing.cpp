@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "network/barrier/departure.h"
@@ -22,7 +21,8 @@ using wire::make_fault;
 
 namespace {
 
-constexpr std::size_t longest_id = 64;  // of a director from outside [bytes]
+constexpr std::size_t longest_id = 64;     // of a director from outside [bytes]
+constexpr std::size_t most_in_a_run = 64;  // those that have left included: their metrics are kept
 
 wire::Refusal refuse(ErrorCode code, std::string field, std::string message) {
   return make_refusal(code, std::move(field), std::move(message));
@@ -55,9 +55,9 @@ std::optional<wire::Refusal> check_wishes(const Barrier& barrier, const wire::He
   return check_policy(barrier, hello, {});
 }
 
-/// The director of that id; one from outside, if these are allowed, is a new one.
-std::variant<std::size_t, wire::Refusal> find_director(Barrier& barrier, const std::string& id) {
-  Directors& directors = barrier.directors;
+/// The director of that id; one from outside, if these are allowed, is a new one, behind all others.
+std::variant<std::size_t, wire::Refusal> find_director(const Barrier& barrier, const std::string& id) {
+  const Directors& directors = barrier.directors;
   const auto found = std::ranges::find(directors.all, id, &scene::Director::id);
   if (found != directors.all.end()) {
     return static_cast<std::size_t>(found - directors.all.begin());
@@ -74,16 +74,35 @@ std::variant<std::size_t, wire::Refusal> find_director(Barrier& barrier, const s
                               "'.'.",
                               longest_id));
   }
-  if (directors.all.size() >= scene::Director::most) {
+  const auto& entities = barrier.run->layout.entities;
+  if (std::ranges::find(entities, id, &world::EntityLayout::id) != entities.end()) {
+    return refuse(ErrorCode::bad_value, "director",
+                  fmt::format("An entity has the id '{}'; a director has one of its own.", shown));
+  }
+  std::size_t present = 0;
+  for (std::size_t i = 0; i < directors.all.size(); ++i) present += directors.seats[i].has_left ? 0 : 1;
+  if (present >= scene::Director::most || directors.all.size() >= most_in_a_run) {
     return refuse(ErrorCode::too_many, "director",
-                  fmt::format("The world has {} directors and takes no more.",
+                  fmt::format("The world has {} directors, and has had {}; it takes no more.", present,
                               directors.all.size()));
   }
+  return directors.all.size();
+}
+
+/// Adds the number of the last director.
+void sort_last(Directors& directors) {
+  const std::size_t last = directors.all.size() - 1;
+  const auto id = [&](std::size_t each) -> const std::string& { return directors.all[each].id; };
+  directors.by_id.insert(std::ranges::lower_bound(directors.by_id, id(last), {}, id), last);
+}
+
+void add_from_outside(Barrier& barrier, const std::string& id) {
+  Directors& directors = barrier.directors;
   directors.all.push_back({.id = id});
   directors.answers.emplace_back();
   directors.seats.add(barrier.now, true);
-  directors.deadlines.grow();
-  return directors.all.size() - 1;
+  directors.deadlines.grow(directors.deadline_of_others);
+  sort_last(directors);
 }
 
 std::optional<wire::Refusal> check_seat(Barrier& barrier, std::size_t director, bool is_takeover) {
@@ -170,6 +189,18 @@ std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
   return barrier.directors.check(direction);
 }
 
+/// @returns  false: the session can't be told what it wants
+bool tell_view_too_large(Barrier& barrier, Session& session) {
+  auto fault = make_fault(ErrorCode::too_large, "subscription",
+                          "What this director subscribed to is more than a message can hold; name "
+                          "fewer entities or groups.");
+  fault.severity = wire::Severity::fatal;
+  fault.tick = tick_of(barrier);
+  barrier.outbox.error(fault);
+  send(barrier, session);
+  return false;
+}
+
 void answer_bad_direction(Barrier& barrier, Session& session, wire::Fault fault) {
   const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
   if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
@@ -181,24 +212,32 @@ void answer_bad_direction(Barrier& barrier, Session& session, wire::Fault fault)
 
 }  // namespace
 
-std::vector<std::size_t> Directors::by_id() const {
-  std::vector<std::size_t> numbers(all.size());
-  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-  std::ranges::sort(numbers, {}, [&](std::size_t each) -> const std::string& { return all[each].id; });
-  return numbers;
+void add_directors(Barrier& barrier, const std::vector<Config::Deadline>& deadlines) {
+  Directors& directors = barrier.directors;
+  const std::size_t controllers = barrier.run->controllers.size();
+  for (const scene::Director& director : barrier.run->directors) {
+    const std::size_t given = controllers + directors.all.size();
+    directors.deadlines.grow(
+        given < deadlines.size()
+            ? deadlines[given]
+            : Config::Deadline{director.deadline.value_or(scene::DeadlinePolicy{}), false});
+    directors.all.push_back(director);
+    directors.answers.emplace_back();
+    directors.seats.add(barrier.now, false);
+    sort_last(directors);
+  }
 }
 
-void add_directors(Barrier& barrier) {
-  Directors& directors = barrier.directors;
-  directors.all = barrier.run->directors;
-  directors.answers.resize(directors.all.size());
-  std::vector<Config::Deadline> policies;
-  for (const scene::Director& director : directors.all) {
-    policies.push_back({director.deadline.value_or(scene::DeadlinePolicy{}), false});
-    directors.seats.add(barrier.now, false);
-  }
-  directors.deadlines = Deadlines(policies, policies.size());
-  for (std::size_t i = 0; i < directors.all.size(); ++i) directors.deadlines.add(i);
+std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t director,
+                                         const wire::Hello& hello) {
+  const Directors& directors = barrier.directors;
+  if (!hello.deadline) return std::nullopt;
+  const bool is_new = director == directors.all.size();
+  const auto fixed = is_new ? fixed_against(directors.deadline_of_others, *hello.deadline)
+                            : directors.deadlines.fixed_against(director, *hello.deadline);
+  if (!fixed) return std::nullopt;
+  return refuse(ErrorCode::forbidden, "deadline_policy",
+                fmt::format("The deadline policy of directors is fixed: {}.", to_text(*fixed)));
 }
 
 std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wire::Hello& hello,
@@ -207,8 +246,13 @@ std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wi
   auto found = find_director(barrier, hello.director);
   if (auto* refusal = std::get_if<wire::Refusal>(&found)) return std::move(*refusal);
   const std::size_t director = std::get<std::size_t>(found);
-  if (auto refusal = check_seat(barrier, director, hello.takeover)) return std::move(*refusal);
-  displace(barrier, director, client);
+  if (auto refusal = check_fixed(barrier, director, hello)) return std::move(*refusal);
+  if (director == barrier.directors.all.size()) {
+    add_from_outside(barrier, hello.director);
+  } else {
+    if (auto refusal = check_seat(barrier, director, hello.takeover)) return std::move(*refusal);
+    displace(barrier, director, client);
+  }
   Session& session = barrier.sessions.add();
   session.director = director;
   return &session;
@@ -259,7 +303,9 @@ bool show_world(Barrier& barrier, Session& session) {
   const wire::Truth& truth = *barrier.directors.truth;
   update_view(session.view, truth);
   if (has_news(session.view, truth.state)) {
-    world_layout(barrier.outbox, *barrier.run, truth, session.view);
+    if (!world_layout(barrier.outbox, *barrier.run, truth, session.view, limit)) {
+      return tell_view_too_large(barrier, session);
+    }
     const Delivery told = send(barrier, session);
     if (told != Delivery::sent) {  // all of it is told with the next tick
       session.view = {std::move(session.view.subscription)};
@@ -267,13 +313,7 @@ bool show_world(Barrier& barrier, Session& session) {
     }
   }
   if (!world_state(session.observation, truth, session.view, limit, barrier.epoch)) {
-    auto fault = make_fault(ErrorCode::too_large, {},
-                            "What this director subscribed to is more than a message can hold.");
-    fault.severity = wire::Severity::fatal;
-    fault.tick = tick_of(barrier);
-    barrier.outbox.error(fault);
-    send(barrier, session);
-    return false;
+    return tell_view_too_large(barrier, session);
   }
   session.contact.last_sent = barrier.now;
   session.observation.encode(connection->encoding);
@@ -341,13 +381,25 @@ void forget_directions(Barrier& barrier) {
   });
 }
 
-std::vector<Directed> directions(const Barrier& barrier) {
-  std::vector<Directed> result;
-  for (const std::size_t director : barrier.directors.by_id()) {
-    const auto& answer = barrier.directors.answers[director];
-    if (answer) result.push_back({barrier.directors.all[director].id, *answer});
+const std::vector<Directed>& directions(Barrier& barrier) {
+  Directors& directors = barrier.directors;
+  directors.directed.clear();
+  for (const std::size_t director : directors.by_id) {
+    const auto& answer = directors.answers[director];
+    if (answer) directors.directed.push_back({directors.all[director].id, *answer});
   }
-  return result;
+  return directors.directed;
+}
+
+bool wants_contacts(const Barrier& barrier) {
+  const Directors& directors = barrier.directors;
+  for (std::size_t i = 0; i < directors.all.size(); ++i) {
+    const Seats::Seat& seat = directors.seats[i];
+    const Session* session =
+        barrier.sessions.find(seat.holder == SessionId::none ? seat.claimant : seat.holder);
+    if (session != nullptr && session->view.subscription.contacts) return true;
+  }
+  return false;
 }
 
 void warn_director(Barrier& barrier, const std::string& director, wire::Fault fault) {
@@ -377,7 +429,6 @@ std::vector<DirectorStatus> director_status(const Barrier& barrier) {
     if (session != nullptr) {
       status.client = session->client;
       status.can_restore = session->can_restore;
-      status.wants_contacts = session->view.subscription.contacts;
     }
     status.is_awaited = seat.holder == SessionId::none ? !seat.has_left && !seat.is_skipped
                                                        : session->turn.owes;

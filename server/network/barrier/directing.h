@@ -10,11 +10,15 @@
 namespace ziggurat::network {
 
 /// The world is loaded: its directors are awaited.
-void add_directors(Barrier& barrier);
+/// @param deadlines  behind those of controllers theirs, if they are not as the scene says
+void add_directors(Barrier& barrier, const std::vector<Config::Deadline>& deadlines);
 
 /// A new session of the director that the Hello asks for.
 std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wire::Hello& hello,
                                                       const std::string& client);
+/// What is wrong with the policy that a Hello asks for, if the server fixes that of its director.
+std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t director,
+                                         const wire::Hello& hello);
 /// It has its director from now on.
 void take_director(Barrier& barrier, Session& session, const wire::Hello& hello);
 /// It has none any more; the director is free. No effect without one.
@@ -33,8 +37,9 @@ void leave_directing(Barrier& barrier, Session& session);
 /// The world begins anew or has gone back.
 void forget_directions(Barrier& barrier);
 
-/// What they want done before the next tick, in the order of their ids.
-std::vector<Directed> directions(const Barrier& barrier);
+/// What they want done before the next tick, in the order of their ids. Valid until the next message.
+const std::vector<Directed>& directions(Barrier& barrier);
+bool wants_contacts(const Barrier& barrier);  ///< one subscribed to them
 /// Tells a director that is connected of an act that was not done.
 void warn_director(Barrier& barrier, const std::string& director, wire::Fault fault);
 std::vector<DirectorStatus> director_status(const Barrier& barrier);

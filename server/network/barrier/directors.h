@@ -10,6 +10,8 @@
 #include "network/barrier/deadlines.h"
 #include "network/barrier/metrics.h"
 #include "network/barrier/seats.h"
+#include "network/config.h"
+#include "network/report.h"
 #include "scene/scene.h"
 #include "wire/direction.h"
 #include "wire/world_view.h"
@@ -27,12 +29,12 @@ struct Directors {
   Deadlines deadlines;  ///< each director is a controller of its own
   Metrics metrics;
   std::vector<std::optional<wire::Direction>> answers;  ///< to the tick in hand; none yet, or missed
+  std::vector<std::size_t> by_id;  ///< their numbers, in the order of their ids
   bool are_allowed = false;  ///< from outside, that the scene does not name
+  Config::Deadline deadline_of_others;  ///< of these
   CheckDirection check;      ///< may be empty
   std::optional<wire::Truth> truth;  ///< of the tick in hand; none: there is none to tell
-
-  /// Their numbers, in the order of their ids.
-  std::vector<std::size_t> by_id() const;
+  std::vector<Directed> directed;  ///< what directions() returns
 };
 
 }  // namespace ziggurat::network

@@ -92,7 +92,7 @@ namespace {
 /// Those of directors follow, in the order of their ids.
 void append_named(const Directors& directors, const std::vector<wire::Metric>& metrics,
                   std::vector<world::Metric>& to) {
-  for (const std::size_t director : directors.by_id()) {
+  for (const std::size_t director : directors.by_id) {
     for (const wire::Metric& metric : metrics) {
       if (metric.robot != director) continue;
       to.push_back({directors.all[director].id, metric.name, metric.value});

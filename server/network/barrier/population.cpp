@@ -85,13 +85,15 @@ void forget_robots(Barrier& barrier, std::size_t count) {
 
 }  // namespace
 
-void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines) {
+void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines,
+          const Config::Deadline& of_others) {
   barrier.run.emplace(run);
   barrier.progress = {1, "The world is loaded."};
   barrier.deadlines = Deadlines(deadlines, run.controllers.size());
   barrier.answer_times.resize(run.controllers.size());
   add_robots(barrier, run.scripts, {});
-  add_directors(barrier);
+  barrier.directors.deadline_of_others = of_others;
+  add_directors(barrier, deadlines);
 }
 
 void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Senses& senses) {

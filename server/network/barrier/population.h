@@ -13,8 +13,10 @@ namespace ziggurat::network {
 
 /// The world is loaded, with the robots of the run's layout. Clients that wait for it are answered.
 /// @param run        what it refers to must outlive the barrier
-/// @param deadlines  per controller of the scene; missing: wait
-void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines);
+/// @param deadlines  as Config::deadlines
+/// @param of_others  as Config::deadline_of_others
+void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines,
+          const Config::Deadline& of_others = {});
 /// Robots have come: those of the layout that were not known. The tick in hand does not wait for
 /// them.
 /// @param scripts  of them, as Run::scripts

@@ -64,7 +64,7 @@ class Peers {
 
   /// The world is loaded.
   void open() {
-    network::open(barrier, small_.run(), config_.deadlines);
+    network::open(barrier, small_.run(), config_.deadlines, config_.deadline_of_others);
     admit_waiting(barrier);
   }
 
@@ -166,9 +166,11 @@ class Peers {
   void disturb() {
     const wire::Run run = small_.run();
     std::vector<DisturbedLink::Target> targets;
-    for (std::size_t c = 0; c < run.controllers.size(); ++c) {
-      targets.push_back({run.controllers[c].id, config_.injections.at(c)});
-    }
+    const auto add = [&](const std::string& id, bool is_director) {
+      targets.push_back({id, config_.injections.at(targets.size()), is_director});
+    };
+    for (const scene::Controller& controller : run.controllers) add(controller.id, false);
+    for (const scene::Director& director : run.directors) add(director.id, true);
     link.emplace(std::move(targets), run.seed, 2 * config_.max_message_bytes,
                  [this](const auto& peer, auto bytes) { return deliver(peer, bytes); });
   }

@@ -91,5 +91,21 @@ TEST(InjectOption, MessagesThatTheWorldWaitsForAreNotLost) {
   EXPECT_NO_THROW(check_losses(delays, scene_of_two(), {{}, {}}));
 }
 
+TEST(InjectOption, DirectorsAreNamedAsControllersAre) {
+  scene::Scene scene = scene_of_two();
+  scene.directors.push_back({.id = "judge"});
+  const auto injections = injections_of({to_injection("judge=latency=5ms,loss=1%")}, scene);
+  ASSERT_EQ(injections.size(), 3U);
+  EXPECT_FALSE(injections[0].any());
+  EXPECT_EQ(injections[2].commands, (Disturbance{5ms, {}, 0.01}));
+  EXPECT_TRUE(injections_of({to_injection("latency=5ms")}, scene)[2].any());
+  try {
+    check_losses(injections, scene, std::vector<network::Config::Deadline>(3));
+    ADD_FAILURE();
+  } catch (const text::UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("director 'judge'"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::run
