@@ -67,7 +67,7 @@ LIBRARIES = {
     "liblz4": (r"lz4\w*\.h$", ["mcap"]),
     "zlib": (r"zlib\.h$", ["mcap"]),
     "Boost.Beast": (r"boost/(beast|asio)", ["http", "view"]),
-    "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua", "processes"]),
+    "Lua": (r"(lua5\.3/)?(lua|lauxlib|lualib|luaconf)\.hp?p?$", ["clients/lua", "processes", "clients/cpp"]),
 }
 
 SUFFIXES = {".h", ".hpp", ".hh", ".inl", ".ipp", ".c", ".cc", ".cpp", ".cxx"}

@@ -173,13 +173,16 @@ class Outcome:
 
 
 def process_of(folder, index):
-    """The process of a Lua robot, by its place in the scene; its runtime folder tells it from other runs'."""
+    """The process of a robot, in Lua by its place in the scene, in C++ that of all; its runtime folder tells it from
+    other runs'."""
     for entry in pathlib.Path("/proc").iterdir():
         try:
-            command = (entry / "cmdline").read_text().split("\0") if entry.name.isdigit() else []
+            command = (entry / "cmdline").read_text().split("\0") if entry.name.isdigit() else [""]
+            in_cpp = command[0].endswith("example_assembly") and \
+                f"XDG_RUNTIME_DIR={folder}" in (entry / "environ").read_text().split("\0")
         except OSError:
             continue
-        if any("ziggurat-lua" in word for word in command) and \
+        if in_cpp or any("ziggurat-lua" in word for word in command) and \
            any(folder in word and word.endswith(f"/robots-{index}") for word in command):
             return int(entry.name)
     return None

@@ -4,18 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 
-#include "builder.h"
+#include "../construction/builder.h"
 
 namespace stacking {
 namespace {
+
+using construction::block, construction::Builder, construction::Docking, construction::tick;
 
 constexpr double clearance = 0.03;          // lift, on approach without a block [m]
 constexpr double gap = 0.003;               // over the block when the magnets are energised [m]
 constexpr double carrying = block + 0.017;  // lift, with a block carried over another one [m]
 constexpr double placed = block - 0.0002;   // lift, with the carried block on top of another [m]
+
+constexpr std::uint8_t picked_up[] = {1};  // to the attached block
 
 enum class State {
   start,
@@ -134,7 +139,7 @@ State Stacker::fetch() {
       return builder_.holds() ? State::signal : State::let_go;
     case State::signal:
       builder_.set_current(0);
-      builder_.send(1);
+      builder_.send(picked_up);
       return seconds() >= 1 ? State::look : state_;
     case State::look:
       if (builder_.nearest_face()) return State::approach;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace stacking {
+namespace construction {
 namespace {
 
 Vector cross(const Vector& a, const Vector& b) {
@@ -46,4 +46,4 @@ std::optional<TagPose> tag_pose(const std::array<ziggurat::Camera::Pixel, 4>& co
   return pose;
 }
 
-}  // namespace stacking
+}  // namespace construction

@@ -6,7 +6,7 @@
 #include <array>
 #include <optional>
 
-namespace stacking {
+namespace construction {
 
 using Vector = std::array<double, 3>;
 
@@ -22,4 +22,4 @@ struct TagPose {
 std::optional<TagPose> tag_pose(const std::array<ziggurat::Camera::Pixel, 4>& corners,
                                 const ziggurat::Camera& camera, double side);
 
-}  // namespace stacking
+}  // namespace construction

@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tag_pose.h"
 
-namespace stacking {
+namespace construction {
 namespace {
 
 // Dimensions of the robot [m]. It does not know the positions of the blocks.
-constexpr double reach = 0.080;  // from its centre to the face of a block under the end effector
 constexpr double wheel_radius = 0.025, half_track = 0.052;
-constexpr double slip = 1.335;          // rotation of the wheels / rotation of the robot: they skid
+// Rotation of the wheels / rotation of the robot, as they skid: without a block, and with one.
+constexpr double slip[] = {1.335, 1.12};
 constexpr double front_sensor = 0.065;  // position of the front proximity sensors
 constexpr double tag_side = 0.024;
 constexpr double settle = 0.03;  // distance constant of the approach to the line [m]
@@ -34,9 +35,27 @@ double steer(const Face& face, double speed) {
   return std::abs(speed) * 2 / settle * (face.heading - (speed > 0 ? wanted : -wanted));
 }
 
+/// The color of the LEDs around a tag; none if they are off. They are 20 mm from the tag's centre,
+/// in both directions; farther out are those of the neighbouring faces.
+std::optional<ziggurat::Color> color_around(const TagPose& tag, const ziggurat::Camera& camera) {
+  const auto& [centre, normal] = tag;
+  const double along = centre[0] * normal[0] + centre[1] * normal[1] + centre[2] * normal[2];
+  constexpr double most = 0.024;
+  for (const ziggurat::Camera::LedReading& led : camera.directional_leds()) {
+    const double x = (led.center[0] - camera.principal_point()[0]) / camera.focal_length()[0];
+    const double y = (led.center[1] - camera.principal_point()[1]) / camera.focal_length()[1];
+    const double depth = along / (x * normal[0] + y * normal[1] + normal[2]);  // ray meets face
+    const double dx = x * depth - centre[0], dy = y * depth - centre[1], dz = depth - centre[2];
+    if (std::abs(dy) < most && dx * dx + dz * dz < most * most) return led.color;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 double Face::offset() const { return forward * std::sin(heading) - left * std::cos(heading); }
+
+bool is_at_floor_level(const Face& face) { return std::abs(face.up) < 0.02; }
 
 Builder::Builder(ziggurat::Robot& robot)
     : camera_(robot.camera("camera")),
@@ -48,9 +67,15 @@ Builder::Builder(ziggurat::Robot& robot)
       proximity_(robot.proximity_sensors()) {}
 
 void Builder::drive(double speed, double turn) {
-  const double skid = turn * half_track * slip;
+  const double skid = turn * half_track * slip[loaded];
   for (ziggurat::Joint* wheel : left_wheels_) wheel->set_target((speed - skid) / wheel_radius);
   for (ziggurat::Joint* wheel : right_wheels_) wheel->set_target((speed + skid) / wheel_radius);
+}
+
+double Builder::speed() const {
+  const double sum = left_wheels_[0]->encoder() + left_wheels_[1]->encoder() +
+                     right_wheels_[0]->encoder() + right_wheels_[1]->encoder();
+  return sum / 4 * wheel_radius;
 }
 
 bool Builder::lift_to(double height, double speed) {
@@ -71,7 +96,6 @@ void Builder::set_current(double current) {
   for (ziggurat::Magnet& magnet : magnets_) magnet.set_current(current);
 }
 
-/// @param sensor  from 1, as in the scene's comments and in the Lua script
 double Builder::distance(std::size_t sensor) const {
   const double reading = proximity_[sensor - 1].reading();
   for (std::size_t i = 1; i < std::size(calibration); ++i) {
@@ -84,7 +108,9 @@ double Builder::distance(std::size_t sensor) const {
   return infinity;
 }
 
-/// From the robot's centre to the nearest object in front of the deck.
+// The sensor is 4 mm inside of the face.
+double Builder::below() const { return distance(13) - 0.004; }
+
 double Builder::ahead() const {
   return front_sensor + std::min({distance(1), distance(2), distance(12)});
 }
@@ -93,19 +119,28 @@ bool Builder::holds() const {
   return std::max({distance(13), distance(15), distance(16)}) < 0.0045;
 }
 
-void Builder::send(std::uint8_t byte) { radio_.send({&byte, 1}); }
-
-std::optional<Face> Builder::nearest_face() const {
-  std::optional<Face> nearest;
+std::vector<Face> Builder::faces() const {
+  std::vector<Face> found;
   for (const ziggurat::Camera::TagReading& tag : camera_.tags()) {
     const std::optional<TagPose> pose = tag_pose(tag.corners, camera_, tag_side);
-    if (!pose || std::abs(pose->normal[1]) > 0.3 || std::abs(pose->centre[1]) > 0.02) continue;
-    const Face face{pose->centre[2] + camera_.position()[0], -pose->centre[0],
-                    std::atan2(pose->normal[0], -pose->normal[2])};
-    if (std::abs(face.heading) > 0.7) continue;
-    if (!nearest || face.forward < nearest->forward) nearest = face;
+    if (!pose || !(std::abs(pose->normal[1]) < 0.3)) continue;
+    const auto& [centre, normal] = *pose;
+    found.push_back({.forward = centre[2] + camera_.position()[0],
+                     .left = -centre[0],
+                     .heading = std::atan2(normal[0], -normal[2]),
+                     .up = -centre[1],
+                     .payload = tag.payload,
+                     .color = color_around(*pose, camera_)});
   }
-  return nearest;
+  std::ranges::sort(found, {}, [](const Face& face) { return std::pair(face.forward, face.left); });
+  return found;
+}
+
+std::optional<Face> Builder::nearest_face() const {
+  for (const Face& face : faces()) {
+    if (is_at_floor_level(face) && std::abs(face.heading) < 0.7) return face;
+  }
+  return std::nullopt;
 }
 
 /// The face that it drives to; none if it is not in the image.
@@ -124,26 +159,30 @@ Docking Builder::dock(double fastest) {
   bool another = false;
   const std::optional<Face> face = tracked_face(another);
   unseen_ = face ? 0 : unseen_ + 1;
-  Docking outcome = Docking::under_way;
-  if (face) {
-    outcome = dock_at(*face, fastest);
-  } else if (another) {
-    outcome = Docking::askew;
-  } else if (unseen_ > 5) {
-    outcome = Docking::lost;
+  if (!face) {
+    stop();
+    if (another) return Docking::askew;
+    if (unseen_ <= 5) return Docking::under_way;
+    forget_face();
+    return Docking::lost;
   }
-  if (!face || outcome != Docking::under_way) stop();
-  if (outcome == Docking::docked || outcome == Docking::lost) forget_face();
+  const double to_go = face->forward - reach;
+  if (to_go < 0.15 && std::abs(face->offset()) > 0.01 + 0.5 * to_go) return Docking::askew;
+  const Docking outcome = dock_at(*face, fastest, true);
+  if (outcome == Docking::docked) forget_face();
   return outcome;
 }
 
-Docking Builder::dock_at(const Face& face, double fastest) {
-  const double aside = std::abs(face.offset());
-  const double face_to_go = face.forward - reach;
-  if (face_to_go < 0.15 && aside > 0.01 + 0.5 * face_to_go) return Docking::askew;
-  const double to_go = std::min(face.forward, ahead()) - reach;
-  if (to_go < 0.03 && (aside > 0.006 || std::abs(face.heading) > 0.12)) return Docking::askew;
-  if (to_go < 0.0005) return Docking::docked;
+Docking Builder::dock_at(const Face& face, double fastest, bool touch, double distance) {
+  const double to_go = (touch ? std::min(face.forward, ahead()) : face.forward) - distance;
+  if (to_go < 0.03 && (std::abs(face.offset()) > 0.006 || std::abs(face.heading) > 0.12)) {
+    stop();
+    return Docking::askew;
+  }
+  if (to_go < 0.0005) {
+    stop();
+    return Docking::docked;
+  }
   const double speed = std::max(0.008, std::min(fastest, 1.2 * to_go));
   drive(speed, steer(face, speed));
   return Docking::under_way;
@@ -158,4 +197,4 @@ bool Builder::back_away(double speed) {
   return std::abs(face->offset()) < 0.15 * (face->forward - 0.1) || face->forward > 0.5;
 }
 
-}  // namespace stacking
+}  // namespace construction

@@ -1,0 +1,92 @@
+#pragma once
+// What a robot remembers of what it saw, in a frame of its own: where the structure's columns are,
+// what their sides showed, where material lies. Columns stand on a square lattice; so every lit
+// side that the camera sees corrects the odometry.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "../construction/builder.h"
+#include "geometry.h"
+#include "odometry.h"
+#include "path.h"
+#include "rules.h"
+
+namespace assembly {
+
+using Faces = std::span<const construction::Face>;
+
+inline constexpr double pitch = 0.078;  ///< distance of columns [m]
+inline constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();  ///< [ticks]
+
+/// A dark block; its yaw is that of a side's outward normal.
+struct Block : Pose {
+  std::int64_t seen = 0;   ///< [ticks]
+  std::int64_t avoid = 0;  ///< until then it is left alone [ticks]
+};
+
+/// What a side showed.
+struct Look {
+  const Row* row = nullptr;  ///< null: nothing that the table has
+  std::int64_t seen = 0;     ///< [ticks]
+};
+
+struct Column : Point {
+  int i = 0, j = 0;       ///< on the lattice
+  std::int64_t seen = 0;  ///< [ticks]
+  std::array<std::optional<Look>, 4> sides;
+};
+
+/// Those who got a block or a column keep it when the memory has replaced it.
+struct Memory {
+  std::optional<Pose> anchor;  ///< the first column that was seen
+  std::map<std::string, std::shared_ptr<Column>>
+      columns;  ///< by "i,j", in the order of these texts
+  std::vector<std::shared_ptr<Block>> material;
+  std::int64_t now = 0;  ///< [ticks]
+  // The side that corrected the odometry last, and when.
+  std::string last_lit;
+  std::int64_t last_lit_seen = 0;
+  int astray = 0;  ///< ticks in a row in which a lit side was seen where no column can be
+};
+
+/// A side where something may be attached.
+struct OpenSide : Pose {
+  std::shared_ptr<Column> column;
+  int side = 0;
+  const Row* row = nullptr;
+};
+
+/// A face that the camera sees now, and where it is in the frame of the map.
+struct SeenFace {
+  construction::Face face;
+  Pose place;
+};
+
+/// Takes in what the camera sees, and corrects the odometry.
+/// @return true if it is lost and begins a new map
+bool update(Memory& memory, Odometry& odometry, bool loaded, Faces faces, const Plan& plan);
+
+void forget(Memory& memory, const Point& block);
+
+/// The middle of all known columns; nothing if none is known.
+std::optional<Point> middle_of(const Memory& memory);
+/// The distance of the farthest column from the middle [m].
+double extent_of(const Memory& memory);
+
+/// All sides where something may be attached, seen in the last so many ticks.
+std::vector<OpenSide> open_sides(const Memory& memory, std::int64_t ticks = never);
+
+void add_obstacles(const Memory& memory, std::vector<Obstacle>& list);
+
+/// The seen face nearest to the place of a block's side, within 4 cm.
+std::optional<SeenFace> seen_at(Faces faces, const Pose& robot, const Pose& place);
+
+}  // namespace assembly
