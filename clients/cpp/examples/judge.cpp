@@ -75,7 +75,7 @@ int main() try {
     char text[200];
     std::snprintf(text, sizeof text, "%s stands on %s, %.2f mm aside", stack->upper->id().c_str(),
                   stack->lower->id().c_str(), 1000 * stack->aside);
-    director.metric("aside_m", stack->aside);
+    director.metric("aside_mm", 1000 * stack->aside);
     director.finish(text);
   }
 } catch (const std::exception& error) {

@@ -75,13 +75,28 @@ const Entity* World::find(std::string_view id) const {
   return found == by_id_.end() ? nullptr : found->second;
 }
 
-/// After a reset or over another connection the same entities may be told again: their handles stay.
+namespace {
+
+template <typename Descriptions>
+bool has_ids(std::span<const std::string> ids, const Descriptions& descriptions) {
+  return std::equal(ids.begin(), ids.end(), descriptions.begin(), descriptions.end(),
+                    [](const std::string& id, const auto& each) { return id == id_of(each); });
+}
+
+}  // namespace
+
+/// After a reset or over another connection the same entities may be told again: their handles stay. What was
+/// spawned since may have the id of another one.
 bool World::is_as_before(const v1::WorldLayout& layout) const {
   return std::equal(entities_.begin(), entities_.end(), layout.entities().begin(), layout.entities().end(),
                     [](const Entity& ours, const v1::EntityDescription& theirs) {
-                      return ours.id() == theirs.id() &&
-                             std::equal(ours.link_ids().begin(), ours.link_ids().end(), theirs.links().begin(),
-                                        theirs.links().end());
+                      return ours.id_ == theirs.id() && ours.kind_ == theirs.kind() &&
+                             ours.controller_ == theirs.controller() && has_ids(ours.links_.ids, theirs.links()) &&
+                             has_ids(ours.joints_.ids, theirs.joints()) && has_ids(ours.leds_.ids, theirs.leds()) &&
+                             has_ids(ours.directional_leds_.ids, theirs.directional_leds()) &&
+                             has_ids(ours.tags_.ids, theirs.tags()) &&
+                             has_ids(ours.magnets_.ids, theirs.magnets()) &&
+                             has_ids(ours.radios_.ids, theirs.radios());
                     });
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "clients/fake_director.h"
 #include "ziggurat/error.h"
@@ -201,6 +202,40 @@ TEST(Director, EntitiesComeAndGo) {
   EXPECT_TRUE(box.is_removed()) << "the handle of the world before";
   EXPECT_NE(director.find("box"), &box);
   EXPECT_TRUE(box.links().empty());
+}
+
+TEST(Director, AfterAResetSameEntitiesKeepTheirHandlesAndOthersWithTheirIdsAreNew) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome(judge());
+    self.send(arm_and_box());
+    self.send(state(0, 2));
+    self.receive();
+    auto lit = arm_and_box();
+    v1::EntityDescription& box = *lit.mutable_world_layout()->mutable_entities(1);
+    box.set_kind("cylinder");
+    box.add_leds();
+    auto all = full_state(0, -2);
+    all.mutable_world_state()->add_led_colors(0x00ff00);
+    for (const auto& [layout, state] : {std::pair(arm_and_box(), full_state(0, -2)), std::pair(lit, all)}) {
+      v1::ServerMessage reset;
+      reset.mutable_reset()->set_seed(8);
+      self.send(reset);
+      self.send(layout);
+      self.send(state);
+      self.receive();
+    }
+  });
+  Director director(options_of(server));
+  ASSERT_TRUE(director.next());
+  const Entity& box = director.entity("box");
+  ASSERT_TRUE(director.next());
+  EXPECT_EQ(director.find("box"), &box);
+  EXPECT_FALSE(box.is_removed());
+  ASSERT_TRUE(director.next());
+  EXPECT_TRUE(box.is_removed());
+  EXPECT_EQ(director.entity("box").kind(), "cylinder");
+  ASSERT_EQ(director.entity("box").leds().size(), 1U);
+  EXPECT_EQ(director.entity("box").leds()[0].green, 255);
 }
 
 TEST(Director, AStateThatWasNotAnnouncedIsRefused) {
