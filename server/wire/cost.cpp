@@ -85,9 +85,11 @@ std::size_t count(std::string_view bytes, const Descriptor& message) {
     const bool is_message =
         field != nullptr && field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
     if (is_message) fields += count(*content, *field->message_type());
-    // Each byte may be a number of a list, which takes four bytes of memory or more.
+    // Each byte may be a number of a list, which takes four bytes of memory or more. Text is looked at
+    // character by character.
     const bool has_numbers = field != nullptr && field->is_packable() && !has_fixed_size(*field);
-    if (has_numbers) fields += content->size() / numbers_per_field;
+    const bool is_text = field != nullptr && field->type() == FieldDescriptor::TYPE_STRING;
+    if (has_numbers || is_text) fields += content->size() / bytes_per_field;
   }
   return fields;
 }

@@ -10,8 +10,8 @@ namespace ziggurat::wire {
 /// 65 536 radio messages for a robot at most, and arrays count as one.
 inline constexpr std::size_t most_fields = std::size_t{1} << 18;
 
-/// So many numbers of a list count as one field if they have no fixed size.
-inline constexpr std::size_t numbers_per_field = 16;
+/// So many bytes of text, or numbers of a list that have no fixed size, count as one field.
+inline constexpr std::size_t bytes_per_field = 16;
 
 /// How many fields a ClientMessage in binary form has; it stops counting beyond `most_fields`.
 /// Decoding takes up to about 100 bytes of memory for each.

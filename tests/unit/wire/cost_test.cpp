@@ -43,7 +43,17 @@ TEST(Cost, ListsOfNumbersCountByTheirLength) {
   v1::ClientMessage message;
   for (int i = 0; i < 1600; ++i) message.mutable_command()->add_led_colors(1);
   for (int i = 0; i < 1600; ++i) message.mutable_command()->add_joint_targets(1);
-  EXPECT_EQ(count_fields(message.SerializeAsString()), 1U + 2U + 1600 / numbers_per_field);
+  EXPECT_EQ(count_fields(message.SerializeAsString()), 1U + 2U + 1600 / bytes_per_field);
+}
+
+TEST(Cost, TextCountsByItsLength) {
+  v1::ClientMessage message;
+  message.mutable_command()->add_log()->set_text(std::string(16 << 10, 'x'));
+  message.mutable_command()->add_tag_payloads(std::string(16 << 10, 'x'));
+  EXPECT_EQ(count_fields(message.SerializeAsString()), 4U + (16 << 10) / bytes_per_field);
+  message.mutable_command()->mutable_log(0)->set_text(std::string(most_fields * bytes_per_field, 'x'));
+  Inbox inbox;
+  EXPECT_EQ(inbox.parse(message.SerializeAsString()), Inbox::Kind::malformed);
 }
 
 TEST(Cost, AnyBytesEnd) {

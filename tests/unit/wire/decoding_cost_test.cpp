@@ -23,11 +23,11 @@ double processor_time() {
 
 /// As many of `unit` between the others as a Command of robots without radios may have.
 std::string json_of(const std::string& begin, const std::string& unit, const std::string& end,
-                    std::size_t most = command_allowance) {
+                    std::size_t most = command_allowance, std::size_t longest = command_allowance) {
   std::string text = begin;
-  text.reserve(command_allowance);
+  text.reserve(longest);
   for (std::size_t i = 0; i < most; ++i) {
-    if (text.size() + unit.size() + end.size() > command_allowance) break;
+    if (text.size() + unit.size() + end.size() > longest) break;
     text += unit;
   }
   return text + end;
@@ -46,6 +46,15 @@ std::string many_messages_in_binary() {
   return message.SerializeAsString();
 }
 
+/// As many as a Command of robots with radios may have.
+std::string long_messages_in_binary() {
+  v1::ClientMessage message;
+  for (int i = 0; i < 63; ++i) {
+    message.mutable_command()->add_radio_messages()->set_payload(std::string(1 << 20, 'x'));
+  }
+  return message.SerializeAsString();
+}
+
 TEST(Decoding, TheWorstMessagesTakeLessThanASecond) {
   const struct {
     const char* name;
@@ -53,6 +62,8 @@ TEST(Decoding, TheWorstMessagesTakeLessThanASecond) {
   } messages[] = {
       {"text in binary", text_in_binary()},
       {"radio messages in binary", many_messages_in_binary()},
+      {"the longest in binary", long_messages_in_binary()},
+      {"the longest in JSON", json_of(R"({"command":{"tagPayloads":[")", "AAAA", R"("]}})", 6 << 20, 24 << 20)},
       {"text in JSON", json_of(R"({"command":{"log":[{"text":")", "\xe2\x82\xac", R"("}]}})")},
       {"bytes in JSON", json_of(R"({"command":{"tagPayloads":[")", "AAAA", R"("]}})")},
       {"numbers in JSON",
