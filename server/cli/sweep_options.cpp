@@ -24,6 +24,7 @@ namespace po = boost::program_options;
 
 constexpr unsigned help_width = 96;  // [characters]
 constexpr unsigned most_jobs = 4096;
+constexpr std::size_t most_run_arguments = 1000;
 
 // Options of `run` that the sweep sets itself.
 constexpr const char* own_options[] = {"seed", "set", "param", "summary", "record"};
@@ -45,6 +46,10 @@ std::pair<Arguments, Arguments> split(const Arguments& arguments) {
 }
 
 void check_run_arguments(const std::vector<std::string>& arguments) {
+  if (arguments.size() > most_run_arguments) {
+    throw text::UsageError(fmt::format("there are {} options for runs; at most {} are taken", arguments.size(),
+                                       most_run_arguments));
+  }
   const Parsed parsed = parse(arguments, run_options());
   const Values values(parsed.values);
   for (const char* name : own_options) {

@@ -67,7 +67,10 @@ class FileReader {
 
   /// A number, a text or true or false, as a scene file has it.
   std::string text_of(const toml::node& node) const {
-    if (const auto* text = node.as_string()) return text->get();
+    if (const auto* text = node.as_string()) {
+      if (text->get().find('\0') == std::string::npos) return text->get();
+      fault(node.source(), "a text must have no zero byte");
+    }
     if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
     if (const auto* number = node.as_floating_point()) {
       if (std::isfinite(number->get())) return fmt::format("{}", number->get());
@@ -77,7 +80,9 @@ class FileReader {
     fault(node.source(), "a value must be a number, a text in quotes, true or false");
   }
 
-  std::string in_folder(const std::string& path) const {
+  std::string in_folder(const toml::node& node) const {
+    const std::string path = text_of(node);
+    if (path.empty()) fault(node.source(), "the path is empty");
     return fs::absolute(fs::path(path_).parent_path() / path).lexically_normal().string();
   }
 
@@ -88,7 +93,7 @@ class FileReader {
           fmt::format("{}: there is no scene; write: scene = \"FILE.argos\"", path_));
     }
     if (!node->is_string()) fault(node->source(), "scene must be a path in quotes");
-    return in_folder(text_of(*node));
+    return in_folder(*node);
   }
 
   std::vector<std::uint64_t> seeds_of(const toml::table& table) const {
@@ -96,8 +101,9 @@ class FileReader {
     if (node == nullptr) return {};
     std::vector<std::uint64_t> seeds;
     const auto add = [&](const toml::node& each) {
+      const std::string text = text_of(each);
       try {
-        const auto more = to_seeds("seeds", text_of(each));
+        const auto more = to_seeds("seeds", text);
         seeds.insert(seeds.end(), more.begin(), more.end());
       } catch (const text::UsageError& error) {
         fault(each.source(), error.what());
@@ -165,7 +171,7 @@ class FileReader {
       file.jobs = static_cast<unsigned>(*jobs);
     }
     file.timeout = number("timeout");
-    if (const auto* node = table["out"].node()) file.out = in_folder(text_of(*node));
+    if (const auto* node = table["out"].node()) file.out = in_folder(*node);
     if (const auto* node = table["record"].node()) {
       file.record = text_of(*node);
       if (file.record != "failed" && file.record != "all") {

@@ -43,11 +43,17 @@ void write_all(int file, std::string_view text, const fs::path& path) {
 }
 
 /// By number, each run once. Files that are not there have none.
-std::vector<Result> read_ledgers(std::span<const fs::path> paths) {
+/// @param runs  how many the sweep has
+std::vector<Result> read_ledgers(std::span<const fs::path> paths, std::size_t runs) {
   std::map<std::size_t, Result> by_run;
   for (const fs::path& path : paths) {
     if (!fs::exists(path)) continue;
     for (Result& result : Ledger(path.string()).read()) {
+      if (result.run < 1 || result.run > runs) {
+        throw LedgerError(fmt::format("{} has a run {}, and the sweep has {}: the file is damaged, or of another "
+                                      "sweep; move it away",
+                                      path.string(), static_cast<std::int64_t>(result.run), runs));
+      }
       auto& known = by_run[result.run];
       // Of a run that failed here and finished there, the end counts.
       if (known.run == 0 || known.outcome != Outcome::finished) known = std::move(result);
@@ -99,6 +105,9 @@ void Folder::check(const Definition& definition) const {
     return check_same(this->definition(), definition, path_.string());
   }
   if (!fs::exists(path_)) return;
+  if (!fs::is_directory(path_)) {
+    throw text::UsageError(fmt::format("{} is no folder; write an empty or a new one with --out", path_.string()));
+  }
   const bool has_others = std::any_of(fs::directory_iterator(path_), {}, [](const auto& entry) {
     const std::string name = entry.path().filename();
     return name != "lock" && !name.starts_with("experiment.json.");
@@ -126,12 +135,12 @@ std::vector<Result> Folder::results() const {
   }
   std::ranges::sort(ledgers);
   ledgers.push_back(ledger());
-  return read_ledgers(ledgers);
+  return read_ledgers(ledgers, run_count(definition().experiment));
 }
 
 std::vector<Result> Folder::results_for_task(std::size_t task) const {
   const std::vector<fs::path> ledgers = {task_ledger(task), ledger()};
-  return read_ledgers(ledgers);
+  return read_ledgers(ledgers, run_count(definition().experiment));
 }
 
 void Folder::write_csv(const Experiment& experiment, const std::vector<Result>& results) const {

@@ -15,6 +15,7 @@ namespace ziggurat::sweep {
 namespace {
 
 constexpr int busy_ms = 10'000;  // wait for another program that reads or writes
+constexpr int longest_value = 1 << 24;  // of a value, a row or a statement [bytes]
 
 constexpr const char* schema = R"(
 CREATE TABLE IF NOT EXISTS runs (
@@ -127,12 +128,25 @@ Ledger::Ledger(const std::string& path) : path_(path) {
   constexpr int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   try {
     if (sqlite3_open_v2(path.c_str(), &database_, flags, nullptr) != SQLITE_OK) fail();
+    harden();
     sqlite3_busy_timeout(database_, busy_ms);
     execute("PRAGMA synchronous=FULL");
     execute(schema);
   } catch (...) {
     sqlite3_close(database_);
     throw;
+  }
+}
+
+/// The file may be anyone's: nothing in it runs when it is read, and no value takes much memory.
+void Ledger::harden() {
+  for (const int option : {SQLITE_DBCONFIG_ENABLE_VIEW, SQLITE_DBCONFIG_ENABLE_TRIGGER,
+                           SQLITE_DBCONFIG_TRUSTED_SCHEMA}) {
+    sqlite3_db_config(database_, option, 0, nullptr);
+  }
+  sqlite3_db_config(database_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  for (const int limit : {SQLITE_LIMIT_LENGTH, SQLITE_LIMIT_SQL_LENGTH}) {
+    sqlite3_limit(database_, limit, longest_value);
   }
 }
 

@@ -40,6 +40,7 @@ class Ledger {
   void make_view(const Experiment& experiment);
 
  private:
+  void harden();
   void execute(const std::string& sql) const;
   class Statement;
   Statement prepare(const std::string& sql) const;

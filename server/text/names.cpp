@@ -26,10 +26,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string closest(std::string_view word, std::span<const std::string> candidates) {
+  constexpr std::size_t longest = 256;  // of what a person has mistyped; the cost grows with its square
+  if (word.size() > longest) return {};
   const std::string* best = nullptr;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const auto& candidate : candidates) {
     const bool begins = word.size() > 3 && candidate.starts_with(word);
+    if (!begins && candidate.size() > word.size() + best_distance) continue;
     const std::size_t away = begins ? 1 : edit_distance(word, candidate);
     if (away < best_distance) {
       best = &candidate;

@@ -1,10 +1,12 @@
 """Hostile files, settings, requests and servers, each against the real program: a sentence, and it goes on."""
 
+import contextlib
 import os
 import pathlib
 import random
 import shutil
 import socket
+import sqlite3
 import subprocess
 import sys
 import threading
@@ -144,6 +146,44 @@ class Attacks(SceneTest):
                         self.assertEqual(outcome.code, 1 if file == "experiment.json" else outcome.code)
                         self.assert_is_sentence(outcome, ".|^$")
                         self.assertNotRegex(outcome.out + outcome.err, "[\x00-\x08\x0b-\x1f\x7f-\x9f]|basic_")
+
+    def test_hostile_ledgers_of_sweeps(self):
+        """Rows that the sweep does not have, values without bound, and SQL that would run when it is read."""
+        self.assertEqual(self.ziggurat("sweep", self.scene, "--seeds", 1, "--ticks", 2, "--out", "whole", "--quiet").code, 0)
+        endless = "WITH RECURSIVE c(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM c) SELECT n"
+        for name, code, statements in (
+                ("beyond", FAULT, ["UPDATE runs SET run = 2"]), ("none", FAULT, ["UPDATE runs SET run = 0"]),
+                ("negative", FAULT, ["UPDATE runs SET run = -9223372036854775807"]),
+                ("long", FAULT, ["UPDATE runs SET hash = zeroblob(100000000)"]),
+                ("view", FAULT, ["ALTER TABLE runs RENAME TO kept", f"CREATE VIEW runs AS {endless} AS run, 1, 1 FROM c"]),
+                ("trigger", 0, [f"CREATE TRIGGER t BEFORE INSERT ON runs BEGIN INSERT INTO metrics {endless}, 1, 1 FROM c; END",
+                                "DELETE FROM runs"]),
+                ("numbers", 0, ["UPDATE runs SET ticks = 1e999, wall_s = 'nan', seed = 'x', exit_code = 1e300"]),
+                ("names", 0, ["INSERT INTO metrics VALUES (1, 'a' || char(10, 27) || '[2J\"', 1)"])):
+            folder = self.folder / name
+            shutil.copytree(self.folder / "whole", folder)
+            with contextlib.closing(sqlite3.connect(folder / "sweep.sqlite", isolation_level=None)) as ledger:
+                for statement in statements:
+                    ledger.execute(statement)
+            for command in ("status", "results", "resume"):
+                with self.subTest(name=name, command=command):
+                    outcome = self.ziggurat("sweep", command, folder)
+                    self.assertEqual(outcome.code, code, outcome.err)
+                    self.assert_is_sentence(outcome, ".|^$")
+                    self.assertNotRegex(outcome.out + outcome.err, "[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+
+    def test_hostile_experiments(self):
+        usual = {"scene": '"arms.argos"', "ticks": "1", "seeds": "[1]"}
+        for changes in ({"scene": '""'}, {"scene": '"/dev/zero"'}, {"scene": "[1]"}, {"seeds": "[[1]]"}, {"seeds": "[-1]"},
+                        {"seeds": '"1..18446744073709551615"'}, {"jobs": "nan"}, {"timeout": "-1"}, {"out": '""'},
+                        {"out": '"arms.argos"'}, {"out": '"/dev/null"'}, {"run": '["a\\u0000b"]'},
+                        {"run": '["--trace", "arms.argos"]'}, {"run": '["--summary", "x"]'},
+                        {"run": "[" + '"--quiet", ' * 100_000 + "]"}, {"k" * 1_000_000: "1"}, {"a": "[" * 100_000},
+                        {"parameters": "[nan]"}, {"parameters": '{"x\\u001b[2J" = 1}'}):
+            text = "".join(f"{key} = {value}\n" for key, value in (usual | changes).items())
+            with self.subTest(text[-80:]):
+                more = () if "out" in changes else ("--out", "results")
+                self.refuses("sweep", self.write("e.toml", text), *more)
 
     # --- the network ----------------------------------------------------------------------------
 

@@ -21,6 +21,7 @@ TEST(Closest, IsTheCandidateThatWasProbablyMeant) {
   EXPECT_EQ(closest("--max-scene", names), "--max-scene-size") << "a beginning is near";
   EXPECT_EQ(closest("--xyzzy", names), "");
   EXPECT_EQ(closest("--ticks", {}), "");
+  EXPECT_EQ(closest(std::string(100'000'000, 'x'), names), "") << "at once";
 }
 
 TEST(Advice, NamesTheCandidateOrSaysWhatElseToDo) {
