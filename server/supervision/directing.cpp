@@ -253,8 +253,9 @@ void Directing::note_left_out(const std::string& director, const std::string& wh
   const auto now = std::chrono::steady_clock::now();
   if (now < next_notice_) return;
   const auto others = untold_ == 1 ? std::string() : fmt::format(" ({} acts were left out since the last line)", untold_);
+  const std::string_view sentence(why.data(), why.find_last_not_of('\n') + 1);
   console_.notice(fmt::format("director '{}', tick {}: {}{}", director, world_.simulation.state().tick,
-                              why, others));
+                              sentence, others));
   untold_ = 0;
   next_notice_ = now + between_notices;
 }
