@@ -107,12 +107,13 @@ bool System::wake_disturbed(double length, std::span<Contact> contacts, std::spa
     wake(tree);
     woke = true;
   });
-  const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
+  const auto moves = [&](int tree) { return trees[tree].dofs > 0; };
   for (bool again = true; again;) {  // who wakes may touch another
     again = false;
     for (const Contact& contact : contacts_) {
       const int a = contact.a.tree, b = contact.b.tree;
-      if (!moves(a) || !moves(b) || asleep(a) == asleep(b) || !comes_to_touch(contact)) continue;
+      if (a < 0 || b < 0 || asleep(a) == asleep(b)) continue;  // most, and this reads no tree
+      if (!moves(a) || !moves(b) || !comes_to_touch(contact)) continue;
       wake(a);
       wake(b);
       again = woke = true;

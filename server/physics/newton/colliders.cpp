@@ -61,11 +61,11 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
 
 /// Asks for the memory that follow() reads of the trees after one.
 void fetch_after(std::size_t number, const std::vector<dynamics::Tree>& trees) {
-  if (number + 2 < trees.size()) dynamics::fetch(&trees[number + 2], sizeof(dynamics::Tree));
-  if (number + 1 >= trees.size()) return;
-  dynamics::fetch(trees[number + 1].rotation);
-  dynamics::fetch(trees[number + 1].position);
-  dynamics::fetch(trees[number + 1].motion);
+  if (number + 4 < trees.size()) dynamics::fetch(&trees[number + 4], sizeof(dynamics::Tree));
+  if (number + 2 >= trees.size()) return;
+  dynamics::fetch(trees[number + 2].rotation);
+  dynamics::fetch(trees[number + 2].position);
+  dynamics::fetch(trees[number + 2].motion);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "dynamics/fetch.h"
 #include "physics/convert.h"
 #include "physics/most_contacts.h"
 #include "physics/newton/passage.h"
@@ -125,8 +126,13 @@ void Contacts::meet_all(double length) {
     meet(pair_of(near.a, near.b, places_[key_of(near.a, near.b)]), length);
   }
   if (!colliders_.floor) return;
-  for (const std::size_t index : colliders_.followed()) {
-    const ColliderGroup& group = colliders_.groups[index];
+  const std::span<const std::size_t> followed = colliders_.followed();
+  for (std::size_t k = 0; k < followed.size(); ++k) {
+    const ColliderGroup& group = colliders_.groups[followed[k]];
+    const ColliderGroup& next = colliders_.groups[followed[std::min(k + 1, followed.size() - 1)]];
+    for (std::size_t i = next.first; i < next.first + next.count; ++i) {
+      dynamics::fetch(pairs_.data() + floor_pairs_[i], Pair::beginning);
+    }
     for (std::size_t i = group.first; i < group.first + group.count; ++i) {
       const Collider& collider = colliders_.all[i];
       if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
@@ -332,6 +338,7 @@ void Contacts::emit(const Pair& pair) {
 
 void Contacts::remember(bool more) {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    if (i + 8 < contacts_.size()) dynamics::fetch(pairs_.data() + owner_[i + 8], Pair::beginning);
     Pair& pair = pairs_[owner_[i]];
     Remembered& point = pair.points[i - pair.first];
     if (more) pair.earlier += contacts_[i].impulse;

@@ -67,6 +67,7 @@ class Contacts {
   };
   // Begins a line of the cache.
   struct alignas(64) Pair {
+    static constexpr std::size_t beginning = 256;  // with the first point [bytes]
     std::uint32_t a = 0, b = 0;  // colliders
     bool live = false;
     bool rests = false;       // both sides did in the substep in which it was seen last
