@@ -1,17 +1,19 @@
 // What viewers cost: CPU time of the run's thread per tick without and with one that subscribes to what
-// the page does, and memory of ten that never read. The kinds of runs are done by turns, so that what else the
-// machine does falls on all of them.
+// the page does, and memory of ten that never read. In one run a viewer subscribes and unsubscribes by turns of some
+// seconds, so that what else the machine does falls on both kinds, and each turn is compared with its neighbours.
 //
-// usage: node view.mjs ZIGGURAT SCENE TICKS [TURNS]    in a folder with the packages of tests/view (npm ci)
+// usage: node view.mjs ZIGGURAT SCENE [TURNS [SECONDS]]    in a folder with the packages of tests/view (npm ci)
 import foxglove from "@foxglove/ws-protocol";
 import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import WebSocket from "ws";
 
-const [program, scene, ticks, turns = 5] = process.argv.slice(2);
+const [program, scene, turns = 20, seconds = 2] = process.argv.slice(2);
 const protocol = foxglove.FoxgloveClient.SUPPORTED_SUBPROTOCOL;
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
-const page = ["/world", "/poses", "/detections", "/radio", "/contacts", "/barrier", "/phases", "/log"];
+/** What the page subscribes to at first, in a world with few robots and links. */
+const page = /^\/(world|poses|log|barrier|phases|rays|radio|contacts|robots\/[^/]+\/(observation|command))$/;
+const all = /./;
 
 function start(...options) {
   const child = spawn(program, ["run", scene, "--quiet", "--view=127.0.0.1:0", ...options]);
@@ -24,59 +26,87 @@ function start(...options) {
 const cpu = ({ pid }) => Number(readFileSync(`/proc/${pid}/task/${pid}/schedstat`, "utf8").split(" ")[0]);
 const memory = ({ pid }) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]);
 
+/** @param topics  an expression of those to subscribe to */
 async function connect(url, topics, reads) {
   const ws = new WebSocket(url, [protocol]);
   ws.on("error", () => {});
   const channels = new Map();
-  let phase = "", tick = -1;
+  const viewer = { ws, heard: () => {} };
   ws.on("message", (data, isBinary) => {
-    if (isBinary) return;
+    if (isBinary) return data[0] === 1 ? viewer.heard(data.subarray(13)) : undefined;
     const message = JSON.parse(data);
     if (message.op === "advertise") message.channels.forEach((c) => channels.set(c.topic, c.id));
-    if (message.op === "parameterValues") for (const p of message.parameters) if (p.name === "phase") phase = p.value;
   });
   await new Promise((resolve) => ws.on("open", resolve));
   while (channels.size === 0) await sleep(5);
   const send = (message) => ws.send(JSON.stringify(message));
-  send({ op: "subscribeParameterUpdates", parameterNames: ["phase"] });
-  send({ op: "getParameters", parameterNames: ["phase"] });
-  const all = topics ?? [...channels.keys()];
-  send({ op: "subscribe", subscriptions: all.map((topic, id) => ({ id, channelId: channels.get(topic) })) });
+  const matching = (wanted) => [...channels].filter(([topic]) => wanted.test(topic)).map(([, id]) => ({ id, channelId: id }));
+  viewer.subscribe = (wanted) => send({ op: "subscribe", subscriptions: matching(wanted) });
+  viewer.unsubscribe = (wanted) => send({ op: "unsubscribe", subscriptionIds: matching(wanted).map(({ id }) => id) });
+  if (topics) viewer.subscribe(topics);
   if (!reads) setTimeout(() => ws._socket.pause(), 50);
-  return { ws, over: () => phase === "over" };
+  return viewer;
 }
 
-/** CPU time per tick of a whole run [us]. The watcher of its end subscribes to /log only. */
-async function measure(factor, topics) {
-  const { child, url } = await start(`--ticks=${ticks}`, `--real-time=${factor}`);
-  const viewer = await connect(url, topics, true);
-  const before = cpu(child);
-  while (!viewer.over()) await sleep(20);
-  const used = (cpu(child) - before) / 1000 / Number(ticks);
-  child.kill("SIGKILL");
-  return used;
-}
-
-const median = (list) => list.toSorted((a, b) => a - b)[Math.floor(list.length / 2)];
-for (const factor of [10, 1e6]) {
-  const without = [], page_ = [], each = [];
-  for (let i = 0; i < turns; ++i) {
-    without.push(await measure(factor, ["/log"]));
-    page_.push(await measure(factor, page));
-    each.push(await measure(factor, null));
+/** The tick of a Barrier: field 1 of its field 1. */
+function tickOf(data) {
+  let at = 1;
+  while (data[at++] & 128); // length of the status
+  if (data[at++] !== 8) return 0;
+  let tick = 0;
+  for (let shift = 0; ; shift += 7) {
+    tick += (data[at] & 127) * 2 ** shift;
+    if (!(data[at++] & 128)) return tick;
   }
-  const share = (list) => `${median(list).toFixed(0)} us (` +
-    `${((median(list.map((used, i) => used / without[i])) - 1) * 100).toFixed(1)} % in the median of the turns)`;
-  console.log(`factor ${factor}: a tick takes ${median(without).toFixed(0)} us of CPU time without pictures of it, ` +
-              `${share(page_)} with the page's topics, ${share(each)} with all topics`);
+}
+
+/** Mean and its standard error. */
+function estimate(list) {
+  const mean = list.reduce((sum, value) => sum + value, 0) / list.length;
+  return [mean, Math.sqrt(list.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (list.length - 1) / list.length)];
+}
+
+/** What a viewer of these topics adds to a tick, at so many times real time. */
+async function measure(factor, topics, name) {
+  const { child, url } = await start("--duration=0", `--real-time=${factor}`);
+  const watcher = await connect(url, /^\/barrier$/, true); // each 250 ms, in both kinds of turns
+  const viewer = await connect(url, null, true);
+  const moment = () => new Promise((resolve) => {
+    watcher.heard = (data) => resolve({ tick: tickOf(data), used: cpu(child) });
+  });
+  const turn = async () => {
+    await sleep(200); // what was begun before is over
+    const begin = await moment();
+    await sleep(1000 * seconds);
+    const end = await moment();
+    return (end.used - begin.used) / 1000 / (end.tick - begin.tick);
+  };
+  await sleep(1000);
+  const without = [await turn()], shares = [];
+  for (let i = 0; i < turns; ++i) {
+    viewer.subscribe(topics);
+    const shown = await turn();
+    viewer.unsubscribe(topics);
+    without.push(await turn());
+    shares.push(100 * (2 * shown / (without.at(-1) + without.at(-2)) - 1));
+  }
+  child.kill("SIGKILL");
+  const [share, error] = estimate(shares);
+  console.log(`${name}, at ${factor} times real time: a tick takes ${estimate(without)[0].toFixed(0)} us of CPU time without `
+    + `viewer, with one ${share.toFixed(1)} % more (standard error ${error.toFixed(1)} %, ${turns} turns)`);
+}
+
+for (const factor of [10, 1e6]) {
+  await measure(factor, page, "the page's topics");
+  await measure(factor, all, "all topics");
 }
 
 const { child, url } = await start("--duration=0", "--real-time=20");
-const first = await connect(url, page, true);
+await connect(url, page, true);
 await sleep(2000);
 const before = memory(child);
 const sleepers = [];
-for (let i = 0; i < 10; ++i) sleepers.push(await connect(url.replace(/\?.*/, ""), null, false));
+for (let i = 0; i < 10; ++i) sleepers.push(await connect(url.replace(/\?.*/, ""), all, false));
 for (let second = 0; second <= 30; second += 10) {
   console.log(`ten viewers that never read, after ${second} s: ${memory(child) - before} KiB more than before`);
   await sleep(10_000);

@@ -203,9 +203,11 @@ void Simulation::Parts::step() {
   devices.apply(now);
   set_pushes(physics, commands.pushes);
   for (unsigned i = 0; i < substeps; ++i) {
+    if (lists_contacts && i + 1 == substeps) physics.list_contacts(&contacts);
     physics.step();
     devices.after_substep(now);
   }
+  physics.list_contacts(nullptr);
   commands.pushes.clear();
   state.tick += 1;
   state.time_ns = std::llround(static_cast<long double>(state.tick) * 1e9L / ticks_per_second);
@@ -223,7 +225,6 @@ void Simulation::Parts::step() {
 }
 
 void Simulation::list_contacts(bool wanted) {
-  parts_->physics.list_contacts(wanted ? &parts_->contacts : nullptr);
   parts_->lists_contacts = wanted;
   if (!wanted) parts_->contacts.clear();
 }

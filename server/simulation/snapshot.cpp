@@ -194,7 +194,6 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
     fresh->lists_contacts = p.lists_contacts;
     fresh->lists_rays = p.lists_rays;
     parts_ = std::move(fresh);
-    list_contacts(parts_->lists_contacts);
   } catch (const math::ArchiveError& error) {
     *layout_ = std::move(before);
     throw SnapshotError(std::string("The snapshot can't be read: ") + error.what());

@@ -56,7 +56,7 @@ async function connect({ host, token }) {
 
 function once(client, event, accept = () => true) {
   return new Promise((resolve, reject) => {
-    const timer = setTimeout(() => reject(new Error(`no ${event} within 10 s`)), 10_000);
+    const timer = setTimeout(() => reject(new Error(`no ${event} within 30 s`)), 30_000);
     const listener = (value) => {
       if (!accept(value)) return;
       clearTimeout(timer);
@@ -68,11 +68,11 @@ function once(client, event, accept = () => true) {
 }
 
 async function until(holds, what = holds) {
-  for (let i = 0; i < 500; ++i) {
+  for (let i = 0; i < 1500; ++i) {
     if (await holds()) return;
     await sleep(20);
   }
-  assert.fail(`not within 10 s: ${what}`);
+  assert.fail(`not within 30 s: ${what}`);
 }
 
 function subscribe(viewer, topic) {
@@ -168,6 +168,7 @@ const tests = {
     assert.ok(z < 1, "it falls");
 
     const paused = await call(viewer, "/pause");
+    await until(() => tick === paused.tick, "the last tick is shown");
     await sleep(400);
     assert.equal(tick, paused.tick, "a paused world stands");
     assert.equal((await call(viewer, "/step")).tick, paused.tick + 1);
@@ -184,11 +185,10 @@ const tests = {
     await assert.rejects(call(viewer, "/spawn", { xml }), /late/);
     await call(viewer, "/remove", { entity: "late" });
     await until(() => varint(world, 1) === before + 2);
-    await call(viewer, "/speed", { factor: 20 });
+    await call(viewer, "/speed", { factor: 1000 });
     await call(viewer, "/resume");
     const from = tick;
-    await sleep(1000);
-    assert.ok(tick > from + 60, `20 times as fast: ${tick - from} ticks in a second`);
+    await until(() => tick > from + 3000, "ticks that would take five minutes");
     assert.equal((await call(viewer, "/reset", { seed: 5 })).tick, 0);
     await until(() => varint(world, 4) !== 0 && varint(world, 1) === before + 3, "the world began anew");
     viewer.client.close();
@@ -306,8 +306,7 @@ const tests = {
     let frames = 0;
     subscribe(viewer, "/poses");
     viewer.client.on("message", () => ++frames);
-    await sleep(1500);
-    assert.ok(frames > 30, `${frames} frames in 1.5 s`);
+    await until(() => frames > 60, "frames beside the sleepers");
     sleepers.forEach((ws) => ws.terminate());
     viewer.client.close();
   },
@@ -324,7 +323,7 @@ const tests = {
     };
     const [early, late] = await Promise.all([start("--view=127.0.0.1:0"), start("--view=127.0.0.1:0")]);
     [early, late].forEach(({ child }) => child.removeAllListeners("exit"));
-    const ticks = await Promise.all([first(early, 1500), first(late, 7000)]);
+    const ticks = await Promise.all([first(early, 1500), first(late, 9000)]);
     assert.equal(ticks[0], 0, "10 ticks per second, and none before the first viewer");
     assert.ok(ticks[1] > 0, "after 5 seconds it begins");
   },

@@ -150,14 +150,19 @@ export async function pictureAtRest(page) {
 
 /** The picture of the world, without what lies over it. */
 export async function picture(page) {
-  await page.evaluate(() => {
+  await page.evaluate(async () => {
     for (const element of document.querySelectorAll(".tools, #notices")) element.style.visibility = "hidden";
+    const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
+    await frame();
+    window.ziggurat.view.stage.renderer.getContext().finish(); // all that was asked for is drawn
+    await frame(); // and handed over
+    await frame();
   });
-  await page.waitForTimeout(700); // slow machines draw a frame in that time
   return page.locator("#world").screenshot();
 }
 
-export async function waitFor(look, what, seconds = 30) {
+/** @param seconds  far more than it takes: machines may be busy */
+export async function waitFor(look, what, seconds = 60) {
   const end = Date.now() + 1000 * seconds;
   for (;;) {
     const found = await look();

@@ -4,7 +4,7 @@ import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { after, before, test } from "node:test";
-import { decode, liveTick, onScreen, openBrowser, openPage, pictureAtRest, placeOf, root, Run, shownTick, waitFor, ziggurat }
+import { decode, liveTick, newPage, onScreen, openBrowser, openPage, pictureAtRest, placeOf, root, Run, shownTick, waitFor, ziggurat }
   from "./browser.mjs";
 
 const drop = "scenes/dynamics3d_single_body_test.argos";
@@ -25,7 +25,7 @@ after(async () => {
 
 /** Runs a scene, opens its page, and checks at the end that the page had no trouble. */
 function pageTest(name, scene, hash, body, ...options) {
-  test(name, { timeout: 90_000 }, async () => {
+  test(name, { timeout: 180_000 }, async () => {
     const run = await Run.start(scene, ...options);
     try {
       const page = await openPage(browser, run.address, hash);
@@ -48,15 +48,22 @@ function countResets(page) {
   return page.evaluate(() => window.ziggurat.app.timeline.marks.filter(({ kind }) => kind === "reset").length);
 }
 
-/** Lets the world begin again, and pauses it in its first ticks. */
+/** Waits until the world is paused and the page has its last tick, and returns that. */
+function standing(page) {
+  return waitFor(() => page.evaluate(() => {
+    const { barrier, timeline } = window.ziggurat.app;
+    const paused = 3;
+    return barrier?.status.phase === paused && barrier.status.tick === timeline.newest.tick && { tick: barrier.status.tick };
+  }), "a world that stands").then(({ tick }) => tick);
+}
+
+/** Lets the world begin again, paused. */
 async function beginAgain(page) {
   await waitFor(async () => (await liveTick(page)) > 0, "first tick"); // from which the page sees the world go back
-  await page.locator("#reset").click();
-  await waitFor(() => page.evaluate(() => window.ziggurat.app.timeline.marks.some(({ kind }) => kind === "reset")), "reset");
   await page.locator("#play").click();
-  await phaseIs(page, "paused");
-  await waitFor(async () => (await shownTick(page)) === (await liveTick(page)), "newest tick");
-  assert.ok((await shownTick(page)) <= 2);
+  await standing(page);
+  await page.locator("#reset").click();
+  await waitFor(async () => (await shownTick(page)) === 0 && (await standing(page)) === 0, "tick 0");
 }
 
 /** Goes on until so many ticks are over. */
@@ -80,7 +87,7 @@ pageTest("the drop: a hundred bodies move, and the picture is that of `render`",
   const first = await pictureAtRest(page);
   await playUntil(page, 8);
   await page.locator("#play").click();
-  await phaseIs(page, "paused");
+  await standing(page);
   await waitFor(async () => (await shownTick(page)) === (await liveTick(page)), "newest tick");
   const png = await pictureAtRest(page);
   assert.ok(!png.equals(first));
@@ -132,7 +139,7 @@ pageTest("a paused world that begins again stays paused, and the page shows it",
   }
 }, "--real-time", "0.1");
 
-test("a replay is watched as a run, and can't be changed", { timeout: 90_000 }, async () => {
+test("a replay is watched as a run, and can't be changed", { timeout: 180_000 }, async () => {
   const file = `${folder}/replayed.mcap`;
   execFileSync(ziggurat, ["run", tags, "--ticks=40", "--quiet", "--record", file], { cwd: root, stdio: "ignore" });
   const run = await Run.replay(file, "--real-time", "0.1"); // 40 s: slow pages pause it before its end
@@ -140,9 +147,7 @@ test("a replay is watched as a run, and can't be changed", { timeout: 90_000 }, 
     const page = await openPage(browser, run.address);
     await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
     await key(page, "Space");
-    await phaseIs(page, "paused");
-    await page.waitForTimeout(300);
-    const tick = await liveTick(page);
+    const tick = await standing(page);
     await page.locator("#step").click();
     await waitFor(async () => (await liveTick(page)) === tick + 1, "next tick");
     await page.locator("#reset").click(); // refused
@@ -163,15 +168,12 @@ test("a replay is watched as a run, and can't be changed", { timeout: 90_000 }, 
 pageTest("pause stops the server, a step is one tick, resume goes on", tags, "", async (page) => {
   await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
   await key(page, "Space");
-  await phaseIs(page, "paused");
-  await page.waitForTimeout(300);
-  const tick = await liveTick(page);
+  const tick = await standing(page);
   await page.waitForTimeout(1000);
   assert.equal(await liveTick(page), tick);
   await page.locator("#step").click();
   await waitFor(async () => (await liveTick(page)) === tick + 1, "next tick");
-  await page.waitForTimeout(300);
-  assert.equal(await liveTick(page), tick + 1);
+  assert.equal(await standing(page), tick + 1);
   await page.locator("#play").click();
   await waitFor(async () => (await liveTick(page)) > tick + 3, "further ticks");
 });
@@ -205,8 +207,8 @@ pageTest("scrubbing back shows old poses while the world runs on", drop, "", asy
     return (begin - timeline.first) / (timeline.length - 1);
   });
   await page.mouse.click(line.x + start * line.width + 1, line.y + line.height / 2);
-  await waitFor(() => page.evaluate(() => window.ziggurat.app.pinned !== null), "look back");
-  await page.waitForTimeout(500);
+  await waitFor(() => page.evaluate(() => window.ziggurat.app.pinned !== null
+    && window.ziggurat.view.poses.tick === window.ziggurat.app.frame.tick), "look back");
   const [old, tick] = [await placeOf(page, id), await shownTick(page)];
   const live = await liveTick(page);
   assert.ok(tick <= 3, `tick ${tick}`);
@@ -255,7 +257,7 @@ pageTest("a tag's pattern is found by libapriltag", tags, "eye=0,-0.001,0.4&at=0
   const file = `${folder}/tag.pgm`;
   await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
   await key(page, "Space");
-  await phaseIs(page, "paused");
+  await standing(page);
   const found = async () => {
     const { width, height, data } = await decode(page, await pictureAtRest(page));
     const grey = Buffer.from(Uint8Array.from({ length: width * height }, (_, i) => data[4 * i + 1]));
@@ -295,7 +297,7 @@ pageTest("what is spawned comes, what is removed goes", tags, "", async (page) =
   await page.locator(".notice.error").waitFor();
 });
 
-test("a server that was killed and started again is found within seconds", { timeout: 90_000 }, async () => {
+test("a server that was killed and started again is found within seconds", { timeout: 180_000 }, async () => {
   const token = "test-token-0123456789";
   let run = await Run.start(tags, "--view=127.0.0.1:0", "--view-token", token);
   try {
@@ -310,7 +312,7 @@ test("a server that was killed and started again is found within seconds", { tim
     await waitFor(() => page.evaluate((old) => {
       const { connection, timeline } = window.ziggurat.app;
       return connection.phase === "open" && connection.session !== old && timeline.length > 1;
-    }, session), "new session", 10);
+    }, session), "new session");
     console.log(`back after ${((Date.now() - begin) / 1000).toFixed(1)} s`);
     assert.deepEqual(page.foreign, []);
   } finally {
@@ -318,7 +320,28 @@ test("a server that was killed and started again is found within seconds", { tim
   }
 });
 
-test("without token the page looks and changes nothing", { timeout: 60_000 }, async () => {
+pageTest("the world pauses at a log line with a text", vehicle, "tab=log", async (page) => {
+  await page.locator(".log .line .text").first().waitFor();
+  const text = (await page.locator(".log .line .text").first().textContent()).slice(0, 4);
+  await page.locator('[aria-label="Pause when a line contains"]').fill(text);
+  await page.keyboard.press("Enter");
+  await standing(page);
+  assert.match(await page.locator("#notices").textContent(), /Paused: vehicle logged/);
+}, "--real-time", "1");
+
+test("a page with a wrong token says so", { timeout: 180_000 }, async () => {
+  const run = await Run.start(tags);
+  try {
+    const page = await newPage(browser);
+    await page.goto(`${run.address.origin}/?token=not-the-one-that-was-printed`);
+    await waitFor(async () => /wrong token/.test(await page.locator("#overlay").textContent()), "sentence");
+    await page.context().close();
+  } finally {
+    await run.stop();
+  }
+});
+
+test("without token the page looks and changes nothing", { timeout: 180_000 }, async () => {
   const run = await Run.start(tags);
   try {
     const address = new URL(run.address);

@@ -51,6 +51,7 @@ async function checkPlaying(page) {
   await waitFor(() => isShown(page), "first frame");
   await waitFor(async () => (await shownTick(page)) >= 3, "tick 3");
   await page.locator("#play").click();
+  await waitFor(() => page.evaluate(() => !window.ziggurat.app.playback.isPlaying), "pause");
   const tick = await shownTick(page);
   await page.waitForTimeout(700);
   assert.equal(await shownTick(page), tick);
@@ -71,7 +72,7 @@ async function checkPlaying(page) {
   assert.deepEqual(page.foreign, []);
 }
 
-test("a file that is dropped on the page plays, stands and is scrubbed", { timeout: 90_000 }, async () => {
+test("a file that is dropped on the page plays, stands and is scrubbed", { timeout: 180_000 }, async () => {
   const page = await openFile(playerFile);
   assert.match(await page.locator("#overlay").textContent(), /Drop a recording/);
   await dropFile(page, readFileSync(recording), "drop.mcap");
@@ -82,7 +83,7 @@ test("a file that is dropped on the page plays, stands and is scrubbed", { timeo
   await page.context().close();
 });
 
-test("plots have all of the recording", { timeout: 60_000 }, async () => {
+test("plots have all of the recording", { timeout: 180_000 }, async () => {
   const page = await openFile(playerFile, "tab=plots&plot=/poses:positions.2");
   await dropFile(page, readFileSync(recording), "drop.mcap");
   await waitFor(() => page.evaluate(() => window.ziggurat.app.series[0]?.values.length === 41), "41 values");
@@ -91,7 +92,7 @@ test("plots have all of the recording", { timeout: 60_000 }, async () => {
   await page.context().close();
 });
 
-test("the exported page plays from the disk, with nothing but itself", { timeout: 90_000 }, async () => {
+test("the exported page plays from the disk, with nothing but itself", { timeout: 180_000 }, async () => {
   const out = `${folder}/drop.html`;
   execFileSync(ziggurat, ["export", recording, "--html", out, "--quiet"]);
   const text = readFileSync(out, "utf8");
@@ -102,7 +103,7 @@ test("the exported page plays from the disk, with nothing but itself", { timeout
   await page.context().close();
 });
 
-test("damaged files give a sentence", { timeout: 90_000 }, async () => {
+test("damaged files give a sentence", { timeout: 180_000 }, async () => {
   const whole = readFileSync(recording);
   const page = await openFile(playerFile);
   const told = async (bytes, sentence) => {
@@ -120,7 +121,7 @@ test("damaged files give a sentence", { timeout: 90_000 }, async () => {
   await page.context().close();
 });
 
-test("names of a recording are text", { timeout: 60_000 }, async () => {
+test("names of a recording are text", { timeout: 180_000 }, async () => {
   const scene = `${folder}/names.argos`;
   const escaped = hostileName.replaceAll("<", "&lt;").replaceAll(">", "&gt;");
   writeFileSync(scene, readFileSync(`${root}tests/web/tags.argos`, "utf8").replace('"near"', `"${escaped}"`));

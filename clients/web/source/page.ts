@@ -103,7 +103,11 @@ app.onStatus = () => {
 const chooseFile = listenToFiles(app);
 const help = part<HTMLDialogElement>("help");
 fillHelp(help);
-const header = new Header(app, chooseFile, toggleTheme, () => help.showModal());
+function openHelp(): void {
+  help.showModal();
+  help.scrollTop = 0; // the button that closes it, at its end, got the focus
+}
+const header = new Header(app, chooseFile, toggleTheme, openHelp);
 const tree = new Tree(app);
 const change = new Change(app);
 const time = new TimeBar(app);
@@ -150,7 +154,7 @@ function updatePanels(): void {
 
 new Pointer(app, canvas, (x, y, z) => change.setPlace(x, y, z));
 listenToKeys(app, {
-  open: chooseFile, help: () => (help.open ? help.close() : help.showModal()), theme: toggleTheme,
+  open: chooseFile, help: () => (help.open ? help.close() : openHelp()), theme: toggleTheme,
   search: () => tree.search.focus(), speed: (by) => time.changeSpeed(by),
 });
 

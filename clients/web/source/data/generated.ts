@@ -61,13 +61,13 @@ export class GeneratedSource implements Source {
     const step = (): void => {
       listener.message(new Made("/poses", BigInt(tick * tickNs), makePoses(this.count, tick), 28 * this.count));
       ++tick;
+      this.timer = requestAnimationFrame(step); // one for each frame of the screen
     };
     step();
-    this.timer = setInterval(step, 1000 / 60) as unknown as number;
   }
 
   want(): void { /* all of it, always */ }
   call(): Promise<Value> { return Promise.reject(new Error("a generated world has no server to ask")); }
   setParameter(): void { /* it has none */ }
-  close(): void { clearInterval(this.timer); }
+  close(): void { cancelAnimationFrame(this.timer); }
 }

@@ -1,7 +1,8 @@
 // A running server, over the Foxglove WebSocket protocol. It connects again by itself.
 import { FoxgloveClient, type Channel, type Service } from "@foxglove/ws-protocol";
 import { makeDecoder, type Decoder } from "./decode";
-import type { Listener, Message, Source, Status, Value } from "./source";
+import { Held } from "./held";
+import type { Listener, Source, Status, Value } from "./source";
 
 const firstDelay = 250; // [ms] before the first new attempt; doubles up to
 const longestDelay = 2000;
@@ -15,13 +16,6 @@ function explain(url: URL, hadWorld: boolean): string {
   return `No connection to ${url.host}. Either no run is there (start one with: ziggurat run SCENE --view), `
       + "or it refuses this page: then the address has a wrong token; use the address that it printed. "
       + "Trying again …";
-}
-
-class Held implements Message {
-  constructor(readonly topic: string, readonly timeNs: bigint, private readonly data: Uint8Array,
-              private readonly decoder: Decoder) {}
-  get bytes(): number { return this.data.byteLength; }
-  read<T = Value>(): T { return this.decoder(this.data) as T; }
 }
 
 interface Pending {

@@ -1,30 +1,12 @@
 // All links as instanced meshes: one draw call per shape.
 import * as three from "three";
 import type { Poses, World } from "../model/messages";
-import { multiply, rotate } from "../model/pose";
+import { packed, place } from "../model/pose";
+import { writeMatrix } from "./matrix";
 import { roundness } from "./quality";
 import { isRound, makeGeometry, partsOf, type Part } from "./shapes";
 
-interface Batch { mesh: three.InstancedMesh; parts: Part[] }
-
-/** Columns of a matrix from a rotation, scale and position. */
-function writeMatrix(to: ArrayLike<number> & { [i: number]: number }, at: number, q: ArrayLike<number>,
-                     s: ArrayLike<number>, p: ArrayLike<number>): void {
-  const w = q[0], x = q[1], y = q[2], z = q[3];
-  to[at] = (1 - 2 * (y * y + z * z)) * s[0];
-  to[at + 1] = 2 * (x * y + w * z) * s[0];
-  to[at + 2] = 2 * (x * z - w * y) * s[0];
-  to[at + 4] = 2 * (x * y - w * z) * s[1];
-  to[at + 5] = (1 - 2 * (x * x + z * z)) * s[1];
-  to[at + 6] = 2 * (y * z + w * x) * s[1];
-  to[at + 8] = 2 * (x * z + w * y) * s[2];
-  to[at + 9] = 2 * (y * z - w * x) * s[2];
-  to[at + 10] = (1 - 2 * (x * x + y * y)) * s[2];
-  to[at + 12] = p[0];
-  to[at + 13] = p[1];
-  to[at + 14] = p[2];
-  to[at + 15] = 1;
-}
+interface Batch { mesh: three.InstancedMesh; parts: Part[]; mounts: Float64Array }
 
 /** Darker edges of boxes, in units of their sides: they tell touching blocks apart. */
 function addEdges(material: three.MeshLambertMaterial): void {
@@ -46,31 +28,32 @@ function addEdges(material: three.MeshLambertMaterial): void {
 
 export class Bodies {
   readonly group = new three.Group();
+  readonly decorations = new three.Group(); // what the world does not have
   private batches: Batch[] = [];
-  private batchOfLink = new Map<number, { batch: number; index: number }[]>();
-  private highlighted: number[] = [];
+  private readonly pose = new Float64Array(7);
   private around = 0; // pieces of round shapes
+
+  constructor() { this.group.add(this.decorations); }
 
   /** @param triangles  of all round shapes, about */
   setWorld(world: World, triangles: number): void {
     for (const { mesh } of this.batches) {
-      this.group.remove(mesh);
+      mesh.removeFromParent();
       mesh.geometry.dispose();
       (mesh.material as three.Material).dispose();
       mesh.dispose();
     }
-    const byShape = new Map<string, Part[]>();
+    const alike = new Map<string, Part[]>();
     const all = partsOf(world);
     this.around = roundness(all.filter(({ shape }) => isRound(shape)).length, triangles);
     for (const part of all) {
-      const list = byShape.get(part.shape);
+      const key = `${part.shape} ${part.isDecoration}`;
+      const list = alike.get(key);
       if (list) list.push(part);
-      else byShape.set(part.shape, [part]);
+      else alike.set(key, [part]);
     }
     this.batches = [];
-    this.batchOfLink.clear();
-    for (const [shape, parts] of byShape) this.addBatch(shape, parts, world);
-    this.highlight(this.highlighted);
+    for (const parts of alike.values()) this.addBatch(parts, world);
   }
 
   /** Draws round shapes with about so many triangles from now on; true if that differs. */
@@ -86,7 +69,8 @@ export class Bodies {
     return true;
   }
 
-  private addBatch(shape: string, parts: Part[], world: World): void {
+  private addBatch(parts: Part[], world: World): void {
+    const { shape, isDecoration } = parts[0];
     const material = new three.MeshLambertMaterial();
     if (shape === "box") addEdges(material);
     const mesh = new three.InstancedMesh(makeGeometry(shape, world.hulls, this.around), material, parts.length);
@@ -94,56 +78,27 @@ export class Bodies {
     mesh.frustumCulled = false;
     mesh.instanceMatrix.setUsage(three.DynamicDrawUsage);
     const color = new three.Color();
-    parts.forEach((part, index) => {
-      mesh.setColorAt(index, color.set(part.color));
-      const list = this.batchOfLink.get(part.link) ?? [];
-      list.push({ batch: this.batches.length, index });
-      this.batchOfLink.set(part.link, list);
-    });
-    this.batches.push({ mesh, parts });
-    this.group.add(mesh);
+    parts.forEach((part, index) => mesh.setColorAt(index, color.set(part.color)));
+    this.batches.push({ mesh, parts, mounts: packed(parts) });
+    (isDecoration ? this.decorations : this.group).add(mesh);
   }
 
-  setPoses(poses: Poses): void {
-    const { positions, orientations } = poses;
-    const q = [1, 0, 0, 0], p = [0, 0, 0];
-    for (const { mesh, parts } of this.batches) {
-      const matrix = mesh.instanceMatrix.array as Float32Array;
-      parts.forEach((part, index) => {
-        for (let i = 0; i < 4; ++i) q[i] = orientations[4 * part.link + i];
-        for (let i = 0; i < 3; ++i) p[i] = positions[3 * part.link + i];
-        const [x, y, z] = part.position;
-        if (x === 0 && y === 0 && z === 0) {
-          writeMatrix(matrix, 16 * index, q, part.scale, p);
-          return;
-        }
-        const offset = rotate(q, part.position);
-        writeMatrix(matrix, 16 * index, multiply(q, part.orientation), part.scale,
-                    [p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]]);
-      });
-      mesh.instanceMatrix.needsUpdate = true;
-      mesh.boundingSphere = null; // of what is picked
-    }
-  }
-
-  /** Tints links. */
-  highlight(links: number[]): void {
-    const color = new three.Color(), tint = new three.Color(0xff9d2e);
-    for (const link of new Set([...this.highlighted, ...links])) {
-      for (const { batch, index } of this.batchOfLink.get(link) ?? []) {
-        const { mesh, parts } = this.batches[batch];
-        color.set(parts[index].color);
-        if (links.includes(link)) color.lerp(tint, 0.3);
-        mesh.setColorAt(index, color);
-        if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+  setPoses({ positions, orientations }: Poses): void {
+    for (const { mesh, parts, mounts } of this.batches) {
+      const matrices = mesh.instanceMatrix.array;
+      for (let i = 0; i < parts.length; ++i) {
+        const { link, scale } = parts[i];
+        place(this.pose, positions, orientations, link, mounts, 7 * i);
+        writeMatrix(matrices, 16 * i, this.pose, scale[0], scale[1], scale[2]);
       }
+      mesh.instanceMatrix.needsUpdate = true;
     }
-    this.highlighted = links;
   }
 
   /** The nearest link under a ray, and where it is hit. */
   pick(ray: three.Raycaster): { link: number; point: three.Vector3 } | null {
     const meshes = this.batches.map((batch) => batch.mesh);
+    for (const mesh of meshes) mesh.boundingSphere = null; // of another frame
     const hit = ray.intersectObjects(meshes, false)[0];
     if (!hit || hit.instanceId === undefined) return null;
     const batch = this.batches.find(({ mesh }) => mesh === hit.object);

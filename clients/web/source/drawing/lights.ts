@@ -1,7 +1,8 @@
 // LEDs: spheres that glow in their colour; directional ones as cones of light.
 import * as three from "three";
 import type { Led, Poses, World } from "../model/messages";
-import { compose, poseAt } from "../model/pose";
+import { packed, place } from "../model/pose";
+import { writeMatrix } from "./matrix";
 
 const radius = 0.004; // [m]
 const longestCone = 0.02; // [m]
@@ -27,6 +28,9 @@ export class Lights {
   private glow: three.Points | null = null;
   private readonly texture = glowTexture();
   private world: World | null = null;
+  private mounts = new Float64Array(0); // of LEDs, then of directional ones
+  private readonly pose = new Float64Array(7);
+  private readonly color = new three.Color();
 
   setWorld(world: World): void {
     this.world = world;
@@ -34,6 +38,7 @@ export class Lights {
     const count = world.leds.length + world.directionalLeds.length;
     this.bulbs = this.cones = this.glow = null;
     if (count === 0) return;
+    this.mounts = packed([...world.leds, ...world.directionalLeds].map(({ mount }) => mount));
     this.bulbs = new three.InstancedMesh(new three.SphereGeometry(radius, 12, 8), new three.MeshBasicMaterial(), count);
     this.glow = new three.Points(new three.BufferGeometry(), new three.PointsMaterial({
       size: 12 * radius, map: this.texture, vertexColors: true, transparent: true, depthWrite: false,
@@ -45,45 +50,42 @@ export class Lights {
     if (world.directionalLeds.length > 0) {
       const cone = new three.ConeGeometry(1, 1, 32, 1, true).rotateX(-Math.PI / 2).translate(0, 0, 0.5);
       this.cones = new three.InstancedMesh(cone, new three.MeshBasicMaterial(
-        { transparent: true, opacity: 0.2, side: three.DoubleSide, depthWrite: false }), world.directionalLeds.length);
+        { transparent: true, opacity: 0.12, side: three.DoubleSide, depthWrite: false }), world.directionalLeds.length);
       this.cones.frustumCulled = false;
       this.group.add(this.cones);
     }
   }
 
   setPoses(poses: Poses): void {
-    if (!this.world || !this.bulbs || !this.glow) return;
-    this.world.leds.forEach((led, i) => this.place(led, i, poses.ledColors[i] ?? 0, poses));
-    this.world.directionalLeds.forEach((led, i) => {
-      const color = poses.directionalLedColors[i] ?? 0;
-      const matrix = this.place(led, this.world!.leds.length + i, color, poses);
-      const wide = longestCone * Math.tan(Math.min(led.observableAngle, widestCone));
-      const isOn = color !== 0 && !this.world!.entities[led.entity]?.removed;
-      matrix.scale(isOn ? new three.Vector3(wide, wide, longestCone) : new three.Vector3(0, 0, 0));
-      this.cones!.setMatrixAt(i, matrix);
-      this.cones!.setColorAt(i, new three.Color(color));
-    });
-    const changed = [this.bulbs, this.cones].filter((mesh) => mesh !== null);
-    for (const mesh of changed) {
+    const { world, bulbs, cones, glow, pose, color } = this;
+    if (!world || !bulbs || !glow) return;
+    for (let i = 0; i < world.leds.length; ++i) this.place(world.leds[i], i, poses.ledColors[i] ?? 0, poses);
+    for (let i = 0; i < world.directionalLeds.length; ++i) {
+      const led = world.directionalLeds[i], rgb = poses.directionalLedColors[i] ?? 0;
+      const isThere = this.place(led, world.leds.length + i, rgb, poses);
+      const length = rgb !== 0 && isThere ? longestCone : 0;
+      const wide = length * Math.tan(Math.min(led.observableAngle, widestCone));
+      writeMatrix(cones!.instanceMatrix.array, 16 * i, pose, wide, wide, length);
+      cones!.setColorAt(i, color.set(rgb));
+    }
+    for (const mesh of [bulbs, cones]) {
+      if (!mesh) continue;
       mesh.instanceMatrix.needsUpdate = true;
       if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
     }
-    for (const name of ["position", "color"]) this.glow.geometry.getAttribute(name).needsUpdate = true;
+    for (const name of ["position", "color"]) glow.geometry.getAttribute(name).needsUpdate = true;
   }
 
-  /** Places a bulb and its glow; returns where it is. */
-  private place(led: Led, index: number, rgb: number, poses: Poses): three.Matrix4 {
-    const pose = compose(poseAt(poses.positions, poses.orientations, led.mount.link), led.mount);
-    const [w, x, y, z] = pose.orientation;
-    const size = this.world!.entities[led.entity]?.removed ? 0 : 1;
-    const matrix = new three.Matrix4().compose(new three.Vector3(...pose.position),
-      new three.Quaternion(x, y, z, w), new three.Vector3(size, size, size));
-    const color = new three.Color(rgb === 0 ? 0x3a3d42 : rgb);
-    this.bulbs!.setMatrixAt(index, matrix);
-    this.bulbs!.setColorAt(index, color);
-    const light = rgb === 0 || size === 0 ? 0 : 1;
-    this.glow!.geometry.getAttribute("position").setXYZ(index, ...pose.position);
-    this.glow!.geometry.getAttribute("color").setXYZ(index, color.r * light, color.g * light, color.b * light);
-    return matrix;
+  /** Places a bulb and its glow, and leaves its pose in `pose`; false if it was removed. */
+  private place(led: Led, index: number, rgb: number, poses: Poses): boolean {
+    const { bulbs, glow, pose, color } = this;
+    place(pose, poses.positions, poses.orientations, led.mount.link, this.mounts, 7 * index);
+    const isThere = !this.world!.entities[led.entity]?.removed;
+    const size = isThere ? 1 : 0, light = isThere && rgb !== 0 ? 1 : 0;
+    writeMatrix(bulbs!.instanceMatrix.array, 16 * index, pose, size, size, size);
+    bulbs!.setColorAt(index, color.set(rgb === 0 ? 0x3a3d42 : rgb));
+    glow!.geometry.getAttribute("position").setXYZ(index, pose[0], pose[1], pose[2]);
+    glow!.geometry.getAttribute("color").setXYZ(index, color.r * light, color.g * light, color.b * light);
+    return isThere;
   }
 }

@@ -24,13 +24,16 @@ export class Lines {
 
   clear(): void { this.count = 0; }
 
-  /** A segment [m]. @param color  0xRRGGBB, @param opacity  0 to 1 at both ends */
-  add(a: ArrayLike<number>, b: ArrayLike<number>, color: number, opacity = 1, opacityAtEnd = opacity): void {
+  /**
+   * A segment [m]. @param color  0xRRGGBB, @param opacity  0 to 1 at both ends
+   * @param atA, atB  where the three coordinates begin
+   */
+  add(a: ArrayLike<number>, b: ArrayLike<number>, color: number, opacity = 1, opacityAtEnd = opacity, atA = 0, atB = 0): void {
     if (6 * (this.count + 1) > this.positions.length) this.grow();
     const p = 6 * this.count, c = 8 * this.count;
     for (let i = 0; i < 3; ++i) {
-      this.positions[p + i] = a[i];
-      this.positions[p + 3 + i] = b[i];
+      this.positions[p + i] = a[atA + i];
+      this.positions[p + 3 + i] = b[atB + i];
       const part = ((color >> (16 - 8 * i)) & 255) / 255;
       this.colors[c + i] = this.colors[c + 4 + i] = part * part; // about linear light
     }

@@ -1,6 +1,6 @@
 // What devices do, as lines: magnets' moments, frusta, rays, radio messages, contact forces, trails.
 import * as three from "three";
-import type { Camera, Contacts, Mount, Poses, RadioTraffic, Rays, World } from "../model/messages";
+import type { Camera, Contacts, Link, Mount, Poses, RadioTraffic, Rays, World } from "../model/messages";
 import { compose, poseAt, transform, type Vector } from "../model/pose";
 import type { Lines } from "./lines";
 
@@ -8,13 +8,38 @@ function at(poses: Poses, mount: Mount, offset: Vector = [0, 0, 0]): Vector {
   return transform(compose(poseAt(poses.positions, poses.orientations, mount.link), mount), offset);
 }
 
-/** The median of the largest extents of links that can move [m]: arrows should be about as long. */
+/** The largest extent [m]; NaN: not known. */
+function extent(link: Link): number {
+  return link.box ? Math.max(...Array.from(link.box.size)) : link.cylinder ? Math.max(2 * link.cylinder.radius, link.cylinder.height)
+    : link.sphere ? 2 * link.sphere.radius : link.capsule ? link.capsule.height : NaN;
+}
+
+/** The median extent of links that can move [m]: arrows should be about as long. */
 export function typicalSize(world: World): number {
-  const sizes = world.links.filter(({ entity }) => world.entities[entity]?.movable).map((link) =>
-    link.box ? Math.max(...Array.from(link.box.size)) : link.cylinder ? Math.max(2 * link.cylinder.radius, link.cylinder.height)
-      : link.sphere ? 2 * link.sphere.radius : link.capsule ? link.capsule.height : NaN);
+  const sizes = world.links.filter(({ entity }) => world.entities[entity]?.movable).map(extent);
   const known = sizes.filter((size) => size > 0).sort((a, b) => a - b);
   return known[Math.floor(known.length / 2)] ?? 0.1;
+}
+
+/** A ring around what is selected, at its foot. @param links  that are selected */
+export function drawSelection(world: World, poses: Poses, links: number[], lines: Lines): void {
+  const { positions } = poses;
+  const center: Vector = [0, 0, Infinity];
+  for (const link of links) {
+    for (const axis of [0, 1]) center[axis] += positions[3 * link + axis] / links.length;
+    center[2] = Math.min(center[2], positions[3 * link + 2] + 0.002);
+  }
+  let radius = 0.02;
+  for (const link of links) {
+    const away = Math.hypot(positions[3 * link] - center[0], positions[3 * link + 1] - center[1]);
+    radius = Math.max(radius, away + 0.6 * (extent(world.links[link]) || 0));
+  }
+  const pieces = 48;
+  const at = (i: number, r: number): Vector => {
+    const angle = 2 * Math.PI * i / pieces;
+    return [center[0] + r * Math.cos(angle), center[1] + r * Math.sin(angle), center[2]];
+  };
+  for (const r of [radius, 1.03 * radius]) for (let i = 0; i < pieces; ++i) lines.add(at(i, r), at(i + 1, r), 0xff9d2e);
 }
 
 /** Arrows along the moments; red with a current that adds, blue with one that opposes. */
@@ -63,8 +88,7 @@ export const rayColors = [0xe6a417, 0x8e5bd0, 0x3d8bfd, 0x2a9d8f]; // by kind
 export function drawRays(rays: Rays, lines: Lines): void {
   for (let i = 0; i < rays.kinds.length; ++i) {
     const color = rays.hits[i] ? 0xe0402c : rayColors[rays.kinds[i]] ?? 0x888888;
-    const s = rays.segments, k = 6 * i;
-    lines.add([s[k], s[k + 1], s[k + 2]], [s[k + 3], s[k + 4], s[k + 5]], color, 0.85, rays.hits[i] ? 0.85 : 0.25);
+    lines.add(rays.segments, rays.segments, color, 0.85, rays.hits[i] ? 0.85 : 0.25, 6 * i, 6 * i + 3);
   }
 }
 

@@ -12,6 +12,7 @@ export interface Part {
   orientation: Quaternion;
   scale: Vector;
   color: number; // sRGB
+  isDecoration: boolean; // the world does not have it
 }
 
 /** Whether a shape takes more triangles to look round. */
@@ -48,7 +49,8 @@ function hullGeometry(hull: Hull | undefined): three.BufferGeometry {
 }
 
 function partOf(link: Link, index: number): Part | null {
-  const base = { link: index, position: [0, 0, 0] as Vector, orientation: upright, color: link.color };
+  const base = { link: index, position: [0, 0, 0] as Vector, orientation: upright, color: link.color,
+                 isDecoration: false };
   if (link.box) return { ...base, shape: "box", scale: [link.box.size[0], link.box.size[1], link.box.size[2]] };
   if (link.cylinder) {
     const { radius, height } = link.cylinder;
@@ -68,7 +70,7 @@ function robotParts(entity: Entity, link: Link): Part[] {
   if (radius === 0) return [];
   const isFootBot = entity.kind === Kind.footBot;
   const part = (shape: string, position: Vector, scale: Vector, color: number): Part =>
-    ({ shape, link: entity.referenceLink, position, orientation: upright, scale, color });
+    ({ shape, link: entity.referenceLink, position, orientation: upright, scale, color, isDecoration: true });
   const parts = [
     part("wedge", [0.55 * radius, 0, height + 0.002], [0.3 * radius, 0.3 * radius, 0.004], 0xf2f3f5),
     part("ring", [0, 0, 0.82 * height], [1.0 * radius, 1.0 * radius, 0.5 * radius],

@@ -1,7 +1,8 @@
 // Tags with their true pattern: 6 x 6 modules in a black border of one and a white margin of one.
 import * as three from "three";
 import type { Poses, World } from "../model/messages";
-import { compose, poseAt } from "../model/pose";
+import { packed, place } from "../model/pose";
+import { writeMatrix } from "./matrix";
 
 const vertexShader = `
   attribute vec3 code;  // upper 18 bits, lower 18 bits, 1 if there is a pattern
@@ -43,6 +44,9 @@ export class Tags {
   private mesh: three.InstancedMesh | null = null;
   private codes = new three.InstancedBufferAttribute(new Float32Array(0), 3);
   private world: World | null = null;
+  private mounts = new Float64Array(0);
+  private readonly pose = new Float64Array(7);
+  private haveChanged = false; // payloads
 
   setWorld(world: World): void {
     this.world = world;
@@ -53,6 +57,7 @@ export class Tags {
       this.mesh = null;
     }
     if (world.tags.length === 0) return;
+    this.mounts = packed(world.tags.map(({ mount }) => mount));
     const geometry = new three.PlaneGeometry(1, 1);
     this.codes = new three.InstancedBufferAttribute(new Float32Array(3 * world.tags.length), 3);
     geometry.setAttribute("code", this.codes);
@@ -61,24 +66,30 @@ export class Tags {
     this.mesh = new three.InstancedMesh(geometry, material, world.tags.length);
     this.mesh.frustumCulled = false;
     this.group.add(this.mesh);
+    this.setPayloads(world, []);
   }
 
   setPoses(poses: Poses): void {
-    if (!this.mesh || !this.world) return;
-    const world = this.world;
-    const payloads = new Map(poses.tagPayloads.map(({ tag, payload }) => [tag, payload]));
-    const matrix = new three.Matrix4();
-    world.tags.forEach((tag, index) => {
-      const pose = compose(poseAt(poses.positions, poses.orientations, tag.mount.link), tag.mount);
-      const [w, x, y, z] = pose.orientation;
-      const side = world.entities[tag.entity]?.removed ? 0 : tag.sideLength * 1.25;
-      matrix.compose(new three.Vector3(...pose.position), new three.Quaternion(x, y, z, w),
-                     new three.Vector3(side, side, side));
-      this.mesh!.setMatrixAt(index, matrix);
-      const pattern = patternOf(payloads.get(index) ?? tag.payload, world.tagPatterns);
-      this.codes.setXYZ(index, Math.floor((pattern ?? 0) / 2 ** 18), (pattern ?? 0) % 2 ** 18, pattern === null ? 0 : 1);
+    const { world, mesh, pose } = this;
+    if (!mesh || !world) return;
+    for (let i = 0; i < world.tags.length; ++i) {
+      const { entity, mount, sideLength } = world.tags[i];
+      place(pose, poses.positions, poses.orientations, mount.link, this.mounts, 7 * i);
+      const side = world.entities[entity]?.removed ? 0 : sideLength * 1.25;
+      writeMatrix(mesh.instanceMatrix.array, 16 * i, pose, side, side, side);
+    }
+    mesh.instanceMatrix.needsUpdate = true;
+    if (poses.tagPayloads.length > 0 || this.haveChanged) this.setPayloads(world, poses.tagPayloads);
+  }
+
+  /** @param changed  those that differ from the world's */
+  private setPayloads(world: World, changed: Poses["tagPayloads"]): void {
+    const payloads = new Map(changed.map(({ tag, payload }) => [tag, payload]));
+    world.tags.forEach((tag, i) => {
+      const pattern = patternOf(payloads.get(i) ?? tag.payload, world.tagPatterns);
+      this.codes.setXYZ(i, Math.floor((pattern ?? 0) / 2 ** 18), (pattern ?? 0) % 2 ** 18, pattern === null ? 0 : 1);
     });
-    this.mesh.instanceMatrix.needsUpdate = true;
     this.codes.needsUpdate = true;
+    this.haveChanged = changed.length > 0;
   }
 }

@@ -6,7 +6,9 @@ import type { Frame } from "../model/timeline";
 import { Bodies } from "./bodies";
 import { Lights } from "./lights";
 import { Lines } from "./lines";
-import { drawContacts, drawFrusta, drawMagnets, drawRays, drawTrail, RadioFlashes, typicalSize } from "./overlays";
+import {
+  drawContacts, drawFrusta, drawMagnets, drawRays, drawSelection, drawTrail, RadioFlashes, typicalSize,
+} from "./overlays";
 import { Stage } from "./stage";
 import { Tags } from "./tags";
 
@@ -47,13 +49,14 @@ export class View {
   private readonly tags = new Tags();
   private readonly lights = new Lights();
   private readonly lines = new Lines();
+  private readonly inside = new Lines(true); // seen through bodies
   private readonly flashes = new RadioFlashes();
   private world: World | null = null;
   private frame: Frame | null = null;
   private trails = new Map<string, Vector[]>();
   private reference = 1; // force [N] that has an arrow of this length [m]
   private arrow = 0.1;
-  private highlighted = ""; // links
+  private selected: number[] = []; // links
   private hadLines = false; // the frame before had rays, messages or contacts
   private flashed = -1;
   private hasFramed = false;
@@ -67,7 +70,8 @@ export class View {
   constructor(canvas: HTMLCanvasElement, keepsLook: boolean) {
     this.stage = new Stage(canvas);
     this.hasFramed = keepsLook;
-    this.stage.scene.add(this.bodies.group, this.tags.group, this.lights.group, this.lines.object);
+    this.stage.scene.add(this.bodies.group, this.tags.group, this.lights.group, this.lines.object,
+                         this.inside.object);
   }
 
   /** Forgets the world, before that of another source is shown. */
@@ -79,7 +83,7 @@ export class View {
   }
 
   /** Shows a frame; false if nothing in it is known yet. */
-  show(frame: Frame, highlighted: number[]): boolean {
+  show(frame: Frame, selected: number[]): boolean {
     const message = frame.messages.get("/poses");
     const world = frame.world;
     if (!message || !world) return false;
@@ -92,15 +96,15 @@ export class View {
     if (distance < 0 || distance > longestGap) this.trails.clear(); // the user jumped
     this.poses = poses;
     this.frame = frame;
-    this.bodies.highlight(highlighted);
+    const isAnother = selected.join() !== this.selected.join();
+    this.selected = selected;
     const hasLines = ["/rays", "/radio", "/contacts"].some((topic) => frame.messages.has(topic));
-    if (before && isSame(before, poses) && highlighted.join() === this.highlighted) {
+    if (before && !isAnother && isSame(before, poses)) {
       this.stage.isDirty ||= hasLines || this.hadLines;
       this.hadLines = hasLines;
       return true;
     }
     this.hadLines = hasLines;
-    this.highlighted = highlighted.join();
     this.bodies.setPoses(poses);
     this.stage.shadowsChange();
     this.tags.setPoses(poses);
@@ -155,10 +159,12 @@ export class View {
   get isAtRest(): boolean { return !this.stage.isDirty && !this.flashes.isActive && !this.stage.canBeFiner; }
 
   private drawLines(now: number): void {
-    const { lines, frame, world, poses } = this;
+    const { lines, inside, frame, world, poses } = this;
     lines.clear();
+    inside.clear();
     if (frame && world && poses) {
-      if (this.shown.has("magnets")) drawMagnets(world, poses, this.arrow, lines);
+      if (this.selected.length > 0) drawSelection(world, poses, this.selected, lines);
+      if (this.shown.has("magnets")) drawMagnets(world, poses, this.arrow, inside);
       if (this.shown.has("frusta")) drawFrusta(world, poses, lines);
       const rays = frame.messages.get("/rays");
       if (rays && this.shown.has("rays")) drawRays(rays.read<Rays>(), lines);
@@ -175,17 +181,19 @@ export class View {
     }
     this.flashes.draw(now, lines);
     lines.commit();
+    inside.commit();
   }
 
-  /** Draws the world without lines from another camera; pixels are linear light, rows from the bottom. */
+  /** Draws the world without lines and decorations from another camera; pixels are linear light, rows from the bottom. */
   renderFrom(eye: three.Camera, target: three.WebGLRenderTarget, pixels: Uint8Array): void {
     const { renderer, scene } = this.stage;
-    this.lines.object.visible = false;
+    const hidden = [this.lines.object, this.inside.object, this.bodies.decorations];
+    for (const object of hidden) object.visible = false;
     renderer.setRenderTarget(target);
     renderer.render(scene, eye);
     renderer.readRenderTargetPixels(target, 0, 0, target.width, target.height, pixels);
     renderer.setRenderTarget(null);
-    this.lines.object.visible = true;
+    for (const object of hidden) object.visible = true;
   }
 
   /** X_WE of an entity's origin at the frame that is shown. */

@@ -1,7 +1,7 @@
 // Collisions: two entities that begin to touch each other. Resting on each other is none.
 import type { Contacts, World } from "./messages";
 
-const apartNs = 500_000_000; // simulated; a pair that was apart for less still touches
+const apartNs = 500_000_000; // simulated; a pair that was apart for less still touches, or in no message
 
 export class Collisions {
   private touched = new Map<string, number>(); // when a pair touched last [ns]
@@ -11,6 +11,7 @@ export class Collisions {
   take(contacts: Contacts, timeNs: number, world: World): string {
     if (timeNs < this.lastNs) this.touched.clear(); // the world began again
     const isFirst = this.lastNs === -Infinity || timeNs < this.lastNs;
+    const lastNs = this.lastNs; // fast worlds send few of their ticks
     this.lastNs = timeNs;
     const found: string[] = [];
     for (let i = 0; i + 1 < contacts.links.length; i += 2) {
@@ -19,7 +20,7 @@ export class Collisions {
       const [low, high] = a < b ? [a, b] : [b, a];
       const pair = `${low} ${high}`;
       const before = this.touched.get(pair);
-      if (!isFirst && (before === undefined || timeNs - before > apartNs)) {
+      if (!isFirst && (before === undefined || (before < lastNs && timeNs - before > apartNs))) {
         found.push(`${world.entities[low]?.id} and ${world.entities[high]?.id}`);
       }
       this.touched.set(pair, timeNs);

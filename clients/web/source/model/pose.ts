@@ -40,3 +40,33 @@ export function transform(pose: Pose, point: Floats): Vector {
   const p = rotate(pose.orientation, point);
   return [pose.position[0] + p[0], pose.position[1] + p[1], pose.position[2] + p[2]];
 }
+
+/**
+ * X_WM of what is mounted on a link, into `to`: position, then orientation. For what is done for thousands of links at each
+ * frame: nothing is allocated.
+ * @param mount  position and orientation in the frame of the link, from `at` on in the same order
+ */
+export function place(to: Float64Array, positions: Floats, orientations: Floats, link: number, mount: Float64Array, at: number): void {
+  const p = 3 * link, q = 4 * link;
+  const w = orientations[q], x = orientations[q + 1], y = orientations[q + 2], z = orientations[q + 3];
+  const vx = mount[at], vy = mount[at + 1], vz = mount[at + 2];
+  const tx = 2 * (y * vz - z * vy), ty = 2 * (z * vx - x * vz), tz = 2 * (x * vy - y * vx);
+  to[0] = positions[p] + vx + w * tx + y * tz - z * ty;
+  to[1] = positions[p + 1] + vy + w * ty + z * tx - x * tz;
+  to[2] = positions[p + 2] + vz + w * tz + x * ty - y * tx;
+  const mw = mount[at + 3], mx = mount[at + 4], my = mount[at + 5], mz = mount[at + 6];
+  to[3] = w * mw - x * mx - y * my - z * mz;
+  to[4] = w * mx + x * mw + y * mz - z * my;
+  to[5] = w * my - x * mz + y * mw + z * mx;
+  to[6] = w * mz + x * my - y * mx + z * mw;
+}
+
+/** Mounts as place() takes them, seven numbers each. */
+export function packed(mounts: { position: Floats; orientation: Floats }[]): Float64Array<ArrayBuffer> {
+  const numbers = new Float64Array(7 * mounts.length);
+  mounts.forEach(({ position, orientation }, i) => {
+    for (let k = 0; k < 3; ++k) numbers[7 * i + k] = position[k];
+    for (let k = 0; k < 4; ++k) numbers[7 * i + 3 + k] = orientation[k];
+  });
+  return numbers;
+}

@@ -4,6 +4,7 @@
 import type { IReadable } from "@mcap/core";
 import { Container, type Chunk, type RawMessage } from "../data/container";
 import { makeDecoder, type Decoder } from "../data/decode";
+import { Held } from "../data/held";
 import type { Listener, Message, Source, Value } from "../data/source";
 import { areWhole, checkWorld } from "./check";
 import { Collisions } from "./collisions";
@@ -14,13 +15,6 @@ import type { Frame, Frames, Mark } from "./timeline";
 const mostBytes = 192 * 1024 * 1024; // of frames in memory
 const mostFrames = 1e8;
 const mostPoints = 6000; // of a plot
-
-class Held implements Message {
-  constructor(readonly topic: string, readonly timeNs: bigint, private readonly data: Uint8Array,
-              private readonly decoder: Decoder) {}
-  get bytes(): number { return this.data.byteLength; }
-  read<T = Value>(): T { return this.decoder(this.data) as T; }
-}
 
 interface Part {
   readonly chunk: Chunk;

@@ -175,8 +175,10 @@ export class App implements Listener {
   }
 
   get selected(): { entity: Entity; index: number } | null {
+    const { selected } = this.settings;
+    if (selected === null) return null;
     const entities = this.world?.entities ?? [];
-    const index = entities.findIndex(({ id, removed }) => id === this.settings.selected && !removed);
+    const index = entities.findIndex(({ id, removed }) => id === selected && !removed);
     return index < 0 ? null : { entity: entities[index], index };
   }
 
