@@ -15,12 +15,13 @@ local traffic = require "traffic"
 local travel = require "travel"
 
 local job = assembly.job
+local scan_rate = 0.7  -- rad/s
 local states = {}
 
 function states.scan()
   if job.seconds() <= builder.tick then job.turned = 0 end
-  travel.spin(0.45)
-  job.turned = job.turned + 0.45 * builder.tick
+  travel.spin(scan_rate)
+  job.turned = job.turned + scan_rate * builder.tick
   if job.turned > 2 * math.pi + 0.3 then
     travel.wait()
     return job.after_scan or assembly.decide()
@@ -107,7 +108,7 @@ function states.done() builder.stop() end
 
 -- In these others keep out of the robot's way.
 local working = {}
-for _, name in ipairs({"approach", "retreat", "lower", "energise", "let_go", "raise", "aim_at_side", "attach",
+for _, name in ipairs({"approach", "retreat", "lower", "energise", "let_go", "raise", "attach",
                        "retreat_from_side", "place", "tell", "release", "rise", "back_off", "sense", "withdraw"}) do
   working[name] = true
 end
@@ -123,7 +124,7 @@ function step()
   odometry.reckon()
   traffic.sense()
   local faces = builder.faces()
-  memory.update(faces, assembly.plan)
+  memory.update(faces, traffic.others)
   local next_state = states[job.state](faces)
   if next_state then
     if next_state ~= job.state then log(next_state) end
@@ -132,5 +133,6 @@ function step()
   end
   traffic.working = working[job.state] or false
   traffic.tell()
+  traffic.stopped = false
   builder.move_lift()
 end

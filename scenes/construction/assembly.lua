@@ -9,12 +9,12 @@ local travel = require "travel"
 local assembly = {}
 
 assembly.plan = rules.load(robot.params.rules)
+memory.plan = assembly.plan
 
 assembly.clearance = 0.03     -- lift, without a block [m]
 assembly.carrying = 0.075     -- lift, with a block, out of the camera's sight
 assembly.run_up = 0.13        -- straight way to a dark block, for the steering to settle
-assembly.last_way = 0.17      -- and to the structure
-assembly.waiting_ring = 0.62  -- distance from the structure's outermost column where robots wait
+assembly.waiting_ring = 0.55  -- distance from the structure's outermost column where robots wait
 assembly.survey_ring = 0.42   -- from where they look at it
 assembly.search_ring = 0.55   -- from where they look for material
 assembly.parking_ring = 0.85  -- where they stay when it is complete
@@ -22,6 +22,7 @@ assembly.parking_ring = 0.85  -- where they stay when it is complete
 -- state, since: the present state and its age in ticks
 -- target:       the material block that it fetches, one of its sides: {x, y, yaw (outward), block}
 -- place:        the side at which it attaches: {x, y, yaw (outward), row, column, side}
+-- looked:       when it saw that side last
 -- payload:      number on the side of the carried block that looks at the robot
 -- after_scan:   the state after looking around
 -- points:       places still to look from
@@ -72,8 +73,9 @@ end
 
 -- Whether another robot is within reach of a place and nearer to it than this one.
 function assembly.taken(thing, reach)
-  for _, other in ipairs(traffic.obstacles(builder.pose, {})) do
-    local distance = math.sqrt((other.x - thing.x) ^ 2 + (other.y - thing.y) ^ 2)
+  for _, other in ipairs(traffic.others) do
+    local point = traffic.place_of(builder.pose, other)
+    local distance = math.sqrt((point.x - thing.x) ^ 2 + (point.y - thing.y) ^ 2)
     if distance < reach and distance < assembly.distance_to(thing) then return true end
   end
   return false

@@ -153,22 +153,25 @@ function builder.nearest_face()
   end
 end
 
--- Distance of the robot to the left of the normal through a face's centre.
-function builder.offset(face)
-  return face.forward * math.sin(face.heading) - face.left * math.cos(face.heading)
+-- Distance of the robot to the left of the normal through a face's centre; of the point so far in front of its
+-- centre, if that is given.
+function builder.offset(face, ahead)
+  return (face.forward - (ahead or 0)) * math.sin(face.heading) - face.left * math.cos(face.heading)
 end
 
--- Turn rate that moves the robot onto that line with this distance constant, forwards or backwards.
-local function steer(face, speed)
-  local settle = 0.03
-  local wanted = math.max(-0.25, math.min(0.25, builder.offset(face) / (2 * settle)))
+-- Turn rate that moves the robot onto that line with a distance constant of 3 cm, forwards or backwards. With the
+-- point about which it turns, so far in front of its centre, that point moves there, sooner where it drives slowly.
+local function steer(face, speed, pivot)
+  local settle = pivot and math.max(0.018, 0.6 * speed) or 0.03
+  local wanted = math.max(-0.25, math.min(0.25, builder.offset(face, pivot) / (2 * settle)))
   return math.abs(speed) * 2 / settle * (face.heading - (speed > 0 and wanted or -wanted))
 end
 
 -- Drives to a face; call it in every step with the present face. Returns "docked" when the face is
 -- under the end effector, or at another distance from the robot's centre; "askew" if the robot came close
--- but is not on the line. With `touch` the proximity sensors measure the last part of the distance.
-function builder.dock_at(face, fastest, touch, distance)
+-- but is not on the line. With `touch` the proximity sensors measure the last part of the distance. `pivot`
+-- is how far in front of the robot's centre the point is about which it turns, if that is known.
+function builder.dock_at(face, fastest, touch, distance, pivot)
   local to_go = math.min(face.forward, touch and builder.ahead() or math.huge) -
                 (distance or builder.reach)
   if to_go < 0.03 and (math.abs(builder.offset(face)) > 0.006 or math.abs(face.heading) > 0.12) then
@@ -180,7 +183,7 @@ function builder.dock_at(face, fastest, touch, distance)
     return "docked"
   end
   local speed = math.max(0.008, math.min(fastest, 1.2 * to_go))
-  builder.drive(speed, steer(face, speed))
+  builder.drive(speed, steer(face, speed, pivot))
 end
 
 local unseen = 0           -- steps since the camera saw a face

@@ -3,6 +3,7 @@
 local assembly = require "assembly"
 local builder = require "builder"
 local memory = require "memory"
+local odometry = require "odometry"
 local traffic = require "traffic"
 local travel = require "travel"
 
@@ -28,7 +29,8 @@ function states.choose_block()
         face.x, face.y = assembly.ahead_of({x = block.x, y = block.y, yaw = face.yaw}, builder.block / 2)
         local x, y = assembly.ahead_of(face, builder.reach + assembly.run_up)
         local cost = assembly.distance_to({x = x, y = y}) + assembly.hindrance(face, obstacles) +
-                     assembly.from_middle(block)  -- those that stand in the way of building first
+                     assembly.from_middle(block) +  -- those that stand in the way of building first
+                     math.min(0.6, 5e-4 * (memory.now - block.seen))  -- somebody may have taken it
         if not least or cost < least then least, job.target = cost, face end
       end
     end
@@ -52,7 +54,7 @@ function states.fetch()
   local x, y = assembly.ahead_of(job.target, builder.reach + assembly.run_up)
   local outcome = travel.to(x, y)
   if outcome == "there" then return "aim" end
-  if outcome == "stuck" or job.seconds() > 90 then return give_up_block(300) end
+  if outcome and outcome ~= "there" or job.seconds() > 90 then return give_up_block(200) end
   builder.lift_to(assembly.clearance, 0.05)
 end
 
@@ -67,7 +69,7 @@ function states.aim(faces)
   end
   if travel.turn_to(math.atan(job.target.y - builder.pose.y, job.target.x - builder.pose.x)) then
     if face then return "approach" end
-    if job.seconds() > 4 then
+    if job.seconds() > 2.5 then
       memory.forget(job.target.block)
       return "choose_block"
     end
@@ -87,7 +89,7 @@ function states.approach(faces)
     if job.seconds() > 20 then return give_up_block(200) end
     return
   end
-  local outcome = builder.dock_at(assembly.face_of(job.target), 0.06, true)
+  local outcome = builder.dock_at(assembly.face_of(job.target), 0.06, true, nil, odometry.ahead())
   if outcome == "docked" then return "lower" end
   if outcome == "askew" or job.seconds() > 40 then return "retreat" end
 end
@@ -112,7 +114,7 @@ function states.lower()
     job.target.block.avoid = math.huge
     return "let_go"
   end
-  if builder.lift_to(gap - 0.0005, 0.03) then return "energise" end
+  if builder.lift_to(gap - 0.0005, 0.05) then return "energise" end
 end
 
 -- The block remembers for the robot which of its sides looks at it.
@@ -120,8 +122,8 @@ local function tell_side() robot.radios.nfc.tx_data({3, tonumber(job.payload)}) 
 
 function states.energise()
   tell_side()
-  builder.current(math.min(1, -1 + job.seconds()))
-  if job.seconds() > 2.5 then return builder.holds() and "raise" or "let_go" end
+  builder.current(math.min(1, -1 + 2 * job.seconds()))
+  if job.seconds() > 1.5 then return builder.holds() and "raise" or "let_go" end
 end
 
 function states.let_go()
@@ -130,7 +132,7 @@ function states.let_go()
 end
 
 function states.raise()
-  if builder.lift_to(assembly.carrying, 0.03) then
+  if builder.lift_to(assembly.carrying, 0.05) then
     builder.current(0)
     builder.loaded = builder.holds()
     if not builder.loaded then return "let_go" end

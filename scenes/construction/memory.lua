@@ -12,6 +12,7 @@ memory.anchor = nil    -- the first column that was seen: {x, y, yaw}
 memory.columns = {}    -- by "i,j": {i, j, x, y, sides}; sides[0 to 3] = {row or false, seen}
 memory.material = {}   -- {x, y, yaw, seen}: dark blocks; yaw is a side's outward normal
 memory.now = 0         -- ticks
+memory.plan = nil      -- the rule table
 
 -- A dark block nearer to a column than this is left alone: it is just being placed, or was dropped, and to
 -- fetch it a robot would have to turn beside the structure [m].
@@ -89,16 +90,48 @@ local function find_oneself(face)
   end
 end
 
-local function remember_side(face, plan)
+local directions = {[0] = {1, 0}, {0, 1}, {-1, 0}, {0, -1}}
+
+local function beside(column, side)
+  local to = directions[side]
+  return memory.columns[column.i + to[1] .. "," .. column.j + to[2]]
+end
+
+local function column_at(i, j)
+  local key = i .. "," .. j
+  if not memory.columns[key] then
+    local x, y = point_of(i, j)
+    memory.columns[key] = {i = i, j = j, x = x, y = y, seen = memory.now, sides = {}}
+  end
+  return memory.columns[key]
+end
+
+-- What a column must show by the rule table, if its lowest block has this state and its front is that side.
+local function expect(column, state, height, front)
+  for side = 0, 3 do
+    local row = memory.plan.row_for(state, height, (side - front) % 4, beside(column, side) ~= nil)
+    column.sides[side] = {row = row or false, seen = memory.now, guessed = row and true}
+  end
+end
+
+-- The robot has attached a block at a place {column, side, row}.
+function memory.attached(place)
+  local column, row = place.column, place.row
+  if row.place == "above" then
+    expect(column, row.state, row.height + 1, place.side)
+  else
+    local to = directions[place.side]
+    local new = column_at(column.i + to[1], column.j + to[2])
+    new.seen = memory.now
+    column.sides[place.side] = {row = false, seen = memory.now}
+    expect(new, row.becomes, 1, place.side)
+  end
+end
+
+local function remember_side(face)
   local i, j, side, off = column_of(block_of(face))
   if not fits(off) then return end
-  local key = i .. "," .. j
-  local column = memory.columns[key]
-  if not column then
-    column = {i = i, j = j, sides = {}}
-    column.x, column.y = point_of(i, j)
-    memory.columns[key] = column
-  end
+  local column = column_at(i, j)
   for n = #memory.material, 1, -1 do
     local block = memory.material[n]
     if (block.x - column.x) ^ 2 + (block.y - column.y) ^ 2 < apart ^ 2 then
@@ -106,7 +139,11 @@ local function remember_side(face, plan)
     end
   end
   column.seen = memory.now
-  column.sides[side] = {row = plan.row_shown(face.color) or false, seen = memory.now}
+  local row, before = memory.plan.row_shown(face.color), column.sides[side]
+  if not row and before and before.row and before.row.place == "above" and before.row.sides then
+    expect(column, before.row.state, before.row.height + 1, side)  -- somebody attached a block
+  end
+  column.sides[side] = {row = row or false, seen = memory.now}
 end
 
 local function remember_material(face)
@@ -129,9 +166,52 @@ local function remember_material(face)
   memory.material[#memory.material + 1] = block
 end
 
+-- A point in the robot's frame: forward, left [m].
+local function seen_from_robot(point)
+  local pose = builder.pose
+  local c, s = math.cos(pose.yaw), math.sin(pose.yaw)
+  local dx, dy = point.x - pose.x, point.y - pose.y
+  return c * dx + s * dy, -s * dx + c * dy
+end
+
+-- Whether something stands between the camera and a point in the robot's frame.
+local function is_hidden(forward, left, others)
+  for _, thing in ipairs(others) do
+    if thing.forward > 0 and thing.forward < forward - 0.03 and
+       math.abs(thing.left - left * thing.forward / forward) < thing.width then
+      return true
+    end
+  end
+  return false
+end
+
+-- Forgets dark blocks that have not been where they should be in sight for a second: somebody took them.
+local function forget_taken(robots)
+  local others = {}
+  for _, column in pairs(memory.columns) do
+    local forward, left = seen_from_robot(column)
+    others[#others + 1] = {forward = forward, left = left, width = 0.05}
+  end
+  for _, block in ipairs(memory.material) do
+    local forward, left = seen_from_robot(block)
+    others[#others + 1] = {forward = forward, left = left, width = 0.05}
+  end
+  for _, robot in ipairs(robots) do
+    others[#others + 1] = {forward = robot.forward, left = robot.left, width = 0.17}
+  end
+  for n = #memory.material, 1, -1 do
+    local block = memory.material[n]
+    local forward, left = seen_from_robot(block)
+    local in_sight = forward > 0.25 and forward < 0.65 and math.abs(left) < 0.22 * forward and
+                     not is_hidden(forward, left, others)
+    block.missed = in_sight and block.seen < memory.now and (block.missed or 0) + 1 or block.missed
+    if (block.missed or 0) > 10 then table.remove(memory.material, n) end
+  end
+end
+
 -- Takes in what the camera sees: faces as of builder.faces(). Nearer than 13 cm the LEDs are out
--- of the image.
-function memory.update(faces, plan)
+-- of the image. robots: {forward, left} of the others.
+function memory.update(faces, robots)
   memory.now = memory.now + 1
   local found_oneself = false
   for _, face in ipairs(faces) do
@@ -140,7 +220,7 @@ function memory.update(faces, plan)
         found_oneself = true
         find_oneself(face)
       end
-      if math.abs(face.heading) < 1.1 then remember_side(face, plan) end
+      if math.abs(face.heading) < 1.1 then remember_side(face) end
     end
   end
   for _, face in ipairs(faces) do
@@ -148,6 +228,7 @@ function memory.update(faces, plan)
       remember_material(face)
     end
   end
+  forget_taken(robots)
 end
 
 function memory.forget(block)
@@ -176,30 +257,57 @@ function memory.extent()
   return most
 end
 
-local directions = {[0] = {1, 0}, {0, 1}, {-1, 0}, {0, -1}}
+-- What a column showed last that it shows on all of its sides: {row, seen}. What stands beside it tells it, too: it
+-- has been attached by what the column showed.
+local function shown_all_around(column)
+  local latest
+  for _, look in pairs(column.sides) do
+    if look.row and not look.row.sides and (not latest or look.seen > latest.seen) then latest = look end
+  end
+  if not latest then return nil end
+  for side = 0, 3 do
+    local next_one = beside(column, side)
+    for _, look in pairs(next_one and next_one.sides or {}) do
+      local origin = look.row and memory.plan.origin_of(look.row, latest.row.state)
+      if origin and not origin.sides and look.seen > latest.seen then latest = {row = origin, seen = look.seen} end
+    end
+  end
+  return latest
+end
 
 -- Whether what a side showed is out of date: a column was seen before it since, or another side of its
--- column showed another row.
-local function is_old(column, side, look)
-  local to = directions[side]
-  local beside = memory.columns[column.i + to[1] .. "," .. column.j + to[2]]
-  if look.row.place == "before" and beside and beside.seen > look.seen then return true end
+-- column showed another row. latest: what the column showed last on all sides.
+local function is_old(column, side, look, latest)
+  local next_one = beside(column, side)
+  if look.row.place == "before" and next_one and next_one.seen > look.seen then return true end
+  if latest and latest.row ~= look.row and latest.seen > look.seen then return true end
   for _, other in pairs(column.sides) do
     if other.row and other.row ~= look.row and other.seen > look.seen + 50 then return true end
   end
   return false
 end
 
--- All sides where something may be attached, seen in the last so many ticks: {column, side, row, yaw (outward),
--- x, y (of the face)}.
+-- What a side shows, as far as is known: {row, seen, guessed}; nil if nothing may be attached there. It is a guess
+-- if another side was seen later.
+local function look_at(column, side)
+  local look, latest = column.sides[side], shown_all_around(column)
+  if look and look.row and not is_old(column, side, look, latest) then return look end
+  if latest and not beside(column, side) and (not look or look.row and look.row ~= latest.row) then
+    return {row = latest.row, seen = latest.seen, guessed = true}
+  end
+end
+
+-- All sides where something may be attached, seen in the last so many ticks: {column, side, row, seen, guessed, yaw
+-- (outward), x, y (of the face)}.
 function memory.open_sides(ticks)
   local open = {}
   for _, column in pairs(memory.columns) do
-    for side, look in pairs(column.sides) do
-      if look.row and memory.now - look.seen < (ticks or math.huge) and not is_old(column, side, look) then
+    for side = 0, 3 do
+      local look = look_at(column, side)
+      if look and memory.now - look.seen < (ticks or math.huge) then
         local yaw = memory.anchor.yaw + side * math.pi / 2
-        open[#open + 1] = {column = column, side = side, row = look.row, yaw = yaw,
-                           seen = look.seen,
+        open[#open + 1] = {column = column, side = side, row = look.row, yaw = yaw, seen = look.seen,
+                           guessed = look.guessed,
                            x = column.x + 0.5 * builder.block * math.cos(yaw),
                            y = column.y + 0.5 * builder.block * math.sin(yaw)}
       end
@@ -214,7 +322,7 @@ function memory.obstacles(list)
     list[#list + 1] = {x = column.x, y = column.y, hard = 0.185, soft = 0.26}
   end
   for _, block in ipairs(memory.material) do
-    list[#list + 1] = {x = block.x, y = block.y, hard = 0.13, soft = 0.18}
+    list[#list + 1] = {x = block.x, y = block.y, hard = 0.14, soft = 0.2}
   end
   return list
 end

@@ -23,6 +23,15 @@ function odometry.reckon()
   pose.yaw = pose.yaw + turned
 end
 
+-- How far in front of the robot's centre the point is about which it turns [m].
+function odometry.ahead() return pivot[builder.loaded] end
+
+-- That point, in the frame of the pose: a turn on the spot does not move it.
+function odometry.pivot()
+  local pose, forward = builder.pose, pivot[builder.loaded]
+  return {x = pose.x + forward * math.cos(pose.yaw), y = pose.y + forward * math.sin(pose.yaw), yaw = pose.yaw}
+end
+
 -- Something that stands still was seen this far from its place of the tick before, in the frame of the
 -- pose [m].
 function odometry.learn(dx, dy)

@@ -2,23 +2,27 @@
 
 local assembly = require "assembly"
 local builder = require "builder"
+local corridor = require "corridor"
 local memory = require "memory"
+local odometry = require "odometry"
 local traffic = require "traffic"
 local travel = require "travel"
 
 local job = assembly.job
-local before = builder.reach + memory.pitch  -- from the robot's centre to the side before which it places
 local states = {}
 
-local function distance_of(row) return row.place == "above" and builder.reach or before end
-
--- The side with the shortest free way of those that may get a block; nil if none is known.
+-- The side with the shortest free way of those that may get a block; nil if none is known, or other robots
+-- are at work at each that is. What was seen long ago is less certain.
 local function nearest_side()
   local least, nearest
   for _, side in ipairs(memory.open_sides()) do
-    local x, y = assembly.ahead_of(side, distance_of(side.row) + assembly.last_way)
-    local cost = assembly.distance_to({x = x, y = y}) + assembly.hindrance(side, memory.material)
-    if not least or cost < least then least, nearest = cost, side end
+    local x, y = corridor.start_of(side)
+    local distance = assembly.distance_to({x = x, y = y})
+    if not corridor.is_taken(side, distance) then
+      local cost = distance + assembly.hindrance(side, memory.material) +
+                   math.min(1, 1e-3 * (memory.now - side.seen)) + (side.guessed and 0.2 or 0)
+      if not least or cost < least then least, nearest = cost, side end
+    end
   end
   return nearest
 end
@@ -26,17 +30,23 @@ end
 function states.choose_side()
   job.after_scan = nil
   if not memory.middle() then return "wander" end
-  job.tries, job.points = 0, {}
-  return nearest_side() and "claim" or "survey"
+  job.tries = 0
+  job.place = nearest_side()
+  if job.place then
+    job.points = {}
+    return "enter"
+  end
+  return #memory.open_sides() > 0 and "queue" or "survey"
 end
 
 -- Looks at the structure from all sides. When no side may get a block, it is complete.
 function states.survey()
-  if #memory.open_sides() > 0 then
+  if nearest_side() then
     job.rounds = 0
     return "choose_side"
   end
   if #job.points == 0 then
+    if #memory.open_sides() > 0 then return "queue" end
     job.rounds = job.rounds + 1
     if job.rounds > 3 then return "park" end
     job.points = assembly.ring(assembly.survey_ring, 4)
@@ -53,28 +63,28 @@ function states.survey()
   end
 end
 
--- Waits outside until no other robot works at the structure.
-function states.claim()
-  if traffic.may_build() then
-    job.place, job.tries = nearest_side(), 0  -- by what it has seen since
-    if job.place then return "enter" end
-    traffic.leave_structure()
+-- Waits outside while others are at work at all sides that may get a block, then looks from elsewhere.
+function states.queue()
+  if job.since % 5 == 0 and nearest_side() then return "choose_side" end
+  if job.seconds() > 12 then
+    job.points = assembly.ring(assembly.survey_ring, 4)
     return "survey"
   end
   local middle = memory.middle()
-  local ring_radius = assembly.waiting_ring + memory.extent()
-  if assembly.distance_to(middle) < ring_radius - 0.05 then
-    local angle = math.atan(builder.pose.y - middle.y, builder.pose.x - middle.x)
-    travel.to(middle.x + ring_radius * math.cos(angle), middle.y + ring_radius * math.sin(angle))
-  elseif travel.turn_to(math.atan(middle.y - builder.pose.y, middle.x - builder.pose.x)) then
+  local radius = assembly.waiting_ring + memory.extent()
+  local x, y = builder.pose.x - middle.x, builder.pose.y - middle.y
+  local distance = math.sqrt(x * x + y * y)
+  if math.abs(distance - radius) > 0.1 then
+    travel.to(middle.x + radius / distance * x, middle.y + radius / distance * y)
+  elseif travel.turn_to(math.atan(-y, -x)) then
     travel.wait()
   end
 end
 
 -- What the side shows does not count until it is seen again.
 local function forget_color()
-  local look = job.place.column and job.place.column.sides[job.place.side]
-  if look then look.row = false end
+  if not job.place.column then return end
+  job.place.column.sides[job.place.side] = {row = false, seen = memory.now}
 end
 
 local function give_up_side()
@@ -83,39 +93,73 @@ local function give_up_side()
   return "choose_side"
 end
 
+-- Height of the lift on the way to the side; while it lines up, also if the colour changes.
+local function height_for(row)
+  return assembly.carrying + (row.place == "above" and row.height - 1 or 0) * builder.block
+end
+
+-- To where the straight way to the side begins.
 function states.enter()
-  builder.lift_to(assembly.carrying + math.max(0, job.place.row.height - 1) * builder.block, 0.05)
-  local x, y = assembly.ahead_of(job.place, distance_of(job.place.row) + assembly.last_way)
+  traffic.row = job.place.row.index
+  builder.lift_to(height_for(job.place.row), 0.05)
+  local x, y = corridor.start_of(job.place)
+  local distance = assembly.distance_to({x = x, y = y})
+  if not traffic.holding and distance < 0.7 and corridor.is_taken(job.place, distance) then
+    traffic.leave_structure()
+    return "choose_side"
+  end
   local outcome = travel.to(x, y)
-  if outcome == "there" then return "aim_at_side" end
+  if outcome == "there" then
+    job.looked = memory.now
+    return "claim"
+  end
+  if outcome == "occupied" and not traffic.holding then
+    traffic.leave_structure()
+    return "queue"
+  end
   if outcome == "stuck" or job.seconds() > 60 then return give_up_side() end
 end
 
--- What the side shows now counts, not what is remembered.
-function states.aim_at_side(faces)
+-- What the side shows: its place becomes where the camera sees it. False if it is not in sight, otherwise the
+-- row, or nil if nothing may be attached there. Nearer than 13 cm the LEDs are out of the image.
+local function look(faces)
   local face = memory.seen_at(faces, job.place)
-  if face then
-    job.place.x, job.place.y, job.place.yaw = face.place.x, face.place.y, face.place.yaw
-    local row = face.color and assembly.plan.row_shown(face.color)
-    if row ~= job.place.row then return give_up_side() end
+  if not face then return false end
+  job.place.x, job.place.y, job.place.yaw = face.place.x, face.place.y, face.place.yaw
+  if face.forward < 0.15 then return job.place.row end
+  return face.color and assembly.plan.row_shown(face.color)
+end
+
+-- Before the side, until the corridor to it is free. What the side shows now counts, not what is remembered.
+function states.claim(faces)
+  local row = look(faces)
+  if row == nil then return give_up_side() end
+  if row then job.place.row, job.looked = row, memory.now end
+  builder.lift_to(height_for(job.place.row), 0.05)
+  local x, y = corridor.start_of(job.place)
+  if assembly.distance_to({x = x, y = y}) > 0.13 then
+    traffic.asking = false
+    return "enter"
   end
-  if travel.turn_to(math.atan(job.place.y - builder.pose.y, job.place.x - builder.pose.x)) then
-    if face then return "attach" end
-    if job.seconds() > 4 then return give_up_side() end
+  local turned = travel.turn_to(math.atan(job.place.y - builder.pose.y, job.place.x - builder.pose.x))
+  if turned and memory.now - job.looked > 8 or job.seconds() > 60 then return give_up_side() end
+  if turned and row and (traffic.holding or corridor.may_enter(job.place, assembly.plan.rows)) then
+    return "attach"
   end
-  if job.seconds() > 20 then return give_up_side() end
 end
 
 function states.attach(faces)
-  local face = memory.seen_at(faces, job.place)
-  if face then job.place.x, job.place.y, job.place.yaw = face.place.x, face.place.y, face.place.yaw end
-  if traffic.blocked(1) and job.seconds() < 30 then return builder.stop() end
+  local row = look(faces)
+  if row ~= false and row ~= job.place.row then
+    job.tries = math.huge
+    return "retreat_from_side"
+  end
+  if traffic.blocked(1, 0.19) and job.seconds() < 30 then return builder.stop() end
   local above = job.place.row.place == "above"
-  local arrived = builder.lift_to(assembly.carrying + (above and math.max(0, job.place.row.height - 1) or 0) *
-                                  builder.block, 0.05)
+  local arrived = builder.lift_to(height_for(job.place.row), 0.05)
   if above and not arrived then return builder.stop() end
   local now = assembly.face_of(job.place)
-  local outcome = builder.dock_at(now, 0.05, above, distance_of(job.place.row))
+  local outcome = builder.dock_at(now, 0.05, above, corridor.distance_of(job.place.row), odometry.ahead())
   if outcome == "docked" and
      (math.abs(builder.offset(now)) > 0.001 or math.abs(now.heading) > 0.015) then
     outcome = "askew"
@@ -133,11 +177,19 @@ function states.retreat_from_side()
   return may_try and "enter" or nil
 end
 
+-- From the lift's height when the block stands.
+local function height_of_place()
+  return job.place.row.place == "above" and job.place.row.height * builder.block or 0
+end
+
+-- The last 2 cm slowly: the magnets of what stands below pull.
 function states.place()
   -- The block remembers for the robot what it was at.
   robot.radios.nfc.tx_data({3, tonumber(job.payload), job.place.row.index})
-  local height = job.place.row.place == "above" and job.place.row.height * builder.block or 0
-  if builder.lift_to(math.max(0.0002, height - 0.0002), height > 0 and 0.01 or 0.02) then return "tell" end
+  local height = height_of_place()
+  local slow = height > 0 and 0.01 or 0.02
+  local far = robot.joints.lift.encoder > height + 0.02
+  if builder.lift_to(math.max(0.0002, height - 0.0002), far and 0.05 or slow) then return "tell" end
 end
 
 -- Tells the block its state. From now on it tells the other robots what may be attached.
@@ -148,22 +200,24 @@ end
 
 function states.release()
   builder.current(math.max(-1, -2 * job.seconds()))
-  if job.seconds() > 1.5 then return "rise" end
+  if job.seconds() > 1 then return "rise" end
 end
 
 function states.rise()
   builder.loaded = false
-  local height = job.place.row.place == "above" and job.place.row.height * builder.block or 0
-  if builder.lift_to(math.min(0.14, height + 0.03), 0.03) then return "back_off" end
+  builder.lift_to(math.min(0.14, height_of_place() + 0.03), 0.05)
+  if robot.joints.lift.encoder > height_of_place() + 0.012 then return "back_off" end
 end
 
+-- When it is clear of the block, others may come.
 function states.back_off()
   if traffic.blocked(-1) and job.seconds() < 20 then return builder.stop() end
-  builder.drive(-0.05, 0)
-  if job.seconds() > 3.5 then
-    forget_color()
-    traffic.leave_structure()
-    return job.place.column and "choose_block" or "scan"
+  builder.drive(-0.07, 0)
+  if builder.ahead() > 0.16 or job.seconds() > 1.2 then traffic.leave_structure() end
+  if job.seconds() > 2.3 then
+    if not job.place.column then return "scan" end
+    memory.attached(job.place)
+    return "choose_block"
   end
 end
 

@@ -23,6 +23,14 @@ function rules.load(name)
     row.number = numbers[row.becomes]  -- of the state that the attached block gets
   end
 
+  -- A column beside one that shows `row` has got so high that it shows the row that brought the shown one's block;
+  -- nil if that is not so for a column of this state.
+  function plan.origin_of(row, state)
+    for _, origin in ipairs(rows) do
+      if origin.place == "before" and origin.becomes == row.state and origin.state == state then return origin end
+    end
+  end
+
   -- The row for a side (0 to 3 from the front) of a column; nil if nothing may be attached there.
   function plan.row_for(state, height, side, occupied)
     for _, row in ipairs(rows) do

@@ -2,12 +2,13 @@
 
 local builder = require "builder"
 local memory = require "memory"
+local odometry = require "odometry"
 local path = require "path"
 local traffic = require "traffic"
 
 local travel = {}
 
-local fastest, turn_rate = 0.09, 0.5  -- m/s, rad/s
+local fastest, turn_rate = 0.13, 0.8  -- m/s, rad/s
 local near = 0.1          -- in front of the robot's centre: so near it drives up to nothing unknown [m]
 
 local goal                -- {x, y}
@@ -15,8 +16,10 @@ local points, planned     -- the way, and when it was found
 local speed = 0
 local blocked, patience = 0, 20    -- ticks
 local evading = {ticks = 0, speed = 0}
+local room_tried = -100   -- when it made room for a turn
 local bumps = {}          -- unknown things it nearly drove into: {x, y, hard, soft, seen}
 local best, best_at       -- least distance to the goal so far, and when
+local waited = 0          -- ticks for which another robot has stood at the goal
 
 local function here() return builder.pose end
 
@@ -43,14 +46,17 @@ end
 
 -- Whether another robot stands at the goal.
 local function occupied()
-  for _, other in ipairs(traffic.obstacles(here(), {})) do
-    if (other.x - goal.x) ^ 2 + (other.y - goal.y) ^ 2 < 0.27 ^ 2 then return true end
+  for _, other in ipairs(traffic.others) do
+    local point = traffic.place_of(here(), other)
+    if (point.x - goal.x) ^ 2 + (point.y - goal.y) ^ 2 < 0.27 ^ 2 then return true end
   end
 end
 
 -- Drives or turns, if no robot and no block is in the way. False if one is.
 local function move(wanted, turn)
-  if wanted ~= 0 and traffic.blocked(wanted > 0 and 1 or -1) or wanted > 0 and column_ahead() then
+  local other = wanted ~= 0 and traffic.blocked(wanted > 0 and 1 or -1)
+  traffic.stopped = other and true or false
+  if other or wanted > 0 and column_ahead() then
     speed = 0
     builder.stop()
     return false
@@ -93,34 +99,48 @@ local function column_beside()
   end
 end
 
+-- Whether a dark block is so near that the robot would touch it when it turns on the spot; how far it is in front [m].
+local function block_beside()
+  local pivot = odometry.pivot()
+  for _, block in ipairs(memory.material) do
+    local dx, dy = block.x - pivot.x, block.y - pivot.y
+    if dx * dx + dy * dy < 0.145 ^ 2 then return dx * math.cos(pivot.yaw) + dy * math.sin(pivot.yaw) end
+  end
+end
+
+-- Before a turn on the spot: drives straight away from a block that is in the way; true while it does. It does not
+-- try again for some time.
+local function make_room()
+  if memory.now < room_tried + 40 then return false end
+  local forward = block_beside()
+  if not forward then return false end
+  room_tried = memory.now
+  evade(forward > 0 and -1 or 1, 15)
+  return true
+end
+
 -- Drives straight away from a robot or a column that is very near; true while it does.
 local function keep_distance()
   if evading.ticks <= 0 and not traffic.working then
     local other = traffic.nearest()
-    local forward = other and other.range < 0.27 and other.forward or column_beside()
+    local near_by = other and (other.range < 0.27 or other.stopped and speed == 0 and other.range < 0.4)
+    local forward = near_by and other.forward or column_beside()
     if forward then evade(forward > 0 and -1 or 1, 15) end
   end
   return evaded()
 end
 
--- Whether a point counts as reached. A turn moves the wheels' middle by some centimetres, so a point that is
--- near and aside can't be reached by turning.
-local function is_there(distance, bearing)
-  return distance < 0.02 or (distance < 0.045 and math.abs(bearing) > 0.45)
-end
-
--- Drives to a point in the frame of memory; call it in every step. "there" when it has arrived,
--- "stuck" after 25 s without coming nearer.
+-- Drives the point about which the robot turns to one in the frame of memory; call it in every step. "there" when
+-- it has arrived, "stuck" after 25 s without coming nearer, "occupied" when another robot has stood there for 2 s.
 function travel.to(x, y)
-  local pose = here()
+  local pose = odometry.pivot()
   local distance = math.sqrt((x - pose.x) ^ 2 + (y - pose.y) ^ 2)
   if not goal or (goal.x - x) ^ 2 + (goal.y - y) ^ 2 > 0.03 ^ 2 then
     points, best = nil, nil
   end
   goal = {x = x, y = y}
   if not best or distance < best - 0.03 then best, best_at = distance, memory.now end
-  local bearing = builder.wrapped(math.atan(y - pose.y, x - pose.x) - pose.yaw)
-  if is_there(distance, bearing) then
+  if distance < 0.015 then
     builder.stop()
     travel.forget()
     return "there"
@@ -134,16 +154,19 @@ function travel.to(x, y)
   local other = traffic.nearest()
   local age = points and memory.now - planned or math.huge
   if age > 50 or (other and other.range < 0.7 and age > 12) then plan_way() end
-  if not points or occupied() then
+  if not points or distance < 0.5 and occupied() then
     builder.stop()
-    return
+    waited = waited + 1
+    return waited > 20 and "occupied" or nil
   end
+  waited = 0
   while #points > 1 and (points[1].x - pose.x) ^ 2 + (points[1].y - pose.y) ^ 2 < 0.09 ^ 2 do
     table.remove(points, 1)
   end
-  bearing = builder.wrapped(math.atan(points[1].y - pose.y, points[1].x - pose.x) - pose.yaw)
+  local bearing = builder.wrapped(math.atan(points[1].y - pose.y, points[1].x - pose.x) - pose.yaw)
   local turn = math.max(-turn_rate, math.min(turn_rate, 1.8 * bearing))
   if math.abs(bearing) > 0.45 then
+    if make_room() then return end
     speed = 0
     builder.drive(0, turn)
     return
@@ -175,6 +198,7 @@ function travel.turn_to(yaw)
     builder.stop()
     return true
   end
+  if math.abs(error) > 0.45 and make_room() then return false end
   builder.drive(0, math.max(-turn_rate, math.min(turn_rate, 2 * error)) + (error > 0 and 0.03 or -0.03))
   return false
 end
@@ -186,9 +210,9 @@ end
 
 -- Turns on the spot [rad/s], and keeps its distance.
 function travel.spin(rate)
-  if not keep_distance() then builder.drive(0, rate) end
+  if not keep_distance() and not make_room() then builder.drive(0, rate) end
 end
 
-function travel.forget() goal, points, best, speed, blocked = nil, nil, nil, 0, 0 end
+function travel.forget() goal, points, best, speed, blocked, waited = nil, nil, nil, 0, 0, 0 end
 
 return travel

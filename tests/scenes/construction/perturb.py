@@ -224,6 +224,9 @@ def run(number, options=(), change=perturb, solver=None, keep=None, kills=0):
         changes = change(tree, number)
         if solver:
             tree.find("physics_engines/dynamics3d").set("solver", solver)
+        if rules:
+            shutil.copy(pathlib.Path(__file__).parent / "parked.lua", scene_file.parent)
+            tree.getroot().append(ElementTree.Element("director", id="end", script="parked.lua"))
         tree.write(scene_file)
         trace, readings = (pathlib.Path(folder) / name for name in ("trace.csv", "readings.jsonl"))
         robots = {entity.get("id"): index for index, entity in
