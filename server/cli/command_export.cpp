@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/program_options/value_semantic.hpp>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 #include "cli/arguments.h"
@@ -101,7 +102,7 @@ int execute_export(const Arguments& arguments) {
   if (parsed.values.count("topics")) {
     order.topics = parsed.values["topics"].as<std::vector<std::string>>();
   }
-  std::size_t written = 0;
+  std::set<std::filesystem::path> written;
   for (const Format& format : formats) {
     if (!parsed.values.count(format.option)) continue;
     order.out = parsed.values[format.option].as<std::string>();
@@ -110,10 +111,14 @@ int execute_export(const Arguments& arguments) {
       throw text::UsageError(
           fmt::format("--{} is the recording itself; name another file", format.option));
     }
+    const auto path = std::filesystem::weakly_canonical(std::filesystem::absolute(order.out));
+    if (!written.insert(path).second) {
+      throw text::UsageError(fmt::format("--{} is '{}', the file of another format too; name another file",
+                                         format.option, order.out));
+    }
     console.report(fmt::format("{}: {}\n", order.out, format.write(order)));
-    ++written;
   }
-  if (written == 0) {
+  if (written.empty()) {
     throw text::UsageError(
         "no format is given; write --csv FILE.csv, --jsonl FILE.jsonl or --html FILE.html");
   }

@@ -12,7 +12,7 @@ bool wants_report_card(const Options& options) {
 }
 
 const std::string& only_scene(const Options& options) {
-  if (options.scenes.empty())
+  if (options.scenes.empty() || options.scenes.front().empty())
     throw text::UsageError("no scene is given; write the path of a scene file, as in: ziggurat run vehicle.argos");
   if (options.scenes.size() > 1) {
     throw text::UsageError(

@@ -57,7 +57,7 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       console_({options.quiet, options.json}),
       past_(options.fork ? std::make_unique<Past>(options) : nullptr),
       path_(past_ ? past_->scene_path()
-                  : existing_scene(options, service == Service::serve, console_)),
+                  : existing_scene(options, console_)),
       local_(signals.guardian()),
       config_(network_config(options, service == Service::serve, local_)),
       listening_(std::make_unique<network::Server>(config_)),

@@ -40,17 +40,17 @@ void hold_late(const Options& options, const scene::Scene& scene, DeadlinesOfRun
 
 }  // namespace
 
-std::string existing_scene(const Options& options, bool is_serve, reports::Console& console) {
+std::string existing_scene(const Options& options, reports::Console& console) {
   const std::string& path = only_scene(options);
   check_files(options);
-  if (options.paused && options.endpoints.empty() && !is_serve) {
-    throw text::UsageError("--paused needs --endpoint, where a supervisor can connect to resume");
-  }
   if (!std::filesystem::exists(path)) load_scene(path, options, console);  // throws
   return path;
 }
 
 network::Config network_config(const Options& options, bool is_serve, LocalEndpoints& local) {
+  if (options.paused && options.endpoints.empty() && !is_serve && !options.view) {
+    throw text::UsageError("--paused needs --endpoint, where a supervisor can connect to resume, or --view");
+  }
   network::Config config;
   config.insecure = options.insecure;
   config.allows_directors = options.allows_directors;

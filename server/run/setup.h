@@ -20,7 +20,7 @@ namespace ziggurat::run {
 /// The path of the one scene, which exists: otherwise a client would connect to a run that cannot
 /// start. The files that options name are checked, too.
 /// @throws text::UsageError, scene::SceneError
-std::string existing_scene(const Options& options, bool is_serve, reports::Console& console);
+std::string existing_scene(const Options& options, reports::Console& console);
 
 /// What the options say of the network, before the scene is read.
 /// @param is_serve  listens in a folder of this user if the options name no endpoint

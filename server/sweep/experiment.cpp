@@ -149,6 +149,9 @@ std::vector<std::uint64_t> to_seeds(std::string_view place, std::string_view tex
     const auto number = [&](std::string_view digits) {
       return text::to_integer(place, std::string(text::trimmed(digits)));
     };
+    if (part.empty() || part.starts_with("..") || part.ends_with("..")) {
+      throw text::UsageError(fmt::format("{} is '{}'; write for example 1..30 or 1,2,5..9", place, text));
+    }
     const std::uint64_t first = number(part.substr(0, dots));
     const std::uint64_t last = dots == part.npos ? first : number(part.substr(dots + 2));
     if (last < first) {

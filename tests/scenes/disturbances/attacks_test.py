@@ -95,6 +95,17 @@ class Attacks(SceneTest):
         for parameter in ("x=${x}", "=", "x"):
             self.refuses("check", self.scene, "--param", parameter)
 
+    def test_mistakes_at_the_terminal(self):
+        self.run_scene("--ticks", 5, "--quiet", "--record", "run.mcap")
+        for arguments, pattern in (
+                (("run", ""), "no scene is given"), (("run", self.scene, "--paused"), "needs --endpoint.* or --view"),
+                (("fork", "run.mcap", "--at", 2, "--paused"), "needs --endpoint"),
+                (("export", "run.mcap", "--csv", "x", "--jsonl", "x"), "'x', the file of another format too"),
+                *[(("sweep", self.scene, "--out", "y", "--seeds", seeds), "write for example 1..30 or 1,2,5..9")
+                  for seeds in ("", "1..", "..5", "1,,2")]):
+            with self.subTest(arguments):
+                self.refuses(*arguments, pattern=pattern)
+
     def test_hostile_lists_of_clients(self):
         subprocess.run([str(ZIGGURAT), "keygen", "--out", "k"], cwd=self.folder, check=True, capture_output=True)
         key = (self.folder / "k.public").read_text().strip()
