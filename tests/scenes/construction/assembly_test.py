@@ -68,13 +68,16 @@ class WrongTables(unittest.TestCase):
             return result.stderr.partition("rules_wrong.lua: ")[2].strip()
 
     def test_each_mistake_is_named(self):
-        good = 'height = 1, shows = {255, 0, 0}, place = "above", becomes = "upper"'
+        good = 'state = "core", height = 1, shows = {255, 0, 0}, place = "above", becomes = "upper"'
         for row, message in (
                 (good.replace('"above"', '"under"'), 'row 2: \'place\' is "under"; write "above" or "before"'),
                 (good.replace('255', '256'), "row 2: 'shows' is not from 0 to 255"),
                 (good.replace('{255, 0, 0}', '"red"'), "row 2: 'shows' is missing; write {red, green, blue}, from 0 to 255"),
                 (good.replace('height', 'hight'), "row 2: 'height' is not from 0 to 255"),
-                (good.replace('"upper"', 'nil'), "row 2: 'becomes' is not a string")):
+                (good.replace('"core"', 'nil'), "row 2: 'state' is not a string"),
+                (good.replace('"upper"', 'nil'), "row 2: 'becomes' is not a string"),
+                (good + ', sides = {"top"}', 'row 2: \'sides\' has something else than "front", "left", "back", "right"'),
+                (good + ", sides = {}", 'row 2: \'sides\' is not a list, as {"front", "back"}')):
             with self.subTest(row=row):
                 self.assertEqual(self.message_for(f'return {{seed = "core", {{{good}}}, {{{row}}}}}'), message)
 

@@ -35,10 +35,8 @@ construction::Face face_of(const Assembler& self, const Pose& side) {
 }
 
 bool is_taken(const Assembler& self, const Point& place, double reach) {
-  std::vector<Obstacle> others;
-  add_obstacles(self.traffic, self.odometry.pose, others);
-  return std::ranges::any_of(others, [&](const Obstacle& other) {
-    const double distance = distance_between(other, place);
+  return std::ranges::any_of(self.traffic.neighbours, [&](const Neighbour& other) {
+    const double distance = distance_between(place_of(other, self.odometry.pose), place);
     return distance < reach && distance < distance_to(self, place);
   });
 }

@@ -22,11 +22,10 @@ namespace assembly {
 inline constexpr double clearance = 0.03;     ///< lift, without a block [m]
 inline constexpr double carrying = 0.075;     ///< lift, with a block, out of the camera's sight [m]
 inline constexpr double run_up = 0.13;        ///< straight way to a dark block [m]
-inline constexpr double last_way = 0.17;      ///< and to the structure [m]
 inline constexpr double highest_lift = 0.14;  ///< [m]
 
 // Distances from the structure's outermost column [m].
-inline constexpr double waiting_ring = 0.62;  ///< where robots wait
+inline constexpr double waiting_ring = 0.55;  ///< where robots wait
 inline constexpr double survey_ring = 0.42;   ///< from where they look at it
 inline constexpr double search_ring = 0.55;   ///< from where they look for material
 inline constexpr double parking_ring = 0.85;  ///< where they stay when it is complete
@@ -53,9 +52,9 @@ enum class State {
   raise,
   choose_side,
   survey,
-  claim,
+  queue,
   enter,
-  aim_at_side,
+  claim,
   attach,
   retreat_from_side,
   place,
@@ -90,6 +89,7 @@ struct Job {
   int since = 0;  ///< age of the state [ticks]
   Target target;
   Place place;
+  std::int64_t looked = 0;              ///< when it saw that side last [ticks]
   std::optional<std::uint8_t> payload;  ///< number on that side of the carried block that it sees
   Next after_scan;
   std::vector<Viewpoint> points;  ///< still to look from
@@ -158,9 +158,9 @@ Next let_go(Assembler& self, Faces faces);
 Next raise(Assembler& self, Faces faces);
 Next choose_side(Assembler& self, Faces faces);
 Next survey(Assembler& self, Faces faces);
-Next claim(Assembler& self, Faces faces);
+Next queue(Assembler& self, Faces faces);
 Next enter(Assembler& self, Faces faces);
-Next aim_at_side(Assembler& self, Faces faces);
+Next claim(Assembler& self, Faces faces);
 Next attach(Assembler& self, Faces faces);
 Next retreat_from_side(Assembler& self, Faces faces);
 Next place(Assembler& self, Faces faces);

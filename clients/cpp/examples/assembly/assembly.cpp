@@ -44,9 +44,9 @@ constexpr Behaviour behaviours[] = {
     {"raise", raise, true},
     {"choose_side", choose_side},
     {"survey", survey},
-    {"claim", claim},
+    {"queue", queue},
     {"enter", enter},
-    {"aim_at_side", aim_at_side, true},
+    {"claim", claim},
     {"attach", attach, true},
     {"retreat_from_side", retreat_from_side, true},
     {"place", place, true},
@@ -65,7 +65,7 @@ void step(Assembler& self) {
   reckon(self.odometry, self.builder, self.robot.imu("imu"));
   sense(self.traffic, *self.robot.range_and_bearing());
   const std::vector<construction::Face> faces = self.builder.faces();
-  if (update(self.memory, self.odometry, self.builder.loaded, faces, self.plan)) {
+  if (update(self.memory, self.odometry, self.builder.loaded, faces, self.plan, self.traffic)) {
     self.robot.log("lost: starts a new map");
   }
   if (const Next next = behaviour_of(job.state).step(self, faces)) {
@@ -76,6 +76,7 @@ void step(Assembler& self) {
   }
   self.traffic.working = behaviour_of(job.state).is_working;
   tell(self.traffic, *self.robot.range_and_bearing(), self.random);
+  self.traffic.stopped = false;
   self.builder.move_lift();
 }
 
@@ -90,6 +91,9 @@ std::string table_of(const ziggurat::Robot& robot) {
 }
 
 Assembler begin(ziggurat::Robot& robot, const Plan& plan, const ziggurat::Session& session) {
+  if (!robot.range_and_bearing()) {
+    throw std::runtime_error("robot '" + robot.id() + "' has no range and bearing");
+  }
   robot.log("start");
   return {.robot = robot,
           .plan = plan,

@@ -72,9 +72,11 @@ Next choose_block(Assembler& self, Faces /*faces*/) {
     for (int side = 0; side < 4; ++side) {
       const double yaw = block->yaw + side * pi / 2;
       const Pose face = {ahead_of({*block, yaw}, construction::block / 2), yaw};
-      const double cost =
-          distance_to(self, run_up_to(face)) + hindrance(face, obstacles) +
-          distance_from_middle(self, *block);  // those that stand in the way of building first
+      const auto age = static_cast<double>(self.memory.now - block->seen);
+      // Those that stand in the way of building first; somebody may have taken what was seen long
+      // ago.
+      const double cost = distance_to(self, run_up_to(face)) + hindrance(face, obstacles) +
+                          distance_from_middle(self, *block) + std::min(0.6, 5e-4 * age);
       if (cost >= least) continue;
       least = cost;
       job.target = {face, block};
@@ -92,7 +94,7 @@ Next fetch(Assembler& self, Faces /*faces*/) {
   if (is_taken(self, self.job.target, 0.3)) return give_up_block(self, 200);
   const Arrival arrival = travel_to(self, run_up_to(self.job.target));
   if (arrival == Arrival::there) return State::aim;
-  if (arrival == Arrival::stuck || self.job.seconds() > 90) return give_up_block(self, 300);
+  if (arrival != Arrival::under_way || self.job.seconds() > 90) return give_up_block(self, 200);
   self.builder.lift_to(clearance, 0.05);
   return {};
 }
@@ -106,7 +108,7 @@ Next aim(Assembler& self, Faces faces) {
   }
   if (turn_to(self, direction_to(self, job.target))) {
     if (seen) return State::approach;
-    if (job.seconds() > 4) return forget_target(self);
+    if (job.seconds() > 2.5) return forget_target(self);
   }
   if (job.seconds() > 15) return give_up_block(self, 200);
   return {};
@@ -123,7 +125,9 @@ Next approach(Assembler& self, Faces faces) {
     if (job.seconds() > 20) return give_up_block(self, 200);
     return {};
   }
-  const auto outcome = self.builder.dock_at(face_of(self, job.target), 0.06, true);
+  const auto outcome =
+      self.builder.dock_at(face_of(self, job.target), 0.06, true, construction::reach,
+                           pivot_ahead(self.odometry, self.builder.loaded));
   if (outcome == construction::Docking::docked) return State::lower;
   if (outcome == construction::Docking::askew || job.seconds() > 40) return State::retreat;
   return {};
@@ -141,14 +145,14 @@ Next lower(Assembler& self, Faces /*faces*/) {
     self.job.target.block->avoid = never;
     return State::let_go;
   }
-  if (self.builder.lift_to(gap - 0.0005, 0.03)) return State::energise;
+  if (self.builder.lift_to(gap - 0.0005, 0.05)) return State::energise;
   return {};
 }
 
 Next energise(Assembler& self, Faces /*faces*/) {
   tell_side(self);
-  self.builder.set_current(std::min(1.0, -1 + self.job.seconds()));
-  if (self.job.seconds() <= 2.5) return {};
+  self.builder.set_current(std::min(1.0, -1 + 2 * self.job.seconds()));
+  if (self.job.seconds() <= 1.5) return {};
   return self.builder.holds() ? State::raise : State::let_go;
 }
 
@@ -159,7 +163,7 @@ Next let_go(Assembler& self, Faces /*faces*/) {
 }
 
 Next raise(Assembler& self, Faces /*faces*/) {
-  if (!self.builder.lift_to(carrying, 0.03)) {
+  if (!self.builder.lift_to(carrying, 0.05)) {
     tell_side(self);
     return {};
   }

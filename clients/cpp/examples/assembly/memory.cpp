@@ -88,20 +88,55 @@ bool find_oneself(Memory& memory, Odometry& odometry, bool loaded, const Face& f
   return false;
 }
 
+constexpr int directions[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+
+/// The column beside a side; null if none is known.
+const Column* column_beside(const Memory& memory, const Column& column, int side) {
+  const auto found =
+      memory.columns.find(key_of(column.i + directions[side][0], column.j + directions[side][1]));
+  return found == memory.columns.end() ? nullptr : found->second.get();
+}
+
+Column& column_at(Memory& memory, int i, int j) {
+  std::shared_ptr<Column>& column = memory.columns[key_of(i, j)];
+  if (column) return *column;
+  column = std::make_shared<Column>();
+  static_cast<Point&>(*column) = point_of(*memory.anchor, i, j);
+  column->i = i;
+  column->j = j;
+  column->seen = memory.now;
+  return *column;
+}
+
+std::optional<Look>& look_of(Column& column, int side) {
+  return column.sides[static_cast<std::size_t>(side)];
+}
+
+/// What a column must show by the rule table, if its lowest block has this state and its front is
+/// that side.
+void expect(const Memory& memory, const Plan& plan, Column& column, const std::string& state,
+            int height, int front) {
+  for (int side = 0; side < 4; ++side) {
+    const bool is_occupied = column_beside(memory, column, side) != nullptr;
+    const Row* row = plan.row_for(state, height, (side - front + 4) % 4, is_occupied);
+    look_of(column, side) = Look{row, memory.now, row != nullptr};
+  }
+}
+
 void remember_side(Memory& memory, const Pose& robot, const Face& face, const Plan& plan) {
   const auto [i, j, side, off] = column_of(block_of(face, robot), *memory.anchor);
   if (!fits(off)) return;
-  std::shared_ptr<Column>& column = memory.columns[key_of(i, j)];
-  if (!column) {
-    column = std::make_shared<Column>();
-    static_cast<Point&>(*column) = point_of(*memory.anchor, i, j);
-    column->i = i;
-    column->j = j;
+  Column& column = column_at(memory, i, j);
+  std::erase_if(memory.material, [&](const auto& each) { return is_within(*each, column, apart); });
+  column.seen = memory.now;
+  const Row* row = plan.row_shown(*face.color);
+  std::optional<Look>& look = look_of(column, side);
+  if (const Row* before = look ? look->row : nullptr;
+      !row && before && before->above && !before->is_everywhere) {
+    expect(memory, plan, column, before->state, before->height + 1,
+           side);  // somebody attached a block
   }
-  std::erase_if(memory.material,
-                [&](const auto& each) { return is_within(*each, *column, apart); });
-  column->seen = memory.now;
-  column->sides[static_cast<std::size_t>(side)] = {plan.row_shown(*face.color), memory.now};
+  look = Look{row, memory.now};
 }
 
 void remember_material(Memory& memory, Odometry& odometry, bool loaded, const Face& face) {
@@ -123,24 +158,99 @@ void remember_material(Memory& memory, Odometry& odometry, bool loaded, const Fa
   memory.material.push_back(std::move(block));
 }
 
+/// A thing that hides what is behind it, in the robot's frame [m].
+struct Screen {
+  double forward = 0, left = 0;
+  double width = 0;  // to each side
+};
+
+Screen seen_from(const Pose& pose, const Point& point, double width) {
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  const double dx = point.x - pose.x, dy = point.y - pose.y;
+  return {c * dx + s * dy, -s * dx + c * dy, width};
+}
+
+bool is_hidden(const Screen& block, const std::vector<Screen>& screens) {
+  return std::ranges::any_of(screens, [&](const Screen& thing) {
+    return thing.forward > 0 && thing.forward < block.forward - 0.03 &&
+           std::abs(thing.left - block.left * thing.forward / block.forward) < thing.width;
+  });
+}
+
+/// Forgets dark blocks that have not been where they should be in sight for a second.
+void forget_taken(Memory& memory, const Pose& pose, const Traffic& traffic) {
+  constexpr double block_width = 0.05, robot_width = 0.17;
+  std::vector<Screen> screens;
+  for (const auto& [key, column] : memory.columns) {
+    screens.push_back(seen_from(pose, *column, block_width));
+  }
+  for (const auto& block : memory.material) {
+    screens.push_back(seen_from(pose, *block, block_width));
+  }
+  for (const Neighbour& other : traffic.neighbours) {
+    screens.push_back({other.forward, other.left, robot_width});
+  }
+  std::erase_if(memory.material, [&](const std::shared_ptr<Block>& block) {
+    const Screen at = seen_from(pose, *block, block_width);
+    const bool is_in_sight = at.forward > 0.25 && at.forward < 0.65 &&
+                             std::abs(at.left) < 0.22 * at.forward && !is_hidden(at, screens);
+    if (is_in_sight && block->seen < memory.now) ++block->missed;
+    return block->missed > 10;
+  });
+}
+
+/// What a column showed last that it shows on all of its sides. What stands beside it tells it,
+/// too: it has been attached by what the column showed.
+std::optional<Look> shown_all_around(const Memory& memory, const Plan& plan, const Column& column) {
+  std::optional<Look> latest;
+  for (const std::optional<Look>& look : column.sides) {
+    if (!look || !look->row || !look->row->is_everywhere) continue;
+    if (!latest || look->seen > latest->seen) latest = look;
+  }
+  if (!latest) return latest;
+  for (int side = 0; side < 4; ++side) {
+    const Column* beside = column_beside(memory, column, side);
+    if (!beside) continue;
+    for (const std::optional<Look>& look : beside->sides) {
+      if (!look || !look->row) continue;
+      const Row* origin = plan.origin_of(*look->row, latest->row->state);
+      if (origin && origin->is_everywhere && look->seen > latest->seen) {
+        latest = Look{origin, look->seen};
+      }
+    }
+  }
+  return latest;
+}
+
 /// Whether what a side showed is out of date: a column was seen before it since, or another side of
 /// its column showed another row.
-bool is_old(const Memory& memory, const Column& column, int side, const Look& look) {
-  constexpr int directions[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-  const auto beside =
-      memory.columns.find(key_of(column.i + directions[side][0], column.j + directions[side][1]));
-  if (!look.row->above && beside != memory.columns.end() && beside->second->seen > look.seen) {
-    return true;
-  }
+/// @param latest  what the column showed last on all sides
+bool is_old(const Memory& memory, const Column& column, int side, const Look& look,
+            const std::optional<Look>& latest) {
+  const Column* beside = column_beside(memory, column, side);
+  if (!look.row->above && beside && beside->seen > look.seen) return true;
+  if (latest && latest->row != look.row && latest->seen > look.seen) return true;
   return std::ranges::any_of(column.sides, [&](const std::optional<Look>& other) {
     return other && other->row && other->row != look.row && other->seen > look.seen + 50;
   });
 }
 
+/// What a side shows, as far as is known; nothing if nothing may be attached there.
+std::optional<Look> look_at(const Memory& memory, const Plan& plan, const Column& column,
+                            int side) {
+  const std::optional<Look>& look = column.sides[static_cast<std::size_t>(side)];
+  const std::optional<Look> latest = shown_all_around(memory, plan, column);
+  if (look && look->row && !is_old(memory, column, side, *look, latest)) return look;
+  const bool is_open = !look || (look->row && latest && look->row != latest->row);
+  if (!latest || column_beside(memory, column, side) || !is_open) return std::nullopt;
+  return Look{latest->row, latest->seen, true};
+}
+
 }  // namespace
 
 // Nearer than 13 cm the LEDs are out of the image.
-bool update(Memory& memory, Odometry& odometry, bool loaded, Faces faces, const Plan& plan) {
+bool update(Memory& memory, Odometry& odometry, bool loaded, Faces faces, const Plan& plan,
+            const Traffic& traffic) {
   ++memory.now;
   bool found_oneself = false, is_lost = false;
   for (const Face& face : faces) {
@@ -156,7 +266,20 @@ bool update(Memory& memory, Odometry& odometry, bool loaded, Faces faces, const 
       remember_material(memory, odometry, loaded, face);
     }
   }
+  forget_taken(memory, odometry.pose, traffic);
   return is_lost;
+}
+
+void remember_attached(Memory& memory, const Plan& plan, Column& column, int side, const Row& row) {
+  if (row.above) {
+    expect(memory, plan, column, row.state, row.height + 1, side);
+    return;
+  }
+  Column& attached =
+      column_at(memory, column.i + directions[side][0], column.j + directions[side][1]);
+  attached.seen = memory.now;
+  look_of(column, side) = Look{nullptr, memory.now};
+  expect(memory, plan, attached, row.becomes, 1, side);
 }
 
 void forget(Memory& memory, const Point& block) {
@@ -184,20 +307,21 @@ double extent_of(const Memory& memory) {
   return most;
 }
 
-std::vector<OpenSide> open_sides(const Memory& memory, std::int64_t ticks) {
+std::vector<OpenSide> open_sides(const Memory& memory, const Plan& plan, std::int64_t ticks) {
   std::vector<OpenSide> open;
   for (const auto& [key, column] : memory.columns) {
     for (int side = 0; side < 4; ++side) {
-      const std::optional<Look>& look = column->sides[static_cast<std::size_t>(side)];
-      if (!look || !look->row || memory.now - look->seen >= ticks) continue;
-      if (is_old(memory, *column, side, *look)) continue;
+      const std::optional<Look> look = look_at(memory, plan, *column, side);
+      if (!look || memory.now - look->seen >= ticks) continue;
       const double yaw = memory.anchor->yaw + side * pi / 2;
       open.push_back({{{column->x + 0.5 * construction::block * std::cos(yaw),
                         column->y + 0.5 * construction::block * std::sin(yaw)},
                        yaw},
                       column,
                       side,
-                      look->row});
+                      look->row,
+                      look->seen,
+                      look->is_guessed});
     }
   }
   return open;
@@ -207,7 +331,7 @@ void add_obstacles(const Memory& memory, std::vector<Obstacle>& list) {
   for (const auto& [key, column] : memory.columns) {
     list.push_back({{column->x, column->y}, 0.185, 0.26});
   }
-  for (const auto& each : memory.material) list.push_back({{each->x, each->y}, 0.13, 0.18});
+  for (const auto& each : memory.material) list.push_back({{each->x, each->y}, 0.14, 0.2});
 }
 
 std::optional<SeenFace> seen_at(Faces faces, const Pose& robot, const Pose& place) {

@@ -18,6 +18,7 @@
 #include "odometry.h"
 #include "path.h"
 #include "rules.h"
+#include "traffic.h"
 
 namespace assembly {
 
@@ -30,12 +31,14 @@ inline constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max(); 
 struct Block : Pose {
   std::int64_t seen = 0;   ///< [ticks]
   std::int64_t avoid = 0;  ///< until then it is left alone [ticks]
+  int missed = 0;          ///< ticks for which it was not where it should be in sight
 };
 
 /// What a side showed.
 struct Look {
   const Row* row = nullptr;  ///< null: nothing that the table has
   std::int64_t seen = 0;     ///< [ticks]
+  bool is_guessed = false;   ///< it must show that, but was not seen since
 };
 
 struct Column : Point {
@@ -62,6 +65,8 @@ struct OpenSide : Pose {
   std::shared_ptr<Column> column;
   int side = 0;
   const Row* row = nullptr;
+  std::int64_t seen = 0;    ///< [ticks]
+  bool is_guessed = false;  ///< as in Look
 };
 
 /// A face that the camera sees now, and where it is in the frame of the map.
@@ -70,9 +75,14 @@ struct SeenFace {
   Pose place;
 };
 
-/// Takes in what the camera sees, and corrects the odometry.
+/// Takes in what the camera sees, corrects the odometry, and forgets dark blocks that are not where
+/// they should be: somebody took them.
 /// @return true if it is lost and begins a new map
-bool update(Memory& memory, Odometry& odometry, bool loaded, Faces faces, const Plan& plan);
+bool update(Memory& memory, Odometry& odometry, bool loaded, Faces faces, const Plan& plan,
+            const Traffic& traffic);
+
+/// The robot has attached a block by this row, above the column or before that side.
+void remember_attached(Memory& memory, const Plan& plan, Column& column, int side, const Row& row);
 
 void forget(Memory& memory, const Point& block);
 
@@ -82,7 +92,8 @@ std::optional<Point> middle_of(const Memory& memory);
 double extent_of(const Memory& memory);
 
 /// All sides where something may be attached, seen in the last so many ticks.
-std::vector<OpenSide> open_sides(const Memory& memory, std::int64_t ticks = never);
+std::vector<OpenSide> open_sides(const Memory& memory, const Plan& plan,
+                                 std::int64_t ticks = never);
 
 void add_obstacles(const Memory& memory, std::vector<Obstacle>& list);
 

@@ -17,6 +17,12 @@ void reckon(Odometry& odometry, const construction::Builder& builder, const zigg
   odometry.turned = turned;
 }
 
+double pivot_ahead(const Odometry& odometry, bool loaded) { return odometry.pivot[loaded]; }
+
+Pose pivot_of(const Odometry& odometry, bool loaded) {
+  return {ahead_of(odometry.pose, odometry.pivot[loaded]), odometry.pose.yaw};
+}
+
 void learn(Odometry& odometry, bool loaded, const Point& off) {
   if (std::abs(odometry.turned) < 0.015) return;
   const double yaw = odometry.pose.yaw;

@@ -21,6 +21,11 @@ struct Odometry {
 /// Updates the pose; call it first in every step.
 void reckon(Odometry& odometry, const construction::Builder& builder, const ziggurat::Imu& imu);
 
+/// How far in front of the robot's centre the point is about which it turns [m].
+double pivot_ahead(const Odometry& odometry, bool loaded);
+/// That point, and the robot's direction: a turn on the spot does not move it.
+Pose pivot_of(const Odometry& odometry, bool loaded);
+
 /// Something that stands still was seen this far from its place of the tick before [m].
 void learn(Odometry& odometry, bool loaded, const Point& off);
 

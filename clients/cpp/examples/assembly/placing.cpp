@@ -7,35 +7,34 @@
 #include <limits>
 
 #include "assembler.h"
+#include "corridor.h"
 
 namespace assembly {
 namespace {
 
-/// From the robot's centre to the side at which it places by this row [m].
-double distance_of(const Row& row) {
-  return row.above ? construction::reach : construction::reach + pitch;
-}
-
-Point last_way_to(const Pose& side, const Row& row) {
-  return ahead_of(side, distance_of(row) + last_way);
-}
+constexpr int no_more_tries = 1'000'000;
 
 /// Of the carried block above the floor, when it is placed by this row [m].
 double height_of(const Row& row) { return row.above ? row.height * construction::block : 0; }
 
-/// Of the lift on the way there: the carried block passes over the column [m].
+/// Of the lift on the way to the side; while it lines up, also if the colour changes.
 double height_to_carry(const Row& row) {
-  return carrying + std::max(0, row.height - 1) * construction::block;
+  return carrying + (row.above ? row.height - 1 : 0) * construction::block;
 }
 
-/// The side with the shortest free way of those that may get a block; none if none is known.
+/// The side with the shortest free way of those that may get a block; none if none is known, or
+/// other robots are at work at each that is. What was seen long ago is less certain.
 std::optional<Place> nearest_side(const Assembler& self) {
   std::vector<Point> material;
   for (const auto& block : self.memory.material) material.push_back(*block);
   double least = std::numeric_limits<double>::infinity();
   std::optional<Place> nearest;
-  for (const OpenSide& side : open_sides(self.memory)) {
-    const double cost = distance_to(self, last_way_to(side, *side.row)) + hindrance(side, material);
+  for (const OpenSide& side : open_sides(self.memory, self.plan)) {
+    const double distance = distance_to(self, start_of(side, *side.row));
+    if (is_corridor_taken(self, side, *side.row, distance)) continue;
+    const double age = static_cast<double>(self.memory.now - side.seen);
+    const double cost = distance + hindrance(side, material) + std::min(1.0, 1e-3 * age) +
+                        (side.is_guessed ? 0.2 : 0);
     if (cost >= least) continue;
     least = cost;
     nearest = Place{side, *side.row, side.column, side.side};
@@ -46,16 +45,28 @@ std::optional<Place> nearest_side(const Assembler& self) {
 double direction_to_middle(const Assembler& self) { return direction_to(self, middle(self)); }
 
 /// What the side shows does not count until it is seen again.
-void forget_color(const Place& place) {
+void forget_color(const Assembler& self) {
+  const Place& place = self.job.place;
   if (!place.column) return;
-  auto& look = place.column->sides[static_cast<std::size_t>(place.side)];
-  if (look) look->row = nullptr;
+  place.column->sides[static_cast<std::size_t>(place.side)] = Look{nullptr, self.memory.now};
 }
 
 Next give_up_side(Assembler& self) {
   leave_structure(self.traffic);
-  forget_color(self.job.place);
+  forget_color(self);
   return State::choose_side;
+}
+
+/// What the side shows: its place becomes where the camera sees it. Nearer than 13 cm the LEDs are
+/// out of the image.
+/// @return nothing if it is not in sight; null if nothing may be attached there
+std::optional<const Row*> look_at_side(Assembler& self, Faces faces) {
+  Place& place = self.job.place;
+  const std::optional<SeenFace> seen = seen_at(faces, self.odometry.pose, place);
+  if (!seen) return std::nullopt;
+  static_cast<Pose&>(place) = seen->place;
+  if (seen->face.forward < 0.15) return &place.row;
+  return seen->face.color ? self.plan.row_shown(*seen->face.color) : nullptr;
 }
 
 void log_docked(Assembler& self, const construction::Face& face) {
@@ -68,21 +79,27 @@ void log_docked(Assembler& self, const construction::Face& face) {
 }  // namespace
 
 Next choose_side(Assembler& self, Faces /*faces*/) {
-  self.job.after_scan.reset();
+  Job& job = self.job;
+  job.after_scan.reset();
   if (!middle_of(self.memory)) return State::wander;
-  self.job.tries = 0;
-  self.job.points.clear();
-  return nearest_side(self) ? State::claim : State::survey;
+  job.tries = 0;
+  if (const std::optional<Place> place = nearest_side(self)) {
+    job.place = *place;
+    job.points.clear();
+    return State::enter;
+  }
+  return open_sides(self.memory, self.plan).empty() ? State::survey : State::queue;
 }
 
 // Looks at the structure from all sides. When no side may get a block, it is complete.
 Next survey(Assembler& self, Faces /*faces*/) {
   Job& job = self.job;
-  if (!open_sides(self.memory).empty()) {
+  if (nearest_side(self)) {
     job.rounds = 0;
     return State::choose_side;
   }
   if (job.points.empty()) {
+    if (!open_sides(self.memory, self.plan).empty()) return State::queue;
     ++job.rounds;
     if (job.rounds > 3) return State::park;
     job.points = ring(self, survey_ring, 4);
@@ -98,53 +115,76 @@ Next survey(Assembler& self, Faces /*faces*/) {
   return State::survey;
 }
 
-// Waits outside until no other robot works at the structure.
-Next claim(Assembler& self, Faces /*faces*/) {
-  if (may_build(self.traffic, self.random)) {
-    const std::optional<Place> place = nearest_side(self);  // by what it has seen since
-    self.job.tries = 0;
-    if (place) {
-      self.job.place = *place;
-      return State::enter;
-    }
-    leave_structure(self.traffic);
+// Waits outside while others are at work at all sides that may get a block, then looks from
+// elsewhere.
+Next queue(Assembler& self, Faces /*faces*/) {
+  Job& job = self.job;
+  if (job.since % 5 == 0 && nearest_side(self)) return State::choose_side;
+  if (job.seconds() > 12) {
+    job.points = ring(self, survey_ring, 4);
     return State::survey;
   }
   const Point centre = middle(self);
   const double radius = waiting_ring + extent_of(self.memory);
-  if (distance_to(self, centre) < radius - 0.05) {
-    const Pose& pose = self.odometry.pose;
-    const double angle = std::atan2(pose.y - centre.y, pose.x - centre.x);
-    travel_to(self, ahead_of({centre, angle}, radius));
-  } else if (turn_to(self, direction_to_middle(self))) {
+  const double x = self.odometry.pose.x - centre.x, y = self.odometry.pose.y - centre.y;
+  const double distance = std::sqrt(x * x + y * y);
+  if (std::abs(distance - radius) > 0.1) {
+    travel_to(self, {centre.x + radius / distance * x, centre.y + radius / distance * y});
+  } else if (turn_to(self, std::atan2(-y, -x))) {
     wait(self);
   }
   return {};
 }
 
+// To where the straight way to the side begins.
 Next enter(Assembler& self, Faces /*faces*/) {
   const Place& place = self.job.place;
+  self.traffic.row = place.row.index;
   self.builder.lift_to(height_to_carry(place.row), 0.05);
-  const Arrival arrival = travel_to(self, last_way_to(place, place.row));
-  if (arrival == Arrival::there) return State::aim_at_side;
+  const Point start = start_of(place, place.row);
+  const double distance = distance_to(self, start);
+  if (!self.traffic.holding && distance < 0.7 &&
+      is_corridor_taken(self, place, place.row, distance)) {
+    leave_structure(self.traffic);
+    return State::choose_side;
+  }
+  const Arrival arrival = travel_to(self, start);
+  if (arrival == Arrival::there) {
+    self.job.looked = self.memory.now;
+    return State::claim;
+  }
+  if (arrival == Arrival::occupied && !self.traffic.holding) {
+    leave_structure(self.traffic);
+    return State::queue;
+  }
   if (arrival == Arrival::stuck || self.job.seconds() > 60) return give_up_side(self);
   return {};
 }
 
-// What the side shows now counts, not what is remembered.
-Next aim_at_side(Assembler& self, Faces faces) {
-  Place& place = self.job.place;
-  const std::optional<SeenFace> seen = seen_at(faces, self.odometry.pose, place);
-  if (seen) {
-    static_cast<Pose&>(place) = seen->place;
-    const Row* row = seen->face.color ? self.plan.row_shown(*seen->face.color) : nullptr;
-    if (!row || row->index != place.row.index) return give_up_side(self);
+// Before the side, until the corridor to it is free. What the side shows now counts, not what is
+// remembered.
+Next claim(Assembler& self, Faces faces) {
+  Job& job = self.job;
+  Place& place = job.place;
+  const std::optional<const Row*> row = look_at_side(self, faces);
+  if (row && !*row) return give_up_side(self);
+  if (row) {
+    const Row shown = **row;
+    place.row = shown;
+    job.looked = self.memory.now;
   }
-  if (turn_to(self, direction_to(self, place))) {
-    if (seen) return State::attach;
-    if (self.job.seconds() > 4) return give_up_side(self);
+  self.builder.lift_to(height_to_carry(place.row), 0.05);
+  if (distance_to(self, start_of(place, place.row)) > 0.13) {
+    self.traffic.asking = false;
+    return State::enter;
   }
-  if (self.job.seconds() > 20) return give_up_side(self);
+  const bool is_turned = turn_to(self, direction_to(self, place));
+  if ((is_turned && self.memory.now - job.looked > 8) || job.seconds() > 60) {
+    return give_up_side(self);
+  }
+  if (is_turned && row && (self.traffic.holding || may_enter(self, place, place.row))) {
+    return State::attach;
+  }
   return {};
 }
 
@@ -153,21 +193,20 @@ Next attach(Assembler& self, Faces faces) {
   construction::Builder& builder = self.builder;
   Place& place = self.job.place;
   const double seconds = self.job.seconds();
-  if (const auto seen = seen_at(faces, self.odometry.pose, place)) {
-    static_cast<Pose&>(place) = seen->place;
-  }
-  if (is_blocked(self.traffic, 1) && seconds < 30) {
-    builder.stop();
-    return {};
+  const std::optional<const Row*> row = look_at_side(self, faces);
+  if (row && (!*row || (*row)->index != place.row.index)) {
+    self.job.tries = no_more_tries;
+    return State::retreat_from_side;
   }
   const bool above = place.row.above;
-  const bool is_lifted = builder.lift_to(above ? height_to_carry(place.row) : carrying, 0.05);
-  if (above && !is_lifted) {
+  const bool is_obstructed = is_blocked(self.traffic, 1, 0.19) && seconds < 30;
+  if (is_obstructed || (!builder.lift_to(height_to_carry(place.row), 0.05) && above)) {
     builder.stop();
     return {};
   }
   const construction::Face face = face_of(self, place);
-  const Docking outcome = builder.dock_at(face, 0.05, above, distance_of(place.row));
+  const Docking outcome = builder.dock_at(face, 0.05, above, distance_of(place.row),
+                                          pivot_ahead(self.odometry, builder.loaded));
   const bool is_exact = std::abs(face.offset()) <= 0.001 && std::abs(face.heading) <= 0.015;
   if (outcome == Docking::docked && is_exact) {
     log_docked(self, face);
@@ -183,12 +222,15 @@ Next retreat_from_side(Assembler& self, Faces /*faces*/) {
   return *may_try ? State::enter : give_up_side(self);
 }
 
+// The last 2 cm slowly: the magnets of what stands below pull.
 Next place(Assembler& self, Faces /*faces*/) {
   const Row& row = self.job.place.row;
   // The block remembers for the robot what it was at.
   self.builder.send(std::array<std::uint8_t, 3>{3, self.job.payload.value_or(0), row.index});
   const double height = height_of(row);
-  if (self.builder.lift_to(std::max(0.0002, height - 0.0002), height > 0 ? 0.01 : 0.02)) {
+  const double slow = height > 0 ? 0.01 : 0.02;
+  const bool is_far = self.builder.lift_height() > height + 0.02;
+  if (self.builder.lift_to(std::max(0.0002, height - 0.0002), is_far ? 0.05 : slow)) {
     return State::tell;
   }
   return {};
@@ -204,27 +246,32 @@ Next tell(Assembler& self, Faces /*faces*/) {
 
 Next release(Assembler& self, Faces /*faces*/) {
   self.builder.set_current(std::max(-1.0, -2 * self.job.seconds()));
-  if (self.job.seconds() > 1.5) return State::rise;
+  if (self.job.seconds() > 1) return State::rise;
   return {};
 }
 
 Next rise(Assembler& self, Faces /*faces*/) {
   self.builder.loaded = false;
-  const double height = std::min(highest_lift, height_of(self.job.place.row) + 0.03);
-  if (self.builder.lift_to(height, 0.03)) return State::back_off;
+  const double height = height_of(self.job.place.row);
+  self.builder.lift_to(std::min(highest_lift, height + 0.03), 0.05);
+  if (self.builder.lift_height() > height + 0.012) return State::back_off;
   return {};
 }
 
+// When it is clear of the block, others may come.
 Next back_off(Assembler& self, Faces /*faces*/) {
-  if (is_blocked(self.traffic, -1) && self.job.seconds() < 20) {
+  const double seconds = self.job.seconds();
+  if (is_blocked(self.traffic, -1) && seconds < 20) {
     self.builder.stop();
     return {};
   }
-  self.builder.drive(-0.05, 0);
-  if (self.job.seconds() <= 3.5) return {};
-  forget_color(self.job.place);
-  leave_structure(self.traffic);
-  return self.job.place.column ? State::choose_block : State::scan;
+  self.builder.drive(-0.07, 0);
+  if (self.builder.ahead() > 0.16 || seconds > 1.2) leave_structure(self.traffic);
+  if (seconds <= 2.3) return {};
+  const Place& place = self.job.place;
+  if (!place.column) return State::scan;
+  remember_attached(self.memory, self.plan, *place.column, place.side, place.row);
+  return State::choose_block;
 }
 
 }  // namespace assembly

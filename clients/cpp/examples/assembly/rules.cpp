@@ -5,6 +5,7 @@
 #include <lua.hpp>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
 
 namespace assembly {
 namespace {
@@ -15,6 +16,7 @@ struct Close {
 
 constexpr int most_instructions = 1'000'000;
 constexpr std::size_t most_rows = 100;
+constexpr std::array<std::string_view, 4> side_names = {"front", "left", "back", "right"};
 
 void stop(lua_State* state, lua_Debug* /*where*/) {
   luaL_error(state, "it is not done after %d instructions", most_instructions);
@@ -22,7 +24,7 @@ void stop(lua_State* state, lua_Debug* /*where*/) {
 
 std::string text_of(lua_State* state, int table, const char* field) {
   const bool is_text = lua_getfield(state, table, field) == LUA_TSTRING;
-  const std::string text = is_text ? lua_tostring(state, -1) : "";
+  std::string text = is_text ? lua_tostring(state, -1) : "";
   lua_pop(state, 1);
   if (!is_text) throw std::runtime_error(std::string("'") + field + "' is not a string");
   return text;
@@ -50,6 +52,28 @@ ziggurat::Color color_of(lua_State* state, int table) {
   return {parts[0], parts[1], parts[2]};
 }
 
+void read_sides(lua_State* state, int table, Row& row) {
+  const int type = lua_getfield(state, table, "sides");
+  row.is_everywhere = type == LUA_TNIL;
+  if (row.is_everywhere) row.sides.fill(true);
+  const std::size_t count = type == LUA_TTABLE ? lua_rawlen(state, -1) : 0;
+  if (!row.is_everywhere && (count < 1 || count > row.sides.size())) {
+    throw std::runtime_error(R"('sides' is not a list, as {"front", "back"})");
+  }
+  for (std::size_t i = 1; i <= count; ++i) {
+    lua_rawgeti(state, -1, static_cast<lua_Integer>(i));
+    const char* name = lua_tostring(state, -1);
+    const auto found = std::ranges::find(side_names, name ? name : "");
+    if (found == side_names.end()) {
+      throw std::runtime_error(
+          R"('sides' has something else than "front", "left", "back", "right")");
+    }
+    row.sides[static_cast<std::size_t>(found - side_names.begin())] = true;
+    lua_pop(state, 1);
+  }
+  lua_pop(state, 1);
+}
+
 /// The row on top of the stack. States have numbers in the order in which the table names them.
 Row read_row(lua_State* state, std::vector<std::string>& states) {
   if (!lua_istable(state, -1)) throw std::runtime_error("it is not a table");
@@ -60,9 +84,11 @@ Row read_row(lua_State* state, std::vector<std::string>& states) {
   row.height = pop_number(state, "height", 255);
   const std::string place = text_of(state, table, "place");
   if (place != "above" && place != "before") {
-    throw std::runtime_error("'place' is \"" + place + "\"; write \"above\" or \"before\"");
+    throw std::runtime_error("'place' is \"" + place + R"("; write "above" or "before")");
   }
   row.above = place == "above";
+  read_sides(state, table, row);
+  row.state = text_of(state, table, "state");
   row.becomes = text_of(state, table, "becomes");
   auto found = std::ranges::find(states, row.becomes);
   if (found == states.end()) found = states.insert(states.end(), row.becomes);
@@ -93,8 +119,27 @@ Plan read_rows(lua_State* state) {
 
 }  // namespace
 
+const Row* Plan::row_of(std::size_t index) const {
+  return index > 0 && index <= rows.size() ? &rows[index - 1] : nullptr;
+}
+
+const Row* Plan::row_for(const std::string& state, int height, int side, bool is_occupied) const {
+  const auto found = std::ranges::find_if(rows, [&](const Row& row) {
+    return row.state == state && row.height == height && (row.above || !is_occupied) &&
+           row.sides[static_cast<std::size_t>(side)];
+  });
+  return found == rows.end() ? nullptr : &*found;
+}
+
 const Row* Plan::row_shown(ziggurat::Color color) const {
   const auto found = std::ranges::find(rows, color, &Row::shows);
+  return found == rows.end() ? nullptr : &*found;
+}
+
+const Row* Plan::origin_of(const Row& row, const std::string& state) const {
+  const auto found = std::ranges::find_if(rows, [&](const Row& origin) {
+    return !origin.above && origin.becomes == row.state && origin.state == state;
+  });
   return found == rows.end() ? nullptr : &*found;
 }
 

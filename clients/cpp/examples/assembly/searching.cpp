@@ -8,7 +8,7 @@
 namespace assembly {
 
 Next scan(Assembler& self, Faces /*faces*/) {
-  constexpr double rate = 0.45;  // [rad/s]
+  constexpr double rate = 0.7;  // [rad/s]
   Job& job = self.job;
   if (job.seconds() <= construction::tick) job.turned = 0;
   spin(self, rate);
@@ -47,7 +47,7 @@ Next search(Assembler& self, Faces faces) {
   }
   if (job.points.empty()) {
     ++job.rounds;
-    if (job.rounds > 4 || (job.rounds > 1 && open_sides(self.memory, 900).empty())) {
+    if (job.rounds > 4 || (job.rounds > 1 && open_sides(self.memory, self.plan, 900).empty())) {
       return State::park;
     }
     job.points = ring(self, search_ring, 5);

@@ -32,11 +32,10 @@ Next recall(Assembler& self, ziggurat::Bytes message) {
   self.job.payload = message[1];
   self.builder.loaded = true;
   self.builder.set_current(0);
-  if (message.size() < 3 || message[2] == 0 || message[2] > self.plan.rows.size()) {
-    return State::withdraw;
-  }
+  const Row* row = message.size() < 3 ? nullptr : self.plan.row_of(message[2]);
+  if (!row) return State::withdraw;
   self.job.place = {};  // it was being placed
-  self.job.place.row = self.plan.rows[message[2] - 1U];
+  self.job.place.row = *row;
   return State::place;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int dead = 50;  // ticks with the same bytes, after which a robot is an obstacle only
 constexpr std::size_t packet_bytes = 3;
-enum Flag : std::uint8_t { working = 1, asking = 2, holding = 4 };
+enum Flag : std::uint8_t { working = 1, asking = 2, holding = 4, stopped = 8, row = 16 };
 
 Neighbour neighbour_of(const ziggurat::RangeAndBearing::Packet& packet, std::uint8_t flags) {
   const double range = packet.range * 100 / 100;  // a script gets centimetres
@@ -18,7 +18,9 @@ Neighbour neighbour_of(const ziggurat::RangeAndBearing::Packet& packet, std::uin
           .range = range,
           .working = (flags & working) != 0,
           .asking = (flags & asking) != 0,
-          .holding = flags / holding == 1,
+          .holding = (flags & holding) != 0,
+          .stopped = (flags & stopped) != 0,
+          .row = static_cast<std::uint8_t>(flags / row),
           .claim = packet.data[1]};
 }
 
@@ -40,14 +42,16 @@ void sense(Traffic& traffic, const ziggurat::RangeAndBearing& device) {
 
 void tell(const Traffic& traffic, ziggurat::RangeAndBearing& device, Random& random) {
   const int flags = (traffic.working ? working : 0) + (traffic.asking ? asking : 0) +
-                    (traffic.holding ? holding : 0);
+                    (traffic.holding ? holding : 0) + (traffic.stopped ? stopped : 0) +
+                    row * traffic.row;
   const std::array<std::uint8_t, packet_bytes> data = {
       static_cast<std::uint8_t>(flags), traffic.claim,
       static_cast<std::uint8_t>(random.uniform_int(0, 256))};
   device.set_data(data);
 }
 
-bool may_build(Traffic& traffic, Random& random) {
+bool may_enter(Traffic& traffic, Random& random, const Judgement& is_in_the_way,
+               const Judgement& is_rival) {
   if (!traffic.asking) {
     traffic.asking = true;
     traffic.asked = 0;
@@ -55,7 +59,10 @@ bool may_build(Traffic& traffic, Random& random) {
   }
   ++traffic.asked;
   for (const Neighbour& other : traffic.neighbours) {
-    if (!other.holding && !(other.asking && other.claim >= traffic.claim)) continue;
+    const bool has_priority = other.holding || (other.asking && other.claim >= traffic.claim);
+    const bool hinders = (is_in_the_way(other) && (has_priority || !other.asking)) ||
+                         (has_priority && is_rival(other));
+    if (!hinders) continue;
     traffic.asked = 0;
     if (other.claim == traffic.claim) traffic.asking = false;  // a draw: another claim
     return false;
@@ -66,13 +73,16 @@ bool may_build(Traffic& traffic, Random& random) {
   return true;
 }
 
-void leave_structure(Traffic& traffic) { traffic.asking = traffic.holding = false; }
+void leave_structure(Traffic& traffic) {
+  traffic.asking = traffic.holding = false;
+  traffic.row = 0;
+}
 
 // Robots reach 14 cm around their centres, this one's front is 6 cm wide around the arm.
-bool is_blocked(const Traffic& traffic, double direction) {
+bool is_blocked(const Traffic& traffic, double direction, double reach) {
   const double front = direction > 0 ? 0.10 : -0.03;
   for (const Neighbour& other : traffic.neighbours) {
-    if (other.forward * direction > 0 && is_within({other.forward, other.left}, {front, 0}, 0.245))
+    if (other.forward * direction > 0 && is_within({other.forward, other.left}, {front, 0}, reach))
       return true;
   }
   return false;
@@ -86,13 +96,15 @@ const Neighbour* nearest(const Traffic& traffic) {
   return nearest;
 }
 
-void add_obstacles(const Traffic& traffic, const Pose& pose, std::vector<Obstacle>& list) {
+Point place_of(const Neighbour& other, const Pose& pose) {
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  return {pose.x + c * other.forward - s * other.left, pose.y + s * other.forward + c * other.left};
+}
+
+void add_obstacles(const Traffic& traffic, const Pose& pose, std::vector<Obstacle>& list) {
   for (const Neighbour& other : traffic.neighbours) {
-    list.push_back(
-        {{pose.x + c * other.forward - s * other.left, pose.y + s * other.forward + c * other.left},
-         other.working ? 0.36 : 0.3,
-         0.48});
+    if (!other.working && other.range >= 0.7) continue;
+    list.push_back({place_of(other, pose), other.working ? 0.36 : 0.3, 0.48});
   }
 }
 

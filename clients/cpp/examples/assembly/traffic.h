@@ -6,6 +6,7 @@
 #include <ziggurat/ziggurat.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -19,15 +20,18 @@ namespace assembly {
 /// Another robot in range.
 struct Neighbour {
   double forward = 0, left = 0, range = 0;  ///< in this robot's frame [m]
-  bool working = false, asking = false, holding = false;
+  bool working = false, asking = false, holding = false, stopped = false;
+  std::uint8_t row = 0;
   std::uint8_t claim = 0;
 };
 
 struct Traffic {
   std::vector<Neighbour> neighbours;
   bool working = false;    ///< it picks up or places a block: the others keep out of its way
-  bool asking = false;     ///< it wants to work at the structure
-  bool holding = false;    ///< it works there; others stay away from it
+  bool asking = false;     ///< it is lined up with a side of the structure and wants to go there
+  bool holding = false;    ///< it works there
+  bool stopped = false;    ///< another robot is in its way
+  std::uint8_t row = 0;    ///< by which it wants to attach a block; 0 if it does not know
   std::uint8_t claim = 1;  ///< of two that ask, the one with the greater claim may
   int asked = 0;           ///< ticks since it asked
   /// Ticks for which the same bytes have come, by the bytes: a robot whose controller has died goes
@@ -40,16 +44,24 @@ void sense(Traffic& traffic, const ziggurat::RangeAndBearing& device);
 /// Tells the others; call it last in every step.
 void tell(const Traffic& traffic, ziggurat::RangeAndBearing& device, Random& random);
 
-/// Asks for the structure; call it in every step. True when this robot may go there: for half a
-/// second no robot has been there, and none with a greater claim has asked.
-bool may_build(Traffic& traffic, Random& random);
+using Judgement = std::function<bool(const Neighbour&)>;
+/// Asks for a corridor to the structure; call it in every step. True when this robot may go: for
+/// half a second no rival has held or asked with a greater claim.
+/// @param is_in_the_way  whether another robot is in the corridor
+/// @param is_rival       whether it might get into the way from where it is
+bool may_enter(Traffic& traffic, Random& random, const Judgement& is_in_the_way,
+               const Judgement& is_rival);
 void leave_structure(Traffic& traffic);
 
 /// Whether a robot is in the way of a motion with this sign (1 forward, -1 backward).
-bool is_blocked(const Traffic& traffic, double direction);
+/// @param reach  nearer than this to the robot's front or back [m]
+bool is_blocked(const Traffic& traffic, double direction, double reach = 0.245);
 /// Null if there is none.
 const Neighbour* nearest(const Traffic& traffic);
-/// Adds the others to a list, in the frame of the pose.
+/// Where another robot stands, in the frame of the pose.
+Point place_of(const Neighbour& other, const Pose& pose);
+/// Adds the others to a list, in the frame of the pose. Those that are far away and not at work
+/// will be somewhere else when this robot comes there.
 void add_obstacles(const Traffic& traffic, const Pose& pose, std::vector<Obstacle>& list);
 
 }  // namespace assembly

@@ -29,11 +29,14 @@ struct Travel {
   std::vector<Bump> bumps;
   std::optional<double> least_distance;  ///< to the goal so far [m]
   std::int64_t least_at = 0;             ///< [ticks]
+  int waited = 0;                        ///< for which another robot has stood at the goal [ticks]
+  std::int64_t made_room_at = -100;      ///< for a turn [ticks]
 };
 
-enum class Arrival { under_way, there, stuck };
+enum class Arrival { under_way, there, stuck, occupied };
 
-/// Drives to a point; call it in every step. `stuck` after 25 s without coming nearer.
+/// Drives the point about which the robot turns to a place; call it in every step. `stuck` after 25
+/// s without coming nearer, `occupied` when another robot has stood there for 2 s.
 Arrival travel_to(Assembler& self, const Point& goal);
 /// Turns on the spot to a direction; true when it has arrived.
 bool turn_to(Assembler& self, double yaw);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "tag_pose.h"
@@ -16,7 +18,7 @@ constexpr double wheel_radius = 0.025, half_track = 0.052;
 constexpr double slip[] = {1.335, 1.12};
 constexpr double front_sensor = 0.065;  // position of the front proximity sensors
 constexpr double tag_side = 0.024;
-constexpr double settle = 0.03;  // distance constant of the approach to the line [m]
+constexpr std::size_t sensors = 16;  // for proximity
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -29,9 +31,14 @@ constexpr Point calibration[] = {{0.0035, 65535}, {0.005, 32000}, {0.0075, 14222
                                  {0.06, 222},     {0.08, 125},    {0.1, 80},       {0.15, 36},
                                  {0.2, 20}};
 
-/// Turn rate that moves the robot onto the line in front of a face, forwards or backwards [rad/s].
-double steer(const Face& face, double speed) {
-  const double wanted = std::clamp(face.offset() / (2 * settle), -0.25, 0.25);
+/// Turn rate that moves the robot onto the line in front of a face with a distance constant of 3
+/// cm, forwards or backwards [rad/s].
+/// @param pivot  the point about which it turns, if it is known, so far in front of its centre [m]:
+/// that
+///               point moves there, sooner where it drives slowly
+double steer(const Face& face, double speed, std::optional<double> pivot = {}) {
+  const double settle = pivot ? std::max(0.018, 0.6 * speed) : 0.03;
+  const double wanted = std::clamp(face.offset(pivot.value_or(0)) / (2 * settle), -0.25, 0.25);
   return std::abs(speed) * 2 / settle * (face.heading - (speed > 0 ? wanted : -wanted));
 }
 
@@ -53,7 +60,9 @@ std::optional<ziggurat::Color> color_around(const TagPose& tag, const ziggurat::
 
 }  // namespace
 
-double Face::offset() const { return forward * std::sin(heading) - left * std::cos(heading); }
+double Face::offset(double ahead) const {
+  return (forward - ahead) * std::sin(heading) - left * std::cos(heading);
+}
 
 bool is_at_floor_level(const Face& face) { return std::abs(face.up) < 0.02; }
 
@@ -64,7 +73,12 @@ Builder::Builder(ziggurat::Robot& robot)
       lift_(robot.joint("lift")),
       radio_(robot.radio("nfc")),
       magnets_(robot.magnets()),
-      proximity_(robot.proximity_sensors()) {}
+      proximity_(robot.proximity_sensors()) {
+  if (proximity_.size() >= sensors) return;
+  throw std::runtime_error("robot '" + robot.id() + "' has " + std::to_string(proximity_.size()) +
+                           " proximity sensors; the construction robot has " +
+                           std::to_string(sensors));
+}
 
 void Builder::drive(double speed, double turn) {
   const double skid = turn * half_track * slip[loaded];
@@ -173,7 +187,8 @@ Docking Builder::dock(double fastest) {
   return outcome;
 }
 
-Docking Builder::dock_at(const Face& face, double fastest, bool touch, double distance) {
+Docking Builder::dock_at(const Face& face, double fastest, bool touch, double distance,
+                         std::optional<double> pivot) {
   const double to_go = (touch ? std::min(face.forward, ahead()) : face.forward) - distance;
   if (to_go < 0.03 && (std::abs(face.offset()) > 0.006 || std::abs(face.heading) > 0.12)) {
     stop();
@@ -184,7 +199,7 @@ Docking Builder::dock_at(const Face& face, double fastest, bool touch, double di
     return Docking::docked;
   }
   const double speed = std::max(0.008, std::min(fastest, 1.2 * to_go));
-  drive(speed, steer(face, speed));
+  drive(speed, steer(face, speed, pivot));
   return Docking::under_way;
 }
 

@@ -17,8 +17,8 @@ namespace construction {
 
 inline constexpr double tick = 0.1;     ///< between two steps [s]
 inline constexpr double block = 0.055;  ///< edge of a block [m]
-inline constexpr double reach =
-    0.080;  ///< from the robot's centre to the face of a block under the end effector [m]
+/// From the robot's centre to the face of a block under the end effector [m].
+inline constexpr double reach = 0.080;
 
 /// The side of a block that the camera sees.
 struct Face {
@@ -30,7 +30,8 @@ struct Face {
   std::optional<ziggurat::Color> color;  ///< of its LEDs; none if they are off
 
   /// Distance of the robot to the left of the face's normal through its centre [m].
-  double offset() const;
+  /// @param ahead  of the point that is so far in front of the robot's centre [m]
+  double offset(double ahead = 0) const;
 };
 
 /// The side of a block that stands on the floor.
@@ -82,7 +83,11 @@ class Builder {
   /// Drives to this face, until it is at this distance from the robot's centre [m]; call it in
   /// every step. `askew` if the robot came close but is not on the line.
   /// @param touch  the proximity sensors measure the last part of the distance
-  Docking dock_at(const Face& face, double fastest, bool touch, double distance = reach);
+  /// @param pivot  how far in front of the robot's centre the point is about which it turns [m], if
+  /// that
+  ///               is known
+  Docking dock_at(const Face& face, double fastest, bool touch, double distance = reach,
+                  std::optional<double> pivot = {});
   /// Drives backwards to the line in front of the nearest face; call it in every step. True where
   /// an approach is easy: 20 cm away and near the line, or far away.
   bool back_away(double speed);
