@@ -1,4 +1,5 @@
--- Ends a run of robots that build when none of them has moved for 15 s, after the first minute.
+-- Ends a run of robots that build when none of them has moved for 40 s, after the first minute. Robots that wait for
+-- each other stand for up to 30 s.
 
 local places, since
 
@@ -23,5 +24,5 @@ reset = init
 function post_step()
   if world.tick % 10 ~= 0 then return end
   if moved() or world.time < 60 then since = world.time end
-  if world.time - since > 15 then world.finish("all robots stand") end
+  if world.time - since > 40 then world.finish("all robots stand") end
 end
