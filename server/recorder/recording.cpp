@@ -113,10 +113,13 @@ void Recording::tick(channels::TickCopy& copy) {
   inputs_.set_epoch(epoch_);
   inputs_.set_tick(tick_.state.tick);
   inputs_.set_hash(world::hash(tick_.state, tick_.observations));
+  inputs_.mutable_acts_before()->Swap(early_.mutable_acts_before());
   has_inputs_ = true;
 }
 
-void Recording::add(v1::Act act) { *inputs_.add_acts() = std::move(act); }
+void Recording::add(v1::Act act) {
+  *(has_inputs_ ? inputs_.add_acts() : early_.add_acts_before()) = std::move(act);
+}
 
 void Recording::log(channels::Severity severity, const std::string& name,
                     const std::string& text) {

@@ -37,7 +37,7 @@ class Recording {
   void populate(std::shared_ptr<const channels::PopulationCopy> population);
   /// A state was published. @param copy  gets memory that is not needed any more
   void tick(channels::TickCopy& copy);
-  /// Between the last tick and the next.
+  /// Between the last tick and the next, or before the first one.
   void add(v1::Act act);
   void log(channels::Severity severity, const std::string& name, const std::string& text);
   void attach(const EmbeddedFile& file);
@@ -73,6 +73,7 @@ class Recording {
   bool is_population_new_ = false;
   channels::TickCopy tick_;  // the last one
   v1::Inputs inputs_;
+  v1::Inputs early_;  // acts that come before the next state, the first of an epoch
   bool has_inputs_ = false;  // of the last tick, not written yet
   recording::CommandPacker commands_;
   recording::StatePacker links_;

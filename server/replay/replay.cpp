@@ -45,6 +45,7 @@ bool Replay::advance() {
   tick_ = next->tick();
   has_commands_ = next->has_commands();
   acted_ = false;
+  repeat(next->acts_before());
   if (links_) show_state();
   if (world_.simulation.state().tick != tick_) {
     fail(fmt::format("the tick {} was expected", world_.simulation.state().tick));
@@ -67,16 +68,20 @@ bool Replay::is_same() const { return inputs_->hash() == hash_; }
 
 void Replay::act() {
   acted_ = true;
-  for (const v1::Act& act : inputs_->acts()) {
-    apply(act);
-    if (told_) told_(act);
-  }
+  repeat(inputs_->acts());
   if (!has_commands_) return;
   simulation::Simulation& simulation = world_.simulation;
   const auto fault = recording::unpack(inputs_->commands(), simulation.layout(), simulation.state(),
                                        simulation.commands(), commands_);
   if (fault) fail(*fault);
   simulation.commands() = commands_;
+}
+
+void Replay::repeat(const Acts& acts) {
+  for (const v1::Act& act : acts) {
+    apply(act);
+    if (told_) told_(act);
+  }
 }
 
 void Replay::apply(const v1::Act& act) {

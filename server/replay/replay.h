@@ -23,6 +23,11 @@
 #include "world/commands.h"
 #include "world/state.h"
 
+namespace google::protobuf {
+template <typename Element>
+class RepeatedPtrField;
+}
+
 namespace ziggurat::v1 {
 class Act;
 class Act_Move;
@@ -83,6 +88,8 @@ class Replay {
 
  private:
   void show_state();
+  using Acts = google::protobuf::RepeatedPtrField<v1::Act>;
+  void repeat(const Acts& acts);
   void apply(const v1::Act& act);
   void move(const v1::Act_Move& move);
   void remove(const std::string& id);

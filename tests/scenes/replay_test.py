@@ -10,7 +10,7 @@ import struct
 import subprocess
 import zlib
 
-from harness import FAULT, FINISHED, LIMIT, SceneTest, ZIGGURAT, main
+from harness import FAULT, FINISHED, LIMIT, LUA, SceneTest, ZIGGURAT, main
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DIFFERS, DAMAGED = 5, 6
@@ -187,6 +187,26 @@ class Supervised(Recorded):
         self.finish(process)
         outcome = self.ask("replay", recording, "--hash", "--quiet")
         self.assertEqual(f"hash 6 {state['hash']}", outcome.lines[-1])
+
+
+    def test_what_is_done_before_the_first_tick_is_repeated(self):
+        """While the world waits for controllers, at its start and again after a reset."""
+        box = self.write("box.xml", '<box id="new" size="0.1,0.1,0.1" movable="true" mass="1"><body position="0.5,0.5,1"/></box>')
+        move = ("move", "r1", "0,1,0.5", "30,20,10")
+        for name, acts in {"move": (move,), "spawn": (("spawn", box),), "remove": (("spawn", box), ("remove", "new"), ("spawn", box)),
+                           "reset": (move, ("reset", "--seed", "9"), ("spawn", box), ("reset",), move),
+                           "restore": (move, ("snapshot", "a"), ("reset",), ("spawn", box), ("restore", "a"), ("spawn", box))}.items():
+            with self.subTest(name):
+                recording = self.folder / f"{name}.mcap"
+                process = self.start("serve", self.scene, "--json", "--record", recording, "--hash", "--ticks", 20)
+                url = json.loads(process.stdout.readline())["endpoint"]
+                for words in acts:
+                    done = subprocess.run([ZIGGURAT, "ctl", url, *map(str, words)], capture_output=True, text=True,
+                                          timeout=LIMIT, env=self.environment)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                subprocess.run([LUA, "--connect", url, "--quiet"], cwd=self.folder, timeout=LIMIT, env=self.environment)
+                self.assertEqual(self.finish(process).code, 0)
+                self.assertEqual(self.ask("verify", recording).code, 0)
 
 
 class OtherBuild(Recorded):
