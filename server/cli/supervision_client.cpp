@@ -28,11 +28,17 @@ std::string duration(double seconds) {
   return fmt::format("{:.0f} min", seconds / 60);
 }
 
+/// What it drives.
+std::string part_of(const SessionStatus& session) {
+  return session.director.empty() ? some_of(session.robots)
+                                  : fmt::format("director '{}'", session.director);
+}
+
 std::string waited_for(const ServerStatus& status) {
   std::string text;
   for (const SessionStatus& session : status.sessions) {
     if (session.state != "owing") continue;
-    text += fmt::format("\nwaiting for {} ({}) for {}", session.client, some_of(session.robots),
+    text += fmt::format("\nwaiting for {} ({}) for {}", session.client, part_of(session),
                         duration(session.waiting));
   }
   if (!status.free_robots.empty()) {
@@ -90,7 +96,7 @@ std::string to_text(const ServerStatus& status) {
     text +=
         fmt::format("\n{:<28.28} {:<10} {:<9} {:>8} {:>9} {:>9} {:>9} {:>7}  {:<18} {}", s.client,
                     s.role, s.state, s.tick, duration(s.waiting), duration(s.latency.p50),
-                    duration(s.latency.p99), s.misses, s.policy, some_of(s.robots));
+                    duration(s.latency.p99), s.misses, s.policy, part_of(s));
   }
   if (!status.gone_robots.empty()) {
     text += fmt::format("\n\nwithout controller from now on: {}", some_of(status.gone_robots));

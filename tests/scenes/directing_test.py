@@ -1,8 +1,11 @@
 """Directors: what their acts do to a world, their programs, recordings, deadlines (section 9.1 of protocol.md)."""
 
+import contextlib
 import json
 import os
+import random
 import sys
+import threading
 import time
 
 from harness import BIN, CONTROLLER_FAILED, FAULT, HERE, SceneTest, main
@@ -285,6 +288,9 @@ class Directing(SceneTest):
             supervisor.resume()
             next(world)
             self.assertIn("n", world.entities)
+            shown = self.ziggurat("ctl", self.endpoint, "status").out
+            self.assertRegex(shown, r"waiting for .* \(director 'judge'\) for ")
+            self.assertEqual([each.director for each in supervisor.status().sessions][:1], ["judge"])
             world.expect_reset()
             supervisor.reset()
             tick = next(world)
@@ -318,6 +324,37 @@ class Directing(SceneTest):
         self.assertRaises(StopIteration, next, world)
         supervisor.close()
         world.close()
+        self.end()
+
+    def test_director_and_supervisor_at_once_are_repeated(self):
+        """In any order, also before the first tick: end() verifies the recording."""
+        self.begin()
+        draw = random.Random(5)
+        with ziggurat.supervise(self.endpoint) as supervisor:
+            def disturb(count):
+                for number in range(count):
+                    act = draw.choice([lambda: supervisor.spawn(box(f"s{draw.randrange(9)}", f"{draw.randrange(9)},3,0")),
+                                       lambda: supervisor.remove(f"s{draw.randrange(9)}"), supervisor.reset,
+                                       lambda: supervisor.move("b1", (draw.random(), 5, 0)),
+                                       lambda: supervisor.snapshot("s"), lambda: supervisor.restore("s")])
+                    with contextlib.suppress(ziggurat.ProtocolError):
+                        act()
+
+            disturb(20)
+            supervisor.move("b1", (1, 6, 0))
+            supervisor.spawn(box("early", "2,6,0"))
+            with self.direct(can_restore=True) as world:
+                others = threading.Thread(target=disturb, args=(60,))
+                others.start()
+                count = 0
+                for tick in world:
+                    count += 1
+                    if "b2" in world.entities:
+                        world.entities["b2"].push(force=(draw.random(), 0, 0))
+                    if count % 3 == 0:
+                        world.spawn(box(f"d{count}", f"{count % 9},-3,0"))
+                    if count > 100 and not others.is_alive():
+                        world.finish()
         self.end()
 
     def test_a_director_that_was_lost_resumes(self):

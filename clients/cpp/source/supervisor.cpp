@@ -48,6 +48,7 @@ SessionStatus session_of(const v1::SessionStatus& from) {
   to.latency = latency_of(from.wall_latency());
   to.misses = from.misses();
   to.policy = policy_of(from.deadline_policy());
+  to.director = from.director();
   return to;
 }
 

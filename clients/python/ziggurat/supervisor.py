@@ -16,7 +16,7 @@ from .session import Ending
 @dataclass(frozen=True)
 class SessionStatus:
     client: str
-    role: str  # "controller", "supervisor" or "observer"
+    role: str  # "controller", "director", "supervisor" or "observer"
     state: str  # "ready", "owing", "answered", "paused", "draining" or "lost"
     robots: Tuple[str, ...]
     tick: int  # of its last observation
@@ -24,6 +24,7 @@ class SessionStatus:
     wall_last_message: float  # since its last message [s]
     wall_latency: Tuple[float, float, float]  # median, 99th percentile, longest [s]
     misses: int
+    director: str = ""  # its id, if it is one
 
 
 @dataclass(frozen=True)
@@ -209,7 +210,7 @@ def _session(given: v1.SessionStatus) -> SessionStatus:
     state = name_of(v1.SessionStatus.State, given.state).lower()
     return SessionStatus(given.client, role, state, tuple(given.robots),
                          given.tick, given.wall_waiting_s, given.wall_last_message_s,
-                         (latency.p50, latency.p99, latency.max), given.misses)
+                         (latency.p50, latency.p99, latency.max), given.misses, given.director)
 
 
 def _entity(given: v1.States.Entity) -> EntityState:

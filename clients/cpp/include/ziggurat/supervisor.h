@@ -39,7 +39,7 @@ struct Latency {
 /// A session of the server.
 struct SessionStatus {
   std::string client;  ///< name and version
-  std::string role;    ///< "controller", "supervisor" or "observer"
+  std::string role;    ///< "controller", "director", "supervisor" or "observer"
   std::string state;   ///< "ready", "owing", "answered", "paused", "draining" or "lost"
   std::vector<std::string> robots;  ///< ids
   std::uint64_t tick = 0;           ///< of its last observation
@@ -48,6 +48,7 @@ struct SessionStatus {
   Latency latency;           ///< from observation to command
   std::uint64_t misses = 0;  ///< deadlines missed
   std::string policy;        ///< "wait", or an action with its deadline: "hold after 50 ms"
+  std::string director;      ///< its id; empty: it is none
 };
 
 struct ServerStatus {
