@@ -56,6 +56,17 @@ struct Used {
   }
 };
 
+void remove_repeated_bytes(google::protobuf::DescriptorProto& type) {
+  using Field = google::protobuf::FieldDescriptorProto;
+  for (auto& nested : *type.mutable_nested_type()) remove_repeated_bytes(nested);
+  for (int i = type.field_size(); i-- > 0;) {
+    const Field& field = type.field(i);
+    if (field.type() == Field::TYPE_BYTES && field.label() == Field::LABEL_REPEATED) {
+      type.mutable_field()->DeleteSubrange(i, 1);
+    }
+  }
+}
+
 void write(const FileDescriptor& from, const Used& used,
            google::protobuf::FileDescriptorProto& to) {
   to.set_name(from.name());
@@ -84,7 +95,11 @@ const Schema& schema_of(const Descriptor& type) {
   used.add(type);
   google::protobuf::FileDescriptorSet set;
   for (const FileDescriptor* file : used.files) write(*file, used, *set.add_file());
-  schema = {type.full_name(), set.SerializeAsString()};
+  schema = {type.full_name(), set.SerializeAsString(), {}};
+  for (auto& file : *set.mutable_file()) {
+    for (auto& message : *file.mutable_message_type()) remove_repeated_bytes(message);
+  }
+  schema.for_viewers = set.SerializeAsString();
   return schema;
 }
 

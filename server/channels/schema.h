@@ -12,6 +12,9 @@ namespace ziggurat::channels {
 struct Schema {
   std::string name;         ///< of the type, with its package
   std::string descriptors;  ///< a serialized FileDescriptorSet: the type and all that it uses
+  /// The same without fields of repeated bytes, which decoders then skip: viewers of Foxglove's family
+  /// refuse a type that has one.
+  std::string for_viewers;
 };
 
 /// The schema of a type; stays where it is.

@@ -21,7 +21,7 @@ struct Service {
   const char* request;
 };
 
-constexpr const char* no_fields = R"({"type":"object"})";
+constexpr const char* no_fields = R"({"type":"object","properties":{}})";
 constexpr std::size_t most_values = 100'000;  // of a message in JSON: each takes some 100 bytes
 /// By id minus 1.
 constexpr std::array services{
@@ -310,7 +310,7 @@ Item advertise(std::span<const channels::Channel> channels) {
                     {"topic", channel.topic},
                     {"encoding", "protobuf"},
                     {"schemaName", channel.schema->name},
-                    {"schema", base64(channel.schema->descriptors)},
+                    {"schema", base64(channel.schema->for_viewers)},
                     {"schemaEncoding", "protobuf"}});
   }
   return text_item({{"op", "advertise"}, {"channels", std::move(list)}});
@@ -334,7 +334,9 @@ Item advertise_services() {
                     {"name", services[i].name},
                     {"type", std::string(services[i].name).substr(1)},
                     {"request", part("_request", services[i].request)},
-                    {"response", part("_response", response_schema)}});
+                    {"response", part("_response", response_schema)},
+                    {"requestSchema", services[i].request},  // for viewers of before 2023
+                    {"responseSchema", response_schema}});
   }
   return text_item({{"op", "advertiseServices"}, {"services", std::move(list)}});
 }

@@ -45,6 +45,17 @@ TEST(Schema, IsAllThatIsNeededToDecode) {
   EXPECT_NE(json.find("\"generation\":\"1\""), std::string::npos) << json;
 }
 
+TEST(Schema, HasNoRepeatedBytesForViewers) {
+  testing::ShownWorld world;
+  world.simulation.step();
+  const Channel& command = *world.find("/robots/arm/command");
+  EXPECT_NE(command.schema->descriptors.find("tag_payloads"), std::string::npos);
+  EXPECT_EQ(command.schema->for_viewers.find("tag_payloads"), std::string::npos);
+  const std::string bytes = world.encode("/robots/arm/command")[0].content->bytes();
+  const std::string json = to_json({command.schema->name, command.schema->for_viewers, {}}, bytes);
+  EXPECT_NE(json.find("\"tick\":\"1\""), std::string::npos) << json;
+}
+
 TEST(Schema, HasOnlyTheTypesThatAreUsed) {
   testing::ShownWorld world;
   EXPECT_LT(world.find("/robots/arm/observation")->schema->descriptors.size(), 2500u);

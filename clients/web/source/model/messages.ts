@@ -106,7 +106,7 @@ export interface Observation {
 }
 export interface Command {
   tick: number; jointTargets: Floats; radioMessages: { radio: number; payload: Uint8Array }[];
-  ledColors: Floats; directionalLedColors: Floats; tagPayloads: Uint8Array[]; magnetCurrents: Floats;
+  ledColors: Floats; directionalLedColors: Floats; tagPayloads?: Uint8Array[]; magnetCurrents: Floats;
   rangeAndBearingData: Uint8Array; wheelVelocities: Floats; turretModes: Floats; turretRotations: Floats;
   turretSpeeds: Floats;
 }

@@ -117,8 +117,9 @@ export function commanded(topic: string, robot: Description, c: Command, limits:
     out.group("LEDs").push({ label: id || `${i}`, text: color(c.ledColors, i) }));
   robot.directionalLeds.slice(0, c.directionalLedColors.length).forEach(({ id }, i) =>
     out.group("Directional LEDs").push({ label: id || `${i}`, text: color(c.directionalLedColors, i) }));
-  robot.tags.slice(0, c.tagPayloads.length).forEach(({ id }, i) =>
-    out.group("Tags").push({ label: id || `${i}`, text: bytesText(c.tagPayloads[i]) }));
+  const payloads = c.tagPayloads ?? [];
+  robot.tags.slice(0, payloads.length).forEach(({ id }, i) =>
+    out.group("Tags").push({ label: id || `${i}`, text: bytesText(payloads[i]) }));
   if (robot.wheels?.drives) {
     ["left", "right"].forEach((side, i) => out.add("Wheels", side, "wheelVelocities", c.wheelVelocities, i, "m/s"));
   }

@@ -1,8 +1,9 @@
 // Readings and commands of the selected robot, device by device; of any other entity its pose.
 import type { App } from "../page/app";
-import { kindName, type Command, type Observation, type World } from "../model/messages";
+import { kindName, type Command, type Observation, type Poses, type World } from "../model/messages";
 import { commanded, number, observed, type Group, type Limits, type Reading } from "../model/readings";
 import { nameOf } from "../model/series";
+import type { Frame } from "../model/timeline";
 import { icon, make, setText } from "./element";
 import type { Panel } from "./panel";
 
@@ -46,8 +47,18 @@ export class Devices implements Panel {
     const seen = frame.messages.get(`/robots/${robot.id}/observation`);
     if (seen) found.push(["Senses", observed(seen.topic, robot, seen.read<Observation>(), limits)]);
     const told = this.app.timeline.message(`/robots/${robot.id}/command`, frame.sequence, 60);
-    if (told) found.push(["Commands", commanded(told.topic, robot, told.read<Command>(), limits)]);
+    if (told) {
+      const command = { tagPayloads: this.payloads(this.app.world, frame), ...told.read<Command>() };
+      found.push(["Commands", commanded(told.topic, robot, command, limits)]);
+    }
     return found;
+  }
+
+  /** What the robot's tags show: servers leave it out of commands, which other viewers could not read with it. */
+  private payloads(world: World, frame: Frame): Uint8Array[] {
+    const changed = frame.messages.get("/poses")?.read<Poses>().tagPayloads ?? [];
+    return world.tags.flatMap(({ entity, payload }, i) =>
+      (entity === this.app.selected?.index ? [changed.find(({ tag }) => tag === i)?.payload ?? payload] : []));
   }
 
   private limits(world: World): Limits {
