@@ -27,6 +27,16 @@ picture drop dynamics3d_single_body_test --at 0.1 --eye 0.52,-0.69,0.56 --look-a
 picture vehicle dynamics3d_multi_body_test --at 3 --eye 0.3,-0.46,0.28 --look-at -0.02,-0.01,0.01 --fov 46
 picture layers footbot_camera_prototype_example --at 2 --layers rays,frusta,labels
 
+# Of one run each: the stacking robot, the staircase, and the pyramid, which takes half a minute on two cores.
+pictures() {  # NAME SCENE TIMES OPTION...
+  name=$1 scene=$2 times=$3
+  shift 3
+  "$ziggurat" render "scenes/$scene.argos" --size 640x400 --quiet --at "$times" --out "$results/$name" "$@"
+}
+pictures stacking_%d.png prototype_srocs_system 0,9,18,25,32 --eye 0.02,-0.85,0.42 --look-at 0.23,0,0.07
+pictures staircase.png construction/staircase 410 --eye -0.35,-0.75,0.6 --look-at 0.12,0.05,0.03 --fov 60
+pictures pyramid_%d.png construction/pyramid 0,90,180,300 --eye -0.35,-0.95,0.75 --look-at 0,0,0.03 --fov 60
+
 if command -v gnuplot > /dev/null; then  # one minute of wall time on two cores (docs/experiments.md)
   sweep=$(mktemp -d)
   "$ziggurat" sweep scenes/experiments/aggregation.toml --out "$sweep/out" --quiet
@@ -40,6 +50,8 @@ fi
 if command -v ffmpeg > /dev/null; then
   film stacking.webp prototype_srocs_system --from 5 --to 33 --speed 4 --fps 12 \
     --eye 0.02,-0.85,0.42 --look-at 0.02,-0.05,0.05 --fov 40
+  film pyramid.webp construction/pyramid --to 288 --speed 16 --fps 12 \
+    --eye -0.45,-1.15,0.85 --look-at 0,0,0.03 --fov 58
 else
   echo "make.sh: no film without ffmpeg (sudo apt install ffmpeg)" >&2
 fi

@@ -17,8 +17,9 @@ Ziggurat runs robots in lock-step with controllers that are programs of their ow
     text += fmt::format("  {:<10} {}\n", command.name, command.summary);
   }
   text += R"(
-  ziggurat help COMMAND    what a command does, with examples
-  ziggurat --version       the version
+  ziggurat run SCENE --view    run a scene and watch it in a browser
+  ziggurat help COMMAND        what a command does, with examples
+  ziggurat --version           the version
 )";
   return text;
 }

@@ -15,6 +15,8 @@ lock-step with them, for the scene's length or, if that is 0, until Ctrl-C.
 
   ziggurat run vehicle.argos
       with everything as in the scene
+  ziggurat run vehicle.argos --view
+      the same, to watch in a browser: open the address that it prints
   ziggurat run vehicle.argos --duration 10 --trace poses.csv
       ten simulated seconds; writes all poses at every tick to poses.csv
   ziggurat run vehicle.argos --seed 7 --hash --quiet
