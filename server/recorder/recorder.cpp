@@ -26,6 +26,9 @@ constexpr std::chrono::milliseconds interval{10};
 constexpr std::size_t many_tasks = most_tasks / 4;
 constexpr std::size_t much_waiting = most_waiting / 4;  // [bytes]
 
+// Fewer ticks than that never wait for each other, however large they are.
+constexpr std::size_t few_ticks = 4;
+
 // Patience is counted in parts: a program that was stopped for a while has waited for one of them.
 constexpr int parts_of_patience = 100;
 
@@ -37,6 +40,8 @@ struct Recorder::Shared {
 
   // The run's thread.
   void add(Task task);
+  bool has_room_for(const Task& task) const;
+  std::size_t unwritten() const;
   channels::TickCopy take_copy();
   bool wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& is_done);
   void give_up();
@@ -44,7 +49,9 @@ struct Recorder::Shared {
   // The recorder's.
   void work(Start start, Settings settings);
   std::deque<Task> next();
-  void done(std::size_t size);
+  bool has_work() const;
+  void done(const Task& task, const Recording& recording);
+  void look(const Recording& recording, std::size_t ticks);
   void give_back(channels::TickCopy copy);
   bool is_over();
 
@@ -59,6 +66,13 @@ struct Recorder::Shared {
   std::size_t waiting = 0;                 // of all tasks that are not done [bytes]
   std::size_t unfinished = 0;              // their number
   std::uint64_t finished = 0;              // the number of those that are done
+  // What a killed run would lose: the chunk under way, and tasks that are not done.
+  std::size_t chunks = 0, chunk_size = 0, chunk_ticks = 0;  // its number, bytes, and ticks so far
+  std::size_t tick_size = 0;                    // in a chunk, as those before [bytes]
+  std::size_t waiting_ticks = 0, other_size = 0;  // of tasks: their number, and bytes of all others
+  std::optional<clock::time_point> chunk_begin;
+  std::deque<clock::time_point> begins;  // of the tasks that are not done
+  bool is_awaited = false;               // the run waits
   bool is_closing = false, has_failed = false, has_ended = false;
   std::optional<std::string> failure;
 };
@@ -89,21 +103,46 @@ bool Recorder::Shared::wait(std::unique_lock<std::mutex>& lock, const std::funct
 
 void Recorder::Shared::add(Task task) {
   std::unique_lock lock(mutex);
-  const bool gets_on = wait(lock, [&] {
-    return has_failed || unfinished == 0 ||
-           (waiting + task.size <= most_waiting && unfinished < most_tasks);
-  });
-  if (!gets_on) {
-    lock.unlock();
-    return give_up();
+  if (!has_room_for(task)) {
+    is_awaited = true;
+    wake.notify_one();
+    if (!wait(lock, [&] { return has_room_for(task); })) {
+      lock.unlock();
+      return give_up();
+    }
+    is_awaited = false;
   }
   if (has_failed || is_closing) return;
   waiting += task.size;
   ++unfinished;
+  if (task.kind == Task::Kind::tick) {
+    ++waiting_ticks;
+    if (tick_size == 0) tick_size = task.size;  // a guess, until one is encoded
+  }
+  if (task.kind == Task::Kind::other) other_size += task.size;
+  begins.push_back(task.begin);
   tasks.push_back(std::move(task));
-  const bool wakes = tasks.size() >= many_tasks || waiting >= much_waiting;
+  const bool wakes = has_work();
   lock.unlock();
   if (wakes) wake.notify_one();
+}
+
+bool Recorder::Shared::has_room_for(const Task& task) const {
+  if (has_failed) return true;
+  if (unfinished > 0 && (waiting + task.size > most_waiting || unfinished >= most_tasks)) return false;
+  if (task.kind != Task::Kind::tick) return true;
+  const auto oldest = chunk_begin ? *chunk_begin : begins.empty() ? task.begin : begins.front();
+  if (task.begin - oldest > longest_unwritten) return false;
+  return chunk_ticks + waiting_ticks < few_ticks || unwritten() + tick_size <= most_unwritten;
+}
+
+/// What is in no file yet, about [bytes].
+std::size_t Recorder::Shared::unwritten() const {
+  return chunk_size + waiting_ticks * tick_size + other_size;
+}
+
+bool Recorder::Shared::has_work() const {
+  return tasks.size() >= many_tasks || waiting >= much_waiting || unwritten() >= most_unwritten / 4 * 3;
 }
 
 void Recorder::Shared::give_up() {
@@ -120,8 +159,8 @@ channels::TickCopy Recorder::Shared::take_copy() {
   return copy;
 }
 
-void Recorder::add(std::function<void(Recording&)> run, std::size_t size) {
-  shared_->add({std::move(run), size});
+void Recorder::add(std::function<void(Recording&)> run, std::size_t size, Task::Kind kind) {
+  shared_->add({std::move(run), size, kind});
 }
 
 void Recorder::populate(const channels::Population& population) {
@@ -138,7 +177,7 @@ void Recorder::tick(const channels::Moment& moment) {
         to.tick(*copied);
         shared->give_back(std::move(*copied));
       },
-      size);
+      size, Task::Kind::tick);
 }
 
 void Recorder::step(const world::Commands& commands, std::vector<world::Metric> metrics) {
@@ -151,7 +190,7 @@ void Recorder::step(const world::Commands& commands, std::vector<world::Metric> 
         to.step(copied->commands);
         shared->give_back(std::move(*copied));
       },
-      sizeof(channels::TickCopy) + commands.radio_messages.bytes.size() + metrics_size);
+      sizeof(channels::TickCopy) + commands.radio_messages.bytes.size() + metrics_size, Task::Kind::step);
 }
 
 void Recorder::add(v1::Act act) {
@@ -274,20 +313,34 @@ void Recorder::Shared::fail(std::string why) {
 std::deque<Recorder::Task> Recorder::Shared::next() {
   std::unique_lock lock(mutex);
   if (tasks.empty() && !is_closing) {
-    wake.wait_for(lock, interval, [this] {
-      return is_closing || tasks.size() >= many_tasks || waiting >= much_waiting;
-    });
+    wake.wait_for(lock, interval, [this] { return is_closing || is_awaited || has_work(); });
   }
   return std::exchange(tasks, {});
 }
 
-/// @param size  of the task's memory
-void Recorder::Shared::done(std::size_t size) {
+void Recorder::Shared::done(const Task& task, const Recording& recording) {
   {
     const std::lock_guard lock(mutex);
-    waiting -= size;
+    waiting -= task.size;
     --unfinished;
     ++finished;
+    if (task.kind == Task::Kind::tick) --waiting_ticks;
+    if (task.kind == Task::Kind::other) other_size -= task.size;
+    begins.pop_front();
+  }
+  look(recording, task.kind == Task::Kind::tick ? 1 : 0);
+}
+
+/// At the chunk, after it has changed. @param ticks  that were added
+void Recorder::Shared::look(const Recording& recording, std::size_t ticks) {
+  {
+    const std::lock_guard lock(mutex);
+    if (std::exchange(chunks, recording.chunks()) != recording.chunks()) chunk_ticks = 0;
+    chunk_ticks += ticks;
+    chunk_size = recording.chunk_size();
+    chunk_begin.reset();
+    if (chunk_size > 0) chunk_begin = recording.chunk_begin();
+    if (chunk_ticks > 0) tick_size = chunk_size / chunk_ticks;
   }
   has_room.notify_one();
 }
@@ -304,11 +357,13 @@ void Recorder::Shared::work(Start start, Settings settings) {
     while (!is_over()) {
       for (Task& task : next()) {
         if (disk.is_abandoned()) throw recording::WriteError("given up");  // the run may be gone
+        recording.set_now(task.begin);
         task.run(recording);
         task.run = nullptr;
-        done(task.size);
+        done(task, recording);
       }
       recording.end_old_chunk();
+      look(recording, 0);
     }
     recording.close();
     disk.close();

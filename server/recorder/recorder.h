@@ -1,7 +1,7 @@
 #pragma once
 // A run on its way into a recording, on a thread of its own. The run's thread only copies. If the
-// disk is slower than the run, the run waits: a recording is whole. A disk that takes nothing any more
-// ends the recording.
+// disk or the thread is slower than the run, the run waits: a recording is whole, and what a killed run
+// loses is bounded. A disk that takes nothing any more ends the recording.
 
 #include <chrono>
 #include <functional>
@@ -60,12 +60,15 @@ class Recorder {
  private:
   using clock = std::chrono::steady_clock;
   struct Task {
+    enum class Kind { tick, step, other };
     std::function<void(Recording&)> run;
     std::size_t size = 0;  // memory that it holds, about [bytes]
+    Kind kind = Kind::other;
+    clock::time_point begin = clock::now();
   };
   struct Shared;
 
-  void add(std::function<void(Recording&)> run, std::size_t size);
+  void add(std::function<void(Recording&)> run, std::size_t size, Task::Kind kind = Task::Kind::other);
   void add(v1::Act act);
 
   const std::function<bool(std::string_view)> wants_;

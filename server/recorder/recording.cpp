@@ -12,8 +12,8 @@ namespace {
 using channels::Kind;
 using channels::Pace;
 
-constexpr std::size_t full_chunk = std::size_t{1} << 20;  // [bytes]
-constexpr std::chrono::seconds longest_chunk{1};
+constexpr std::size_t full_chunk = most_unwritten / 4 * 3;
+constexpr std::chrono::milliseconds longest_chunk = longest_unwritten / 4 * 3;
 
 mcap::Header header_of(const Start& start) { return {"ziggurat", "ziggurat " + start.build.version}; }
 
@@ -54,7 +54,7 @@ std::uint16_t Recording::add_channel(const channels::Schema& schema, const std::
 }
 
 void Recording::write(std::uint16_t channel, std::string_view bytes) {
-  if (writer_.chunk_size() == 0) chunk_begin_ = clock::now();
+  if (writer_.chunk_size() == 0) chunk_begin_ = now_;
   const auto time = static_cast<std::uint64_t>(log_time_ns_);
   writer_.write(channel, time, time, bytes);
 }

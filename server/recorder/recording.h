@@ -20,6 +20,11 @@
 
 namespace ziggurat::recorder {
 
+/// A killed run loses no more than that, and four ticks: of all messages [bytes], and of wall time. Chunks
+/// end a little before.
+inline constexpr std::size_t most_unwritten = std::size_t{1} << 20;
+inline constexpr std::chrono::milliseconds longest_unwritten{1000};
+
 /// What of a run is kept. `/run` and `/inputs` always are.
 struct Contents {
   std::function<bool(std::string_view topic)> wants;  ///< of the other topics; empty: all
@@ -33,6 +38,8 @@ class Recording {
   /// Writes the start, with the embedded files.
   Recording(mcap::Sink sink, mcap::Compression compression, Contents contents, const Start& start);
 
+  /// When what follows happened; now, until it is said.
+  void set_now(clock::time_point now) { now_ = now; }
   /// Who is in the world from the next tick on.
   void populate(std::shared_ptr<const channels::PopulationCopy> population);
   /// A state was published. @param copy  gets memory that is not needed any more
@@ -48,9 +55,13 @@ class Recording {
   /// A new epoch begins: after a reset, for example.
   void end_epoch();
 
-  /// Ends the chunk if it has lasted a second. Call it now and then.
+  /// Ends the chunk if it has lasted nearly a second. Call it now and then.
   void end_old_chunk();
   void close();
+
+  std::size_t chunks() const { return writer_.chunks(); }          ///< that are written
+  std::size_t chunk_size() const { return writer_.chunk_size(); }  ///< of what is not written [bytes]
+  clock::time_point chunk_begin() const { return chunk_begin_; }   ///< if that is more than 0
 
  private:
   void write(std::uint16_t channel, std::string_view bytes);
@@ -82,7 +93,7 @@ class Recording {
   std::int64_t offset_ns_ = 0;    // of log times from simulated time
   std::int64_t log_time_ns_ = 0;  // of the last tick
   bool begins_epoch_ = true;
-  clock::time_point chunk_begin_{};
+  clock::time_point now_ = clock::now(), chunk_begin_{};
 };
 
 }  // namespace ziggurat::recorder

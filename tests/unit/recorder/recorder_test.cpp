@@ -295,6 +295,33 @@ TEST(Recorder, ASlowDiskIsWaitedFor) {
   EXPECT_TRUE(mcap::check(mcap::bytes_of(got)).faults.empty());
 }
 
+/// Ticks that are taken while the disk takes nothing, until the recording is given up.
+int ticks_until_failure(int most, std::size_t log, std::chrono::milliseconds between) {
+  const Pipe pipe;
+  const int other = ::open(pipe.file.path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  while (::write(other, "x", 1) == 1) {
+  }
+  Recorded run(pipe.file.path, {}, short_patience);
+  ::close(other);
+  int taken = 0;
+  for (; taken < most && !run.recorder.take_failure(); ++taken) {
+    run.publish();
+    run.recorder.log(channels::Severity::info, "arm", std::string(log, 'x'));
+    run.recorder.step(run.simulation.commands());
+    std::this_thread::sleep_for(between);
+  }
+  return taken;
+}
+
+TEST(Recorder, WhatAKilledRunLosesIsBoundedInBytes) {
+  const std::size_t log = most_unwritten / 16;
+  EXPECT_LE(ticks_until_failure(200, log, {}), 16 + 4);
+}
+
+TEST(Recorder, WhatAKilledRunLosesIsBoundedInTime) {
+  EXPECT_LE(ticks_until_failure(100, 0, longest_unwritten / 20), 20 + 2);
+}
+
 TEST(Recorder, APipeWithoutAReaderIsReportedAtOnce) {
   Pipe pipe;
   ::close(pipe.reader);
