@@ -38,11 +38,9 @@ void Archive::numbers(double* values, std::size_t count) {
 }
 
 std::size_t Archive::count(std::size_t number, std::size_t size) {
-  constexpr std::size_t usual = std::size_t{64} << 20, most_per_byte = 64;  // [bytes]
   auto written = static_cast<std::uint64_t>(number);
   raw(&written, sizeof written);
-  require(written <= in_.size() && written <= (usual + most_per_byte * in_.size()) / size,
-          "is longer than the bytes that are left");
+  require(written <= in_.size() / size, "is longer than the bytes that are left");
   return static_cast<std::size_t>(written);
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -51,19 +52,30 @@ class Archive {
     const Scope scope(*this, name);
     any(value);
   }
-  /// A list that may get another length.
+  /// A list that may get another length. What is read takes memory only as its elements are there.
+  /// @param most  elements, if one of them may take fewer bytes than a quarter of its memory
   template <class List>
-  void list(std::string_view name, List& values) {
-    const Scope scope(*this, name);
-    resize(values);
-    any(values);
+  void list(std::string_view name, List& values, std::size_t most = unbounded) {
+    using T = typename List::value_type;
+    if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::byte>) {
+      const Scope scope(*this, name);
+      resize(values);
+      any(values);
+    } else {
+      list(name, values, [this](T& value) { any(value); }, most);
+    }
   }
   /// The same with elements that are archived by a function.
   template <class List, class Each>
-  void list(std::string_view name, List& values, Each each) {
+  void list(std::string_view name, List& values, const Each& each, std::size_t most = unbounded) {
     const Scope scope(*this, name);
-    resize(values);
-    for (auto& value : values) each(value);
+    const std::size_t size = count(values.size(), 1);
+    require(size <= most, "has more elements than this world can have");
+    if (values.size() > size) values.resize(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      if (i == values.size()) values.emplace_back();
+      numbered(i, values[i], each);
+    }
   }
   /// A number that may be infinite or not a number.
   void any_number(std::string_view name, double& value) {
@@ -79,11 +91,13 @@ class Archive {
   }
 
   /// The number of elements that follow: written, or read.
-  /// @param size  of an element in memory [bytes]
-  /// @return  at most as many as there are bytes left, and as fit into a memory in proportion to these
+  /// @param size  that each has at least [bytes]
+  /// @return  at most as many as the bytes left are enough for
   std::size_t count(std::size_t number, std::size_t size);
 
  private:
+  static constexpr auto unbounded = std::numeric_limits<std::size_t>::max();
+
   class Scope {
    public:
     Scope(Archive& archive, std::string_view name) : archive_(archive) {
@@ -167,16 +181,16 @@ class Archive {
       raw(values.data(), values.size() * sizeof(T));
     } else {
       std::size_t i = 0;
-      for (T& value : values) {
-        if (!places_) {
-          any(value);
-        } else {
-          const std::string number = std::to_string(i++);
-          const Scope scope(*this, number);
-          any(value);
-        }
-      }
+      for (T& value : values) numbered(i++, value, [this](T& each) { any(each); });
     }
+  }
+  /// An element of a list.
+  template <class T, class Each>
+  void numbered(std::size_t number, T& value, const Each& each) {
+    if (!places_) return each(value);
+    const std::string name = std::to_string(number);
+    const Scope scope(*this, name);
+    each(value);
   }
   /// A struct: its own function, or one beside it.
   template <class T>

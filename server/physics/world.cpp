@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "physics/archive.h"
-#include "physics/contact_list.h"
 #include "physics/convert.h"
 #include "physics/core.h"
 #include "physics/magnets.h"
@@ -38,9 +37,6 @@ struct World::Parts {
         length(substep / splits),
         core(physics),
         plugins(physics, core) {
-    auto list = std::make_unique<ContactList>();
-    contacts = list.get();
-    plugins.add(std::move(list));
     auto pushed = std::make_unique<Pushes>();
     pushes = pushed.get();
     plugins.add(std::move(pushed));
@@ -57,29 +53,8 @@ struct World::Parts {
   std::vector<Body> bodies;
   Core core;
   Plugins plugins;
-  ContactList* contacts = nullptr;  // one of the plug-ins
-  Pushes* pushes = nullptr;         // another one
-  std::vector<world::Contact>* listed = nullptr;
-
-  /// Writes the contacts of the last substep, if they are wanted.
-  void list_contacts() const;
+  Pushes* pushes = nullptr;  // one of the plug-ins
 };
-
-void World::Parts::list_contacts() const {
-  if (!listed) return;
-  listed->clear();
-  const auto link_of = [&](const ContactSide& side) {
-    return bodies[side.entity].first_link + side.link;
-  };
-  for (const Contact& contact : contacts->contacts()) {
-    world::Contact& entry = listed->emplace_back();
-    entry.link = link_of(contact.a);
-    if (contact.b.entity != ContactSide::floor) entry.other = link_of(contact.b);
-    entry.point = contact.point;
-    entry.normal = contact.normal;
-    entry.force = contact.impulse / length;
-  }
-}
 
 World::World(const scene::Physics& physics, double substep)
     : parts_(std::make_unique<Parts>(physics, substep)) {}
@@ -187,9 +162,20 @@ LinkTouch World::take_touch(std::size_t entity, std::size_t link) {
   return std::exchange(body.links[link].touch.value(), LinkTouch{});
 }
 
-void World::list_contacts(std::vector<world::Contact>* to) {
-  parts_->listed = to;
-  parts_->contacts->set_wanted(to);
+void World::list_contacts(std::vector<world::Contact>& to) const {
+  const Parts& p = *parts_;
+  std::vector<Contact> contacts;
+  p.core.contacts(contacts);
+  const auto link_of = [&](const ContactSide& side) { return p.bodies[side.entity].first_link + side.link; };
+  to.clear();
+  for (const Contact& contact : contacts) {
+    world::Contact& entry = to.emplace_back();
+    entry.link = link_of(contact.a);
+    if (contact.b.entity != ContactSide::floor) entry.other = link_of(contact.b);
+    entry.point = contact.point;
+    entry.normal = contact.normal;
+    entry.force = contact.impulse / p.length;
+  }
 }
 
 void World::move(std::size_t entity, const math::Pose& pose) {
@@ -212,7 +198,6 @@ void World::step() {
     p.core.substep(p.bodies, p.length, p.splits, p.plugins.stiff());
     p.plugins.after_substep(p.bodies, p.length, p.core);
   }
-  p.list_contacts();
 }
 
 void World::read(world::State& state) const {

@@ -82,10 +82,9 @@ class World {
   /// entity was removed.
   LinkTouch take_touch(std::size_t entity, std::size_t link);
 
-  /// From the next substep on, each lists all of its contacts, in ascending order of their links.
-  /// That costs time; no result depends on it.
-  /// @param to  its content is replaced; must outlive this; null, as at first: they are not listed
-  void list_contacts(std::vector<world::Contact>* to);
+  /// Lists all contacts of the last substep, in ascending order of their links.
+  /// @param to  its content is replaced
+  void list_contacts(std::vector<world::Contact>& to) const;
 
   /// Puts an entity to rest at a pose of its origin, joints as assembled.
   void move(std::size_t entity, const math::Pose& pose);

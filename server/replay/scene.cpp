@@ -36,7 +36,7 @@ std::string hash_of(const scene::Scene& scene, const scene::Variation& variation
   return math::to_hex(hash.digest());
 }
 
-constexpr std::size_t longest_element = std::size_t{64} << 20;  // spawned [bytes]
+constexpr std::size_t longest_elements = std::size_t{64} << 20;  // all that were spawned [bytes]
 
 }  // namespace
 
@@ -87,10 +87,11 @@ simulation::Snapshot read_snapshot(const RecordingFile& file, const std::string&
         "{}: the snapshot '{}' that it needs is missing: the run was ended before it was written",
         file.path(), name));
   }
-  const auto read = [&](const std::string& xml) {
+  const auto read = [&, left = longest_elements](const std::string& xml) mutable {
     scene::Addition addition = additions.read(
-        xml, scene, longest_element, [](const std::string&) { return false; }, file.files().opener());
+        xml, scene, left, [](const std::string&) { return false; }, file.files().opener());
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
+    left -= addition.size;
     return std::move(addition.entity);
   };
   return simulation::from_bytes(std::as_bytes(std::span(*bytes)), {}, read);

@@ -26,6 +26,7 @@ struct Simulation::Parts {
     auto* all = lists_rays ? &all_rays : nullptr;
     return {layout, state, observations, commands, physics, rays, *index, all};
   }
+  void list_contacts(bool wanted);
   void look_around();  // rays and index take the poses of the state
   /// @throws std::runtime_error that names the first entity whose state is not finite then
   void step();

@@ -151,6 +151,12 @@ void Simulation::reset(const scene::Scene& scene, const Options& options) {
   }
 }
 
+void Simulation::Parts::list_contacts(bool wanted) {
+  lists_contacts = wanted;
+  contacts.clear();
+  if (wanted) physics.list_contacts(contacts);
+}
+
 void Simulation::Parts::move(std::size_t entity, const math::Pose& pose) {
   physics.move(entity, pose);
   physics.read(state);
@@ -203,11 +209,10 @@ void Simulation::Parts::step() {
   devices.apply(now);
   set_pushes(physics, commands.pushes);
   for (unsigned i = 0; i < substeps; ++i) {
-    if (lists_contacts && i + 1 == substeps) physics.list_contacts(&contacts);
     physics.step();
     devices.after_substep(now);
   }
-  physics.list_contacts(nullptr);
+  if (lists_contacts) physics.list_contacts(contacts);
   commands.pushes.clear();
   state.tick += 1;
   state.time_ns = std::llround(static_cast<long double>(state.tick) * 1e9L / ticks_per_second);
@@ -225,8 +230,7 @@ void Simulation::Parts::step() {
 }
 
 void Simulation::list_contacts(bool wanted) {
-  parts_->lists_contacts = wanted;
-  if (!wanted) parts_->contacts.clear();
+  if (wanted != parts_->lists_contacts) parts_->list_contacts(wanted);
 }
 void Simulation::list_rays(bool wanted) {
   parts_->lists_rays = wanted;

@@ -64,8 +64,8 @@ class Simulation {
   /// @param entity  into Layout::entities, one that is present
   void remove(std::size_t entity);
 
-  /// Whether contacts() lists contacts from the next tick on; that costs time. Not at first, and
-  /// not after a reset. No result depends on it.
+  /// Whether contacts() lists contacts; that costs time. Not at first, and not after a reset; after a
+  /// restore as before it. No result depends on it.
   void list_contacts(bool wanted);
   /// Of the last substep; empty unless they are listed.
   const std::vector<world::Contact>& contacts() const;

@@ -50,7 +50,7 @@ void Simulation::Parts::archive(math::Archive& archive) {
   archive("devices", devices);
   if (!archive.reads()) return;
   archive.require(archive.left() == 0, "is followed by more bytes");
-  contacts.clear();
+  list_contacts(lists_contacts);
   look_around();
 }
 
@@ -191,8 +191,8 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
     if (world::hash(fresh->state, fresh->observations) != snapshot.hash) {
       throw SnapshotError("The snapshot's state is not the one that its hash is of.");
     }
-    fresh->lists_contacts = p.lists_contacts;
     fresh->lists_rays = p.lists_rays;
+    fresh->list_contacts(p.lists_contacts);
     parts_ = std::move(fresh);
   } catch (const math::ArchiveError& error) {
     *layout_ = std::move(before);

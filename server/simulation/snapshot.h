@@ -15,6 +15,9 @@
 
 namespace ziggurat::simulation {
 
+/// Entities that may be spawned in a world, since its start or a reset.
+inline constexpr std::size_t most_spawned = 10'000;
+
 /// Something that was done to a world between two ticks.
 struct Act {
   enum class Kind : std::uint8_t { spawn, remove, move };

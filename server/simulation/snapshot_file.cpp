@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string_view>
 
@@ -51,6 +52,11 @@ void check_order(const Snapshot& snapshot) {
   if (snapshot.state.empty() && snapshot.tick > most_repeated) {
     throw SnapshotError(fmt::format("The snapshot is of tick {}, and at most {} can be repeated.",
                                     snapshot.tick, most_repeated));
+  }
+  const auto spawned = std::ranges::count(snapshot.history.acts, Act::Kind::spawn, &Act::kind);
+  if (static_cast<std::size_t>(spawned) > most_spawned) {
+    throw SnapshotError(fmt::format("In the snapshot {} entities have been spawned; at most {} may be.", spawned,
+                                    most_spawned));
   }
   std::uint64_t tick = 0;
   for (const Act& act : snapshot.history.acts) {

@@ -17,11 +17,11 @@
 
 namespace ziggurat::supervision {
 
+using simulation::most_spawned;
 using wire::ErrorCode;
 
 namespace {
 
-constexpr std::size_t most_spawned = 10'000;                   // since the start or a reset
 constexpr std::size_t longest_text = std::size_t{1} << 20;     // of an element [bytes]
 constexpr std::size_t most_links = 256;                        // of an entity
 constexpr double largest_mass = 1e6;                           // of an entity [kg]

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <random>
+#include <stdexcept>
 
+#include "math/archive.h"
 #include "small_scene.h"
 
 namespace ziggurat::simulation {
@@ -128,6 +131,28 @@ TEST_P(Snapshots, OfAFileThatIsDamagedAreRefused) {
   }
 }
 
+TEST_P(Snapshots, ListTheContactsOfTheirLastSubstep) {
+  Case world(GetParam()), other(GetParam());
+  world.simulation.list_contacts(true);
+  world.run(20);
+  const std::vector<world::Contact> expected = world.simulation.contacts();
+  ASSERT_FALSE(expected.empty());
+  const Snapshot snapshot = world.simulation.snapshot();
+  other.simulation.list_contacts(true);
+  for (Case* each : {&world, &other}) {
+    each->run(3);
+    each->simulation.restore(each->read.scene, snapshot);
+    const std::vector<world::Contact>& listed = each->simulation.contacts();
+    ASSERT_EQ(listed.size(), expected.size());
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+      EXPECT_EQ(listed[i].link, expected[i].link);
+      EXPECT_EQ(listed[i].other, expected[i].other);
+      EXPECT_EQ(listed[i].point, expected[i].point);
+      EXPECT_EQ(listed[i].force, expected[i].force);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, Snapshots, ::testing::Values("newton", "sweeps"),
                          [](const auto& solver) { return std::string(solver.param); });
 
@@ -164,6 +189,53 @@ TEST(Snapshot, OfWrongStateLeavesTheWorldAsItIs) {
     }
   }
   EXPECT_GT(refused, 100);
+}
+
+/// Where a field begins in the state of a world that is as in the snapshot.
+std::size_t place_of(const Simulation& world, const Snapshot& snapshot, const std::string& field) {
+  Snapshot other = snapshot;
+  for (std::size_t i = 0; i < other.state.size(); ++i) {
+    other.state[i] ^= std::byte{1};
+    if (world.first_difference(other) == field) return i;
+    other.state[i] ^= std::byte{1};
+  }
+  throw std::logic_error("there is no " + field);
+}
+
+/// Pairs that are no more take a byte each, and a thousand times as much memory.
+TEST(Snapshot, WithMorePairsThanTheWorldCanHaveIsRefused) {
+  Case world;
+  world.run(20);
+  Snapshot wrong = world.simulation.snapshot();
+  wrong.is_checked = false;
+  const std::size_t at = place_of(world.simulation, wrong, "physics/core/newton/contacts/pairs");
+  std::uint64_t pairs = 0;
+  std::memcpy(&pairs, &wrong.state[at], sizeof pairs);
+  constexpr std::uint64_t more = 100;
+  pairs += more;
+  std::memcpy(&wrong.state[at], &pairs, sizeof pairs);
+  wrong.state.insert(wrong.state.begin() + static_cast<std::ptrdiff_t>(at + sizeof pairs), more, {});
+  try {
+    world.simulation.restore(world.read.scene, wrong);
+    FAIL() << "it was restored";
+  } catch (const SnapshotError& error) {
+    EXPECT_NE(std::string(error.what()).find("contacts/pairs' has more elements"), std::string::npos)
+        << error.what();
+  }
+}
+
+/// A list is as long as its bytes, whatever its length says.
+TEST(Snapshot, TakesNoMemoryForElementsThatAreNotThere) {
+  const auto memory_for = [](std::uint64_t count) {
+    std::vector<std::byte> bytes(sizeof count + 1000);
+    std::memcpy(bytes.data(), &count, sizeof count);
+    std::vector<Act> read;
+    auto archive = math::Archive::reader(bytes);
+    EXPECT_THROW(archive.list("acts", read, [&](Act& each) { archive("xml", each.xml); }), math::ArchiveError);
+    return read.capacity();
+  };
+  EXPECT_LE(memory_for(1000), 256u) << "each has eight bytes";
+  EXPECT_EQ(memory_for(1001), 0u);
 }
 
 TEST(Snapshot, NamesTheFieldThatDiffers) {
