@@ -23,9 +23,11 @@ RecordingError damaged(const std::string& path, const mcap::Damaged& damage) {
 
 }  // namespace
 
-RecordingFile::RecordingFile(std::string path) : path_(std::move(path)) {
+RecordingFile::RecordingFile(const std::string& path) : RecordingFile(path, mcap::open_file(path)) {}
+
+RecordingFile::RecordingFile(std::string path, mcap::Source source) : path_(std::move(path)) {
   try {
-    reader_ = std::make_unique<mcap::Reader>(mcap::open_file(path_));
+    reader_ = std::make_unique<mcap::Reader>(std::move(source));
     auto start = messages({"/run"});
     const auto message = start ? start->next() : std::nullopt;
     if (!message) {

@@ -18,7 +18,9 @@ namespace ziggurat::replay {
 class RecordingFile {
  public:
   /// @throws RecordingError if it is no recording; what follows a damaged place can still be missing
-  explicit RecordingFile(std::string path);
+  explicit RecordingFile(const std::string& path);
+  /// The same of bytes from elsewhere. @param path  for messages
+  RecordingFile(std::string path, mcap::Source source);
 
   const std::string& path() const { return path_; }
   const v1::RunStart& run() const { return run_; }

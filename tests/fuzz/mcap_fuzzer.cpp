@@ -16,10 +16,10 @@ namespace {
 using namespace ziggurat;
 using fuzz::require;
 
-constexpr mcap::Limits limits{.chunk = std::size_t{1} << 20,
-                              .attachment = std::size_t{1} << 20,
+constexpr mcap::Limits limits{.chunk = std::size_t{1} << 16,
+                              .attachment = std::size_t{1} << 16,
                               .record = std::size_t{1} << 16,
-                              .index = std::size_t{1} << 20};
+                              .index = std::size_t{1} << 16};
 
 /// Reads all messages. Those of channels that are not defined do not count.
 std::uint64_t count_messages(const mcap::Reader& reader, const mcap::Selection& selection) {
@@ -64,6 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::uint64_t messages = count_messages(reader, {});
     count_messages(reader, {{1, 3}, 5, 20});
     read_all(reader);
+    if (size % 4 != 0) return 0;  // the rest takes as long as all before
     require(mcap::check(mcap::bytes_of(bytes), limits).faults.size() <= 2 * mcap::most_faults);
     std::string saved;
     const mcap::Repaired repaired = mcap::repair(

@@ -75,8 +75,7 @@ Bytes edited(Bytes bytes, std::span<const std::uint8_t> edits) {
         data[at] = value;
         break;
       case 3:  // what stands elsewhere
-        std::memmove(data + at, data + (std::size_t{value} << 8 | more) % bytes.size() % left,
-                     std::min<std::size_t>(left, 8) * (left > 16));
+        if (left > 16) std::memmove(data + at, data + (std::size_t{value} << 8 | more) % (bytes.size() - 8), 8);
         break;
       case 4:
         bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(at),
