@@ -124,14 +124,20 @@ std::optional<run::FilmOptions> film_options(const po::variables_map& values) {
   return film;
 }
 
-run::PictureOptions picture_options(const po::variables_map& values) {
+}  // namespace
+
+std::optional<run::PictureOptions> to_pictures(const po::variables_map& values) {
   run::PictureOptions pictures;
   const auto text = [&](const char* name) { return values[name].as<std::string>(); };
   pictures.film = film_options(values);
-  if (values.count("out")) {
-    pictures.out = text("out");
-  } else if (!pictures.film) {
-    throw text::UsageError("no output file is given; write --out FILE.png or --video FILE.mp4");
+  if (values.count("out")) pictures.out = text("out");
+  if (pictures.out.empty() && !pictures.film) {
+    for (const char* name : {"at", "follow", "layers", "eye", "look-at", "size", "fov"}) {
+      if (!values.count(name)) continue;
+      throw text::UsageError(
+          fmt::format("--{} is for pictures; write --out FILE.png or --video FILE.mp4 too", name));
+    }
+    return std::nullopt;
   }
   if (values.count("at")) pictures.times = to_times(text("at"));
   if (values.count("follow")) pictures.view.follow = text("follow");
@@ -152,8 +158,6 @@ run::PictureOptions picture_options(const po::variables_map& values) {
   }
   return pictures;
 }
-
-}  // namespace
 
 std::string help_render() {
   std::ostringstream text;
@@ -197,7 +201,10 @@ int execute_render(const Arguments& arguments, processes::Signals& signals) {
   const auto known = render_options();
   run::Options options = parse_options(arguments, known);
   run::only_scene(options);
-  options.pictures = picture_options(parse(arguments, known).values);
+  options.pictures = to_pictures(parse(arguments, known).values);
+  if (!options.pictures) {
+    throw text::UsageError("no output file is given; write --out FILE.png or --video FILE.mp4");
+  }
   return run::Run(options, run::Service::run, signals).execute();
 }
 

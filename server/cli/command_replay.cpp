@@ -21,6 +21,8 @@ supervisors, without controllers. The hash of each state is compared with the re
       write files that were not asked for when it ran
   ziggurat replay run.mcap --until 500 --hash
       up to tick 500
+  ziggurat replay run.mcap --video run.mp4 --follow r1 --layers rays
+      a film of it, and pictures with --out, as 'ziggurat render' makes them
   ziggurat replay run.mcap --from-poses --view
       show the recorded poses, without simulating
 
@@ -43,6 +45,7 @@ int execute_replay(const Arguments& arguments, processes::Signals& signals) {
   if (values.count("until")) {
     options.until = text::to_integer("--until", values["until"].as<std::string>());
   }
+  options.run.pictures = to_pictures(values);
   return run::Replaying(options, signals).execute();
 }
 

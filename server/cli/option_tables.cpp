@@ -154,6 +154,8 @@ po::options_description controller_options() {
   return options;
 }
 
+}  // namespace
+
 po::options_description picture_options() {
   po::options_description options("The picture", width);
   options.add_options()                                                                         //
@@ -172,8 +174,6 @@ po::options_description picture_options() {
       ("to", text("S"), "its end (default: the end of the scene)");
   return options;
 }
-
-}  // namespace
 
 po::options_description run_options() {
   const po::options_description processes = controller_options();
@@ -232,7 +232,7 @@ po::options_description replay_options() {
        "the token of that address instead of a random one: 16 characters or more")  //
       ("insecure", "allow an address that other machines can reach");
   po::options_description options("", width);
-  options.add(replay).add(output_options());
+  options.add(replay).add(output_options()).add(picture_options());
   return options;
 }
 

@@ -2,6 +2,8 @@
 // The options of `run`, `serve`, `check`, `render`, `replay` and `fork`: their help, and what they ask for.
 
 #include <boost/program_options/options_description.hpp>
+#include <boost/program_options/variables_map.hpp>
+#include <optional>
 
 #include "cli/commands.h"
 #include "run/options.h"
@@ -15,6 +17,10 @@ boost::program_options::options_description check_options();
 boost::program_options::options_description render_options();
 boost::program_options::options_description replay_options();
 boost::program_options::options_description fork_options();
+boost::program_options::options_description picture_options();
+
+/// The pictures and the film that are asked for; nothing: none. @throws UsageError
+std::optional<run::PictureOptions> to_pictures(const boost::program_options::variables_map& values);
 
 /// @throws UsageError
 run::Options parse_options(const Arguments& arguments,

@@ -23,6 +23,31 @@ fs::path place(const std::string& folder, const std::string& name) {
   return path;
 }
 
+/// A script as the scene names it.
+struct Named {
+  std::string name, owner;  ///< the owner: a robot or a director
+  std::string controller;   ///< that a command may be given for
+};
+
+/// Where it is written. @throws replay::RecordingError if it is not embedded
+std::string embedded_script(const std::string& folder, const replay::EmbeddedFiles& files,
+                            const scene::Scene& scene, const std::string& scene_path, const Named& script) {
+  std::vector<fs::path> folders;  // where a run looks for scripts, too
+  for (const std::string& file : scene.files) folders.push_back(fs::path(file).parent_path());
+  for (fs::path up = fs::path(scene_path).parent_path(); !up.empty(); up = up.parent_path()) {
+    folders.push_back(up);
+    if (up == up.parent_path()) break;
+  }
+  folders.emplace_back();
+  for (const fs::path& each : folders) {
+    const fs::path path = each / script.name;
+    if (files.find(path)) return place(folder, path.string()).string();
+  }
+  throw replay::RecordingError(fmt::format(
+      "the script '{}' of '{}' is not in the recording; write --controller {}=CMD", script.name,
+      script.owner, script.controller));
+}
+
 }  // namespace
 
 void write_below(const std::string& folder, const replay::EmbeddedFiles& files) {
@@ -44,20 +69,14 @@ std::string script_below(const std::string& folder, const replay::EmbeddedFiles&
   if (!processes::runs_script(controller)) return {};
   const std::string name = processes::script_of(robot.params);
   if (name.empty()) return {};
-  std::vector<fs::path> folders;  // where a run looks for scripts, too
-  for (const std::string& file : scene.files) folders.push_back(fs::path(file).parent_path());
-  for (fs::path up = fs::path(scene_path).parent_path(); !up.empty(); up = up.parent_path()) {
-    folders.push_back(up);
-    if (up == up.parent_path()) break;
-  }
-  folders.emplace_back();
-  for (const fs::path& each : folders) {
-    const fs::path path = each / name;
-    if (files.find(path)) return place(folder, path.string()).string();
-  }
-  throw replay::RecordingError(fmt::format(
-      "the script '{}' of '{}' is not in the recording; write --controller {}=CMD", name, robot.id,
-      controller.id));
+  return embedded_script(folder, files, scene, scene_path, {name, robot.id, controller.id});
+}
+
+std::string script_below(const std::string& folder, const replay::EmbeddedFiles& files,
+                         const scene::Scene& scene, const std::string& scene_path,
+                         const scene::Director& director) {
+  if (director.script.empty()) return {};
+  return embedded_script(folder, files, scene, scene_path, {director.script, director.id, director.id});
 }
 
 }  // namespace ziggurat::run

@@ -18,5 +18,9 @@ void write_below(const std::string& folder, const replay::EmbeddedFiles& files);
 std::string script_below(const std::string& folder, const replay::EmbeddedFiles& files,
                          const scene::Scene& scene, const std::string& scene_path,
                          const world::RobotLayout& robot);
+/// The same of a director.
+std::string script_below(const std::string& folder, const replay::EmbeddedFiles& files,
+                         const scene::Scene& scene, const std::string& scene_path,
+                         const scene::Director& director);
 
 }  // namespace ziggurat::run

@@ -102,8 +102,17 @@ void Past::set_commands(scene::Scene& scene) const {
     const bool is_trusted = fork_.trusts_commands && found != recorded.end();
     controller.command = is_trusted ? found->command() : std::string();
   }
+  for (scene::Director& director : scene.directors) {
+    if (!fork_.trusts_commands) director.command.clear();
+  }
   for (const auto& [id, command] : options_.controllers) {
-    scene.controllers[controller_named("--controller", id, scene)].command = command;
+    const auto director = std::ranges::find(scene.directors, id, &scene::Director::id);
+    if (director != scene.directors.end()) {
+      director->command = command;
+      director->script.clear();
+    } else {
+      scene.controllers[controller_named("--controller", id, scene)].command = command;
+    }
   }
 }
 
@@ -111,11 +120,6 @@ supervision::World Past::build(const simulation::TellPlaced& tell) const {
   const v1::RunStart& run = file_.run();
   scene::OpenScene opened = replay::read_scene(run, files_, options_.scene_file.variation);
   set_commands(opened.scene);
-  if (!opened.scene.directors.empty() && !options_.without_controllers) {
-    throw text::UsageError(
-        "the scene has directors, which cannot go on from a recorded state; write --without-controllers, "
-        "or replay the recording");
-  }
   const std::string hash = changes_world() ? replay::scene_hash(opened.scene, files_) : run.scene_hash();
   return {run.scene(), std::move(opened), seed_, tell, hash};
 }
@@ -161,6 +165,21 @@ std::vector<std::string> Past::write_scripts(const supervision::World& world,
     scripts.push_back(script_below(folder, files_, world.scene, world.path, robot));
   }
   return scripts;
+}
+
+std::vector<scene::Director> Past::directors(const supervision::World& world,
+                                             const std::string& folder) const {
+  std::vector<scene::Director> directors = world.scene.directors;
+  for (scene::Director& director : directors) {
+    if (director.script.empty() && director.command.empty() && options_.endpoints.empty()) {
+      throw text::UsageError(fmt::format(
+          "the command of the director '{0}' is not started by itself; write --controller {0}=COMMAND, "
+          "--trust-recorded-commands, or --endpoint where it connects",
+          director.id));
+    }
+    director.script = script_below(folder, files_, world.scene, world.path, director);
+  }
+  return directors;
 }
 
 std::vector<std::size_t> Past::idle_robots(const supervision::World& world,

@@ -36,6 +36,9 @@ class Past {
   /// Writes the embedded files into a folder. @return  per robot its script there; empty = none
   std::vector<std::string> write_scripts(const supervision::World& world,
                                          const std::string& folder) const;
+  /// Those of the scene, with their scripts there.
+  /// @throws text::UsageError if one has no command that may be started
+  std::vector<scene::Director> directors(const supervision::World& world, const std::string& folder) const;
   /// Robots that get no controller: those that had none.
   /// @throws text::UsageError if a controller has no command that may be started
   std::vector<std::size_t> idle_robots(const supervision::World& world,

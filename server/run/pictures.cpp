@@ -118,18 +118,33 @@ std::string picture_path(const std::string& out, std::size_t number, std::size_t
 }
 
 Pictures::Pictures(const PictureOptions& options, const scene::Scene& scene,
-                   std::vector<scene::Entity> entities, const world::Layout& layout)
+                   const simulation::Simulation& simulation)
     : options_(options),
       scene_(scene),
-      entities_(std::move(entities)),
-      followed_(find_entity(options.view.follow, layout)),
-      several_(scene, entities_, layout, threads_for(picture_count(options, scene.experiment))) {
-  if (followed_) followed_link_ = layout.entities[*followed_].links.begin;
+      followed_(find_entity(options.view.follow, simulation.layout())) {
+  populate(simulation);
+  if (followed_) followed_link_ = simulation.layout().entities[*followed_].links.begin;
   if (!options.film) return;
   frames_ = frame_count(*options.film, scene.experiment);
   film_.emplace(options.film->path,
                 recording::FilmFormat{options.view.width, options.view.height,
                                       options.film->frames_per_second});
+}
+
+/// Before entities that came, or other ones after a reset, are drawn.
+void Pictures::populate(const simulation::Simulation& simulation) {
+  if (several_) several_->finish();
+  entities_ = simulation.entities();
+  several_.emplace(scene_, entities_, simulation.layout(),
+                   threads_for(picture_count(options_, scene_.experiment)));
+}
+
+void Pictures::draw(const simulation::Simulation& simulation, const render::View& view,
+                    render::Several::Take take) {
+  if (!std::ranges::equal(entities_, simulation.entities(), {}, &scene::Entity::id, &scene::Entity::id)) {
+    populate(simulation);
+  }
+  several_->draw(simulation.state(), simulation.rays(), view, std::move(take));
 }
 
 /// That of the first picture, moved with the entity that it follows.
@@ -146,12 +161,17 @@ render::View Pictures::view(const world::State& state) {
   return view;
 }
 
-void Pictures::tick(const world::State& state, std::span<const world::Ray> rays) {
+void Pictures::tick(const simulation::Simulation& simulation) {
+  const world::State& state = simulation.state();
   const auto& times = options_.times;
   for (std::size_t i = 0; i < times.size() && !options_.out.empty(); ++i) {
     if (tick_at(times[i], scene_.experiment) != state.tick) continue;
-    taken_.push_back(picture_path(options_.out, i, times.size()));
-    several_.draw(state, rays, view(state), [path = taken_.back()](const render::Picture& picture) {
+    const std::string path = picture_path(options_.out, i, times.size());
+    if (std::ranges::find(taken_, path) == taken_.end()) {  // otherwise after a reset, again
+      taken_.push_back(path);
+      ++pictures_;
+    }
+    draw(simulation, view(state), [path](const render::Picture& picture) {
       recording::write_png(path, picture.width, picture.height, picture.rgb);
     });
   }
@@ -162,13 +182,13 @@ void Pictures::tick(const world::State& state, std::span<const world::Ray> rays)
     ++copies;
   }
   if (copies == 0) return;
-  several_.draw(state, rays, view_of_film(view(state)), [this, copies](const render::Picture& picture) {
+  draw(simulation, view_of_film(view(state)), [this, copies](const render::Picture& picture) {
     for (std::uint64_t i = 0; i < copies; ++i) film_->write(picture.rgb);
   });
 }
 
 void Pictures::close() {
-  several_.finish();
+  several_->finish();
   if (!film_) return;
   film_->close();
   const bool is_new = std::ranges::find(taken_, film_->path()) == taken_.end();
@@ -176,6 +196,10 @@ void Pictures::close() {
 }
 
 std::string Pictures::shortcoming() const {
+  if (const std::size_t missing = (options_.out.empty() ? 0 : options_.times.size()) - pictures_; missing > 0) {
+    return fmt::format("{}: {} of {} pictures were not taken, because the run ended before their times",
+                       options_.out, missing, options_.times.size());
+  }
   if (!film_ || film_->frames() == frames_) return {};
   if (film_->frames() == 0) {
     return fmt::format("{}: there is no film, because the run ended before its first frame",

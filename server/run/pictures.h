@@ -12,7 +12,7 @@
 #include "render/several.h"
 #include "run/viewpoint.h"
 #include "scene/scene.h"
-#include "world/layout.h"
+#include "simulation/simulation.h"
 #include "world/state.h"
 
 namespace ziggurat::run {
@@ -42,17 +42,16 @@ std::string picture_path(const std::string& out, std::size_t number, std::size_t
 /// Draws on other threads while the run goes on.
 class Pictures {
  public:
-  /// @param entities  all of them, placed, in scene order
   /// @param scene  must outlive this
   /// @throws render::RenderError, recording::WriteError; text::UsageError if there is no entity to
   /// follow
   Pictures(const PictureOptions& options, const scene::Scene& scene,
-           std::vector<scene::Entity> entities, const world::Layout& layout);
+           const simulation::Simulation& simulation);
 
-  /// @param rays  that are drawn, if the view asks for them
-  /// Takes the pictures of the state's tick; waits for earlier ones if they are many.
+  /// Takes the pictures of the world's tick, with its rays if the view asks for them; waits for earlier ones if
+  /// they are many.
   /// @throws recording::WriteError, render::RenderError
-  void tick(const world::State& state, std::span<const world::Ray> rays);
+  void tick(const simulation::Simulation& simulation);
 
   /// Waits for all pictures, and completes the film with the frames that it has.
   /// @throws as tick()
@@ -60,11 +59,14 @@ class Pictures {
 
   /// The paths of pictures and film, after close().
   const std::vector<std::string>& taken() const { return taken_; }
-  /// A sentence if the film has fewer frames than it should have, otherwise empty; after close().
+  /// A sentence if there are fewer pictures, or frames of the film, than there should be, otherwise empty;
+  /// after close().
   std::string shortcoming() const;
 
  private:
   render::View view(const world::State& state);
+  void populate(const simulation::Simulation& simulation);
+  void draw(const simulation::Simulation& simulation, const render::View& view, render::Several::Take take);
 
   PictureOptions options_;
   const scene::Scene& scene_;
@@ -75,8 +77,9 @@ class Pictures {
   math::Vector3 seen_at_ = math::Vector3::Zero();  // where the followed entity was then
   std::uint64_t next_frame_ = 0, frames_ = 0;
   std::vector<std::string> taken_;
+  std::size_t pictures_ = 0;  // of these
   std::optional<recording::Film> film_;
-  render::Several several_;  // the last: its threads use the film
+  std::optional<render::Several> several_;  // the last: its threads use the film
 };
 
 }  // namespace ziggurat::run

@@ -24,7 +24,7 @@ Recorders::Recorders(const Options& options, const supervision::World& world) {
   if (options.report_card.ends_with(".csv")) report_card_text_ = &reports::to_csv;
   if (!options.rays.empty()) rays_.emplace(options.rays, layout);
   if (options.pictures) {
-    pictures_.emplace(*options.pictures, world.scene, world.simulation.entities(), layout);
+    pictures_.emplace(*options.pictures, world.scene, world.simulation);
   }
   if (!options.images.empty()) images_.emplace(options.images, layout);
   const bool writes_each_tick = trace_ || hashes_ || readings_ || rays_;
@@ -55,7 +55,7 @@ void Recorders::tick(const simulation::Simulation& simulation) {
   if (hashes_) hashes_->write(simulation.state().tick, simulation.hash());
   if (rays_) rays_->write(simulation.state());
   if (images_) images_->write(simulation.observations());
-  if (pictures_) pictures_->tick(simulation.state(), simulation.rays());
+  if (pictures_) pictures_->tick(simulation);
 }
 
 void Recorders::exchange(const world::State& state, const world::Observations& observations,

@@ -48,6 +48,19 @@ void check_poses_suffice(const Options& options) {
   }
 }
 
+/// A film of the recording ends with it, unless another end is asked for.
+Options with_end_of_film(const ReplayOptions& options, const replay::RecordingFile& file,
+                         const scene::Experiment& experiment) {
+  Options outputs = options.run;
+  if (!outputs.pictures || !outputs.pictures->film || outputs.pictures->film->to) return outputs;
+  const std::uint64_t last = options.until.value_or(file.states() - std::min<std::uint64_t>(file.states(), 1));
+  outputs.pictures->film->to = static_cast<double>(last) / experiment.ticks_per_second;
+  if (*outputs.pictures->film->to < outputs.pictures->film->from) {
+    throw text::UsageError("--from is after the end of the recording");
+  }
+  return outputs;
+}
+
 /// Checks the names of all files before any is created.
 std::string checked(const ReplayOptions& options) {
   if (options.from_poses) check_poses_suffice(options.run);
@@ -65,7 +78,7 @@ Replaying::Replaying(const ReplayOptions& options, processes::Signals& signals)
       console_({options.run.quiet, options.run.json}),
       file_(checked(options)),
       world_(build_world(file_)),
-      recorders_(options.run, world_),
+      recorders_(with_end_of_film(options, file_, world_.scene.experiment), world_),
       states_(file_),
       replay_({world_.scene, world_.additions, world_.simulation, world_.seed},
               file_.files().opener(), [this] { return states_.next(); }),
@@ -136,6 +149,8 @@ int Replaying::execute() {
     console_.report(options_.run.json ? to_json(summary_) : to_text(summary_));
   }
   tell(end);
+  for (const auto& picture : recorders_.pictures()) console_.result(picture);
+  if (const auto missing = recorders_.missing_frames(); !missing.empty()) console_.warning(missing);
   if (options_.run.hash) console_.result(recording::hash_line(summary_.ticks, summary_.hash));
   console_.flush();
   if (showing_ && end != End::stopped) show_end();
@@ -156,6 +171,7 @@ int Replaying::execute() {
 Replaying::End Replaying::repeat() {
   simulation::Simulation& simulation = world_.simulation;
   timer_.end_startup(summary_);
+  const bool draws_rays = options_.run.pictures && options_.run.pictures->view.layers.rays;
   std::uint64_t epoch = 0;
   while (replay_.advance()) {
     timer_.end_phase(Phase::physics, summary_);
@@ -184,8 +200,8 @@ Replaying::End Replaying::repeat() {
       showing_->answered();
       showing_->update();
       simulation.list_contacts(showing_->wants_contacts());
-      simulation.list_rays(showing_->wants_rays());
     }
+    simulation.list_rays((showing_ && showing_->wants_rays()) || draws_rays);
     timer_.end_phase(Phase::recording, summary_);
   }
   return End::complete;

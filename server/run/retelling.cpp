@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -51,14 +52,37 @@ std::optional<Ending> Retelling::tell(const std::function<bool(std::uint64_t)>& 
     if (is_restarted_) {
       if (const auto ending = restart()) return ending;
     }
-    parties_.server.publish(simulation.observations(), simulation.state().tag_payloads);
+    const wire::Truth truth{simulation.layout(), simulation.entities(), simulation.state(),
+                            simulation.observations(), simulation.contacts()};
+    parties_.server.publish(simulation.observations(), simulation.state().tag_payloads, &truth);
     answered_.radio_messages.clear();
     if (const auto ending = parties_.watch.collect(answered_, tick)) return ending;
     const bool has_commands = replay_.inputs().has_commands();
     replay_.act();
+    take_shown();
+    simulation.list_contacts(network::DirectorsDesk(parties_.server).wants_contacts());
     if (has_commands) compare();
   }
   return std::nullopt;
+}
+
+/// What directors have shown on devices that no controller sets.
+void Retelling::take_shown() {
+  const world::Layout& layout = past_.simulation.layout();
+  const world::Commands& shown = past_.simulation.commands();
+  for (std::size_t entity = 0; entity < layout.entities.size(); ++entity) {
+    const auto robot = std::ranges::find(layout.robots, entity, &world::RobotLayout::entity);
+    const auto copy = [&](const world::Range& devices, world::Range world::RobotLayout::*set, const auto& from,
+                          auto& to) {
+      if (robot != layout.robots.end() && ((*robot).*set).count > 0) return;
+      for (std::size_t i = devices.begin; i < devices.end(); ++i) to[i] = from[i];
+    };
+    const world::EntityLayout& has = layout.entities[entity];
+    copy(has.leds, &world::RobotLayout::leds, shown.led_colors, answered_.led_colors);
+    copy(has.directional_leds, &world::RobotLayout::directional_leds, shown.directional_led_colors,
+         answered_.directional_led_colors);
+    copy(has.tags, &world::RobotLayout::tags, shown.tag_payloads, answered_.tag_payloads);
+  }
 }
 
 bool Retelling::skip(const std::function<bool(std::uint64_t)>& is_end,

@@ -73,6 +73,7 @@ class Retelling {
   void add_robot();
   void remove_robot(const std::string& entity);
   void compare();
+  void take_shown();
 
   const replay::RecordingFile& file_;
   supervision::World& past_;

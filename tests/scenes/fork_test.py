@@ -36,6 +36,20 @@ class Same(Fork):
                 self.assertEqual(forked, {tick: recorded[tick] for tick in range(13, 31)})
                 self.assertIn("up to tick 13 the controllers command what they did", outcome.err)
 
+    def test_directors_know_what_was_before(self):
+        self.change("</argos-configuration>", '<director id="judge" script="judge.lua"/></argos-configuration>')
+        self.write("judge.lua", """
+            local seen = 0
+            function post_step()
+              seen = seen + 1
+              for id in pairs(world.entities) do
+                if seen % 10 < 2 then world.push(id, {x = 10 * seen, y = 0, z = 0}) end
+              end
+            end""")
+        recording, end = self.record("--ticks", "40")
+        outcome = self.ask("fork", recording, "--at", "25", "--hash")
+        self.assertEqual(outcome.lines[-1], end)
+
     def test_outputs_begin_at_that_tick(self):
         recording, _ = self.record("--ticks", "30", "--trace", "whole.csv")
         self.ask("fork", recording, "--at", "12", "--trace", "part.csv", "--quiet")

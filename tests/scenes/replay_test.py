@@ -53,6 +53,22 @@ class Replay(Recorded):
                 before, after = before[:-1], after[:-1]
             self.assertEqual(before, after, name)
 
+    def test_takes_the_pictures_of_the_run(self):
+        recording, _ = self.record("--ticks", "10")
+        view = ("--at", "0,0.5,9", "--size", "96x64", "--layers", "rays,labels")
+        rendered = self.ask("render", self.scene, "--out", "a.png", *view[:1], "0,0.5", *view[2:], "--quiet")
+        for options in ((), ("--from-poses",)):
+            replayed = self.ask("replay", recording, "--out", "b.png", *view, *options)
+            self.assertEqual(replayed.lines, ["b_000.png", "b_001.png"])
+            self.assertIn("1 of 3 pictures were not taken", replayed.err)
+            if not options:  # otherwise without rays
+                for number in ("000", "001"):
+                    self.assertEqual((self.folder / f"a_{number}.png").read_bytes(),
+                                     (self.folder / f"b_{number}.png").read_bytes())
+        self.assertEqual(rendered.lines[-2:], ["a_000.png", "a_001.png"])
+        refused = self.ask("replay", recording, "--at", "1", code=FAULT)
+        self.assertIn("--at is for pictures; write --out FILE.png", refused.err)
+
     def test_repeats_what_set_and_param_changed(self):
         text = (self.folder / "arms.argos").read_text()
         (self.folder / "arms.argos").write_text(re.sub(
