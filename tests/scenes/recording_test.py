@@ -138,8 +138,8 @@ class RecordingTest(SceneTest):
 
     def test_a_killed_run_loses_a_chunk_at_most(self):
         """Against the hash file of the same run. A chunk has a second of wall time, 200 states at this pace, or
-        more where a run that fell behind catches up. On a busy machine the recorder's thread may come late: two
-        chunks are the bound; what was lost is printed."""
+        more where a run that fell behind catches up. The world waits before more than a chunk could be lost; chunks end
+        at three quarters of one. What was lost is printed."""
         choose = random.Random(1)
         second = 200
         lost_chunks = []
@@ -159,7 +159,7 @@ class RecordingTest(SceneTest):
             chunks = self.chunks(path)[1:]  # the first has the start
             self.assertGreaterEqual(sum(chunks), info["states"])  # a chunk may end within a tick
             lost_chunks.append(max(0, len(full) - info["states"]) / max([second, *chunks]))
-            self.assertLessEqual(lost_chunks[-1], 2, f"run {number}: {info['states']} of {len(full)} states, "
+            self.assertLessEqual(lost_chunks[-1], 1.5, f"run {number}: {info['states']} of {len(full)} states, "
                                                      f"chunks of {chunks}")
             saved = self.folder / "saved.mcap"
             done = subprocess.run([str(ZIGGURAT), "info", str(path), "--repair", str(saved)], capture_output=True)
