@@ -110,6 +110,9 @@ inline void receive(std::string_view bytes) {
     case wire::Inbox::Kind::heartbeat:
       inbox.heartbeat();
       break;
+    case wire::Inbox::Kind::direction:
+      if (!inbox.check_direction()) inbox.direction();
+      break;
     case wire::Inbox::Kind::request:
       inbox.request_id();
       inbox.request();
