@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import sys
 
-from harness import CONTROLLER_FAILED, FAULT, FINISHED, LIMIT, ZIGGURAT, main
+from harness import CONTROLLER_FAILED, FAULT, FINISHED, LIMIT, LUA, ZIGGURAT, main
 from replay_test import ROOT, Recorded
 
 SPEED = re.compile(r"robot\.params\.speed")
@@ -216,6 +216,32 @@ class Kept(Fork):
         self.ask("fork", recording, "--at", "8", "--ticks", "20", "--set", "physics_engines/*/gravity/@g=5",
                  "--record", other, "--quiet")
         self.assertRegex(self.ask("verify", other).out, r"^identical: 13 states")
+
+    def test_robots_that_were_removed_have_no_controllers_any_more(self):
+        """Before the first tick, and later: --fresh starts controllers afterwards."""
+        for steps in (0, 5):
+            recording = self.folder / f"{steps}.mcap"
+            process = self.start("serve", self.scene, "--json", "--paused", "--record", recording, "--ticks", 20)
+            url = json.loads(process.stdout.readline())["endpoint"]
+
+            def ctl(*words):
+                self.assertEqual(self.ziggurat("ctl", url, *words).code, 0)
+
+            def connect():
+                self.started.append(subprocess.Popen([LUA, "--connect", url, "--quiet"], cwd=self.folder,
+                                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+            if steps:
+                connect()
+                ctl("step", steps)
+            ctl("remove", "r0")
+            if not steps:
+                connect()
+            ctl("resume")
+            self.assertEqual(self.finish(process).code, 0)
+            for more in ((), ("--fresh",)):
+                outcome = self.ziggurat("fork", recording, "--at", 10, "--quiet", *more)
+                self.assertEqual(outcome.code, 0, outcome.err)
+            self.assertEqual(self.ziggurat("verify", recording, "--controllers").code, 0)
 
     def test_a_run_that_was_restored_from_a_file_replays(self):
         """By a server that begins with the snapshots of an earlier one."""

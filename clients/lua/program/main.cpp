@@ -4,8 +4,10 @@
 
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "program/director_runner.h"
 #include "program/host.h"
@@ -47,12 +49,27 @@ int exit_code(const std::optional<Ending>& ending, bool has_failed, const lua::P
   return has_failed ? exit_failed_script : exit_finished;
 }
 
+/// Robots of a list that have left the run since it was written are left out. None: all have.
+std::unique_ptr<Session> begin(Options wanted, bool has_list) {
+  for (;;) {
+    try {
+      return std::make_unique<Session>(wanted);
+    } catch (const ProtocolError& error) {
+      const bool has_left = error.details().code == "NOT_YOURS";
+      if (!has_list || !has_left || std::erase(wanted.robots, error.details().robot) == 0) throw;
+      if (wanted.robots.empty()) return nullptr;
+    }
+  }
+}
+
 int run_robots(const lua::ProgramOptions& options) {
   auto wanted = where<Options>(options);
   wanted.controller = options.controller;
   wanted.robots = options.robots;
   wanted.lua_only = !options.script;  // --script runs robots with any controller
-  Session session(wanted);
+  const auto begun = begin(wanted, options.has_list);
+  if (!begun) return exit_finished;
+  Session& session = *begun;
   if (!options.quiet) {
     const std::size_t robots = session.robots().size();
     std::fprintf(stderr, "ziggurat-lua: runs %zu %s at %s, seed %llu\n", robots,

@@ -177,7 +177,8 @@ Request read_arguments(int count, const char* const* arguments, bool is_terminal
   options.endpoint = value("connect", environment("ZIGGURAT_ENDPOINT"));
   if (options.endpoint.empty()) options.endpoint = find_server();
   if (found.count("robot")) options.robots = found["robot"].as<std::vector<std::string>>();
-  if (found.count("robots-file")) append_robots(value("robots-file"), options.robots);
+  options.has_list = found.count("robots-file") > 0;
+  if (options.has_list) append_robots(value("robots-file"), options.robots);
   options.robots_from = value("robots-from");
   if (!options.robots_from.empty() && !options.robots.empty()) {
     throw std::runtime_error("--robots-from and --robot or --robots-file exclude each other");

@@ -13,6 +13,7 @@ namespace ziggurat::lua {
 struct ProgramOptions {
   std::string endpoint;
   std::vector<std::string> robots;  ///< ids or globs, with those of --robots-file
+  bool has_list = false;            ///< of --robots-file: some may have left since it was written
   std::string robots_from;          ///< pipe with ids of robots that come later; empty: none
   std::string controller;           ///< id in the scene; empty for all
   std::optional<std::string> director;  ///< runs this director of the scene, and no robots
