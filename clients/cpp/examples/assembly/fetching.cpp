@@ -91,6 +91,7 @@ Next choose_block(Assembler& self, Faces /*faces*/) {
 }
 
 Next fetch(Assembler& self, Faces /*faces*/) {
+  if (!is_free(self.memory, *self.job.target.block)) return State::choose_block;
   if (is_taken(self, self.job.target, 0.3)) return give_up_block(self, 200);
   const Arrival arrival = travel_to(self, run_up_to(self.job.target));
   if (arrival == Arrival::there) return State::aim;

@@ -177,9 +177,18 @@ bool is_hidden(const Screen& block, const std::vector<Screen>& screens) {
   });
 }
 
-/// Forgets dark blocks that have not been where they should be in sight for a second.
+/// Leaves dark blocks alone at which another robot is at work, and forgets those that have not been
+/// where they should be in sight for a second: somebody took them.
 void forget_taken(Memory& memory, const Pose& pose, const Traffic& traffic) {
   constexpr double block_width = 0.05, robot_width = 0.17;
+  for (const Neighbour& other : traffic.neighbours) {
+    if (!other.working || other.holding) continue;
+    for (const auto& block : memory.material) {
+      const Screen at = seen_from(pose, *block, block_width);
+      if (!is_within({at.forward, at.left}, {other.forward, other.left}, 0.15)) continue;
+      block->avoid = std::max(block->avoid, memory.now + 300);
+    }
+  }
   std::vector<Screen> screens;
   for (const auto& [key, column] : memory.columns) {
     screens.push_back(seen_from(pose, *column, block_width));
@@ -193,7 +202,7 @@ void forget_taken(Memory& memory, const Pose& pose, const Traffic& traffic) {
   std::erase_if(memory.material, [&](const std::shared_ptr<Block>& block) {
     const Screen at = seen_from(pose, *block, block_width);
     const bool is_in_sight = at.forward > 0.25 && at.forward < 0.65 &&
-                             std::abs(at.left) < 0.22 * at.forward && !is_hidden(at, screens);
+                             std::abs(at.left) < 0.3 * at.forward - 0.05 && !is_hidden(at, screens);
     if (is_in_sight && block->seen < memory.now) ++block->missed;
     return block->missed > 10;
   });
@@ -282,9 +291,22 @@ void remember_attached(Memory& memory, const Plan& plan, Column& column, int sid
   expect(memory, plan, attached, row.becomes, 1, side);
 }
 
+namespace {
+
+auto find_near(const std::vector<std::shared_ptr<Block>>& material, const Point& place) {
+  return std::ranges::find_if(material,
+                              [&](const auto& known) { return is_within(place, *known, 0.05); });
+}
+
+}  // namespace
+
+bool is_free(const Memory& memory, const Point& block) {
+  const auto found = find_near(memory.material, block);
+  return found != memory.material.end() && memory.now > (*found)->avoid;
+}
+
 void forget(Memory& memory, const Point& block) {
-  const auto found = std::ranges::find_if(
-      memory.material, [&](const auto& known) { return is_within(block, *known, 0.05); });
+  const auto found = find_near(memory.material, block);
   if (found != memory.material.end()) memory.material.erase(found);
 }
 

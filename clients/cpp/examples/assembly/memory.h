@@ -84,6 +84,8 @@ bool update(Memory& memory, Odometry& odometry, bool loaded, Faces faces, const 
 /// The robot has attached a block by this row, above the column or before that side.
 void remember_attached(Memory& memory, const Plan& plan, Column& column, int side, const Row& row);
 
+/// Whether it still remembers a dark block there that is not to be left alone.
+bool is_free(const Memory& memory, const Point& block);
 void forget(Memory& memory, const Point& block);
 
 /// The middle of all known columns; nothing if none is known.

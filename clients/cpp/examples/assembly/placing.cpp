@@ -69,6 +69,12 @@ std::optional<const Row*> look_at_side(Assembler& self, Faces faces) {
   return seen->face.color ? self.plan.row_shown(*seen->face.color) : nullptr;
 }
 
+void tell_state(Assembler& self) {
+  const Row& row = self.job.place.row;
+  if (row.index == 0) return;
+  self.builder.send(std::array<std::uint8_t, 3>{1, row.number, self.job.payload.value_or(0)});
+}
+
 void log_docked(Assembler& self, const construction::Face& face) {
   char text[100];
   std::snprintf(text, sizeof text, "docked %.20s %g mm %g", self.job.place.row.becomes.c_str(),
@@ -120,7 +126,7 @@ Next survey(Assembler& self, Faces /*faces*/) {
 Next queue(Assembler& self, Faces /*faces*/) {
   Job& job = self.job;
   if (job.since % 5 == 0 && nearest_side(self)) return State::choose_side;
-  if (job.seconds() > 12) {
+  if (job.seconds() > 6) {
     job.points = ring(self, survey_ring, 4);
     return State::survey;
   }
@@ -236,15 +242,16 @@ Next place(Assembler& self, Faces /*faces*/) {
   return {};
 }
 
-// Tells the block its state. From now on it tells the other robots what may be attached.
+// Tells the block its state, often enough, as it does not hear while it sends. From now on it tells
+// the other robots what may be attached.
 Next tell(Assembler& self, Faces /*faces*/) {
-  const std::uint8_t number = self.job.place.row.number;
-  self.builder.send(std::array<std::uint8_t, 3>{1, number, self.job.payload.value_or(0)});
+  tell_state(self);
   if (self.job.seconds() >= 0.5) return State::release;
   return {};
 }
 
 Next release(Assembler& self, Faces /*faces*/) {
+  tell_state(self);
   self.builder.set_current(std::max(-1.0, -2 * self.job.seconds()));
   if (self.job.seconds() > 1) return State::rise;
   return {};
