@@ -235,6 +235,10 @@ pageTest("keys and fingers turn and zoom the picture", tags, fromTop, async (pag
   assert.ok(Math.abs(distance(turned) - distance(first)) < 1e-3);
   await key(page, "+");
   assert.ok(distance(await look()) < 0.9 * distance(turned));
+  await key(page, "?");
+  await waitFor(() => page.locator("#help h2").first().isVisible(), "help");
+  await page.keyboard.press("Escape");
+  await waitFor(() => page.locator("#help").isHidden(), "end of help");
 
   const touch = await page.context().newCDPSession(page);
   const box = await page.locator("#world").boundingBox();

@@ -15,6 +15,7 @@ export function listenToKeys(app: App, actions: Actions): void {
   window.addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (document.querySelector("dialog[open]") && !"?h".includes(event.key)) return; // escape closes it
     if (/^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName)
         && (target as HTMLInputElement).type !== "checkbox") {
       if (event.key === "Escape") target.blur();

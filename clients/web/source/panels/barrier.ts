@@ -74,8 +74,9 @@ export class BarrierPanel implements Panel {
       return make("i", { style: `height:${count > 0 ? Math.max(3, 100 * Math.log1p(count) / Math.log1p(most)) : 0}%`,
                          title: `${seconds(low)} … ${seconds(low * growth)}: ${count}` });
     });
+    const answers = `${list.reduce((sum, count) => sum + count, 0)} answers`;
     return make("div.histogram", {}, make("div.title", {}, controller, make("span.muted", {},
-      missedTicks > 0 ? `${missedTicks} deadlines missed` : "")), make("div.bars", {}, ...bars),
+      missedTicks > 0 ? `${answers}, ${missedTicks} deadlines missed` : answers)), make("div.bars", {}, ...bars),
       make("div.ends.muted", {}, make("span", {}, seconds(least * growth ** first)),
            make("span", {}, seconds(least * growth ** list.length))));
   }
