@@ -37,12 +37,17 @@ pictures stacking_%d.png prototype_srocs_system 0,9,18,25,32 --eye 0.02,-0.85,0.
 pictures staircase.png construction/staircase 410 --eye -0.35,-0.75,0.6 --look-at 0.12,0.05,0.03 --fov 60
 pictures pyramid_%d.png construction/pyramid 0,90,180,300 --eye -0.35,-0.95,0.75 --look-at 0,0,0.03 --fov 60
 
-if command -v gnuplot > /dev/null; then  # one minute of wall time on two cores (docs/experiments.md)
+plot() {  # EXPERIMENT PARAMETER METRIC
   sweep=$(mktemp -d)
-  "$ziggurat" sweep scenes/experiments/aggregation.toml --out "$sweep/out" --quiet
-  "$ziggurat" sweep plot "$sweep/out" --x share --y swarm/time_to_aggregate --file "$sweep/aggregation.svg"
-  cp "$sweep/aggregation.svg" "$results"
+  "$ziggurat" sweep "scenes/experiments/$1.toml" --out "$sweep/out" --quiet
+  "$ziggurat" sweep plot "$sweep/out" --x "$2" --y "$3" --file "$sweep/$1.svg"
+  cp "$sweep/$1.svg" "$results"
   rm -r "$sweep"
+}
+
+if command -v gnuplot > /dev/null; then  # on two cores one minute (docs/experiments.md) and some ten
+  plot aggregation share swarm/time_to_aggregate
+  plot pyramid robots site/time_to_finish
 else
   echo "make.sh: no plot without gnuplot (sudo apt install gnuplot-nox)" >&2
 fi

@@ -4,17 +4,7 @@
 --
 -- A state machine. Each state is a function, called at every tick; it returns the name of the next.
 
-local assembly = require "assembly"
-local builder = require "builder"
-local fetching = require "fetching"
-local memory = require "memory"
-local odometry = require "odometry"
-local placing = require "placing"
-local starting = require "starting"
-local traffic = require "traffic"
-local travel = require "travel"
-
-local job = assembly.job
+local assembly, builder, memory, odometry, traffic, travel, job
 local scan_rate = 0.7  -- rad/s
 local states = {}
 
@@ -113,11 +103,26 @@ for _, name in ipairs({"approach", "retreat", "lower", "energise", "let_go", "ra
   working[name] = true
 end
 
-for _, others in ipairs({starting, fetching, placing}) do
-  for name, state in pairs(others) do states[name] = state end
+-- Loads what keeps variables from tick to tick anew: a robot that begins knows nothing.
+local function begin()
+  for _, name in ipairs({"assembly", "builder", "corridor", "fetching", "memory", "odometry", "placing", "starting",
+                         "traffic", "travel"}) do
+    package.loaded[name] = nil
+  end
+  assembly, builder, memory = require "assembly", require "builder", require "memory"
+  odometry, traffic, travel = require "odometry", require "traffic", require "travel"
+  job = assembly.job
+  for _, name in ipairs({"starting", "fetching", "placing"}) do
+    for state, act in pairs(require(name)) do states[state] = act end
+  end
 end
 
-function init() log("start") end
+function init()
+  begin()
+  log("start")
+end
+
+reset = init
 
 function step()
   job.since = job.since + 1

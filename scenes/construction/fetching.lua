@@ -50,6 +50,7 @@ local function give_up_block(ticks)
 end
 
 function states.fetch()
+  if not memory.is_free(job.target.block) then return "choose_block" end
   if assembly.taken(job.target, 0.3) then return give_up_block(200) end
   local x, y = assembly.ahead_of(job.target, builder.reach + assembly.run_up)
   local outcome = travel.to(x, y)

@@ -185,8 +185,18 @@ local function is_hidden(forward, left, others)
   return false
 end
 
--- Forgets dark blocks that have not been where they should be in sight for a second: somebody took them.
+-- Leaves dark blocks alone at which another robot is at work, and forgets those that have not been where they should be
+-- in sight for a second: somebody took them.
 local function forget_taken(robots)
+  for _, robot in ipairs(robots) do
+    for _, block in ipairs(memory.material) do
+      local forward, left = seen_from_robot(block)
+      if robot.working and not robot.holding and
+         (forward - robot.forward) ^ 2 + (left - robot.left) ^ 2 < 0.15 ^ 2 then
+        block.avoid = math.max(block.avoid or 0, memory.now + 300)
+      end
+    end
+  end
   local others = {}
   for _, column in pairs(memory.columns) do
     local forward, left = seen_from_robot(column)
@@ -202,7 +212,7 @@ local function forget_taken(robots)
   for n = #memory.material, 1, -1 do
     local block = memory.material[n]
     local forward, left = seen_from_robot(block)
-    local in_sight = forward > 0.25 and forward < 0.65 and math.abs(left) < 0.22 * forward and
+    local in_sight = forward > 0.25 and forward < 0.65 and math.abs(left) < 0.3 * forward - 0.05 and
                      not is_hidden(forward, left, others)
     block.missed = in_sight and block.seen < memory.now and (block.missed or 0) + 1 or block.missed
     if (block.missed or 0) > 10 then table.remove(memory.material, n) end
@@ -210,7 +220,7 @@ local function forget_taken(robots)
 end
 
 -- Takes in what the camera sees: faces as of builder.faces(). Nearer than 13 cm the LEDs are out
--- of the image. robots: {forward, left} of the others.
+-- of the image. robots: the others, as of traffic.others.
 function memory.update(faces, robots)
   memory.now = memory.now + 1
   local found_oneself = false
@@ -229,6 +239,14 @@ function memory.update(faces, robots)
     end
   end
   forget_taken(robots)
+end
+
+-- Whether it still remembers a dark block there that is not to be left alone.
+function memory.is_free(block)
+  for _, known in ipairs(memory.material) do
+    if (block.x - known.x) ^ 2 + (block.y - known.y) ^ 2 < 0.05 ^ 2 then return memory.now > (known.avoid or 0) end
+  end
+  return false
 end
 
 function memory.forget(block)

@@ -66,7 +66,7 @@ end
 -- Waits outside while others are at work at all sides that may get a block, then looks from elsewhere.
 function states.queue()
   if job.since % 5 == 0 and nearest_side() then return "choose_side" end
-  if job.seconds() > 12 then
+  if job.seconds() > 6 then
     job.points = assembly.ring(assembly.survey_ring, 4)
     return "survey"
   end
@@ -192,13 +192,19 @@ function states.place()
   if builder.lift_to(math.max(0.0002, height - 0.0002), far and 0.05 or slow) then return "tell" end
 end
 
--- Tells the block its state. From now on it tells the other robots what may be attached.
+local function tell_state()
+  if job.place.row.number then robot.radios.nfc.tx_data({1, job.place.row.number, tonumber(job.payload)}) end
+end
+
+-- Tells the block its state, often enough, as it does not hear while it sends. From now on it tells the other
+-- robots what may be attached.
 function states.tell()
-  robot.radios.nfc.tx_data({1, job.place.row.number, tonumber(job.payload)})
+  tell_state()
   if job.seconds() >= 0.5 then return "release" end
 end
 
 function states.release()
+  tell_state()
   builder.current(math.max(-1, -2 * job.seconds()))
   if job.seconds() > 1 then return "rise" end
 end

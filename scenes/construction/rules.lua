@@ -12,8 +12,8 @@ local side_numbers = {front = 0, left = 1, back = 2, right = 3}
 
 function rules.load(name)
   local rows = require(name)
-  local plan = {rows = rows, seed = rows.seed, complete = rows.complete, states = {rows.seed}}
-  local numbers = {[rows.seed] = 1}
+  local numbers = {[rows.seed] = 1}  -- of the states, by name
+  local plan = {rows = rows, seed = rows.seed, complete = rows.complete, states = {rows.seed}, numbers = numbers}
   for index, row in ipairs(rows) do
     row.index = index
     if not numbers[row.becomes] then

@@ -60,12 +60,6 @@ local function show()
   end
 end
 
-local function number_of(wanted)
-  for number, name in ipairs(plan.states) do
-    if name == wanted then return number end
-  end
-end
-
 function step()
   tick = tick + 1
   for number = 0, 5 do
@@ -77,7 +71,7 @@ function step()
     show()
     if sends then
       for number = 0, 5 do
-        robot.radios["radio_" .. number].tx_data({2, number_of(state), 1 + above})
+        robot.radios["radio_" .. number].tx_data({2, plan.numbers[state], 1 + above})
       end
     end
   elseif memory and sends then

@@ -8,7 +8,7 @@ local traffic = require "traffic"
 
 local travel = {}
 
-local fastest, turn_rate = 0.13, 0.8  -- m/s, rad/s
+local fastest, turn_rate = 0.18, 1  -- m/s, rad/s
 local near = 0.1          -- in front of the robot's centre: so near it drives up to nothing unknown [m]
 
 local goal                -- {x, y}
@@ -44,11 +44,12 @@ local function column_ahead()
   end
 end
 
--- Whether another robot stands at the goal.
-local function occupied()
+-- Whether another robot stands at the goal, nearer than this one.
+local function occupied(own_distance)
   for _, other in ipairs(traffic.others) do
     local point = traffic.place_of(here(), other)
-    if (point.x - goal.x) ^ 2 + (point.y - goal.y) ^ 2 < 0.27 ^ 2 then return true end
+    local distance = math.sqrt((point.x - goal.x) ^ 2 + (point.y - goal.y) ^ 2)
+    if distance < math.min(0.27, own_distance) then return true end
   end
 end
 
@@ -154,7 +155,7 @@ function travel.to(x, y)
   local other = traffic.nearest()
   local age = points and memory.now - planned or math.huge
   if age > 50 or (other and other.range < 0.7 and age > 12) then plan_way() end
-  if not points or distance < 0.5 and occupied() then
+  if not points or distance < 0.5 and occupied(distance) then
     builder.stop()
     waited = waited + 1
     return waited > 20 and "occupied" or nil
@@ -177,7 +178,7 @@ function travel.to(x, y)
     evade(-1, 20)
     return
   end
-  local wanted = math.min(fastest, math.max(0.02, 0.8 * distance)) * (1 - math.abs(bearing))
+  local wanted = math.min(fastest, math.max(0.02, distance)) * (1 - math.abs(bearing))
   if move(wanted, turn) then
     blocked = 0
     return

@@ -1,6 +1,7 @@
 """Shapes and poses of a construction scene: depth of overlaps, drift of joints."""
 
 import dataclasses
+import functools
 import itertools
 import math
 import pathlib
@@ -42,6 +43,11 @@ class Link:
     kind: str          # box, cylinder, sphere
     half: tuple        # half extents [m]; of a cylinder radius, radius, height / 2
     mass: float        # [kg]
+
+    @functools.cached_property
+    def reach(self):
+        """From the middle to the farthest corner [m]."""
+        return math.hypot(*self.half)
 
 
 @dataclasses.dataclass
@@ -149,22 +155,25 @@ def box_overlap(a, pose_a, b, pose_b):
     return least
 
 
-def deepest_overlap(scene, poses):
+def deepest_overlap(scene, poses, before=None):
     """(depth, names) of the deepest overlap with the floor or of two entities' links. Cylinders
-    count against other links as the boxes around them; spheres are inside their blocks."""
+    count against other links as the boxes around them; spheres are inside their blocks. before: the
+    poses of the tick before; what is at the same place as then is left out."""
     deepest, names = 0.0, ""
     solid = [(key, link) for key, link in scene.links.items() if link.kind != "sphere"]
+    moved = {key for key, _ in solid if not before or before[key] is not poses[key]}
     for key, link in solid:
-        depth = below_floor(link, poses[key])
+        depth = below_floor(link, poses[key]) if key in moved else 0.0
         if depth > deepest:
             deepest, names = depth, f"{'.'.join(key)} in the floor"
+    middles = {key: centre(poses[key], link.half[2]) for key, link in solid}
+    blocks = set(scene.blocks)
     for block in scene.blocks:
-        link, pose = scene.links[block], poses[block]
+        link, pose, middle = scene.links[block], poses[block], middles[block]
         for key, other in solid:
-            if key[0] == block[0] or (key in scene.blocks and key < block):
+            if block not in moved and key not in moved or key[0] == block[0] or key in blocks and key < block:
                 continue
-            reach = math.dist((0, 0, 0), link.half) + math.dist((0, 0, 0), other.half)
-            if math.dist(centre(pose), centre(poses[key], other.half[2])) > reach:
+            if math.dist(middle, middles[key]) > link.reach + other.reach:
                 continue
             depth = box_overlap(link, pose, other, poses[key])
             if depth > deepest:
@@ -184,9 +193,11 @@ class Joints:
         self.start = {(entity, joint): start[entity, parent].to_local(start[entity, child].apply(at))
                       for entity, joint, _, parent, child, _, at in scene.joints}
 
-    def drift(self, poses):
+    def drift(self, poses, before=None):
         most, name = 0.0, ""
         for entity, joint, kind, parent, child, _, at in self.joints:
+            if before and before[entity, child] is poses[entity, child]:
+                continue
             now = poses[entity, parent].to_local(poses[entity, child].apply(at))
             apart = [a - b for a, b in zip(now, self.start[entity, joint])]
             if kind == "prismatic":
@@ -200,7 +211,7 @@ def fastest(scene, before, now, seconds):
     """(kinetic energy [J], name) of the link with the greatest one between two ticks."""
     most, name = 0.0, ""
     for key, link in scene.links.items():
-        if link.kind == "sphere" or key not in now:
+        if link.kind == "sphere" or key not in now or before[key] is now[key]:
             continue
         speed = math.dist(centre(before[key], link.half[2]),
                           centre(now[key], link.half[2])) / seconds

@@ -71,19 +71,19 @@ def judge_motion(ticks, scene, limits, verdict):
     joints = geometry.Joints(scene, ticks[0][1])
     deepest = (0.0, "")
     for number, (time, poses) in enumerate(ticks):
-        if number and at_rest(ticks[number - 1][1], poses):
+        before = ticks[number - 1][1] if number else None
+        if before and at_rest(before, poses):
             continue
-        depth, names = geometry.deepest_overlap(scene, poses)
+        depth, names = geometry.deepest_overlap(scene, poses, before)
         if depth > deepest[0]:
             deepest = depth, f"{names} at {time:g} s"
-        drift, joint = joints.drift(poses)
+        drift, joint = joints.drift(poses, before)
         if drift > verdict.drift:
             verdict.drift = drift
             if drift > limits.drift:
                 verdict.faults.append(f"joint {joint} drifted {1000 * drift:.2f} mm at {time:g} s")
-        if number:
-            before_time, before = ticks[number - 1]
-            energy, link = geometry.fastest(scene, before, poses, time - before_time)
+        if before:
+            energy, link = geometry.fastest(scene, before, poses, time - ticks[number - 1][0])
             if energy > verdict.energy:
                 verdict.energy = energy
                 if energy > limits.energy:

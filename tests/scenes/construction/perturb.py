@@ -6,6 +6,7 @@
     tests/scenes/construction/perturb.py --staircase --runs 20 --least 0.8
     tests/scenes/construction/perturb.py --steps rules_cross --runs 20 --least 0.9
     tests/scenes/construction/perturb.py --steps rules_cross --kills 2 --runs 20 --least 0.9
+    tests/scenes/construction/perturb.py --pyramid --lose --runs 5
 
 Perturbation number K is always the same. Stacking scene: the robot up to 3 cm farther back and turned
 by up to 3 degrees, both blocks shifted by up to 1 cm in x and in y and turned by up to 3 degrees, another
@@ -188,12 +189,25 @@ def process_of(folder, index):
     return None
 
 
-def run_and_kill(command, folder, draw, robots, kills):
-    """Runs a command; ends so many robots' processes with SIGKILL, each when that robot logs a random line.
-    robots: their places in the scene by id."""
+def endpoint(folder):
+    return f"ipc://{folder}/supervisor"
+
+
+def remove_from(scene_file, entity):
+    """What the judge reads has only the robots that are there at the end."""
+    tree = ElementTree.parse(scene_file)
+    arena = tree.find("arena")
+    arena.remove(next(element for element in arena if element.get("id") == entity))
+    tree.write(scene_file)
+
+
+def run_and_kill(command, folder, draw, robots, kills, lose=False):
+    """Runs a command; ends so many robots' processes with SIGKILL, each when that robot logs a random line. With
+    lose, removes one robot from the world when it has come to a dark block. robots: their places in the scene by id."""
     plans = set()
     while len(plans) < kills:
         plans.add((draw.choice(sorted(robots)), draw.randint(4, 30)))
+    lost = lose and (draw.choice(sorted(robots)), draw.randint(1, 3))
     with open(pathlib.Path(folder) / "stderr", "w+") as errors, subprocess.Popen(
             [str(word) for word in command], stdout=subprocess.PIPE, stderr=errors, text=True,
             env=dict(os.environ, XDG_RUNTIME_DIR=folder)) as process:
@@ -204,6 +218,11 @@ def run_and_kill(command, folder, draw, robots, kills):
                 continue
             robot = line.split("]")[0].split()[-1]
             counts[robot] = counts.get(robot, 0) + 1
+            aims = line.rstrip().endswith("] aim")
+            counts[robot, "aim"] = counts.get((robot, "aim"), 0) + aims
+            if aims and (robot, counts[robot, "aim"]) == lost:
+                subprocess.run([command[0], "ctl", endpoint(folder), "remove", robot], check=True)
+                victims.append(f"{robot} removed at '{line.split('] ')[-1].strip()}'")
             victim = process_of(folder, robots[robot]) if (robot, counts[robot]) in plans else None
             if victim:
                 os.kill(victim, signal.SIGKILL)
@@ -213,8 +232,9 @@ def run_and_kill(command, folder, draw, robots, kills):
         return Outcome(code, "".join(lines), errors.read(), victims)
 
 
-def run(number, options=(), change=perturb, solver=None, keep=None, kills=0):
-    """Runs and judges one perturbation: (verdict, description of the changes, log lines)."""
+def run(number, options=(), change=perturb, solver=None, keep=None, kills=0, lose=False):
+    """Runs and judges one perturbation: (verdict, description of the changes, log lines). kills: robots' processes
+    that are killed and started again; lose: one robot is removed for good, and the others finish."""
     rules = getattr(change, "rules", None)
     scene = change.scene if rules else STAIRCASE if change is perturb_staircase else STACKING
     with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
@@ -234,9 +254,14 @@ def run(number, options=(), change=perturb, solver=None, keep=None, kills=0):
         outcome = run_and_kill(
             [BIN / "ziggurat", "run", scene_file, "--trace", trace, *options,
              *(["--readings", readings] if scene == STACKING else []),
-             *(["--lua-processes", "0", "--restart", "robot=9"] if kills else [])],
-            folder, random.Random(number), robots, kills)
+             *(["--lua-processes", "0", "--restart", "robot=9"] if kills else []),
+             *(["--endpoint", endpoint(folder)] if lose else [])],
+            folder, random.Random(number), robots, kills, lose)
         changes += "".join(f", {victim}" for victim in outcome.victims)
+        if lose and outcome.victims:
+            lost = outcome.victims[0].split()[0]
+            remove_from(scene_file, lost)
+            del robots[lost]
         if outcome.returncode != 0:
             verdict = judge.Verdict([f"exit code {outcome.returncode}: {outcome.stderr[-500:]}"])
         elif rules:
@@ -244,8 +269,8 @@ def run(number, options=(), change=perturb, solver=None, keep=None, kills=0):
             changes += f", finished at {verdict.finished:.0f} s, turned {math.degrees(verdict.turn):.2f} deg"
         else:
             verdict = (judge.judge_stairs if scene == STAIRCASE else judge.judge)(scene_file, trace, readings)
-        if len(outcome.victims) < kills:
-            verdict.faults.append(f"only {len(outcome.victims)} of {kills} robots were killed")
+        if len(outcome.victims) < max(kills, lose):
+            verdict.faults.append(f"only {len(outcome.victims)} of {max(kills, lose)} robots were killed or removed")
         log = outcome.stdout.splitlines()
         fault = outcome.returncode == 0 and last_words_fault(log, robots)
         if fault:
@@ -287,6 +312,8 @@ def main():
                         help="passed on to ziggurat run")
     parser.add_argument("--kills", type=int, default=0,
                         help="robots' processes to kill in each run; they are started again")
+    parser.add_argument("--lose", action="store_true",
+                        help="remove one robot in each run for good: the others finish")
     parser.add_argument("--keep", metavar="DIR", help="keep scene and trace of bad runs")
     arguments = parser.parse_args()
     options = [f"--controller={controller}" for controller in arguments.controller]
@@ -296,7 +323,7 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         runs = pool.map(
             lambda number: run(number, options, arguments.change, arguments.solver,
-                               arguments.keep, arguments.kills), numbers)
+                               arguments.keep, arguments.kills, arguments.lose), numbers)
         for number, (verdict, changes, _) in zip(numbers, runs):
             print(table_line(number, verdict, changes), flush=True)
             good += verdict.good
