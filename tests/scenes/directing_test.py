@@ -453,7 +453,7 @@ class Directing(SceneTest):
         self.end(code=CONTROLLER_FAILED)
         self.assert_is_sentence(self.outcome, "director 'judge' disconnected at tick 0")
 
-    def test_a_fork_says_that_directors_cannot_go_on(self):
+    def test_a_fork_asks_for_the_directors_program(self):
         self.begin("--ticks", "3")
         with self.direct() as world:
             for _ in world:
@@ -461,7 +461,7 @@ class Directing(SceneTest):
         self.end()
         outcome = self.ziggurat("fork", self.record, "--at", "1")
         self.assertEqual(outcome.code, FAULT)
-        self.assert_is_sentence(outcome, "the scene has directors, which cannot go on from a recorded state")
+        self.assert_is_sentence(outcome, "--endpoint where it connects")
 
     def run_example(self, scene, *arguments):
         """The summary of a run that may start the Python examples."""

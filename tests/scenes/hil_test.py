@@ -98,7 +98,7 @@ class Injected(SceneTest):
         outcome = self.run_scene("--inject", "loss=1%", code=FAULT)
         self.assert_is_sentence(outcome, "controller 'swing', for which the world would wait forever.*--hil")
         outcome = self.run_scene("--inject", "swong=latency=1ms", code=FAULT)
-        self.assert_is_sentence(outcome, "no controller 'swong'")
+        self.assert_is_sentence(outcome, "no controller or director 'swong'; did you mean 'swing'")
 
 
 if __name__ == "__main__":
