@@ -138,7 +138,7 @@ class BrokenArguments(SceneTest):
         self.refuses(r"--ticks.*'many'", "run", self.scene, "--ticks", "many")
         self.refuses(r"no scene is given", "run")
         self.refuses(r"'swong'.*did you mean 'swing'", "run", self.scene, "--controller", "swong=x")
-        self.refuses(r"no controller 'xyzzy'; it has: swing", "run", self.scene,
+        self.refuses(r"no controller or director 'xyzzy'; it has: swing", "run", self.scene,
                      "--deadline", "xyzzy=hold:5")
         url = "tcp://127.0.0.1:1"  # not reached: the words are wrong
         self.refuses(r"write: ziggurat ctl \[URL\] pause$", "ctl", url, "pause", "now")

@@ -148,7 +148,7 @@ class Deadlines(SceneTest):
 
     def test_a_controller_that_does_not_exist(self):
         outcome = self.run_scene("--deadline", "swong=hold:5", code=FAULT)
-        self.assert_is_sentence(outcome, "no controller 'swong'; did you mean 'swing'?")
+        self.assert_is_sentence(outcome, "no controller or director 'swong'; did you mean 'swing'?")
 
 
 class Keys(SceneTest):
