@@ -31,7 +31,9 @@ class Recorded(SceneTest):
 
 class Replay(Recorded):
     def test_every_scene_gives_the_same_hashes(self):
-        for scene in sorted((ROOT / "scenes").glob("*.argos")):
+        scenes = [each for each in sorted((ROOT / "scenes").rglob("*.argos")) if each.parent.name != "models"]
+        self.assertGreater(len(scenes), 10)
+        for scene in scenes:
             with self.subTest(scene.name):
                 hashes = self.folder / "run.hashes"
                 recording, end = self.record("--ticks", "30", "--seed", "3", "--hash-file", hashes,
