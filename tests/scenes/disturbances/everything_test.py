@@ -5,6 +5,7 @@ everything_test.py         3 s
 everything_test.py --full  a minute
 """
 
+import collections
 import contextlib
 import json
 import pathlib
@@ -49,20 +50,27 @@ class Everything(SceneTest):
         found = self.read_until(process.stderr, r"http://127\.0\.0\.1:(\d+)/\?token=(\S+)")
         self.viewers_at = int(found[1]), found[2]
         self.over = threading.Event()
-        threads = [threading.Thread(target=self.again_and_again, args=(target, seed))
+        self.done = collections.Counter()
+        threads = [threading.Thread(target=self.again_and_again, args=(target, seed), daemon=True)
                    for seed, target in enumerate([self.view, self.view, self.view, self.supervise, self.direct,
                                                   self.ask_metrics])]
         for thread in threads:
             thread.start()
         time.sleep(SECONDS)
+        self.wait_for(lambda: (dict(self.done), self.ticks()), lambda seen: len(seen[0]) == 4 and seen[1] > 10,
+                      "something of everyone")
         self.interrupt(process)
-        self.assertEqual(self.finish(process).code, INTERRUPTED)
+        outcome = self.finish(process)
         self.over.set()
         for thread in threads:
             thread.join()
-        self.assertGreater(len((self.folder / "hashes").read_text().splitlines()), 10, "ticks")
+        self.assertEqual(outcome.code, INTERRUPTED, outcome.err)
         outcome = self.ziggurat("verify", "run.mcap")
         self.assertEqual(outcome.code, 0, outcome.out + outcome.err)
+
+    def ticks(self):
+        hashes = self.folder / "hashes"
+        return len(hashes.read_text().splitlines()) if hashes.exists() else 0
 
     def again_and_again(self, target, seed):
         """Until it is over: connections end in any way."""
@@ -85,10 +93,11 @@ class Everything(SceneTest):
                 if number % 10 == 0:
                     service = draw.choice([*calls, RESUME, RESUME])
                     viewer.call(service, number, json.dumps(calls[service]).encode())
+                    self.done["view"] += 1
                     viewer.say(op="unsubscribe", subscriptionIds=[1 + number % len(channels)])
 
     def supervise(self, draw):
-        with ziggurat.supervise(self.endpoint, connect_timeout=2) as supervisor:
+        with ziggurat.supervise(self.endpoint, connect_timeout=2, wait_timeout=5) as supervisor:
             while not self.over.is_set():
                 act = draw.choice([
                     lambda: supervisor.spawn(box(draw, f"s{draw.randrange(9)}")), supervisor.status,
@@ -97,6 +106,7 @@ class Everything(SceneTest):
                     lambda: supervisor.reset() if draw.random() < 0.1 else supervisor.resume()])
                 with contextlib.suppress(ziggurat.ProtocolError):
                     act()
+                    self.done["supervise"] += 1
                 time.sleep(0.01)
 
     def direct(self, draw):
@@ -106,12 +116,14 @@ class Everything(SceneTest):
                 if "r0" in world.entities:
                     world.entities["r0"].push(force=(draw.random(), 0, 0))
                 world.metric("tick", tick.number)
+                self.done["direct"] += 1
                 if draw.random() < 0.001:
                     return world.abandon()
 
     def ask_metrics(self, draw):
         path = draw.choice(["metrics", "status"])
         urllib.request.urlopen(f"http://127.0.0.1:{self.metrics_port}/{path}", timeout=5).read()
+        self.done["metrics"] += 1
         time.sleep(0.05)
 
 

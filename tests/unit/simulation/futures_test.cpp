@@ -159,8 +159,8 @@ TEST_P(Futures, AreTheSameWithTheSolverThatSweeps) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Futures, ::testing::ValuesIn(scenes()), [](const auto& scene) {
-  std::string name = scene.param.stem().string();
-  std::ranges::replace_if(name, [](char c) { return c == '-' || c == '.'; }, '_');
+  std::string name = (scene.param.parent_path().filename() / scene.param.stem()).string();
+  std::ranges::replace_if(name, [](char c) { return c == '-' || c == '.' || c == '/'; }, '_');
   return name;
 });
 

@@ -32,8 +32,8 @@ const web = http.createServer(async (request, response) => {
 });
 await new Promise((resolve) => web.listen(0, "127.0.0.1", resolve));
 
-const run = await Run.start("scenes/prototype_radio_test.argos", "--duration=0", "--real-time=1");
 const browser = await openBrowser();
+const run = await Run.start("scenes/prototype_radio_test.argos", "--duration=0", "--real-time=1");
 try {
   const page = await newPage(browser, { width: 1400, height: 800 });
   const told = [];
