@@ -106,11 +106,12 @@ void Recorder::Shared::add(Task task) {
   if (!has_room_for(task)) {
     is_awaited = true;
     wake.notify_one();
-    if (!wait(lock, [&] { return has_room_for(task); })) {
+    const bool gets_on = wait(lock, [&] { return has_room_for(task); });
+    is_awaited = false;
+    if (!gets_on) {
       lock.unlock();
       return give_up();
     }
-    is_awaited = false;
   }
   if (has_failed || is_closing) return;
   waiting += task.size;

@@ -164,7 +164,8 @@ void Recording::end_chunk() {
 }
 
 void Recording::end_old_chunk() {
-  if (writer_.chunk_size() > 0 && clock::now() - chunk_begin_ >= longest_chunk) end_chunk();
+  const bool is_old = writer_.chunk_size() > 0 && clock::now() - chunk_begin_ >= longest_chunk;
+  if (is_old || writer_.chunk_size() >= full_chunk) end_chunk();
 }
 
 void Recording::close() {

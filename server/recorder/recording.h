@@ -21,7 +21,7 @@
 namespace ziggurat::recorder {
 
 /// A killed run loses no more than that, and four ticks: of all messages [bytes], and of wall time. Chunks
-/// end a little before.
+/// end a little before. What supervisors did since the last tick, in a pause for example, is lost with it.
 inline constexpr std::size_t most_unwritten = std::size_t{1} << 20;
 inline constexpr std::chrono::milliseconds longest_unwritten{1000};
 
@@ -55,7 +55,7 @@ class Recording {
   /// A new epoch begins: after a reset, for example.
   void end_epoch();
 
-  /// Ends the chunk if it has lasted nearly a second. Call it now and then.
+  /// Ends the chunk if it has lasted nearly a second, or is full. Call it now and then.
   void end_old_chunk();
   void close();
 

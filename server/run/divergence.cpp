@@ -89,7 +89,9 @@ class Comparison {
     v1::Inputs of_a = a, of_b = b;
     for (v1::Inputs* each : {&of_a, &of_b}) {
       each->clear_hash();
-      for (v1::Act& act : *each->mutable_acts()) act.clear_wall_ns();
+      for (auto* acts : {each->mutable_acts(), each->mutable_acts_before()}) {
+        for (v1::Act& act : *acts) act.clear_wall_ns();
+      }
     }
     const auto found = replay::first_difference(of_a, of_b);
     if (!found) return;

@@ -52,8 +52,9 @@ double end_of(const FilmOptions& film, const scene::Experiment& experiment) {
 
 /// At least one.
 std::uint64_t frame_count(const FilmOptions& film, const scene::Experiment& experiment) {
+  constexpr double most = 1e15;  // a recording may claim any end
   const double length = (end_of(film, experiment) - film.from) / film.speed;
-  return static_cast<std::uint64_t>(std::max(1.0, std::round(length * film.frames_per_second)));
+  return static_cast<std::uint64_t>(std::clamp(std::round(length * film.frames_per_second), 1.0, most));
 }
 
 /// A film has less to show of each frame than a picture: outlines with four samples are enough.
@@ -77,6 +78,15 @@ unsigned threads_for(std::uint64_t pictures) {
 std::uint64_t picture_count(const PictureOptions& options, const scene::Experiment& experiment) {
   return (options.out.empty() ? 0 : options.times.size()) +
          (options.film ? frame_count(*options.film, experiment) : 0);
+}
+
+/// Whether both have the same name, and their parts the same places.
+bool is_same(const world::EntityLayout& a, const world::EntityLayout& b) {
+  const auto equal = [&](world::Range world::EntityLayout::*range) {
+    return (a.*range).begin == (b.*range).begin && (a.*range).count == (b.*range).count;
+  };
+  return a.id == b.id && equal(&world::EntityLayout::links) && equal(&world::EntityLayout::leds) &&
+         equal(&world::EntityLayout::directional_leds) && equal(&world::EntityLayout::tags);
 }
 
 std::optional<std::size_t> find_entity(const std::string& id, const world::Layout& layout) {
@@ -135,15 +145,15 @@ Pictures::Pictures(const PictureOptions& options, const scene::Scene& scene,
 void Pictures::populate(const simulation::Simulation& simulation) {
   if (several_) several_->finish();
   entities_ = simulation.entities();
+  places_ = simulation.layout().entities;
+  is_stale_ = false;
   several_.emplace(scene_, entities_, simulation.layout(),
                    threads_for(picture_count(options_, scene_.experiment)));
 }
 
 void Pictures::draw(const simulation::Simulation& simulation, const render::View& view,
                     render::Several::Take take) {
-  if (!std::ranges::equal(entities_, simulation.entities(), {}, &scene::Entity::id, &scene::Entity::id)) {
-    populate(simulation);
-  }
+  if (is_stale_ || !std::ranges::equal(places_, simulation.layout().entities, is_same)) populate(simulation);
   several_->draw(simulation.state(), simulation.rays(), view, std::move(take));
 }
 
@@ -164,6 +174,8 @@ render::View Pictures::view(const world::State& state) {
 void Pictures::tick(const simulation::Simulation& simulation) {
   const world::State& state = simulation.state();
   const auto& times = options_.times;
+  is_stale_ |= state.tick != next_tick_;  // after a reset or restore one with the same name may be another
+  next_tick_ = state.tick + 1;
   for (std::size_t i = 0; i < times.size() && !options_.out.empty(); ++i) {
     if (tick_at(times[i], scene_.experiment) != state.tick) continue;
     const std::string path = picture_path(options_.out, i, times.size());

@@ -71,6 +71,9 @@ class Pictures {
   PictureOptions options_;
   const scene::Scene& scene_;
   std::vector<scene::Entity> entities_;
+  std::vector<world::EntityLayout> places_;  // of these
+  std::uint64_t next_tick_ = 0;
+  bool is_stale_ = false;  // entities may be others
   std::optional<std::size_t> followed_;  // into the layout
   std::size_t followed_link_ = 0;        // its first
   std::optional<render::View> view_;

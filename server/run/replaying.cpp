@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "recording/hash_file.h"
@@ -48,16 +49,28 @@ void check_poses_suffice(const Options& options) {
   }
 }
 
-/// A film of the recording ends with it, unless another end is asked for.
-Options with_end_of_film(const ReplayOptions& options, const replay::RecordingFile& file,
-                         const scene::Experiment& experiment) {
-  Options outputs = options.run;
-  if (!outputs.pictures || !outputs.pictures->film || outputs.pictures->film->to) return outputs;
-  const std::uint64_t last = options.until.value_or(file.states() - std::min<std::uint64_t>(file.states(), 1));
-  outputs.pictures->film->to = static_cast<double>(last) / experiment.ticks_per_second;
-  if (*outputs.pictures->film->to < outputs.pictures->film->from) {
-    throw text::UsageError("--from is after the end of the recording");
+/// The least and the greatest tick of a recording, which may begin at a snapshot and go back.
+std::pair<std::uint64_t, std::uint64_t> ticks_of(const replay::RecordingFile& file) {
+  replay::States states(file);
+  const v1::Inputs* next = states.next();
+  if (next == nullptr) return {0, 0};
+  std::pair<std::uint64_t, std::uint64_t> ticks{next->tick(), next->tick()};
+  for (; next != nullptr; next = states.next()) {
+    ticks = {std::min<std::uint64_t>(ticks.first, next->tick()), std::max<std::uint64_t>(ticks.second, next->tick())};
   }
+  return ticks;
+}
+
+/// A film of the recording is as long as it is, unless other ends are asked for.
+Options with_ends_of_film(const ReplayOptions& options, const replay::RecordingFile& file,
+                          const scene::Experiment& experiment) {
+  Options outputs = options.run;
+  if (!outputs.pictures || !outputs.pictures->film) return outputs;
+  FilmOptions& film = *outputs.pictures->film;
+  const auto [first, last] = ticks_of(file);
+  film.from = std::max(film.from, static_cast<double>(first) / experiment.ticks_per_second);
+  if (!film.to) film.to = static_cast<double>(options.until.value_or(last)) / experiment.ticks_per_second;
+  if (*film.to < film.from) throw text::UsageError("--from is after the end of the recording");
   return outputs;
 }
 
@@ -78,7 +91,7 @@ Replaying::Replaying(const ReplayOptions& options, processes::Signals& signals)
       console_({options.run.quiet, options.run.json}),
       file_(checked(options)),
       world_(build_world(file_)),
-      recorders_(with_end_of_film(options, file_, world_.scene.experiment), world_),
+      recorders_(with_ends_of_film(options, file_, world_.scene.experiment), world_),
       states_(file_),
       replay_({world_.scene, world_.additions, world_.simulation, world_.seed},
               file_.files().opener(), [this] { return states_.next(); }),

@@ -70,11 +70,13 @@ std::optional<Ending> Retelling::tell(const std::function<bool(std::uint64_t)>& 
 void Retelling::take_shown() {
   const world::Layout& layout = past_.simulation.layout();
   const world::Commands& shown = past_.simulation.commands();
+  auto robot = layout.robots.begin();  // they ascend by entity
   for (std::size_t entity = 0; entity < layout.entities.size(); ++entity) {
-    const auto robot = std::ranges::find(layout.robots, entity, &world::RobotLayout::entity);
+    if (robot != layout.robots.end() && robot->entity < entity) ++robot;
+    const bool is_robot = robot != layout.robots.end() && robot->entity == entity;
     const auto copy = [&](const world::Range& devices, world::Range world::RobotLayout::*set, const auto& from,
                           auto& to) {
-      if (robot != layout.robots.end() && ((*robot).*set).count > 0) return;
+      if (is_robot && ((*robot).*set).count > 0) return;
       for (std::size_t i = devices.begin; i < devices.end(); ++i) to[i] = from[i];
     };
     const world::EntityLayout& has = layout.entities[entity];
@@ -116,6 +118,8 @@ void Retelling::take(const v1::Act& act) {
 
 /// Controllers that were told nothing yet are not told of a reset either.
 void Retelling::take_reset() {
+  answered_ = past_.simulation.commands();
+  answered_.radio_messages.clear();
   const std::size_t robots = present_.simulation.layout().robots.size();
   const bool has_fewer = robots < gone_.size();
   gone_.resize(robots);

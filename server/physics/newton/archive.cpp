@@ -67,7 +67,7 @@ void archive_fields(math::Archive& archive, Contacts& contacts) {
   archive("live", contacts.live_);
   // Places of pairs that are no more are a byte each: there are as many as there once were pairs.
   const std::size_t colliders = contacts.colliders_.all.size();
-  const std::size_t most_pairs = std::min(colliders * colliders / 2, most_near_pairs + colliders);
+  const std::size_t most_pairs = std::min(colliders * colliders / 2, 2 * most_near_pairs + colliders);
   try {
     archive.list("pairs", contacts.pairs_, 1 + most_pairs);
     archive.list("unused", contacts.unused_);
