@@ -29,9 +29,9 @@ function states.wander()
     local direction = robot.random.uniform(-math.pi, math.pi)
     local radius = 0.1 + 0.15 * job.rounds
     job.rounds = job.rounds < 6 and job.rounds + 1 or 0
-    job.points = {{x = x + radius * math.cos(direction), y = y + radius * math.sin(direction)}}
+    job.wander_to = {x = x + radius * math.cos(direction), y = y + radius * math.sin(direction)}
   end
-  if travel.to(job.points[1].x, job.points[1].y) or job.seconds() > 30 then return "scan" end
+  if travel.to(job.wander_to.x, job.wander_to.y) or job.seconds() > 30 then return "scan" end
 end
 
 -- Looks for material from places around the structure. When it finds neither material nor a side that

@@ -26,6 +26,7 @@ assembly.parking_ring = 0.85  -- where they stay when it is complete
 -- payload:      number on the side of the carried block that looks at the robot
 -- after_scan:   the state after looking around
 -- points:       places still to look from
+-- wander_to:    where to look for the structure next
 -- rounds:       how often it looked from everywhere in vain
 -- tries:        how often it approached one side
 local job = {state = "start", since = 0, points = {}, rounds = 0, tries = 0}

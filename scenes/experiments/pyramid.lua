@@ -9,7 +9,7 @@ local places, complete_at
 
 -- A point between two distances from the origin that is at least so far from all before [m].
 local function scatter(nearest, farthest, apart)
-  while true do
+  for _ = 1, 10000 do
     local angle, distance = world.random.uniform(0, 2 * math.pi), world.random.uniform(nearest, farthest)
     local point = {x = distance * math.cos(angle), y = distance * math.sin(angle), z = 0}
     local free = true
@@ -21,6 +21,7 @@ local function scatter(nearest, farthest, apart)
       return point
     end
   end
+  error("there is no room for all robots and blocks; take fewer")
 end
 
 local function is_robot(entity) return entity.id:sub(1, 5) == "robot" end

@@ -58,7 +58,7 @@ class Everything(SceneTest):
             thread.start()
         time.sleep(SECONDS)
         self.wait_for(lambda: (dict(self.done), self.ticks()), lambda seen: len(seen[0]) == 4 and seen[1] > 10,
-                      "something of everyone")
+                      "act of each client")
         self.interrupt(process)
         outcome = self.finish(process)
         self.over.set()
