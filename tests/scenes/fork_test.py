@@ -178,6 +178,8 @@ class Kept(Fork):
         forked, _ = self.hashes("fork", recording, "--at", "12", "--set", "physics_engines/*/gravity/@g=2",
                                 "--record", other)
         self.assertRegex(self.ask("verify", other).out, r"^identical: 19 states")
+        self.assertEqual(self.ask("replay", other, "--video", "film.mp4", "--size", "96x64").err.count("film"), 0)
+        self.assertGreater((self.folder / "film.mp4").stat().st_size, 1000)
         again, _ = self.hashes("fork", other, "--at", "20", "--set", "physics_engines/*/gravity/@g=2",
                                "--fresh", "--without-controllers", "--record", further)
         self.assertEqual(again[20], forked[20])
@@ -189,9 +191,8 @@ class Kept(Fork):
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         return outcome.stdout
 
-    def serve(self, *arguments):
-        process = self.start("serve", ROOT / "scenes/dynamics3d_single_body_test.argos", "--json", "--seed",
-                             "5", *arguments)
+    def serve(self, *arguments, scene=ROOT / "scenes/dynamics3d_single_body_test.argos"):
+        process = self.start("serve", scene, "--json", "--seed", "5", *arguments)
         return process, json.loads(process.stdout.readline())["endpoint"]
 
     def test_acts_of_supervisors_are_part_of_the_past(self):
@@ -216,6 +217,28 @@ class Kept(Fork):
         self.ask("fork", recording, "--at", "8", "--ticks", "20", "--set", "physics_engines/*/gravity/@g=5",
                  "--record", other, "--quiet")
         self.assertRegex(self.ask("verify", other).out, r"^identical: 13 states")
+
+    def test_another_entity_of_the_same_name_after_a_reset(self):
+        text = (ROOT / "scenes/dynamics3d_single_body_test.argos").read_text()
+        scene = self.write("bodies.argos", text.replace("<media />", '<media><directional_led id="leds"/></media>'))
+        place = '<body position="0,0,0.4" orientation="0,0,0"/>'
+        large = self.write("large.xml", f'<prototype id="new" movable="true">{place}<links ref="a">'
+                           '<link id="a" geometry="box" size="0.02,0.02,0.02" mass="0.1"/>'
+                           '<link id="b" geometry="sphere" radius="0.005" mass="0.1" position="0,0,0.02"/></links>'
+                           '<joints><joint id="j" type="fixed"><parent link="a"/><child link="b"/></joint></joints>'
+                           '<devices><directional_leds medium="leds"><directional_led anchor="a" position="0,0,0.01" '
+                           'orientation="0,0,0" observable_angle="80"/></directional_leds></devices></prototype>')
+        small = self.write("small.xml", f'<box id="new" size="0.02,0.02,0.02" movable="true" mass="0.1">{place}</box>')
+        recording = self.folder / "run.mcap"
+        process, url = self.serve("--record", recording, scene=scene)
+        for words in (("spawn", large), ("step", 2), ("reset",), ("spawn", large), ("reset",), ("spawn", small),
+                      ("step", 6), ("shutdown",)):
+            self.ctl(url, *words)
+        self.finish(process)
+        taken = self.ask("replay", recording, "--out", "p.png", "--at", "0.2,0.4", "--size", "96x64", "--hash")
+        for options in ((), ("--fresh",)):
+            outcome = self.ask("fork", recording, "--at", "3", "--ticks", "6", "--hash", "--quiet", *options)
+            self.assertEqual(outcome.lines[-1], taken.lines[-1])
 
     def test_robots_that_were_removed_have_no_controllers_any_more(self):
         """Before the first tick, and later: --fresh starts controllers afterwards."""
