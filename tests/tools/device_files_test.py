@@ -1,5 +1,5 @@
-"""The list of files in docs/adding-a-device.md is that of the files that name the IMU; the contact
-sensor is in no more.
+"""The list of files in docs/adding-a-device.md is that of the files that name the IMU, without examples, which use it;
+the contact sensor is in no more.
 
 usage: device_files_test.py SOURCE_FOLDER
 """
@@ -20,7 +20,7 @@ CONTACT_SENSOR = re.compile(r"(\w+_)?contact_sensors?(_\w+)?|ContactSensors?([A-
 def files_that_name(device):
     for folder in sources:
         for path in (root / folder).rglob("*"):
-            if path.suffix not in endings or not path.is_file():
+            if path.suffix not in endings or not path.is_file() or "examples" in path.parts:
                 continue
             words = re.findall(r"\w+", path.read_text())
             if any(device.fullmatch(word) for word in words):
