@@ -200,7 +200,7 @@ class DocumentsTest(SceneTest):
         root = HERE.parents[1]
         made = subprocess.run(
             [root / "docs/pictures/make.sh", BIN, self.folder], capture_output=True, text=True, timeout=300,
-            env=dict(self.environment, SCREENSHOTS="no"))
+            env=dict(self.environment, SCREENSHOTS="no", LONG="no"))
         self.assertEqual(made.returncode, 0, made.stderr)
         texts = [root / "README.md", *(root / "docs").glob("*.md")]
         shown = {name for text in texts
