@@ -50,9 +50,11 @@ plot() {  # EXPERIMENT PARAMETER METRIC
   rm -r "$sweep"
 }
 
-if command -v gnuplot > /dev/null; then  # on two cores one minute (docs/experiments.md) and some ten
+if ! is_long; then
+  :
+elif command -v gnuplot > /dev/null; then  # on two cores one minute (docs/experiments.md) and some ten
   plot aggregation share swarm/time_to_aggregate
-  if is_long; then plot pyramid robots site/time_to_finish; fi
+  plot pyramid robots site/time_to_finish
 else
   echo "make.sh: no plot without gnuplot (sudo apt install gnuplot-nox)" >&2
 fi
