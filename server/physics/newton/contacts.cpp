@@ -131,7 +131,7 @@ void Contacts::meet_all(double length) {
     const ColliderGroup& group = colliders_.groups[followed[k]];
     const ColliderGroup& next = colliders_.groups[followed[std::min(k + 1, followed.size() - 1)]];
     for (std::size_t i = next.first; i < next.first + next.count; ++i) {
-      dynamics::fetch(pairs_.data() + floor_pairs_[i], Pair::beginning);
+      if (floor_pairs_[i] != 0) dynamics::fetch(&pairs_[floor_pairs_[i]], Pair::beginning);
     }
     for (std::size_t i = group.first; i < group.first + group.count; ++i) {
       const Collider& collider = colliders_.all[i];
@@ -338,7 +338,7 @@ void Contacts::emit(const Pair& pair) {
 
 void Contacts::remember(bool more) {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (i + 8 < contacts_.size()) dynamics::fetch(pairs_.data() + owner_[i + 8], Pair::beginning);
+    if (i + 8 < contacts_.size()) dynamics::fetch(&pairs_[owner_[i + 8]], Pair::beginning);
     Pair& pair = pairs_[owner_[i]];
     Remembered& point = pair.points[i - pair.first];
     if (more) pair.earlier += contacts_[i].impulse;
