@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "long_runs.h"
 #include "wire/cost.h"
 #include "wire/inbox.h"
 #include "wire/longest_command.h"
@@ -77,7 +78,7 @@ TEST(Decoding, TheWorstMessagesTakeLessThanASecond) {
     EXPECT_EQ(inbox.parse(bytes), Inbox::Kind::command) << name << ": " << inbox.complaint();
     const double used = processor_time() - begin;
     std::printf("%-26s %4.1f MiB %6.1f ms\n", name, static_cast<double>(bytes.size()) / (1 << 20), 1e3 * used);
-    EXPECT_LT(used, 1) << name;
+    EXPECT_LT(used, long_runs::is_slow ? 20 : 1) << name;
   }
 }
 
