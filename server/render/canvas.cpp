@@ -150,7 +150,7 @@ void Canvas::set_frame(const Drawing& drawing, const Model& model, const View& v
   frame.right = with(drawing.right, eye.x() - origin.x());
   frame.ahead = with(drawing.ahead, eye.y() - origin.y());
   frame.up = with(drawing.up, eye.z());
-  frame.ground = {static_cast<float>(1 / model.tile), 2 * line_width / static_cast<float>(tile.width),
+  frame.ground = {static_cast<float>(model.tile), 2 * line_width / static_cast<float>(tile.width),
                   near_plane, 2 * line_width / static_cast<float>(tile.height)};
   const math::Vector2 center = model.arena_center - origin;
   frame.arena = {static_cast<float>(center.x()), static_cast<float>(center.y()),

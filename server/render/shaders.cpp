@@ -12,7 +12,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 right;  // world's x, y and z; w: the eye's coordinate along them, less the origin of tiles
   vec4 ahead;
   vec4 up;
-  vec4 ground;  // tiles per metre, width of a line in clip coordinates, near plane [m], its height
+  vec4 ground;  // side of a tile [m], width of a line in clip coordinates, near plane [m], its height
   vec4 arena;   // centre less the origin of tiles, half size [m]
 };
 layout(binding = 0) uniform sampler2DShadow shadow_map;
@@ -66,9 +66,8 @@ vec3 shaded(vec3 albedo, vec3 position, vec3 normal) {
 
 // The power 1 / 2.2, to within half a step of 8 bits: square roots are a tenth of the work.
 vec4 shown(vec3 light) {
-  light = clamp(light, 0.0, 1.0);
-  vec3 half_power = sqrt(light);
-  return vec4(1.00822 * half_power + 0.06971 * sqrt(half_power) - 0.07983 * light, 1.0);
+  vec3 half_power = sqrt(clamp(light, 0.0, 1.0)), quarter = sqrt(half_power), eighth = sqrt(quarter);
+  return vec4(0.79608 * half_power + 0.28361 * quarter - 0.07969 * eighth, 1.0);
 }
 )";
 
@@ -135,18 +134,18 @@ void main() {}
 // The floor is a plane without end. near / z of its points is linear over the picture, so a triangle
 // over all of it has the floor's depth, and its clipping cuts off what is above the horizon.
 const char* const floor_vertex = R"(
-noperspective out vec3 ray;
+out vec2 at;
 
 void main() {
-  vec2 at = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  ray = vec3((at.x - clip_from_camera[2][0]) / clip_from_camera[0][0],
-             (at.y - clip_from_camera[2][1]) / clip_from_camera[1][1], 1.0);
+  at = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  vec3 ray = vec3((at.x - clip_from_camera[2][0]) / clip_from_camera[0][0],
+                  (at.y - clip_from_camera[2][1]) / clip_from_camera[1][1], 1.0);
   gl_Position = vec4(at, -ground.z * dot(up.xyz, ray) / up.w, 1.0);
 }
 )";
 
 const char* const floor_fragment = R"(
-noperspective in vec3 ray;
+in vec2 at;
 layout(location = 0) out vec4 pixel;
 
 // Mean of a checkerboard over a pixel's footprint: -1 to 1.
@@ -154,15 +153,17 @@ float checks(vec2 place, vec2 footprint) {
   vec2 w = max(footprint, 1e-6);
   vec2 low = abs(fract((place - 0.5 * w) * 0.5) - 0.5);
   vec2 high = abs(fract((place + 0.5 * w) * 0.5) - 0.5);
-  vec2 twice = low - high;
-  return 4.0 * twice.x * twice.y / (w.x * w.y);
+  vec2 mean = 2.0 * (low - high) / w;
+  return mean.x * mean.y;
 }
 
 void main() {
+  vec3 ray = vec3((at.x - clip_from_camera[2][0]) / clip_from_camera[0][0],
+                  (at.y - clip_from_camera[2][1]) / clip_from_camera[1][1], 1.0);
   vec3 position = ray * (-up.w / dot(up.xyz, ray));
   vec2 place = vec2(dot(right.xyz, position) + right.w, dot(ahead.xyz, position) + ahead.w);
   vec2 footprint = fwidth(place);
-  float contrast = 0.035 * checks(place * ground.x, footprint * ground.x);
+  float contrast = 0.035 * checks(place / ground.x, footprint / ground.x);
   vec2 beyond = (abs(place - arena.xy) - arena.zw) / max(footprint, 1e-6);
   float inside = clamp(0.5 - max(beyond.x, beyond.y), 0.0, 1.0);
   vec3 albedo = mix(vec3(0.40, 0.41, 0.42), vec3(0.56, 0.57, 0.58), inside) * (1.0 + contrast);
@@ -178,22 +179,22 @@ void main() {
 )";
 
 const char* const sky_vertex = R"(
-noperspective out vec3 ray;
+out vec2 at;
 
 void main() {
-  vec2 at = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  ray = vec3((at.x - clip_from_camera[2][0]) / clip_from_camera[0][0],
-             (at.y - clip_from_camera[2][1]) / clip_from_camera[1][1], 1.0);
+  at = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
   gl_Position = vec4(at, 0.0, 1.0);
 }
 )";
 
 const char* const sky_fragment = R"(
-noperspective in vec3 ray;
+in vec2 at;
 layout(location = 0) out vec4 pixel;
 
 void main() {
-  float slope = dot(up.xyz, ray) * inversesqrt(dot(ray, ray));
+  vec3 ray = vec3((at.x - clip_from_camera[2][0]) / clip_from_camera[0][0],
+                  (at.y - clip_from_camera[2][1]) / clip_from_camera[1][1], 1.0);
+  float slope = dot(up.xyz, ray) / length(ray);
   float root = sqrt(min(abs(slope), 1.0));
   pixel = shown(mix(horizon, zenith, root * sqrt(root)));
 }
