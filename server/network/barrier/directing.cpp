@@ -189,16 +189,11 @@ std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
   return barrier.directors.check(direction);
 }
 
-/// @returns  false: the session can't be told what it wants
-bool tell_view_too_large(Barrier& barrier, Session& session) {
-  auto fault = make_fault(ErrorCode::too_large, "subscription",
-                          "What this director subscribed to is more than a message can hold; name "
-                          "fewer entities or groups.");
-  fault.severity = wire::Severity::fatal;
-  fault.tick = tick_of(barrier);
-  barrier.outbox.error(fault);
-  send(barrier, session);
-  return false;
+void tell_view_too_large(Barrier& barrier, const Session& session) {
+  tell_fatal(barrier, session.connection,
+             make_fault(ErrorCode::too_large, "subscription",
+                        "What this director subscribed to is more than a message can hold; name fewer entities "
+                        "or groups."));
 }
 
 void answer_bad_direction(Barrier& barrier, Session& session, wire::Fault fault) {
@@ -304,7 +299,8 @@ bool show_world(Barrier& barrier, Session& session) {
   update_view(session.view, truth);
   if (has_news(session.view, truth.state)) {
     if (!world_layout(barrier.outbox, *barrier.run, truth, session.view, limit)) {
-      return tell_view_too_large(barrier, session);
+      tell_view_too_large(barrier, session);
+      return false;
     }
     const Delivery told = send(barrier, session);
     if (told != Delivery::sent) {  // all of it is told with the next tick
@@ -313,7 +309,8 @@ bool show_world(Barrier& barrier, Session& session) {
     }
   }
   if (!world_state(session.observation, truth, session.view, limit, barrier.epoch)) {
-    return tell_view_too_large(barrier, session);
+    tell_view_too_large(barrier, session);
+    return false;
   }
   session.contact.last_sent = barrier.now;
   session.observation.encode(connection->encoding);

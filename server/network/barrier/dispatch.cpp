@@ -56,14 +56,10 @@ bool may_send(Barrier& barrier, const std::string& id, Connection& connection, S
   const auto verdict = barrier.connections.spend(connection, barrier.now);
   if (verdict == Connections::Verdict::accepted) return true;
   if (verdict == Connections::Verdict::refused_and_told) return false;
-  auto fault = make_fault(ErrorCode::too_many, {},
-                          fmt::format("More than {} messages a second, besides those that answer "
-                                      "an Observation.",
-                                      barrier.config.rate.per_second));
-  fault.severity = wire::Severity::fatal;
-  fault.tick = tick_of(barrier);
-  barrier.outbox.error(fault);
-  send(barrier, id);
+  tell_fatal(barrier, id,
+             make_fault(ErrorCode::too_many, {},
+                        fmt::format("More than {} messages a second, besides those that answer an Observation.",
+                                    barrier.config.rate.per_second)));
   if (session != nullptr) {
     lose(barrier, *session, "it was closed because it sends too many messages");
   } else {

@@ -17,16 +17,6 @@ using wire::make_fault;
 
 namespace {
 
-void tell_too_large(Barrier& barrier, Session& session) {
-  auto fault = make_fault(ErrorCode::too_large, {},
-                          "The robots of this session heard and saw more at this tick than a "
-                          "message can hold; share them among more sessions.");
-  fault.severity = wire::Severity::fatal;
-  fault.tick = tick_of(barrier);
-  barrier.outbox.error(fault);
-  send(barrier, session);
-}
-
 /// What is wrong with the Command in `barrier.inbox`, if anything.
 std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& session,
                                          bool is_collecting) {
@@ -96,7 +86,10 @@ bool observe(Barrier& barrier, Session& session) {
   session.turn.epoch = barrier.epoch;
   if (!session.observation.observation(session.roster, *observations, *tag_payloads, limit,
                                        epoch_for(barrier, session))) {
-    tell_too_large(barrier, session);
+    tell_fatal(barrier, session.connection,
+               make_fault(ErrorCode::too_large, {},
+                          "The robots of this session heard and saw more at this tick than a message can hold; "
+                          "share them among more sessions."));
     return false;
   }
   session.state = SessionState::stepping;

@@ -55,6 +55,13 @@ void answer_fault(Barrier& barrier, const std::string& connection, Session* sess
   if (delivery == Delivery::unreachable) lose(barrier, *session, "its connection is gone");
 }
 
+void tell_fatal(Barrier& barrier, const std::string& connection, wire::Fault fault) {
+  fault.severity = wire::Severity::fatal;
+  fault.tick = tick_of(barrier);
+  barrier.outbox.error(fault);
+  send(barrier, connection);
+}
+
 void answer_malformed(Barrier& barrier, const std::string& connection, Session* session,
                       std::string_view why) {
   answer_fault(

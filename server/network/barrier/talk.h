@@ -20,6 +20,8 @@ Delivery send(Barrier& barrier, Session& session);
 /// @param request  the number of the request that the message was, if it was one
 void answer_fault(Barrier& barrier, const std::string& connection, Session* session,
                   wire::Fault fault, std::optional<std::uint64_t> request = {});
+/// Tells a peer why its connection ends.
+void tell_fatal(Barrier& barrier, const std::string& connection, wire::Fault fault);
 /// @param why  what makes the message none of the protocol
 void answer_malformed(Barrier& barrier, const std::string& connection, Session* session,
                       std::string_view why);
