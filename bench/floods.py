@@ -18,7 +18,7 @@ import subprocess
 import tempfile
 import time
 
-from zmtp import RawPeer
+from zmtp import RawPeer, free_port
 from ziggurat import protocol_pb2 as v1
 
 SCENE = pathlib.Path(__file__).parents[1] / "tests/scenes/arms.argos"
@@ -111,11 +111,6 @@ def rate(process, watcher, seconds):
     time.sleep(seconds)
     last, ended, after = tick(), time.monotonic(), used(process)
     return (last - first) / (ended - begun), 1e6 * (after - before) / max(1, last - first)
-
-
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
 
 
 def write_scene(folder):

@@ -63,6 +63,13 @@ function assembly.ahead_of(thing, distance)
   return thing.x + distance * math.cos(thing.yaw), thing.y + distance * math.sin(thing.yaw)
 end
 
+-- A point {x, y} seen from a side: how far out, and aside of the line through its middle.
+function assembly.seen_from(thing, point)
+  local c, s = math.cos(thing.yaw), math.sin(thing.yaw)
+  local dx, dy = point.x - thing.x, point.y - thing.y
+  return c * dx + s * dy, math.abs(c * dy - s * dx)
+end
+
 -- A side, as a face in the robot's frame.
 function assembly.face_of(thing)
   local pose = builder.pose
@@ -86,9 +93,7 @@ end
 function assembly.hindrance(thing, obstacles)
   local sum = 0
   for _, obstacle in ipairs(obstacles) do
-    local dx, dy = obstacle.x - thing.x, obstacle.y - thing.y
-    local out = dx * math.cos(thing.yaw) + dy * math.sin(thing.yaw)
-    local aside = math.abs(dy * math.cos(thing.yaw) - dx * math.sin(thing.yaw))
+    local out, aside = assembly.seen_from(thing, obstacle)
     if out > 0.04 and out < 0.42 and aside < 0.14 then sum = sum + 1 end
   end
   return sum

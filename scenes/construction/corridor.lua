@@ -3,6 +3,7 @@
 -- apart don't hinder each other. No robot can tell another its place, as they have no common frame; but each
 -- sees from where another stands, and what row of the rule table it says, which place that may be.
 
+local assembly = require "assembly"
 local builder = require "builder"
 local memory = require "memory"
 local traffic = require "traffic"
@@ -19,20 +20,12 @@ function corridor.distance_of(row) return builder.reach + (row.place == "above" 
 
 -- Where to line up with a side {x, y, yaw (outward), row}.
 function corridor.start_of(place)
-  local distance = corridor.distance_of(place.row) + last_way
-  return place.x + distance * math.cos(place.yaw), place.y + distance * math.sin(place.yaw)
-end
-
--- A point {x, y} seen from a side: how far out, and aside of the line through its middle.
-local function seen_from(place, point)
-  local c, s = math.cos(place.yaw), math.sin(place.yaw)
-  local dx, dy = point.x - place.x, point.y - place.y
-  return c * dx + s * dy, math.abs(c * dy - s * dx)
+  return assembly.ahead_of(place, corridor.distance_of(place.row) + last_way)
 end
 
 -- Whether a point is in the corridor to a side.
 function corridor.has(place, point)
-  local out, aside = seen_from(place, point)
+  local out, aside = assembly.seen_from(place, point)
   local near = corridor.distance_of(place.row)
   local beyond = out - math.max(near, math.min(near + last_way, out))
   return beyond ^ 2 + aside ^ 2 < apart ^ 2
@@ -43,7 +36,7 @@ local function anywhere(row) return row and row.place == "above" and not row.sid
 -- Whether a robot at that point, which wants to attach a block by a row of the table (nil if it does not say so),
 -- may want to attach it where one is to come by this side.
 function corridor.same_place(place, point, row)
-  local out, aside = seen_from(place, point)
+  local out, aside = assembly.seen_from(place, point)
   local above = place.row.place == "above"
   out = out - (above and -0.5 * builder.block or memory.pitch - 0.5 * builder.block)
   if out ^ 2 + aside ^ 2 > reach ^ 2 then return false end
@@ -58,7 +51,7 @@ function corridor.is_taken(place, own_distance)
   local x, y = corridor.start_of(place)
   for _, other in ipairs(traffic.others) do
     local point = traffic.place_of(builder.pose, other)
-    local out, aside = seen_from(place, point)
+    local out, aside = assembly.seen_from(place, point)
     local distance = math.sqrt((point.x - x) ^ 2 + (point.y - y) ^ 2)
     local in_row = aside < 0.2 and out > near - 0.05 and out < near + last_way + 0.2
     if in_row and (other.holding or other.asking and distance < own_distance) or

@@ -55,7 +55,7 @@ function states.fetch()
   local x, y = assembly.ahead_of(job.target, builder.reach + assembly.run_up)
   local outcome = travel.to(x, y)
   if outcome == "there" then return "aim" end
-  if outcome and outcome ~= "there" or job.seconds() > 90 then return give_up_block(200) end
+  if outcome or job.seconds() > 90 then return give_up_block(200) end
   builder.lift_to(assembly.clearance, 0.05)
 end
 

@@ -153,10 +153,9 @@ local function remember_material(face)
       if (block.x - column.x) ^ 2 + (block.y - column.y) ^ 2 < apart ^ 2 then return end
     end
   end
-  block.seen, block.times = memory.now, 1
+  block.seen = memory.now
   for n, known in ipairs(memory.material) do
     if (block.x - known.x) ^ 2 + (block.y - known.y) ^ 2 < 0.04 ^ 2 then
-      block.times = known.times + 1
       if known.seen == memory.now - 1 then odometry.learn(block.x - known.x, block.y - known.y) end
       block.avoid = known.avoid
       memory.material[n] = block

@@ -139,7 +139,8 @@ class RecordingTest(SceneTest):
     def test_a_killed_run_loses_a_chunk_at_most(self):
         """Against the hash file of the same run. A chunk has a second of wall time, 200 states at this pace, or
         more where a run that fell behind catches up. The world waits before more than a chunk could be lost; chunks end
-        at three quarters of one. What was lost is printed."""
+        at three quarters of one, so 4/3 of those in the file may be, and what the hash file is ahead. What was lost is
+        printed."""
         choose = random.Random(1)
         second = 200
         lost_chunks = []
@@ -160,7 +161,7 @@ class RecordingTest(SceneTest):
             self.assertGreaterEqual(sum(chunks), info["states"])  # a chunk may end within a tick
             lost_chunks.append(max(0, len(full) - info["states"]) / max([second, *chunks]))
             self.assertLessEqual(lost_chunks[-1], 1.5, f"run {number}: {info['states']} of {len(full)} states, "
-                                                     f"chunks of {chunks}")
+                                                      f"chunks of {chunks}")
             saved = self.folder / "saved.mcap"
             done = subprocess.run([str(ZIGGURAT), "info", str(path), "--repair", str(saved)], capture_output=True)
             self.assertEqual(done.returncode, FINISHED, done.stderr)

@@ -173,6 +173,15 @@ class Outcome:
     victims: list   # "robot0 killed at 'claim'"
 
 
+def last_hash(scene, seconds, *options):
+    """The last line of a run as the scene is."""
+    with tempfile.TemporaryDirectory(prefix="zc", dir="/tmp") as folder:
+        return subprocess.run(
+            [BIN / "ziggurat", "run", scene, "--duration", str(seconds), "--hash", "--quiet", *options],
+            check=True, capture_output=True, text=True,
+            env=dict(os.environ, XDG_RUNTIME_DIR=folder)).stdout.splitlines()[-1]
+
+
 def process_of(folder, index):
     """The process of a robot, in Lua by its place in the scene, in C++ that of all; its runtime folder tells it from
     other runs'."""

@@ -71,13 +71,7 @@ class WrongStructures(unittest.TestCase):
         poses = built("rules_cross")
         self.assertRegex(faults_of([*poses, poses[-1]], "rules_cross"), "two blocks in one place")
 
-    def test_a_block_eight_millimetres_off(self):
-        poses = built("rules_cross")
-        poses[3] = moved(poses[3], x=0.008)
-        self.assertRegex(faults_of(poses, "rules_cross"), r"^the block at .* is \d\.\d mm off$")
-
     def test_a_block_six_millimetres_off(self):
-        self.assertEqual(structure.Limits().aside, 0.004)
         poses = built("rules_cross")
         poses[3] = moved(poses[3], x=0.006)  # 5 mm after the fit to all blocks
         self.assertRegex(faults_of(poses, "rules_cross"), r"^the block at .* is \d\.\d mm off$")

@@ -10,7 +10,6 @@ import contextlib
 import json
 import pathlib
 import random
-import socket
 import sys
 import threading
 import time
@@ -22,16 +21,11 @@ sys.path.insert(0, str(HERE.parent))
 
 import ziggurat  # noqa: E402
 from harness import INTERRUPTED, SceneTest  # noqa: E402
-from websocket import RawViewer  # noqa: E402
+from websocket import MOVE, PAUSE, RawViewer, REMOVE, RESUME, SPAWN, SPEED, STEP  # noqa: E402
+from zmtp import free_port  # noqa: E402
 
 SECONDS = 60 if "--full" in sys.argv else 3
 BOX = '<box id="{}" size="0.1,0.1,0.1" movable="true" mass="1"><body position="{},{},1" orientation="0,0,0"/></box>'
-PAUSE, RESUME, STEP, RESET, SPEED, MOVE, SPAWN, REMOVE = range(1, 9)  # services
-
-
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
 
 
 def box(draw, name):

@@ -12,10 +12,10 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 from harness import INTERRUPTED, SceneTest  # noqa: E402
-from websocket import BINARY, CLOSE, PING, RawViewer, TEXT, frame, handshake  # noqa: E402
+from websocket import (  # noqa: E402
+    BINARY, CLOSE, frame, handshake, MOVE, PING, RawViewer, REMOVE, RESUME, SPAWN, SPEED, STEP, TEXT)
 
 MOST_GROWTH = 64  # [MiB] of the server's memory at any time, whatever viewers do
-PAUSE, RESUME, STEP, RESET, SPEED, MOVE, SPAWN, REMOVE = range(1, 9)  # services
 BOX = '<box id="{}" size="0.1,0.1,0.1" movable="true" mass="1"><body position="{}" orientation="0,0,0"/></box>'
 
 

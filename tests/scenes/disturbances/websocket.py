@@ -7,6 +7,7 @@ import socket
 import struct
 
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
+PAUSE, RESUME, STEP, RESET, SPEED, MOVE, SPAWN, REMOVE = range(1, 9)  # services
 
 
 def frame(opcode, content=b"", first=0x80, is_masked=True, length=None):

@@ -5,6 +5,12 @@ import struct
 import time
 
 
+def free_port():
+    """A port of the loopback that is free."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return listener.getsockname()[1]
+
+
 class RawPeer:
     """A DEALER's connection. `drip`: wall time between two sent bytes [s]; 0 sends all at once.
     `routing_id`: that it asks for, also one that libzmq would not let a client set."""
