@@ -48,7 +48,8 @@ struct World::Parts {
   double length;            // of an internal substep [s]
   std::size_t stepped = 0;  // so many bodies have been through a step; the rest is as placed
   std::size_t link_count = 0, magnet_count = 0;
-  std::vector<Motion> motions;  // memory of read(), kept so that a tick does not allocate it
+  std::vector<Motion> motions;    // memory of read(), kept so that a tick does not allocate it
+  std::vector<Contact> contacts;  // the same of list_contacts()
 
   std::vector<Body> bodies;
   Core core;
@@ -163,12 +164,11 @@ LinkTouch World::take_touch(std::size_t entity, std::size_t link) {
 }
 
 void World::list_contacts(std::vector<world::Contact>& to) const {
-  const Parts& p = *parts_;
-  std::vector<Contact> contacts;
-  p.core.contacts(contacts);
+  Parts& p = *parts_;
+  p.core.contacts(p.contacts);
   const auto link_of = [&](const ContactSide& side) { return p.bodies[side.entity].first_link + side.link; };
   to.clear();
-  for (const Contact& contact : contacts) {
+  for (const Contact& contact : p.contacts) {
     world::Contact& entry = to.emplace_back();
     entry.link = link_of(contact.a);
     if (contact.b.entity != ContactSide::floor) entry.other = link_of(contact.b);

@@ -328,22 +328,19 @@ void Recorder::Shared::done(const Task& task, const Recording& recording) {
     if (task.kind == Task::Kind::tick) --waiting_ticks;
     if (task.kind == Task::Kind::other) other_size -= task.size;
     begins.pop_front();
-  }
-  look(recording, task.kind == Task::Kind::tick ? 1 : 0);
-}
-
-/// At the chunk, after it has changed. @param ticks  that were added
-void Recorder::Shared::look(const Recording& recording, std::size_t ticks) {
-  {
-    const std::lock_guard lock(mutex);
-    if (std::exchange(chunks, recording.chunks()) != recording.chunks()) chunk_ticks = 0;
-    chunk_ticks += ticks;
-    chunk_size = recording.chunk_size();
-    chunk_begin.reset();
-    if (chunk_size > 0) chunk_begin = recording.chunk_begin();
-    if (chunk_ticks > 0) tick_size = chunk_size / chunk_ticks;
+    look(recording, task.kind == Task::Kind::tick ? 1 : 0);
   }
   has_room.notify_one();
+}
+
+/// At the chunk, after it has changed. @pre the mutex is held; @param ticks  that were added
+void Recorder::Shared::look(const Recording& recording, std::size_t ticks) {
+  if (std::exchange(chunks, recording.chunks()) != recording.chunks()) chunk_ticks = 0;
+  chunk_ticks += ticks;
+  chunk_size = recording.chunk_size();
+  chunk_begin.reset();
+  if (chunk_size > 0) chunk_begin = recording.chunk_begin();
+  if (chunk_ticks > 0) tick_size = chunk_size / chunk_ticks;
 }
 
 bool Recorder::Shared::is_over() {
@@ -363,8 +360,12 @@ void Recorder::Shared::work(Start start, Settings settings) {
         task.run = nullptr;
         done(task, recording);
       }
-      recording.end_old_chunk();
-      look(recording, 0);
+      recording.end_due_chunk();
+      {
+        const std::lock_guard lock(mutex);
+        look(recording, 0);
+      }
+      has_room.notify_one();
     }
     recording.close();
     disk.close();

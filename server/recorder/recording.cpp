@@ -148,8 +148,7 @@ void Recording::step(const world::Commands& commands) {
 void Recording::write_inputs() {
   write(inputs_channel_, inputs_.SerializeAsString());
   has_inputs_ = false;
-  if (writer_.chunk_size() >= full_chunk) end_chunk();
-  end_old_chunk();
+  end_due_chunk();
 }
 
 void Recording::end_epoch() {
@@ -163,7 +162,7 @@ void Recording::end_chunk() {
   links_ = {};
 }
 
-void Recording::end_old_chunk() {
+void Recording::end_due_chunk() {
   const bool is_old = writer_.chunk_size() > 0 && clock::now() - chunk_begin_ >= longest_chunk;
   if (is_old || writer_.chunk_size() >= full_chunk) end_chunk();
 }

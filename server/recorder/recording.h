@@ -56,7 +56,7 @@ class Recording {
   void end_epoch();
 
   /// Ends the chunk if it has lasted nearly a second, or is full. Call it now and then.
-  void end_old_chunk();
+  void end_due_chunk();
   void close();
 
   std::size_t chunks() const { return writer_.chunks(); }          ///< that are written

@@ -8,6 +8,18 @@
 
 namespace ziggurat::run {
 
+namespace {
+
+[[noreturn]] void refuse(std::string_view option, std::string_view what, const std::string& id,
+                         const std::vector<std::string>& ids) {
+  const std::string known =
+      ids.empty() ? "it has none" : fmt::format("it has: {}", fmt::join(ids, ", "));
+  throw text::UsageError(
+      fmt::format("{}: the scene has no {} '{}'; {}", option, what, id, text::advice(id, ids, known)));
+}
+
+}  // namespace
+
 std::size_t controller_named(std::string_view option, const std::string& id,
                              const scene::Scene& scene) {
   std::vector<std::string> ids;
@@ -15,10 +27,7 @@ std::size_t controller_named(std::string_view option, const std::string& id,
     if (controller.id == id) return ids.size();
     ids.push_back(controller.id);
   }
-  const std::string known =
-      ids.empty() ? "it has none" : fmt::format("it has: {}", fmt::join(ids, ", "));
-  throw text::UsageError(fmt::format("{}: the scene has no controller '{}'; {}", option, id,
-                                     text::advice(id, ids, known)));
+  refuse(option, "controller", id, ids);
 }
 
 std::vector<std::string> ids_of_awaited(const scene::Scene& scene) {
@@ -35,11 +44,20 @@ std::vector<std::size_t> awaited_named(std::string_view option, const std::strin
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (ids[i] == id) places.push_back(i);
   }
-  if (!places.empty()) return places;
-  const std::string known =
-      ids.empty() ? "it has none" : fmt::format("it has: {}", fmt::join(ids, ", "));
-  throw text::UsageError(fmt::format("{}: the scene has no controller or director '{}'; {}", option, id,
-                                     text::advice(id, ids, known)));
+  if (places.empty()) refuse(option, "controller or director", id, ids);
+  return places;
+}
+
+void set_command(scene::Scene& scene, const std::string& id, const std::string& command) {
+  for (const std::size_t i : awaited_named("--controller", id, scene)) {
+    if (i < scene.controllers.size()) {
+      scene.controllers[i].command = command;
+      continue;
+    }
+    scene::Director& director = scene.directors[i - scene.controllers.size()];
+    director.command = command;
+    director.script.clear();
+  }
 }
 
 }  // namespace ziggurat::run

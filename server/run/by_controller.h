@@ -24,6 +24,10 @@ std::vector<std::string> ids_of_awaited(const scene::Scene& scene);
 std::vector<std::size_t> awaited_named(std::string_view option, const std::string& id,
                                        const scene::Scene& scene);
 
+/// The command of `--controller ID=CMD`, of a controller or director; the script of a director is not run then.
+/// @throws as awaited_named()
+void set_command(scene::Scene& scene, const std::string& id, const std::string& command);
+
 /// Calls apply(option) for every option: first for those without a name, which hold for all, then for those
 /// with a name, each in order.
 template <class Option, class Apply>

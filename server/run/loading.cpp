@@ -15,14 +15,6 @@
 namespace ziggurat::run {
 namespace {
 
-// Applies `--controller ID=CMD`. A Lua controller remains one for clients that connect: CMD may be
-// ziggurat-lua in a debugger.
-void override_controllers(const Options& options, scene::Scene& scene) {
-  for (const auto& [id, command] : options.controllers) {
-    scene.controllers[controller_named("--controller", id, scene)].command = command;
-  }
-}
-
 // An entity of the layout as the scene describes it; for a distributed one its pattern. Both are in
 // scene order.
 const scene::Entity& as_written(const scene::Scene& scene, std::size_t entity) {
@@ -69,12 +61,11 @@ scene::OpenScene load_scene(const std::string& path, const Options& options,
   const auto add = [&](const std::vector<scene::Problem>& more) {
     problems.insert(problems.end(), more.begin(), more.end());
   };
-  for (const auto& [id, command] : options.controllers) {
-    const std::size_t controller = controller_named("--controller", id, result.scene);
-    result.scene.controllers[controller].command.clear();
-  }
+  // What is replaced need not be there. A Lua controller remains one for clients that connect: CMD may be ziggurat-lua in a
+  // debugger.
+  for (const auto& [id, command] : options.controllers) set_command(result.scene, id, {});
   add(processes::find_commands(result.scene, path));
-  override_controllers(options, result.scene);
+  for (const auto& [id, command] : options.controllers) set_command(result.scene, id, command);
   add(processes::check_scripts(result.scene, path));
   check_images(result.scene, path, problems);
   const auto faults = std::stable_partition(problems.begin(), problems.end(), [](const auto& each) {

@@ -105,15 +105,7 @@ void Past::set_commands(scene::Scene& scene) const {
   for (scene::Director& director : scene.directors) {
     if (!fork_.trusts_commands) director.command.clear();
   }
-  for (const auto& [id, command] : options_.controllers) {
-    const auto director = std::ranges::find(scene.directors, id, &scene::Director::id);
-    if (director != scene.directors.end()) {
-      director->command = command;
-      director->script.clear();
-    } else {
-      scene.controllers[controller_named("--controller", id, scene)].command = command;
-    }
-  }
+  for (const auto& [id, command] : options_.controllers) set_command(scene, id, command);
 }
 
 supervision::World Past::build(const simulation::TellPlaced& tell) const {

@@ -146,14 +146,13 @@ void Pictures::populate(const simulation::Simulation& simulation) {
   if (several_) several_->finish();
   entities_ = simulation.entities();
   places_ = simulation.layout().entities;
-  is_stale_ = false;
   several_.emplace(scene_, entities_, simulation.layout(),
                    threads_for(picture_count(options_, scene_.experiment)));
 }
 
 void Pictures::draw(const simulation::Simulation& simulation, const render::View& view,
                     render::Several::Take take) {
-  if (is_stale_ || !std::ranges::equal(places_, simulation.layout().entities, is_same)) populate(simulation);
+  if (!std::ranges::equal(places_, simulation.layout().entities, is_same)) populate(simulation);
   several_->draw(simulation.state(), simulation.rays(), view, std::move(take));
 }
 
@@ -174,7 +173,8 @@ render::View Pictures::view(const world::State& state) {
 void Pictures::tick(const simulation::Simulation& simulation) {
   const world::State& state = simulation.state();
   const auto& times = options_.times;
-  is_stale_ |= state.tick != next_tick_;  // after a reset or restore one with the same name may be another
+  // After a reset or restore one with the same name and places may be another.
+  if (state.tick != next_tick_) places_.clear();
   next_tick_ = state.tick + 1;
   for (std::size_t i = 0; i < times.size() && !options_.out.empty(); ++i) {
     if (tick_at(times[i], scene_.experiment) != state.tick) continue;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -71,9 +70,8 @@ class Pictures {
   PictureOptions options_;
   const scene::Scene& scene_;
   std::vector<scene::Entity> entities_;
-  std::vector<world::EntityLayout> places_;  // of these
+  std::vector<world::EntityLayout> places_;  // of these; none: they may be others now
   std::uint64_t next_tick_ = 0;
-  bool is_stale_ = false;  // entities may be others
   std::optional<std::size_t> followed_;  // into the layout
   std::size_t followed_link_ = 0;        // its first
   std::optional<render::View> view_;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -59,10 +58,10 @@ std::optional<Ending> Retelling::tell(const std::function<bool(std::uint64_t)>& 
     if (const auto ending = parties_.watch.collect(answered_, tick)) return ending;
     const bool has_commands = replay_.inputs().has_commands();
     replay_.act();
-    take_shown();
     simulation.list_contacts(network::DirectorsDesk(parties_.server).wants_contacts());
     if (has_commands) compare();
   }
+  if (!is_restarted_) take_shown();
   return std::nullopt;
 }
 

@@ -32,12 +32,6 @@ void keep(const std::vector<world::Metric>& metrics, reports::Summary& summary) 
   }
 }
 
-/// @param folder  of the scripts of a past
-std::vector<scene::Director> directors_of(const Past* past, const supervision::World& world,
-                                          const std::string& folder) {
-  return past ? past->directors(world, folder) : run::directors_of(world);
-}
-
 /// Those of the last tick, and what controllers have set when they were told the end.
 std::vector<world::Metric> last_metrics(const network::Server& server, const Watch& watch,
                                         reports::Summary& summary) {
@@ -200,18 +194,22 @@ std::vector<std::size_t> Run::robots_without_controller() const {
 processes::Controllers Run::start_controllers() {
   wire::Run run = description_of(world_, scripts_);
   run.is_hardware_in_the_loop = options_.hil;
-  if (with_controllers_) run.directors = directors_of(past_.get(), world_, folder_.path() + "/files");
+  std::vector<scene::Director> directors;
+  if (with_controllers_) {
+    directors = past_ ? past_->directors(world_, folder_.path() + "/files") : directors_of(world_);
+  }
+  run.directors = directors;
   server_.open(std::move(run), complete_config());
   server_.remove_robots(robots_without_controller());
   if (service_ == Service::serve || !with_controllers_) return {};
-  return {world_.scene, world_.simulation.layout(), scripts_, launch_settings()};
+  return {world_.scene, world_.simulation.layout(), scripts_, launch_settings(std::move(directors))};
 }
 
-processes::LaunchSettings Run::launch_settings() const {
+processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> directors) const {
   processes::LaunchSettings settings{server_.endpoints().front(),  folder_.path(),
                                      processes::find_lua_runner(), options_.lua_processes,
                                      options_.lua_arguments,       signals_.guardian(),
-                                     directors_of(past_.get(), world_, folder_.path() + "/files")};
+                                     std::move(directors)};
   const auto allow = [&](const std::string& folder) {
     settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
   };

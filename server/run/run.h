@@ -68,7 +68,7 @@ class Run {
   network::Config complete_config();
   std::vector<std::size_t> robots_without_controller() const;
   processes::Controllers start_controllers();
-  processes::LaunchSettings launch_settings() const;
+  processes::LaunchSettings launch_settings(std::vector<scene::Director> directors) const;
   supervision::Supervision::Settings supervision_settings() const;
   void print_notices();
 

@@ -149,7 +149,7 @@ void take_over(Barrier& barrier, std::span<const std::size_t> robots, const std:
   std::map<SessionId, std::vector<std::size_t>> taken;
   for (const std::size_t robot : robots) {
     const Seats::Seat& seat = barrier.seats[robot];
-    taken[seat.holder == SessionId::none ? seat.claimant : seat.holder].push_back(robot);
+    taken[seat.owner()].push_back(robot);
   }
   for (const auto& [id, theirs] : taken) {
     Session* session = barrier.sessions.find(id);

@@ -17,6 +17,9 @@ class Seats {
     bool was_held = false;                 ///< by any session, ever
     bool is_skipped = false;               ///< free, and the tick in hand goes on without it
     Time free_since;                       ///< free: since when
+
+    /// The session that has the robot, or may resume; none: neither.
+    SessionId owner() const { return holder == SessionId::none ? claimant : holder; }
   };
 
   /// One more robot, which is free.

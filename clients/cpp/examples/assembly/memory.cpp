@@ -245,10 +245,10 @@ bool is_old(const Memory& memory, const Column& column, int side, const Look& lo
 }
 
 /// What a side shows, as far as is known; nothing if nothing may be attached there.
-std::optional<Look> look_at(const Memory& memory, const Plan& plan, const Column& column,
-                            int side) {
+/// @param latest  of shown_all_around()
+std::optional<Look> look_at(const Memory& memory, const Column& column, int side,
+                            const std::optional<Look>& latest) {
   const std::optional<Look>& look = column.sides[static_cast<std::size_t>(side)];
-  const std::optional<Look> latest = shown_all_around(memory, plan, column);
   if (look && look->row && !is_old(memory, column, side, *look, latest)) return look;
   const bool is_open = !look || (look->row && latest && look->row != latest->row);
   if (!latest || column_beside(memory, column, side) || !is_open) return std::nullopt;
@@ -322,9 +322,11 @@ std::optional<Point> middle_of(const Memory& memory) {
 }
 
 double extent_of(const Memory& memory) {
+  if (memory.columns.empty()) return 0;
   double most = 0;
+  const Point middle = *middle_of(memory);
   for (const auto& [key, column] : memory.columns) {
-    most = std::max(most, distance_between(*column, *middle_of(memory)));
+    most = std::max(most, distance_between(*column, middle));
   }
   return most;
 }
@@ -332,8 +334,9 @@ double extent_of(const Memory& memory) {
 std::vector<OpenSide> open_sides(const Memory& memory, const Plan& plan, std::int64_t ticks) {
   std::vector<OpenSide> open;
   for (const auto& [key, column] : memory.columns) {
+    const std::optional<Look> latest = shown_all_around(memory, plan, *column);
     for (int side = 0; side < 4; ++side) {
-      const std::optional<Look> look = look_at(memory, plan, *column, side);
+      const std::optional<Look> look = look_at(memory, *column, side, latest);
       if (!look || memory.now - look->seen >= ticks) continue;
       const double yaw = memory.anchor->yaw + side * pi / 2;
       open.push_back({{{column->x + 0.5 * construction::block * std::cos(yaw),

@@ -175,8 +175,7 @@ Next claim(Assembler& self, Faces faces) {
   const std::optional<const Row*> row = look_at_side(self, faces);
   if (row && !*row) return give_up_side(self);
   if (row) {
-    const Row shown = **row;
-    place.row = shown;
+    place.row = **row;
     job.looked = self.memory.now;
   }
   self.builder.lift_to(height_to_carry(place.row), 0.05);
