@@ -16,6 +16,12 @@ const std::string snapshot_folder = "snapshot/";  // of the names of attachments
 constexpr std::uint64_t most_embedded = std::uint64_t{1} << 30;  // all files [bytes]
 
 RecordingError damaged(const std::string& path, const mcap::Damaged& damage) {
+  if (damage.offset() == 0) {  // a scene, for example
+    return RecordingError(fmt::format(
+        "{}: {}; write the file of 'ziggurat run SCENE --record FILE' (if this was one, 'ziggurat info {} --repair OUT' "
+        "saves what is whole)",
+        path, damage.what(), path));
+  }
   return RecordingError(fmt::format(
       "{}: damaged at byte {}: {}; 'ziggurat info {} --repair OUT' saves what is whole", path,
       damage.offset(), damage.what(), path));
