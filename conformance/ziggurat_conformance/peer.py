@@ -14,6 +14,9 @@ from .rules.text_form import server_text_faults
 from .wire import protocol
 
 
+_LONGEST_SEND = 2.0  # [s] that a message waits for room in the queue
+
+
 class Transcript:
     """What went over all connections of a case, for the report of its failure."""
 
@@ -47,6 +50,7 @@ class Peer:
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.LINGER, 0)
         self.socket.setsockopt(zmq.MAXMSGSIZE, -1)
+        self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * _LONGEST_SEND))
         if keys:
             self.socket.curve_serverkey, self.socket.curve_publickey, self.socket.curve_secretkey = (
                 keys
@@ -60,13 +64,13 @@ class Peer:
         faults = self._session.said(message, len(data))
         if self._session.is_certain:
             self._answers.said(state, message, faults)
-        self.socket.send(data)
+        self._send((data,))
 
     def send_frames(self, frames: tuple[bytes, ...]) -> None:
         shown = ", ".join(f"{len(f)} bytes {f[:24]!r}{'…' if len(f) > 24 else ''}" for f in frames)
         self.transcript.add(self.name, "──▶", f"frames: {shown}")
         self._session.is_certain = False
-        self.socket.send_multipart(frames)
+        self._send(frames)
 
     def hear(self, patience: float, heartbeats: bool = False) -> Optional[protocol.ServerMessage]:
         """The next message, within so many seconds. Heartbeats of the server are noted and passed
@@ -86,6 +90,13 @@ class Peer:
     def close(self) -> None:
         self.transcript.add(self.name, "───", "closes its connection")
         self.socket.close()
+
+    def _send(self, frames: tuple[bytes, ...]) -> None:
+        """ZeroMQ gives a connection up that was refused, and a socket without any waits for ever."""
+        try:
+            self.socket.send_multipart(frames)
+        except zmq.Again:
+            self.transcript.add(self.name, "───", "can't send: it has no connection any more")
 
     def _receive(self) -> protocol.ServerMessage:
         frames = self.socket.recv_multipart()

@@ -236,6 +236,10 @@ void Server::set_paused(bool is_paused) {
 
 bool Server::paused() const { return state_->barrier.gate.is_standing(); }
 
+bool Server::is_pausing() const {
+  return state_->barrier.gate.is_held(TickGate::Hold::paused);
+}
+
 void Server::restart(const wire::Restart& restart) {
   state_->advance();
   ++state_->changes;

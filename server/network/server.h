@@ -126,6 +126,8 @@ class Server {
   /// answered, the world stands, sessions are told, and paused() is true.
   void set_paused(bool is_paused);
   bool paused() const;
+  /// The world stands, or will when the tick in hand is answered.
+  bool is_pausing() const;
 
   /// The world went back to its start or to a snapshot: sessions are told, what they owed is void, and
   /// the next observation to be published is that of tick 0 or of the snapshot. Robots that the layout

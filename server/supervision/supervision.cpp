@@ -136,10 +136,9 @@ Supervision::Reply Supervision::handle(const network::Call& call) {
 }
 
 Supervision::Reply Supervision::pause(const network::Call& call) {
-  const bool was_asked = is_pause_asked_;
+  const bool was_asked = server_.is_pausing() || steps_left_ > 0;
   steps_left_ = 0;
   server_.set_paused(true);
-  is_pause_asked_ = true;
   if (!was_asked) callers_.tell(Paused{});  // it may be handled again until the world stands
   paused_.update(server_.paused());
   // Before tick 0 nothing moves: the world will stand there.
@@ -151,7 +150,6 @@ Supervision::Reply Supervision::resume(const network::Call& call) {
   stepping_.reset();
   steps_left_ = 0;
   server_.set_paused(false);
-  is_pause_asked_ = false;
   callers_.tell(Resumed{});
   paused_.update(server_.paused());
   return done(call);
@@ -164,19 +162,18 @@ Supervision::Reply Supervision::step(const network::Call& call) {
     stepping_.reset();
     return done(call);
   }
-  if (stepping_) return Reply::later;
   if (call.request.ticks == 0) {
     return fail(call, wire::make_fault(ErrorCode::bad_value, "step.ticks",
                                        "A step has at least one tick."));
   }
-  // It will stand: at tick 0, or when the tick in hand is complete.
-  const bool will_stand = !is_gathered_ || (steps_left_ == 0 && !server_.paused());
-  if (is_pause_asked_ && will_stand) return Reply::later;
-  if (!server_.paused()) {
+  if (stepping_ || steps_left_ > 0) return Reply::later;  // steps of a caller that is gone go on
+  if (!server_.is_pausing()) {
     return fail(call,
                 wire::make_fault(ErrorCode::out_of_state, {},
                                  "The world is not paused; send a Pause request before a Step."));
   }
+  // It will stand: at tick 0, or when the tick in hand is complete.
+  if (!is_gathered_ || !server_.paused()) return Reply::later;
   stepping_ = call;
   steps_left_ = call.request.ticks;
   server_.set_paused(false);

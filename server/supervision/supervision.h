@@ -92,7 +92,7 @@ class Supervision {
   Snapshots snapshots_;
   std::optional<FoundSnapshot> restoring_;  ///< with resetting_
   std::uint64_t steps_left_ = 0;
-  bool is_gathered_ = false, is_pause_asked_ = false;
+  bool is_gathered_ = false;
   std::optional<std::string> shutdown_;  // the reason
   clock::time_point start_ = clock::now();
   PauseTimer paused_;

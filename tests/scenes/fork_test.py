@@ -248,7 +248,8 @@ class Kept(Fork):
             url = json.loads(process.stdout.readline())["endpoint"]
 
             def ctl(*words):
-                self.assertEqual(self.ziggurat("ctl", url, *words).code, 0)
+                outcome = self.ziggurat("ctl", url, *words)
+                self.assertEqual(outcome.code, 0, outcome.err)
 
             def connect():
                 self.started.append(subprocess.Popen([LUA, "--connect", url, "--quiet"], cwd=self.folder,

@@ -111,6 +111,21 @@ class Ctl(unittest.TestCase):
             server.ask("ctl", "resume")
             server.wait_for_tick(2)
 
+    def test_a_step_waits_for_controllers_of_a_world_that_begins_paused(self):
+        with Server(VEHICLE, "--duration", "0", "--paused") as server:
+            step = subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "3"], stdout=subprocess.DEVNULL,
+                                    stderr=subprocess.PIPE, text=True)
+            with self.assertRaises(subprocess.TimeoutExpired):
+                step.wait(0.5)
+            lua = subprocess.Popen([BIN / "ziggurat-lua", "--connect", server.url, "--quiet"],
+                                   stdout=subprocess.DEVNULL)
+            try:
+                self.assertEqual(step.communicate(timeout=60)[1], "")
+                self.assertEqual(server.tick(), 3)
+            finally:
+                lua.kill()
+                lua.wait()
+
     def test_an_abandoned_step_does_not_block_later_requests(self):
         with Server(DROP, "--duration", "0") as server:
             impatient = subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "1000000"])

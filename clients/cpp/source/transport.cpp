@@ -18,6 +18,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds longest_linger{1000};
+constexpr milliseconds longest_wait_to_send{500};  // between checks of whether the connection was refused
 constexpr const char* monitor_address = "inproc://monitor";
 constexpr int monitored = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
                           ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
@@ -73,6 +74,7 @@ ZeroMq::ZeroMq(const SessionOptions& options)
       monitor_(context_, zmq::socket_type::pair) {
   socket_.set(zmq::sockopt::ipv6, endpoint_.find('[') != std::string::npos);
   socket_.set(zmq::sockopt::tcp_keepalive, 1);
+  socket_.set(zmq::sockopt::sndtimeo, static_cast<int>(longest_wait_to_send.count()));
   socket_.set(zmq::sockopt::linger, 0);
   monitor_.set(zmq::sockopt::linger, 0);
   zmq_socket_monitor(socket_.handle(), monitor_address, monitored);
@@ -131,8 +133,9 @@ void ZeroMq::send(std::size_t size, const std::function<void(char*)>& write) {
   write(frame.data<char>());
   for (;;) {
     try {
-      socket_.send(frame, zmq::send_flags::none);
-      return;
+      if (socket_.send(frame, zmq::send_flags::none)) return;
+      // ZeroMQ drops the queue of a connection that the server has refused.
+      if (was_closed()) throw ConnectionError(endpoint_ + ": can't send: the server closed the connection");
     } catch (const zmq::error_t& error) {
       if (error.num() == EINTR) continue;
       throw ConnectionError(endpoint_ + ": can't send: " + error.what());

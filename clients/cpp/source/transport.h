@@ -16,9 +16,9 @@ class Transport {
  public:
   virtual ~Transport() = default;
 
-  /// Sends a message, or queues it while there is no connection yet.
+  /// Sends a message, or queues it while there is no connection yet. Waits while the queue is full.
   /// @param write  fills `size` bytes
-  /// @throws ConnectionError
+  /// @throws ConnectionError  also if the server has refused the connection
   virtual void send(std::size_t size, const std::function<void(char*)>& write) = 0;
 
   /// Waits for a message.

@@ -17,8 +17,9 @@ from .find_server import find_server
 VERSION = v1.Version(major=1, minor=4)
 SLICE = 0.5  # [s] of a wait
 LINGER_MS = 1000  # time to send the last messages when a session is closed
-MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL
-             | zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL | zmq.EVENT_HANDSHAKE_FAILED_AUTH)
+MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_SUCCEEDED
+             | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL | zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL
+             | zmq.EVENT_HANDSHAKE_FAILED_AUTH)
 # A server that ends, or has no place, also breaks a handshake off: ZeroMQ tries again.
 MOST_FAILED_HANDSHAKES = 3
 
@@ -58,10 +59,12 @@ class Connection:
         self.endpoint = endpoint = endpoint or find_server()
         self._has_keys = curve is not None
         self.is_accepted = False  # by the server: if nothing arrives then, it is slow
+        self._is_open = False  # the handshake has succeeded
         self.longest_silence: Optional[float] = None  # [s] of wall time; longer, and the connection is lost
         self._failed_handshakes = 0
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.IPV6, endpoint.startswith("tcp://["))
+        self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * SLICE))
         if curve is not None:
             self.socket.curve_serverkey = curve.server_key.encode()
             self.socket.curve_publickey = curve.public_key.encode()
@@ -90,7 +93,17 @@ class Connection:
         return self.socket.closed
 
     def send(self, message: v1.ClientMessage) -> None:
-        self.socket.send(message.SerializeToString())
+        """Waits while the queue is full. Raises ConnectionLost if the server has refused the connection: ZeroMQ
+        has given it up, and there is no queue any more."""
+        data = message.SerializeToString()
+        while True:
+            try:
+                return self.socket.send(data)
+            except zmq.Again:
+                why = self._next_reason()
+                if why is not None:
+                    self.close()
+                    raise ConnectionLost(f"{self.endpoint}: {why}") from None
 
     def receive(self, timeout: Optional[float]) -> v1.ServerMessage:
         """The next message. `timeout` is wall time [s]; None waits forever.
@@ -109,7 +122,7 @@ class Connection:
             if self.socket in ready:
                 return v1.ServerMessage.FromString(self.socket.recv())
             if self.monitor in ready:
-                why = self._why_lost(zmq.utils.monitor.recv_monitor_message(self.monitor))
+                why = self._next_reason()
                 if self.socket.poll(0) or why is None:
                     continue
                 self.close()
@@ -119,13 +132,25 @@ class Connection:
             if end is not None and time.monotonic() >= end:
                 raise Timeout(f"{self.endpoint}: no message for {timeout:g} s")
 
+    def _next_reason(self) -> Optional[str]:
+        """Takes the monitor's events up to the first by which the connection is lost, and says why it is."""
+        while self.monitor.poll(0):
+            why = self._why_lost(zmq.utils.monitor.recv_monitor_message(self.monitor))
+            if why is not None:
+                return why
+        return None
+
     def _why_lost(self, event: dict) -> Optional[str]:
         """Why the connection is lost after this event of its monitor; None if it is not."""
         if event["event"] == zmq.EVENT_CONNECTED:
             self.is_accepted = True
             return None
+        if event["event"] == zmq.EVENT_HANDSHAKE_SUCCEEDED:
+            self._is_open = True
+            return None
         if event["event"] == zmq.EVENT_DISCONNECTED:
-            return "the connection was closed"
+            self.is_accepted = False
+            return "the connection was closed" if self._is_open else None  # else ZeroMQ tries again
         if event["event"] == zmq.EVENT_HANDSHAKE_FAILED_AUTH:
             return "refused key? The server does not have this client's key in its --curve-clients"
         if (event["event"] == zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL

@@ -1,12 +1,14 @@
 """The session: ticks, events, leaving, errors, the end of a connection; against a fake server."""
 
 import threading
+import time
 import unittest
 
 import zmq
 
 import ziggurat
 from ziggurat import protocol_pb2 as v1
+from ziggurat.connection import Connection
 
 from fake_server import FakeServer, equipped, welcome
 
@@ -44,6 +46,22 @@ def open_with(server, *robots, **fields):
     hello = server.receive()
     server.send(welcome=welcome(*(robots or [equipped("one")]), **fields))
     return hello
+
+
+class Refused(unittest.TestCase):
+    def test_the_sender_is_told(self):
+        with zmq.Context() as context, context.socket(zmq.ROUTER) as server:
+            server.curve_server = True
+            server.curve_secretkey = zmq.curve_keypair()[1]
+            port = server.bind_to_random_port("tcp://127.0.0.1")
+            connection = Connection(f"tcp://127.0.0.1:{port}")
+            self.addCleanup(connection.close)
+            end = time.monotonic() + 20
+            # What is sent before the refusal is known goes into a queue that ZeroMQ then drops.
+            with self.assertRaisesRegex(ziggurat.ConnectionLost, "refused key.*this client has no keys"):
+                while time.monotonic() < end:
+                    connection.send(v1.ClientMessage())
+                    time.sleep(0.01)
 
 
 class Beginning(SessionCase):
