@@ -92,7 +92,7 @@ class Peer:
         self.socket.close()
 
     def _send(self, frames: tuple[bytes, ...]) -> None:
-        """ZeroMQ gives a connection up that was refused, and a socket without any waits for ever."""
+        """ZeroMQ gives a connection up that was refused, and a socket without any waits without end."""
         try:
             self.socket.send_multipart(frames)
         except zmq.Again:

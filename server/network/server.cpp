@@ -234,10 +234,10 @@ void Server::set_paused(bool is_paused) {
   network::resume(state_->barrier);
 }
 
-bool Server::paused() const { return state_->barrier.gate.is_standing(); }
-
-bool Server::is_pausing() const {
-  return state_->barrier.gate.is_held(TickGate::Hold::paused);
+Pause Server::pause() const {
+  const TickGate& gate = state_->barrier.gate;
+  if (gate.is_standing()) return Pause::standing;
+  return gate.is_held(TickGate::Hold::paused) ? Pause::asked : Pause::none;
 }
 
 void Server::restart(const wire::Restart& restart) {

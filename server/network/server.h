@@ -50,6 +50,9 @@ enum class Outcome {
               ///< world has come to stand; call again to go on
 };
 
+/// Whether the world is paused; once it is asked for, the world stands when the tick in hand is answered.
+enum class Pause { none, asked, standing };
+
 class Server {
  public:
   /// Listens at once, while the world is still being loaded: a client that comes is told so.
@@ -123,11 +126,9 @@ class Server {
   void remove_robots(std::span<const std::size_t> robots, const std::string& why = {});
 
   /// While that holds no tick is complete: collect() must still be called. Once the tick is
-  /// answered, the world stands, sessions are told, and paused() is true.
+  /// answered, the world stands, and sessions are told.
   void set_paused(bool is_paused);
-  bool paused() const;
-  /// The world stands, or will when the tick in hand is answered.
-  bool is_pausing() const;
+  Pause pause() const;
 
   /// The world went back to its start or to a snapshot: sessions are told, what they owed is void, and
   /// the next observation to be published is that of tick 0 or of the snapshot. Robots that the layout

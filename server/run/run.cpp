@@ -375,7 +375,7 @@ std::optional<Ending> Run::collect() {
     auto stopped =
         wait([&] { return watch_.collect(simulation.commands(), simulation.state().tick); });
     if (stopped) return stopped;
-  } while (server_.paused());
+  } while (server_.pause() == network::Pause::standing);
   return std::nullopt;
 }
 

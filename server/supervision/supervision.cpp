@@ -84,10 +84,12 @@ Supervision::Supervision(const Settings& settings, World& world, network::Server
       population_(population),
       snapshots_(settings.snapshot_folder, settings.build) {}
 
+bool Supervision::is_standing() const { return server_.pause() == network::Pause::standing; }
+
 /// Requests of one connection are answered in their order; different connections do not wait for
 /// each other.
 void Supervision::serve() {
-  paused_.update(server_.paused());
+  paused_.update(is_standing());
   if (stepping_ && !callers_.can_hear(*stepping_)) stepping_.reset();  // its steps continue
   for (network::Call& call : callers_.take()) waiting_.push_back(std::move(call));
   std::vector<std::string> busy;  // connections with an earlier request that still waits
@@ -136,13 +138,13 @@ Supervision::Reply Supervision::handle(const network::Call& call) {
 }
 
 Supervision::Reply Supervision::pause(const network::Call& call) {
-  const bool was_asked = server_.is_pausing() || steps_left_ > 0;
+  const bool was_asked = server_.pause() != network::Pause::none || steps_left_ > 0;
   steps_left_ = 0;
   server_.set_paused(true);
   if (!was_asked) callers_.tell(Paused{});  // it may be handled again until the world stands
-  paused_.update(server_.paused());
+  paused_.update(is_standing());
   // Before tick 0 nothing moves: the world will stand there.
-  return server_.paused() || !is_gathered_ ? done(call) : Reply::later;
+  return is_standing() || !is_gathered_ ? done(call) : Reply::later;
 }
 
 /// A step that still runs ends here: its supervisor is told that the world is not paused.
@@ -151,13 +153,13 @@ Supervision::Reply Supervision::resume(const network::Call& call) {
   steps_left_ = 0;
   server_.set_paused(false);
   callers_.tell(Resumed{});
-  paused_.update(server_.paused());
+  paused_.update(is_standing());
   return done(call);
 }
 
 Supervision::Reply Supervision::step(const network::Call& call) {
   if (stepping_ && stepping_->peer == call.peer && stepping_->request.id == call.request.id) {
-    const bool is_over = steps_left_ == 0 && server_.paused();
+    const bool is_over = steps_left_ == 0 && is_standing();
     if (!is_over) return Reply::later;
     stepping_.reset();
     return done(call);
@@ -167,17 +169,17 @@ Supervision::Reply Supervision::step(const network::Call& call) {
                                        "A step has at least one tick."));
   }
   if (stepping_ || steps_left_ > 0) return Reply::later;  // steps of a caller that is gone go on
-  if (!server_.is_pausing()) {
+  if (server_.pause() == network::Pause::none) {
     return fail(call,
                 wire::make_fault(ErrorCode::out_of_state, {},
                                  "The world is not paused; send a Pause request before a Step."));
   }
   // It will stand: at tick 0, or when the tick in hand is complete.
-  if (!is_gathered_ || !server_.paused()) return Reply::later;
+  if (!is_gathered_ || !is_standing()) return Reply::later;
   stepping_ = call;
   steps_left_ = call.request.ticks;
   server_.set_paused(false);
-  paused_.update(server_.paused());
+  paused_.update(is_standing());
   return Reply::later;
 }
 
@@ -241,7 +243,7 @@ Supervision::Reply Supervision::done(const network::Call& call) {
 }
 
 void Supervision::published() {
-  paused_.update(server_.paused());
+  paused_.update(is_standing());
   if (steps_left_ > 0 && --steps_left_ == 0) server_.set_paused(true);
 }
 
@@ -253,7 +255,7 @@ wire::Status Supervision::status() const {
   status.tick = state.tick;
   status.time_ns = state.time_ns;
   status.phase = !is_gathered_      ? wire::Status::Phase::gathering
-                 : server_.paused() ? wire::Status::Phase::paused
+                 : is_standing() ? wire::Status::Phase::paused
                                     : wire::Status::Phase::running;
   status.is_hardware_in_the_loop = settings_.is_hardware_in_the_loop;
   status.seed = world_.seed;

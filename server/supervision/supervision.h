@@ -68,6 +68,7 @@ class Supervision {
 
  private:
   enum class Reply { given, later };
+  bool is_standing() const;
   Reply handle(const network::Call& call);
   Reply pause(const network::Call& call);
   Reply resume(const network::Call& call);

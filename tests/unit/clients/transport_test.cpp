@@ -35,7 +35,7 @@ TEST(Transport, AConnectionThatIsRefusedTellsTheSender) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   };
-  EXPECT_THROW(send_for_long(), ConnectionError) << "without a queue ZeroMQ alone would wait for ever";
+  EXPECT_THROW(send_for_long(), ConnectionError) << "without a queue ZeroMQ alone would wait without end";
 }
 
 }  // namespace
