@@ -93,7 +93,7 @@ void clean_up(const Left& left) {
   for (const pid_t group : left.groups) ::kill(-group, SIGKILL);
   // A process that is being killed may still write into the folder.
   const auto is_there = [](pid_t group) { return ::kill(-group, 0) == 0; };
-  for (int i = 0; i < 200 && std::ranges::any_of(left.groups, is_there); ++i) sleep_ms(1);
+  for (int i = 0; i < 1000 && std::ranges::any_of(left.groups, is_there); ++i) sleep_ms(1);
   for (const Order& file : left.files) {
     struct stat now {};
     const bool is_same =
@@ -182,7 +182,9 @@ Guardian::~Guardian() {
   if (process_ < 0) return;
   send(orders_, {});
   ::close(orders_);
-  wait(100);  // longer only if it was stopped: then it is killed
+  if (has_ended(100)) return;
+  ::kill(process_, SIGKILL);  // it has nothing to do any more; it was stopped, perhaps
+  ::waitpid(process_, nullptr, 0);
 }
 
 void Guardian::end_group(pid_t group) const noexcept {
@@ -226,17 +228,16 @@ void Guardian::end_now() noexcept {
   order.kind = Kind::end_now;
   send(orders_, order);
   ::close(orders_);
-  wait(300);
+  if (!has_ended(300)) ::kill(process_, SIGCONT);  // it goes on by itself, also if it was stopped
   process_ = -1;
 }
 
-void Guardian::wait(int most_ms) noexcept {
+bool Guardian::has_ended(int most_ms) const noexcept {
   for (int i = 0; i < most_ms; ++i) {
-    if (::waitpid(process_, nullptr, WNOHANG) != 0) return;
+    if (::waitpid(process_, nullptr, WNOHANG) != 0) return true;
     sleep_ms(1);
   }
-  ::kill(process_, SIGKILL);
-  ::waitpid(process_, nullptr, 0);
+  return false;
 }
 
 }  // namespace ziggurat::processes

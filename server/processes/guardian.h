@@ -36,11 +36,12 @@ class Guardian {
   /// Removes this folder if nothing is left in it then.
   void remove_empty_folder(const std::string& path) const noexcept;
 
-  /// Lets it do all that now, and waits until it is done, for 0.3 s at most.
+  /// Lets it do all that now, and waits until it is done, for 0.3 s at most; it goes on without this process.
   void end_now() noexcept;
 
  private:
-  void wait(int most_ms) noexcept;
+  /// Waits for so many milliseconds at most.
+  bool has_ended(int most_ms) const noexcept;
 
   int orders_ = -1;  ///< the pipe's end for writing, closed by exec()
   pid_t process_ = -1;
