@@ -95,11 +95,10 @@ const Schema& schema_of(const Descriptor& type) {
   used.add(type);
   google::protobuf::FileDescriptorSet set;
   for (const FileDescriptor* file : used.files) write(*file, used, *set.add_file());
-  schema = {type.full_name(), set.SerializeAsString(), {}};
   for (auto& file : *set.mutable_file()) {
     for (auto& message : *file.mutable_message_type()) remove_repeated_bytes(message);
   }
-  schema.for_viewers = set.SerializeAsString();
+  schema = {type.full_name(), set.SerializeAsString()};
   return schema;
 }
 

@@ -10,11 +10,10 @@ class Descriptor;
 namespace ziggurat::channels {
 
 struct Schema {
-  std::string name;         ///< of the type, with its package
-  std::string descriptors;  ///< a serialized FileDescriptorSet: the type and all that it uses
-  /// The same without fields of repeated bytes, which decoders then skip: viewers of Foxglove's family
-  /// refuse a type that has one.
-  std::string for_viewers;
+  std::string name;  ///< of the type, with its package
+  /// A serialized FileDescriptorSet: the type and all that it uses. Fields of repeated bytes are left
+  /// out, and decoders skip them: viewers of Foxglove's family refuse a type that has one.
+  std::string descriptors;
 };
 
 /// The schema of a type; stays where it is.

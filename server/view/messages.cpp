@@ -310,7 +310,7 @@ Item advertise(std::span<const channels::Channel> channels) {
                     {"topic", channel.topic},
                     {"encoding", "protobuf"},
                     {"schemaName", channel.schema->name},
-                    {"schema", base64(channel.schema->for_viewers)},
+                    {"schema", base64(channel.schema->descriptors)},
                     {"schemaEncoding", "protobuf"}});
   }
   return text_item({{"op", "advertise"}, {"channels", std::move(list)}});

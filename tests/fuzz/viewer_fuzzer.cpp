@@ -19,7 +19,7 @@ using namespace ziggurat;
 using channels::Kind;
 using fuzz::require;
 
-const channels::Schema schema{"ziggurat.v1.Poses", "descriptors", {}};
+const channels::Schema schema{"ziggurat.v1.Poses", "descriptors"};
 
 std::vector<channels::Channel> channel_list(bool is_later) {
   std::vector<channels::Channel> list{{1, "/world", Kind::world, &schema, 0},

@@ -37,6 +37,12 @@ function indexed(bytes) {
   });
 }
 
+/** Fields of repeated bytes below a type or package. Viewers of Foxglove's family refuse types that have one. */
+function repeatedBytes(below) {
+  const own = (below.fieldsArray ?? []).filter((field) => field.repeated && field.type === "bytes").map((field) => field.fullName);
+  return own.concat((below.nestedArray ?? []).flatMap(repeatedBytes));
+}
+
 /** Decoders of messages, from the schemas in the file. */
 function decoders(reader) {
   const types = new Map();
@@ -45,7 +51,9 @@ function decoders(reader) {
     assert.ok(schema, `${channel.topic} has a schema`);
     assert.equal(channel.messageEncoding, "protobuf");
     assert.equal(schema.encoding, "protobuf");
-    types.set(channel.id, protobuf.Root.fromDescriptor(schema.data).lookupType(schema.name));
+    const root = protobuf.Root.fromDescriptor(schema.data);
+    assert.deepEqual(repeatedBytes(root), [], `${channel.topic} has no repeated bytes`);
+    types.set(channel.id, root.lookupType(schema.name));
   }
   return types;
 }

@@ -1,4 +1,6 @@
-// Shows the viewer with one layout, connected to the address in `url`.
+// Shows the viewer with one layout: the live server or the recording at `url`, and the messages of `topic`.
+const asked = new URLSearchParams(location.search);
+const url = asked.get("url");
 const panels = {
   "3D!world": { topics: { "/scene": { visible: true } }, followTf: "world",
                 cameraState: { distance: 1.2, phi: 60, thetaOffset: 45, targetOffset: [0, 0, 0], target: [0, 0, 0],
@@ -6,7 +8,7 @@ const panels = {
                 scene: { transforms: { showLabel: false, axisScale: 0.02, lineWidth: 0 } } },
   "RosOut!log": {},
   "Parameters!set": {},
-  "RawMessages!raw": { topicPath: "/robots/repeater0/observation" },
+  "RawMessages!raw": { topicPath: asked.get("topic") },
 };
 const column = (first, second) => ({ direction: "column", first, second });
 const data = { configById: panels, globalVariables: {}, userNodes: {}, playbackConfig: { speed: 1 },
@@ -25,10 +27,11 @@ const storage = {
 const configuration = { get: (key) => ({ colorScheme: "light" })[key], set: async () => undefined,
                         addChangeListener: () => undefined, removeChangeListener: () => undefined };
 const link = new URL(location.origin);
-link.searchParams.set("ds", "foxglove-websocket");
-link.searchParams.set("ds.url", new URLSearchParams(location.search).get("url"));
+link.searchParams.set("ds", url.startsWith("ws:") ? "foxglove-websocket" : "remote-file");
+link.searchParams.set("ds.url", url);
 
 initI18n().then(() => ReactDOM.render(React.createElement(App, {
-  deepLinks: [link.href], appConfiguration: configuration, dataSources: [new FoxgloveWebSocketDataSourceFactory()],
+  deepLinks: [link.href], appConfiguration: configuration,
+  dataSources: [new FoxgloveWebSocketDataSourceFactory(), new RemoteDataSourceFactory()],
   layoutStorage: storage, extensionLoaders: [], enableGlobalCss: true,
 }), document.getElementById("root")));

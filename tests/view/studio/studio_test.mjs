@@ -1,15 +1,20 @@
-// The live server, seen by a viewer of its protocol that others have written: Foxglove Studio 1.48.0, the last that npm has.
-// It draws /scene by /tf, lists log lines and parameters, and decodes a robot's observation by its schema.
+// The live server and a recording, seen by a viewer that others have written: Foxglove Studio 1.48.0, the last that npm has.
+// It draws /scene by /tf, lists log lines and parameters, decodes messages by their schemas, and has no problem with any topic.
 //
 // usage: node studio_test.mjs FOLDER [SCREENSHOT]    FOLDER has the packages (npm ci); ZIGGURAT_BIN is that of the programs
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import http from "node:http";
+import { tmpdir } from "node:os";
 import { extname, join, normalize } from "node:path";
 import { fileURLToPath } from "node:url";
-import { decode, newPage, openBrowser, Run, waitFor } from "../../web/browser.mjs";
+import { decode, newPage, openBrowser, root, Run, waitFor, ziggurat } from "../../web/browser.mjs";
 
 const [folder, screenshot] = process.argv.slice(2);
+const scene = "scenes/prototype_radio_test.argos";
+const recorded = mkdtempSync(join(tmpdir(), "studio-"));
 const here = fileURLToPath(new URL(".", import.meta.url));
 const packages = join(folder, "node_modules");
 const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm" };
@@ -17,7 +22,7 @@ const types = { ".html": "text/html", ".js": "text/javascript", ".wasm": "applic
 /** Its parts, which look for each other beside index.js or at the root. */
 async function find(path) {
   const name = normalize(path === "/" ? "/studio.html" : path);
-  for (const place of [here, packages, join(packages, "@foxglove/studio-base/assets")]) {
+  for (const place of [here, recorded, packages, join(packages, "@foxglove/studio-base/assets")]) {
     try {
       return { data: await readFile(join(place, name)), type: types[extname(name)] };
     } catch { /* the next */ }
@@ -25,26 +30,28 @@ async function find(path) {
   return null;
 }
 
+/** What a file has, or the part of it that is asked for. */
 const web = http.createServer(async (request, response) => {
   const found = await find(new URL(request.url, "http://x").pathname);
-  response.writeHead(found ? 200 : 404, { "Content-Type": found?.type ?? "application/octet-stream" });
-  response.end(found?.data);
+  const part = found && /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? "");
+  const data = part ? found.data.subarray(Number(part[1]), Number(part[2]) + 1) : found?.data;
+  const range = part ? { "Content-Range": `bytes ${part[1]}-${part[2]}/${found.data.length}` } : {};
+  response.writeHead(found ? (part ? 206 : 200) : 404, {
+    "Content-Type": found?.type ?? "application/octet-stream", "Content-Length": data?.length ?? 0, "Accept-Ranges": "bytes", ...range });
+  response.end(data);
 });
 await new Promise((resolve) => web.listen(0, "127.0.0.1", resolve));
-
 const browser = await openBrowser();
-const run = await Run.start("scenes/prototype_radio_test.argos", "--duration=0", "--real-time=1");
-try {
+
+/** The viewer with the world at `url`, with no problem, after it has shown `texts` and the robots. */
+async function open(url, topic, texts) {
   const page = await newPage(browser, { width: 1400, height: 800 });
   const told = [];
   page.on("console", (message) => told.push(message.text()));
   page.on("pageerror", (error) => told.push(`error: ${error.stack ?? error.message}`));
-  const url = `ws://${run.address.host}/${run.address.search}`;
-  await page.goto(`http://127.0.0.1:${web.address().port}/?url=${encodeURIComponent(url)}`);
+  await page.goto(`http://127.0.0.1:${web.address().port}/?${new URLSearchParams({ url, topic })}`);
   const text = () => page.locator("body").innerText();
-  await waitFor(async () => /radio_messages/.test(await text()), "observation", 120);
-  await waitFor(async () => /token \d+/.test(await text()), "log line", 120);
-  await waitFor(async () => /real_time_factor/.test(await text()), "parameters", 120);
+  for (const each of texts) await waitFor(async () => each.test(await text()), `${each}`, 120);
   await page.getByText("Problems").first().click();
   await waitFor(async () => /No problems found/.test(await text()), `viewer without problems; it told ${told.join("\n")}`);
   const isDrawn = async () => { // the robots are blue, and nothing else in the middle of the picture is
@@ -54,12 +61,34 @@ try {
     return blue > 5000;
   };
   await waitFor(isDrawn, "robots in the picture", 120);
-  if (screenshot) await page.screenshot({ path: screenshot });
+  if (screenshot) await page.screenshot({ path: `${screenshot}${topic.replaceAll("/", "_")}.png` });
   assert.deepEqual(told.filter((line) => /Player problem|^error/.test(line)), []);
   assert.deepEqual(page.foreign, []);
-  console.log("Foxglove Studio shows the world and has no problems with it");
+  await page.close();
+}
+
+async function openLive() {
+  const run = await Run.start(scene, "--duration=0", "--real-time=1");
+  try {
+    const url = `ws://${run.address.host}/${run.address.search}`;
+    await open(url, "/robots/repeater0/observation", [/radio_messages/, /token \d+/, /real_time_factor/]);
+  } finally {
+    await run.stop();
+  }
+}
+
+async function openRecording() {
+  const file = join(recorded, "run.mcap");
+  execFileSync(ziggurat, ["run", scene, "--ticks=50", "--quiet", "--record", file], { cwd: root, stdio: ["ignore", "ignore", "inherit"] });
+  await open(`http://127.0.0.1:${web.address().port}/run.mcap`, "/inputs", [/commands/, /hash/]);
+}
+
+try {
+  await openLive();
+  await openRecording();
+  console.log("Foxglove Studio shows the live world and its recording, and has no problems with them");
 } finally {
   await browser.close();
-  await run.stop();
   web.close();
+  rmSync(recorded, { recursive: true });
 }
