@@ -2,21 +2,30 @@
 // the page does, and memory of ten that never read. In one run a viewer subscribes and unsubscribes by turns of some
 // seconds, so that what else the machine does falls on both kinds, and each turn is compared with its neighbours.
 //
+// With --instructions instead: what the run's thread executes in TICKS ticks without and with a viewer, counted by valgrind's
+// callgrind, which other programs do not change.
+//
 // usage: node view.mjs ZIGGURAT SCENE [TURNS [SECONDS]]    in a folder with the packages of tests/view (npm ci)
+//        node view.mjs --instructions ZIGGURAT SCENE [TICKS]
 import foxglove from "@foxglove/ws-protocol";
 import { spawn } from "node:child_process";
-import { readFileSync } from "node:fs";
+import { once } from "node:events";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
 import WebSocket from "ws";
 
-const [program, scene, turns = 20, seconds = 2] = process.argv.slice(2);
+const counts = process.argv[2] === "--instructions";
+const [program, scene, turns = counts ? 400 : 20, seconds = 2] = process.argv.slice(counts ? 3 : 2);
 const protocol = foxglove.FoxgloveClient.SUPPORTED_SUBPROTOCOL;
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 /** What the page subscribes to at first, in a world with few robots and links. */
 const page = /^\/(world|poses|log|barrier|phases|rays|radio|contacts|robots\/[^/]+\/(observation|command))$/;
 const all = /./;
 
-function start(...options) {
-  const child = spawn(program, ["run", scene, "--quiet", "--view=127.0.0.1:0", ...options]);
+function start(...options) { return launch([program], ...options); }
+function launch(command, ...options) {
+  const [first, ...more] = [...command, "run", scene, "--quiet", "--view=127.0.0.1:0", ...options];
+  const child = spawn(first, more);
   return new Promise((resolve) => child.stderr.on("data", (data) => {
     const found = /ws:\/\/\S+/.exec(data);
     if (found) resolve({ child, url: found[0] });
@@ -31,15 +40,16 @@ async function connect(url, topics, reads) {
   const ws = new WebSocket(url, [protocol]);
   ws.on("error", () => {});
   const channels = new Map();
-  const viewer = { ws, heard: () => {} };
+  const viewer = { ws, phase: "", heard: () => {} };
   ws.on("message", (data, isBinary) => {
     if (isBinary) return data[0] === 1 ? viewer.heard(data.subarray(13)) : undefined;
     const message = JSON.parse(data);
     if (message.op === "advertise") message.channels.forEach((c) => channels.set(c.topic, c.id));
+    for (const { name, value } of message.parameters ?? []) if (name === "phase") viewer.phase = value;
   });
   await new Promise((resolve) => ws.on("open", resolve));
   while (channels.size === 0) await sleep(5);
-  const send = (message) => ws.send(JSON.stringify(message));
+  const send = viewer.send = (message) => ws.send(JSON.stringify(message));
   const matching = (wanted) => [...channels].filter(([topic]) => wanted.test(topic)).map(([, id]) => ({ id, channelId: id }));
   viewer.subscribe = (wanted) => send({ op: "subscribe", subscriptions: matching(wanted) });
   viewer.unsubscribe = (wanted) => send({ op: "unsubscribe", subscriptionIds: matching(wanted).map(({ id }) => id) });
@@ -94,6 +104,41 @@ async function measure(factor, topics, name) {
   const [share, error] = estimate(shares);
   console.log(`${name}, at ${factor} times real time: a tick takes ${estimate(without)[0].toFixed(0)} us of CPU time without `
     + `viewer, with one ${share.toFixed(1)} % more (standard error ${error.toFixed(1)} %, ${turns} turns)`);
+}
+
+/**
+ * What callgrind counts on the main thread in a run of TICKS ticks; cycles are its estimate, 10 for each miss of the first cache
+ * and 100 for each of the last. The world waits for the subscription.
+ */
+async function count(topics) {
+  const folder = mkdtempSync(`${tmpdir()}/zw`), file = `${folder}/counts`;
+  const { child, url } = await launch(["valgrind", "--tool=callgrind", "--separate-threads=yes", "--cache-sim=yes",
+    "--collect-systime=yes", `--callgrind-out-file=${file}`, program], `--ticks=${turns}`, "--real-time=1000000");
+  const viewer = await connect(url, null, true);
+  viewer.send({ op: "subscribeParameterUpdates", parameterNames: ["phase"] });
+  viewer.send({ op: "setParameters", parameters: [{ name: "frames_per_second", value: 1000 }] });
+  viewer.subscribe(topics);
+  while (viewer.phase !== "over") await sleep(100);
+  child.kill("SIGINT");
+  await once(child, "exit");
+  const text = readFileSync(`${file}-01`, "utf8");
+  rmSync(folder, { recursive: true });
+  const words = (name) => new RegExp(`^${name}: (.*)$`, "m").exec(text)[1].split(" ");
+  const totals = words("totals").map(Number);
+  const of = Object.fromEntries(words("events").map((name, i) => [name, totals[i]]));
+  return { instructions: of.Ir, "system calls": of.sysCount,
+           cycles: of.Ir + 10 * (of.I1mr + of.D1mr + of.D1mw) + 100 * (of.ILmr + of.DLmr + of.DLmw) };
+}
+
+if (counts) {
+  const without = await count(/^\/log$/);
+  for (const [name, topics] of [["the page's", page], ["all", all]]) {
+    const shown = await count(topics);
+    const told = Object.entries(without).map(([what, before]) =>
+      `${Math.round(before / turns)} ${what} a tick without viewer, ${(100 * (shown[what] / before - 1)).toFixed(2)} % more with one`);
+    console.log(`${name} topics: ${told.join("; ")}`);
+  }
+  process.exit(0);
 }
 
 for (const factor of [10, 1e6]) {
