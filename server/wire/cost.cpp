@@ -2,7 +2,6 @@
 
 #include <google/protobuf/descriptor.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -101,8 +100,15 @@ std::size_t count_fields(std::string_view bytes) {
 }
 
 std::size_t count_json_values(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char each) { return each == ',' || each == '[' || each == '{'; }));
+  std::size_t values = 0;
+  bool is_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char each = text[i];
+    if (each == '"') is_text = !is_text;
+    if (is_text && each == '\\') ++i;
+    if (!is_text && (each == ',' || each == '[' || each == '{')) ++values;
+  }
+  return values;
 }
 
 }  // namespace ziggurat::wire

@@ -6,8 +6,8 @@
 
 namespace ziggurat::wire {
 
-/// Fields of a message, those of messages in it included. A legal message has fewer: a Command has
-/// 65 536 radio messages for a robot at most, and arrays count as one.
+/// Fields of a message, those of messages in it included; arrays count as one. A Command may have fewer:
+/// see CommandLimits.
 inline constexpr std::size_t most_fields = std::size_t{1} << 18;
 
 /// So many bytes of text, or numbers of a list that have no fixed size, count as one field.
@@ -17,7 +17,7 @@ inline constexpr std::size_t bytes_per_field = 16;
 /// Decoding takes up to about 100 bytes of memory for each.
 std::size_t count_fields(std::string_view bytes);
 
-/// At least as many as a text of JSON has values: one for each comma and bracket.
+/// At least as many as a text of JSON has values: one for each comma and bracket that is in no text.
 std::size_t count_json_values(std::string_view text);
 
 }  // namespace ziggurat::wire

@@ -8,7 +8,6 @@
 #include <new>
 
 #include "wire/command.h"
-#include "wire/cost.h"
 #include "wire/fault.h"
 #include "wire/metrics.h"
 #include "wire/read_json.h"
@@ -98,14 +97,14 @@ Inbox::Inbox() : message_(std::make_unique<Message>()) {
 }
 Inbox::~Inbox() = default;
 
-Inbox::Kind Inbox::parse(std::string_view bytes) {
+Inbox::Kind Inbox::parse(std::string_view bytes, std::size_t most) {
   Message& in = *message_;
   in.kind = Kind::malformed;
   in.complaint.clear();
   if (bytes.size() > std::numeric_limits<int>::max()) return in.kind;
   try {
     const bool is_json = encoding_of(bytes) == Encoding::json;
-    if ((is_json ? count_json_values(bytes) : count_fields(bytes)) > most_fields) {
+    if ((is_json ? count_json_values(bytes) : count_fields(bytes)) > most) {
       in.complaint = "it has more fields than any message needs";
       return in.kind;
     }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "wire/cost.h"
 #include "wire/direction.h"
 #include "wire/messages.h"
 #include "wire/request.h"
@@ -33,9 +34,9 @@ class Inbox {
   Inbox();
   ~Inbox();
 
-  /// In either form, see encoding_of(). A message that would cost too much to decode is malformed,
-  /// and so is one for which there is not enough memory.
-  Kind parse(std::string_view bytes);
+  /// In either form, see encoding_of(). A message with more than `most` fields is malformed, and so is one
+  /// for which there is not enough memory.
+  Kind parse(std::string_view bytes, std::size_t most = most_fields);
   /// What makes the current message malformed, for people; may be empty.
   const std::string& complaint() const;
 

@@ -97,13 +97,13 @@ TEST(Rate, M7_LongCommandsThatAreNotOwedCountMoreThanOnce) {
   Pair pair{Config{}};
   pair.peers.say("p", Peers::command(5));
   auto late = Peers::command(5);
-  late.mutable_command()->add_log()->set_text(std::string(3 << 20, 'x'));
+  late.mutable_command()->add_log()->set_text(std::string(64 << 10, 'x'));
   int sent = 0;
   while (pair.peers.status()[0].membership == Membership::held && sent < 1000) {
     pair.peers.say("p", late);
     ++sent;
   }
-  EXPECT_LE(sent, 2000 / 49 + 2);
+  EXPECT_LE(sent, 2000 / 5 + 2);
   EXPECT_EQ(pair.peers.inboxes["p"].back().error().code(), v1::Error::TOO_MANY);
 }
 
@@ -113,7 +113,7 @@ TEST(Rate, M7_LongCommandsThatAreOwedAreFree) {
   for (std::uint64_t tick = 6; tick < 60; ++tick) {
     pair.peers.publish(tick);
     auto owed = Peers::command(tick);
-    owed.mutable_command()->add_log()->set_text(std::string(3 << 20, 'x'));
+    owed.mutable_command()->add_log()->set_text(std::string(64 << 10, 'x'));
     pair.peers.inboxes.clear();
     pair.peers.say("p", owed);
     ASSERT_TRUE(pair.peers.inboxes["p"].empty());

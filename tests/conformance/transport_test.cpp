@@ -42,14 +42,15 @@ TEST(Transport, T4_AControllerMaySendWhatItsRobotsNeed) {
   SmallRun small(3);
   Peers peers(small);
   const auto most = peers.join("p", "robot0").max_message_bytes();
-  EXPECT_GE(most, 4U << 20);
-  EXPECT_LT(most, 5U << 20);
+  const std::uint64_t shared = talks_json() ? 64 << 10 : 256 << 10;
+  EXPECT_GE(most, shared);
+  EXPECT_LT(most, shared + (64 << 10));
   small.layout().radios.resize(2);
   small.layout().radios[1].sends = true;
   small.layout().robots[1].radios = {0, 1};
-  EXPECT_LT(peers.join("q", "robot1").max_message_bytes(), 5U << 20) << "it can't send";
+  EXPECT_LT(peers.join("q", "robot1").max_message_bytes(), shared + (64 << 10)) << "it can't send";
   small.layout().robots[2].radios = {1, 1};
-  EXPECT_GE(peers.join("r", "robot2").max_message_bytes(), (16U << 20) * (talks_json() ? 4 : 3) / 3);
+  EXPECT_GE(peers.join("r", "robot2").max_message_bytes(), shared + (talks_json() ? 128 << 10 : 2 << 20));
 }
 
 TEST(Transport, T5_UnknownFieldsAreIgnored) {

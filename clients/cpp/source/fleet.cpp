@@ -10,7 +10,7 @@
 namespace ziggurat {
 
 Fleet::Fleet(const v1::Welcome& welcome) : robots_(size(welcome.robots_size())) {
-  log_.max_bytes = std::max<std::size_t>(welcome.max_message_bytes() / 4, std::size_t{1} << 16);
+  log_.max_bytes = static_cast<std::size_t>(welcome.max_message_bytes() / 4);
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const v1::RobotDescription& from = welcome.robots(static_cast<int>(i));
     Robot& robot = robots_[i];

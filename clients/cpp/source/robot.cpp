@@ -30,7 +30,7 @@ void Robot::log(std::string_view text) { add_line(false, text); }
 void Robot::log_error(std::string_view text) { add_line(true, text); }
 
 void Robot::add_line(bool error, std::string_view text) {
-  constexpr std::size_t overhead = 16;  // of a line, besides its text, at most [bytes]
+  constexpr std::size_t overhead = 32;  // of a line, besides its text: it has four fields [bytes]
   if (log_->bytes + text.size() + overhead > log_->max_bytes) {
     throw std::length_error("the session logs more than " + std::to_string(log_->max_bytes) +
                             " bytes at one tick");

@@ -16,7 +16,7 @@
 #include "network/barrier/timing.h"
 #include "wire/direction.h"
 #include "wire/fault.h"
-#include "wire/longest_command.h"
+#include "wire/command_limits.h"
 
 namespace ziggurat::network {
 
@@ -126,10 +126,10 @@ Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) 
 void bind(Barrier& barrier, Session& session, const std::string& connection) {
   session.connection = connection;
   if (session.role == wire::Role::controller && barrier.run) {
-    session.longest_command = wire::longest_command(
+    session.command_limits = wire::command_limits(
         session.roster, barrier.run->layout, barrier.connections.find(connection)->encoding);
   }
-  if (session.role == wire::Role::director) session.longest_command = wire::longest_direction;
+  if (session.role == wire::Role::director) session.command_limits = {wire::longest_direction, wire::most_fields};
   if (barrier.on_standing) {
     barrier.on_standing(connection, standing_of(&session), longest_message(barrier, &session));
   }

@@ -21,7 +21,7 @@ namespace {
 
 // A message counts once more for each of these of its size [bytes].
 constexpr std::size_t bytes_per_message = 4 * kibibyte;
-constexpr std::size_t bytes_per_message_of_controller = 64 * kibibyte;
+constexpr std::size_t bytes_per_message_of_controller = 16 * kibibyte;
 
 void handle_heartbeat(Barrier& barrier, const Session& session) {
   barrier.outbox.heartbeat(barrier.inbox.heartbeat());
@@ -105,10 +105,9 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
       received.is_single_frame ? wire::encoding_of(received.bytes) : received.several_frames;
   if (session == nullptr) connection.encoding = encoding;
   if (!may_send(barrier, id, connection, session)) return;
-  const std::size_t charge =
-      received.bytes.size() / (standing_of(session) == Standing::controller
-                                   ? bytes_per_message_of_controller
-                                   : bytes_per_message);
+  const bool is_controller = standing_of(session) == Standing::controller;
+  const std::size_t charge = received.bytes.size() / (is_controller ? bytes_per_message_of_controller
+                                                                    : bytes_per_message);
   Connections::charge(connection, charge);
   if (!received.is_single_frame) return answer_malformed(barrier, id, session, {});
   if (auto fault = check_size(barrier, received, session)) {
@@ -120,7 +119,8 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
         barrier, id, session,
         is_json ? "this session talks JSON" : "this session does not talk JSON");
   }
-  const InboxKind kind = barrier.inbox.parse(received.bytes);
+  const InboxKind kind = barrier.inbox.parse(
+      received.bytes, is_controller ? session->command_limits.fields : wire::most_fields);
   if (kind == InboxKind::malformed) {
     return answer_malformed(barrier, id, session, barrier.inbox.complaint());
   }

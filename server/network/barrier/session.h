@@ -9,6 +9,7 @@
 #include "network/barrier/turn.h"
 #include "network/latencies.h"
 #include "network/link.h"
+#include "wire/command_limits.h"
 #include "wire/messages.h"
 #include "wire/outbox.h"
 #include "wire/roster.h"
@@ -57,7 +58,7 @@ struct Session {
   wire::Roster roster;      ///< of other roles: empty
   std::optional<std::size_t> director;  ///< of that role: its number; none: it has left
   wire::WorldView view;                 ///< of that role: what it is told
-  std::size_t longest_command = 0;  ///< that its robots can need, in its form [bytes]
+  wire::CommandLimits command_limits;   ///< of what its robots can need, in its form
   Turn turn;
   Contact contact;
   Latencies latencies;       ///< from observation to command

@@ -84,7 +84,7 @@ std::size_t longest_message(const Barrier& barrier, const Session* session) {
   const std::size_t most = barrier.config.max_message_bytes;
   const Standing standing = standing_of(session);
   return longest_message(standing, standing == Standing::controller
-                                       ? std::min(most, session->longest_command)
+                                       ? std::min(most, session->command_limits.bytes)
                                        : most);
 }
 

@@ -165,7 +165,9 @@ TEST(Devices, ValuesAreSentOnce) {
 
 TEST(Devices, RefuseInvalidValues) {
   FakeServer server([](FakeServer& self) {
-    self.welcome(welcome());
+    v1::ServerMessage roomy = welcome();
+    roomy.mutable_welcome()->set_max_message_bytes(64 << 20);
+    self.welcome(roomy);
     self.receive();
   });
   Session session(options_for(server));

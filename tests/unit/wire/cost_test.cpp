@@ -39,6 +39,10 @@ TEST(Cost, AMessageOfEmptyPartsIsNotDecoded) {
   EXPECT_EQ(inbox.parse(json + "\"\"]}}"), Inbox::Kind::malformed);
 }
 
+TEST(Cost, CommasInATextOfJsonAreNoValues) {
+  EXPECT_EQ(count_json_values(R"({"command":{"log":[{"text":"[1,2,3], \",{\"\\"},{}]}})"), 6U);
+}
+
 TEST(Cost, ListsOfNumbersCountByTheirLength) {
   v1::ClientMessage message;
   for (int i = 0; i < 1600; ++i) message.mutable_command()->add_led_colors(1);

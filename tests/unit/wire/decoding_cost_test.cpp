@@ -3,13 +3,14 @@
 #include <gtest/gtest.h>
 #include <time.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
 #include "long_runs.h"
+#include "wire/command_limits.h"
 #include "wire/cost.h"
 #include "wire/inbox.h"
-#include "wire/longest_command.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
@@ -22,63 +23,85 @@ double processor_time() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// As many of `unit` between the others as a Command of robots without radios may have.
-std::string json_of(const std::string& begin, const std::string& unit, const std::string& end,
-                    std::size_t most = command_allowance, std::size_t longest = command_allowance) {
+/// As many of `unit` between the others as fit.
+std::string json_of(const CommandLimits& limits, const std::string& begin, const std::string& unit,
+                    const std::string& end) {
   std::string text = begin;
-  text.reserve(longest);
-  for (std::size_t i = 0; i < most; ++i) {
-    if (text.size() + unit.size() + end.size() > longest) break;
-    text += unit;
-  }
+  const std::size_t per_unit = std::max<std::size_t>(1, count_json_values(unit));
+  const bool is_text = begin.back() == '"';
+  const std::size_t most = is_text ? limits.bytes : limits.fields / per_unit - 4;
+  for (std::size_t i = 0; i < most && text.size() + unit.size() + end.size() <= limits.bytes; ++i) text += unit;
   return text + end;
 }
 
-std::string text_in_binary() {
+std::string text_in_binary(const CommandLimits& limits) {
   v1::ClientMessage message;
   std::string& text = *message.mutable_command()->add_log()->mutable_text();
-  while (text.size() + 100 < command_allowance) text += "\xe2\x82\xac";
+  while (text.size() + 100 < limits.bytes) text += "\xe2\x82\xac";
   return message.SerializeAsString();
 }
 
-std::string many_messages_in_binary() {
+std::string many_messages_in_binary(const CommandLimits& limits) {
   v1::ClientMessage message;
-  for (std::size_t i = 0; i + 2 < most_fields; ++i) message.mutable_command()->add_radio_messages();
+  for (std::size_t i = 0; i + 2 < limits.fields; ++i) message.mutable_command()->add_radio_messages();
   return message.SerializeAsString();
 }
 
-/// As many as a Command of robots with radios may have.
-std::string long_messages_in_binary() {
+std::string long_messages_in_binary(const CommandLimits& limits) {
   v1::ClientMessage message;
-  for (int i = 0; i < 63; ++i) {
-    message.mutable_command()->add_radio_messages()->set_payload(std::string(1 << 20, 'x'));
+  for (std::size_t left = limits.bytes - 100; left > 0;) {
+    const std::size_t size = std::min<std::size_t>(left, 1 << 20);
+    message.mutable_command()->add_radio_messages()->set_payload(std::string(size, 'x'));
+    left -= size;
   }
   return message.SerializeAsString();
 }
 
-TEST(Decoding, TheWorstMessagesTakeLessThanASecond) {
+/// Of a robot with every device of which a Command has values, and a radio.
+world::Layout equipped() {
+  world::Layout layout;
+  layout.radios.resize(1);
+  layout.radios[0].sends = true;
+  layout.robots.resize(1);
+  layout.robots[0].radios = {0, 1};
+  layout.robots[0].tags = {0, 1};
+  layout.robots[0].leds = {0, 12};
+  layout.robots[0].joint_actuators = {0, 12};
+  return layout;
+}
+
+CommandLimits limits_of(const world::Layout& layout, Encoding encoding) {
+  Roster roster;
+  for (std::size_t i = 0; i < layout.robots.size(); ++i) roster.robots.push_back(i);
+  return command_limits(roster, layout, encoding);
+}
+
+TEST(Decoding, TheWorstCommandOfARobotTakesAFewMilliseconds) {
+  const world::Layout layout = equipped();
+  const CommandLimits binary = limits_of(layout, Encoding::binary), json = limits_of(layout, Encoding::json);
+  EXPECT_LT(binary.bytes, std::size_t{5} << 19);
+  EXPECT_LT(json.bytes, std::size_t{1} << 19);
   const struct {
     const char* name;
     std::string bytes;
+    std::size_t fields;
   } messages[] = {
-      {"text in binary", text_in_binary()},
-      {"radio messages in binary", many_messages_in_binary()},
-      {"the longest in binary", long_messages_in_binary()},
-      {"the longest in JSON", json_of(R"({"command":{"tagPayloads":[")", "AAAA", R"("]}})", 6 << 20, 24 << 20)},
-      {"text in JSON", json_of(R"({"command":{"log":[{"text":")", "\xe2\x82\xac", R"("}]}})")},
-      {"bytes in JSON", json_of(R"({"command":{"tagPayloads":[")", "AAAA", R"("]}})")},
-      {"numbers in JSON",
-       json_of(R"({"command":{"jointTargets":[0)", ",0.12345678901", "]}}", most_fields - 10)},
-      {"objects in JSON", json_of(R"({"command":{"log":[{})", R"(,{"robot":0})", "]}}", most_fields / 2 - 9)},
-      {"one number in JSON", json_of(R"({"command":{"jointTargets":[0.)", "12345678", "]}}")},
+      {"text in binary", text_in_binary(limits_of({}, Encoding::binary)), binary.fields},
+      {"radio messages in binary", many_messages_in_binary(binary), binary.fields},
+      {"the longest in binary", long_messages_in_binary(binary), binary.fields},
+      {"text in JSON", json_of(json, R"({"command":{"log":[{"text":")", "\xe2\x82\xac", R"("}]}})"), json.fields},
+      {"bytes in JSON", json_of(json, R"({"command":{"tagPayloads":[")", "AAAA", R"("]}})"), json.fields},
+      {"numbers in JSON", json_of(json, R"({"command":{"jointTargets":[0)", ",0.12345678901", "]}}"), json.fields},
+      {"objects in JSON", json_of(json, R"({"command":{"log":[{})", R"(,{"robot":0})", "]}}"), json.fields},
+      {"one number in JSON", json_of(json, R"({"command":{"jointTargets":[0.)", "12345678", "]}}"), json.fields},
   };
-  for (const auto& [name, bytes] : messages) {
+  for (const auto& [name, bytes, fields] : messages) {
     Inbox inbox;
     const double begin = processor_time();
-    EXPECT_EQ(inbox.parse(bytes), Inbox::Kind::command) << name << ": " << inbox.complaint();
+    EXPECT_EQ(inbox.parse(bytes, fields), Inbox::Kind::command) << name << ": " << inbox.complaint();
     const double used = processor_time() - begin;
-    std::printf("%-26s %4.1f MiB %6.1f ms\n", name, static_cast<double>(bytes.size()) / (1 << 20), 1e3 * used);
-    EXPECT_LT(used, long_runs::is_slow ? 20 : 1) << name;
+    std::printf("%-26s %4.2f MiB %6.2f ms\n", name, static_cast<double>(bytes.size()) / (1 << 20), 1e3 * used);
+    EXPECT_LT(used, long_runs::is_slow ? 2 : 0.1) << name;
   }
 }
 
