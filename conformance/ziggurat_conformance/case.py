@@ -1,7 +1,9 @@
 """What a case is, and its outcome."""
 
 import enum
+import time
 from dataclasses import dataclass
+from typing import Callable
 
 from .server_scene import MAIN
 
@@ -69,3 +71,17 @@ class Unimplemented(Exception):
 
 class NotRun(Exception):
     """The case can't be played here; the text names what is needed."""
+
+
+def judge(outcome: Outcome, play: Callable[[], None]) -> None:
+    """Plays, and notes what came out and why."""
+    verdicts = {NotRun: Verdict.NOT_RUN, Unimplemented: Verdict.UNIMPLEMENTED, NonStrict: Verdict.NON_STRICT,
+                Failed: Verdict.FAIL}
+    start = time.monotonic()
+    try:
+        play()
+    except tuple(verdicts) as reason:
+        outcome.verdict, outcome.reason = verdicts[type(reason)], str(reason)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        outcome.verdict, outcome.reason = Verdict.FAIL, f"what it said made the case stumble: {error!r}"
+    outcome.seconds = time.monotonic() - start

@@ -1,9 +1,8 @@
 """Plays cases against a controller program, and judges."""
 
-import time
 from typing import Callable
 
-from .case import Case, Failed, Level, NonStrict, Outcome, Unimplemented, Verdict
+from .case import Case, Level, Outcome, Verdict, judge
 from .cases.client import CLIENT_CASES as CASES
 from .client_stage import ClientStage, Options
 from .client_steps import TellWelcome
@@ -35,20 +34,8 @@ def _play_one(case: Case, command: list, options: Options) -> Outcome:
     if options.scene is not None and _names_robots(case.steps):
         outcome.verdict, outcome.reason = Verdict.NOT_RUN, "plays the kit's own robots: leave --scene out"
         return outcome
-    start = time.monotonic()
     with ClientStage(command, case, options) as stage:
-        try:
-            stage.play(case.steps)
-        except Unimplemented as reason:
-            outcome.verdict, outcome.reason = Verdict.UNIMPLEMENTED, str(reason)
-        except NonStrict as reason:
-            outcome.verdict, outcome.reason = Verdict.NON_STRICT, str(reason)
-        except Failed as reason:
-            outcome.verdict, outcome.reason = Verdict.FAIL, str(reason)
-        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-            reason = f"what it said made the case stumble: {error!r}"
-            outcome.verdict, outcome.reason = Verdict.FAIL, reason
-    outcome.seconds = time.monotonic() - start
+        judge(outcome, lambda: stage.play(case.steps))
     if outcome.verdict is not Verdict.PASS:
         outcome.transcript = stage.transcript.text()
     return outcome

@@ -1,12 +1,11 @@
 """Plays cases against a server, and judges."""
 
-import time
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from typing import Callable, Iterator, Optional
 
 from . import wire
-from .case import Case, Failed, Level, NonStrict, NotRun, Outcome, Unimplemented, Verdict
+from .case import Case, Failed, Level, NotRun, Outcome, Unimplemented, Verdict, judge
 from .keys import VARIANT, Keys
 from .messages import hello
 from .peer import Peer, Transcript
@@ -147,27 +146,18 @@ def _play_patiently(case: Case, form: str, servers, patience: float) -> Outcome:
 def _play_one(case: Case, form: str, servers, patience: float) -> Outcome:
     name = case.id if form == "binary" else f"{case.id}/{form}"
     outcome = Outcome(name, case.title, case.level, Verdict.PASS)
-    start = time.monotonic()
-    stage = None
-    try:
+    server = stage = None
+
+    def play_case() -> None:
+        nonlocal server, stage
         server = servers.server_for(case)
         keys = servers.keys if case.variant == VARIANT else None
         with Stage(server.endpoint, form, patience, server, keys) as stage:
             stage.play(case.steps)
             if not case.fresh and not server.runs():
                 raise Failed("nothing is wrong with its answers")
-    except NotRun as reason:
-        outcome.verdict, outcome.reason = Verdict.NOT_RUN, str(reason)
-    except Unimplemented as reason:
-        outcome.verdict, outcome.reason = Verdict.UNIMPLEMENTED, str(reason)
-    except NonStrict as reason:
-        outcome.verdict, outcome.reason = Verdict.NON_STRICT, str(reason)
-    except Failed as reason:
-        outcome.verdict, outcome.reason = Verdict.FAIL, str(reason)
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        reason = f"what it said made the case stumble: {error!r}"
-        outcome.verdict, outcome.reason = Verdict.FAIL, reason
-    outcome.seconds = time.monotonic() - start
+
+    judge(outcome, play_case)
     if outcome.verdict is Verdict.FAIL and stage is not None and not server.runs():
         outcome.reason += f"; the server had ended, and had said:\n{server.last_words()}"
     if stage is not None and outcome.verdict in (Verdict.FAIL, Verdict.NON_STRICT):

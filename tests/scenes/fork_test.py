@@ -153,17 +153,7 @@ class Refused(Fork):
                 self.assert_is_sentence(self.ask("fork", recording, *words, code=FAULT), pattern)
 
     def test_recorded_commands_are_never_started_by_themselves(self):
-        marker = self.folder / "started"
-        self.change("<lua_controller", "<external_controller")
-        self.change("</lua_controller", "</external_controller")
-        self.scene.write_text(re.sub(r"(<external_controller id=\"[^\"]*\")",
-                                     rf'\1 command="touch {marker}; sleep 100"', self.text))
-        recording = self.folder / "run.mcap"
-        process = self.start("run", self.scene, "--record", recording)
-        self.wait_for(marker.exists, bool, "start of the command")
-        self.interrupt(process)
-        self.finish(process)
-        marker.unlink()
+        recording, marker = self.record_a_command()
         outcome = self.ask("fork", recording, "--at", "0", "--ticks", "5", code=FAULT)
         self.assert_is_sentence(outcome, "--controller ID=COMMAND: swing; or --trust-recorded-commands")
         self.assertFalse(marker.exists())

@@ -23,6 +23,21 @@ class Recorded(SceneTest):
         outcome = self.run_scene("--record", recording, "--hash", "--quiet", *arguments, scene=scene)
         return recording, outcome.lines[-1]
 
+    def record_a_command(self):
+        """Records a run whose scene names a command, which makes a file. Returns the recording and the file's path."""
+        marker = self.folder / "started"
+        self.change("<lua_controller", "<external_controller")
+        self.change("</lua_controller", "</external_controller")
+        self.scene.write_text(re.sub(r"(<external_controller id=\"[^\"]*\")",
+                                     rf'\1 command="touch {marker}; sleep 100"', self.text))
+        recording = self.folder / "run.mcap"
+        process = self.start("run", self.scene, "--record", recording)
+        self.wait_for(marker.exists, bool, "start of the command")
+        self.interrupt(process)
+        self.finish(process)
+        marker.unlink()
+        return recording, marker
+
     def ask(self, *arguments, code=FINISHED):
         outcome = self.ziggurat(*arguments)
         self.assertEqual(outcome.code, code, f"{arguments}\n{outcome.out}\n{outcome.err}")
@@ -408,17 +423,7 @@ class Controllers(Recorded):
         self.assertRegex(outcome.out, rf"tick \d+: '{robot}': .* is .* in the recording, .* now")
 
     def test_recorded_commands_are_never_started_by_themselves(self):
-        marker = self.folder / "started"
-        self.change("<lua_controller", "<external_controller")
-        self.change("</lua_controller", "</external_controller")
-        self.scene.write_text(re.sub(r"(<external_controller id=\"[^\"]*\")",
-                                     rf'\1 command="touch {marker}; sleep 100"', self.text))
-        recording = self.folder / "run.mcap"
-        process = self.start("run", self.scene, "--record", recording)
-        self.wait_for(marker.exists, bool, "start of the command")
-        self.interrupt(process)
-        self.finish(process)
-        marker.unlink()
+        recording, marker = self.record_a_command()
         outcome = self.ask("verify", recording, "--controllers", code=FAULT)
         self.assert_is_sentence(outcome, "--trust-recorded-commands")
         self.assertFalse(marker.exists())

@@ -1,7 +1,7 @@
 """One session as both of its ends see it: every message of either direction is judged and remembered."""
 
 import enum
-from typing import Iterator, Optional
+from typing import Iterator, Optional, Union
 
 from ..wire import protocol
 from .command import PER_ROBOT, command_faults, leave_faults, metric_faults
@@ -246,15 +246,7 @@ class Session:
 
     def _take_observation(self, told: protocol.Observation) -> list:
         faults = list(observation_faults(self.welcome, told)) if self.welcome is not None else []
-        if not self._is_new_world and self.tick is not None and told.tick <= self.tick:
-            faults.append(Fault("S1", f"Observation {told.tick} follows Observation {self.tick}"))
-        if self.owes and self.tick is not None:
-            self.missed.add(self.tick)
-        self.tick, self.owes, self._is_new_world = told.tick, True, False
-        self.epoch = told.epoch if told.HasField("epoch") else None
-        if self.state is not State.DRAINING:
-            self.state = State.STEPPING
-        return faults
+        return [*faults, *self._begin_tick("S1", told)]
 
     def _take_world_layout(self, layout: protocol.WorldLayout) -> Iterator[Fault]:
         if layout.first == 0 or self._world is None:
@@ -272,8 +264,14 @@ class Session:
         elif self.hello is not None:
             groups = set(self.hello.subscription.groups)
             faults += world_state_faults(self._world, groups if self.hello.HasField("subscription") else None, told)
+        return [*faults, *self._begin_tick("R5", told)]
+
+    def _begin_tick(self, rule: str, told: Union[protocol.Observation, protocol.WorldState]) -> list:
+        """Of an Observation or a WorldState; the rule says which tick may follow."""
+        faults = []
         if not self._is_new_world and self.tick is not None and told.tick <= self.tick:
-            faults.append(Fault("R5", f"WorldState {told.tick} follows WorldState {self.tick}"))
+            kind = told.DESCRIPTOR.name
+            faults.append(Fault(rule, f"{kind} {told.tick} follows {kind} {self.tick}"))
         if self.owes and self.tick is not None:
             self.missed.add(self.tick)
         self.tick, self.owes, self._is_new_world = told.tick, True, False

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "ziggurat/error.h"
 #include "ziggurat/session.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -139,6 +140,24 @@ inline Options options_for(const FakeServer& server) {
   options.connect_timeout = std::chrono::milliseconds{20'000};
   options.wait_timeout = std::chrono::milliseconds{20'000};
   return options;
+}
+
+/// A client that is welcomed so does not take this message, and says these words. `look` sees its session after that.
+inline void expect_refused(const v1::ServerMessage& welcome, const v1::ServerMessage& message, const char* words,
+                           const std::function<void(Session&)>& look = {}) {
+  FakeServer server([&](FakeServer& self) {
+    self.welcome(welcome);
+    self.send(message);
+    self.receive();
+  });
+  Session session(options_for(server));
+  try {
+    session.next();
+    ADD_FAILURE() << "was read: " << words;
+  } catch (const ConnectionError& error) {
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+  if (look) look(session);
 }
 
 }  // namespace ziggurat

@@ -111,19 +111,9 @@ TEST(Cameras, UnannouncedValuesAreRefused) {
   const auto refused = [](const v1::Observation& seen, const char* words) {
     v1::ServerMessage message;
     *message.mutable_observation() = seen;
-    FakeServer server([message](FakeServer& self) {
-      self.welcome(welcome());
-      self.send(message);
-      self.receive();
+    expect_refused(welcome(), message, words, [](Session& session) {
+      EXPECT_TRUE(session.robot("c").camera("eye").leds().empty());
     });
-    Session session(options_for(server));
-    try {
-      session.next();
-      ADD_FAILURE() << "was read: " << words;
-    } catch (const ConnectionError& error) {
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
-    EXPECT_TRUE(session.robot("c").camera("eye").leds().empty());
   };
   const v1::Observation good = sight(0).observation();
   v1::Observation bad = good;

@@ -128,18 +128,7 @@ TEST(Driving, RefusesInvalidValues) {
 
 TEST(Driving, UnannouncedValuesAreRefused) {
   const auto refused = [](const v1::ServerMessage& message, const char* words) {
-    FakeServer server([message](FakeServer& self) {
-      self.welcome(welcome());
-      self.send(message);
-      self.receive();
-    });
-    Session session(options_for(server));
-    try {
-      session.next();
-      ADD_FAILURE() << "was read: " << words;
-    } catch (const ConnectionError& error) {
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
+    expect_refused(welcome(), message, words);
   };
   auto message = observation(0);
   message.mutable_observation()->add_wheels(1);
