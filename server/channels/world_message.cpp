@@ -127,6 +127,7 @@ void describe_entity(const Population& from, std::size_t place, v1::World& to) {
 
 void describe_links(const Population& from, v1::World& to) {
   const render::Model looks = render::make_model(from.scene, from.entities);
+  to.set_has_floor(looks.has_floor);
   to.set_floor_tile(looks.tile);
   ShapeWriter writer{to};
   for (std::size_t i = 0; i < from.layout.links.size(); ++i) {
@@ -186,7 +187,6 @@ v1::World describe(const Population& from, std::uint64_t generation) {
   to.set_last_tick(from.last_tick);
   add(from.scene.arena.size, *to.mutable_arena_size());
   add(from.scene.arena.center, *to.mutable_arena_center());
-  to.set_has_floor(from.scene.physics.floor.has_value());
   for (std::size_t i = 0; i < from.layout.entities.size(); ++i) {
     describe_entity(from, i, to);
     describe_joints(from, i, to);

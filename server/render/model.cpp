@@ -50,7 +50,10 @@ void add_bodies(const scene::Entity& entity, Model& model) {
 Model make_model(const scene::Scene& scene, const std::vector<scene::Entity>& entities) {
   Model model;
   for (const scene::Entity& entity : entities) add_bodies(entity, model);
-  model.has_floor = scene.physics.floor.has_value();
+  model.has_floor = scene.physics.floor.has_value() ||
+                    std::ranges::any_of(scene.physics.planes, [](const scene::Plane& plane) {
+                      return plane.elevation == 0;
+                    });
   model.arena_center = scene.arena.center.head<2>();
   model.arena_half_size = 0.5 * scene.arena.size.head<2>();
   const double side = std::clamp(scene.arena.size.head<2>().minCoeff(), 0.01, 1e4);

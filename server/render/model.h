@@ -18,7 +18,7 @@ struct Body {
 
 struct Model {
   std::vector<Body> bodies;                               ///< one per link, as State::links
-  bool has_floor = false;                                 ///< at z = 0
+  bool has_floor = false;                                 ///< at z = 0, also ground of planes
   double tile = 0;                                        ///< side of the squares on the floor [m]
   math::Vector2 arena_center = math::Vector2::Zero();     ///< [m]
   math::Vector2 arena_half_size = math::Vector2::Zero();  ///< [m]

@@ -10,6 +10,7 @@ import { decode, liveTick, newPage, onScreen, openBrowser, openPage, pictureAtRe
 const drop = "scenes/dynamics3d_single_body_test.argos";
 const vehicle = "scenes/dynamics3d_multi_body_test.argos";
 const tags = `${root}tests/web/tags.argos`;
+const robots = `${root}tests/web/robots.argos`;
 const fromTop = "eye=0,-0.001,0.9&at=0,0,0&fov=45&theme=light";
 
 let browser;
@@ -299,6 +300,46 @@ pageTest("what is spawned comes, what is removed goes", tags, "", async (page) =
   await page.locator("#spawn-id").fill("near");
   await page.locator("#spawn").click(); // the name is taken
   await page.locator(".notice.error").waitFor();
+});
+
+pageTest("foot-bots and e-pucks show their heading and stand on a floor", robots, fromTop, async (page) => {
+  await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
+  await key(page, "Space");
+  await standing(page);
+  const { width, data } = await decode(page, await pictureAtRest(page));
+  const box = await page.locator("#world").boundingBox();
+  const colorAt = async (point) => {
+    const { x, y } = await onScreen(page, point);
+    const at = 4 * (Math.round(y - box.y) * width + Math.round(x - box.x));
+    return [...data.subarray(at, at + 3)];
+  };
+  const isWhite = ([red, green, blue]) => Math.min(red, green, blue) > 170 && Math.max(red, green, blue) - Math.min(red, green, blue) < 30;
+  const isBlue = ([red, , blue]) => blue > red + 40;
+  assert.ok(isWhite(await colorAt([-0.14, 0, 0.149])), "the foot-bot's arrow");
+  assert.ok(isBlue(await colorAt([-0.26, 0, 0.147])), "the foot-bot's back");
+  assert.ok(isWhite(await colorAt([0.2, 0.0255, 0.046])), "the e-puck's arrow");
+  assert.ok(isBlue(await colorAt([0.2, -0.025, 0.045])), "the e-puck's back");
+  const floors = [await colorAt([0.05, 0.05, 0]), await colorAt([0.15, 0.05, 0])];
+  assert.notDeepEqual(floors[0], floors[1]); // squares
+});
+
+pageTest("models of the scene are spawned, and robots with its controllers", robots, "", async (page) => {
+  await page.locator(".change summary").click();
+  const spawn = async (what, id, place) => {
+    await page.locator("#spawn-what").selectOption({ label: what });
+    await page.locator("#spawn-id").fill(id);
+    await page.locator("#spawn-place").fill(place);
+    await page.locator("#spawn").click();
+    await waitFor(() => placeOf(page, id), id);
+    await page.locator(`[data-entity="${id}"].selected`).waitFor();
+  };
+  await spawn("crate (prototype)", "crate_1", "0, 0.3, 0");
+  for (const [what, id, place] of [["puck (e-puck)", "puck_1", "0.2, -0.3, 0"],
+                                   ["foot-bot with turning", "walker", "-0.2, -0.3, 0"]]) {
+    await spawn(what, id, place);
+    const left = page.locator('[data-reading="Commands/Wheels/left"] .value');
+    await waitFor(async () => Math.abs(Number(await left.getAttribute("data-value")) + 0.01) < 1e-6, `commands of ${id}`);
+  }
 });
 
 test("a server that was killed and started again is found within seconds", { timeout: 180_000 }, async () => {

@@ -154,6 +154,21 @@ TEST(Renderer, GivesTheSameBytesAgain) {
   EXPECT_EQ(world.picture(view).rgb, first.rgb) << "another renderer";
 }
 
+TEST(Renderer, DrawsTheGroundOfAPlaneAsTheFloor) {
+  SmallWorld world;
+  world.add(scene::Box{{0.2, 0.3, 0.4}}, {{2, 0.1, 0}, Quaternion::Identity()});
+  View view = forward_view();
+  view.camera.position.z() = 0.3;
+  const Picture nothing = world.picture(view);
+  world.scene.physics.planes.push_back({.elevation = 0.1});
+  EXPECT_EQ(world.picture(view).rgb, nothing.rgb) << "a floor is drawn at z = 0 only";
+  world.scene.physics.planes.push_back({});
+  const Picture ground = world.picture(view);
+  EXPECT_NE(ground.rgb, nothing.rgb);
+  world.scene.physics.floor.emplace();
+  EXPECT_EQ(world.picture(view).rgb, ground.rgb);
+}
+
 TEST(Renderer, ThrowsAShadow) {
   SmallWorld world;
   world.scene.physics.floor.emplace();

@@ -16,7 +16,7 @@ export interface Part {
 }
 
 /** Whether a shape takes more triangles to look round. */
-export function isRound(shape: string): boolean { return /^(cylinder|sphere|capsule)/.test(shape); }
+export function isRound(shape: string): boolean { return /^(cylinder|wheel|sphere|capsule)/.test(shape); }
 
 const upright: Quaternion = [1, 0, 0, 0];
 
@@ -27,8 +27,8 @@ export function makeGeometry(key: string, hulls: Hull[], around: number): three.
     case "box": return new three.BoxGeometry(1, 1, 1).translate(0, 0, 0.5);
     case "cylinder": return new three.CylinderGeometry(1, 1, 1, around).rotateX(Math.PI / 2).translate(0, 0, 0.5);
     case "sphere": return new three.SphereGeometry(1, around, Math.round(around / 2)).rotateX(Math.PI / 2).translate(0, 0, 1);
-    case "ring": return new three.TorusGeometry(1, 0.08, 8, 40);
-    case "wedge": return new three.ConeGeometry(1, 1, 3).rotateZ(-Math.PI / 2).translate(0, 0, 0);
+    case "wheel": return new three.CylinderGeometry(1, 1, 1, around); // its axle is y
+    case "arrow": return arrow();
     case "capsule": return capsule(Number(a), Number(b), around);
     default: return hullGeometry(hulls[Number(a)]);
   }
@@ -37,6 +37,13 @@ export function makeGeometry(key: string, hulls: Hull[], around: number): three.
 function capsule(radius: number, height: number, around: number): three.BufferGeometry {
   const straight = Math.max(height - 2 * radius, 0);
   return new three.CapsuleGeometry(radius, straight, Math.round(around / 4), around).rotateX(Math.PI / 2).translate(0, 0, height / 2);
+}
+
+/** A flat one, along +x, on the plane z = 0. */
+function arrow(): three.BufferGeometry {
+  const vertices = [0, 1].flatMap((z) => [1, 0, z, -0.7, 0.8, z, -0.35, 0, z, -0.7, -0.8, z]);
+  const sides = [0, 1, 2, 3].flatMap((i) => { const next = (i + 1) % 4; return [i, next, i + 4, next, next + 4, i + 4]; });
+  return hullGeometry({ vertices, triangles: [4, 5, 6, 4, 6, 7, ...sides] });
 }
 
 function hullGeometry(hull: Hull | undefined): three.BufferGeometry {
@@ -64,25 +71,31 @@ function partOf(link: Link, index: number): Part | null {
   return null;
 }
 
-/** What makes foot-bots and e-pucks recognisable: tracks or wheels, a ring, and a wedge that points ahead. */
+const dark = 0x2b2d31, grey = 0x54585f;
+
+/** What makes foot-bots and e-pucks recognisable, by radius r and height h of their bodies. */
 function robotParts(entity: Entity, link: Link): Part[] {
-  const { radius, height } = link.cylinder ?? { radius: 0, height: 0 };
-  if (radius === 0) return [];
-  const isFootBot = entity.kind === Kind.footBot;
+  const { radius: r, height: h } = link.cylinder ?? { radius: 0, height: 0 };
+  if (r === 0) return [];
   const part = (shape: string, position: Vector, scale: Vector, color: number): Part =>
     ({ shape, link: entity.referenceLink, position, orientation: upright, scale, color, isDecoration: true });
-  const parts = [
-    part("wedge", [0.55 * radius, 0, height + 0.002], [0.3 * radius, 0.3 * radius, 0.004], 0xf2f3f5),
-    part("ring", [0, 0, 0.82 * height], [1.0 * radius, 1.0 * radius, 0.5 * radius],
-         isFootBot ? 0xc9ccd1 : 0x7fc46b),
-  ];
-  for (const side of [-1, 1]) {
-    parts.push(isFootBot
-      ? part("box", [0, side * 0.86 * radius, 0.0], [1.15 * radius, 0.3 * radius, 0.3 * height], 0x2b2d31)
-      : part("box", [0, side * 0.98 * radius, 0.0], [1.0 * radius, 0.12 * radius, 0.7 * height], 0x2b2d31));
+  const sides = [-1, 1];
+  if (entity.kind === Kind.footBot) {
+    return [
+      ...sides.map((side) => part("box", [0, side * 0.84 * r, 0], [1.3 * r, 0.36 * r, 0.27 * h], dark)), // tracks
+      part("cylinder", [0, 0, 0.28 * h], [1.01 * r, 1.01 * r, 0.04 * h], grey),
+      part("cylinder", [0, 0, 0.52 * h], [1.03 * r, 1.03 * r, 0.12 * h], 0xc9ccd1), // the ring of LEDs
+      part("cylinder", [0, 0, h], [0.34 * r, 0.34 * r, 0.15 * h], dark), // the camera that looks up
+      part("arrow", [0.66 * r, 0, h], [0.22 * r, 0.26 * r, 0.012 * h], 0xf2f3f5),
+    ];
   }
-  if (isFootBot) parts.push(part("cylinder", [0, 0, height], [0.22 * radius, 0.22 * radius, 0.5 * height], 0x3c4046));
-  return parts;
+  return [
+    ...sides.map((side) => part("wheel", [0, side * 0.99 * r, 0.585 * r], [0.585 * r, 0.12 * r, 0.585 * r], dark)),
+    part("cylinder", [0, 0, 0.8 * h], [1.02 * r, 1.02 * r, 0.06 * h], 0x2f8a55), // the upper board
+    part("cylinder", [0, 0, h], [0.42 * r, 0.42 * r, 0.12 * h], dark), // the loudspeaker
+    part("box", [0.97 * r, 0, 0.42 * h], [0.14 * r, 0.26 * r, 0.2 * h], dark), // the camera
+    part("arrow", [0.7 * r, 0, h], [0.2 * r, 0.24 * r, 0.03 * h], 0xf2f3f5),
+  ];
 }
 
 /** All parts of a world, links first. Removed entities have none. */

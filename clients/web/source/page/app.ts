@@ -37,6 +37,7 @@ export class App implements Listener {
   onSettings: () => void = () => undefined;
   private session = "";
   private shownBefore: Frame | null = null;
+  private wantedFor: World | null = null; // the world that was shown at the last want()
 
   constructor(public source: Source, readonly settings: Settings, readonly view: View) {
     this.series = settings.plots.map((name) => new Series(name));
@@ -97,7 +98,7 @@ export class App implements Listener {
     this.seen.take(message);
     if (message.topic === "/contacts") this.takeContacts(message);
     if (message.topic === "/log") this.takeLog(message);
-    if (message.topic === "/world") this.want();
+    if (message.topic === "/world" || (message.topic === "/poses" && this.world !== this.wantedFor)) this.want();
     if (message.topic === "/barrier") {
       this.barrier = message.read<Barrier>();
       this.seen.noteMissed(this.barrier.histograms.reduce((sum, { missedTicks }) => sum + missedTicks, 0));
@@ -136,13 +137,15 @@ export class App implements Listener {
 
   /** Subscribes what the page shows now. */
   want(): void {
+    this.wantedFor = this.world;
     const wanted = new Set(["/world", "/poses", "/log", "/barrier", "/phases"]);
     for (const layer of layers) {
       if ("topic" in layer && this.view.shown.has(layer.name)) wanted.add(layer.topic);
     }
-    if ((this.world?.links.length ?? Infinity) <= mostLinksForCollisions) wanted.add("/contacts");
+    const newest = this.seen.newest?.world; // while the page looks back, too
+    if ((newest?.links.length ?? Infinity) <= mostLinksForCollisions) wanted.add("/contacts");
     for (const { name } of this.series) wanted.add(name.topic);
-    const robots = this.world?.robots ?? [];
+    const robots = newest?.robots ?? [];
     const selected = this.selectedRobot;
     for (const robot of robots.length <= mostRobotsAtOnce ? robots : selected ? [selected] : []) {
       wanted.add(`/robots/${robot.description.id}/observation`);

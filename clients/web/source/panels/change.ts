@@ -1,16 +1,37 @@
-// Spawns entities from the scene's models, or from XML.
+// Spawns entities from the scene's models, robots with one of its controllers, or what XML describes.
 import type { App } from "../page/app";
-import { kindName, type World } from "../model/messages";
+import { kindName, Kind, type World } from "../model/messages";
 import { make } from "./element";
 import type { Panel } from "./panel";
 
-const plain = [
-  { label: "box", xml: (id: string, body: string) => `<box id="${id}" size="0.05,0.05,0.05" movable="true" mass="0.1">${body}</box>` },
-  { label: "cylinder", xml: (id: string, body: string) => `<cylinder id="${id}" radius="0.025" height="0.05" movable="true" mass="0.1">${body}</cylinder>` },
+interface Choice { label: string; xml: (id: string, body: string) => string }
+
+const plain: Choice[] = [
+  { label: "box", xml: (id, body) => `<box id="${id}" size="0.05,0.05,0.05" movable="true" mass="0.1">${body}</box>` },
+  { label: "cylinder", xml: (id, body) => `<cylinder id="${id}" radius="0.025" height="0.05" movable="true" mass="0.1">${body}</cylinder>` },
 ];
 
 function escape(text: string): string {
   return text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
+}
+
+/** What can be spawned in a world. */
+function choicesOf(world: World): Choice[] {
+  const models = world.models.map(({ id: model, kind }) => ({
+    label: `${model} (${kindName(kind)})`,
+    xml: (id: string, body: string) => `<${kindName(kind)} id="${id}" model="${escape(model)}">${body}</${kindName(kind)}>`,
+  }));
+  // Foot-bots and e-pucks need no model, but a controller: those with which the world has some.
+  const robots = new Map<string, Choice>();
+  for (const { kind, robot } of world.entities) {
+    const described = robot === undefined ? undefined : world.robots[robot]?.description;
+    if (!described || (kind !== Kind.footBot && kind !== Kind.ePuck)) continue;
+    const { controller, battery } = described;
+    const label = `${kindName(kind)} with ${controller}`;
+    const more = `${battery ? "<battery/>" : ""}<controller config="${escape(controller)}"/>`;
+    robots.set(label, { label, xml: (id, body) => `<${kindName(kind)} id="${id}">${body}${more}</${kindName(kind)}>` });
+  }
+  return [...plain, ...models, ...robots.values()];
 }
 
 export class Change implements Panel {
@@ -21,6 +42,7 @@ export class Change implements Panel {
                                            value: "0, 0, 0.1", "aria-label": "Position" }) as HTMLInputElement;
   private readonly xml = make("textarea", { rows: 4, spellcheck: "false", "aria-label": "XML" }) as HTMLTextAreaElement;
   private world: World | null = null;
+  private choices = plain;
 
   constructor(private readonly app: App) {
     for (const input of [this.what, this.name, this.place]) input.addEventListener("input", () => this.write());
@@ -35,9 +57,9 @@ export class Change implements Panel {
     if (!world || world === this.world) return;
     this.world = world;
     const chosen = this.what.value;
-    this.what.replaceChildren(...plain.map(({ label }) => make("option", { value: label }, label)),
-      ...world.models.map(({ id, kind }, i) => make("option", { value: `model ${i}` }, `${id} (${kindName(kind)})`)));
-    if (chosen) this.what.value = chosen;
+    this.choices = choicesOf(world);
+    this.what.replaceChildren(...this.choices.map(({ label }) => make("option", { value: label }, label)));
+    if (this.choices.some(({ label }) => label === chosen)) this.what.value = chosen;
     this.write();
   }
 
@@ -50,10 +72,7 @@ export class Change implements Panel {
     const place = this.place.value.split(",").map((part) => part.trim()).join(",");
     const body = `<body position="${escape(place)}" orientation="0,0,0"/>`;
     const id = escape(this.name.value);
-    const model = this.what.value.startsWith("model ") ? this.world?.models[Number(this.what.value.slice(6))] : undefined;
-    this.xml.value = model
-      ? `<${kindName(model.kind)} id="${id}" model="${escape(model.id)}">${body}</${kindName(model.kind)}>`
-      : (plain.find(({ label }) => label === this.what.value) ?? plain[0]).xml(id, body);
+    this.xml.value = (this.choices.find(({ label }) => label === this.what.value) ?? plain[0]).xml(id, body);
   }
 
   private async spawn(): Promise<void> {

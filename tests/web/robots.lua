@@ -1,0 +1,8 @@
+-- Spawned robots turn on the spot, those of the scene stand.
+function step()
+  if robot.id ~= "large" and robot.id ~= "small" then robot.wheels.set_velocity(-1, 1) end
+end
+
+function init() end
+function reset() end
+function destroy() end
