@@ -79,6 +79,33 @@ void solve_lower(const double* lu, int rows, double* b, int columns) {
   }
 }
 
+/// x := U^-1 x.
+template <int N>
+void solve_upper(const double* lu, int rows, double* x) {
+  const int n = N > 0 ? N : rows;
+  for (int i = n - 1; i >= 0; --i) {
+    double sum = x[i];
+    for (int j = i + 1; j < n; ++j) sum -= lu[i * n + j] * x[j];
+    x[i] = sum * lu[i * n + i];
+  }
+}
+
+/// y -= A x.
+template <int N>
+void subtract_applied(const double* a, const double* x, double* y, int rows, int columns) {
+  const int n = N > 0 ? N : rows, m = N > 0 ? N : columns;
+  for (int i = 0; i < n; ++i) {
+    double sum = y[i];
+    for (int j = 0; j < m; ++j) sum -= a[i * m + j] * x[j];
+    y[i] = sum;
+  }
+}
+
+void subtract_applied(const double* a, const double* x, double* y, int rows, int columns) {
+  if (rows == 6 && columns == 6) return subtract_applied<6>(a, x, y, 6, 6);
+  subtract_applied<0>(a, x, y, rows, columns);
+}
+
 /// B := B U^-1, of m rows.
 template <int N>
 void solve_upper_right(const double* lu, int columns, double* b, int m) {
@@ -206,10 +233,14 @@ void BlockMatrix::solve(double* x) const {
   for (int step = 0; step < n; ++step) {
     const int k = order_[step], size = sizes_[k];
     double* part = x + offsets_[k];
-    solve_lower<0, 1>(at(k, k), size, part, 1);
+    if (size == 6) {
+      solve_lower<6, 1>(at(k, k), 6, part, 1);
+    } else {
+      solve_lower<0, 1>(at(k, k), size, part, 1);
+    }
     for (int e = first_later_[step]; e < first_later_[step + 1]; ++e) {
       const int i = later_[e];
-      subtract_product(at(i, k), part, x + offsets_[i], sizes_[i], size, 1);
+      subtract_applied(at(i, k), part, x + offsets_[i], sizes_[i], size);
     }
   }
   for (int step = n - 1; step >= 0; --step) {
@@ -217,14 +248,9 @@ void BlockMatrix::solve(double* x) const {
     double* part = x + offsets_[k];
     for (int e = first_later_[step]; e < first_later_[step + 1]; ++e) {
       const int i = later_[e];
-      subtract_product(at(k, i), x + offsets_[i], part, size, sizes_[i], 1);
+      subtract_applied(at(k, i), x + offsets_[i], part, size, sizes_[i]);
     }
-    const double* lu = at(k, k);
-    for (int i = size - 1; i >= 0; --i) {
-      double sum = part[i];
-      for (int j = i + 1; j < size; ++j) sum -= lu[i * size + j] * part[j];
-      part[i] = sum * lu[i * size + i];
-    }
+    size == 6 ? solve_upper<6>(at(k, k), 6, part) : solve_upper<0>(at(k, k), size, part);
   }
 }
 

@@ -132,8 +132,17 @@ void linearise_plain(const Block& block, const double* u, Linear& out) {
   }
 }
 
-double miss_of_plain(const Block& block, const double* u) {
-  const double normal = std::max(0.0, pressed(block, u, 0));
+/// Of a contact without normal force: all its impulses should be none.
+double miss_of_loose(const Block& block) {
+  double worst = 0;
+  for (int r = 0; r < block.rows; ++r) {
+    worst = std::max(worst, std::abs(block.impulse[r]) * block.mobility[r]);
+  }
+  return worst;
+}
+
+/// @param normal  part of y, > 0
+double miss_of_plain(const Block& block, const double* u, double normal) {
   double y[2] = {pressed(block, u, 1), pressed(block, u, 2)};
   const double bound = block.friction * normal, square = y[0] * y[0] + y[1] * y[1];
   if (square > bound * bound) {
@@ -203,6 +212,7 @@ void soften(const Block& block, const double* u, double softness, double* impuls
     const double bound = ratio * impulse[0];
     double square = 0;
     for (int r = first; r < first + size; ++r) square += y[r] * y[r];
+    if (bound == 0 && square > 0) continue;
     const double length = std::sqrt(square);
     const bool slides = length > bound;
     const double share = slides ? bound / length : 1;
@@ -221,7 +231,11 @@ void soften(const Block& block, const double* u, double softness, double* impuls
 }
 
 double miss(const Block& block, const double* u) {
-  if (is_plain(block)) return miss_of_plain(block, u);
+  if (block.law == Block::Law::contact) {
+    const double normal = pressed(block, u, 0);
+    if (normal <= 0) return miss_of_loose(block);
+    if (is_plain(block)) return miss_of_plain(block, u, normal);
+  }
   const int rows = active_rows(block);
   double y[Block::most_rows];
   for (int r = 0; r < rows; ++r) y[r] = pressed(block, u, r);

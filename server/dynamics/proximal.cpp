@@ -32,12 +32,22 @@ void add_impulse(const Problem& problem, const Block& block, const double* impul
   add_side(block.b, block.jb, block.dofs_b);
 }
 
+namespace {
+
+/// Whether a block has an impulse.
+bool gives(const Block& block) {
+  return std::any_of(block.impulse.begin(), block.impulse.begin() + block.rows,
+                     [](double impulse) { return impulse != 0; });
+}
+
+}  // namespace
+
 /// out := p + J^T g - M v, with the joints' damping in M.
 /// @return  the largest change of a coordinate's speed that is missing, about [m/s] or [rad/s]
 double imbalance(const Problem& problem, std::vector<double>& out) {
   out = problem.momentum;
   for (const Block& block : problem.blocks) {
-    add_impulse(problem, block, block.impulse.data(), out);
+    if (gives(block)) add_impulse(problem, block, block.impulse.data(), out);
   }
   double worst = 0;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
@@ -58,14 +68,13 @@ double imbalance(const Problem& problem, std::vector<double>& out) {
 
 namespace {
 
-/// Impulses of the softened law at the present velocities.
+/// Impulses of the softened law at speeds.
 /// @param linear  out: its linearisations; may be null
-void soften(Problem& problem, double softness, Linear* linear) {
+void soften(Problem& problem, std::span<const std::array<double, Block::most_rows>> speeds,
+            double softness, Linear* linear) {
   for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
     Block& block = problem.blocks[k];
-    double u[Block::most_rows];
-    problem.speeds(block, u);
-    soften(block, u, softness, block.impulse.data(), linear ? linear + k : nullptr);
+    soften(block, speeds[k].data(), softness, block.impulse.data(), linear ? linear + k : nullptr);
   }
 }
 
@@ -80,14 +89,14 @@ double square(const Problem& problem, const std::vector<double>& missing) {
 
 }  // namespace
 
-/// One step about the anchors.
+/// One step about the anchors. Speeds must be taken, and are taken at the velocities that it finds.
 /// @param shortest    part of the way; below 1 it goes as far as it leaves less momentum missing
 /// @param unbalanced  out: the largest change of a coordinate's speed that is missing
 /// @return            false if no step does
 bool Solver::proximal_step(Problem& problem, double softness, double shortest, double& unbalanced) {
   constexpr double enough = 0.1;
   start_matrix(problem);
-  soften(problem, softness, linear_.data());
+  soften(problem, speeds_, softness, linear_.data());
   for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
     add_slope(problem, problem.blocks[k], linear_[k], sloped_, matrix_);
   }
@@ -102,7 +111,8 @@ bool Solver::proximal_step(Problem& problem, double softness, double shortest, d
     for (std::size_t k = 0; k < direction_.size(); ++k) {
       problem.velocity[k] = kept_velocity_[k] + way * direction_[k];
     }
-    soften(problem, softness, nullptr);
+    take_speeds(problem);
+    soften(problem, speeds_, softness, nullptr);
     unbalanced = imbalance(problem, residual_);
     if (shortest == 1) return true;
     if (square(problem, residual_) < (1 - enough * way) * before) return true;
@@ -122,7 +132,7 @@ bool Solver::proximal(Problem& problem, Outcome& outcome) {
   for (int i = 0; i < options.most_descents; ++i) {
     ++outcome.descents;
     if (!proximal_step(problem, options.softness, 1, unbalanced)) break;
-    const double law = worst_miss(problem, scale), now = std::max(law, unbalanced);
+    const double law = miss_now(problem, scale), now = std::max(law, unbalanced);
     if (!(now < HUGE_VAL)) break;
     if (now < best) {
       best = now;
@@ -158,7 +168,7 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome, bool strikes) 
   for (int i = 0, steps = 1; i < options.most_patient; ++i, ++steps) {
     ++outcome.descents;
     const bool nearer = proximal_step(problem, softness, shortest, unbalanced);
-    const double law = worst_miss(problem, scale), now = std::max(law, unbalanced);
+    const double law = miss_now(problem, scale), now = std::max(law, unbalanced);
     if (nearer && now < best) {
       best = now;
       snapshot_.take(problem);
@@ -170,6 +180,7 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome, bool strikes) 
       if (enough || softness >= softest) break;
       softness *= 10, steps = 0;
       problem.velocity = anchored_;
+      take_speeds(problem);
     } else if (unbalanced <= 0.1 * law) {
       if (enough && law > 0.3 * at_anchor) break;  // no nearer
       at_anchor = law;

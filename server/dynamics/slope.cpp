@@ -1,5 +1,7 @@
 #include "dynamics/slope.h"
 
+#include <algorithm>
+
 namespace ziggurat::dynamics {
 namespace {
 
@@ -15,6 +17,12 @@ struct Side {
 Side side_of(const Problem& problem, int place, int first, std::span<const int> dofs) {
   const Tree& tree = *problem.trees[place];
   return {place, tree.dofs, problem.jacobian.data() + first, dofs, leads(dofs) ? 6 : 0};
+}
+
+/// Whether a block's impulse along row r may change with the speed along row c. Normal and tangents
+/// may all; torques change with the normal's speed and those of their own disc.
+constexpr bool depends(int r, int c) {
+  return c == 0 || (r < 3 ? c < 3 : (r == 3) == (c == 3) && c >= 3);
 }
 
 /// Adds J^T slope J of a block of R rows to the matrix: to its columns that belong to s, in the
@@ -63,28 +71,37 @@ void add_leading(const Side& s, const Side (&sides)[2], const double* slope, Blo
   }
   for (int r = 0; r < R; ++r) {
     sloped[r] = slope[r * R] * rows[0];
-    for (int c = 1; c < R; ++c) sloped[r] += slope[r * R + c] * rows[c];
+    for (int c = 1; c < R; ++c) {
+      if (depends(r, c)) sloped[r] += slope[r * R + c] * rows[c];
+    }
     for (int e = 0; e < T; ++e) {
       tail[r][e] = slope[r * R] * tail_rows[0][e];
-      for (int c = 1; c < R; ++c) tail[r][e] += slope[r * R + c] * tail_rows[c][e];
+      for (int c = 1; c < R; ++c) {
+        if (depends(r, c)) tail[r][e] += slope[r * R + c] * tail_rows[c][e];
+      }
     }
   }
   for (const Side& t : sides) {
     if (t.place < 0) continue;
     double* out = matrix.block(t.place, s.place);
-    for (const int k : t.touched) {
+    const auto add = [&](int k, auto rows_of_dof) {
       const double* column = t.columns + k * R;
       double* row = out + k * s.dofs;
       Eigen::Map<Six> leading(row);
       Six sum = leading;
-      for (int r = 0; r < R; ++r) sum += column[r] * sloped[r];
+      for (int r = 0; r < rows_of_dof(); ++r) sum += column[r] * sloped[r];
       leading = sum;
       for (int e = 0; e < T; ++e) {
         double entry = row[tail_dof[e]];
-        for (int r = 0; r < R; ++r) entry += column[r] * tail[r][e];
+        for (int r = 0; r < rows_of_dof(); ++r) entry += column[r] * tail[r][e];
         row[tail_dof[e]] = entry;
       }
-    }
+    };
+    using All = std::integral_constant<int, R>;
+    // Moving a body, by dofs 3 to 5 of a free root, does not turn it.
+    using Moving = std::integral_constant<int, std::min(R, 3)>;
+    for (int k = 0; k < t.leading; ++k) k < 3 ? add(k, All()) : add(k, Moving());
+    for (std::size_t e = t.leading; e < t.touched.size(); ++e) add(t.touched[e], All());
   }
 }
 

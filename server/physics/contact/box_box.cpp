@@ -90,12 +90,13 @@ void cross_edges(const OrientedBox& a, const OrientedBox& b, const Separation& e
 }  // namespace
 
 void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Contacts& out) {
-  const auto& [pose_a, pose_b, reach, support] = at;
+  const auto& [pose_a, pose_b, reach, support, useful] = at;
   const OrientedBox a(box_a, pose_a), b(box_b, pose_b);
   const btVector3 between = b.centre - a.centre;
   // Preferring A's faces, then B's, then edges keeps resting contacts from flickering.
   const btScalar smallest = btMin(a.half[a.half.minAxis()], b.half[b.half.minAxis()]);
   const btScalar prefer_face = btScalar(1e-3) * smallest, prefer_faces_to_edges = 5 * prefer_face;
+  const btScalar most = btMin(reach, useful + 10 * prefer_face);  // the axis that is taken
 
   Separation face;
   for (int i = 0; i < 6; ++i) {
@@ -103,7 +104,7 @@ void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Con
     const btScalar along = between.dot(axis);
     const btScalar own = i < 3 ? a.half[i] : b.half[i - 3];
     const btScalar distance = btFabs(along) - own - (i < 3 ? b.extent(axis) : a.extent(axis));
-    if (distance > reach) return;
+    if (distance > most) return;
     if (distance > face.distance + (i < 3 ? 0 : prefer_face)) {
       face = {distance, along < 0 ? -axis : axis, i < 3 ? i : -1, i < 3 ? -1 : i - 3};
     }
@@ -117,7 +118,7 @@ void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Con
       axis /= length;
       const btScalar along = between.dot(axis);
       const btScalar distance = btFabs(along) - a.extent(axis) - b.extent(axis);
-      if (distance > reach) return;
+      if (distance > most) return;
       if (distance > edge.distance) edge = {distance, along < 0 ? -axis : axis, i, j};
     }
   }

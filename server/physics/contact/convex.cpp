@@ -147,9 +147,10 @@ void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contact
 
   BestFace face;
   consider_faces(b, a, false, prefer, face);
-  if (face.distance > at.reach) return;
+  const btScalar most = btMin(at.reach, at.useful + 10 * prefer);
+  if (face.distance > most) return;
   consider_faces(a, b, true, prefer, face);
-  if (face.distance > at.reach) return;
+  if (face.distance > most) return;
   const Nearest near = nearest(a, b, at);
   if (near.distance > at.reach) return;
 

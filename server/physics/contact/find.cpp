@@ -111,17 +111,18 @@ void swap_sides(Contacts& contacts) {
 }
 
 Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
-              btScalar reach, Support support) {
+              btScalar reach, Support support, btScalar useful) {
   Contacts out;
-  if (far_apart(a, pose_a, b, pose_b, reach)) return out;
+  const bool flat = std::holds_alternative<HalfSpace>(a) || std::holds_alternative<HalfSpace>(b);
+  if (far_apart(a, pose_a, b, pose_b, flat ? btMin(reach, useful) : reach)) return out;
   std::visit(
       [&](const auto& first, const auto& second) {
         using A = std::decay_t<decltype(first)>;
         using B = std::decay_t<decltype(second)>;
         if constexpr (Ordered<A, B>) {
-          contact_points(first, second, {pose_a, pose_b, reach, support}, out);
+          contact_points(first, second, {pose_a, pose_b, reach, support, useful}, out);
         } else {
-          contact_points(second, first, {pose_b, pose_a, reach, support}, out);
+          contact_points(second, first, {pose_b, pose_a, reach, support, useful}, out);
           swap_sides(out);
         }
       },

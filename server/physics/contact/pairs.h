@@ -15,6 +15,7 @@ struct Placement {
   const btTransform& b;  ///< pose of B
   btScalar reach;        ///< [m]
   Support support = Support::lowest;
+  btScalar useful = BT_LARGE_FLOAT;  ///< see find() [m]
 };
 
 void contact_points(const Box& a, const HalfSpace& b, const Placement& at, Contacts& out);

@@ -42,7 +42,7 @@ void add_lower_face(const Box& box, const Placement& at, Contacts& out) {
 }  // namespace
 
 void contact_points(const Box& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach, support] = at;
+  const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   const btVector3& half = a.half;
   if (support == Support::face) return add_lower_face(a, at, out);
@@ -55,7 +55,7 @@ void contact_points(const Box& a, const HalfSpace&, const Placement& at, Contact
 }
 
 void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach, support] = at;
+  const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   // The lower cap is the one that faces the plane.
   const btVector3 axis = pose_a.getBasis().getColumn(2);
@@ -80,13 +80,13 @@ void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Co
 }
 
 void contact_points(const Sphere& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach, support] = at;
+  const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   add(pose_a.getOrigin() - out.normal * a.radius, plane, reach, out);
 }
 
 void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach, support] = at;
+  const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   const btVector3 to_end = pose_a.getBasis().getColumn(2) * a.half_length;
   const btVector3 lowest = pose_a.getOrigin() - out.normal * a.radius;
@@ -95,7 +95,7 @@ void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Con
 }
 
 void contact_points(const Hull& a, const HalfSpace&, const Placement& at, Contacts& out) {
-  const auto& [pose_a, plane, reach, support] = at;
+  const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   for (const btVector3& corner : a.polyhedron->corners) add(pose_a * corner, plane, reach, out);
 }

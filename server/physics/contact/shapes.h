@@ -81,9 +81,11 @@ enum class Support {
 };
 
 /// Contacts of two bodies whose shape centres stand at the given world poses.
-/// @param reach  points farther apart than this are left out [m]
+/// @param reach   points farther apart than this are left out [m]
+/// @param useful  where all points would surely be farther apart than this, there may be none [m]
 Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
-              btScalar reach, Support support = Support::lowest);
+              btScalar reach, Support support = Support::lowest,
+              btScalar useful = BT_LARGE_FLOAT);
 
 /// Whether a point lies in a shape or within `slack` of it.
 /// @param point  in the shape's frame [m];  @param slack  [m]

@@ -41,7 +41,7 @@ void contact_points(const Sphere& a, const Capsule& b, const Placement& at, Cont
 }
 
 void contact_points(const Sphere& a, const Box& b, const Placement& at, Contacts& out) {
-  const auto& [pose_a, pose_b, reach, support] = at;
+  const auto& [pose_a, pose_b, reach, support, useful] = at;
   const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
   btVector3 nearest = centre;
   nearest.setMax(-b.half);
@@ -69,7 +69,7 @@ void contact_points(const Sphere& a, const Box& b, const Placement& at, Contacts
 }
 
 void contact_points(const Sphere& a, const Cylinder& b, const Placement& at, Contacts& out) {
-  const auto& [pose_a, pose_b, reach, support] = at;
+  const auto& [pose_a, pose_b, reach, support, useful] = at;
   const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
   const btScalar radial = btSqrt(centre.x() * centre.x() + centre.y() * centre.y());
   const btVector3 side =
@@ -96,7 +96,7 @@ void contact_points(const Sphere& a, const Cylinder& b, const Placement& at, Con
 }
 
 void contact_points(const Sphere& a, const Hull& b, const Placement& at, Contacts& out) {
-  const auto& [pose_a, pose_b, reach, support] = at;
+  const auto& [pose_a, pose_b, reach, support, useful] = at;
   const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
   const Polyhedron::Face* nearest = &b.polyhedron->faces[0];
   const auto height = [&](const Polyhedron::Face& face) {

@@ -56,6 +56,17 @@ Approach approach_of(const contact::Contacts& found, const Collider& a, const Co
   return out;
 }
 
+/// A bound of the distances at which points may come close, see approach_of(): from the fastest
+/// that the surfaces can approach each other. Radii are larger than they are, because points may
+/// lie a little outside [m].
+double farthest_that_may_touch(const Collider& a, const Collider& b, double length, double slack) {
+  constexpr double larger = 1.5;
+  const double arm = larger * a.radius + a.reach + b.reach;  // from a to points on b
+  const double speed = (b.velocity - a.velocity).length() + a.angular_velocity.length() * arm +
+                       b.angular_velocity.length() * larger * b.radius;
+  return slack + length * speed;
+}
+
 /// Half of it; the floor has none [m].
 double smallest_extent(const Collider& collider) {
   if (collider.entity == Collider::floor) return BT_LARGE_FLOAT;
@@ -266,7 +277,8 @@ void Contacts::meet(Pair& pair, double length) {
   const double slack = least_reach(length);
   const double reach = a.reach + b.reach;
   contact::Contacts found =
-      contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face);
+      contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
+                    farthest_that_may_touch(a, b, length, slack));
   const Approach approach = approach_of(found, a, b, length, slack);
   const bool tumbling = approach.may_touch && tumbles(a, b, approach, length);
   if (!approach.may_touch) {

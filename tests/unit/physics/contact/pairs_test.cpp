@@ -174,6 +174,27 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
   EXPECT_GT(touching, 20);
 }
 
+TEST_P(AllPairs, FindTheSamePointsWhereOneIsUseful) {
+  const Pair& pair = GetParam();
+  Solid a{pair.a, btTransform::getIdentity()}, b{pair.b, btTransform::getIdentity()};
+  const btScalar size = std::min(a.smallest(), b.smallest());
+  math::RandomStream random(2, pair.name);
+  const btScalar reach = 0.3 * size, useful = 0.1 * size;
+  for (int i = 0; i < poses; ++i) {
+    SCOPED_TRACE("pose " + std::to_string(i));
+    place(random, i, a, b);
+    const Contacts all = find(a.shape, a.pose, b.shape, b.pose, reach, Support::face);
+    if (least(all) > useful) continue;
+    const Contacts near = find(a.shape, a.pose, b.shape, b.pose, reach, Support::face, useful);
+    ASSERT_EQ(near.count, all.count);
+    EXPECT_EQ(near.normal, all.normal);
+    for (int k = 0; k < all.count; ++k) {
+      EXPECT_EQ(near.points[k].on_b, all.points[k].on_b);
+      EXPECT_EQ(near.points[k].distance, all.points[k].distance);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Contact, AllPairs, ::testing::ValuesIn(pairs),
                          [](const auto& pair) { return pair.param.name; });
 
