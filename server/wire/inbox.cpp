@@ -104,10 +104,12 @@ Inbox::Kind Inbox::parse(std::string_view bytes, std::size_t most) {
   if (bytes.size() > std::numeric_limits<int>::max()) return in.kind;
   try {
     const bool is_json = encoding_of(bytes) == Encoding::json;
-    if ((is_json ? count_json_values(bytes) : count_fields(bytes)) > most) {
+    const std::size_t fields = is_json ? count_json_values(bytes) : count_fields(bytes);
+    if (fields > most_fields) {
       in.complaint = "it has more fields than any message needs";
       return in.kind;
     }
+    if (fields > most) return in.kind = Kind::too_large;
     in.forget(bytes.size());
     return decode(bytes);
   } catch (const std::bad_alloc&) {

@@ -23,6 +23,7 @@ class Inbox {
  public:
   enum class Kind {
     malformed,  ///< not a message of this protocol
+    too_large,  ///< has more fields than its client may send
     hello,
     command,
     leave,
@@ -34,8 +35,8 @@ class Inbox {
   Inbox();
   ~Inbox();
 
-  /// In either form, see encoding_of(). A message with more than `most` fields is malformed, and so is one
-  /// for which there is not enough memory.
+  /// In either form, see encoding_of(). A message with more than `most` fields is too large; with more than
+  /// `most_fields` it is malformed, and so is one for which there is not enough memory.
   Kind parse(std::string_view bytes, std::size_t most = most_fields);
   /// What makes the current message malformed, for people; may be empty.
   const std::string& complaint() const;

@@ -96,6 +96,7 @@ inline void receive(std::string_view bytes) {
   static wire::Inbox inbox;  // one for all inputs, as in a session: messages must not affect later ones
   switch (inbox.parse(bytes)) {
     case wire::Inbox::Kind::malformed:
+    case wire::Inbox::Kind::too_large:
       break;
     case wire::Inbox::Kind::hello:
       inbox.hello();

@@ -119,10 +119,16 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
         barrier, id, session,
         is_json ? "this session talks JSON" : "this session does not talk JSON");
   }
-  const InboxKind kind = barrier.inbox.parse(
-      received.bytes, is_controller ? session->command_limits.fields : wire::most_fields);
+  const std::size_t most = is_controller ? session->command_limits.fields : wire::most_fields;
+  const InboxKind kind = barrier.inbox.parse(received.bytes, most);
   if (kind == InboxKind::malformed) {
     return answer_malformed(barrier, id, session, barrier.inbox.complaint());
+  }
+  if (kind == InboxKind::too_large) {
+    return answer_fault(
+        barrier, id, session,
+        make_fault(ErrorCode::too_large, {},
+                   fmt::format("The message has more fields than the {} that this session needs.", most)));
   }
   if (session != nullptr) {
     if (handle(barrier, *session, kind, commands)) Connections::refund(connection, charge);

@@ -262,7 +262,6 @@ MUTANTS = [
     _bent("commands-direct", "R2.command"),
     _bent("order-counts", "S12.same-results", patience=10),
     _bent("policy-counts", "W9.same-results", patience=10),
-    _bent("much-to-hear-is-survived", "D5.too-much-to-hear", patience=10),
     _bent("listens-anywhere", "T8.any-address"),
     _bent("supervisors-need-keys", "K4.any-role"),
 ]

@@ -4,7 +4,7 @@ import protocol_pb2 as protocol
 
 from .deadlines import policy
 from .supervision import done_without
-from .kinds import E, RAW, POLICY, SAID, TOLD, drop, in_kind, refill, said, told
+from .kinds import E, POLICY, SAID, TOLD, drop, in_kind, refill, said, told
 
 
 @told("begins-early")
@@ -92,10 +92,6 @@ def _(connection, message):
 def _(connection, message):
     if message.HasField("command") and connection.hello.HasField("deadline_policy"):
         refill(message.command, "joint_targets", [value / 2 for value in message.command.joint_targets])
-
-
-RAW["much-to-hear-is-survived"] = lambda data: (
-    [] if b"TOO_LARGE" in data[:1000] and b"FATAL" in data[:1000] else [data])
 
 
 @said("supervisors-need-keys")
