@@ -236,6 +236,11 @@ pageTest("keys and fingers turn and zoom the picture", tags, fromTop, async (pag
   assert.ok(Math.abs(distance(turned) - distance(first)) < 1e-3);
   await key(page, "+");
   assert.ok(distance(await look()) < 0.9 * distance(turned));
+  const { eye } = await look();
+  await waitFor(async () => {
+    const told = new URLSearchParams(new URL(page.url()).hash.slice(1)).get("eye").split(",");
+    return told.every((value, i) => Math.abs(Number(value) - eye[i]) < 1e-3);
+  }, "this view in the address");
   await key(page, "?");
   await waitFor(() => page.locator("#help h2").first().isVisible(), "help");
   await page.keyboard.press("Escape");

@@ -77,10 +77,7 @@ app.onSettings = () => {
     history.replaceState(null, "", `${location.pathname}${location.search}#${toAddress(settings)}`);
   }, 250) as unknown as number;
 };
-view.stage.controls.addEventListener("end", () => {
-  settings.look = view.stage.look;
-  app.onSettings();
-});
+view.stage.controls.addEventListener("end", () => app.looked());
 
 app.onNotice = ({ level, text }) => {
   const notice = make(`div.notice.${level}`, { click: () => notice.remove() }, text);
@@ -131,8 +128,8 @@ part("right").append(make("nav", { role: "tablist" }, ...tabButtons.values()), b
 const tools = make("div.tools", {},
   ...(["select", "move"] as const).map((tool) => make("button", {
     id: `tool-${tool}`, title: tool === "select" ? "Select (v)" : "Move (m)", click: () => { app.tool = tool; } }, icon(tool))),
-  make("button", { title: "Look at all that moves (a)", click: () => view.frameAll() }, "All"),
-  make("button", { title: "From the top (o)", click: () => view.stage.top() }, "Top"));
+  make("button", { title: "Look at all that moves (a)", click: () => app.look() }, "All"),
+  make("button", { title: "From the top (o)", click: () => { view.stage.top(); app.looked(); } }, "Top"));
 part("center").append(tools);
 
 function showTab(): Panel {

@@ -15,6 +15,8 @@ export interface Notice { level: "info" | "warning" | "error"; text: string }
 
 /** With more robots than this, only what is selected or plotted is subscribed. */
 const mostRobotsAtOnce = 12;
+/** A frame that began less than this before may not be whole [ms]: its messages arrive one by one. */
+const arrivalTime = 5;
 /** With more links than this, collisions are looked for only while the layer of contacts is on. */
 const mostLinksForCollisions = 300;
 
@@ -37,6 +39,7 @@ export class App implements Listener {
   onSettings: () => void = () => undefined;
   private session = "";
   private shownBefore: Frame | null = null;
+  private began = -Infinity; // when the newest frame's first message came [ms]
   private wantedFor: World | null = null; // the world that was shown at the last want()
 
   constructor(public source: Source, readonly settings: Settings, readonly view: View) {
@@ -95,7 +98,7 @@ export class App implements Listener {
   }
 
   message(message: Message): void {
-    this.seen.take(message);
+    if (this.seen.take(message)) this.began = performance.now();
     if (message.topic === "/contacts") this.takeContacts(message);
     if (message.topic === "/log") this.takeLog(message);
     if (message.topic === "/world" || (message.topic === "/poses" && this.world !== this.wantedFor)) this.want();
@@ -162,7 +165,7 @@ export class App implements Listener {
 
   get world(): World | null { return this.frame?.world ?? null; }
 
-  /** The frame at which the page looks: never one of which the poses have not arrived. */
+  /** The frame at which the page looks: the newest that is whole, unless the user looks back. */
   get frame(): Frame | null {
     if (this.recorded) {
       this.shownBefore = this.recorded.at(this.pinned ?? this.recorded.last) ?? this.shownBefore;
@@ -170,7 +173,8 @@ export class App implements Listener {
     }
     const { seen } = this;
     if (this.pinned !== null) return seen.at(this.pinned);
-    for (let s = seen.last; s >= seen.first && s > seen.last - 3; --s) {
+    const last = performance.now() - this.began < arrivalTime && seen.length > 1 ? seen.last - 1 : seen.last;
+    for (let s = last; s >= seen.first && s > last - 3; --s) {
       const frame = seen.at(s);
       if (frame?.messages.has("/poses")) return frame;
     }
@@ -198,8 +202,11 @@ export class App implements Listener {
   /** Whether the page looks at the newest frame of a running world. */
   get isLive(): boolean { return this.pinned === null && this.recorded === null; }
 
+  /** Whether the run has ended: its world does not change any more. */
+  get isOver(): boolean { return this.recorded === null && this.parameters.get("phase") === "over"; }
+
   /** Whether time stands: that of the world, or that of the past or the recording that is shown. */
-  get isPaused(): boolean { return this.isLive ? this.parameters.get("phase") === "paused" : !this.playback.isPlaying; }
+  get isPaused(): boolean { return this.isLive ? this.isOver || this.parameters.get("phase") === "paused" : !this.playback.isPlaying; }
 
   // --- what the user does ---------------------------------------------------------------------------
 
@@ -256,6 +263,17 @@ export class App implements Listener {
     this.view.applyLayers();
     this.want();
     this.onSettings();
+  }
+
+  /** The user has turned, moved or zoomed the picture. */
+  looked(): void {
+    this.settings.look = this.view.stage.look;
+    this.onSettings();
+  }
+
+  look(id?: string): void {
+    this.view.frameAll(id);
+    this.looked();
   }
 
   follow(id: string | null): void {

@@ -47,8 +47,8 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "Home": return done(app.pin(app.timeline.first));
     case "+": case "=": return done(zoom(app, 0.85));
     case "-": return done(zoom(app, 1 / 0.85));
-    case "a": return done(app.view.frameAll());
-    case "o": return done(app.view.stage.top());
+    case "a": return done(app.look());
+    case "o": return done(top(app));
     case "e": return done(actions.open());
     case "v": return done(app.tool = "select");
     case "m": return done(app.tool = "move");
@@ -59,7 +59,7 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
   }
   if (selected === null) return false;
   switch (key) {
-    case "f": return done(app.view.frameAll(selected));
+    case "f": return done(app.look(selected));
     case "g": return done(app.follow(app.settings.followed === selected ? null : selected));
     case "t": return done(app.toggleTrail(selected));
     case "Delete": case "Backspace": return done(void app.call("/remove", { entity: selected }));
@@ -74,9 +74,15 @@ function move(app: App, frames: number): void {
   app.pin((app.pinned ?? app.timeline.last) + frames);
 }
 
+function top(app: App): void {
+  app.view.stage.top();
+  app.looked();
+}
+
 function zoom(app: App, factor: number): void {
   const { look } = app.view.stage;
   app.view.stage.set({ ...look, eye: look.eye.map((value, i) => look.at[i] + (value - look.at[i]) * factor) as typeof look.eye });
+  app.looked();
 }
 
 function turn(app: App, [x, y]: [number, number], isPan: boolean): void {
@@ -85,7 +91,8 @@ function turn(app: App, [x, y]: [number, number], isPan: boolean): void {
   if (isPan) {
     const ahead = new three.Vector3(-away.x, -away.y, 0).setLength(0.05 * away.length());
     const right = new three.Vector3(ahead.y, -ahead.x, 0);
-    return stage.shift(right.multiplyScalar(x).addScaledVector(ahead, -y).toArray());
+    stage.shift(right.multiplyScalar(x).addScaledVector(ahead, -y).toArray());
+    return app.looked();
   }
   const ball = new three.Spherical().setFromVector3(new three.Vector3(away.x, away.z, -away.y));
   ball.theta -= 0.08 * x;
@@ -93,4 +100,5 @@ function turn(app: App, [x, y]: [number, number], isPan: boolean): void {
   const turned = new three.Vector3().setFromSpherical(ball);
   const { at, fieldOfView } = stage.look;
   stage.set({ eye: [at[0] + turned.x, at[1] - turned.z, at[2] + turned.y], at, fieldOfView });
+  app.looked();
 }

@@ -19,7 +19,7 @@ export class Pointer {
     canvas.addEventListener("pointerup", (event) => this.release(event), { capture: true });
     canvas.addEventListener("dblclick", (event) => {
       const id = this.entityAt(event)?.id;
-      if (id !== undefined) app.view.frameAll(id);
+      if (id !== undefined) app.look(id);
     });
     canvas.addEventListener("contextmenu", (event) => {
       event.preventDefault();

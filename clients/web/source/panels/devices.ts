@@ -9,6 +9,8 @@ import type { Panel } from "./panel";
 
 interface Row { text: HTMLElement; bar: HTMLElement | null; plot: HTMLElement | null; reading: Reading }
 
+const mostBesideFan = 12;
+
 export class Devices implements Panel {
   readonly element = make("section.devices");
   private shape = "";
@@ -35,6 +37,9 @@ export class Devices implements Panel {
     if (shape !== this.shape) this.rebuild(shape, groups);
     this.fill(groups.flatMap(([, list]) => list.flatMap(({ readings }) => readings)));
     this.showPose(selected.index);
+    const { followed, trailed } = app.settings;
+    this.element.querySelector(".follow")?.classList.toggle("on", followed === selected.entity.id);
+    this.element.querySelector(".trail")?.classList.toggle("on", trailed.includes(selected.entity.id));
     this.drawFan();
   }
 
@@ -44,7 +49,7 @@ export class Devices implements Panel {
     if (!robot || !frame || !this.app.world) return [];
     const found: [string, Group[]][] = [];
     const limits = this.limits(this.app.world);
-    const seen = frame.messages.get(`/robots/${robot.id}/observation`);
+    const seen = this.app.timeline.message(`/robots/${robot.id}/observation`, frame.sequence, 60);
     if (seen) found.push(["Senses", observed(seen.topic, robot, seen.read<Observation>(), limits)]);
     const told = this.app.timeline.message(`/robots/${robot.id}/command`, frame.sequence, 60);
     if (told) {
@@ -78,9 +83,9 @@ export class Devices implements Panel {
       make("h2", {}, entity.id, " ", make("span.muted", {}, kindName(entity.kind)
         + (entity.model ? ` · ${entity.model}` : "") + (robot ? ` · ${robot.controller}` : ""))),
       make("div.actions", {},
-        make("button", { click: () => app.view.frameAll(entity.id), title: "Look at it (F)" }, "Look"),
-        make("button", { click: () => app.follow(app.settings.followed === entity.id ? null : entity.id), title: "Move with it (G)" }, "Follow"),
-        make("button", { click: () => app.toggleTrail(entity.id), title: "Draw its path (T)" }, "Trail"),
+        make("button", { click: () => app.look(entity.id), title: "Look at it (F)" }, "Look"),
+        make("button.follow", { click: () => app.follow(app.settings.followed === entity.id ? null : entity.id), title: "Move with it (G)" }, "Follow"),
+        make("button.trail", { click: () => app.toggleTrail(entity.id), title: "Draw its path (T)" }, "Trail"),
         make("button.danger", { click: () => void app.call("/remove", { entity: entity.id }), title: "Remove it (Delete)",
                                 id: "remove" }, "Remove")),
       this.pose);
@@ -96,9 +101,12 @@ export class Devices implements Panel {
 
   private addGroup(title: string, device: string, readings: Reading[]): void {
     const rows = readings.map((reading) => this.makeRow(title, device, reading));
+    const hasFan = device === "Proximity" && title === "Senses" && this.levelSensors().length > 2;
+    // What the fan shows is not listed at once: other devices would be far below.
+    const list = hasFan && rows.length > mostBesideFan
+      ? [make("details.values", {}, make("summary.muted", {}, "Numbers"), ...rows)] : rows;
     this.element.append(make("details.device", { open: true }, make("summary", {}, device,
-      make("span.muted", {}, readings.length > 3 ? ` ${readings.length}` : "")),
-      device === "Proximity" && title === "Senses" ? this.fan : null, ...rows));
+      make("span.muted", {}, readings.length > 3 ? ` ${readings.length}` : "")), hasFan ? this.fan : null, ...list));
   }
 
   private makeRow(title: string, device: string, reading: Reading): HTMLElement {
@@ -137,18 +145,24 @@ export class Devices implements Panel {
     setText(this.pose, `${pose.position.map((value) => value.toFixed(4)).join("  ")} m   heading ${yaw.toFixed(1)}°`);
   }
 
-  /** Proximity sensors from above, each by its angle. */
+  /** Proximity sensors that look along the floor, with the angle from the robot's +x. */
+  private levelSensors(): { index: number; way: number }[] {
+    return (this.app.selectedRobot?.description.proximitySensors ?? [])
+      .map(({ angle, direction }, index) => ({ index, way: angle ?? Math.atan2(direction[1], direction[0]), isLevel: Math.abs(direction[2]) < 0.7 }))
+      .filter(({ isLevel }) => isLevel);
+  }
+
+  /** These sensors from above. */
   private drawFan(): void {
     const robot = this.app.selectedRobot?.description;
     const message = robot && this.app.frame?.messages.get(`/robots/${robot.id}/observation`);
-    if (!robot || !message || robot.proximitySensors.length === 0) return;
+    if (!message || !this.fan.isConnected) return;
     const { proximity } = message.read<Observation>();
     const draw = this.fan.getContext("2d")!;
     const style = getComputedStyle(this.element);
     draw.clearRect(0, 0, 180, 180);
-    robot.proximitySensors.forEach(({ angle, direction }, i) => {
-      const way = angle ?? Math.atan2(direction[1], direction[0]);
-      const length = 30 + 55 * Math.min(1, proximity[i] ?? 0);
+    for (const { index, way } of this.levelSensors()) {
+      const length = 30 + 55 * Math.min(1, proximity[index] ?? 0);
       // The robot's +x is up.
       const at = (r: number): [number, number] => [90 - r * Math.sin(way), 90 - r * Math.cos(way)];
       for (const [end, color, width] of [[85, "--line", 2], [length, "--accent", 5]] as const) {
@@ -159,6 +173,6 @@ export class Devices implements Panel {
         draw.lineTo(...at(end));
         draw.stroke();
       }
-    });
+    }
   }
 }

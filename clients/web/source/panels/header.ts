@@ -43,7 +43,10 @@ export class Header implements Panel {
   /** How fast the world runs, over the last two seconds of wall time. */
   private rateText(): string {
     const newest = this.app.timeline.newest;
-    if (!newest || this.app.recorded) return "";
+    if (!newest || this.app.recorded || this.app.parameters.get("phase") !== "running") {
+      this.rates = [];
+      return "";
+    }
     const now = performance.now() * 1e-3;
     this.rates.push({ wall: now, seconds: Number(newest.timeNs) * 1e-9, tick: newest.tick });
     while (this.rates.length > 2 && this.rates[0].wall < now - 2) this.rates.shift();

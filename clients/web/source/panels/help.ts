@@ -3,7 +3,7 @@ import { make } from "./element";
 
 const keys: [string, string][] = [
   ["space", "play or pause"], ["n", "one tick"], ["r", "back to the start"], ["[  ]", "slower, faster"],
-  [",  .", "one frame back, ahead"], ["<  >", "fifty frames back, ahead"], ["End", "jump to the newest (live)"],
+  [",  .", "one frame back, ahead"], ["<  >", "fifty frames back, ahead"], ["Home  End", "the oldest frame; the newest (live)"],
   ["↑ ↓ ← →", "orbit; with shift: pan"], ["+  −", "zoom"], ["a", "look at all that moves"], ["f", "look at what is selected"],
   ["g", "follow what is selected"], ["o", "from the top"], ["t", "trail of what is selected"],
   ["v  m", "select, or move with the mouse"], ["Delete", "remove what is selected"], ["/", "search"],

@@ -62,7 +62,7 @@ export class TimeBar implements Panel {
 
   update(): void {
     const { app } = this;
-    const mayPlay = app.connection.mayControl || !app.isLive;
+    const mayPlay = !app.isLive || (app.connection.mayControl && !app.isOver);
     for (const control of [this.play, this.step, this.reset, this.speed]) (control as HTMLButtonElement).disabled = !mayPlay;
     if (app.isPaused !== this.wasPaused) {
       this.wasPaused = app.isPaused;
@@ -74,7 +74,7 @@ export class TimeBar implements Panel {
     this.live.hidden = recorded !== null;
     this.live.classList.toggle("on", app.isLive);
     this.element.classList.toggle("past", !app.isLive && !recorded);
-    this.play.title = app.isLive ? "Play or pause the world (space)"
+    this.play.title = app.isLive && app.isOver ? "The run is over: look back with the line at the right" : app.isLive ? "Play or pause the world (space)"
       : recorded ? "Play or pause (space)" : "Play the past from here (space); the world goes on by itself";
     if (frame) {
       const newest = app.timeline.newest;

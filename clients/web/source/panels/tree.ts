@@ -84,7 +84,7 @@ export class Tree implements Panel {
       } }, isOpen ? "▾" : "▸"),
       make(`span.kind.${entity.robot !== undefined ? "robot" : entity.movable ? "thing" : "fixed"}`),
       make("span.id", {}, entity.id), make("span.muted", {}, kindName(entity.kind)));
-    row.addEventListener("dblclick", () => app.view.frameAll(entity.id));
+    row.addEventListener("dblclick", () => app.look(entity.id));
     if (!isOpen) return [row];
     return [row, ...this.partsOf(world, entity).map((part) => make("div.part", {}, part))];
   }
