@@ -207,6 +207,8 @@ void Replay::restore(const v1::Act::Restore& restore) {
 }
 
 void Replay::restore_to(const simulation::Snapshot& snapshot) {
+  common_robots_ = simulation::common_robots(world_.simulation.history(), snapshot.history,
+                                             world_.simulation.layout());
   if (links_) {
     world_.simulation.reset(world_.scene, {snapshot.seed, {}});
     for (const simulation::Act& act : snapshot.history.acts) {

@@ -85,6 +85,8 @@ class Replay {
   bool is_same() const;                         ///< the recorded hash is the same
   /// How many resets and restores, moves, spawns and removals there were.
   std::uint64_t changes() const { return changes_; }
+  /// How many of the first robots were still the same ones after the last restore.
+  std::size_t common_robots() const { return common_robots_; }
 
  private:
   void show_state();
@@ -112,6 +114,7 @@ class Replay {
   OpenSnapshot open_snapshot_;
   Links links_;  // empty: it is simulated
   std::uint64_t hash_ = 0, changes_ = 0;
+  std::size_t common_robots_ = 0;
   std::uint64_t epoch_ = 0, tick_ = 0;  // of the present state
   bool has_commands_ = false, acted_ = false;
 };

@@ -36,8 +36,6 @@ std::string hash_of(const scene::Scene& scene, const scene::Variation& variation
   return math::to_hex(hash.digest());
 }
 
-constexpr std::size_t longest_elements = std::size_t{64} << 20;  // all that were spawned [bytes]
-
 }  // namespace
 
 scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files,
@@ -87,14 +85,8 @@ simulation::Snapshot read_snapshot(const RecordingFile& file, const std::string&
         "{}: the snapshot '{}' that it needs is missing: the run was ended before it was written",
         file.path(), name));
   }
-  const auto read = [&, left = longest_elements](const std::string& xml) mutable {
-    scene::Addition addition = additions.read(
-        xml, scene, left, [](const std::string&) { return false; }, file.files().opener());
-    if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
-    left -= addition.size;
-    return std::move(addition.entity);
-  };
-  return simulation::from_bytes(std::as_bytes(std::span(*bytes)), {}, read);
+  return simulation::from_bytes(std::as_bytes(std::span(*bytes)), {},
+                                reader_of_spawned(additions, scene, file.files().opener()));
 }
 
 }  // namespace ziggurat::replay

@@ -205,6 +205,10 @@ int Rehearsal::tell(const std::optional<Ending>& ending) {
   }
   if (ending || !failures.empty()) return reports::exit_code::controller_failed;
   if (!retelling_->differences().empty()) return reports::exit_code::differs;
+  if (retelling_->ticks() == 0) {
+    console_.fault("nothing was compared: in the recorded run no such robot with a controller was stepped");
+    return reports::exit_code::fault;
+  }
   console_.result(fmt::format("identical: the commands of {} ticks are as recorded",
                               retelling_->ticks()));
   return reports::exit_code::finished;

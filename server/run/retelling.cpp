@@ -54,6 +54,7 @@ std::optional<Ending> Retelling::tell(const std::function<bool(std::uint64_t)>& 
     const wire::Truth truth{simulation.layout(), simulation.entities(), simulation.state(),
                             simulation.observations(), simulation.contacts()};
     parties_.server.publish(simulation.observations(), simulation.state().tag_payloads, &truth);
+    has_told_ = true;
     answered_.radio_messages.clear();
     if (const auto ending = parties_.watch.collect(answered_, tick)) return ending;
     const bool has_commands = replay_.inputs().has_commands();
@@ -111,7 +112,7 @@ void Retelling::take(const v1::Act& act) {
   if (follow_ && changes_population) follow_();
   if (act.has_reset()) take_reset();
   if (act.has_restore()) take_restore(act.restore().name());
-  if (act.has_spawn()) add_robot();
+  if (act.has_spawn()) take_spawn();
   if (act.has_remove()) remove_robot(act.remove().entity());
 }
 
@@ -129,24 +130,38 @@ void Retelling::take_reset() {
   is_restarted_ = true;
 }
 
+/// Of controllers that were given nothing yet, as the server does it with those that connect later.
 void Retelling::take_restore(const std::string& snapshot) {
-  if (is_told_) {
+  if (has_told_) {
     throw replay::RecordingError(fmt::format(
         "the run went back to the snapshot '{}', and controllers that are started now cannot; "
         "--fresh of 'ziggurat fork' starts them later",
         snapshot));
   }
-  if (has_other_robots_) {
-    throw replay::RecordingError(fmt::format(
-        "robots were spawned or removed before the run went back to the snapshot '{}': their controllers "
-        "cannot be told of that; fork it before",
-        snapshot));
+  simulation::Simulation& simulation = past_.simulation;
+  const std::size_t robots = replay_.common_robots();
+  answered_ = simulation.commands();
+  answered_.radio_messages.clear();
+  parties_.server.restart(
+      {past_.seed, {}, {{snapshot, simulation.state().tick, &answered_, robots}}});
+  parties_.controllers.forget_robots(robots);
+  parties_.watch.forget_spawned();
+  gone_.resize(robots);
+  for (std::size_t r = 0; r < robots; ++r) {
+    if (!is_absent(r)) continue;
+    gone_[r] = true;
+    parties_.server.remove_robots(std::array{r});
   }
+  add_robots();
 }
 
-/// The last entity was spawned. Its places in the arrays begin with the values of the world.
-void Retelling::add_robot() {
+bool Retelling::is_absent(std::size_t robot) const {
   const simulation::Simulation& simulation = past_.simulation;
+  return simulation.state().is_absent(simulation.layout().robots[robot].entity);
+}
+
+/// The places of what was spawned begin with the values of the world.
+void Retelling::take_spawn() {
   const world::Commands& now = past_.simulation.commands();
   world::for_each_channel(world::commanded, [&](auto i) {
     constexpr auto& channel = std::get<i>(world::commanded);
@@ -154,18 +169,28 @@ void Retelling::add_robot() {
     const auto& all = now.*channel.values;
     values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(values.size()), all.end());
   });
+  add_robots();
+}
+
+/// Those that the layout has behind the known ones.
+void Retelling::add_robots() {
   const world::Layout& layout = present_.simulation.layout();
-  if (layout.robots.size() == gone_.size()) return;  // without controller
-  has_other_robots_ = true;
-  const std::size_t robot = layout.robots.size() - 1;
-  const auto script = script_of_(layout.robots[robot]);
-  parties_.server.add_robots(std::array{script.value_or("")}, simulation.observations(),
-                             simulation.state().tag_payloads);
-  gone_.push_back(!script);
-  if (!script) {
-    parties_.server.remove_robots(std::array{robot});
-  } else if (!script->empty()) {
-    parties_.controllers.start_spawned(robot, layout);
+  const std::size_t first = gone_.size();
+  if (layout.robots.size() == first) return;
+  std::vector<std::string> scripts;
+  for (std::size_t robot = first; robot < layout.robots.size(); ++robot) {
+    const auto script = script_of_(layout.robots[robot]);
+    gone_.push_back(!script || is_absent(robot));
+    scripts.push_back(script.value_or(""));
+  }
+  const simulation::Simulation& simulation = past_.simulation;
+  parties_.server.add_robots(scripts, simulation.observations(), simulation.state().tag_payloads);
+  for (std::size_t robot = first; robot < layout.robots.size(); ++robot) {
+    if (gone_[robot]) {
+      parties_.server.remove_robots(std::array{robot});
+    } else if (!scripts[robot - first].empty()) {
+      parties_.controllers.start_spawned(robot, layout);
+    }
   }
 }
 
@@ -173,7 +198,7 @@ void Retelling::remove_robot(const std::string& entity) {
   const world::Layout& layout = present_.simulation.layout();
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
     if (layout.entities[layout.robots[r].entity].id != entity || gone_[r]) continue;
-    gone_[r] = has_other_robots_ = true;
+    gone_[r] = true;
     parties_.server.remove_robots(std::array{r},
                                   fmt::format("'{}' was removed from the world.", entity));
   }
@@ -182,9 +207,10 @@ void Retelling::remove_robot(const std::string& entity) {
 void Retelling::compare() {
   const world::Layout& layout = past_.simulation.layout();
   const std::uint64_t tick = replay_.inputs().tick();
-  ++ticks_;
+  bool has_compared = false;
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
     if (gone_[r] || past_.simulation.state().is_absent(layout.robots[r].entity)) continue;
+    has_compared = true;
     const auto found =
         replay::first_difference(layout, r, past_.simulation.commands(), answered_);
     if (!found) continue;
@@ -192,6 +218,7 @@ void Retelling::compare() {
     ++differences_.try_emplace(id, Difference{tick, 0}).first->second.ticks;
     if (tell_difference_) tell_difference_(tick, id, *found);
   }
+  if (has_compared) ++ticks_;
 }
 
 }  // namespace ziggurat::run

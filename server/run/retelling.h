@@ -50,7 +50,7 @@ class Retelling {
   /// recording. Controllers must have been gathered.
   /// @return  nothing, or what ended the run
   /// @throws replay::RecordingError if a state differs from the recorded one, or if the run went back to a
-  /// snapshot, which controllers cannot
+  /// snapshot after controllers were given something: they cannot go back
   std::optional<reports::Ending> tell(const std::function<bool(std::uint64_t tick)>& is_end);
   /// The same, but controllers are given nothing.
   /// @param meanwhile  is called between two ticks; false: the run ends
@@ -70,7 +70,9 @@ class Retelling {
   void take(const v1::Act& act);
   void take_reset();
   void take_restore(const std::string& snapshot);
-  void add_robot();
+  void take_spawn();
+  bool is_absent(std::size_t robot) const;
+  void add_robots();
   void remove_robot(const std::string& entity);
   void compare();
   void take_shown();
@@ -86,7 +88,9 @@ class Retelling {
   replay::States states_;
   replay::Replay replay_;
   world::Commands answered_;
-  bool is_restarted_ = true, has_ended_ = false, is_told_ = true, has_other_robots_ = false;
+  bool is_restarted_ = true, has_ended_ = false;
+  bool is_told_ = true;    // controllers are given the run,
+  bool has_told_ = false;  // and have been given something of it
   std::uint64_t ticks_ = 0;
   std::map<std::string, Difference> differences_;
 };

@@ -97,6 +97,17 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
   return addition;
 }
 
+std::function<Entity(const std::string& xml)> reader_of_spawned(const Additions& additions, const Scene& scene,
+                                                                OpenFile open) {
+  constexpr std::size_t most = std::size_t{64} << 20;  // [bytes]
+  return [&additions, &scene, open = std::move(open), left = most](const std::string& xml) mutable {
+    Addition addition = additions.read(xml, scene, left, [](const std::string&) { return false; }, open);
+    if (!addition.ok()) throw SceneError(std::move(addition.problems));
+    left -= addition.size;
+    return std::move(addition.entity);
+  };
+}
+
 std::filesystem::path folder_of(const Scene& scene, const Location& where) {
   const std::string file = file_of(scene, where);
   const bool is_added = file == name_of_additions && !scene.files.empty();

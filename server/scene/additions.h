@@ -52,6 +52,12 @@ class Additions {
   std::unique_ptr<Parts> parts_;
 };
 
+/// Reads elements of entities that were spawned in a world before, which a snapshot has: all of them together at
+/// most 64 MiB, with their models written out. It throws SceneError for an element with faults.
+/// @param additions, scene  must outlive it
+std::function<Entity(const std::string& xml)> reader_of_spawned(const Additions& additions, const Scene& scene,
+                                                                OpenFile open);
+
 /// A scene, and what is needed to add elements to it.
 struct OpenScene {
   Scene scene;

@@ -36,6 +36,19 @@ void read_commands(std::span<const std::byte> bytes, const world::Layout& layout
 
 }  // namespace
 
+std::size_t common_robots(const History& now, const History& then, const world::Layout& layout) {
+  std::size_t entities = layout.entities.size();
+  const auto is_same = [](const Act& a, const Act& b) {
+    return a.kind == b.kind && a.tick == b.tick && a.entity == b.entity && a.xml == b.xml;
+  };
+  const auto [part, other] = std::ranges::mismatch(now.acts, then.acts, is_same);
+  for (auto act = part; act != now.acts.end(); ++act) {
+    if (act->kind == Act::Kind::spawn) entities = std::min(entities, act->entity);
+  }
+  return static_cast<std::size_t>(std::ranges::count_if(
+      layout.robots, [&](const world::RobotLayout& robot) { return robot.entity < entities; }));
+}
+
 std::size_t Snapshot::size() const {
   std::size_t size = state.size() + commands.size() + history.size;
   for (const Act& act : history.acts) size += sizeof act + act.xml.size();

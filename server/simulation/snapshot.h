@@ -13,6 +13,10 @@
 #include "math/pose.h"
 #include "scene/scene.h"
 
+namespace ziggurat::world {
+struct Layout;
+}
+
 namespace ziggurat::simulation {
 
 /// Entities that may be spawned in a world, since its start or a reset.
@@ -42,6 +46,11 @@ struct History {
   std::vector<Commanded> commands;
   std::size_t size = 0;  ///< of all commands and moves [bytes]
 };
+
+/// How many of the first robots of a world are still the same ones after it is restored: those of the
+/// scene, and those spawned before the pasts part.
+/// @param layout  of the world now
+std::size_t common_robots(const History& now, const History& then, const world::Layout& layout);
 
 struct SnapshotError : std::runtime_error {
   using std::runtime_error::runtime_error;

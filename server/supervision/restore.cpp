@@ -18,22 +18,6 @@ using wire::make_fault;
 
 namespace {
 
-/// How many of the first robots two pasts have in common: those of the scene, and those spawned
-/// before the pasts part.
-std::size_t common_robots(const simulation::History& now, const simulation::History& then,
-                          const world::Layout& layout) {
-  std::size_t entities = layout.entities.size();
-  const auto is_same = [](const simulation::Act& a, const simulation::Act& b) {
-    return a.kind == b.kind && a.tick == b.tick && a.entity == b.entity && a.xml == b.xml;
-  };
-  const auto [part, other] = std::ranges::mismatch(now.acts, then.acts, is_same);
-  for (auto act = part; act != now.acts.end(); ++act) {
-    if (act->kind == simulation::Act::Kind::spawn) entities = std::min(entities, act->entity);
-  }
-  return static_cast<std::size_t>(std::ranges::count_if(
-      layout.robots, [&](const world::RobotLayout& robot) { return robot.entity < entities; }));
-}
-
 std::vector<std::string> clients_without_restore(network::Server& server) {
   std::vector<std::string> clients;
   for (const network::RobotStatus& robot : server.status()) {
@@ -84,8 +68,11 @@ Supervision::Reply Supervision::restore(const network::Call& call) {
 }
 
 bool Supervision::restart() {
-  const simulation::History before = world_.simulation.history();
-  const world::Layout layout = world_.simulation.layout();
+  std::size_t common = 0;
+  if (restoring_) {
+    common = common_robots(world_.simulation.history(), restoring_->snapshot.history,
+                           world_.simulation.layout());
+  }
   try {
     restoring_ ? world_.restore(restoring_->snapshot)
                : world_.reset(resetting_->request.seed.value_or(world_.seed));
@@ -101,7 +88,7 @@ bool Supervision::restart() {
   if (restoring_) {
     simulation.commands().radio_messages.clear();  // controllers send them again
     restart.snapshot = {resetting_->request.text, simulation.state().tick, &simulation.commands(),
-                        common_robots(before, restoring_->snapshot.history, layout)};
+                        common};
   }
   server_.restart(restart);
   if (restoring_) {

@@ -23,8 +23,6 @@ namespace {
 constexpr std::size_t most = 1024;                          // snapshots in memory
 constexpr std::size_t most_bytes = std::size_t{1} << 30;    // of all of them
 constexpr std::size_t longest_file = std::size_t{512} << 20;  // what a recording can embed [bytes]
-constexpr std::size_t longest_elements = std::size_t{64}
-                                         << 20;  // all that were spawned, models written out [bytes]
 constexpr std::size_t longest_name = 64;
 
 bool is_name(std::string_view name) {
@@ -137,16 +135,10 @@ std::variant<FoundSnapshot, wire::Fault> Snapshots::find(const std::string& name
     return make_fault(ErrorCode::bad_value, "restore.name",
                       fmt::format("There is no snapshot '{}'.", name));
   }
-  const auto read = [&, left = longest_elements](const std::string& xml) mutable {
-    scene::Addition addition = world.additions.read(
-        xml, world.scene, left, [](const std::string&) { return false; }, open);
-    if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
-    left -= addition.size;
-    return std::move(addition.entity);
-  };
   try {
     std::vector<std::byte> bytes = read_file(path_of(name));
-    Snapshot snapshot = simulation::from_bytes(bytes, {world.scene_hash, build_}, read);
+    Snapshot snapshot = simulation::from_bytes(bytes, {world.scene_hash, build_},
+                                               reader_of_spawned(world.additions, world.scene, open));
     return FoundSnapshot{std::move(snapshot), std::move(bytes)};
   } catch (const std::exception& exception) {
     return make_fault(ErrorCode::bad_value, "restore.name",

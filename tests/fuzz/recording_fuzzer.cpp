@@ -12,10 +12,9 @@ namespace {
 
 using namespace ziggurat;
 using fuzz::attempt;
-using fuzz::Recorded;
 
-Recorded record() {
-  Recorded run;
+fuzz::Recorded record() {
+  fuzz::Recorded run;
   run.start.set_scene("small.argos");
   run.start.set_seed(3);
   scene::ReadResult read = fuzz::read_small_world();
@@ -67,11 +66,11 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const Recorded recorded = record();
-  const std::string bytes = fuzz::write(recorded, {data, size});
+  static fuzz::RecordedFile recorded(record());
+  recorded.edit({data, size});
   for (const bool is_shown : {false, true}) {
     attempt([&] {
-      Played played(bytes);
+      Played played(recorded.bytes());
       if (is_shown) played.replay.show([&] { return played.states.links(); });
       for (int i = 0; i < 16 && played.replay.advance(); ++i) played.replay.act();
     });

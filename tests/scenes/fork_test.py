@@ -181,6 +181,10 @@ class Kept(Fork):
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         return outcome.stdout
 
+    def connect(self, url, *options):
+        self.started.append(subprocess.Popen([LUA, "--connect", url, "--quiet", *options], cwd=self.folder,
+                                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+
     def serve(self, *arguments, scene=ROOT / "scenes/dynamics3d_single_body_test.argos"):
         process = self.start("serve", scene, "--json", "--seed", "5", *arguments)
         return process, json.loads(process.stdout.readline())["endpoint"]
@@ -241,15 +245,12 @@ class Kept(Fork):
                 outcome = self.ziggurat("ctl", url, *words)
                 self.assertEqual(outcome.code, 0, outcome.err)
 
-            def connect():
-                self.started.append(subprocess.Popen([LUA, "--connect", url, "--quiet"], cwd=self.folder,
-                                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
             if steps:
-                connect()
+                self.connect(url)
                 ctl("step", steps)
             ctl("remove", "r0")
             if not steps:
-                connect()
+                self.connect(url)
             ctl("resume")
             self.assertEqual(self.finish(process).code, 0)
             for more in ((), ("--fresh",)):
@@ -278,6 +279,62 @@ class Kept(Fork):
         shutil.rmtree(snapshots)
         outcome = self.ask("replay", recording, "--hash", "--quiet")
         self.assertEqual(outcome.lines[-1], f"hash 11 {state['hash']}")
+
+    def serve_restored(self, *restores, options=()):
+        """A recorded run that was restored before its first tick, when it had no controllers yet."""
+        recording = self.folder / "run.mcap"
+        process, url = self.serve("--paused", "--ticks", "30", "--snapshot-folder", self.folder / "snapshots",
+                                  "--record", recording, *options, scene=self.scene)
+        for words in restores:
+            self.ctl(url, *words)
+        self.connect(url)
+        self.ctl(url, "resume")
+        self.assertEqual(self.finish(process).code, FINISHED)
+        return recording
+
+    def keep_snapshots(self, *words):
+        """Of a served world: `early` at tick 4, `late` after `words` at tick 7."""
+        (self.folder / "snapshots").mkdir(exist_ok=True)
+        process, url = self.serve("--paused", "--snapshot-folder", self.folder / "snapshots", scene=self.scene)
+        self.connect(url)
+        for each in (("step", 4), ("snapshot", "early"), *words):
+            self.ctl(url, *each)
+        if words:
+            self.connect(url, "--robot", "new")
+        for each in (("step", 3), ("snapshot", "late"), ("shutdown",)):
+            self.ctl(url, *each)
+        self.finish(process)
+
+    def check_controllers(self, recording, at=20):
+        """What they command is as recorded, and a fork with them repeats the rest."""
+        recorded = self.recorded_hashes(recording)
+        for ask in (("verify", recording, "--controllers"), ("try", recording, "--robot", "r1", "--script", "swing.lua")):
+            self.assertRegex(self.ask(*ask).lines[-1], "^identical: the commands of ")
+        forked, outcome = self.hashes("fork", recording, "--at", at)
+        self.assertEqual(forked, {tick: recorded[tick] for tick in range(at, 31)})
+        self.assertIn(f"up to tick {at} the controllers command what they did", outcome.err)
+        forked, _ = self.hashes("fork", recording, "--at", at, "--fresh")
+        self.assertEqual(forked[at], recorded[at])
+        self.hashes("fork", recording, "--at", at, "--set", "physics_engines/*/gravity/@g=2")
+
+    def test_a_run_that_was_restored_before_its_first_tick(self):
+        self.keep_snapshots()
+        self.check_controllers(self.serve_restored(("restore", "late")))
+        self.check_controllers(self.serve_restored(("restore", "late"), ("reset", "--seed", 9), ("restore", "early")))
+
+    def test_robots_come_and_go_with_a_restore_before_the_first_tick(self):
+        robot = re.search(r'<prototype id="r2">.*?</prototype>', self.scene.read_text(), re.DOTALL)[0]
+        new = self.write("new.xml", robot.replace('"r2"', '"new"').replace("0,-1,0", "-1,-1,0"))
+        other = self.write("other.xml", robot.replace('"r2"', '"other"').replace("0,-1,0", "-1,1,0"))
+        self.keep_snapshots(("remove", "r0"), ("spawn", new))
+        for before in ([("restore", "late")], [("spawn", other), ("restore", "late")],
+                       [("restore", "late"), ("restore", "early")], [("remove", "r2"), ("restore", "late")]):
+            with self.subTest(before):
+                recording = self.serve_restored(*before)
+                self.check_controllers(recording)
+                outcome = self.ziggurat("try", recording, "--robot", "r0", "--script", "swing.lua")
+                self.assertEqual(outcome.code, FAULT, "it was removed, and a robot that comes back has no controller")
+                self.assertIn("nothing was compared", outcome.err)
 
 
 class Example(Fork):
