@@ -94,6 +94,7 @@ void Signals::end_by_force() {
   if (!is_completed_ && ::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0) {
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
   }
+  ::signal(SIGCHLD, SIG_IGN);  // children that the guardian kills are gone at once: it waits for zombies
   if (guardian_) guardian_->end_now();
   ::_exit(is_completed_ ? exit_code_.load() : interrupted);
 }
