@@ -8,7 +8,8 @@ namespace ziggurat::processes {
 
 /// Appends the files that the scripts name in `require`, `dofile` and `loadfile` as plain texts, and
 /// those that these name, as far as they are found in the folder of a script. Of names that are put
-/// together, as in `require(here .. "tool")`, the end is looked for beside the script; others are not found.
+/// together, as in `require(here .. "tool")`, the end is looked for beside the script. If a script
+/// computes a name in another way, as in `require(name)`, all Lua files of its folder are appended.
 void add_required(std::vector<std::filesystem::path>& scripts);
 
 }  // namespace ziggurat::processes

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
+
+#include "ziggurat/v1/run.pb.h"
 
 namespace ziggurat::replay {
 namespace {
@@ -100,6 +103,15 @@ std::optional<FieldDifference> first_difference(const std::string& type, std::st
     return std::nullopt;
   }
   return first_difference(*of_a, *of_b);
+}
+
+void take_over(const v1::Commands& from, v1::Commands& held) {
+  held.clear_radio_messages();
+  held.clear_pushes();
+  std::vector<const FieldDescriptor*> changed;
+  from.GetReflection()->ListFields(from, &changed);
+  for (const FieldDescriptor* field : changed) held.GetReflection()->ClearField(&held, field);
+  held.MergeFrom(from);
 }
 
 }  // namespace ziggurat::replay

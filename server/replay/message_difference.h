@@ -7,6 +7,10 @@
 #include <string>
 #include <string_view>
 
+namespace ziggurat::v1 {
+class Commands;
+}
+
 namespace ziggurat::replay {
 
 struct FieldDifference {
@@ -23,5 +27,10 @@ std::optional<FieldDifference> first_difference(const google::protobuf::Message&
 /// @param type  its full name; nothing is found in messages of a type that this version lacks
 std::optional<FieldDifference> first_difference(const std::string& type, std::string_view a,
                                                 std::string_view b);
+
+/// Commands of a recording have what has changed: this makes them all that hold.
+/// @param from  of the next inputs
+/// @param held  after those before
+void take_over(const v1::Commands& from, v1::Commands& held);
 
 }  // namespace ziggurat::replay

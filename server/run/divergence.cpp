@@ -36,6 +36,20 @@ std::vector<std::size_t> places(const std::vector<std::string>& to,
   return found;
 }
 
+/// One recording, inputs by inputs.
+struct Side {
+  explicit Side(const replay::RecordingFile& file) : states(file) {}
+
+  const v1::Inputs* next() {
+    const v1::Inputs* inputs = states.next();
+    if (inputs && inputs->has_commands()) replay::take_over(inputs->commands(), commands);
+    return inputs;
+  }
+
+  replay::States states;
+  v1::Commands commands;  ///< all that hold
+};
+
 /// Reads two recordings side by side.
 class Comparison {
  public:
@@ -80,13 +94,20 @@ class Comparison {
                                         math::to_hex(a.hash()), math::to_hex(b.hash()));
     }
     if (!result_.first_inputs) compare_inputs(a, b, when);
-    if (!a_.links() || !b_.links()) return;
-    result_.states.push_back({a.epoch(), a.tick(), static_cast<double>(a_.log_time()) / 1e9,
-                              replay::distance(*a_.links(), aligned())});
+    if (!a_.states.links() || !b_.states.links()) return;
+    result_.states.push_back({a.epoch(), a.tick(), static_cast<double>(a_.states.log_time()) / 1e9,
+                              replay::distance(*a_.states.links(), aligned())});
   }
 
   void compare_inputs(const v1::Inputs& a, const v1::Inputs& b, const std::string& when) {
     v1::Inputs of_a = a, of_b = b;
+    if (a.has_commands() && b.has_commands()) {
+      *of_a.mutable_commands() = a_.commands;
+      *of_b.mutable_commands() = b_.commands;
+    } else {  // one of them ended here
+      of_a.clear_commands();
+      of_b.clear_commands();
+    }
     for (v1::Inputs* each : {&of_a, &of_b}) {
       each->clear_hash();
       for (auto* acts : {each->mutable_acts(), each->mutable_acts_before()}) {
@@ -99,8 +120,8 @@ class Comparison {
   }
 
   std::string first_field() {
-    if (!a_.links() || !b_.links()) return "exact poses are not recorded in both";
-    const auto found = replay::first_difference(*a_.links(), aligned());
+    if (!a_.states.links() || !b_.states.links()) return "exact poses are not recorded in both";
+    const auto found = replay::first_difference(*a_.states.links(), aligned());
     if (!found) return "poses and velocities are the same; what robots sense or show differs";
     return fmt::format("{}: {} is {} in A, {} in B", replay::name_of(result_.names, found->link),
                        found->field, found->a, found->b);
@@ -108,15 +129,15 @@ class Comparison {
 
   /// The links of B at the places of A's.
   const Links& aligned() {
-    if (places_.empty()) return *b_.links();
-    aligned_ = *a_.links();  // what B lacks is no difference
+    if (places_.empty()) return *b_.states.links();
+    aligned_ = *a_.states.links();  // what B lacks is no difference
     for (std::size_t i = 0; i < std::min(aligned_.size(), places_.size()); ++i) {
-      if (places_[i] < b_.links()->size()) aligned_[i] = (*b_.links())[places_[i]];
+      if (places_[i] < b_.states.links()->size()) aligned_[i] = (*b_.states.links())[places_[i]];
     }
     return aligned_;
   }
 
-  replay::States a_, b_;
+  Side a_, b_;
   std::vector<std::string> names_b_;
   std::vector<std::size_t> places_;
   Links aligned_;

@@ -27,7 +27,7 @@ class Fork(Recorded):
 class Same(Fork):
     def test_the_same_controllers_repeat_the_rest(self):
         scenes = [self.scene, ROOT / "scenes/prototype_radio_test.argos", ROOT / "scenes/devices_test.argos",
-                  ROOT / "scenes/prototype_srocs_system.argos"]
+                  ROOT / "scenes/prototype_srocs_system.argos", ROOT / "scenes/construction/steps.argos"]
         for scene in scenes:
             with self.subTest(scene.name):
                 recording, _ = self.record("--ticks", "30", "--seed", "3", scene=scene)

@@ -379,6 +379,14 @@ class Compare(Recorded):
         self.assertEqual(len(result["distances"]), 21)
         self.assertFalse(result["identical"])
 
+    def test_diff_compares_commands_that_hold(self):
+        """A recording has those that changed, and all of them where it begins or an epoch does."""
+        whole, _ = self.record("--ticks", "20", name="whole.mcap")
+        self.ask("fork", whole, "--at", "8", "--ticks", "15", "--record", "part.mcap", "--quiet")
+        result = json.loads(self.ask("diff", whole, "part.mcap", "--json", code=DIFFERS).out)
+        self.assertEqual((result["compared"], result["only_a"], result["only_b"]), (8, 13, 0))
+        self.assertNotIn("first_inputs", result)
+
 
 class Export(Recorded):
     def test_csv_has_the_poses_of_the_trace(self):
