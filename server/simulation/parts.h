@@ -23,11 +23,13 @@ struct Simulation::Parts {
   void grow(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
   void remove(std::size_t entity);
   devices::Tick tick() {
+    if (looks_are_old) look_around();
     auto* all = lists_rays ? &all_rays : nullptr;
     return {layout, state, observations, commands, physics, rays, *index, all};
   }
   void list_contacts(bool wanted);
   void look_around();  // rays and index take the poses of the state
+  bool looks_are_old = false;  // they have not since something was moved, added or removed
   /// @throws std::runtime_error that names the first entity whose state is not finite then
   void step();
   void move(std::size_t entity, const math::Pose& pose);

@@ -53,6 +53,7 @@ class Simulation::Growing {
     if (parts_.in_physics > count) parts_.physics.take_back();
     if (parts_.in_rays > count) parts_.rays.take_back();
     parts_.in_physics = parts_.in_rays = count;
+    parts_.looks_are_old = true;
   }
 
   void keep() { kept_ = true; }
@@ -97,6 +98,7 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
 void Simulation::Parts::look_around() {
   if (devices.casts_rays()) rays.update(state);
   if (devices.needs_index()) index->build(state);
+  looks_are_old = false;
 }
 
 void Simulation::Parts::spawn(const scene::Scene& scene, const scene::Entity& entity,
@@ -118,8 +120,8 @@ void Simulation::Parts::grow(const scene::Scene& scene, const scene::Entity& ent
   index.emplace(layout);
   devices.add({scene, std::span(&entity, 1), layout, seed, 1.0 / ticks_per_second, substep, physics,
                first_entity, first_robot, [&] { return entities; }});
-  physics.read(state);
-  look_around();
+  physics.read(first_entity, state);
+  looks_are_old = true;
   devices::Tick first = tick();
   devices.start(first);
 }
@@ -133,7 +135,7 @@ void Simulation::Parts::remove(std::size_t entity) {
     return layout.radios[message.radio].mount.entity == entity;
   });
   std::erase_if(commands.pushes, [&](const auto& push) { return layout.links[push.link].entity == entity; });
-  look_around();
+  looks_are_old = true;
 }
 
 Simulation::Simulation(const scene::Scene& scene, const Options& options)
@@ -159,8 +161,8 @@ void Simulation::Parts::list_contacts(bool wanted) {
 
 void Simulation::Parts::move(std::size_t entity, const math::Pose& pose) {
   physics.move(entity, pose);
-  physics.read(state);
-  look_around();
+  physics.read(entity, state);
+  looks_are_old = true;
 }
 
 void Simulation::move(std::size_t entity, const math::Pose& pose) {
@@ -180,7 +182,7 @@ void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, s
   Act act{Act::Kind::spawn, parts_->state.tick, layout_->entities.size(), {},
           std::make_shared<const scene::Entity>(entity), std::move(xml)};
   auto& acts = parts_->history.acts;
-  acts.reserve(acts.size() + 1);  // what is done can be written down
+  if (acts.size() == acts.capacity()) acts.reserve(2 * acts.size() + 1);  // what is done can be written down
   parts_->spawn(scene, entity, *layout_);
   acts.push_back(std::move(act));
 }

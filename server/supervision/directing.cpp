@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <set>
-#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <variant>
@@ -28,12 +27,13 @@ class Directing::Names {
     const auto found = places_.find(id);
     return found == places_.end() ? std::nullopt : std::optional(found->second);
   }
-  /// An entity has come or gone.
-  void forget() { is_read_ = false; }
+  void come() {
+    if (is_read_) places_[world_.layout().entities.back().id] = world_.layout().entities.size() - 1;
+  }
+  void gone(const std::string& id) { places_.erase(id); }
 
  private:
   void read() {
-    places_.clear();
     const auto& entities = world_.layout().entities;
     for (std::size_t i = 0; i < entities.size(); ++i) {
       if (!world_.state().is_absent(i)) places_[entities[i].id] = i;
@@ -42,7 +42,7 @@ class Directing::Names {
   }
 
   const simulation::Simulation& world_;
-  std::unordered_map<std::string_view, std::size_t> places_;  // looked up only
+  std::unordered_map<std::string, std::size_t> places_;  // looked up only
   bool is_read_ = false;
 };
 
@@ -206,8 +206,9 @@ std::optional<reports::Summary::Result> Directing::result() const {
 std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names& names) {
   simulation::Simulation& simulation = world_.simulation;
   if (is_spawn(act)) {
-    names.forget();
-    return population_.spawn(std::get<wire::Request>(act).text);
+    auto fault = population_.spawn(std::get<wire::Request>(act).text);
+    if (!fault) names.come();
+    return fault;
   }
   const std::string& id = id_of(act);
   const auto entity = names.find(id);
@@ -220,8 +221,9 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
     const auto vector_of = [](const std::array<double, 3>& v) { return math::Vector3(v[0], v[1], v[2]); };
     simulation.commands().pushes.push_back({link, vector_of(push->force), vector_of(push->torque)});
   } else if (is_removal(act)) {
-    names.forget();
-    return population_.remove(id);
+    auto fault = population_.remove(id);
+    if (!fault) names.gone(id);
+    return fault;
   } else {
     const math::Pose pose = std::get<math::Pose>(
         pose_of_move(simulation.state().origins[*entity], std::get<wire::Request>(act)));

@@ -193,6 +193,18 @@ TEST_F(Directing, K5_ADirectionHas10000ActsAnd1000Lines) {
   EXPECT_EQ(answered(), Ids{"judge"});
 }
 
+TEST_F(Directing, K5_ADirectionSpawns1000Entities) {
+  begin();
+  auto spawns = direction(5);
+  for (int i = 0; i < 1001; ++i) spawns.mutable_direction()->add_acts()->mutable_spawn()->set_xml("<box />");
+  const auto error = faulted(peers, spawns);
+  EXPECT_EQ(error.code(), v1::Error::TOO_MANY);
+  EXPECT_NE(error.message().find("1000"), std::string::npos);
+  spawns.mutable_direction()->mutable_acts()->RemoveLast();
+  peers.say("p", spawns);
+  EXPECT_EQ(answered(), Ids{"judge"});
+}
+
 TEST_F(Directing, R9_MetricsAndLinesStandUnderTheIdOfTheDirector) {
   begin();
   auto message = direction(5);

@@ -49,6 +49,36 @@ class Acts(Directing):
             world.finish()
         self.end()
 
+    def test_a_thousand_spawns_in_a_tick(self):
+        """One more is refused with the limit, and has no effect; a thousand are done, moved and removed."""
+        self.write_scene(floor="")
+        self.begin()
+        ids = [f"s{i}" for i in range(1001)]
+
+        def spawn(some):
+            for i, id in enumerate(some):
+                world.spawn(box(id, f"{i % 40 - 20},{i // 40 + 1},5"))
+
+        with self.direct() as world:
+            next(world)
+            spawn(ids)
+            with self.assertRaisesRegex(ziggurat.ProtocolError, "1001 entities; 1000 are allowed"):
+                next(world)
+            self.assertNotIn("s0", world.entities)
+            spawn(ids[:1000])
+            next(world)
+            self.assertEqual(len(world.entities), 1003)
+            for i, id in enumerate(ids[:1000]):
+                world.move(id, (i, 100, 5))
+            next(world)
+            self.assertEqual(world.entities["s999"].position[:2], (999, 100))
+            for id in ids[:1000]:
+                world.remove(id)
+            next(world)
+            self.assertEqual(len(world.entities), 3)
+            world.finish()
+        self.end()
+
     def test_a_push_acts_for_one_tick(self):
         """Free fall: only the push moves it sideways. v = F t / m."""
         self.write_scene(floor="")

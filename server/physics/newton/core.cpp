@@ -138,6 +138,12 @@ std::optional<std::size_t> NewtonCore::overlapped_by(
   std::optional<std::size_t> first;
   for (const Collider& collider : colliders_.all) {
     if (!collider.present || (first && *first <= collider.entity)) continue;
+    const btVector3 part = to_bullet(system_.trees[collider.entity].position[collider.part]);
+    const btScalar reach = collider.radius + collider.in_part.getOrigin().length();
+    const auto is_far = [&](const PlacedCollider& each) {
+      return part.distance(each.pose.getOrigin()) > reach + contact::bounding_radius(each.shape);
+    };
+    if (std::ranges::all_of(colliders, is_far)) continue;  // most are, and their poses take longer
     const PlacedCollider other{collider.shape, colliders_.pose(collider, system_)};
     if (std::ranges::any_of(colliders, [&](const auto& each) { return overlaps(each, other); })) {
       first = collider.entity;
