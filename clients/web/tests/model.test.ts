@@ -2,8 +2,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { patternOf } from "../source/drawing/tags";
 import { cornersAt } from "../source/drawing/overlays";
+import { mergedGeometry, roomFor } from "../source/drawing/merged";
 import { levels, Quality, roundness } from "../source/drawing/quality";
-import { partsOf } from "../source/drawing/shapes";
+import { makeGeometry, partsOf } from "../source/drawing/shapes";
 import { makeWorld } from "../source/data/generated";
 import type { Camera, Description, Observation, World } from "../source/model/messages";
 import { compose, rotate } from "../source/model/pose";
@@ -106,5 +107,22 @@ test("frames that take seconds lower the quality at once, and many round shapes 
   assert.equal(quality.level, 3);
   assert.equal(roundness(100, 1_000_000), 36);
   assert.ok(334 * roundness(334, 50_000) ** 2 <= 50_000);
-  assert.equal(roundness(100_000, 1000), 8);
+  assert.equal(roundness(100_000, 1000), 6);
+});
+
+test("a merged mesh has each copy's corners, colour and number", () => {
+  const box = makeGeometry("box", [], 8);
+  const vertices = box.getAttribute("position").count, corners = box.index!.count;
+  const merged = mergedGeometry(box, 2, [1, 0, 0, 0, 0.5, 0]);
+  const of = (name: string, i: number): number[] => {
+    const { array, itemSize } = merged.getAttribute(name);
+    return Array.from(array.slice(i * itemSize, (i + 1) * itemSize));
+  };
+  assert.equal(merged.getAttribute("position").count, 2 * vertices);
+  assert.equal(merged.index!.count, 2 * corners);
+  for (const name of ["position", "normal"]) assert.deepEqual(of(name, vertices + 3), of(name, 3));
+  assert.deepEqual([of("copy", vertices - 1), of("copy", vertices)], [[0], [1]]);
+  assert.deepEqual([of("color", 0), of("color", vertices)], [[1, 0, 0], [0, 0.5, 0]]);
+  assert.equal(merged.index!.array[corners + 5], box.index!.array[5] + vertices);
+  assert.deepEqual([1, 256, 257].map(roomFor), [256, 256, 512]);
 });

@@ -1,12 +1,18 @@
-// All links as instanced meshes: one draw call per shape.
+// All links as instanced or merged meshes: one draw call per shape.
 import * as three from "three";
 import type { Poses, World } from "../model/messages";
 import { packed, place } from "../model/pose";
 import { writeMatrix } from "./matrix";
+import { canMerge, Merged, roomFor } from "./merged";
 import { roundness } from "./quality";
 import { isRound, makeGeometry, partsOf, type Part } from "./shapes";
 
-interface Batch { mesh: three.InstancedMesh; parts: Part[]; mounts: Float64Array }
+interface Batch {
+  mesh: three.InstancedMesh; // what is drawn, unless it is merged
+  merged: Merged | null;
+  parts: Part[];
+  mounts: Float64Array;
+}
 
 /** Darker edges of boxes, in units of their sides: they tell touching blocks apart. */
 function addEdges(material: three.MeshLambertMaterial): void {
@@ -33,11 +39,13 @@ export class Bodies {
   private readonly pose = new Float64Array(7);
   private around = 0; // pieces of round shapes
 
-  constructor() { this.group.add(this.decorations); }
+  /** @param merges  whether links are drawn as merged meshes, as far as they fit */
+  constructor(private readonly merges: boolean) { this.group.add(this.decorations); }
 
   /** @param triangles  of all round shapes, about */
   setWorld(world: World, triangles: number): void {
-    for (const { mesh } of this.batches) {
+    for (const { mesh, merged } of this.batches) {
+      merged?.dispose();
       mesh.removeFromParent();
       mesh.geometry.dispose();
       (mesh.material as three.Material).dispose();
@@ -62,9 +70,10 @@ export class Bodies {
     const around = roundness(round.reduce((sum, { parts }) => sum + parts.length, 0), triangles);
     if (around === this.around) return false;
     this.around = around;
-    for (const { mesh, parts } of round) {
+    for (const { mesh, merged, parts } of round) {
       mesh.geometry.dispose();
       mesh.geometry = makeGeometry(parts[0].shape, world.hulls, around);
+      merged?.shapeChanges();
     }
     return true;
   }
@@ -73,18 +82,20 @@ export class Bodies {
     const { shape, isDecoration } = parts[0];
     const material = new three.MeshLambertMaterial();
     if (shape === "box") addEdges(material);
-    const mesh = new three.InstancedMesh(makeGeometry(shape, world.hulls, this.around), material, parts.length);
+    const mesh = new three.InstancedMesh(makeGeometry(shape, world.hulls, this.around), material, roomFor(parts.length));
+    mesh.count = parts.length;
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.frustumCulled = false;
     mesh.instanceMatrix.setUsage(three.DynamicDrawUsage);
     const color = new three.Color();
     parts.forEach((part, index) => mesh.setColorAt(index, color.set(part.color)));
-    this.batches.push({ mesh, parts, mounts: packed(parts) });
-    (isDecoration ? this.decorations : this.group).add(mesh);
+    const merged = this.merges && canMerge(mesh.geometry, parts.length) ? new Merged(mesh, material) : null;
+    this.batches.push({ mesh, merged, parts, mounts: packed(parts) });
+    (isDecoration ? this.decorations : this.group).add(merged?.mesh ?? mesh);
   }
 
   setPoses({ positions, orientations }: Poses): void {
-    for (const { mesh, parts, mounts } of this.batches) {
+    for (const { mesh, merged, parts, mounts } of this.batches) {
       const matrices = mesh.instanceMatrix.array;
       for (let i = 0; i < parts.length; ++i) {
         const { link, scale } = parts[i];
@@ -92,6 +103,7 @@ export class Bodies {
         writeMatrix(matrices, 16 * i, this.pose, scale[0], scale[1], scale[2]);
       }
       mesh.instanceMatrix.needsUpdate = true;
+      merged?.matricesChange();
     }
   }
 

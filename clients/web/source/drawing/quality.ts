@@ -14,8 +14,8 @@ export const levels: Level[] = [
   { pixels: 2, shadowSize: 2048, shadows: three.PCFSoftShadowMap, triangles: 1_000_000 },
   { pixels: 1, shadowSize: 2048, shadows: three.PCFSoftShadowMap, triangles: 1_000_000 },
   { pixels: 1, shadowSize: 1024, shadows: three.BasicShadowMap, triangles: 30_000 },
-  { pixels: 0.7, shadowSize: 1024, shadows: three.BasicShadowMap, triangles: 15_000 },
-  { pixels: 0.5, shadowSize: 512, shadows: three.BasicShadowMap, triangles: 10_000 },
+  { pixels: 0.7, shadowSize: 1024, shadows: three.BasicShadowMap, triangles: 30_000 },
+  { pixels: 0.5, shadowSize: 512, shadows: three.BasicShadowMap, triangles: 30_000 },
   { pixels: 0.5, shadowSize: 512, shadows: null, triangles: 10_000 },
 ];
 const slow = 0.05, quick = 0.012; // [s] a frame
@@ -58,7 +58,7 @@ export class Quality {
 
 /** Pieces around a round shape: as many as give no more than so many triangles with so many shapes. */
 export function roundness(shapes: number, triangles: number): number {
-  const pieces = [36, 28, 20, 16, 12];
+  const pieces = [36, 28, 20, 16, 12, 8];
   // A ball of n pieces has n * n triangles, a cylinder 4 n.
-  return pieces.find((n) => shapes * n * n <= triangles) ?? 8;
+  return pieces.find((n) => shapes * n * n <= triangles) ?? 6;
 }

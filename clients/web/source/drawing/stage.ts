@@ -38,7 +38,7 @@ export class Stage {
   private world: World | null = null;
   private theme: Theme = "light";
   private readonly quality: Quality;
-  private readonly isSlow: boolean; // no graphics processor
+  readonly isSlow: boolean; // no graphics processor
   private wantsShadows = true;
   private readonly sunAt = new three.Vector3(NaN, NaN, NaN); // where it was aimed
   private isFine = false; // the last frame was drawn with all pixels

@@ -45,7 +45,7 @@ const restAfter = 0.4; // [s] without change, the picture is drawn once with all
 
 export class View {
   readonly stage: Stage;
-  private readonly bodies = new Bodies();
+  private readonly bodies: Bodies;
   private readonly tags = new Tags();
   private readonly lights = new Lights();
   private readonly lines = new Lines();
@@ -69,6 +69,7 @@ export class View {
 
   constructor(canvas: HTMLCanvasElement, keepsLook: boolean) {
     this.stage = new Stage(canvas);
+    this.bodies = new Bodies(this.stage.isSlow);
     this.hasFramed = keepsLook;
     this.stage.scene.add(this.bodies.group, this.tags.group, this.lights.group, this.lines.object,
                          this.inside.object);
