@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <utility>
 
 #include "scene/names.h"
@@ -54,6 +55,32 @@ Ending ending_of(const std::string& path) {
   if (at == 0) return {".", name};
   if (path[at - 1] != '/' || at == 1 || path[at - 2] == '/') return {};  // //@name: any element's
   return {path.substr(0, at - 1), name};
+}
+
+constexpr std::size_t longest_path = 1024;  // [bytes]
+
+/// Conditions in conditions, or with axes, take a time that grows with a power of the scene's size.
+std::optional<Wrong> check_cost(std::string_view path) {
+  if (path.size() > longest_path) {
+    return Wrong{fmt::format("has {} characters; at most {} are allowed", path.size(), longest_path)};
+  }
+  int depth = 0;
+  char quote = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const char c = path[i];
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '[') {
+      if (++depth > 1) return Wrong{"has [conditions] in [conditions]; write several after another: a[@x][b/@y]"};
+    } else if (c == ']') {
+      --depth;
+    } else if (depth > 0 && path.substr(i, 2) == "::") {
+      return Wrong{"has an axis (::) in [a condition]; write it outside of brackets"};
+    }
+  }
+  return std::nullopt;
 }
 
 Value<pugi::xpath_node_set> select(const pugi::xml_node& root, const std::string& path) {
@@ -124,6 +151,7 @@ std::string to_text(const Variation& variation) {
 }
 
 Value<std::vector<Attribute>> attributes_at(const pugi::xml_node& root, const std::string& path) {
+  if (const auto wrong = check_cost(path)) return *wrong;
   const Ending ending = ending_of(path);
   const auto selected = select(root, ending.name.empty() ? path : ending.elements);
   if (const Wrong* wrong = std::get_if<1>(&selected)) return *wrong;

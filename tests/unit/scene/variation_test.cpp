@@ -102,6 +102,15 @@ TEST(Set, RefusesWhatIsNoPathToAttributes) {
   EXPECT_NE(only_fault(boxes().read(set({"arena/[=1]=2"}))).find("is no XPath"), std::string::npos);
 }
 
+TEST(Set, RefusesPathsThatWouldTakeForEver) {
+  const auto fault_of = [](const std::string& text) { return only_fault(boxes().read(set({text.c_str()}))); };
+  EXPECT_NE(fault_of("//*[count(//*[count(//*)>0])>0]/@mass=1").find("[conditions] in [conditions]"), std::string::npos);
+  EXPECT_NE(fault_of("//*[following::*]/@mass=1").find("an axis (::)"), std::string::npos);
+  EXPECT_NE(fault_of(std::string(2000, 'a') + "/@mass=1").find("at most 1024"), std::string::npos);
+  EXPECT_TRUE(boxes().read(set({"arena/box[@id='a' or @id='[[::'][body/@position]/@mass=1"})).ok());
+  EXPECT_TRUE(boxes().read(set({"arena/box[@id='a']/following-sibling::box[@id='b'][body]/@mass=1"})).ok());
+}
+
 TEST(Set, ReachesIncludedFiles) {
   const auto result =
       using_block(R"(<prototype id="a" model="block"><body/></prototype>)",
