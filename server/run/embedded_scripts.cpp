@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <optional>
 
 #include "processes/scripts.h"
 #include "replay/recording_error.h"
@@ -29,6 +31,20 @@ struct Named {
   std::string controller;   ///< that a command may be given for
 };
 
+/// The embedded file whose path ends as most of that of a script does: one that a scene names from the root stands
+/// there as seen from the scene.
+std::optional<std::string> file_with_end_of(const fs::path& script, const replay::EmbeddedFiles& files) {
+  for (fs::path end = script.lexically_normal().relative_path(); !end.empty();) {
+    for (const auto& [name, bytes] : files.all()) {
+      if (name == end || name.ends_with("/" + end.string())) return name;
+    }
+    fs::path shorter;
+    for (auto part = std::next(end.begin()); part != end.end(); ++part) shorter /= *part;
+    end = shorter;
+  }
+  return std::nullopt;
+}
+
 /// Where it is written. @throws replay::RecordingError if it is not embedded
 std::string embedded_script(const std::string& folder, const replay::EmbeddedFiles& files,
                             const scene::Scene& scene, const std::string& scene_path, const Named& script) {
@@ -43,6 +59,7 @@ std::string embedded_script(const std::string& folder, const replay::EmbeddedFil
     const fs::path path = each / script.name;
     if (files.find(path)) return place(folder, path.string()).string();
   }
+  if (const auto path = file_with_end_of(script.name, files)) return place(folder, *path).string();
   throw replay::RecordingError(fmt::format(
       "the script '{}' of '{}' is not in the recording; write --controller {}=CMD", script.name,
       script.owner, script.controller));

@@ -157,6 +157,16 @@ void RecordedRun::report_failure(const std::string& consequence) {
   console_.fault(fmt::format("{}; {}", *why, consequence));
 }
 
+/// That of a spawned robot, and what it loads, each once.
+void RecordedRun::add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files) {
+  if (script.empty() || scripts_.contains(script)) return;
+  std::vector<fs::path> scripts{script};
+  processes::add_required(scripts);
+  for (const fs::path& each : scripts) {
+    if (scripts_.insert(each).second) files.push_back({name_of_script(each, world_.path), read(each)});
+  }
+}
+
 void RecordedRun::act(const supervision::Act& done) {
   recorder::Recorder& to = recorder_;
   std::visit(
@@ -167,6 +177,7 @@ void RecordedRun::act(const supervision::Act& done) {
         } else if constexpr (std::is_same_v<Type, supervision::Spawned>) {
           std::vector<recorder::EmbeddedFile> files;
           for (const auto& [name, text] : act.files) files.push_back({name, text});
+          add_script(act.script, files);
           to.spawned(act.xml, std::move(files));
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Removed>) {

@@ -2,7 +2,9 @@
 // --record: what a recording is told of its run.
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +62,7 @@ class RecordedRun {
 
  private:
   void report_failure(const std::string& consequence);
+  void add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files);
 
   supervision::World& world_;
   reports::Console& console_;
@@ -67,6 +70,7 @@ class RecordedRun {
   const bool is_strict_;
   recorder::Recorder recorder_;
   bool is_population_new_ = true;
+  std::set<std::filesystem::path> scripts_;  // of spawned robots that are in the recording
 };
 
 /// Null if the options ask for no recording.

@@ -21,6 +21,7 @@ struct Spawned {
   std::string xml;
   /// Path, as it was asked for, and text of each file that was read for it.
   std::vector<std::pair<std::string, std::string>> files;
+  std::string script;  ///< path of its Lua controller's script; empty if it has none
 };
 struct Removed {
   std::string entity;

@@ -124,7 +124,7 @@ std::variant<Population::Candidate, wire::Fault> Population::read(
   }
   const network::DirectorsDesk directors(server_);
   const auto is_used = [&](const std::string& id) { return is_taken(id) || directors.has(id); };
-  Candidate candidate{.act = {xml, {}}};
+  Candidate candidate{.act = {xml, {}, {}}};
   scene::Addition& addition = candidate.addition;
   try {
     addition = world_.additions.read(xml, world_.scene, size_left_ - std::min(size_left_, earlier.size),
@@ -132,6 +132,7 @@ std::variant<Population::Candidate, wire::Fault> Population::read(
     const scene::Entity& entity = addition.entity;
     if (addition.ok()) {
       candidate.script = processes::spawned_script(world_.scene, entity, world_.path, allowed_);
+      candidate.act.script = candidate.script.path;
       if (candidate.script.details) console_.notice(*candidate.script.details);
       if (candidate.script.fault) {
         addition.problems.push_back({scene::Problem::Severity::fault,

@@ -280,6 +280,29 @@ class Kept(Fork):
         outcome = self.ask("replay", recording, "--hash", "--quiet")
         self.assertEqual(outcome.lines[-1], f"hash 11 {state['hash']}")
 
+    def test_scripts_of_spawned_robots_are_embedded_with_what_they_load(self):
+        allowed = self.folder / "allowed"
+        allowed.mkdir()
+        (allowed / "mine.lua").write_text('local helper = require "helper"\nfunction init() end '
+                                          "function step() robot.joints.shoulder.set_target(helper.speed) end")
+        (allowed / "helper.lua").write_text("return {speed = 1.5}")
+        robot = re.search(r'<prototype id="r2">.*?</prototype>', self.scene.read_text(), re.DOTALL)[0]
+        new = self.write("new.xml", robot.replace('"r2"', '"new"').replace("0,-1,0", "-1,-1,0")
+                         .replace('script="swing.lua"', 'script="allowed/mine.lua"'))
+        process, url = self.serve("--paused", "--ticks", "30", "--record", "run.mcap", "--allow-spawned-scripts", allowed,
+                                  scene=self.scene)
+        self.ctl(url, "spawn", new)
+        self.connect(url)
+        self.ctl(url, "resume")
+        self.assertEqual(self.finish(process).code, FINISHED)
+        shutil.rmtree(allowed)
+        self.check_controllers("run.mcap")
+
+    def test_scripts_that_are_named_from_the_root(self):
+        self.change('script="swing.lua"', f'script="{self.folder}/swing.lua"')
+        recording, _ = self.record()
+        self.assertRegex(self.ask("verify", recording, "--controllers").lines[-1], "^identical: the commands of ")
+
     def serve_restored(self, *restores, options=()):
         """A recorded run that was restored before its first tick, when it had no controllers yet."""
         recording = self.folder / "run.mcap"
