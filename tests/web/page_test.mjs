@@ -222,6 +222,9 @@ pageTest("scrubbing back shows old poses while the world runs on", drop, "", asy
   await page.locator("#live").click();
   await waitFor(async () => (await shownTick(page)) > tick + 3, "live tick");
   await waitFor(async () => Math.abs((await placeOf(page, id))[2] - old[2]) > 0.01, "the new place");
+  await page.evaluate((name) => window.ziggurat.app.toggleTrail(name), id);
+  const trail = await waitFor(() => page.evaluate((name) => window.ziggurat.view.trails.get(name), id), "trail");
+  assert.ok(trail[0][2] >= old[2], "the trail begins where the page first saw the body");
 }, "--real-time", "0.1");
 
 pageTest("keys and fingers turn and zoom the picture", tags, fromTop, async (page) => {

@@ -164,11 +164,11 @@ function drawFrame(now: number): void {
   const frame = app.frame;
   const poses = frame?.messages.get("/poses");
   if (frame && poses) {
-    const key = `${frame.sequence}|${settings.selected}|${frame.messages.size}`;
+    const key = `${frame.sequence}|${settings.selected}|${settings.trailed.join()}|${frame.messages.size}`;
     if (key !== shownKey || lastPoses !== poses) {
       shownKey = key;
       lastPoses = poses;
-      view.show(frame, app.selectedLinks);
+      view.show(frame, app.selectedLinks, app.recorded ? null : app.timeline);
     }
   }
   if (view.render(now * 1e-3)) ++frames;

@@ -7,7 +7,7 @@ import type { Vector } from "../model/pose";
 
 export interface Look { eye: Vector; at: Vector; fieldOfView: number }
 
-const sunDirection = new three.Vector3(0.35, -0.55, 1).normalize();
+const sunDirection = new three.Vector3(-0.42, -0.62, 1.15).normalize(); // as in `ziggurat render`; shadows fall beside things at first
 const themes = {
   light: { sky: 0xe9ebee, ground: 0xb9bcc0, light: 0xd4d6d9, dark: 0xc3c6ca, outside: 0xaeb1b6, sun: 2.3, ambient: 1.5 },
   dark: { sky: 0x16181c, ground: 0x24272d, light: 0x3a3e46, dark: 0x31353c, outside: 0x23262b, sun: 2.0, ambient: 1.0 },
@@ -74,8 +74,7 @@ export class Stage {
     this.sun.shadow.mapSize.set(shadowSize, shadowSize);
     this.sun.shadow.map?.dispose();
     this.sun.shadow.map = null;
-    this.sun.castShadow = this.wantsShadows && shadows !== null;
-    this.shadowsChange();
+    this.castShadows();
     if (shadows !== null && this.renderer.shadowMap.type !== shadows) {
       this.renderer.shadowMap.type = shadows;
       this.scene.traverse((object) => {
@@ -96,10 +95,15 @@ export class Stage {
   /** What casts shadows has moved. */
   shadowsChange(): void { this.renderer.shadowMap.needsUpdate = true; }
 
+  /** A picture that stays has shadows also where moving ones are too slow with them. */
+  private castShadows(): void {
+    this.sun.castShadow = this.wantsShadows && (this.isFine || levels[this.quality.level].shadows !== null);
+    this.shadowsChange();
+  }
+
   showShadows(isShown: boolean): void {
     this.wantsShadows = isShown;
-    this.sun.castShadow = isShown && levels[this.quality.level].shadows !== null;
-    this.shadowsChange();
+    this.castShadows();
     this.isDirty = true;
   }
 
@@ -220,6 +224,7 @@ export class Stage {
       this.isFine = isFine;
       if (isFine) this.renderer.setPixelRatio(this.finePixels);
       else this.setPixels(levels[this.quality.level].pixels);
+      if (levels[this.quality.level].shadows === null) this.castShadows();
     }
     const distance = this.camera.position.distanceTo(this.controls.target);
     this.camera.near = Math.max(0.0005, distance / 200);

@@ -1,8 +1,8 @@
 // The picture of one frame: everything that is drawn, layer by layer.
 import * as three from "three";
-import type { Contacts, Poses, RadioTraffic, Rays, World } from "../model/messages";
-import { compose, poseAt, type Vector } from "../model/pose";
-import type { Frame } from "../model/timeline";
+import type { Contacts, Entity, Poses, RadioTraffic, Rays, World } from "../model/messages";
+import { compose, poseAt, type Pose, type Vector } from "../model/pose";
+import type { Frame, Frames } from "../model/timeline";
 import { Bodies } from "./bodies";
 import { Lights } from "./lights";
 import { Lines } from "./lines";
@@ -40,7 +40,15 @@ function isSame(a: Poses, b: Poses): boolean {
       && same(a.directionalLedColors, b.directionalLedColors) && same(a.magnetMoments, b.magnetMoments);
 }
 
+/** X_WE of an entity's origin. */
+function originIn({ positions, orientations }: Poses, entity: Entity): Pose {
+  return compose(poseAt(positions, orientations, entity.referenceLink),
+                 { position: entity.originPosition, orientation: entity.originOrientation });
+}
+
 const longestGap = 100; // frames between two points of a trail
+const longestTrail = 1500; // points
+const mostRead = 60_000; // poses of links, for the trail of what has been
 const restAfter = 0.4; // [s] without change, the picture is drawn once with all pixels
 
 export class View {
@@ -83,8 +91,11 @@ export class View {
     this.hasFramed = false;
   }
 
-  /** Shows a frame; false if nothing in it is known yet. */
-  show(frame: Frame, selected: number[]): boolean {
+  /**
+   * Shows a frame; false if nothing in it is known yet.
+   * @param seen  where trails begin: all frames that can be read at once
+   */
+  show(frame: Frame, selected: number[], seen: Frames | null): boolean {
     const message = frame.messages.get("/poses");
     const world = frame.world;
     if (!message || !world) return false;
@@ -94,10 +105,11 @@ export class View {
     if (isNewWorld) this.setWorld(world);
     const before = isNewWorld ? null : this.poses;
     const distance = frame.sequence - (this.frame?.sequence ?? frame.sequence);
-    if (distance < 0 || distance > longestGap) this.trails.clear(); // the user jumped
+    const isEarlier = this.frame !== null && frame.timeNs < this.frame.timeNs;
+    if (isEarlier || distance < 0 || distance > longestGap) this.trails.clear(); // the user jumped, or the world began anew
     this.poses = poses;
     this.frame = frame;
-    const isAnother = selected.join() !== this.selected.join();
+    const isAnother = selected.join() !== this.selected.join() || this.trailed.some((id) => !this.trails.has(id));
     this.selected = selected;
     const hasLines = ["/rays", "/radio", "/contacts"].some((topic) => frame.messages.has(topic));
     if (before && !isAnother && isSame(before, poses)) {
@@ -111,7 +123,7 @@ export class View {
     this.tags.setPoses(poses);
     this.lights.setPoses(poses);
     this.follow(before);
-    this.growTrails();
+    this.growTrails(frame, seen);
     if (!this.hasFramed) {
       this.hasFramed = true;
       this.frameAll();
@@ -198,11 +210,9 @@ export class View {
   }
 
   /** X_WE of an entity's origin at the frame that is shown. */
-  originOf(entity: number): { position: Vector; orientation: [number, number, number, number] } | null {
+  originOf(entity: number): Pose | null {
     const found = this.world?.entities[entity];
-    if (!found || !this.poses) return null;
-    return compose(poseAt(this.poses.positions, this.poses.orientations, found.referenceLink),
-                   { position: found.originPosition, orientation: found.originOrientation });
+    return found && this.poses ? originIn(this.poses, found) : null;
   }
 
   private indexOf(id: string): number {
@@ -217,18 +227,42 @@ export class View {
     this.stage.shift([b[k] - a[k], b[k + 1] - a[k + 1], b[k + 2] - a[k + 2]]);
   }
 
-  private growTrails(): void {
+  private growTrails(frame: Frame, seen: Frames | null): void {
     for (const id of [...this.trails.keys()]) if (!this.trailed.includes(id)) this.trails.delete(id);
     for (const id of this.trailed) {
-      const origin = this.originOf(this.indexOf(id));
-      if (!origin) continue;
-      const points = this.trails.get(id) ?? [];
-      const last = points[points.length - 1];
-      const point: Vector = [origin.position[0], origin.position[1], origin.position[2] + 0.002];
-      if (!last || Math.hypot(point[0] - last[0], point[1] - last[1], point[2] - last[2]) > 0.001) points.push(point);
-      if (points.length > 1500) points.shift();
+      const points = this.trails.get(id) ?? (seen ? this.trailBefore(id, frame, seen) : []);
       this.trails.set(id, points);
+      this.addTo(points, this.originOf(this.indexOf(id)));
     }
+  }
+
+  private addTo(points: Vector[], origin: Pose | null): void {
+    if (!origin?.position.every(Number.isFinite)) return;
+    const [x, y, z] = origin.position;
+    const last = points[points.length - 1];
+    if (!last || Math.hypot(x - last[0], y - last[1], z + 0.002 - last[2]) > 0.001) points.push([x, y, z + 0.002]);
+    if (points.length > longestTrail) points.shift();
+  }
+
+  /** Where an entity was before a frame. */
+  private trailBefore(id: string, frame: Frame, seen: Frames): Vector[] {
+    const reads = Math.min(Math.max(mostRead / (this.world?.links.length || 1), 20), 500);
+    const first = Math.max(seen.first, frame.sequence - longestTrail);
+    const step = Math.max(1, Math.ceil((frame.sequence - first) / reads));
+    const origins: Pose[] = [];
+    let later = frame;
+    for (let s = frame.sequence - step; s >= first; s -= step) {
+      const earlier = seen.at(s);
+      const message = earlier?.messages.get("/poses");
+      if (!earlier?.world || !message) continue;
+      const entity = earlier.world.entities.find((one) => one.id === id && !one.removed);
+      if (!entity || earlier.timeNs >= later.timeNs) break; // it was not there yet, or the world began anew
+      origins.push(originIn(message.read<Poses>(), entity));
+      later = earlier;
+    }
+    const points: Vector[] = [];
+    for (const origin of origins.reverse()) this.addTo(points, origin);
+    return points;
   }
 
   /** Looks at the entity with that id, or at all that moves. */
