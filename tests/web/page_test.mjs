@@ -208,7 +208,7 @@ pageTest("scrubbing back shows old poses while the world runs on", drop, "", asy
     return (begin - timeline.first) / (timeline.length - 1);
   });
   await page.mouse.click(line.x + start * line.width + 1, line.y + line.height / 2);
-  await waitFor(() => page.evaluate(() => window.ziggurat.app.pinned !== null
+  await waitFor(() => page.evaluate(() => window.ziggurat.app.pinned === window.ziggurat.app.frame.sequence
     && window.ziggurat.view.poses.tick === window.ziggurat.app.frame.tick), "look back");
   const [old, tick] = [await placeOf(page, id), await shownTick(page)];
   const live = await liveTick(page);

@@ -161,7 +161,8 @@ let frames = 0;
 let lastPoses: unknown = null;
 function drawFrame(now: number): void {
   app.play(now * 1e-3);
-  const frame = app.frame;
+  app.chooseFrame();
+  const { frame } = app;
   const poses = frame?.messages.get("/poses");
   if (frame && poses) {
     const key = `${frame.sequence}|${settings.selected}|${settings.trailed.join()}|${frame.messages.size}`;

@@ -76,3 +76,52 @@ test("series read each complete frame once", () => {
   assert.equal(series.times[8].toFixed(3), "0.160");
   assert.equal(series.latest, (makePoses(2, 8)["positions"] as Float32Array)[2]);
 });
+
+/** Worlds in which the robot `a` is removed, and another `a` spawned. */
+function worldsOfTwo(): { withFirst: Value; withSecond: Value } {
+  const robot = { id: "a", kind: 5, movable: true, removed: false, robot: 0 };
+  const others = [{ id: "box", kind: 1, movable: true, removed: false }];
+  return { withFirst: { ...makeWorld(0), generation: 1, entities: [robot, ...others] },
+           withSecond: { ...makeWorld(0), generation: 2, entities: [{ ...robot, removed: true }, ...others, { ...robot, robot: 1 }] } };
+}
+function posesOf(generation: number, tick: number): Message {
+  return message("/poses", tick * 20_000_000, { ...makePoses(0, tick), generation });
+}
+const readings = "/robots/a/observation";
+
+test("readings of a removed robot are not those of another one with its id", () => {
+  const { withFirst, withSecond } = worldsOfTwo();
+  const timeline = new Timeline();
+  for (const one of [message("/world", 0, withFirst), posesOf(1, 0), message(readings, 0, {})]) timeline.take(one);
+  timeline.take(posesOf(1, 1));
+  assert.ok(timeline.message(readings, 1, 60, 0), "of the tick before");
+  for (const one of [message("/world", 40_000_000, withSecond), posesOf(2, 2)]) timeline.take(one);
+  assert.equal(timeline.message(readings, 2, 60, 2), null);
+  assert.ok(timeline.message(readings, 1, 60, 0), "of the first, while the page looks back");
+  timeline.take(message(readings, 40_000_000, { second: true }));
+  assert.ok(timeline.message(readings, 2, 60, 2));
+});
+
+test("a robot that stays keeps its readings when others come, and none outlive a reset", () => {
+  const { withFirst } = worldsOfTwo();
+  const timeline = new Timeline();
+  for (const one of [message("/world", 0, withFirst), posesOf(1, 0), message(readings, 0, {})]) timeline.take(one);
+  const entities = [...withFirst["entities"] as Value[], { id: "b", kind: 1 }];
+  for (const one of [message("/world", 20_000_000, { ...withFirst, generation: 2, entities }), posesOf(2, 1)]) timeline.take(one);
+  assert.ok(timeline.message(readings, 1, 60, 0));
+  for (const one of [message("/world", 0, { ...withFirst, generation: 3 }), posesOf(3, 0)]) timeline.take(one);
+  assert.equal(timeline.length, 3);
+  assert.equal(timeline.message(readings, 2, 60, 0), null);
+});
+
+test("a robot that another one replaces while the world is paused leaves no readings", () => {
+  const { withFirst, withSecond } = worldsOfTwo();
+  const timeline = new Timeline();
+  const other = "/robots/b/observation";
+  for (const one of [message("/world", 0, withFirst), posesOf(1, 0), message(readings, 0, {}), message(other, 0, {})]) timeline.take(one);
+  for (const one of [message("/world", 0, withSecond), posesOf(2, 0)]) timeline.take(one);
+  assert.equal(timeline.length, 1);
+  assert.equal(timeline.message(readings, 0, 60, 2), null);
+  assert.ok(timeline.message(other, 0));
+  assert.equal(timeline.heldBytes, 300); // of the world, the poses and the other's readings
+});

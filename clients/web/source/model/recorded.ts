@@ -10,7 +10,7 @@ import { areWhole, checkWorld } from "./check";
 import { Collisions } from "./collisions";
 import type { Contacts, Log, Poses, World } from "./messages";
 import type { Series } from "./series";
-import type { Frame, Frames, Mark } from "./timeline";
+import { newestMessage, type Frame, type Frames, type Mark } from "./timeline";
 
 const mostBytes = 192 * 1024 * 1024; // of frames in memory
 const mostFrames = 1e8;
@@ -151,12 +151,12 @@ export class Recorded implements Source, Frames {
     return found;
   }
 
-  message(topic: string, sequence: number, back = 400): Message | null {
-    for (let s = Math.min(sequence, this.last); s >= 0 && s > sequence - back; --s) {
-      const found = this.frames.get(s)?.messages.get(topic);
-      if (found) return found;
-    }
-    return null;
+  message(topic: string, sequence: number, back = 400, entity?: number): Message | null {
+    return newestMessage(topic, this.backwards(sequence, back), entity);
+  }
+
+  private *backwards(sequence: number, back: number): Generator<Frame | undefined> {
+    for (let s = Math.min(sequence, this.last); s >= 0 && s > sequence - back; --s) yield this.frames.get(s);
   }
 
   private async load(part: Part): Promise<void> {

@@ -34,8 +34,30 @@ export interface Frames {
   at(sequence: number): Frame | null;
   /** Simulated time from a frame to the next one [ns]; null: not known yet. */
   stepNs(sequence: number): number | null;
-  /** The newest message of a topic at or before a frame; it looks back so many frames. */
-  message(topic: string, sequence: number, back?: number): Message | null;
+  /**
+   * The newest message of a topic at or before a frame; it looks back so many frames.
+   * @param entity  whose topic it is in the world of that frame: messages of another one with the same id are not taken
+   */
+  message(topic: string, sequence: number, back?: number, entity?: number): Message | null;
+}
+
+/** Whether an entity of a frame's world was in the world of an earlier one: lists grow at their ends only, until a reset. */
+function wasThere(entity: number, { world, tick }: Frame, earlier: Frame): boolean {
+  if (!world || !earlier.world || world === earlier.world) return true;
+  return earlier.tick <= tick && earlier.world.entities[entity]?.id === world.entities[entity]?.id;
+}
+
+/** Frames.message. @param frames  from the frame on, backwards; null: not held */
+export function newestMessage(topic: string, frames: Iterable<Frame | null | undefined>, entity?: number): Message | null {
+  let later: Frame | null = null;
+  for (const frame of frames) {
+    if (!frame) continue;
+    if (entity !== undefined && later && !wasThere(entity, later, frame)) return null;
+    const found = frame.messages.get(topic);
+    if (found) return found;
+    if (frame.world) later = frame;
+  }
+  return null;
 }
 
 export class Timeline implements Frames {
@@ -118,7 +140,20 @@ export class Timeline implements Frames {
   private takePoses(frame: Frame, message: Message): void {
     const poses = message.read<Poses>();
     frame.tick = poses.tick;
-    frame.world = this.worlds.get(poses.generation) ?? frame.world;
+    const before = frame.world;
+    frame.world = this.worlds.get(poses.generation) ?? before;
+    if (before && frame.world !== before) this.dropOfOthers(frame, before);
+  }
+
+  /** Drops the messages of removed robots with whose ids others were spawned in the same tick. */
+  private dropOfOthers({ world, messages }: Frame, before: World): void {
+    world?.entities.forEach(({ id, robot }, i) => {
+      if (robot === undefined || before.entities[i]?.id === id) return;
+      for (const topic of [`/robots/${id}/observation`, `/robots/${id}/command`]) {
+        this.bytes -= messages.get(topic)?.bytes ?? 0;
+        messages.delete(topic);
+      }
+    });
   }
 
   private world(): World | null { return this.worlds.get(this.generation) ?? null; }
@@ -134,13 +169,12 @@ export class Timeline implements Frames {
     this.lastMissed = total;
   }
 
-  /** The newest message of a topic at or before a frame; it looks back so many frames. */
-  message(topic: string, sequence: number, back = 400): Message | null {
-    for (let s = Math.min(sequence, this.last); s >= this.first && s > sequence - back; --s) {
-      const found = this.at(s)?.messages.get(topic);
-      if (found) return found;
-    }
-    return null;
+  message(topic: string, sequence: number, back = 400, entity?: number): Message | null {
+    return newestMessage(topic, this.backwards(sequence, back), entity);
+  }
+
+  private *backwards(sequence: number, back: number): Generator<Frame | null> {
+    for (let s = Math.min(sequence, this.last); s >= this.first && s > sequence - back; --s) yield this.at(s);
   }
 
   private forgetOld(): void {

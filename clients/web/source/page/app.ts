@@ -33,14 +33,15 @@ export class App implements Listener {
   pauseOnText = "";
   /** The frame that is shown; null: the newest. */
   pinned: number | null = null;
+  /** The frame at which the page looks, the same during one redraw; it follows `pinned` at the next one. */
+  frame: Frame | null = null;
   tool: "select" | "move" = "select";
   onNotice: (notice: Notice) => void = () => undefined;
   onStatus: () => void = () => undefined;
   onSettings: () => void = () => undefined;
   private session = "";
-  private shownBefore: Frame | null = null;
   private began = -Infinity; // when the newest frame's first message came [ms]
-  private wantedFor: World | null = null; // the world that was shown at the last want()
+  private wantedFor: World | null = null; // the newest world at the last want()
 
   constructor(public source: Source, readonly settings: Settings, readonly view: View) {
     this.series = settings.plots.map((name) => new Series(name));
@@ -57,7 +58,7 @@ export class App implements Listener {
     this.barrier = null;
     this.parameters.clear();
     this.session = "";
-    this.shownBefore = null;
+    this.frame = null;
     this.view.forget();
     this.series = this.settings.plots.map((name) => new Series(name));
     this.pinned = null;
@@ -101,7 +102,7 @@ export class App implements Listener {
     if (this.seen.take(message)) this.began = performance.now();
     if (message.topic === "/contacts") this.takeContacts(message);
     if (message.topic === "/log") this.takeLog(message);
-    if (message.topic === "/world" || (message.topic === "/poses" && this.world !== this.wantedFor)) this.want();
+    if (message.topic === "/world" || (message.topic === "/poses" && this.seen.newest?.world !== this.wantedFor)) this.want();
     if (message.topic === "/barrier") {
       this.barrier = message.read<Barrier>();
       this.seen.noteMissed(this.barrier.histograms.reduce((sum, { missedTicks }) => sum + missedTicks, 0));
@@ -140,12 +141,12 @@ export class App implements Listener {
 
   /** Subscribes what the page shows now. */
   want(): void {
-    this.wantedFor = this.world;
+    const newest = this.seen.newest?.world ?? null; // while the page looks back, too
+    this.wantedFor = newest;
     const wanted = new Set(["/world", "/poses", "/log", "/barrier", "/phases"]);
     for (const layer of layers) {
       if ("topic" in layer && this.view.shown.has(layer.name)) wanted.add(layer.topic);
     }
-    const newest = this.seen.newest?.world; // while the page looks back, too
     if ((newest?.links.length ?? Infinity) <= mostLinksForCollisions) wanted.add("/contacts");
     for (const { name } of this.series) wanted.add(name.topic);
     const robots = newest?.robots ?? [];
@@ -165,12 +166,15 @@ export class App implements Listener {
 
   get world(): World | null { return this.frame?.world ?? null; }
 
-  /** The frame at which the page looks: the newest that is whole, unless the user looks back. */
-  get frame(): Frame | null {
-    if (this.recorded) {
-      this.shownBefore = this.recorded.at(this.pinned ?? this.recorded.last) ?? this.shownBefore;
-      return this.shownBefore;
-    }
+  /** Chooses the frame of this redraw. */
+  chooseFrame(): void {
+    const before = this.world;
+    this.frame = this.recorded ? this.recorded.at(this.pinned ?? this.recorded.last) ?? this.frame : this.frameOfRun();
+    if (this.world !== before) this.want();
+  }
+
+  /** The newest frame that is whole, unless the user looks back. */
+  private frameOfRun(): Frame | null {
     const { seen } = this;
     if (this.pinned !== null) return seen.at(this.pinned);
     const last = performance.now() - this.began < arrivalTime && seen.length > 1 ? seen.last - 1 : seen.last;

@@ -45,13 +45,13 @@ export class Devices implements Panel {
 
   private groups(): [string, Group[]][] {
     const robot = this.app.selectedRobot?.description;
-    const frame = this.app.frame;
-    if (!robot || !frame || !this.app.world) return [];
+    const { frame, selected } = this.app;
+    if (!robot || !frame || !selected || !this.app.world) return [];
     const found: [string, Group[]][] = [];
     const limits = this.limits(this.app.world);
-    const seen = this.app.timeline.message(`/robots/${robot.id}/observation`, frame.sequence, 60);
+    const seen = this.app.timeline.message(`/robots/${robot.id}/observation`, frame.sequence, 60, selected.index);
     if (seen) found.push(["Senses", observed(seen.topic, robot, seen.read<Observation>(), limits)]);
-    const told = this.app.timeline.message(`/robots/${robot.id}/command`, frame.sequence, 60);
+    const told = this.app.timeline.message(`/robots/${robot.id}/command`, frame.sequence, 60, selected.index);
     if (told) {
       const command = { tagPayloads: this.payloads(this.app.world, frame), ...told.read<Command>() };
       found.push(["Commands", commanded(told.topic, robot, command, limits)]);
