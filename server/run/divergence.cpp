@@ -104,11 +104,13 @@ class Comparison {
     if (a.has_commands() && b.has_commands()) {
       *of_a.mutable_commands() = a_.commands;
       *of_b.mutable_commands() = b_.commands;
-    } else {  // one of them ended here
-      of_a.clear_commands();
-      of_b.clear_commands();
     }
     for (v1::Inputs* each : {&of_a, &of_b}) {
+      if (a.has_commands() != b.has_commands()) {  // one of them ended here, before what was done next
+        each->clear_commands();
+        each->clear_metrics();
+        each->clear_acts();
+      }
       each->clear_hash();
       for (auto* acts : {each->mutable_acts(), each->mutable_acts_before()}) {
         for (v1::Act& act : *acts) act.clear_wall_ns();

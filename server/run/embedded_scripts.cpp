@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
 
 #include "processes/scripts.h"
@@ -31,18 +30,32 @@ struct Named {
   std::string controller;   ///< that a command may be given for
 };
 
-/// The embedded file whose path ends as most of that of a script does: one that a scene names from the root stands
-/// there as seen from the scene.
-std::optional<std::string> file_with_end_of(const fs::path& script, const replay::EmbeddedFiles& files) {
-  for (fs::path end = script.lexically_normal().relative_path(); !end.empty();) {
-    for (const auto& [name, bytes] : files.all()) {
-      if (name == end || name.ends_with("/" + end.string())) return name;
-    }
-    fs::path shorter;
-    for (auto part = std::next(end.begin()); part != end.end(); ++part) shorter /= *part;
-    end = shorter;
+/// A path without its root and the `..` that it begins with.
+fs::path stripped(const fs::path& path) {
+  fs::path rest;
+  for (const fs::path& part : path.lexically_normal().relative_path()) {
+    if (part != "..") rest /= part;
   }
-  return std::nullopt;
+  return rest;
+}
+
+bool ends_with(const fs::path& path, const fs::path& end) {
+  return path == end || path.string().ends_with("/" + end.string());
+}
+
+/// The embedded file that this script can only be. Embedded names are as seen from the folder where the run was
+/// started: of a script that a scene names from the root such a name is the end, less any `..`; it ends itself as one
+/// that a scene names otherwise.
+std::optional<std::string> only_file_of(const fs::path& script, const replay::EmbeddedFiles& files) {
+  const fs::path path = stripped(script);
+  std::optional<std::string> found;
+  for (const auto& [name, bytes] : files.all()) {
+    const fs::path embedded = stripped(name);
+    if (script.is_absolute() ? !ends_with(path, embedded) : !ends_with(embedded, path)) continue;
+    if (found) return std::nullopt;
+    found = name;
+  }
+  return found;
 }
 
 /// Where it is written. @throws replay::RecordingError if it is not embedded
@@ -59,9 +72,9 @@ std::string embedded_script(const std::string& folder, const replay::EmbeddedFil
     const fs::path path = each / script.name;
     if (files.find(path)) return place(folder, path.string()).string();
   }
-  if (const auto path = file_with_end_of(script.name, files)) return place(folder, *path).string();
+  if (const auto path = only_file_of(script.name, files)) return place(folder, *path).string();
   throw replay::RecordingError(fmt::format(
-      "the script '{}' of '{}' is not in the recording; write --controller {}=CMD", script.name,
+      "the script '{}' of '{}' is not in the recording, or cannot be told from others; write --controller {}=CMD", script.name,
       script.owner, script.controller));
 }
 

@@ -34,9 +34,11 @@ std::string name_of_script(const fs::path& script, const std::string& scene_file
   return (folder / relative).lexically_normal().string();
 }
 
-std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+/// Attaches a script under a name that no other file has. One that cannot be read is left out.
+void attach(const fs::path& script, std::string name, std::vector<recorder::EmbeddedFile>& files) {
+  std::ifstream file(script, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (file.is_open() && !file.bad()) files.push_back({std::move(name), std::move(text)});
 }
 
 /// Each script of the scene, and what it loads from its folders, once.
@@ -44,7 +46,7 @@ void add_scripts(const supervision::World& world, recorder::Start& start) {
   std::vector<fs::path> scripts = processes::scripts_of(world.scene, world.path);
   processes::add_required(scripts);
   for (const fs::path& script : scripts) {
-    start.files.push_back({name_of_script(script, world.path), read(script)});
+    attach(script, name_of_script(script, world.path), start.files);
   }
 }
 
@@ -131,7 +133,16 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
       recorder_({options.record,
                  options.record_compression,
                  {wish_of(options.record_topics), options.record_every}},
-                start_of(options, world, files, last_tick, idle, past)) {}
+                begin(start_of(options, world, files, last_tick, idle, past))) {}
+
+recorder::Start RecordedRun::begin(recorder::Start start) {
+  note(start.files);
+  return start;
+}
+
+void RecordedRun::note(const std::vector<recorder::EmbeddedFile>& files) {
+  for (const auto& file : files) embedded_.insert(fs::path(file.name).lexically_normal().string());
+}
 
 void RecordedRun::tick() {
   simulation::Simulation& simulation = world_.simulation;
@@ -157,13 +168,15 @@ void RecordedRun::report_failure(const std::string& consequence) {
   console_.fault(fmt::format("{}; {}", *why, consequence));
 }
 
-/// That of a spawned robot, and what it loads, each once.
+/// That of a spawned robot, and what it loads; not those that the recording has, which may have been
+/// edited since: the robots that run them began with the first.
 void RecordedRun::add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files) {
-  if (script.empty() || scripts_.contains(script)) return;
+  if (script.empty() || !scripts_.insert(script).second) return;
   std::vector<fs::path> scripts{script};
   processes::add_required(scripts);
   for (const fs::path& each : scripts) {
-    if (scripts_.insert(each).second) files.push_back({name_of_script(each, world_.path), read(each)});
+    std::string name = name_of_script(each, world_.path);
+    if (!embedded_.contains(name)) attach(each, std::move(name), files);
   }
 }
 
@@ -178,6 +191,7 @@ void RecordedRun::act(const supervision::Act& done) {
           std::vector<recorder::EmbeddedFile> files;
           for (const auto& [name, text] : act.files) files.push_back({name, text});
           add_script(act.script, files);
+          note(files);
           to.spawned(act.xml, std::move(files));
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Removed>) {

@@ -61,6 +61,8 @@ class RecordedRun {
   void close(const std::vector<world::Metric>& metrics = {});
 
  private:
+  recorder::Start begin(recorder::Start start);
+  void note(const std::vector<recorder::EmbeddedFile>& files);
   void report_failure(const std::string& consequence);
   void add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files);
 
@@ -68,9 +70,10 @@ class RecordedRun {
   reports::Console& console_;
   const std::uint64_t last_tick_;
   const bool is_strict_;
+  std::set<std::string> embedded_;           // names of files that the recording has
+  std::set<std::filesystem::path> scripts_;  // of spawned robots
   recorder::Recorder recorder_;
   bool is_population_new_ = true;
-  std::set<std::filesystem::path> scripts_;  // of spawned robots that are in the recording
 };
 
 /// Null if the options ask for no recording.

@@ -298,6 +298,22 @@ class Kept(Fork):
         shutil.rmtree(allowed)
         self.check_controllers("run.mcap")
 
+    def test_a_script_that_was_edited_before_a_spawn_stays_that_of_the_first_robots(self):
+        robot = re.search(r'<prototype id="r2">.*?</prototype>', self.scene.read_text(), re.DOTALL)[0]
+        new = self.write("new.xml", robot.replace('"r2"', '"new"').replace("0,-1,0", "-1,-1,0"))
+        process, url = self.serve("--paused", "--record", "run.mcap", scene=self.scene)
+        self.connect(url)
+        self.ctl(url, "step", 3)
+        script = self.folder / "swing.lua"
+        text = script.read_text()
+        script.write_text(text.replace("tonumber(robot.params.speed)", "0"))
+        self.assertNotEqual(script.read_text(), text)
+        self.ctl(url, "spawn", new)
+        self.ctl(url, "shutdown")
+        self.finish(process)
+        self.assertEqual((self.folder / "run.mcap").read_bytes().count(b"function init()"), 1)
+        self.assertRegex(self.ask("verify", "run.mcap", "--controllers").lines[-1], "^identical: the commands of ")
+
     def test_scripts_that_are_named_from_the_root(self):
         self.change('script="swing.lua"', f'script="{self.folder}/swing.lua"')
         recording, _ = self.record()

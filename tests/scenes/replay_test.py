@@ -387,6 +387,32 @@ class Compare(Recorded):
         self.assertEqual((result["compared"], result["only_a"], result["only_b"]), (8, 13, 0))
         self.assertNotIn("first_inputs", result)
 
+    def test_diff_takes_no_end_for_a_difference(self):
+        """Metrics that are set at the end, and acts after it."""
+        script = self.folder / "swing.lua"
+        script.write_text(script.read_text().replace("function destroy()", "function destroy()\n  metric('all', steps)"))
+        a, _ = self.record("--ticks", "20", name="a.mcap")
+        b, _ = self.record("--ticks", "10", name="b.mcap")
+        self.assert_same_inputs(a, b, 11, 10)
+        script.write_text(script.read_text().replace("'all', steps", "'all', 0"))
+        c, _ = self.record("--ticks", "10", name="c.mcap")
+        self.assertIn("tick 10: metrics[0].value is 10 in A, 0 in B", self.ask("diff", b, c).out)
+
+        box = self.write("box.xml", '<box id="new" size="0.1,0.1,0.1" movable="true" mass="1"><body position="-1,-1,2"/></box>')
+        for name, acts in {"d": (), "e": (("spawn", box), ("step", 5))}.items():
+            process = self.start("serve", ROOT / "scenes/dynamics3d_single_body_test.argos", "--json", "--record", f"{name}.mcap")
+            endpoint = json.loads(process.stdout.readline())["endpoint"]
+            for words in (("step", 5), *acts, ("shutdown",)):
+                self.assertEqual(self.ziggurat("ctl", endpoint, *words).code, FINISHED)
+            self.finish(process)
+        self.assert_same_inputs("d.mcap", "e.mcap", 6, 5)
+
+    def assert_same_inputs(self, a, b, both, one):
+        for pair in ((a, b), (b, a)):
+            result = json.loads(self.ask("diff", *pair, "--json", code=DIFFERS).out)
+            self.assertEqual((result["compared"], result["only_a"] + result["only_b"]), (both, one))
+            self.assertNotIn("first_inputs", result)
+
 
 class Export(Recorded):
     def test_csv_has_the_poses_of_the_trace(self):
