@@ -97,7 +97,8 @@ void by_rows(int rows, F f) {
   }
 }
 
-/// Whether a side's touched dofs begin with the six of a free root.
+/// Whether a side's touched dofs begin with the first six of its tree: those of a free root, or of joints on
+/// the way from a fixed one.
 inline bool leads(std::span<const int> dofs) { return dofs.size() >= 6 && dofs[5] == 5; }
 
 /// Slower impacts do not bounce [m/s].

@@ -11,12 +11,12 @@ struct Side {
   int dofs = 0;                     // of the tree
   const double* columns = nullptr;  // R values per dof
   std::span<const int> touched;     // dofs whose columns are not zero, ascending
-  int leading = 0;                  // so many of them are the first dofs of the tree: 6 or 0
+  int leading = 0;                  // 6 of a free root, or 0
 };
 
 Side side_of(const Problem& problem, int place, int first, std::span<const int> dofs) {
   const Tree& tree = *problem.trees[place];
-  return {place, tree.dofs, problem.jacobian.data() + first, dofs, leads(dofs) ? 6 : 0};
+  return {place, tree.dofs, problem.jacobian.data() + first, dofs, tree.free_root && leads(dofs) ? 6 : 0};
 }
 
 /// Whether a block's impulse along row r may change with the speed along row c. Normal and tangents
