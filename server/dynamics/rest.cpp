@@ -22,6 +22,35 @@ Load load(const Tree& tree) {
   return out;
 }
 
+/// Whether all coordinates of an island are so slow that it rests.
+/// @param island  numbers of its trees
+bool is_slow(const std::vector<Tree>& trees, std::span<const int> island, const RestOptions& rest) {
+  for (const int number : island) {
+    const Tree& tree = trees[number];
+    for (int k = 0; k < tree.dofs; ++k) {
+      const bool linear = tree.axes[k].angular.isZero(0);
+      if (!(std::abs(tree.v[k]) <= (linear ? rest.speed : rest.turning))) return false;
+    }
+  }
+  return true;
+}
+
+/// Whether an island's kinetic energy is what the miss of its solution may have given it.
+bool is_noise(const std::vector<Tree>& trees, std::span<const int> island, const RestOptions& rest,
+              double miss) {
+  double energy = 0, mass = 0;
+  for (const int number : island) {
+    double own = 0;
+    for (const Link& link : trees[number].links) own += link.mass;
+    const double its = kinetic_energy(trees[number]);
+    if (!(2 * its <= own * rest.swept_fastest * rest.swept_fastest)) return false;
+    energy += its, mass += own;
+  }
+  constexpr double some = 3;  // each is pushed by the misses of several contacts
+  const double most = std::min(some * miss, rest.swept_speed);
+  return 2 * energy <= mass * most * most;
+}
+
 }  // namespace
 
 void System::wake(int tree) {
@@ -74,7 +103,8 @@ bool System::comes_to_touch(const Contact& contact) const {
     return motion.linear + motion.angular.cross(contact.point - tree.origin);
   };
   const double apart = contact.normal.dot(speed(contact.a) - speed(contact.b));
-  const int mover = contact.a.tree >= 0 && !asleep(contact.a.tree) ? contact.a.tree : contact.b.tree;
+  const int mover =
+      contact.a.tree >= 0 && !asleep(contact.a.tree) ? contact.a.tree : contact.b.tree;
   const double fall = mover >= 0 ? trees[mover].gravity.norm() * length_ : 0;
   return contact.gap + length_ * (apart - 2 * fall) < 1e-5;
 }
@@ -123,24 +153,22 @@ bool System::wake_disturbed(double length, std::span<Contact> contacts, std::spa
 }
 
 /// Lets an island sleep that has been at rest for long enough.
-/// @param carried  whether the world carries it
-void System::settle(int first_tree, int last_tree, bool carried) {
+/// @param carried     whether the world carries it
+/// @param swept_miss  by how much its solution misses the law, if it was only swept [m/s]; else 0
+void System::settle(int first_tree, int last_tree, bool carried, double swept_miss) {
   if (!rest.sleeps) return;
-  bool quiet = carried;
-  for (int i = first_tree; i < last_tree && quiet; ++i) {
-    const Tree& tree = trees[tree_order_[i]];
-    for (int k = 0; k < tree.dofs; ++k) {
-      const bool linear = tree.axes[k].angular.isZero(0);
-      quiet = quiet && std::abs(tree.v[k]) <= (linear ? rest.speed : rest.turning);
-    }
-  }
+  const std::span<const int> island(tree_order_.data() + first_tree,
+                                    tree_order_.data() + last_tree);
+  const bool swept = swept_miss > 0;
+  const bool quiet = carried && ((swept && is_noise(trees, island, rest, swept_miss)) ||
+                                 is_slow(trees, island, rest));
   double least = HUGE_VAL;
   for (int i = first_tree; i < last_tree; ++i) {
     Sleeper& sleeper = sleepers_[tree_order_[i]];
     sleeper.quiet = quiet ? sleeper.quiet + length_ : 0;
     least = std::min(least, sleeper.quiet);
   }
-  if (!quiet || least < rest.time) return;
+  if (!quiet || least < (swept ? rest.swept_time : rest.time)) return;
   for (int i = first_tree; i < last_tree; ++i) {
     const int index = tree_order_[i];
     Tree& tree = trees[index];

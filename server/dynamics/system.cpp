@@ -288,7 +288,8 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       displace_keeping_momentum(tree, work_, problem_.mass_of(i), problem_.drift[i], by);
     }
   }
-  settle(first_tree, last_tree, carried);
+  const bool swept = outcome.sweeps > 0 && outcome.descents == 0;
+  settle(first_tree, last_tree, carried, swept ? outcome.miss : 0);
 }
 
 void System::push_apart(std::span<Contact> contacts, std::span<const int> chosen) {

@@ -30,6 +30,10 @@ struct RestOptions {
   double turning = 5e-4;  ///< of what turns, and of joints [rad/s] or [m/s]
   double time = 0.3;      ///< [s]
   double force = 1e-3;    ///< change that wakes, over the weight and the force at the time of sleep
+  // A heap that was swept: what is slower than its solution misses the law by is not known to move.
+  double swept_speed = 1e-3;    ///< of all its mass, root mean square: it may be no more [m/s]
+  double swept_fastest = 5e-3;  ///< of a tree [m/s]
+  double swept_time = 0.5;      ///< [s]
 };
 
 class System {
@@ -94,7 +98,7 @@ class System {
   void forget_pushes();
   bool comes_to_touch(const Contact& contact) const;
   void note_commands();
-  void settle(int first_tree, int last_tree, bool carried);
+  void settle(int first_tree, int last_tree, bool carried, double swept_miss = 0);
   void find_awake();
   void gather(std::span<const Contact> contacts, std::span<const Servo> servos,
               std::span<const Limit> limits);

@@ -50,5 +50,29 @@ TEST(Sweeps, KeepAPileNearTheContactLaw) {
   }
 }
 
+// Its cubes tremble without end, by less than its solutions miss the law.
+TEST(Sweeps, LetAHeapSleepThatOnlyTrembles) {
+  testing::Touching world = testing::pile(50);
+  sweep_only(world.system);
+  int substeps = 0;
+  while (substeps < 500 && !world.system.asleep(0)) ++substeps, world.step(0.01);
+  EXPECT_LT(substeps, 500);
+  EXPECT_GT(substeps, 70);  // it falls for 0.2 s, and must be quiet for 0.5
+  for (int i = 0; i < 50; ++i) EXPECT_TRUE(world.system.asleep(i)) << i;
+}
+
+// 5 mm/s^2: slower than the bounds of heaps for 0.2 s.
+TEST(Sweeps, DoNotLetWhatBeginsToSlideSleep) {
+  testing::Touching world;
+  const double friction = 0.7, acceleration = 5e-3, substep = 0.01;
+  world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
+  world.add_box(Vector3::Constant(0.05), 0.1, testing::at(0, 0, 0.025), friction);
+  world.gravity = Vector3(friction * testing::g + acceleration, 0, -testing::g);
+  sweep_only(world.system);
+  for (int i = 0; i < 200; ++i) world.step(substep);
+  EXPECT_FALSE(world.system.asleep(0));
+  EXPECT_NEAR(world.tree(0).v[3], 200 * substep * acceleration, 5e-4);
+}
+
 }  // namespace
 }  // namespace ziggurat::dynamics
