@@ -7,6 +7,7 @@ import zmq
 
 from . import wire
 from .case import Failed
+from .keys import MISLED, PLAIN, UNLISTED
 from .rules.answers import Answers
 from .rules.fault import musts
 from .rules.session import Session
@@ -14,7 +15,8 @@ from .rules.text_form import server_text_faults
 from .wire import protocol
 
 
-_LONGEST_SEND = 2.0  # [s] that a message waits for room in the queue
+# [s] that a message waits for room in the queue; ZeroMQ has no queue for a connection that was refused.
+_LONGEST_SEND, _LONGEST_SEND_IF_REFUSED = 60.0, 2.0
 
 
 class Transcript:
@@ -50,7 +52,9 @@ class Peer:
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.LINGER, 0)
         self.socket.setsockopt(zmq.MAXMSGSIZE, -1)
-        self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * _LONGEST_SEND))
+        self._may_be_refused = name in (PLAIN, MISLED, UNLISTED)
+        longest = _LONGEST_SEND_IF_REFUSED if self._may_be_refused else _LONGEST_SEND
+        self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * longest))
         if keys:
             self.socket.curve_serverkey, self.socket.curve_publickey, self.socket.curve_secretkey = (
                 keys
@@ -92,11 +96,12 @@ class Peer:
         self.socket.close()
 
     def _send(self, frames: tuple[bytes, ...]) -> None:
-        """ZeroMQ gives a connection up that was refused, and a socket without any waits without end."""
         try:
             self.socket.send_multipart(frames)
         except zmq.Again:
-            self.transcript.add(self.name, "───", "can't send: it has no connection any more")
+            if not self._may_be_refused:
+                raise Failed(f"{self.name} can't send: the server has taken nothing for {_LONGEST_SEND:g} s") from None
+            self.transcript.add(self.name, "───", "can't send: the connection was refused")
 
     def _receive(self) -> protocol.ServerMessage:
         frames = self.socket.recv_multipart()

@@ -60,6 +60,7 @@ class Connection:
         self._has_keys = curve is not None
         self.is_accepted = False  # by the server: if nothing arrives then, it is slow
         self._is_open = False  # the handshake has succeeded
+        self._why_closed: Optional[str] = None  # messages that came before may still be in the queue
         self.longest_silence: Optional[float] = None  # [s] of wall time; longer, and the connection is lost
         self._failed_handshakes = 0
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
@@ -116,17 +117,19 @@ class Connection:
         silence = 0.0  # in pieces: a program that was stopped has not waited
         while True:
             rest = SLICE if end is None else min(SLICE, max(0.0, end - time.monotonic()))
+            if self._why_closed is not None:
+                rest = 0.0
             began = time.monotonic()
             ready = dict(self.poller.poll(int(1000 * rest)))
             silence += min(rest, time.monotonic() - began)
             if self.socket in ready:
                 return v1.ServerMessage.FromString(self.socket.recv())
-            if self.monitor in ready:
-                why = self._next_reason()
-                if self.socket.poll(0) or why is None:
-                    continue
+            if self._why_closed is not None:
                 self.close()
-                raise ConnectionLost(f"{self.endpoint}: {why}")
+                raise ConnectionLost(f"{self.endpoint}: {self._why_closed}")
+            if self.monitor in ready:
+                self._why_closed = self._next_reason()
+                continue
             if self.longest_silence is not None and silence >= self.longest_silence:
                 raise ConnectionLost(f"{self.endpoint}: the server has been silent for {silence:.1f} s")
             if end is not None and time.monotonic() >= end:
