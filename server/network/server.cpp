@@ -300,8 +300,7 @@ const std::vector<Directed>& DirectorsDesk::directions() const {
 bool DirectorsDesk::wants_contacts() const { return network::wants_contacts(state_.barrier); }
 
 bool DirectorsDesk::has(const std::string& id) const {
-  return std::ranges::find(state_.barrier.directors.all, id, &scene::Director::id) !=
-         state_.barrier.directors.all.end();
+  return state_.barrier.directors.find(id).has_value();
 }
 
 void DirectorsDesk::warn(const std::string& director, wire::Fault fault) {

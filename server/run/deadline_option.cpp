@@ -61,10 +61,12 @@ DeadlineOption to_deadline(const std::string& value) {
   return option;
 }
 
-DeadlinesOfRun deadlines_of(const std::vector<DeadlineOption>& options, const scene::Scene& scene) {
+DeadlinesOfRun deadlines_of(const std::vector<DeadlineOption>& options, const scene::Scene& scene,
+                            const scene::DeadlinePolicy& otherwise) {
   DeadlinesOfRun deadlines;
+  deadlines.of_others = {otherwise, false};
   const auto add = [&](const auto& from) {
-    deadlines.all.push_back({from.deadline.value_or(scene::DeadlinePolicy{}), false});
+    deadlines.all.push_back({from.deadline.value_or(otherwise), false});
   };
   std::ranges::for_each(scene.controllers, add);
   std::ranges::for_each(scene.directors, add);

@@ -25,7 +25,9 @@ struct DeadlinesOfRun {
 
 /// Later options win over earlier ones, those that name a controller or director over those for all, and all
 /// of them over the scene.
+/// @param otherwise  for those that neither the options nor the scene give one
 /// @throws text::UsageError if the scene has none of that name
-DeadlinesOfRun deadlines_of(const std::vector<DeadlineOption>& options, const scene::Scene& scene);
+DeadlinesOfRun deadlines_of(const std::vector<DeadlineOption>& options, const scene::Scene& scene,
+                            const scene::DeadlinePolicy& otherwise = {});
 
 }  // namespace ziggurat::run

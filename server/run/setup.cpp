@@ -21,21 +21,14 @@
 namespace ziggurat::run {
 namespace {
 
-/// Hardware in the loop does not wait: a controller without a policy of its own holds its last
-/// command after nine tenths of a tick, and a director without one has no acts in that tick.
-void hold_late(const Options& options, const scene::Scene& scene, DeadlinesOfRun& deadlines) {
-  const double factor = options.real_time.value_or(1);
-  const double tick_ms = 1000.0 / scene.experiment.ticks_per_second / factor;
-  const auto ms = static_cast<std::uint32_t>(std::max(1.0, std::floor(0.9 * tick_ms)));
-  const auto hold = [&](network::Config::Deadline& deadline, bool has_own) {
-    if (!deadline.is_fixed && !has_own) deadline.policy = {scene::DeadlineAction::hold, ms, 0};
-  };
-  const std::size_t controllers = scene.controllers.size();
-  for (std::size_t i = 0; i < deadlines.all.size(); ++i) {
-    hold(deadlines.all[i], i < controllers ? scene.controllers[i].deadline.has_value()
-                                           : scene.directors[i - controllers].deadline.has_value());
-  }
-  hold(deadlines.of_others, false);
+/// Of controllers and directors that nothing gives a policy. Hardware in the loop does not wait: they hold
+/// their last command after nine tenths of a tick, and directors have no acts in it.
+scene::DeadlinePolicy usual_policy(const Options& options, const scene::Scene& scene) {
+  if (!options.hil) return {};
+  const double tick_ms =
+      1000.0 / scene.experiment.ticks_per_second / options.real_time.value_or(1);
+  return {scene::DeadlineAction::hold,
+          static_cast<std::uint32_t>(std::max(1.0, std::floor(0.9 * tick_ms))), 0};
 }
 
 }  // namespace
@@ -71,8 +64,7 @@ network::Config network_config(const Options& options, bool is_serve, LocalEndpo
 }
 
 void add_controllers(const Options& options, const scene::Scene& scene, network::Config& config) {
-  auto deadlines = deadlines_of(options.deadlines, scene);
-  if (options.hil) hold_late(options, scene, deadlines);
+  auto deadlines = deadlines_of(options.deadlines, scene, usual_policy(options, scene));
   config.deadlines = std::move(deadlines.all);
   config.deadline_of_others = deadlines.of_others;
   config.injections = injections_of(options.injections, scene);

@@ -103,7 +103,11 @@ std::string too_large(std::size_t max_size) {
 std::optional<std::string> fault_of_file(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) return "does not exist; check its path";
+  if (status.type() == fs::file_type::not_found) {
+    const fs::path scene = path.string() + ".argos";
+    if (fs::is_regular_file(scene, error)) return fmt::format("does not exist; write {}", scene.string());
+    return "does not exist; check its path";
+  }
   if (error) return fmt::format("cannot be read: {}", error.message());
   if (status.type() == fs::file_type::directory) return "is a folder; write the path of a file in it";
   if (status.type() != fs::file_type::regular) return "is not a regular file; check its path";

@@ -58,10 +58,7 @@ std::optional<wire::Refusal> check_wishes(const Barrier& barrier, const wire::He
 /// The director of that id; one from outside, if these are allowed, is a new one, behind all others.
 std::variant<std::size_t, wire::Refusal> find_director(const Barrier& barrier, const std::string& id) {
   const Directors& directors = barrier.directors;
-  const auto found = std::ranges::find(directors.all, id, &scene::Director::id);
-  if (found != directors.all.end()) {
-    return static_cast<std::size_t>(found - directors.all.begin());
-  }
+  if (const auto found = directors.find(id)) return *found;
   const std::string shown = id.substr(0, longest_id);
   if (!directors.are_allowed) {
     return refuse(ErrorCode::forbidden, "director",
@@ -400,11 +397,9 @@ bool wants_contacts(const Barrier& barrier) {
 }
 
 void warn_director(Barrier& barrier, const std::string& director, wire::Fault fault) {
-  const auto& all = barrier.directors.all;
-  const auto found = std::ranges::find(all, director, &scene::Director::id);
-  if (found == all.end()) return;
-  const auto number = static_cast<std::size_t>(found - all.begin());
-  Session* session = barrier.sessions.find(barrier.directors.seats[number].holder);
+  const auto number = barrier.directors.find(director);
+  if (!number) return;
+  Session* session = barrier.sessions.find(barrier.directors.seats[*number].holder);
   if (session == nullptr) return;
   fault.severity = wire::Severity::warning;
   fault.tick = tick_of(barrier);

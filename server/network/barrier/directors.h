@@ -1,6 +1,7 @@
 #pragma once
 // The directors of a world: who may direct it, who does, and what they want done.
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -35,6 +36,13 @@ struct Directors {
   CheckDirection check;      ///< may be empty
   std::optional<wire::Truth> truth;  ///< of the tick in hand; none: there is none to tell
   std::vector<Directed> directed;  ///< what directions() returns
+
+  /// Its number, if there is or was one of that id.
+  std::optional<std::size_t> find(const std::string& id) const {
+    const auto found = std::ranges::find(all, id, &scene::Director::id);
+    if (found == all.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - all.begin());
+  }
 };
 
 }  // namespace ziggurat::network
