@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <regex>
 #include <utility>
 
 #include "scene/names.h"
@@ -59,12 +60,32 @@ Ending ending_of(const std::string& path) {
 
 constexpr std::size_t longest_path = 1024;  // [bytes]
 
-/// Conditions in conditions, or with axes, take a time that grows with a power of the scene's size.
+/// Whether a condition takes a time in proportion to what stands below its element: it compares paths down from
+/// there with fixed values.
+bool is_cheap(std::string_view condition) {
+  static const std::regex cheap = [] {
+    const std::string more = R"([^\s\[\]()'"/@=<>!|,*+$:])", name = R"((?![-.0-9]))" + more + "+";
+    const std::string step = "(?:" + name + R"(|\*|\.(?!\.)))", attribute = "@(?:" + name + R"(|\*))";
+    const std::string path = "(?:" + attribute + "|" + step + "(?:/" + step + ")*(?:/" + attribute + ")?)";
+    const std::string value = R"((?:'[^']*'|"[^"]*"|-?[0-9]+(?:\.[0-9]+)?))";
+    const std::string call = R"((?:position\(\)|last\(\)|count\()" + path + R"(\)|(?:starts-with|contains)\()" +
+                             path + R"(,\s*)" + value + R"(\)))";
+    const std::string comparison =
+        "(?:(?:" + call + "|" + path + ")(?:\\s*(?:=|!=|<=?|>=?)\\s*" + value + ")?|[0-9]+)";
+    const std::string term = "(?:" + comparison + "|not\\(" + comparison + "\\))";
+    return std::regex("\\s*" + term + "(?:\\s+(?:and|or)\\s+" + term + ")*\\s*");
+  }();
+  return std::regex_match(condition.begin(), condition.end(), cheap);
+}
+
+/// Conditions in conditions or with far paths, axes and several `//` take a time that grows with a power of the
+/// scene's size.
 std::optional<Wrong> check_cost(std::string_view path) {
   if (path.size() > longest_path) {
     return Wrong{fmt::format("has {} characters; at most {} are allowed", path.size(), longest_path)};
   }
-  int depth = 0;
+  std::size_t begin = 0, anywhere = 0;  // of the condition; number of //
+  bool is_condition = false;
   char quote = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const char c = path[i];
@@ -72,12 +93,20 @@ std::optional<Wrong> check_cost(std::string_view path) {
       if (c == quote) quote = 0;
     } else if (c == '"' || c == '\'') {
       quote = c;
+    } else if (path.substr(i, 2) == "::") {
+      return Wrong{"has an axis (::); write element names, * and .. between /, or // before the first"};
     } else if (c == '[') {
-      if (++depth > 1) return Wrong{"has [conditions] in [conditions]; write several after another: a[@x][b/@y]"};
-    } else if (c == ']') {
-      --depth;
-    } else if (depth > 0 && path.substr(i, 2) == "::") {
-      return Wrong{"has an axis (::) in [a condition]; write it outside of brackets"};
+      if (is_condition) return Wrong{"has [conditions] in [conditions]; write several after another: a[@x][b/@y]"};
+      is_condition = true;
+      begin = i + 1;
+    } else if (c == ']' && is_condition) {
+      is_condition = false;
+      if (const auto condition = path.substr(begin, i - begin); !is_cheap(condition)) {
+        return Wrong{fmt::format("has the condition [{}]; write paths below the element, without // and .., and compare "
+                                 "them with values: [@x='1' and b/@y]", condition)};
+      }
+    } else if (!is_condition && path.substr(i, 2) == "//" && ++anywhere > 1) {
+      return Wrong{"has // more than once; write the names of the elements between"};
     }
   }
   return std::nullopt;

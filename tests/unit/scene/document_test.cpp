@@ -43,7 +43,9 @@ TEST_F(Folder, AValidFileIsRead) {
 }
 
 TEST_F(Folder, MissingFilesAndOtherKindsOfFilesAreFaults) {
-  EXPECT_TRUE(contains(only_fault(read_file(path / "none.argos")), "does not exist"));
+  EXPECT_TRUE(contains(only_fault(read_file(path / "none.argos")), "does not exist; check its path"));
+  const auto valid = write("valid.argos", SceneText{}.str());
+  EXPECT_TRUE(contains(only_fault(read_file(path / "valid")), "does not exist; write " + valid.string()));
   EXPECT_TRUE(contains(only_fault(read_file(path)), "is a folder"));
   ASSERT_EQ(::mkfifo((path / "fifo").c_str(), 0600), 0);
   EXPECT_TRUE(contains(only_fault(read_file(path / "fifo")), "not a regular file"));
