@@ -121,7 +121,9 @@ void push_element(lua_State* state, std::size_t i) {
   }
 }
 
-void check_length(lua_State* state, std::size_t count, const char* devices) {
+/// That the entity has devices of that kind, and a list a value for each.
+void check_devices(lua_State* state, std::size_t count, const char* devices) {
+  if (count == 0) luaL_error(state, "'%s' has no %s", lua_tostring(state, 1), devices);
   if (lua_type(state, 2) != LUA_TTABLE || lua_rawlen(state, 2) == count) return;
   luaL_error(state, "'%s' has %d %s, and the list has %d values", lua_tostring(state, 1), static_cast<int>(count),
              devices, static_cast<int>(lua_rawlen(state, 2)));
@@ -131,11 +133,13 @@ void check_length(lua_State* state, std::size_t count, const char* devices) {
 template <void (Director::*set)(std::string_view, std::span<const Color>),
           std::span<const Color> (Entity::*get)() const noexcept>
 int set_colors(lua_State* state) {
-  check_count(state, 2, 2, "world.set_leds(entity, color or list of colors)");
+  constexpr bool are_directional = get != &Entity::leds;
+  check_count(state, 2, 2, are_directional ? "world.set_directional_leds(entity, color or list of colors)"
+                                           : "world.set_leds(entity, color or list of colors)");
   const std::string_view id = check_entity(state, 1);
   const std::size_t count = (present(state, id).*get)().size();
-  check_length(state, count, "LEDs");
-  auto* const colors = static_cast<Color*>(lua_newuserdata(state, std::max<std::size_t>(count, 1) * sizeof(Color)));
+  check_devices(state, count, are_directional ? "directional LEDs" : "LEDs");
+  auto* const colors = static_cast<Color*>(lua_newuserdata(state, count * sizeof(Color)));
   for (std::size_t i = 0; i < count; ++i) {
     push_element(state, i);
     colors[i] = check_color(state, lua_gettop(state));
@@ -149,7 +153,7 @@ int set_tags(lua_State* state) {
   check_count(state, 2, 2, "world.set_tags(entity, payload or list of payloads)");
   const std::string_view id = check_entity(state, 1);
   const std::size_t count = present(state, id).tags().size();
-  check_length(state, count, "tags");
+  check_devices(state, count, "tags");
   for (std::size_t i = 0; i < count; ++i) {
     push_element(state, i);
     check_text(state, lua_gettop(state));

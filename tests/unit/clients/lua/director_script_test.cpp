@@ -180,7 +180,9 @@ TEST(DirectorScript, SaysWhatIsWrong) {
   has("world.move(nil, {x = 1, y = 2, z = 3})", "an entity or its id expected");
   has("world.move('box', {x = 1, y = 2, z = 3}, {angle = 1, axis = {x = 0, y = 0, z = 0}})", "must have a length");
   has("world.spawn(7)", "string expected");
-  has("world.set_leds('box', {'red'})", "'box' has 0 LEDs, and the list has 1 values");
+  has("world.set_leds('box', {'red'})", "'box' has no LEDs");
+  has("world.set_directional_leds('box', 'red')", "'box' has no directional LEDs");
+  has("world.set_tags('box', 'x')", "'box' has no tags");
   has("world.set_leds('arm', 'reddish')", "'reddish' is no color");
   has("world.set_leds('missing', 'red')", "no entity 'missing' is in the world");
   has("world.finish(string.rep('x', 2000))", "at most 1024 bytes");
