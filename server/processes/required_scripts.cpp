@@ -13,20 +13,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using Paths = std::vector<fs::path>;
+
 constexpr std::size_t most_files = 1000;
 constexpr std::size_t largest_file = std::size_t{4} << 20;  // [bytes]
-constexpr std::size_t most_listed = std::size_t{16} << 20;  // of a folder's files together [bytes]
+constexpr std::size_t most_listed = std::size_t{16} << 20;  // of all listed folders together [bytes]
 
 /// What a script loads.
 struct Loaded {
   std::vector<std::string> names;
-  bool computes_names = false;
+  std::vector<std::string> folders;  ///< whose files have names that it computes; empty: its own folder
 };
+
+bool has(const Paths& all, const fs::path& path) { return std::ranges::find(all, path) != all.end(); }
 
 /// As Lua looks for a module with dots in its name.
 std::string path_of_module(std::string name) {
   std::ranges::replace(name, '.', '/');
   return name + ".lua";
+}
+
+/// The folder below a script's own that all names have that begin so; empty: there is none.
+std::string folder_of_names(std::string begin, bool are_modules) {
+  if (are_modules) std::ranges::replace(begin, '.', '/');
+  const fs::path folder = fs::path(begin).parent_path();
+  const bool leaves = folder.is_absolute() || std::ranges::find(folder, fs::path("..")) != folder.end();
+  return leaves ? std::string() : folder.string();
 }
 
 /// The size of a file that may be embedded; nothing: it may not, or there is none.
@@ -49,62 +61,100 @@ Loaded loaded_by(const fs::path& script) {
     if (line.size() > 4096) continue;  // std::regex recurses
     for (std::sregex_iterator at(line.begin(), line.end(), call), end; at != end; ++at) {
       const std::string name = (*at)[3];
-      if (!name.empty()) loaded.names.push_back((*at)[1] == "require" ? path_of_module(name) : name);
+      const bool is_module = (*at)[1] == "require";
+      if (!name.empty()) loaded.names.push_back(is_module ? path_of_module(name) : name);
       const bool is_whole = !name.empty() && !(*at)[4].matched;
-      if (!is_whole && ((*at)[2].length() > 0 || !name.empty())) loaded.computes_names = true;
+      if (is_whole || ((*at)[2].length() == 0 && name.empty())) continue;
+      loaded.folders.push_back(folder_of_names(name, is_module));
     }
   }
   return loaded;
 }
 
-/// The Lua files of a folder, in the order of their names; none if they are too large together.
-std::vector<fs::path> scripts_in(const fs::path& folder) {
-  std::vector<fs::path> scripts;
-  std::size_t size = 0;
+/// The Lua files of a folder, in the order of their names.
+Paths scripts_in(const fs::path& folder) {
+  Paths scripts;
   std::error_code error;
   for (fs::directory_iterator at(folder.empty() ? "." : folder, error), end; !error && at != end; at.increment(error)) {
-    const auto own = at->path().extension() == ".lua" ? size_of(at->path()) : std::nullopt;
-    if (!own) continue;
-    size += *own;
+    std::error_code other;
+    if (at->path().extension() != ".lua" || !at->is_regular_file(other)) continue;
     scripts.push_back(folder / at->path().filename());
-    if (scripts.size() > most_files || size > most_listed) return {};
   }
   std::ranges::sort(scripts);
   return scripts;
 }
 
+struct Search {
+  Paths& scripts;
+  Paths folders;  ///< of the first scripts
+  Paths listed, left_out;
+  std::size_t listed_size = 0;  ///< [bytes]
+};
+
+void leave_out(Search& search, const fs::path& path) {
+  if (!has(search.left_out, path.parent_path())) search.left_out.push_back(path.parent_path());
+}
+
+void add(Search& search, const fs::path& path) {
+  if (has(search.scripts, path)) return;
+  search.scripts.size() < most_files ? search.scripts.push_back(path) : leave_out(search, path);
+}
+
+/// All Lua files of a folder, as far as they fit.
+void add_all(Search& search, const fs::path& folder) {
+  if (has(search.listed, folder)) return;
+  search.listed.push_back(folder);
+  for (const fs::path& path : scripts_in(folder)) {
+    if (has(search.scripts, path)) continue;
+    const auto size = size_of(path);
+    if (!size || search.listed_size + *size > most_listed || search.scripts.size() >= most_files) {
+      leave_out(search, path);
+      continue;
+    }
+    search.listed_size += *size;
+    search.scripts.push_back(path);
+  }
+}
+
+/// What a script in the folder `own` loads.
+void follow(Search& search, const fs::path& own, const Loaded& loaded) {
+  Paths places = search.folders;
+  places.push_back(own);
+  for (const std::string& name : loaded.names) {
+    for (const fs::path& place : places) {
+      const fs::path path = (place / name).lexically_normal();
+      if (!size_of(path)) continue;
+      add(search, path);
+      break;
+    }
+  }
+  for (const std::string& name : loaded.folders) {
+    bool is_found = false;
+    for (const fs::path& place : places) {
+      std::error_code error;
+      const fs::path folder = (place / name).lexically_normal();
+      if (name.empty() || !fs::is_directory(folder, error)) continue;
+      add_all(search, folder);
+      is_found = true;
+    }
+    if (!is_found) add_all(search, own);
+  }
+}
+
 }  // namespace
 
-void add_required(std::vector<fs::path>& scripts) {
-  std::vector<fs::path> folders, listed;
-  const auto has = [](const std::vector<fs::path>& all, const fs::path& path) {
-    return std::ranges::find(all, path) != all.end();
-  };
-  const auto add = [&](const fs::path& path) {
-    if (!has(scripts, path) && scripts.size() < most_files) scripts.push_back(path);
-  };
+Paths add_required(Paths& scripts) {
+  Search search{scripts, {}, {}, {}};
   for (const fs::path& script : scripts) {
-    if (!has(folders, script.parent_path())) folders.push_back(script.parent_path());
+    if (!has(search.folders, script.parent_path())) search.folders.push_back(script.parent_path());
   }
   std::ranges::sort(scripts);
   scripts.erase(std::unique(scripts.begin(), scripts.end()), scripts.end());
   for (std::size_t i = 0; i < scripts.size() && scripts.size() < most_files; ++i) {
-    const fs::path own = scripts[i].parent_path();
-    const Loaded loaded = loaded_by(scripts[i]);
-    for (const std::string& name : loaded.names) {
-      std::vector<fs::path> places = folders;
-      places.push_back(own);
-      for (const fs::path& folder : places) {
-        const fs::path path = (folder / name).lexically_normal();
-        if (!size_of(path)) continue;
-        add(path);
-        break;
-      }
-    }
-    if (!loaded.computes_names || has(listed, own)) continue;
-    listed.push_back(own);
-    for (const fs::path& path : scripts_in(own)) add(path);
+    const fs::path script = scripts[i];
+    follow(search, script.parent_path(), loaded_by(script));
   }
+  return search.left_out;
 }
 
 }  // namespace ziggurat::processes

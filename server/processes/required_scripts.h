@@ -9,7 +9,10 @@ namespace ziggurat::processes {
 /// Appends the files that the scripts name in `require`, `dofile` and `loadfile` as plain texts, and
 /// those that these name, as far as they are found in the folder of a script. Of names that are put
 /// together, as in `require(here .. "tool")`, the end is looked for beside the script. If a script
-/// computes a name in another way, as in `require(name)`, all Lua files of its folder are appended.
-void add_required(std::vector<std::filesystem::path>& scripts);
+/// computes a name in another way, as in `require(name)`, the Lua files of its folder are appended; those
+/// of a folder below it if names begin with that, as in `require("parts." .. kind)`. 1000 files are the
+/// most, each of 4 MiB, and 16 MiB of those whose names are computed.
+/// @return  folders with files that did not fit
+std::vector<std::filesystem::path> add_required(std::vector<std::filesystem::path>& scripts);
 
 }  // namespace ziggurat::processes

@@ -41,10 +41,20 @@ void attach(const fs::path& script, std::string name, std::vector<recorder::Embe
   if (file.is_open() && !file.bad()) files.push_back({std::move(name), std::move(text)});
 }
 
+/// Adds what the scripts load, and tells of what is too much.
+void add_required(std::vector<fs::path>& scripts, reports::Console& console) {
+  for (const fs::path& folder : processes::add_required(scripts)) {
+    console.notice(fmt::format(
+        "some Lua files of {} are not in the recording: it takes 1000 at most, of 4 MiB each, and 16 MiB of those "
+        "whose names scripts compute; controllers that load others cannot be repeated from it",
+        folder.string()));
+  }
+}
+
 /// Each script of the scene, and what it loads from its folders, once.
-void add_scripts(const supervision::World& world, recorder::Start& start) {
+void add_scripts(const supervision::World& world, recorder::Start& start, reports::Console& console) {
   std::vector<fs::path> scripts = processes::scripts_of(world.scene, world.path);
-  processes::add_required(scripts);
+  add_required(scripts, console);
   for (const fs::path& script : scripts) {
     attach(script, name_of_script(script, world.path), start.files);
   }
@@ -80,7 +90,8 @@ std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& pa
 
 recorder::Start start_of(const Options& options, const supervision::World& world,
                          const ReadFiles& files, std::uint64_t last_tick,
-                         const std::vector<std::size_t>& idle, const Past* past) {
+                         const std::vector<std::size_t>& idle, const Past* past,
+                         reports::Console& console) {
   recorder::Start start;
   start.scene = world.path;
   start.scene_hash = world.scene_hash;
@@ -99,7 +110,7 @@ recorder::Start start_of(const Options& options, const supervision::World& world
   start.build = this_build();
   start.arguments = options.arguments;
   start.files = files.all();
-  past ? past->describe(world, start) : add_scripts(world, start);
+  past ? past->describe(world, start) : add_scripts(world, start, console);
   return start;
 }
 
@@ -133,7 +144,7 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
       recorder_({options.record,
                  options.record_compression,
                  {wish_of(options.record_topics), options.record_every}},
-                begin(start_of(options, world, files, last_tick, idle, past))) {}
+                begin(start_of(options, world, files, last_tick, idle, past, console))) {}
 
 recorder::Start RecordedRun::begin(recorder::Start start) {
   note(start.files);
@@ -173,7 +184,7 @@ void RecordedRun::report_failure(const std::string& consequence) {
 void RecordedRun::add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files) {
   if (script.empty() || !scripts_.insert(script).second) return;
   std::vector<fs::path> scripts{script};
-  processes::add_required(scripts);
+  add_required(scripts, console_);
   for (const fs::path& each : scripts) {
     std::string name = name_of_script(each, world_.path);
     if (!embedded_.contains(name)) attach(each, std::move(name), files);

@@ -71,6 +71,17 @@ class RecordingTest(SceneTest):
         self.assertTrue(any(topic.endswith("/command") for topic in topics))
         self.assertFalse({"/state", "/tf", "/world"} & topics)
 
+    def test_tells_of_scripts_that_are_too_many(self):
+        script = self.folder / "swing.lua"
+        script.write_text(script.read_text() + "\nfunction load_part(name) return require(name) end")
+        for i in range(1000):
+            (self.folder / f"part{i}.lua").touch()
+        outcome = self.run_scene("--record", "run.mcap", "--ticks", "2")
+        self.assertIn(f"some Lua files of {self.folder} are not in the recording: ", outcome.err)
+        (self.folder / "part999.lua").unlink()
+        outcome = self.run_scene("--record", "run.mcap", "--ticks", "2")
+        self.assertNotIn("some Lua files", outcome.err)
+
     def test_wrong_options_are_refused(self):
         for options, word in ((["--record", "a.csv"], ".mcap"), (["--record-strict"], "--record FILE.mcap"),
                               (["--record", "a.mcap", "--record-compression", "gzip"], "zstd, lz4 or none"),

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "temporary_folder.h"
 
@@ -15,6 +17,7 @@ namespace fs = std::filesystem;
 
 struct RequiredScripts : ::testing::Test {
   TemporaryFolder folder;
+  std::vector<fs::path> left_out;
 
   /// What is added to main.lua with this text, as paths in the folder. There are a.lua, b.lua and sub/c.lua.
   std::vector<std::string> added(const std::string& text) {
@@ -22,7 +25,7 @@ struct RequiredScripts : ::testing::Test {
     for (const char* name : {"a.lua", "b.lua", "sub/c.lua", "notes.txt"}) write(name, "");
     write("main.lua", text);
     std::vector<fs::path> scripts{folder / "main.lua"};
-    add_required(scripts);
+    left_out = add_required(scripts);
     std::vector<std::string> names;
     for (const fs::path& path : scripts) names.push_back(path.lexically_relative(folder.path).string());
     names.erase(names.begin());
@@ -47,6 +50,38 @@ TEST_F(RequiredScripts, AllOfTheFolderIfANameIsComputed) {
   EXPECT_EQ(added("local ok, a = pcall(require, name)"), all);
   EXPECT_EQ(added("require('a' .. number)"), all);
   EXPECT_EQ(added("dofile(folder .. part .. '.lua')"), all);
+}
+
+TEST_F(RequiredScripts, AllOfTheFolderThatComputedNamesBeginWith) {
+  const Names all{"sub/c.lua"};
+  EXPECT_EQ(added("require('sub.' .. kind)"), all);
+  EXPECT_EQ(added("require(here .. 'sub/' .. kind)"), all);
+  EXPECT_EQ(added("dofile('sub/' .. kind .. '.lua')"), all);
+  EXPECT_EQ(added("require('none.' .. kind)"), (Names{"a.lua", "b.lua"}));
+  fs::create_directory(folder / "sub/robot");
+  write("sub/robot/main.lua", "");
+  std::vector<fs::path> scripts{folder / "sub/robot/main.lua"};
+  write("sub/robot/main.lua", "dofile('../' .. name)");
+  EXPECT_TRUE(add_required(scripts).empty());
+  EXPECT_EQ(scripts.size(), 1);
+}
+
+TEST_F(RequiredScripts, WhatFitsOfAFolderThatIsTooLarge) {
+  for (const char* name : {"c.lua", "d.lua", "e.lua", "f.lua"}) {
+    write(name, "");
+    fs::resize_file(folder / name, std::size_t{4} << 20);
+  }
+  EXPECT_EQ(added("require(name)"), (Names{"a.lua", "b.lua", "c.lua", "d.lua", "e.lua", "f.lua"}));
+  EXPECT_TRUE(left_out.empty());
+  write("e2.lua", "-");
+  EXPECT_EQ(added("require(name)"), (Names{"a.lua", "b.lua", "c.lua", "d.lua", "e.lua", "e2.lua"}));
+  EXPECT_EQ(left_out, std::vector<fs::path>{folder.path});
+}
+
+TEST_F(RequiredScripts, WhatFitsOfAFolderWithTooManyFiles) {
+  for (int i = 0; i < 1000; ++i) write("part" + std::to_string(i) + ".lua", "");
+  EXPECT_EQ(added("require(name)").size(), 999);
+  EXPECT_EQ(left_out, std::vector<fs::path>{folder.path});
 }
 
 TEST_F(RequiredScripts, WordsAreNoCalls) {
