@@ -12,7 +12,9 @@ constexpr std::size_t kibibyte = std::size_t{1} << 10, mebibyte = std::size_t{1}
 
 constexpr std::size_t bytes_per_value = 64;  // of a number in either form, with what is around it
 constexpr std::size_t bytes_per_tag = kibibyte;
-constexpr std::size_t bytes_per_robot = 2 * kibibyte;         // log lines and metrics
+constexpr std::size_t bytes_per_metric = 128;  // in either form, and of its fields
+constexpr std::size_t metrics_per_robot = 100;
+constexpr std::size_t bytes_per_robot = 2 * kibibyte + metrics_per_robot * bytes_per_metric;  // 2 KiB: log lines
 constexpr std::size_t radio_bytes_per_robot = 4 * kibibyte;   // of those that send
 constexpr std::size_t radio_bytes_per_field = 64;
 constexpr std::size_t longest_json = 24 * mebibyte;
@@ -22,7 +24,7 @@ struct Shared {
   std::size_t any;
   std::size_t radios;  // if one of the robots sends
 };
-constexpr Shared shared_in_binary{256 * kibibyte, 2 * mebibyte};
+constexpr Shared shared_in_binary{512 * kibibyte, 2 * mebibyte};
 constexpr Shared shared_in_json{64 * kibibyte, 128 * kibibyte};
 
 /// What the robot's devices but radios take in binary form [bytes].

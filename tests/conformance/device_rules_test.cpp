@@ -115,7 +115,7 @@ TEST_F(Radios, D2_Limits) {
 
 TEST_F(Radios, K5_SmallMessagesInGreatNumbersAreTooLarge) {
   auto command = Peers::command(5);
-  for (int i = 0; i < 60'000; ++i) send(command, 0, "");
+  for (int i = 0; i < 60'000; ++i) send(command, 0, "x");
   peers.say("p", command);
   EXPECT_EQ(peers.told("p").error().code(), v1::Error::TOO_LARGE);
   command.mutable_command()->mutable_radio_messages()->DeleteSubrange(0, talks_json() ? 58'500 : 45'000);

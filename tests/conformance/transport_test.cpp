@@ -42,7 +42,7 @@ TEST(Transport, T4_AControllerMaySendWhatItsRobotsNeed) {
   SmallRun small(3);
   Peers peers(small);
   const auto most = peers.join("p", "robot0").max_message_bytes();
-  const std::uint64_t shared = talks_json() ? 64 << 10 : 256 << 10;
+  const std::uint64_t shared = talks_json() ? 64 << 10 : 512 << 10;
   EXPECT_GE(most, shared);
   EXPECT_LT(most, shared + (64 << 10));
   small.layout().radios.resize(2);

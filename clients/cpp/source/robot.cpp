@@ -30,13 +30,14 @@ void Robot::log(std::string_view text) { add_line(false, text); }
 void Robot::log_error(std::string_view text) { add_line(true, text); }
 
 void Robot::add_line(bool error, std::string_view text) {
-  constexpr std::size_t overhead = 32;  // of a line, besides its text: it has four fields [bytes]
-  if (log_->bytes + text.size() + overhead > log_->max_bytes) {
+  constexpr std::size_t overhead = 64;  // of a line, besides its text: it has four fields [bytes]
+  std::string line = v1::valid_utf8(text);
+  if (log_->bytes + line.size() + overhead > log_->max_bytes) {
     throw std::length_error("the session logs more than " + std::to_string(log_->max_bytes) +
                             " bytes at one tick");
   }
-  log_->lines.push_back({position_, error, v1::valid_utf8(text)});
-  log_->bytes += log_->lines.back().text.size() + overhead;
+  log_->bytes += line.size() + overhead;
+  log_->lines.push_back({position_, error, std::move(line)});
 }
 
 void Robot::metric(std::string_view name, double value) {

@@ -27,7 +27,7 @@ void LogLines::add(bool is_error, std::string text) {
   bytes += text.size() + overhead;
   is_full = bytes > max_bytes;
   if (is_full) {
-    lines.push_back({true, "logs more than 1 MiB at one tick; the rest of this tick is dropped"});
+    lines.push_back({true, "logs more than 256 KiB at one tick; the rest of this tick is dropped"});
   } else {
     lines.push_back({is_error, std::move(text)});
   }

@@ -18,7 +18,7 @@ struct LogLine {
 /// Log lines of one robot at one tick. Bounded: a script that logs in an endless loop must not use
 /// up the memory or block the session's other robots.
 struct LogLines {
-  static constexpr std::size_t max_bytes = std::size_t{1} << 20;
+  static constexpr std::size_t max_bytes = std::size_t{256} << 10;
   static constexpr std::size_t overhead = 64;  ///< of a line, besides its text [bytes]
 
   std::vector<LogLine> lines;

@@ -51,7 +51,7 @@ void check_limit(std::size_t value, std::size_t max, const std::string& radio, c
 
 void RadioTraffic::send(const std::string& radio, std::uint32_t index, std::uint32_t robot,
                         Bytes message) {
-  constexpr std::size_t overhead = 80;  // of a message besides its payload: its fields count, too [bytes]
+  constexpr std::size_t overhead = 96;  // of a message besides its payload: its fields count, too [bytes]
   if (message.size() > Radio::max_message_bytes) {
     throw std::length_error("radio '" + radio + "': a message of " +
                             std::to_string(message.size()) + " bytes; at most " +
