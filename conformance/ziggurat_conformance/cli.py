@@ -38,11 +38,12 @@ a program that does not start.
 docs/conformance.md explains verdicts, levels, and how to add a case."""
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(version: str) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="ziggurat-conformance", epilog=_EXAMPLES,
         description="Proves a server or a client of the Ziggurat controller protocol right.",
         formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--version", action="version", version=f"%(prog)s {version}")
     parser.add_argument("--scene", action="store_true", help="print the path of the kit's scene, and stop")
     modes = parser.add_subparsers(dest="mode", metavar="server|client")
     server = modes.add_parser("server", help="play controllers against a server",
@@ -180,8 +181,8 @@ def _print_list(options) -> None:
     print(f"{len(chosen)} cases, {sum(len(case.forms) for case in chosen)} with their forms")
 
 
-def main(arguments=None) -> int:
-    parser = _parser()
+def main(arguments=None, version="of a source tree") -> int:
+    parser = _parser(version)
     words = sys.argv[1:] if arguments is None else list(arguments)
     if words[:1] == ["help"]:
         words = words[1:2] + ["--help"]

@@ -56,6 +56,17 @@ Arguments join_optional_values(const Arguments& arguments) {
   return joined;
 }
 
+// A number, or several with commas: a value and no option, though it begins with `-`.
+std::vector<po::option> take_negative_number(Arguments& rest) {
+  const std::string& word = rest.front();
+  const bool is_number = word.size() > 1 && word[0] == '-' && (word[1] == '.' || (word[1] >= '0' && word[1] <= '9'));
+  if (!is_number) return {};
+  po::option value;
+  value.value = value.original_tokens = {word};
+  rest.erase(rest.begin());
+  return {value};
+}
+
 }  // namespace
 
 Parsed parse(const Arguments& arguments, const po::options_description& known) {
@@ -70,6 +81,7 @@ Parsed parse(const Arguments& arguments, const po::options_description& known) {
                   .options(all)
                   .positional(positional)
                   .style(style)
+                  .extra_style_parser(take_negative_number)
                   .run(),
               parsed.values);
   } catch (const po::unknown_option& error) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -123,6 +124,9 @@ void move(const Call& call) {
   print_result(call, "moved", call.server.move(call.words[0], position, orientation));
 }
 
+// To four decimals, without the sign of what is rounded to zero.
+double shown(double value) { return std::abs(value) < 0.5e-4 ? 0.0 : value; }
+
 void read(const Call& call) {
   const WorldStates states = call.server.read(call.words);
   if (call.values.count("json") > 0) {
@@ -134,7 +138,8 @@ void read(const Call& call) {
     const auto& q = entity.orientation;
     call.console.result(
         fmt::format("{:<20} {:9.4f} {:9.4f} {:9.4f} m   {:7.4f} {:7.4f} {:7.4f} {:7.4f}", entity.id,
-                    p[0], p[1], p[2], q[0], q[1], q[2], q[3]));
+                    shown(p[0]), shown(p[1]), shown(p[2]), shown(q[0]), shown(q[1]), shown(q[2]),
+                    shown(q[3])));
   }
 }
 

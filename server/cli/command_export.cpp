@@ -116,7 +116,7 @@ int execute_export(const Arguments& arguments) {
       throw text::UsageError(fmt::format("--{} is '{}', the file of another format too; name another file",
                                          format.option, order.out));
     }
-    console.report(fmt::format("{}: {}\n", order.out, format.write(order)));
+    console.report(fmt::format("{}: {}", order.out, format.write(order)));
   }
   if (written.empty()) {
     throw text::UsageError(

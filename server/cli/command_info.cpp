@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -53,13 +54,24 @@ std::string megabytes(std::uint64_t bytes) {
   return fmt::format("{:.3g} MB", static_cast<double>(bytes) * 1e-6);
 }
 
+/// As shown, with one space between words, without a first `None`: CMake's build type for no type.
+std::string words_of(const std::string& text) {
+  std::istringstream words(shown(text));
+  std::string line, word;
+  while (words >> word) {
+    if (line.empty() && word == "None") continue;
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return line;
+}
+
 std::string to_text(const recorder::Start& start) {
   std::string text = fmt::format("  scene     {}, seed {}{}\n", shown(start.scene), start.seed,
                                  start.clock.empty() ? "" : ", clock " + shown(start.clock));
   text += fmt::format("  recorded  {}\n", shown(start.date));
   const recorder::Build& build = start.build;
   text += fmt::format("  build     ziggurat {}, {}, {}, C library {}, {}\n", shown(build.version),
-                      shown(build.compiler), shown(build.options), shown(build.libm),
+                      words_of(build.compiler), words_of(build.options), shown(build.libm),
                       shown(build.cpu_path));
   std::string arguments;
   for (const std::string& argument : start.arguments) arguments += " " + shown(argument);

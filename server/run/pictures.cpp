@@ -96,7 +96,7 @@ std::optional<std::size_t> find_entity(const std::string& id, const world::Layou
   const auto found = std::ranges::find(ids, id);
   if (found != ids.end()) return static_cast<std::size_t>(found - ids.begin());
   throw text::UsageError(fmt::format("--follow: the scene has no entity '{}'; {}", id,
-                                     text::advice(id, ids, "write the id of one")));
+                                     text::advice(id, ids, ids.empty() ? "it has none" : "write the id of one, such as '" + ids[0] + "'")));
 }
 
 }  // namespace

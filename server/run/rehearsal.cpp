@@ -197,7 +197,7 @@ int Rehearsal::tell(const std::optional<Ending>& ending) {
   if (!watch_.vanished().empty()) console_.fault(watch_.vanished());
   const auto failures = watch_.failures();
   for (const auto& [robot, difference] : retelling_->differences()) {
-    console_.report(fmt::format("'{}': {} of {} ticks differ, the first is {}\n", robot,
+    console_.report(fmt::format("'{}': {} of {} ticks differ, the first is {}", robot,
                                 difference.ticks, retelling_->ticks(), difference.first_tick));
   }
   if (ending == Ending::interrupted || ending == Ending::forced) {

@@ -317,7 +317,7 @@ void Replaying::tell(End end) {
   if (!options_.verifies) {
     const std::string line = verdict + ": " + text;
     return end == End::differs || end == End::damaged ? console_.fault(line)
-                                                      : console_.report(line + "\n");
+                                                      : console_.report(line);
   }
   if (!options_.run.json) return console_.result(verdict + ": " + text);
   nlohmann::ordered_json json{{"verdict", verdict}, {"states", same_}, {"text", text}};

@@ -74,6 +74,14 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
         {Problem::Severity::fault, name_of_additions, {}, "the file " + too_large(max_size)}};
     return addition;
   }
+  if (text.find('<') == text.npos) {
+    addition.problems = {{Problem::Severity::fault,
+                          name_of_additions,
+                          {},
+                          "there is no element; write one, such as <box id=\"b\" size=\".1,.1,.1\" movable=\"true\" "
+                          "mass=\"1\"><body position=\"0,0,1\"/></box>"}};
+    return addition;
+  }
   ReadOptions options = parts_->options;
   options.open = open;
   options.variation = {};  // it was for the scene

@@ -17,13 +17,13 @@ void read_ground(Draft& draft, Element element) {
     element.fault_at("source", "is not supported; write source=\"image\" and a path");
   }
   element.optional("pixels_per_meter", positive);
-  take_id(element, draft.entity_ids, id, "entity");
+  take_entity_id(draft, element, id);
   element.done();
 }
 
 void add_entity(Draft& draft, Element& element) {
   Entity entity = read_entity(draft, element, Placement::explicit_pose);
-  take_id(element, draft.entity_ids, entity.id, "entity");
+  take_entity_id(draft, element, entity.id);
   draft.scene.entities.push_back(std::move(entity));
 }
 
@@ -32,7 +32,7 @@ void read_placed(Draft& draft, Element& element) {
     add_entity(draft, element);
   } else if (element.name() == "light") {
     const std::string id = read_light(draft, element, Placement::explicit_pose);
-    take_id(element, draft.entity_ids, id, "entity");
+    take_entity_id(draft, element, id);
   } else if (element.name() == "floor") {
     read_ground(draft, element);
   } else if (element.name() != "distribute") {

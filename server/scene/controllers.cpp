@@ -197,7 +197,8 @@ struct Check {
           fmt::format("joint {} of {} {} is {}; write {} instead of {}", in_quotes(joint.id),
                       kind_of(entity), in_quotes(entity.id), revolute ? "revolute" : "prismatic",
                       revolute ? "max_torque" : "max_force",
-                      revolute ? "max_force" : "max_torque"));
+                      revolute ? "max_force" : "max_torque"),
+          {joint_type});
   }
 
   void check_joints(const ControllerDevices& devices) const {
@@ -231,8 +232,8 @@ struct Check {
         std::vector<std::string_view> causes{"devices"};
         if (component != components.end()) causes.push_back(component->element);
         blame(device.where,
-              fmt::format("{} are enabled for entity {}, which {}", device.name,
-                          in_quotes(entity.id), *what),
+              fmt::format("{} {} enabled for entity {}, which {}", device.name,
+                          device.name.ends_with('s') ? "are" : "is", in_quotes(entity.id), *what),
               std::move(causes));
       }
     }

@@ -72,6 +72,7 @@ struct Model {
   std::optional<ControllerChoice> controller;
   std::vector<PendingFault> missing_parts;
   std::size_t size = 0;  ///< as written [bytes]
+  std::vector<std::string> names;  ///< of the attributes and children that its element may have
 };
 
 /// A scene while it is read.
@@ -230,6 +231,9 @@ void refuse_id(const Element& element, std::string_view what, Location earlier);
 /// Takes the id of an element; a taken one is a fault, and false.
 /// @param what  has the id, for example "link"
 bool take_id(const Element& element, Ids& ids, const std::string& id, std::string_view what);
+
+/// Takes the id of an entity or of what else the arena has, which is no director's either.
+void take_entity_id(Draft& draft, const Element& element, const std::string& id);
 
 /// Warns of angles in an attribute that look like radians.
 void doubt_angles(Element& element, const char* attribute);

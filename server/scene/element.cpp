@@ -77,11 +77,13 @@ void report_unknown_attribute(const Document& document, std::string_view element
                                                name, in_quotes(attribute.value()), element, *why));
     return;
   }
-  document.report().fault(where,
-                          fmt::format("<{}> has an unknown attribute {}={}; {}{}", element, name,
-                                      in_quotes(attribute.value()), advice(name, known),
-                                      document.origin(attribute)));
-  if (const auto meant = nearest(name, known)) document.report().left_out(*meant);
+  const auto meant = nearest(name, known);
+  const auto home = home_of_attribute(name);
+  document.report().fault(
+      where, fmt::format("<{}> has an unknown attribute {}={}; {}{}", element, name, in_quotes(attribute.value()),
+                         home && home != element && !meant ? fmt::format("a <{}> has it", *home) : advice(name, known),
+                         document.origin(attribute)));
+  if (meant) document.report().left_out(*meant);
 }
 
 }  // namespace
@@ -159,7 +161,16 @@ void Element::child_without_effect(const char* name, std::string_view why) {
   }
 }
 
-void Element::done(std::string_view elsewhere) {
+std::vector<std::string> Element::asked() const {
+  std::vector<std::string> names(asked_attributes_.begin(), asked_attributes_.end());
+  names.insert(names.end(), asked_children_.begin(), asked_children_.end());
+  return names;
+}
+
+void Element::done(std::string_view elsewhere, std::span<const std::string> names) {
+  const auto is_elsewhere = [&](std::string_view name) {
+    return !elsewhere.empty() && (names.empty() || std::ranges::find(names, name) != names.end());
+  };
   check_repeated_attributes(*document_, node_);
   for (const pugi::xml_attribute attribute : node_.attributes()) {
     if (any_attribute_) break;
@@ -167,7 +178,8 @@ void Element::done(std::string_view elsewhere) {
     if (name.starts_with("xml:") || name.starts_with("xmlns")) continue;  // XML's own
     if (std::find(asked_attributes_.begin(), asked_attributes_.end(), name) ==
         asked_attributes_.end()) {
-      report_unknown_attribute(*document_, this->name(), attribute, asked_attributes_, elsewhere);
+      report_unknown_attribute(*document_, this->name(), attribute, asked_attributes_,
+                               is_elsewhere(name) ? elsewhere : std::string_view());
     }
   }
   for (const pugi::xml_node node : node_.children()) {
@@ -180,7 +192,7 @@ void Element::done(std::string_view elsewhere) {
     if (std::find(asked_children_.begin(), asked_children_.end(), node.name()) ==
         asked_children_.end()) {
       const Element child(*document_, node);
-      if (elsewhere.empty()) {
+      if (!is_elsewhere(node.name())) {
         child.unknown_in(name(), asked_children_);
       } else {
         child.fault(fmt::format("can't stand in this <{}>: {}", name(), elsewhere));

@@ -47,10 +47,6 @@ class Element {
   /// Where an attribute's value begins, or the element if it has none of that name.
   Location where(const char* attribute) const;
   bool has(const char* attribute) const { return !node_.attribute(attribute).empty(); }
-  /// Whether a value of the attribute has been asked for.
-  bool was_asked(std::string_view attribute) const {
-    return std::ranges::find(asked_attributes_, attribute) != asked_attributes_.end();
-  }
 
   /// What a reader of values returns.
   template <class Read>
@@ -108,7 +104,10 @@ class Element {
 
   /// Reports attributes and children that were not read, repeated attributes, and text.
   /// @param elsewhere  where they belong, if all of them belong there
-  void done(std::string_view elsewhere = {});
+  /// @param names  of what belongs there, if not all
+  void done(std::string_view elsewhere = {}, std::span<const std::string> names = {});
+  /// The names of attributes and children that have been asked for.
+  std::vector<std::string> asked() const;
 
   /// Reports this element as one that its parent can't hold.
   /// @param known  what the parent may hold

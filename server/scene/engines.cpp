@@ -22,7 +22,13 @@ void read_floor(Draft& draft, Element floor) {
 }
 
 void read_gravity(Draft& draft, Element gravity) {
-  draft.scene.physics.gravity = gravity.optional("g", number, usual_gravity);
+  const double g = gravity.optional("g", number, usual_gravity);
+  draft.scene.physics.gravity = g;
+  if (g < 0) {
+    draft.report.warn(gravity.where("g"), "gravity",
+                      gravity.sentence("g", fmt::format("lets everything fall up: g is the acceleration downwards; "
+                                                        "write g=\"{:.6g}\"", -g)));
+  }
   gravity.done();
 }
 

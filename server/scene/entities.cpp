@@ -92,6 +92,17 @@ bool take_id(const Element& element, Ids& ids, const std::string& id, std::strin
   return false;
 }
 
+void take_entity_id(Draft& draft, const Element& element, const std::string& id) {
+  const auto director = std::ranges::find(draft.scene.directors, id, &Director::id);
+  if (id.empty() || director == draft.scene.directors.end()) {
+    take_id(element, draft.entity_ids, id, "entity");
+    return;
+  }
+  element.fault_at("id", fmt::format("is also the id of the director{}; give each its own",
+                                     draft.report.place(director->where, element.where())));
+  draft.report.left_out(duplicate);
+}
+
 void doubt_angles(Element& element, const char* attribute) {
   if (!element.has(attribute)) return;
   const std::string written = element.optional(attribute, text, "");
@@ -168,7 +179,11 @@ Entity read_entity(Draft& draft, Element& element, Placement placement) {
     if (needs_controller(entity.kind) && !controller) element.required_child("controller");
     if (controller) give_controller(draft, *controller, entity);
   }
-  element.done(elsewhere);
+  if (entity.model) {
+    element.done(elsewhere, draft.models[*entity.model].names);
+  } else {
+    element.done(elsewhere);
+  }
   draft.report.subject.clear();
   return entity;
 }

@@ -87,11 +87,12 @@ std::optional<Joint> read_joint(const Draft& draft, Element& element, Ids& ids) 
                                                               {"spherical", JointType::spherical},
                                                               {"prismatic", JointType::prismatic},
                                                               {"revolute", JointType::revolute}});
-  joint.type = type.value_or(JointType::fixed);
+  joint.type = type.value_or(JointType::revolute);  // for which nothing more is refused
   if (type) {
     read_axis_and_limit(element, joint);
   } else {
     for (const char* name : {"axis", "limit"}) element.optional(name, text);
+    draft.report.left_out(joint_type);
   }
   element.without_effect("disable_collision", boolean,
                          "links of one prototype never collide with each other");

@@ -15,6 +15,22 @@ namespace {
 constexpr std::string_view white = " \t\r\n";
 constexpr std::size_t npos = std::string_view::npos;
 
+/// A word without the “curly” quotes of word processors around it.
+std::string_view without_curly_quotes(std::string_view word) {
+  constexpr std::string_view quotes[] = {"“", "”", "„", "‘", "’"};
+  for (const std::string_view quote : quotes) {
+    if (!word.starts_with(quote)) continue;
+    word.remove_prefix(quote.size());
+    break;
+  }
+  for (const std::string_view quote : quotes) {
+    if (!word.ends_with(quote)) continue;
+    word.remove_suffix(quote.size());
+    break;
+  }
+  return word;
+}
+
 /// Walks over the tags of a text until one is wrong.
 class Scanner {
  public:
@@ -128,8 +144,10 @@ class Scanner {
     if (quote == '\0') return fail_at_end(element, begin);
     if (quote != '"' && quote != '\'') {
       const std::size_t end = source_.find_first_of(" \t\r\n\"'/<>", begin);
-      return fail(begin, fmt::format("the value of {0} in <{1}> has no quotes; write {0}=\"{2}\"", name,
-                                     element, source_.substr(begin, std::min(end, begin + 60) - begin)));
+      const std::string_view word = source_.substr(begin, std::min(end, begin + 60) - begin);
+      const std::string_view bare = without_curly_quotes(word);
+      return fail(begin, fmt::format("the value of {0} in <{1}> has {3}; write {0}=\"{2}\"", name, element, bare,
+                                     bare == word ? "no quotes" : "curly quotes, which are none in XML"));
     }
     const std::size_t end = source_.find(quote, begin + 1);
     const std::string_view text = source_.substr(begin + 1, end - begin - 1);

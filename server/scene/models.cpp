@@ -37,6 +37,7 @@ void read_model(Draft& draft, Element& element, EntityKind kind) {
   read_body_and_devices(draft, element, model.entity);
   draft.missing_parts = nullptr;
   if (may_have_controller(kind)) model.controller = read_controller_choice(draft, element);
+  model.names = element.asked();
   element.done();
   draft.report.subject.clear();
   take_id(draft, element, id);

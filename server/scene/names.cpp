@@ -59,6 +59,13 @@ constexpr auto homes = std::to_array<Reason>({
     {"camera", "cameras"},
 });
 
+constexpr auto attribute_homes = std::to_array<Reason>({
+    {"mass", "link"},
+    {"geometry", "link"},
+    {"friction", "link"},
+    {"restitution", "link"},
+});
+
 constexpr auto attribute_reasons = std::to_array<Reason>({
     {"default_friction", "write friction"},
     {"debug_file", "record the run instead"},
@@ -116,6 +123,10 @@ std::string Ids::next(std::string_view stem, Location where) {
 }
 
 std::optional<std::string_view> home_of(std::string_view element) { return reason(element, homes); }
+
+std::optional<std::string_view> home_of_attribute(std::string_view attribute) {
+  return reason(attribute, attribute_homes);
+}
 
 std::optional<std::string_view> unsupported_element(std::string_view name) {
   return reason(name, element_reasons);

@@ -25,12 +25,17 @@ std::optional<std::string_view> home_of(std::string_view element);
 
 /// For Report::left_out: an id that is taken already, so that its element has no name.
 constexpr std::string_view duplicate = "a duplicate";
+/// The cause of faults because a joint has no known type.
+constexpr std::string_view joint_type = "the type of a joint";
 
 /// Why an element known elsewhere is not supported here, or nothing if the name means nothing.
 std::optional<std::string_view> unsupported_element(std::string_view name);
 
 /// The same for an attribute.
 std::optional<std::string_view> unsupported_attribute(std::string_view name);
+
+/// The element that has an attribute which others are given by mistake.
+std::optional<std::string_view> home_of_attribute(std::string_view attribute);
 
 /// The ids of siblings: finds duplicates and numbers the unnamed.
 class Ids {

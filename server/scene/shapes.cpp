@@ -140,9 +140,11 @@ Geometry read_geometry(Draft& draft, Element& link) {
   }
   const Geometry geometry = read_shape(draft, link, *name);
   constexpr std::string_view why = "the geometry has no such extent";
-  if (!link.was_asked("size")) link.without_effect("size", vector3, why);
+  const std::vector<std::string> asked = link.asked();
+  const auto was_asked = [&](const char* attribute) { return std::ranges::find(asked, attribute) != asked.end(); };
+  if (!was_asked("size")) link.without_effect("size", vector3, why);
   for (const char* extent : {"radius", "height"}) {
-    if (!link.was_asked(extent)) link.without_effect(extent, number, why);
+    if (!was_asked(extent)) link.without_effect(extent, number, why);
   }
   return geometry;
 }

@@ -72,8 +72,9 @@ class Doubts {
     check_floor();
     check_arena();
     check_gravity();
+    check_magnets();
     std::vector<scene::Problem> problems;
-    for (Kind* kind : {&size_, &overlap_, &in_floor_, &outside_, &falls_}) {
+    for (Kind* kind : {&size_, &overlap_, &in_floor_, &outside_, &falls_, &no_force_}) {
       if (!kind->first) continue;
       if (kind->more > 0) kind->first->text += fmt::format("; and {} more like this", kind->more);
       problems.push_back(std::move(*kind->first));
@@ -188,10 +189,18 @@ class Doubts {
     }
   }
 
+  void check_magnets() {
+    if (scene_.physics.magnetism) return;
+    for (const scene::Entity& entity : entities_) {
+      if (entity.devices.magnets.empty()) continue;
+      doubt(no_force_, entity, "has magnets that have no force; write <magnetism/> into <dynamics3d>");
+    }
+  }
+
   const scene::Scene& scene_;
   const std::vector<scene::Entity>& entities_;
   std::vector<Extent> extents_;  // at tick 0
-  Kind size_, overlap_, in_floor_, outside_, falls_;
+  Kind size_, overlap_, in_floor_, outside_, falls_, no_force_;
 };
 
 }  // namespace

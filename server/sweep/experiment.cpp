@@ -152,6 +152,10 @@ std::vector<std::uint64_t> to_seeds(std::string_view place, std::string_view tex
     if (part.empty() || part.starts_with("..") || part.ends_with("..")) {
       throw text::UsageError(fmt::format("{} is '{}'; write for example 1..30 or 1,2,5..9", place, text));
     }
+    if (const std::size_t dash = part.find('-'); dash != 0 && dash != part.npos) {
+      throw text::UsageError(fmt::format("{} is '{}'; write {}..{}", place, part, text::trimmed(part.substr(0, dash)),
+                                         text::trimmed(part.substr(dash + 1))));
+    }
     const std::uint64_t first = number(part.substr(0, dots));
     const std::uint64_t last = dots == part.npos ? first : number(part.substr(dots + 2));
     if (last < first) {

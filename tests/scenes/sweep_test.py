@@ -189,6 +189,7 @@ class Refusals(SweepTest):
                 (("--param", "gain", *good), "write NAME=VALUE"),
                 (("--seeds", "0..3"), "a seed is 0"),
                 (("--seeds", "3..1"), "write 1..3"),
+                (("--seeds", "1-10"), "--seeds is '1-10'; write 1..10"),
                 ((*good, "--jobs", "0"), "--jobs is 0"),
                 ((*good, "--timeout", "0"), "--timeout is 0"),
                 ((*good, "--record", "some"), "write failed or all"),

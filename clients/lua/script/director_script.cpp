@@ -7,6 +7,19 @@
 
 namespace ziggurat::lua {
 
+namespace {
+
+// A function of the life cycle, and how its name is written by mistake.
+struct Slip {
+  const char* meant;
+  std::array<const char*, 2> written;
+};
+constexpr std::array<Slip, 3> slips{{{"pre_step", {"prestep", "preStep"}},
+                                     {"post_step", {"poststep", "postStep"}},
+                                     {"is_finished", {"isfinished", "isFinished"}}}};
+
+}  // namespace
+
 DirectorScript::DirectorScript(Director& director, const ScriptOptions& options)
     : Script("director/" + director.id(), options), director_(director) {}
 
@@ -17,6 +30,7 @@ Failure DirectorScript::start() {
   if (std::ranges::none_of(usual, [this](const char* name) { return has(name); })) {
     return path() + ": the script has none of the functions init(), pre_step(tick), post_step(tick) and is_finished()";
   }
+  doubt_names();
   if (auto failure = call("init", false, "init, tick " + std::to_string(first_tick()))) return failure;
   return prepare_next();
 }
@@ -32,6 +46,15 @@ Failure DirectorScript::step() {
   if (!is_finished) return prepare_next();
   director_.finish("is_finished() of " + path());
   return std::nullopt;
+}
+
+void DirectorScript::doubt_names() {
+  for (const Slip& slip : slips) {
+    if (has(slip.meant)) continue;
+    for (const char* name : slip.written) {
+      if (has(name)) log().add(true, std::string("nothing calls ") + name + "(); did you mean " + slip.meant + "()?");
+    }
+  }
 }
 
 Failure DirectorScript::prepare_next() {

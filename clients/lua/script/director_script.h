@@ -29,6 +29,8 @@ class DirectorScript final : public Script {
   void set_up(lua_State* state) override;
   void refresh(lua_State* state) override;
   Failure prepare_next();
+  /// Logs an error for each function whose name is nearly that of one that is called.
+  void doubt_names();
 
   Director& director_;
 };

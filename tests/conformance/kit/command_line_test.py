@@ -29,6 +29,14 @@ def run(*arguments):
     return code, out.getvalue(), err.getvalue()
 
 
+class Version(unittest.TestCase):
+    def test_is_told(self):
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit) as ended:
+            cli.main(["--version"], version="1.2.3")
+        self.assertEqual((0, "ziggurat-conformance 1.2.3\n"), (ended.exception.code, out.getvalue()))
+
+
 class Mistakes(unittest.TestCase):
     def expect(self, sentence, *arguments):
         code, _, err = run(*arguments)

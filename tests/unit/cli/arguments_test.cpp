@@ -37,6 +37,13 @@ TEST(Arguments, TwoDashesEndTheOptions) {
   EXPECT_EQ(parsed.positional, (std::vector<std::string>{"--ticks", "--real-time", "2"}));
 }
 
+TEST(Arguments, NegativeNumbersAreValues) {
+  const auto parsed = parse({"move", "b", "-0.3,0.2,0", "--quiet", "-.5,0,0", "--ticks", "-5", "-90"}, known());
+  EXPECT_EQ(parsed.positional, (std::vector<std::string>{"move", "b", "-0.3,0.2,0", "-.5,0,0", "-90"}));
+  EXPECT_EQ(parsed.values["ticks"].as<std::string>(), "-5");
+  EXPECT_EQ(complaint({"-x"}), "unknown option '-x'; --help lists the options");
+}
+
 TEST(Arguments, OptionalValueIsTheNextWordOnlyIfThatIsANumber) {
   const auto real_time = [](const Arguments& arguments) {
     return parse(arguments, known()).values["real-time"].as<std::string>();

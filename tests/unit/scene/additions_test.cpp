@@ -112,6 +112,12 @@ TEST_F(Additions, MustBeEntitiesWithABody) {
   }
 }
 
+TEST_F(Additions, ThatAreEmptyAreToldWhatToWrite) {
+  for (const std::string text : {"", "\n", "box"}) {
+    EXPECT_EQ(fault(text).substr(0, 60), "spawn: there is no element; write one, such as <box id=\"b\" s") << text;
+  }
+}
+
 TEST_F(Additions, NeedANewId) {
   EXPECT_EQ(fault(R"(<box id="wall" size="1,1,1" movable="false"><body position="5,0,0"/></box>)"),
             "spawn:1:10: id=\"wall\" of <box> is the id of another entity; give each its own");

@@ -111,8 +111,17 @@ TEST(Directors, HaveNoIdOfAnEntity) {
   text.arena = R"(<arena size="2,2,1" center="0,0,0.5"><prototype id="p" movable="false"><links ref="l">)"
                R"(<link id="l" geometry="box" size="1,1,1" mass="1"/></links><body/></prototype></arena>)";
   const ReadResult result = text.read();
-  EXPECT_NE(all_problems(result).find("id=\"p\" of <prototype> is the id of an earlier entity"),
+  EXPECT_NE(all_problems(result).find("id=\"p\" of <prototype> is also the id of the director at line "),
             std::string::npos)
+      << all_problems(result);
+}
+
+TEST(Engines, NegativeGravityIsDoubted) {
+  SceneText text;
+  text.engines = R"(<physics_engines><dynamics3d id="d"><gravity g="-9.8"/></dynamics3d></physics_engines>)";
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_NE(all_problems(result).find("g=\"-9.8\" of <gravity> lets everything fall up"), std::string::npos)
       << all_problems(result);
 }
 

@@ -112,6 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
              "t:23:25: link=\"bse\" of <parent> names no link; did you mean \"base\"?"},
         Slip{"<link id=\"sled\"", "<link id=\"base\"",
              "t:19:19: id=\"base\" of <link> is the id of an earlier link at line 18;"},
+        Slip{"type=\"prismatic\"", "type=\"slider\"", "t:22:32: type=\"slider\" of <joint>"},
         Slip{"<radio id=\"air\"", "<radio id=\"air\"/><led id=\"air\"",
              "t:33:36: id=\"air\" of <led> is the id of an earlier medium at line 33;"}));
 
@@ -126,6 +127,9 @@ INSTANTIATE_TEST_SUITE_P(
              "t:4:24: malformed XML: the value of id in <lua_controller> has no closing quote"},
         Slip{"link=\"base\"", "link=base",
              "t:23:24: malformed XML: the value of link in <parent> has no quotes; write link=\"base\""},
+        Slip{"link=\"base\"", "link=”base”",
+             "t:23:24: malformed XML: the value of link in <parent> has curly quotes, which are none in XML; write "
+             "link=\"base\""},
         Slip{"link=\"base\"", "link=base\"", "t:23:24: malformed XML: the value of link in <parent>"},
         Slip{"link=\"base\"", "link", "t:23:19: malformed XML: the attribute link of <parent> has no"},
         Slip{"mass=\"0.2\"/>", "mass=\"0.2\"\"/>",

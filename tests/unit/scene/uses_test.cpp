@@ -82,7 +82,7 @@ TEST(Uses, ComponentsMustExist) {
                              "4:1: radios are enabled for entity \"p1\", which has none; "
                              "write <radios> into its <devices>"),
             1u);
-  EXPECT_EQ(count_containing(found, "footbot_turret_encoder are enabled"), 1u);
+  EXPECT_EQ(count_containing(found, "footbot_turret_encoder is enabled"), 1u);
 }
 
 TEST(Uses, CameraAnchorsMustExist) {
@@ -204,7 +204,7 @@ TEST(Robots, HaveOnlyTheirOwnDevices) {
     SceneText text = with_controller("<" + device + R"( implementation="default"/>)", "");
     text.arena =
         arena_with("<" + robot + R"( id="r"><body/><controller config="c"/></)" + robot + ">");
-    return count_containing(faults(text.read()), "are enabled for entity \"r\"");
+    return count_containing(faults(text.read()), " enabled for entity \"r\"");
   };
   EXPECT_EQ(lacks("differential_steering", "foot-bot"), 0u);
   EXPECT_EQ(lacks("differential_steering", "e-puck"), 0u);

@@ -64,6 +64,15 @@ TEST(Doubts, OfBodiesThatFallForever) {
              "box \"a\" falls forever");
 }
 
+TEST(Doubts, OfMagnetsWithoutMagnetism) {
+  const std::string magnet =
+      R"(<prototype id="m" movable="true"><body position="0,0,0.1"/><links ref="l">)"
+      R"(<link id="l" geometry="box" size=".1,.1,.1" mass="1"/></links><devices><magnets>)"
+      R"(<magnet anchor="l" offset="0,0,0" passive_field="0,0,1"/></magnets></devices></prototype>)";
+  expect_one(found(magnet), "prototype \"m\" has magnets that have no force; write <magnetism/> into <dynamics3d>");
+  EXPECT_TRUE(found(magnet, ground + std::string("<magnetism/>")).empty());
+}
+
 TEST(Doubts, OfLengthsInMillimetres) {
   expect_one(found(body("a", "0,0,0", true, "100,100,100")), "is 100 m long, 11.1 times the arena");
   EXPECT_TRUE(found(body("a", "0,0,-20", false, "100,100,20")).empty()) << "a ground";

@@ -95,6 +95,12 @@ TEST(DirectorScript, IsCalledInItsOrder) {
   EXPECT_EQ(directed.leave.reason(), v1::Leave::DONE);
 }
 
+TEST(DirectorScript, TellsOfNamesThatNothingCalls) {
+  EXPECT_EQ(run("function init() end function poststep() end").log(),
+            std::vector<std::string>{"nothing calls poststep(); did you mean post_step()?"});
+  EXPECT_TRUE(run("function post_step() end function poststep() end").log().empty()) << "its own function";
+}
+
 TEST(DirectorScript, BeginsAnewAfterAReset) {
   const auto reset = [](FakeServer& self, std::uint64_t tick) {
     if (tick != 1) return;
