@@ -40,7 +40,7 @@ class Guardian {
   void end_now() noexcept;
 
  private:
-  /// Waits for so many milliseconds at most.
+  /// Whether it has ended, or does within so many milliseconds.
   bool has_ended(int most_ms) const noexcept;
 
   int orders_ = -1;  ///< the pipe's end for writing, closed by exec()

@@ -40,7 +40,7 @@ struct Summary {
   Ending ending = Ending::finished;
   std::uint64_t ticks = 0;
   double simulated_s = 0;
-  double startup_s = 0;  ///< wall time until every robot had its controller, and a first viewer or the end of the wait for it
+  double startup_s = 0;  ///< wall time until every robot had its controller, and of the wait for a first viewer
   double wall_s = 0;     ///< of the ticks; the next four are parts of it
   double physics_s = 0;
   double exchange_s = 0;  ///< sending, and waiting for controllers

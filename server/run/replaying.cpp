@@ -23,7 +23,6 @@ using supervision::Phase;
 
 namespace {
 
-constexpr std::chrono::seconds longest_wait_for_viewer{5};
 constexpr int longest_sleep_ms = 100;  // viewers get their frames meanwhile
 
 std::optional<double> factor_of(const Options& options) {
@@ -102,7 +101,10 @@ Replaying::Replaying(const ReplayOptions& options, processes::Signals& signals)
   options.from_poses ? show_poses() : begin_as_recorded(file_, world_);
   summary_.scene = world_.path;
   summary_.robots = world_.simulation.layout().robots.size();
-  if (showing_) waits_for_viewer_until_ = clock::now() + longest_wait_for_viewer;
+  if (showing_) {
+    console_.notice(wait_notice());
+    waits_for_viewer_until_ = clock::now() + longest_wait_for_viewer;
+  }
 }
 
 void Replaying::show_poses() {

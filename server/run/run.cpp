@@ -383,8 +383,6 @@ std::optional<Ending> Run::collect() {
 std::optional<Ending> Run::pace() {
   const std::uint64_t tick = world_.simulation.state().tick;
   if (std::exchange(waits_for_viewer_, false)) {
-    console_.notice("waits for a viewer, for 5 s at most");
-    console_.flush();
     const auto stopped =
         wait([&] { return watch_.wait_for_viewer(world_.simulation.commands()); });
     timer_.end_startup(summary_);

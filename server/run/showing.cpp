@@ -52,6 +52,10 @@ const char* name_of(wire::Status::Phase phase) {
 
 }  // namespace
 
+std::string wait_notice() {
+  return fmt::format("waits for a viewer, for {} s at most", longest_wait_for_viewer.count());
+}
+
 Showing::Showing(const Options& options, Run run) : run_(run), server_(settings_of(options, run)) {
   connect_callers();
   populate();

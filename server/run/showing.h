@@ -22,6 +22,10 @@
 
 namespace ziggurat::run {
 
+/// For the first viewer, so that it sees the beginning.
+constexpr std::chrono::seconds longest_wait_for_viewer{5};
+std::string wait_notice();
+
 class Showing {
  public:
   using clock = std::chrono::steady_clock;

@@ -137,8 +137,9 @@ std::optional<Ending> Watch::sleep_until(const std::function<clock::time_point()
 }
 
 std::optional<Ending> Watch::wait_for_viewer(world::Commands& commands) {
-  constexpr std::chrono::seconds longest{5};
-  const auto end = clock::now() + longest;
+  console_.notice(wait_notice());
+  console_.flush();
+  const auto end = clock::now() + longest_wait_for_viewer;
   return sleep_until([&] { return showing_->is_watched() ? clock::time_point() : end; }, commands);
 }
 

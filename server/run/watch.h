@@ -57,7 +57,7 @@ class Watch {
   /// Until that moment, which may change. A client that connects meanwhile may answer the tick.
   std::optional<reports::Ending> sleep_until(const std::function<clock::time_point()>& moment,
                                              world::Commands& commands);
-  /// Until the first viewer is there, so that it sees the beginning; for 5 s at most.
+  /// Until the first viewer is there, so that it sees the beginning; for longest_wait_for_viewer at most.
   std::optional<reports::Ending> wait_for_viewer(world::Commands& commands);
   /// Shows the last state to viewers until an interruption, or until one of them ends it.
   void show_end();

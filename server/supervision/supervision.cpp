@@ -254,9 +254,9 @@ wire::Status Supervision::status() const {
   wire::Status status;
   status.tick = state.tick;
   status.time_ns = state.time_ns;
-  status.phase = !is_gathered_      ? wire::Status::Phase::gathering
-                 : is_standing()  ? wire::Status::Phase::paused
-                                  : wire::Status::Phase::running;
+  status.phase = !is_gathered_   ? wire::Status::Phase::gathering
+                 : is_standing() ? wire::Status::Phase::paused
+                                 : wire::Status::Phase::running;
   status.is_hardware_in_the_loop = settings_.is_hardware_in_the_loop;
   status.seed = world_.seed;
   status.scene = world_.path;

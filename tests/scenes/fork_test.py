@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 from harness import CONTROLLER_FAILED, FAULT, FINISHED, LIMIT, LUA, ZIGGURAT, main
-from replay_test import ROOT, Recorded
+from recorded import ROOT, Recorded
 
 SPEED = re.compile(r"robot\.params\.speed")
 

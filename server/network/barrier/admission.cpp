@@ -14,9 +14,9 @@
 #include "network/barrier/granting.h"
 #include "network/barrier/talk.h"
 #include "network/barrier/timing.h"
+#include "wire/command_limits.h"
 #include "wire/direction.h"
 #include "wire/fault.h"
-#include "wire/command_limits.h"
 
 namespace ziggurat::network {
 

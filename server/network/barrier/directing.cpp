@@ -127,8 +127,7 @@ std::optional<wire::Refusal> check_seat(Barrier& barrier, std::size_t director, 
 /// The sessions that have the director, or may resume it, lose it to another client.
 void displace(Barrier& barrier, std::size_t director, const std::string& by) {
   const Seats::Seat& seat = barrier.directors.seats[director];
-  Session* session =
-      barrier.sessions.find(seat.owner());
+  Session* session = barrier.sessions.find(seat.owner());
   if (session == nullptr) return;
   if (session->state != SessionState::lost) {
     barrier.outbox.displaced(by, fmt::format("{} is director '{}' now.", by,
@@ -389,8 +388,7 @@ bool wants_contacts(const Barrier& barrier) {
   const Directors& directors = barrier.directors;
   for (std::size_t i = 0; i < directors.all.size(); ++i) {
     const Seats::Seat& seat = directors.seats[i];
-    const Session* session =
-        barrier.sessions.find(seat.owner());
+    const Session* session = barrier.sessions.find(seat.owner());
     if (session != nullptr && session->view.subscription.contacts) return true;
   }
   return false;
@@ -413,8 +411,7 @@ std::vector<DirectorStatus> director_status(const Barrier& barrier) {
   const Directors& directors = barrier.directors;
   for (std::size_t i = 0; i < directors.all.size(); ++i) {
     const Seats::Seat& seat = directors.seats[i];
-    const Session* session =
-        barrier.sessions.find(seat.owner());
+    const Session* session = barrier.sessions.find(seat.owner());
     DirectorStatus status{directors.all[i].id, seat.holder != SessionId::none, seat.has_left,
                           seat.was_held};
     status.waits = directors.deadlines.policy(i).action == scene::DeadlineAction::wait;

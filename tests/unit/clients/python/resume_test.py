@@ -7,7 +7,7 @@ import ziggurat
 from ziggurat import protocol_pb2 as v1
 
 from fake_server import equipped, welcome
-from session_test import SessionCase, open_with
+from session_case import SessionCase, open_with
 
 _UNKNOWN = v1.Error(code=v1.Error.OUT_OF_STATE, severity=v1.Error.FATAL)
 

@@ -6,7 +6,7 @@ import ziggurat
 from ziggurat import protocol_pb2 as v1
 
 from fake_server import welcome
-from session_test import SessionCase
+from session_case import SessionCase
 
 
 class Supervision(SessionCase):
