@@ -43,12 +43,14 @@ inline constexpr std::chrono::seconds time_without_session{60};
 /// Younger ones are not disconnected to make place.
 inline constexpr std::chrono::seconds least_age{1};
 
-/// Of messages of a client that have not arrived completely, of all clients [bytes].
-inline constexpr std::size_t most_unfinished = 512 * mebibyte;
 /// Of messages that wait for a client that does not read, its newest Observation aside [bytes].
 inline constexpr std::size_t most_waiting = 4 * mebibyte;
-/// The same for all clients.
-inline constexpr std::size_t most_waiting_in_all = 256 * mebibyte;
+
+/// What messages of all clients together may take [bytes].
+struct Shared {
+  std::size_t unfinished = 512 * mebibyte;  ///< those that have not arrived completely
+  std::size_t waiting = 256 * mebibyte;     ///< those that wait for clients, as most_waiting counts
+};
 
 /// Share of the wall time that connections other than controllers' may take of the tick's thread
 /// while a tick runs. The system's work for them, and what they do themselves with the answers, may

@@ -3,6 +3,7 @@
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <cstring>
 #include <utility>
 
 #include "network/limits.h"
@@ -24,18 +25,28 @@ std::size_t OutputQueue::write(std::span<const std::uint8_t> bytes) {
   return 0;
 }
 
+/// The frame, in memory of about its own size: a frame may have far more, of earlier messages.
+Buffer OutputQueue::kept(Buffer& frame, std::size_t size) {
+  if (frame.capacity <= size + size / 4) return std::exchange(frame, {});
+  Buffer copy;
+  copy.reserve(size);
+  std::memcpy(copy.bytes.get(), frame.bytes.get(), size);
+  return copy;
+}
+
 void OutputQueue::send(Buffer& frame, std::size_t size, bool is_observation) {
   const std::size_t sent = waiting_.empty() ? write({frame.bytes.get(), size}) : 0;
   if (sent == size || has_failed_) return;
+  Parcel parcel{kept(frame, size), size, sent, is_observation};
   if (is_observation) {
     std::erase_if(waiting_,
                   [](const Parcel& each) { return each.is_observation && each.sent == 0; });
   } else {
-    is_congested_ = waiting_bytes_ > 0 && waiting_bytes_ + size > most_waiting;
+    is_congested_ = waiting_bytes_ > 0 && waiting_bytes_ + parcel.memory() > most_waiting;
     if (is_congested_) return;
-    waiting_bytes_ += size;
+    waiting_bytes_ += parcel.memory();
   }
-  waiting_.push_back({std::exchange(frame, {}), size, sent, is_observation});
+  waiting_.push_back(std::move(parcel));
 }
 
 void OutputQueue::flush() {
@@ -43,9 +54,14 @@ void OutputQueue::flush() {
     Parcel& first = waiting_.front();
     first.sent += write({first.frame.bytes.get() + first.sent, first.size - first.sent});
     if (first.sent < first.size) return;
-    if (!first.is_observation) waiting_bytes_ -= first.size;
+    if (!first.is_observation) waiting_bytes_ -= first.memory();
     waiting_.pop_front();
   }
+}
+
+void OutputQueue::drop() {
+  waiting_.clear();
+  waiting_bytes_ = 0;
 }
 
 }  // namespace ziggurat::network

@@ -30,8 +30,11 @@ class OutputQueue {
   /// Sends what waits, as far as that is possible.
   void flush();
 
+  /// Forgets what waits: nothing more is sent.
+  void drop();
+
   bool is_empty() const { return waiting_.empty(); }
-  /// Of what waits, without Observations.
+  /// Memory of what waits, without Observations.
   std::size_t waiting_bytes() const { return waiting_bytes_; }
   /// The connection is gone.
   bool has_failed() const { return has_failed_; }
@@ -43,7 +46,11 @@ class OutputQueue {
     Buffer frame;
     std::size_t size = 0, sent = 0;
     bool is_observation = false;
+
+    /// What keeping it takes, at least [bytes].
+    std::size_t memory() const { return frame.capacity + 128; }
   };
+  static Buffer kept(Buffer& frame, std::size_t size);
   std::size_t write(std::span<const std::uint8_t> bytes);
 
   int descriptor_;

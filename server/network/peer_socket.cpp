@@ -154,6 +154,11 @@ void PeerSocket::send_reply() {
   reply_.clear();
 }
 
+void PeerSocket::give_up() {
+  is_over_ = true;
+  output_.drop();
+}
+
 void PeerSocket::flush() {
   if (is_over_) return;
   output_.flush();

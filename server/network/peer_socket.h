@@ -39,7 +39,8 @@ class PeerSocket {
   bool is_open() const { return engine_.is_open(); }  ///< the handshake is over
   /// The connection is gone, or must be closed.
   bool is_over() const { return is_over_; }
-  void give_up() { is_over_ = true; }
+  /// What waits is not sent any more.
+  void give_up();
   /// Why its keys were refused, for people; empty if they were not.
   const std::string& refusal() const { return engine_.refusal(); }
 

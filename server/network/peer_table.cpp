@@ -20,7 +20,8 @@ std::uint64_t id_of(const std::string& name) {
 
 }  // namespace
 
-PeerTable::PeerTable() : next_notice_(std::chrono::steady_clock::now()) {}
+PeerTable::PeerTable(const Shared& most)
+    : most_(most), next_notice_(std::chrono::steady_clock::now()) {}
 
 void PeerTable::add(Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now) {
   const std::uint64_t id = ++last_id_;
@@ -55,10 +56,10 @@ void PeerTable::settle(PeerSocket& peer, const Account& before) {
   if (after.has_waiting != before.has_waiting) {
     list_of(peer).change(peer.number(), id_of(peer.name()), true, after.has_waiting);
   }
-  if (unfinished_ > most_unfinished && after.unfinished > mebibyte) {
+  if (unfinished_ > most_.unfinished && after.unfinished > mebibyte) {
     end(peer, "A client was disconnected: too much of clients' messages has arrived in part.");
   }
-  while (waiting_ > most_waiting_in_all) {
+  while (waiting_ > most_.waiting) {
     PeerSocket* most = most_waiting_peer();
     if (most == nullptr) break;
     end(*most, "A client was disconnected because too much waits for clients that do not read.");
@@ -93,11 +94,13 @@ void PeerTable::set_standing(const std::string& name, Standing standing, std::si
   after.add(peer->number(), id_of(name), !peer->output().is_empty());
 }
 
-/// The connection is over. Its memory stays until remove_ended().
+/// The connection is over. What waits for it goes at once, because many can end before the next
+/// remove_ended(); what it has sent stays until then.
 /// @param why  a sentence for people, if there is something to tell
 void PeerTable::end(PeerSocket& peer, const char* why) {
-  peer.give_up();
   waiting_ -= peer.output().waiting_bytes();
+  has_let_go_ |= peer.unfinished_bytes() + peer.output().waiting_bytes() > mebibyte;
+  peer.give_up();
   unfinished_ -= peer.unfinished_bytes();
   list_of(peer).remove(peer.number());
   over_.push_back(id_of(peer.name()));
@@ -111,9 +114,7 @@ void PeerTable::remove_ended() {
   for (const std::uint64_t id : over_) {
     const auto found = peers_.find(id);
     if (found == peers_.end()) continue;
-    const PeerSocket& peer = *found->second;
-    without_session_ -= peer.standing() == Standing::none ? 1 : 0;
-    has_let_go_ |= peer.unfinished_bytes() + peer.output().waiting_bytes() > mebibyte;
+    without_session_ -= found->second->standing() == Standing::none ? 1 : 0;
     gone_.push_back(found->second->name());
     peers_.erase(found);
   }

@@ -20,7 +20,7 @@ class PeerTable {
  public:
   static constexpr std::uint64_t first_id = 1024;  ///< numbers below are free for other descriptors
 
-  PeerTable();
+  explicit PeerTable(const Shared& most = {});
 
   /// A client has connected.
   void add(Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now);
@@ -69,6 +69,7 @@ class PeerTable {
   void end(PeerSocket& peer, const char* why = nullptr);
   PeerSocket* most_waiting_peer() const;
 
+  const Shared most_;
   ReadyList controllers_, others_;
   std::unordered_map<std::uint64_t, std::unique_ptr<PeerSocket>> peers_;
   std::uint64_t last_id_ = first_id;

@@ -185,6 +185,24 @@ TEST(Hello, K5_NoRoleTakesThePlacesOfAnother) {
   peers.join("p", "robot1");
 }
 
+TEST(Hello, K5_ThereAre256ObserversAnd64Supervisors) {
+  const SmallRun small(1);
+  Peers peers(small);
+  for (const auto& [role, most] : {std::pair{v1::ROLE_OBSERVER, 256}, {v1::ROLE_SUPERVISOR, 64}}) {
+    auto hello = Peers::hello("*");
+    hello.mutable_hello()->clear_robots();
+    hello.mutable_hello()->set_role(role);
+    for (int i = 0; i <= most; ++i) {
+      const std::string name = v1::Role_Name(role) + std::to_string(i);
+      peers.say(name, hello);
+      const auto told = peers.told(name);
+      EXPECT_EQ(told.has_welcome(), i < most) << name;
+      EXPECT_EQ(told.has_refusal(), i == most) << name;
+    }
+  }
+  EXPECT_EQ(peers.join("p", "*").robots_size(), 1);
+}
+
 TEST(Hello, TooManyPatterns) {
   const SmallRun small(1);
   Peers peers(small);

@@ -193,6 +193,19 @@ TEST_F(Directing, K5_ADirectionHas10000ActsAnd1000Lines) {
   EXPECT_EQ(answered(), Ids{"judge"});
 }
 
+TEST_F(Directing, K5_ADirectionHas4MiB) {
+  peers.say("p", director("judge"));
+  EXPECT_EQ(peers.told("p").welcome().max_message_bytes(), 4U << 20);
+  publish(5);
+  peers.inboxes.clear();
+  auto spawn = direction(5);
+  spawn.mutable_direction()->add_acts()->mutable_spawn()->set_xml(std::string(4 << 20, ' '));
+  EXPECT_EQ(faulted(peers, spawn).code(), v1::Error::TOO_LARGE);
+  spawn.mutable_direction()->mutable_acts(0)->mutable_spawn()->set_xml(std::string((1 << 20) - 100, ' '));
+  peers.say("p", spawn);
+  EXPECT_EQ(answered(), Ids{"judge"});
+}
+
 TEST_F(Directing, K5_ADirectionSpawns1000Entities) {
   begin();
   auto spawns = direction(5);

@@ -78,6 +78,17 @@ class Spawn(SceneTest):
         self.assertEqual(self.lua_processes(2), processes)
         self.end(process)
 
+    def test_spawned_robots_have_sixteen_processes_at_most(self):
+        """Beside those of the scene's robots."""
+        process = self.begin("run", "--real-time", 1, "--lua-processes", 0)
+        self.read_until(process.stdout, r"^\[2 r0\]")
+        scripted = len(self.lua_processes(3))
+        for i in range(18):
+            self.spawn(self.arm(f"late{i}", f"0,{i + 2},0"))
+        self.read_until(process.stdout, r"^\[\d+ late17\] step")
+        self.assertEqual(len(self.lua_processes(16)), scripted + 16)
+        self.end(process)
+
     def test_the_world_waits_for_a_robot_without_session(self):
         process = self.begin("serve", *PACED)
         scripted = [subprocess.Popen([LUA, "--connect", self.url, "--quiet"], cwd=self.folder,

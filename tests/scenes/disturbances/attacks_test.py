@@ -114,9 +114,10 @@ class Attacks(SceneTest):
                            "role": f"{key} root\n"}.items():
             clients = self.write(name, text)
             clients.chmod(0o600)
-            with self.subTest(name):
-                self.refuses("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--curve-secret",
-                             "k.secret", "--curve-clients", clients)
+            with self.subTest(name), socket.create_server(("127.0.0.1", 0)) as taken:
+                # It is told of its list, and not that the port is taken: it has not listened yet.
+                self.refuses("serve", self.scene, "--endpoint", f"tcp://127.0.0.1:{taken.getsockname()[1]}",
+                             "--curve-secret", "k.secret", "--curve-clients", clients, pattern=str(clients))
 
     def test_hostile_recordings(self):
         recording = self.folder / "run.mcap"

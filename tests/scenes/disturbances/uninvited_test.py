@@ -29,6 +29,7 @@ from ziggurat import protocol_pb2 as v1  # noqa: E402
 
 IS_FULL = "--full" in sys.argv
 MEBIBYTE = 1 << 20
+MANY_FILES = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (4096, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
 SLOW = 20  # [s] in which a connection that must be closed is closed, on a busy machine
 
 
@@ -219,18 +220,32 @@ class Uninvited(SceneTest):
 
     def test_unfinished_messages_of_many(self):
         """Each connection sends nearly all of the longest message, then nothing."""
-        process = self.serve()
+        process = self.serve(preexec_fn=MANY_FILES)
         before = self.most_memory(process)
-        peers = [RawPeer(self.endpoint) for _ in range(400)]
+        peers = [RawPeer(self.endpoint) for _ in range(512)]
         for peer in peers:
             peer.send_beginning(64 * 1024, 64 * 1024 - 1)
         time.sleep(2)
         growth = self.most_memory(process) - before
-        print(f"  400 unfinished messages: {growth / MEBIBYTE:.0f} MiB", flush=True)
+        print(f"  512 unfinished messages: {growth / MEBIBYTE:.0f} MiB", flush=True)
         self.assertLess(growth, 48 * MEBIBYTE)
         observer(self.endpoint).socket.close()
         for peer in peers:
             peer.socket.close()
+        self.end(process)
+
+    def test_there_are_512_without_session(self):
+        process = self.serve(preexec_fn=MANY_FILES)
+        address = ("127.0.0.1", int(self.endpoint.rsplit(":", 1)[1]))
+        idle = [socket.create_connection(address) for _ in range(700)]
+        connections = lambda: sum(os.readlink(f"/proc/{process.pid}/fd/{file}").startswith("socket:")
+                                  for file in os.listdir(f"/proc/{process.pid}/fd"))
+        self.wait_for(connections, lambda count: count > 512, "connections")
+        for _ in range(20):
+            self.assertLessEqual(connections(), 512 + 3)  # and what listens
+            time.sleep(0.05)
+        for connection in idle:
+            connection.close()
         self.end(process)
 
     def test_observers_that_never_read(self):
@@ -241,7 +256,7 @@ class Uninvited(SceneTest):
         scene = self.write("many.argos", self.text.replace("</arena>", boxes + "</arena>"))
         process = self.serve(scene=scene)
         before = self.memory(process)
-        peers = [observer(self.endpoint) for _ in range(20)]
+        peers = [observer(self.endpoint) for _ in range(100)]
         end = time.monotonic() + (60 if IS_FULL else 10)
         number = 0
         while time.monotonic() < end:
@@ -259,7 +274,7 @@ class Uninvited(SceneTest):
         observer(self.endpoint).socket.close()
         after = self.wait_for(lambda: self.memory(process), lambda now: now < before + 64 * MEBIBYTE,
                               "return of the memory")
-        print(f"  20 observers: {before / MEBIBYTE:.0f} MiB, {most / MEBIBYTE:.0f} MiB at most, "
+        print(f"  100 observers: {before / MEBIBYTE:.0f} MiB, {most / MEBIBYTE:.0f} MiB at most, "
               f"{after / MEBIBYTE:.0f} MiB after", flush=True)
         self.assertLess(most - before, 300 * MEBIBYTE)
         self.end(process)

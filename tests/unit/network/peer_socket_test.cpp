@@ -3,6 +3,7 @@
 #include "network/peer_socket.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <sys/socket.h>
 
 #include <cstring>
@@ -148,7 +149,7 @@ TEST_F(PeerSocketTest, TheNewestObservationTakesThePlaceOfTheOneThatWaits) {
   for (char tick = 0; tick < 100; ++tick) tell(size, true, tick);
   tell(10, false, 'e');
   EXPECT_FALSE(peer->is_over());
-  EXPECT_LT(peer->output().waiting_bytes(), 100U);
+  EXPECT_LT(peer->output().waiting_bytes(), 200U);
   const std::string heard = hear();
   EXPECT_EQ(heard.size(), 2 * (size + 9) + 12) << "the first, the last and the error";
   EXPECT_EQ(heard[100], 0);
@@ -166,6 +167,23 @@ TEST_F(PeerSocketTest, OneThatDoesNotReadIsDisconnected) {
   }
   EXPECT_TRUE(peer->output().is_congested());
   EXPECT_LT(count, 60);
+}
+
+/// Small messages that wait take no memory that was for a large one.
+TEST_F(PeerSocketTest, WhatWaitsTakesNoMoreMemoryThanItIsCountedFor) {
+  open();
+  peer->set_standing(Standing::observer, 64 * kibibyte, Time{});
+  Buffer buffer;
+  buffer.reserve(mebibyte);
+  const std::size_t at = peer->content_at(20);
+  const auto tell_20_bytes = [&] { peer->send(buffer, 20, false); };
+  std::memset(buffer.bytes.get(), 0, at + 20);
+  const std::size_t before = ::mallinfo2().uordblks + ::mallinfo2().hblkhd;
+  int count = 0;
+  for (; peer->output().waiting_bytes() < mebibyte && count < 1'000'000; ++count) tell_20_bytes();
+  EXPECT_EQ(buffer.capacity, mebibyte) << "it is for the next message";
+  EXPECT_LT(count, 1'000'000);
+  EXPECT_LT(::mallinfo2().uordblks + ::mallinfo2().hblkhd - before, 2 * mebibyte);
 }
 
 TEST_F(PeerSocketTest, PingsOfOneThatDoesNotReadHaveAnEnd) {

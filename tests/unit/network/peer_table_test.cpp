@@ -1,7 +1,11 @@
-// How long connections may be there without session.
+// How long connections may be there without session, and what all of them may take together.
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <sys/socket.h>
+
+#include <cstring>
+#include <vector>
 
 #include "network/peer_table.h"
 #include "network/raw_client.h"
@@ -74,6 +78,96 @@ TEST(PeerTable, ThoseWithSessionStay) {
   table.set_standing(name, Standing::none, longest_without_session, start + seconds{3600});
   EXPECT_EQ(left_at(table, start + seconds{3660}), 1u);
   EXPECT_EQ(left_at(table, start + seconds{3661}), 0u);
+}
+
+/// Connections with a finished handshake.
+struct Crowd {
+  Crowd(const Shared& most, std::uint64_t count, bool is_trusted) : table(most) {
+    const Time now = std::chrono::steady_clock::now();
+    for (std::uint64_t i = 1; i <= count; ++i) {
+      clients.push_back(connect(table, is_trusted, now));
+      shake_hands(table, PeerTable::first_id + i, clients.back());
+    }
+  }
+  PeerSocket* peer(std::uint64_t index) { return table.find(PeerTable::first_id + 1 + index); }
+  /// Sends a message to a client that does not read.
+  void tell(std::uint64_t index, std::size_t size) {
+    Buffer frame;
+    const std::size_t at = peer(index)->content_at(size);
+    frame.reserve(at + size);
+    std::memset(frame.bytes.get(), 0, at + size);
+    table.act(*peer(index), [&](PeerSocket& to) { to.send(frame, size, false); });
+  }
+  /// The client sends so much of a long message.
+  void hear_part(std::uint64_t index, std::size_t size) {
+    using namespace std::string_literals;
+    const std::string header = "\2\0\0\0\0\4\0\0\0"s;  // of 64 MiB
+    ASSERT_EQ(::send(clients[index].number(), header.data(), header.size(), 0), 9);
+    const std::string part(kibibyte, 'x');
+    Received received;
+    for (std::size_t sent = 0; sent < size && peer(index) != nullptr; sent += part.size()) {
+      ASSERT_EQ(::send(clients[index].number(), part.data(), part.size(), 0), 1024);
+      table.act(*peer(index), [&](PeerSocket& from) {
+        from.read();
+        EXPECT_FALSE(from.next(64 * mebibyte, received));
+      });
+    }
+  }
+  PeerTable table;
+  std::vector<Descriptor> clients;
+};
+
+TEST(PeerTable, OneThatDoesNotReadIsDisconnectedWithANotice) {
+  Crowd crowd({}, 1, false);
+  for (int i = 0; i < 100 && crowd.peer(0) != nullptr; ++i) crowd.tell(0, 100'000);
+  EXPECT_EQ(crowd.peer(0), nullptr);
+  const auto notices = crowd.table.take_notices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0], "A client was disconnected because it does not read what it is sent.");
+}
+
+TEST(PeerTable, WhatWaitsForAllIsBoundedAndTheOneForWhichMostWaitsIsDisconnected) {
+  EXPECT_EQ(Shared{}.waiting, 256 * mebibyte) << "docs/protocol.md, K5";
+  Crowd crowd({.waiting = 3 * mebibyte}, 3, false);
+  for (int i = 0; i < 5; ++i) {
+    for (const std::uint64_t index : {0, 1, 2}) crowd.tell(index, (index == 1 ? 300 : 200) * kibibyte);
+  }
+  EXPECT_EQ(crowd.peer(1), nullptr);
+  EXPECT_NE(crowd.peer(0), nullptr);
+  EXPECT_NE(crowd.peer(2), nullptr);
+  const auto notices = crowd.table.take_notices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0], "A client was disconnected because too much waits for clients that do not read.");
+}
+
+/// Many end before the table is asked to forget them.
+TEST(PeerTable, WhatWaitedForOneThatIsDisconnectedGoesAtOnce) {
+  constexpr std::uint64_t many = 30;
+  Crowd crowd({}, many, false);
+  const auto allocated = [] { return ::mallinfo2().uordblks + ::mallinfo2().hblkhd; };
+  const std::size_t before = allocated();
+  for (std::uint64_t index = 0; index < many; ++index) {
+    while (crowd.peer(index) != nullptr) crowd.tell(index, 100'000);
+  }
+  EXPECT_LT(allocated() - before, 5 * mebibyte);
+}
+
+TEST(PeerTable, UnfinishedMessagesOfAllAreBounded) {
+  EXPECT_EQ(Shared{}.unfinished, 512 * mebibyte) << "docs/protocol.md, K5";
+  Crowd crowd({.unfinished = 8 * mebibyte}, 4, true);
+  crowd.hear_part(3, 500 * kibibyte);
+  for (std::uint64_t index = 0; index < 3; ++index) crowd.hear_part(index, 3000 * kibibyte);
+  std::size_t taken = 0;
+  for (std::uint64_t index = 0; index < 4; ++index) {
+    taken += crowd.peer(index) == nullptr ? 0 : crowd.peer(index)->unfinished_bytes();
+  }
+  EXPECT_LE(taken, 8 * mebibyte);
+  EXPECT_NE(crowd.peer(0), nullptr);
+  EXPECT_EQ(crowd.peer(2), nullptr) << "its message grew when there was no place";
+  EXPECT_NE(crowd.peer(3), nullptr);
+  const auto notices = crowd.table.take_notices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0], "A client was disconnected: too much of clients' messages has arrived in part.");
 }
 
 }  // namespace

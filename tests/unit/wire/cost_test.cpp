@@ -1,6 +1,9 @@
 #include "wire/cost.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <functional>
 
 #include "wire/inbox.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -37,6 +40,47 @@ TEST(Cost, AMessageOfEmptyPartsIsNotDecoded) {
   std::string json = R"({"command":{"tagPayloads":[)";
   for (std::size_t i = 0; i <= most_fields; ++i) json += "\"\",";
   EXPECT_EQ(inbox.parse(json + "\"\"]}}"), Inbox::Kind::malformed);
+}
+
+/// What this process has of the system's memory for objects [bytes].
+std::size_t allocated() {
+  const struct mallinfo2 info = ::mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+TEST(Cost, AFieldTakesAHundredBytesOfMemory) {
+  using Add = std::function<void(v1::ClientMessage&)>;
+  const std::pair<const char*, Add> kinds[] = {
+      {"log", [](auto& to) { to.mutable_command()->add_log(); }},
+      {"metrics", [](auto& to) { to.mutable_command()->add_metrics(); }},
+      {"radio messages", [](auto& to) { to.mutable_command()->add_radio_messages(); }},
+      {"tag payloads", [](auto& to) { to.mutable_command()->add_tag_payloads(); }},
+      {"robots", [](auto& to) { to.mutable_hello()->add_robots(); }},
+      {"entities", [](auto& to) { to.mutable_request()->mutable_read()->add_entities(); }},
+      {"acts", [](auto& to) { to.mutable_direction()->add_acts(); }},
+      {"pushes", [](auto& to) { to.mutable_direction()->add_acts()->mutable_push(); }},
+      {"moves", [](auto& to) { to.mutable_direction()->add_acts()->mutable_move(); }},
+      {"spawns", [](auto& to) { to.mutable_direction()->add_acts()->mutable_spawn(); }},
+  };
+  for (const auto& [name, add] : kinds) {
+    v1::ClientMessage message;
+    std::string bytes;
+    std::size_t fields = 0;
+    for (int i = 0; i < 10'000; ++i) add(message);
+    fields = count_fields(message.SerializeAsString());
+    ASSERT_GE(fields, 10'000U) << name;
+    for (std::size_t i = 10'000; i < 10'000 * most_fields / fields - 10; ++i) add(message);
+    bytes = message.SerializeAsString();
+    fields = count_fields(bytes);
+    ASSERT_LE(fields, most_fields) << name;
+    ASSERT_GT(fields, most_fields * 9 / 10) << name;
+    const std::size_t before = allocated();
+    Inbox inbox;
+    ASSERT_NE(inbox.parse(bytes), Inbox::Kind::malformed) << name << ": " << inbox.complaint();
+    const std::size_t taken = allocated() - before;
+    RecordProperty(name, static_cast<int>(taken / fields));
+    EXPECT_LT(taken, 100 * fields) << name;
+  }
 }
 
 TEST(Cost, CommasInATextOfJsonAreNoValues) {
