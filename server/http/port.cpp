@@ -1,7 +1,6 @@
 #include "http/port.h"
 
 #include <boost/asio/post.hpp>
-#include <chrono>
 #include <cstddef>
 #include <list>
 #include <utility>
@@ -12,14 +11,12 @@
 namespace ziggurat::http {
 namespace {
 
-constexpr std::size_t most_clients = 16;  // the oldest makes place
-constexpr std::chrono::seconds time_of_a_client{5};
-
-Service service_of(const std::string& host, bool any_host, const Port::Read& read) {
+Service service_of(const std::string& host, bool any_host, const Port::Read& read,
+                   const Port::Limits& limits) {
   Service service;
   service.host = host;
   service.any_host = any_host;
-  service.time = time_of_a_client;
+  service.time = limits.time;
   service.keeps_open = false;
   service.get = [read](std::string_view target, std::string_view) {
     return read(target.substr(0, target.find('?')));
@@ -30,8 +27,10 @@ Service service_of(const std::string& host, bool any_host, const Port::Read& rea
 }  // namespace
 
 struct Port::State {
-  State(std::string_view option, const Address& address, bool any_host, const Read& read)
-      : service(service_of(address.host, any_host, read)),
+  State(std::string_view option, const Address& address, bool any_host, const Read& read,
+        const Limits& limits)
+      : service(service_of(address.host, any_host, read, limits)),
+        most_clients(limits.clients),
         listening(io, option, address,
                   [this](Tcp::socket socket) { take(std::move(socket)); }),
         thread(serve(io)) {}
@@ -48,14 +47,16 @@ struct Port::State {
   }
 
   Service service;
+  std::size_t most_clients;
   std::list<std::weak_ptr<Exchange>> clients;  // the oldest first
   boost::asio::io_context io{1};               // behind what its connections use
   Listening listening;
   std::thread thread;
 };
 
-Port::Port(std::string_view option, const Address& address, bool any_host, Read read)
-    : state_(std::make_unique<State>(option, address, any_host, read)) {}
+Port::Port(std::string_view option, const Address& address, bool any_host, Read read,
+           const Limits& limits)
+    : state_(std::make_unique<State>(option, address, any_host, read, limits)) {}
 
 Port::~Port() {
   state_->io.stop();
@@ -66,7 +67,7 @@ std::uint16_t Port::number() const { return state_->listening.port(); }
 
 std::string answer_at_port(std::string_view request, const std::string& host, bool any_host,
                            const Port::Read& read) {
-  return answer_to(request, service_of(host, any_host, read));
+  return answer_to(request, service_of(host, any_host, read, {}));
 }
 
 }  // namespace ziggurat::http

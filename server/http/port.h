@@ -2,11 +2,14 @@
 // Serves a few short texts over HTTP, on a thread of its own: one request per connection. Clients can be
 // slow, many and rude: each has a time and a number of bytes, and of too many the oldest ends.
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "http/address.h"
 #include "http/answer.h"
@@ -18,10 +21,18 @@ class Port {
   /// What is at a path. It is called on the port's thread.
   using Read = std::function<Answer(std::string_view path)>;
 
+  struct Limits {
+    std::size_t clients = 16;              ///< at a time; the oldest makes place
+    std::chrono::milliseconds time{5000};  ///< of a client, for its request and the answer
+  };
+
   /// @param option  of the program, for messages
   /// @param any_host  clients may call it by any name; otherwise see allows_host()
   /// @throws std::runtime_error if it can't listen
-  Port(std::string_view option, const Address& address, bool any_host, Read read);
+  Port(std::string_view option, const Address& address, bool any_host, Read read,
+       const Limits& limits);
+  Port(std::string_view option, const Address& address, bool any_host, Read read)
+      : Port(option, address, any_host, std::move(read), Limits()) {}
   /// At once, whatever clients do.
   ~Port();
   Port(const Port&) = delete;

@@ -7,7 +7,7 @@ import pty
 import re
 import subprocess
 
-from harness import FAULT, FINISHED, LIMIT, SceneTest, ZIGGURAT, main
+from harness import FAULT, FINISHED, LIMIT, LUA, SceneTest, ZIGGURAT, main
 
 
 class Log(SceneTest):
@@ -39,6 +39,24 @@ end""")
         self.assertIn("\\u0008back", outcome.err)
         self.assertNotIn("\x1b", outcome.out + outcome.err)
         self.assertIn("\x1b[31mred", self.run_scene("--ticks", 1, "--trust-scripts").out)
+
+    def test_echo_is_printable(self):
+        """`ziggurat-lua --echo`, of scripts and of robots whose ids a server chooses."""
+        self.write("swing.lua", """function step() end
+function init()
+   log("\\27]52;c;eA==\\7 \\xe2\\x80\\xae")
+   logerr("\\27[2J\\x9b31m")
+end""")
+        server = self.start("serve", self.scene, "--ticks", 1)
+        endpoint = self.read_until(server.stdout, "^endpoint (.*)$")[1]
+        lua = subprocess.run([str(LUA), "--connect", endpoint, "--echo"], cwd=self.folder, env=self.environment,
+                             stdin=subprocess.DEVNULL, capture_output=True, timeout=LIMIT)
+        self.finish(server)
+        self.assertEqual(lua.returncode, FINISHED, lua.stderr)
+        self.assertIn(b"[0 r0] \\u001b]52;c;eA==\\u0007 \\u202e", lua.stdout)
+        self.assertIn(b"[0 r0] \\u001b[2J", lua.stderr)
+        for control in (b"\x1b", b"\x07", b"\x9b", b"\xe2\x80\xae"):
+            self.assertNotIn(control, lua.stdout + lua.stderr)
 
     def test_errors_go_to_stderr(self):
         self.write("swing.lua", "function init() end\nfunction step() logerr('oh') end\n")

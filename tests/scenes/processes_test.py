@@ -1,8 +1,11 @@
 """Controllers that end, fail or never connect, and interruption by Ctrl-C."""
 
 import os
+import pathlib
 import re
+import shutil
 import signal
+import tempfile
 import time
 
 from harness import (BIN, CONTROLLER_FAILED, FINISHED, INTERRUPTED, LUA, SceneTest, main)
@@ -167,6 +170,16 @@ end
         outcome = self.run_scene("--fail-fast", *ENDLESS, code=CONTROLLER_FAILED)
         self.assertRegex(outcome.err, r"the run ends at tick \d+, as --fail-fast asks")
 
+    def test_a_script_has_256_mebibytes(self):
+        self.write("swing.lua", """local function take(mebibytes)
+   local all = {}
+   for i = 1, mebibytes do all[i] = ("x"):rep(1 << 20) .. i end
+end
+function init() if robot.id == "r0" then take(200) end end
+function step() if robot.id == "r0" then take(300) end end""")
+        outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.err, r"r0.*not enough memory.*\(it may have 256 MiB\) \(in step 1")
+
     def test_lua_error_at_the_start(self):
         self.write("swing.lua", "function init() error('no start') end function step() end")
         outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
@@ -245,6 +258,15 @@ class OtherControllers(SceneTest):
         outcome = self.run_scene(code=CONTROLLER_FAILED)
         self.assertRegex(outcome.out, r"^swing at ipc:///\S+\n$")
         self.assertIn("exit code 5", outcome.err)
+
+    def test_a_command_has_all_rights_of_the_user(self):
+        """The environment, the user, and files anywhere."""
+        self.environment["PROBE"] = "of the user"
+        outside = pathlib.Path(tempfile.mkdtemp(prefix="zo", dir="/tmp"))
+        self.addCleanup(shutil.rmtree, outside)
+        self.make_external(f"command='echo \"$PROBE\" `id -u` &gt; {outside}/told; exit 5'")
+        self.run_scene(code=CONTROLLER_FAILED)
+        self.assertEqual((outside / "told").read_text(), f"of the user {os.getuid()}\n")
 
     def test_command_of_the_command_line_controls_the_robots(self):
         by_command = self.hash_of("--controller", f"swing=exec {LUA} --quiet")

@@ -96,6 +96,22 @@ class Replay(Recorded):
         self.assert_is_sentence(self.ask("verify", code=FAULT), r"no recording is given")
 
 
+class Processes(Recorded):
+    def test_no_command_of_a_recording_is_started(self):
+        marker = self.folder / "started"
+        self.change('<lua_controller id="swing">',
+                    f'<external_controller id="swing" command="touch {marker}; exec {LUA} --script swing.lua --quiet">')
+        self.change("</lua_controller>", "</external_controller>")
+        recording, _ = self.record("--ticks", 5)
+        marker.unlink()
+        for words in (("replay", recording), ("verify", recording), ("diff", recording, recording), ("info", recording),
+                      ("export", recording, "--csv", self.folder / "csv"),
+                      ("replay", recording, "--from-poses", "--trace", "t.csv")):
+            with self.subTest(words[0]):
+                self.ask(*words)
+                self.assertFalse(marker.exists())
+
+
 class Supervised(Recorded):
     def test_moves_spawns_removals_and_resets_are_repeated(self):
         recording = self.folder / "run.mcap"

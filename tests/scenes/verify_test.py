@@ -128,6 +128,28 @@ class Controllers(Recorded):
                            code=DIFFERS)
         self.assertRegex(outcome.out, rf"tick \d+: '{robot}': .* is .* in the recording, .* now")
 
+    def test_embedded_scripts_are_sandboxed(self):
+        """The recorded run trusted them; `verify --controllers`, `try` and `fork` do not."""
+        left, key = self.folder / "left", self.folder / "key"
+        key.write_text("secret")
+        self.write("swing.lua", f"""function step() end
+function init()
+   os.execute('touch {left}')
+   log(io.open('{key}'):read('a'))
+end""")
+        recording, _ = self.record("--ticks", "3", "--trust-scripts")
+        self.assertTrue(left.exists(), "the scripts really do it")
+        left.unlink()
+        robot = re.search(r'<prototype id="([^"]+)"', self.text)[1]
+        for words in (("verify", recording, "--controllers"), ("fork", recording, "--at", "0", "--ticks", "3"),
+                      ("try", recording, "--robot", robot, "--script", "swing.lua")):
+            with self.subTest(words[0]):
+                outcome = self.ziggurat(*words)
+                self.assertNotEqual(outcome.code, FINISHED)
+                self.assertRegex(outcome.err, r"swing\.lua:3: .*execute")
+                self.assertNotIn("secret", outcome.out + outcome.err)
+                self.assertFalse(left.exists())
+
     def test_recorded_commands_are_never_started_by_themselves(self):
         recording, marker = self.record_a_command()
         outcome = self.ask("verify", recording, "--controllers", code=FAULT)

@@ -9,6 +9,7 @@
 #include "program/terminal.h"
 #include "script/director_script.h"
 #include "script/interrupt.h"
+#include "text/printable.h"
 #include "ziggurat/error.h"
 
 namespace ziggurat::lua {
@@ -27,7 +28,10 @@ class DirectorRunner {
     }
     const bool has_failed = failure && !are_scripts_interrupted();
     if (has_failed) {
-      if (!options_.quiet) std::fprintf(stderr, "director '%s': %s\n", director_.id().c_str(), failure->c_str());
+      if (!options_.quiet) {
+        std::fprintf(stderr, "director '%s': %s\n", text::printable(director_.id()).c_str(),
+                     text::printable(*failure).c_str());
+      }
       director_.leave_failed(*failure);
     } else {
       director_.leave();

@@ -17,6 +17,7 @@
 #include "program/terminal.h"
 #include "script/interrupt.h"
 #include "script/place_file.h"
+#include "text/printable.h"
 #include "text/standard_streams.h"
 #include "ziggurat/director.h"
 #include "ziggurat/error.h"
@@ -44,7 +45,8 @@ Wanted where(const lua::ProgramOptions& from) {
 int exit_code(const std::optional<Ending>& ending, bool has_failed, const lua::ProgramOptions& options) {
   if (const int number = lua::arrived_signal()) return exit_signal + number;
   if (ending && ending->reason == Ending::Reason::failed && !options.quiet) {
-    std::fprintf(stderr, "ziggurat-lua: the server ended the run: %s\n", ending->message.c_str());
+    std::fprintf(stderr, "ziggurat-lua: the server ended the run: %s\n",
+                 text::printable(ending->message).c_str());
   }
   return has_failed ? exit_failed_script : exit_finished;
 }
@@ -88,8 +90,8 @@ int direct(const lua::ProgramOptions& options) {
   wanted.groups.assign(wanted.all_groups.begin(), wanted.all_groups.end());
   Director director(wanted);
   if (!options.quiet) {
-    std::fprintf(stderr, "ziggurat-lua: directs as '%s' at %s, seed %llu\n", director.id().c_str(),
-                 options.endpoint.c_str(), static_cast<unsigned long long>(director.seed()));
+    std::fprintf(stderr, "ziggurat-lua: directs as '%s' at %s, seed %llu\n",
+                 text::printable(director.id()).c_str(), options.endpoint.c_str(), static_cast<unsigned long long>(director.seed()));
   }
   const bool is_well = lua::run_director(director, options);
   return exit_code(director.ending(), !is_well, options);
@@ -100,7 +102,7 @@ int run(const lua::ProgramOptions& options) {
 }
 
 void report(const std::exception& error) {
-  std::fprintf(stderr, "ziggurat-lua: %s\n", error.what());
+  std::fprintf(stderr, "ziggurat-lua: %s\n", text::printable(error.what()).c_str());
 }
 
 /// The same for one of several robots.

@@ -7,6 +7,7 @@
 #include "program/terminal.h"
 #include "program/turn.h"
 #include "script/interrupt.h"
+#include "text/printable.h"
 
 namespace ziggurat::lua {
 
@@ -85,7 +86,8 @@ void Runner::fail(Seat& seat, const std::string& message) {
   ++failures_;
   seat.robot->fail(message);
   if (options_.quiet) return;  // the server prints it
-  std::fprintf(stderr, "robot '%s': %s\n", seat.robot->id().c_str(), message.c_str());
+  std::fprintf(stderr, "robot '%s': %s\n", text::printable(seat.robot->id()).c_str(),
+               text::printable(message).c_str());
 }
 
 }  // namespace ziggurat::lua

@@ -141,7 +141,7 @@ std::string Script::describe_error(const std::string& moment) {
   if (text.substr(0, LUA_IDSIZE + 1).find(end + ":") == std::string::npos) {
     text = script_ + ": " + text;
   }
-  if (text.ends_with("not enough memory")) {
+  if (text.ends_with("not enough memory") || text.ends_with("not enough memory for buffer allocation")) {
     text += " (it may have " + std::to_string(max_memory_ >> 20) + " MiB)";
   }
   text += " (in " + moment + ")";

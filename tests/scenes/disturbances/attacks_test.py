@@ -17,7 +17,7 @@ import zmq
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
-from harness import FAULT, INTERRUPTED, SceneTest, ZIGGURAT  # noqa: E402
+from harness import FAULT, FINISHED, INTERRUPTED, LUA, SceneTest, ZIGGURAT  # noqa: E402
 from zmtp import RawPeer  # noqa: E402
 from ziggurat import protocol_pb2 as v1  # noqa: E402
 
@@ -299,26 +299,51 @@ class Attacks(SceneTest):
 
     # --- servers --------------------------------------------------------------------------------
 
+    def test_texts_of_other_clients_are_printable(self):
+        """`top` and `ctl` at a server where one calls itself by escape sequences."""
+        process = self.serve()
+        name = "me\x1b]52;c;aGk=\x07\u009b31m\u202e"
+        with RawPeer(self.endpoint) as controller:
+            controller.send_message(v1.ClientMessage(hello=v1.Hello(
+                version=v1.Version(major=1, minor=2), role=v1.ROLE_CONTROLLER, client_name=name,
+                robots=["r0"])).SerializeToString())
+            controller.receive_message()
+            for words in (("top", self.endpoint, "--once"), ("ctl", self.endpoint, "status")):
+                outcome = self.ziggurat(*words)
+                self.assertEqual(outcome.code, FINISHED, outcome.err)
+                self.assertIn("52;c;aGk=", outcome.out)
+                self.assertNotRegex(outcome.err + outcome.out, "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]")
+        self.end(process)
+
     def test_texts_of_a_server_are_printable(self):
-        """`ctl` at a server that answers with escape sequences."""
+        """`ctl`, `top` and `ziggurat-lua` at a server that answers with escape sequences."""
         router = zmq.Context.instance().socket(zmq.ROUTER)
         port = router.bind_to_random_port("tcp://127.0.0.1")
 
         def serve():
             refusal = v1.ServerMessage(refusal=v1.Refusal(error=v1.Error(
                 code=v1.Error.FORBIDDEN, message="no\x1b]52;c;aGk=\x07\u009b31m\u202ewon")))
-            if router.poll(20_000):
-                client, _ = router.recv_multipart()
-                router.send_multipart([client, refusal.SerializeToString()])
+            for _ in commands:
+                if router.poll(20_000):
+                    client, _ = router.recv_multipart()
+                    router.send_multipart([client, refusal.SerializeToString()])
 
+        endpoint = f"tcp://127.0.0.1:{port}"
+        commands = [(ZIGGURAT, "ctl", endpoint, "status"), (ZIGGURAT, "top", endpoint, "--once"),
+                    (LUA, "--connect", endpoint, "--script", "swing.lua"),
+                    (LUA, "--connect", endpoint, "--script", "swing.lua", "--trust-scripts"),
+                    (LUA, "--connect", endpoint, "--director", "d", "--script", "swing.lua", "--trust-scripts")]
         server = threading.Thread(target=serve)
         server.start()
-        outcome = self.ziggurat("ctl", f"tcp://127.0.0.1:{port}", "status")
+        for words in commands:
+            with self.subTest(words):
+                outcome = subprocess.run([str(word) for word in words], cwd=self.folder, env=self.environment,
+                                         stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
+                self.assertEqual(outcome.returncode, FAULT)
+                self.assertIn("\\u001b]52", outcome.stderr)
+                self.assertNotRegex(outcome.stderr + outcome.stdout, "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]")
         server.join()
         router.close(linger=0)
-        self.assertEqual(outcome.code, FAULT)
-        self.assertIn("\\u001b]52", outcome.err)
-        self.assertNotRegex(outcome.err + outcome.out, "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]")
 
 
 if __name__ == "__main__":

@@ -127,6 +127,62 @@ class HostileViewers(SceneTest):
             self.assertLess(heard, 1000 + 51 * (time.monotonic() - begin) + 2)
         self.assert_unharmed()
 
+    def test_who_has_the_token_asks_ten_times_as_much(self):
+        """Both are read as they come for a thousand messages; then 500 a second, and 50."""
+        question = json.dumps({"op": "getParameters", "parameterNames": ["phase"], "id": "x"}).encode()
+        begin = time.monotonic()
+        with RawViewer(self.port) as looker, RawViewer(self.port, self.token) as owner:
+            for viewer in (looker, owner):
+                viewer.send(frame(TEXT, question) * 1600)
+            for heard in range(1, 1501):
+                owner.hear_operation("parameterValues")
+                self.assertLess(heard, 1000 + 501 * (time.monotonic() - begin) + 2)
+            looker.socket.setblocking(False)
+            heard = 0
+            with self.assertRaises(BlockingIOError):
+                while heard < 1600:
+                    looker.hear_operation("parameterValues")
+                    heard += 1
+            self.assertLess(heard, 1000 + 51 * (time.monotonic() - begin) + 2)
+        self.assert_unharmed()
+
+    def test_messages_without_token_have_64_KiB(self):
+        longest = json.dumps({"op": "getParameters", "parameterNames": [], "id": "x"}).encode().ljust(64 << 10)
+        with RawViewer(self.port) as viewer:
+            viewer.send(frame(TEXT, longest))
+            viewer.hear_operation("parameterValues")
+            viewer.send(frame(TEXT, longest + b" "))
+            opcode, content = viewer.hear()
+            while opcode != CLOSE:
+                opcode, content = viewer.hear()
+            self.assertEqual(content[:2], b"\x03\xf1", "1009: too big")
+        with RawViewer(self.port, self.token) as viewer:
+            viewer.send(frame(TEXT, longest + b" "))
+            viewer.hear_operation("parameterValues")
+        self.assert_unharmed()
+
+    def test_there_are_48_viewers_without_token_and_128_connections(self):
+        lookers = [RawViewer(self.port) for _ in range(60)]
+        taken = 0
+        for each in lookers:
+            opcode, content = each.hear()
+            taken += opcode == TEXT
+            if opcode == CLOSE:
+                self.assertEqual(content[:2], b"\x03\xf5", "1013: try again later")
+        self.assertEqual(taken, 47, "48 with the good viewer of this test")
+        for each in lookers:
+            each.socket.close()
+        half = [socket.create_connection(("127.0.0.1", self.port), timeout=20) for _ in range(200)]
+        for each in half[-127:]:
+            each.sendall(b"GET / HTTP/1.1\r\nHost: local")
+        for each in half[:200 - 127]:
+            self.assertEqual(each.recv(1), b"", "the oldest makes place")
+        for each in half[-127:]:
+            each.sendall(b"host\r\nConnection: close\r\n\r\n")
+            self.assertRegex(each.recv(1000), b"^HTTP/1.1 200")
+            each.close()
+        self.assert_unharmed()
+
     def test_places_are_kept_for_those_with_the_token(self):
         """Any number of connections without token, with and without handshake."""
         lookers = [RawViewer(self.port, request=handshake()) for _ in range(70)]

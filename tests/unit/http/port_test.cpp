@@ -9,7 +9,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
 
 namespace ziggurat::http {
 namespace {
@@ -39,20 +45,42 @@ TEST(Port, TellsWhatIsWrongWithARequest) {
   EXPECT_TRUE(answer(std::string(3, '\0')).starts_with("HTTP/1.1 400"));
 }
 
-/// Sends a request to a port of this machine, and waits for the end of the answer.
-void ask(std::uint16_t port, const std::string& request) {
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(port);
-  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const int client = ::socket(AF_INET, SOCK_STREAM, 0);
-  EXPECT_EQ(::connect(client, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
-  EXPECT_EQ(::send(client, request.data(), request.size(), MSG_NOSIGNAL), static_cast<ssize_t>(request.size()));
-  std::array<char, 1000> answer;
-  while (::recv(client, answer.data(), answer.size(), 0) > 0) {
+/// A connection to a port of this machine.
+class Client {
+ public:
+  explicit Client(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(port);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
   }
-  ::close(client);
-}
+  ~Client() { ::close(socket_); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  void send(const std::string& bytes) {
+    EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
+  }
+
+  /// All that comes until the port ends the connection.
+  std::string hear() {
+    std::string all;
+    std::array<char, 1000> part;
+    for (ssize_t size; (size = ::recv(socket_, part.data(), part.size(), 0)) > 0;) {
+      all.append(part.data(), static_cast<std::size_t>(size));
+    }
+    return all;
+  }
+
+  bool is_open() {
+    char byte;
+    return ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+  }
+
+ private:
+  int socket_;
+};
 
 TEST(Port, ItsThreadIsLessImportantThanOthers) {
   const int ours = ::getpriority(PRIO_PROCESS, 0);  // of this thread
@@ -62,9 +90,49 @@ TEST(Port, ItsThreadIsLessImportantThanOthers) {
     return Answer{};
   };
   const Port port("--metrics", {"127.0.0.1", 0}, false, note);
-  ask(port.number(), "GET / HTTP/1.1\r\n\r\n");
+  Client client(port.number());
+  client.send("GET / HTTP/1.1\r\n\r\n");
+  client.hear();
   EXPECT_EQ(theirs, std::min(ours + 5, 19));
   EXPECT_EQ(::getpriority(PRIO_PROCESS, 0), ours);
+}
+
+TEST(Port, AClientThatTakesTooLongIsDisconnected) {
+  EXPECT_EQ(Port::Limits().time, std::chrono::seconds(5));
+  const Port port("--metrics", {"127.0.0.1", 0}, false, read, {16, std::chrono::milliseconds(50)});
+  Client silent(port.number()), slow(port.number());
+  slow.send("GET / HTTP/1.1\r\nHost: local");
+  EXPECT_EQ(silent.hear(), "");
+  EXPECT_EQ(slow.hear(), "");
+}
+
+TEST(Port, AClientThatSendsNowAndThenHasNoLongerTime) {
+  const Port port("--metrics", {"127.0.0.1", 0}, false, read, {16, std::chrono::milliseconds(300)});
+  Client slow(port.number());
+  slow.send("GET / HTTP/1.1\r\nX: ");
+  for (int i = 0; i < 500 && slow.is_open(); ++i) {  // 10 s
+    slow.send("x");
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_FALSE(slow.is_open());
+}
+
+TEST(Port, OfTooManyClientsTheOldestMakesPlace) {
+  const auto most = static_cast<int>(Port::Limits().clients);
+  EXPECT_EQ(most, 16);
+  const Port port("--metrics", {"127.0.0.1", 0}, false, read,
+                  {Port::Limits().clients, std::chrono::hours(1)});
+  std::vector<std::unique_ptr<Client>> clients;
+  for (int i = 0; i < most + 2; ++i) {
+    clients.push_back(std::make_unique<Client>(port.number()));
+    clients.back()->send("GET / HTTP/1.1\r\n");
+  }
+  EXPECT_EQ(clients[0]->hear(), "");
+  EXPECT_EQ(clients[1]->hear(), "");
+  for (int i = 2; i < most + 2; ++i) {
+    clients[i]->send("\r\n");
+    EXPECT_TRUE(clients[i]->hear().starts_with("HTTP/1.1 200")) << i;
+  }
 }
 
 TEST(Port, ATakenAddressIsAnErrorThatNamesTheOption) {

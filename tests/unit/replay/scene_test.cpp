@@ -43,6 +43,22 @@ TEST(EmbeddedScene, IsFoundByEachWayToWriteItsPath) {
   EXPECT_EQ(embedded.find("b.xml"), nullptr);
 }
 
+TEST(EmbeddedScene, ItsSettingsAreCheckedAsThoseOfOptions) {
+  const EmbeddedFiles embedded = files();
+  const auto set = [&](const std::string& path) {
+    v1::RunStart run = start();
+    auto& setting = *run.add_settings();
+    setting.set_name(path);
+    setting.set_value("0.5");
+    return read_scene(run, embedded).scene;
+  };
+  EXPECT_EQ(set("arena/box[@id='low']/@mass").entities.size(), 3u);
+  for (const std::string path : {"//*[.//*]/@mass", "//*//*/@mass", "//*/following::*/@mass", "arena/ghost/@mass", "", "@"}) {
+    EXPECT_THROW(set(path), scene::SceneError) << path;
+  }
+  EXPECT_THROW(set(std::string(1 << 20, '/')), scene::SceneError);
+}
+
 TEST(EmbeddedScene, HasTheRecordedHash) {
   const EmbeddedFiles embedded = files();
   v1::RunStart run = start();

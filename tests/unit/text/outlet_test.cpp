@@ -60,6 +60,16 @@ TEST(Outlet, WritesToAReaderThatStopsWithoutWaiting) {
   EXPECT_EQ(outlet.take_dropped(), 0U);
 }
 
+TEST(Outlet, SixteenMebibytesWait) {
+  const Pipe pipe;
+  Outlet outlet(pipe.to);
+  const std::string part(std::size_t{1} << 20, 'x');
+  for (int i = 0; i < 16; ++i) outlet.add(part);
+  EXPECT_EQ(outlet.take_dropped(), 0U);
+  outlet.add("x");
+  EXPECT_EQ(outlet.take_dropped(), 1U);
+}
+
 TEST(Outlet, TellsThatTheReaderIsGone) {
   std::signal(SIGPIPE, SIG_IGN);
   Pipe pipe;

@@ -84,6 +84,19 @@ TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
   EXPECT_TRUE(bench.desk.take().calls.empty());
 }
 
+TEST(Hub, TheHundredthNonsenseInARowIsTheLast) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(false);
+  bench.sent(viewer);
+  for (int i = 0; i < 99; ++i) bench.say(viewer, "x");
+  bench.sent(viewer);
+  bench.say(viewer, R"({"op":"getParameters","parameterNames":[]})");
+  for (int i = 0; i < 99; ++i) bench.say(viewer, "x");
+  EXPECT_FALSE(viewer.is_over) << "99, and 99 behind a message of the protocol";
+  bench.say(viewer, "x");
+  EXPECT_TRUE(viewer.is_over);
+}
+
 TEST(Hub, CallsNeedTheTokenAndAreAnsweredOnce) {
   Bench bench;
   std::string call{2, 6, 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0};

@@ -11,6 +11,8 @@
 #include <chrono>
 #include <string>
 
+#include "text/numbers.h"
+
 namespace ziggurat::view {
 namespace {
 
@@ -67,6 +69,26 @@ TEST(Server, AViewerThatAnswersNoPingIsDisconnected) {
   EXPECT_TRUE(silent.is_closed_within(5s, false));
   RawViewer alive(server.page_address());
   EXPECT_FALSE(alive.is_closed_within(1500ms, true));
+}
+
+TEST(Server, AnOpenAddressNeedsATokenOfTheUserOrConsent) {
+  for (const char* host : {"0.0.0.0", "::", "*"}) {
+    Settings settings;
+    settings.address = http::Address{host, 0};
+    try {
+      const Server server(settings);
+      FAIL() << host << " is open";
+    } catch (const text::UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("--view-token"), std::string::npos) << error.what();
+    }
+  }
+  Settings settings;
+  settings.address = http::Address{"0.0.0.0", 0};
+  settings.token = "0123456789abcdef";
+  EXPECT_NO_THROW(Server{settings});
+  settings.token.clear();
+  settings.insecure = true;
+  EXPECT_NO_THROW(Server{settings});
 }
 
 TEST(Server, TakesAnotherPortIfTheUsualOneIsTaken) {

@@ -103,6 +103,11 @@ TEST_F(Errors, MemoryWithoutBound) {
   EXPECT_LE(controller().used_memory(), std::size_t{8} << 20);
 }
 
+TEST_F(Errors, ABufferWithoutMemory) {
+  options_.max_memory = 8 << 20;
+  expect_contains(start("local s = ('x'):rep(9 << 20)"), "(it may have 8 MiB)");
+}
+
 TEST_F(Errors, OneStringTooLong) {
   options_.max_memory = 8 << 20;
   expect_contains(start("local s = ('x'):rep(1 << 40)"), "main.lua");

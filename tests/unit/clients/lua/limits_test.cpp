@@ -1,5 +1,7 @@
 // An endless loop ends with file and line, wherever it runs; other scripts are not affected.
 
+#include <sys/resource.h>
+
 #include "script/interrupt.h"
 #include "script_fixture.h"
 
@@ -100,6 +102,22 @@ TEST_F(Limits, ALibraryFunctionThatDoesNotEndNamesTheRobotAndItsLine) {
         start("\nlocal t = {}\ntable.move(t, 1, math.maxinteger - 9, 2, {})");
       },
       testing::ExitedWithCode(3), "'r0': .*main.lua:3: calls a library function");
+}
+
+TEST_F(Limits, ALibraryFunctionComputesForFiveSeconds) {
+  const auto computed_s = [] {
+    rusage used{};
+    ::getrusage(RUSAGE_CHILDREN, &used);
+    return static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec);
+  };
+  const double before_s = computed_s();
+  EXPECT_EXIT(
+      {
+        watch_scripts();
+        start("('x'):rep(40):find(('x*'):rep(20) .. 'y')");
+      },
+      testing::ExitedWithCode(3), "calls a library function");
+  EXPECT_LT(computed_s() - before_s, 6);  // of processor time, the start of the process included
 }
 
 }  // namespace

@@ -52,6 +52,10 @@ TEST_F(Program, ReadsItsArguments) {
   EXPECT_FALSE(options.echo);
 }
 
+TEST_F(Program, AScriptHas256MebibytesUnlessTold) {
+  EXPECT_EQ(read({"--connect", "tcp://a:1"}).options.max_memory, std::size_t{256} << 20);
+}
+
 TEST_F(Program, ReadsMissingOptionsFromTheEnvironment) {
   ::setenv("ZIGGURAT_ENDPOINT", "tcp://e:1", 1);
   ::setenv("ZIGGURAT_CONTROLLER", "drive", 1);
