@@ -121,6 +121,32 @@ void Problem::weigh(Block& block) const {
   for (int r = 0; r < block.rows; ++r) block.mobility[r] = std::max(block.mobility[r], 1e-12);
 }
 
+/// When in the substep surfaces that fall freely meet, and with which speed and how far apart they are at
+/// its end. What bodies are pushed by, and what else holds them, does not count.
+void Problem::rebound(Block& block, double restitution) const {
+  const auto weight = [&](int place) -> Vector3 {
+    return place >= 0 && trees[place]->free_root ? trees[place]->gravity : Vector3::Zero();
+  };
+  double before[Block::most_rows];
+  speeds(block, before);
+  const double pull = block.frame.col(0).dot(weight(block.a) - weight(block.b));  // apart: > 0
+  const double gap = std::max(0.0, block.gap);
+  const double square = before[0] * before[0] - 2 * pull * gap;  // of the speed of the impact
+  if (square < slowest_bounce * slowest_bounce) return;
+  const double impact = std::sqrt(square);
+  if (impact <= before[0]) return;  // they part
+  const double time = 2 * gap / (impact - before[0]), rest = length - time;
+  if (rest <= 0) {  // not yet: nothing may hold it
+    block.seek[0] = std::min(block.seek[0], before[0] + length * pull);
+    return;
+  }
+  const double rise = rest * (restitution * impact + rest * pull / 2);
+  if (rise <= 0) return;
+  block.bounces = true;
+  block.rise = rise;
+  block.seek[0] = restitution * impact + rest * pull;
+}
+
 void Problem::add(const Contact& contact, int a, int b, int source) {
   Block& block = blocks.emplace_back();
   block.law = Block::Law::contact;
@@ -145,15 +171,7 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
   weigh(block);
   block.gap = contact.gap;
   block.seek[0] = contact.gap > 0 ? -contact.gap / length : 0;
-  if (contact.restitution > 0) {
-    double before[Block::most_rows];
-    speeds(block, before);
-    if (before[0] < -slowest_bounce && contact.gap + length * before[0] < 0) {
-      block.restitution = contact.restitution;
-      block.bounced = -contact.restitution * before[0];
-      block.seek[0] = block.bounced;
-    }
-  }
+  if (contact.restitution > 0) rebound(block, contact.restitution);
   const Vector3 impulse = block.frame.transpose() * contact.impulse;
   const Vector3 angular = block.frame.transpose() * contact.angular_impulse;
   block.impulse[0] = std::max(0.0, impulse[0]);
@@ -244,8 +262,7 @@ void Problem::speeds(const Block& block, double* u) const {
 
 bool Problem::turn_into_displacement() {
   const auto bounces = [](const Block& block) {
-    return block.kind != Block::Source::servo && block.bounced > 0 && block.impulse[0] > 0 &&
-           block.gap > 0;
+    return block.kind == Block::Source::contact && block.bounces && block.impulse[0] > 0;
   };
   const auto needs_it = [&](const Block& block) {
     const bool overlaps = block.kind != Block::Source::servo && block.gap < -allowed_overlap;
@@ -265,8 +282,8 @@ bool Problem::turn_into_displacement() {
     block.law = Block::Law::bounded;
     block.lower = bounced ? -std::numeric_limits<double>::infinity() : 0;
     block.upper = std::numeric_limits<double>::infinity();
-    if (bounced) {  // it turned round at the surface, not a gap before it
-      block.seek[0] = -block.gap * (1 + block.restitution);
+    if (bounced) {  // it turned round at the surface, not at the substep's beginning
+      block.seek[0] = block.rise - after;
     } else {  // overlaps go four fifths a substep; the last micrometre stays
       block.seek[0] = block.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
     }

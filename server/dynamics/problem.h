@@ -37,8 +37,8 @@ struct Block {
   std::array<double, most_rows> anchor{};  ///< of the softened law, see law.h [N s], [N m s]
 
   double gap = 0;                   ///< of contacts and limits [m] or [rad]
-  double restitution = 0;           ///< of contacts that bounce
-  double bounced = 0;               ///< > 0: speed apart after an impact, see constraint.h
+  bool bounces = false;             ///< a contact that is met within the substep and rebounds
+  double rise = 0;                  ///< of one that bounces: the gap at the substep's end [m]
   Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
   int source = 0;                   ///< into the contacts, servos or limits of the system
   enum class Source : unsigned char { contact, servo, limit } kind = Source::contact;
@@ -82,6 +82,7 @@ struct Problem {
   int add_columns(const Tree& tree, int rows);
   int add_rows(const Tree& tree, int link, const Vector3& point, const Block& block, double sign);
   void weigh(Block& block) const;
+  void rebound(Block& block, double restitution) const;
 };
 
 /// Calls f with a block's number of rows, as a number that the compiler knows.
