@@ -20,7 +20,8 @@ const Folders& folders_of(lua_State* state) { return upvalue<const Folders>(stat
 /// Whether a script may create this file, or change it: no program, script or scene, as those run
 /// with more rights than the script has.
 bool may_write(const Folders& folders, const char* file) {
-  constexpr std::string_view code[] = {".lua", ".argos", ".xml", ".so", ".py", ".sh"};
+  constexpr std::string_view code[] = {".lua", ".argos", ".xml", ".toml", ".so", ".py", ".pyc", ".sh",
+                                       ".js",  ".mjs",   ".cjs", ".rb",   ".pl", ".jar", ".m"};
   if (!may_read(folders, file)) return false;
   const fs::path path(file);
   for (const auto ending : code) {

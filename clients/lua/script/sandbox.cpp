@@ -34,6 +34,18 @@ int hide_variable(lua_State* state) {
   return 1;
 }
 
+// As in Lua, without functions: while one of these here calls Lua's own, that is on the stack, and a script's
+// reader or message handler could take it from there.
+// Upvalue: Lua's debug.getinfo. Not by lua_call: levels count this function as they count Lua's.
+int get_info(lua_State* state) {
+  const int results = lua_tocfunction(state, lua_upvalueindex(1))(state);
+  if (results == 1 && lua_istable(state, -1)) {
+    lua_pushnil(state);
+    lua_setfield(state, -2, "func");
+  }
+  return results;
+}
+
 // As in Lua, without finalizers: no instruction is counted in them.
 int set_metatable(lua_State* state) {
   luaL_checktype(state, 1, LUA_TTABLE);
@@ -67,6 +79,11 @@ void confine(lua_State* state, const Folders& folders) {
          {"debug", "gethook", "getlocal", "getmetatable", "getregistry", "getupvalue",
           "getuservalue", "sethook", "setlocal", "setmetatable", "setupvalue", "setuservalue",
           "upvalueid", "upvaluejoin"});
+  lua_getglobal(state, LUA_DBLIBNAME);
+  lua_getfield(state, -1, "getinfo");
+  lua_pushcclosure(state, get_info, 1);
+  lua_setfield(state, -2, "getinfo");
+  lua_pop(state, 1);
   lua_register(state, "setmetatable", set_metatable);
   lua_getglobal(state, LUA_OSLIBNAME);
   lua_pushcfunction(state, hide_variable);

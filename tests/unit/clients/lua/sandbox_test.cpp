@@ -79,6 +79,28 @@ TEST_F(Sandbox, LoadsNoByteCode) {
   EXPECT_EQ(value("select('#', load('return 7', 'c', 'bt'))"), "1");
 }
 
+// Lua's own functions, which those of the sandbox call, are on the stack while scripts are called back.
+TEST_F(Sandbox, TakesNoFunctionFromTheStack) {
+  EXPECT_EQ(value("(function() local own load(function() own = own or debug.getinfo(2, 'f').func end) "
+                  "return tostring(own) end)()"),
+            "nil");
+  expect_refused(
+      "local own "
+      "xpcall(function() io.open(IN .. 'data.txt', 'no mode') end, function() "
+      "  for level = 1, 9 do "
+      "    local info = debug.getinfo(level) "
+      "    local ok, file = pcall(info and info.func, '/etc/passwd') "
+      "    if ok and io.type(file) == 'file' then own = file end "
+      "  end "
+      "end) "
+      "return assert(own, 'refused')");
+  EXPECT_EQ(value("tostring(debug.getinfo(print).func)"), "nil");
+  EXPECT_EQ(value("debug.getinfo(1, 'l').currentline"), "1");
+  EXPECT_EQ(value("debug.getinfo(1, 'S').what"), "main");
+  EXPECT_EQ(value("tostring(debug.getinfo(99))"), "nil");
+  EXPECT_EQ(value("debug.getinfo(coroutine.create(print), print, 'S').what"), "C");
+}
+
 TEST_F(Sandbox, OpensNoFileOutsideItsFolders) {
   for (const char* name :
        {"OUT .. 'secret.txt'", "'/etc/passwd'", "IN .. '../secret.txt'", "IN .. 'link.txt'",
@@ -129,7 +151,7 @@ TEST_F(Sandbox, ReadsAndWritesInItsFolders) {
 TEST_F(Sandbox, ChangesNoProgramsAndScripts) {
   write("inside/drive", "#!/bin/sh");
   fs::permissions(folder() / "inside/drive", fs::perms::owner_all);
-  for (const char* name : {"drive", "part.lua", "new.lua", "scene.argos"}) {
+  for (const char* name : {"drive", "part.lua", "new.lua", "scene.argos", "drive.js", "part.pyc", "sweep.toml"}) {
     expect_refused("assert(io.open(IN .. '" + std::string(name) + "', 'a'))");
     expect_refused("assert(os.rename(IN .. 'data.txt', IN .. '" + std::string(name) + "'))");
   }
@@ -154,6 +176,7 @@ TEST_F(Sandbox, TrustedScriptsHaveAllOfLua) {
   EXPECT_EQ(value("os.execute('true')"), "1");
   EXPECT_EQ(value("io.open(OUT .. 'secret.txt'):read('a')"), "secret");
   EXPECT_EQ(value("type(debug.getregistry())"), "table");
+  EXPECT_EQ(value("type(debug.getinfo(print).func)"), "function");
 }
 
 }  // namespace
