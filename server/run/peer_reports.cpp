@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace ziggurat::run {
 namespace {
 
 constexpr std::size_t behind_robots = static_cast<std::size_t>(-1);  // lines of directors
-constexpr int most_notices = 1000;  // so that a hostile peer cannot fill a log
 
 }  // namespace
 
@@ -18,12 +18,19 @@ void PeerReports::notice(const std::string& text) {
   tell_(channels::Severity::warning, "ziggurat", text);
 }
 
-void PeerReports::take(network::Report report, std::uint64_t tick) {
-  for (const auto& text : report.dropped) notice(text);
-  for (const auto& text : report.notices) {
-    if (++notices_ <= most_notices) notice(text);
-    if (notices_ == most_notices) notice("further notices on peers are not printed");
+void PeerReports::notice_of_peer(const std::string& text, network::Allowance::Time now) {
+  if (!notices_.take(notices_rate, now)) {
+    ++unprinted_;
+    return;
   }
+  notice(text);
+  if (unprinted_ == 0) return;
+  notice(fmt::format("before that, {} notices on peers were not printed", std::exchange(unprinted_, 0)));
+}
+
+void PeerReports::take(network::Report report, std::uint64_t tick, network::Allowance::Time now) {
+  for (const auto& text : report.dropped) notice(text);
+  for (const auto& text : report.notices) notice_of_peer(text, now);
   const auto& robots = world_.simulation.layout().robots;
   for (wire::LogLine& line : report.log) log_.push_back({std::move(line), robots[line.robot].id});
   for (network::DirectorLine& line : report.log_of_directors) {

@@ -1,6 +1,7 @@
 #pragma once
 // Prints what the server reports of controllers and other peers.
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "channels/channels.h"
+#include "network/allowance.h"
 #include "network/server.h"
 #include "reports/console.h"
 #include "reports/summary.h"
@@ -29,8 +31,10 @@ class PeerReports {
       : world_(world), console_(console), tell_(std::move(tell)) {}
 
   /// Prints failures and notices at once. Log lines wait for print_log(), so that their order does
-  /// not depend on which controller is faster.
-  void take(network::Report report, std::uint64_t tick);
+  /// not depend on which controller is faster. Peers can cause any number of notices: a thousand are
+  /// printed at once, then one a second, with the number of those that were not.
+  void take(network::Report report, std::uint64_t tick,
+            network::Allowance::Time now = std::chrono::steady_clock::now());
 
   /// Prints the log lines of a tick, in the order of the robots.
   void print_log(std::uint64_t tick);
@@ -53,7 +57,9 @@ class PeerReports {
     std::string robot;  ///< its id
   };
 
+  static constexpr network::Rate notices_rate{1, 1000};
   void notice(const std::string& text);
+  void notice_of_peer(const std::string& text, network::Allowance::Time now);
 
   const supervision::World& world_;
   reports::Console& console_;
@@ -61,7 +67,8 @@ class PeerReports {
   std::vector<Line> log_;
   /// With the robot: none if a reset took it, or of a director.
   std::vector<std::pair<std::optional<std::size_t>, reports::Summary::Failure>> failures_;
-  int notices_ = 0;  ///< printed so far
+  network::Allowance notices_{notices_rate, std::chrono::steady_clock::now()};
+  std::uint64_t unprinted_ = 0;  ///< since the last notice that was
 };
 
 }  // namespace ziggurat::run

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <string>
 #include <utility>
 
@@ -66,6 +68,22 @@ TEST_F(Spawning, AFailureIsNotThatOfARobotOfASnapshotAtItsPlace) {
   EXPECT_FALSE(reports.has_failure(robots));
   EXPECT_EQ(reports.failures().size(), 1U);
   testing::internal::GetCapturedStderr();
+}
+
+TEST_F(Spawning, NoticesOnPeersAreAThousandAtOnceThenOneASecond) {
+  testing::internal::CaptureStderr();
+  const auto tell = [&](int count, auto now) {
+    network::Report report;
+    for (int i = 0; i < count; ++i) report.notices.emplace_back("a peer");
+    reports.take(std::move(report), 7, now);
+  };
+  const auto now = std::chrono::steady_clock::now();
+  tell(1500, now);
+  tell(1, now + std::chrono::milliseconds{1100});
+  const std::string printed = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::ranges::count(printed, '\n'), 1002);
+  EXPECT_TRUE(printed.ends_with("a peer\nziggurat: notice: before that, 500 notices on peers were not printed\n"))
+      << printed.substr(printed.size() - 200);
 }
 
 TEST(PeerReports, LinesOfARobotThatAResetTookAreStillItsOwn) {
