@@ -87,7 +87,9 @@ Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access&
     if (!session->roster.gone[i]) robots.push_back(session->roster.robots[i]);
   }
   if (auto refusal = check_policy(barrier, hello, robots)) return std::move(*refusal);
-  if (session->director) {
+  if (!session->director) {
+    if (auto refusal = check_stop(barrier, hello, access, robots)) return std::move(*refusal);
+  } else {
     if (auto refusal = check_fixed(barrier, *session->director, hello)) return std::move(*refusal);
   }
   if (session->state != SessionState::lost) {

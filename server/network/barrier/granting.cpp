@@ -165,6 +165,18 @@ std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::He
   return std::nullopt;
 }
 
+std::optional<wire::Refusal> check_stop(const Barrier& barrier, const wire::Hello& hello,
+                                        const Access& access, std::span<const std::size_t> robots) {
+  if (!hello.deadline || hello.deadline->action != scene::DeadlineAction::stop) return std::nullopt;
+  const bool have_it = std::ranges::all_of(robots, [&](std::size_t robot) {
+    return barrier.deadlines.policy(robot).action == scene::DeadlineAction::stop;
+  });
+  if (access.roles.supervisor || have_it) return std::nullopt;
+  return make_refusal(ErrorCode::forbidden, "deadline_policy.action",
+                      "The policy STOP can end the run, which the key of this connection may not: it lacks "
+                      "the role `supervisor`.");
+}
+
 std::optional<wire::Refusal> check_takeover(const Barrier& barrier, const wire::Hello& hello,
                                             const Access& access) {
   const Scope* scope = scope_of(barrier, access);
@@ -186,6 +198,7 @@ std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barr
   if (auto refusal = check_takeover(barrier, hello, access)) return std::move(*refusal);
   const auto& robots = std::get<std::vector<std::size_t>>(allowed);
   if (auto refusal = check_policy(barrier, hello, robots)) return std::move(*refusal);
+  if (auto refusal = check_stop(barrier, hello, access, robots)) return std::move(*refusal);
   for (const std::size_t robot : robots) {
     if (auto refusal = check_robot(barrier, robot, hello.takeover)) return std::move(*refusal);
   }

@@ -268,6 +268,29 @@ TEST_F(Protected, K10_AKeyDrivesOnlyRobotsOfItsScope) {
   });
 }
 
+TEST_F(Protected, K11_AKeyOfAControllerCannotEndTheRunByItsDeadline) {
+  const SmallRun small(2);
+  config.curve->clients[0].roles = {.controller = true};
+  config.curve->clients[1].roles = {.controller = true, .supervisor = true};
+  Server server(config, small.run());
+  meanwhile(server, [&] {
+    Options from = options(server, "friend");
+    from.connect_timeout = milliseconds{20'000};
+    from.robots = {"robot0"};
+    from.deadline = Deadline{};
+    from.deadline->action = Deadline::Action::stop;
+    from.deadline->after = milliseconds{1000};
+    const std::string told = complaint_of(from);
+    EXPECT_NE(told.find("FORBIDDEN"), std::string::npos) << told;
+    EXPECT_NE(told.find("it lacks the role `supervisor`"), std::string::npos) << told;
+    Options other = options(server, "viewer");
+    other.connect_timeout = milliseconds{20'000};
+    other.robots = {"robot1"};
+    other.deadline = from.deadline;
+    EXPECT_EQ(complaint_of(other), "");
+  });
+}
+
 TEST_F(Protected, K10_AKeyTakesOverOnlyIfItMay) {
   const SmallRun small(1);
   config.curve->clients[0].scope.may_take_over = false;
