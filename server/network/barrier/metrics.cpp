@@ -29,7 +29,7 @@ std::optional<wire::Fault> Metrics::check(const std::vector<wire::Metric>& metri
     const std::size_t before = known == names_.end() ? 0 : known->second;
     if (before + names.size() <= most_names) continue;
     return wire::make_fault(wire::ErrorCode::too_many, "metrics",
-                            fmt::format("A robot may have {} metrics; '{}' would be one more.",
+                            fmt::format("A robot or director may have {} metrics; '{}' would be one more.",
                                         most_names, metric.name));
   }
   return std::nullopt;
