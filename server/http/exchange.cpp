@@ -40,7 +40,22 @@ Answer refusal(Error error) {
              : refusal(400, "this is no request over HTTP");
 }
 
+bool has_body(const Request& request) {
+  return request.count(Field::content_length) > 0 || request.count(Field::transfer_encoding) > 0;
+}
+
+/// Whether another program, such as a proxy, could read it as another request: who is called, who asks and where
+/// it ends are told once, and as is known here.
+bool is_ambiguous(const Request& request) {
+  const bool is_upgrade = beast::websocket::is_upgrade(request);
+  return request.count(Field::host) > 1 || request.count(Field::origin) > 1 || (is_upgrade && has_body(request)) ||
+         (request.count(Field::transfer_encoding) > 0 && !request.chunked());
+}
+
 Answer answer_of(const Request& request, const Service& service) {
+  if (is_ambiguous(request)) {
+    return refusal(400, "Host, Origin and the length of the request must be told once");
+  }
   if (!service.any_host && !allows_host(service.host, view_of(request[Field::host]))) {
     return refusal(403, "this server is called by its number or localhost only");
   }
@@ -52,8 +67,7 @@ Answer answer_of(const Request& request, const Service& service) {
 }
 
 Response respond(const Request& request, const Service& service) {
-  const bool has_body = request.count(Field::content_length) > 0 || request.chunked();
-  const bool keeps_open = service.keeps_open && request.keep_alive() && !has_body;
+  const bool keeps_open = service.keeps_open && request.keep_alive() && !has_body(request);
   Response response = make_response(request, keeps_open, answer_of(request, service));
   if (service.decorate) service.decorate(request, response);
   return response;
@@ -104,8 +118,8 @@ void Exchange::parse() {
 }
 
 void Exchange::handle(Request request) {
-  const bool is_allowed =
-      service_.any_host || allows_host(service_.host, view_of(request[Field::host]));
+  const bool is_allowed = !is_ambiguous(request) && (service_.any_host ||
+                          allows_host(service_.host, view_of(request[Field::host])));
   if (is_allowed && service_.upgrade && beast::websocket::is_upgrade(request)) {
     if (auto refused = service_.refuse_upgrade(request)) {
       return write(make_response(request, false, *std::move(refused)));

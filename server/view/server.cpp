@@ -68,6 +68,7 @@ struct Shared {
   std::size_t connections = 0;
   bool is_closing = false;
   std::set<class ViewerConnection*> open{};
+  std::list<std::weak_ptr<class ViewerConnection>> refused{};  // there were too many; the oldest first
 };
 
 // --- viewers --------------------------------------------------------------------------------------
@@ -128,6 +129,9 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
     beast::get_lowest_layer(socket_).close();
   }
 
+  /// At once, of one that was refused and does not go by itself.
+  void abandon() { beast::get_lowest_layer(socket_).close(); }
+
   /// Tells the viewer that the server ends, if that can be sent now.
   void end() {
     if (is_writing_) return close();
@@ -139,6 +143,7 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
   void opened(bool may_steer) {
     const std::size_t most = may_steer ? Server::most_viewers : Server::most_lookers;
     if (shared_.is_closing || shared_.hub.size() >= most) {
+      shared_.refused.push_back(weak_from_this());
       return socket_.async_close(websocket::close_code::try_again_later,
                                  [self = shared_from_this()](Error) {});
     }
@@ -270,13 +275,26 @@ struct Server::State {
         next_look(io),
         thread(http::serve(io)) {}
 
-  void take(http::Tcp::socket socket) {
-    std::erase_if(exchanges, [](const auto& each) { return each.expired(); });
-    if (shared.connections >= most_connections) {
-      if (exchanges.empty()) return;
-      if (const auto oldest = exchanges.front().lock()) oldest->close();
+  /// Ends the oldest connection that is no viewer.
+  /// @returns false if there is none
+  bool make_place() {
+    if (!shared.refused.empty()) {
+      shared.refused.front().lock()->abandon();
+      shared.refused.pop_front();
+    } else if (!exchanges.empty()) {
+      exchanges.front().lock()->close();
       exchanges.pop_front();
+    } else {
+      return false;
     }
+    return true;
+  }
+
+  void take(http::Tcp::socket socket) {
+    const auto is_over = [](const auto& each) { return each.expired(); };
+    std::erase_if(shared.refused, is_over);
+    std::erase_if(exchanges, is_over);
+    if (shared.connections >= most_connections && !make_place()) return;
     ++shared.connections;
     const auto exchange = std::make_shared<http::Exchange>(std::move(socket), service,
                                                            [this] { --shared.connections; });

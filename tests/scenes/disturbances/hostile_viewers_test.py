@@ -184,8 +184,8 @@ class HostileViewers(SceneTest):
         self.assert_unharmed()
 
     def test_places_are_kept_for_those_with_the_token(self):
-        """Any number of connections without token, with and without handshake."""
-        lookers = [RawViewer(self.port, request=handshake()) for _ in range(70)]
+        """Any number of connections without token, with and without handshake, that do not go when they are told."""
+        lookers = [RawViewer(self.port, request=handshake()) for _ in range(300)]
         half = [socket.create_connection(("127.0.0.1", self.port)) for _ in range(300)]
         for each in half:
             try:
@@ -242,6 +242,24 @@ class HostileViewers(SceneTest):
             with RawViewer(self.port, request=handshake("/", host, more)) as viewer:
                 self.assertEqual(viewer.status, 101)
                 self.assertNotIn("deflate", viewer.answer)
+        self.assert_unharmed()
+
+    def test_requests_that_a_proxy_could_read_otherwise(self):
+        host, evil = f"Host: localhost:{self.port}", "http://evil.example"
+        page = "\r\n".join(["GET / HTTP/1.1", host, "{}", "", "GET /page.js HTTP/1.1", host, "", ""])
+        for request in (page.format("Host: evil.example"), page.format("Transfer-Encoding: xchunked"),
+                        page.format("Transfer-Encoding: gzip, identity"),
+                        handshake("/", f"localhost:{self.port}", "Host: evil.example").decode(),
+                        handshake("/", f"localhost:{self.port}", f"Origin: http://localhost:{self.port}",
+                                  f"Origin: {evil}").decode(),
+                        handshake("/", f"localhost:{self.port}", "Content-Length: 5").decode()):
+            with self.subTest(request), socket.create_connection(("127.0.0.1", self.port), timeout=20) as client:
+                client.sendall(request.encode())
+                answer = b""
+                while part := client.recv(65536):
+                    answer += part
+                self.assertRegex(answer, b"^HTTP/1.1 400")
+                self.assertEqual(answer.count(b"HTTP/1.1 "), 1)
         self.assert_unharmed()
 
     def test_services_called_with_garbage(self):

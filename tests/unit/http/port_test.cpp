@@ -45,6 +45,14 @@ TEST(Port, TellsWhatIsWrongWithARequest) {
   EXPECT_TRUE(answer(std::string(3, '\0')).starts_with("HTTP/1.1 400"));
 }
 
+TEST(Port, RefusesWhatAProxyCouldReadOtherwise) {
+  for (const char* fields : {"Host: localhost\r\nHost: evil.example", "Host: localhost\r\nhost: localhost",
+                             "Transfer-Encoding: xchunked", "Transfer-Encoding: chunked, gzip",
+                             "Origin: http://a\r\nOrigin: http://b"}) {
+    EXPECT_TRUE(answer("GET / HTTP/1.1\r\n" + std::string(fields) + "\r\n\r\n").starts_with("HTTP/1.1 400")) << fields;
+  }
+}
+
 /// A connection to a port of this machine.
 class Client {
  public:
