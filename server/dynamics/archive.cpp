@@ -10,6 +10,10 @@ void Tree::archive(math::Archive& archive) {
   archive("q", q);
   archive("v", v);
   archive("flight_step", flight_step);
+  for (Wrench& wrench : held_by) {
+    archive("held_by_moment", wrench.moment);
+    archive("held_by_force", wrench.force);
+  }
   if (links[0].joint == JointType::fixed) archive("root", fixed_root_);
   if (!archive.reads()) return;
   place(*this);
@@ -22,8 +26,6 @@ void System::Sleeper::archive(math::Archive& archive) {
   archive("command", command);
   archive("command_asleep", command_asleep);
   archive("force_bound", force_bound);
-  archive("force", force);
-  archive("moment", moment);
 }
 
 void System::archive(math::Archive& archive) {

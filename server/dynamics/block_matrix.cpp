@@ -141,10 +141,10 @@ void BlockMatrix::shape(std::span<const int> sizes,
   }
   index_.assign(static_cast<std::size_t>(n) * n, -1);
   eliminate_symbolically(pattern_);
-  int next = 0;
+  entries_ = 0;
   const auto add = [&](int i, int j) {
-    index_[i * n + j] = next;
-    next += sizes_[i] * sizes_[j];
+    index_[i * n + j] = static_cast<int>(entries_);
+    entries_ += static_cast<std::size_t>(sizes_[i]) * sizes_[j];
   };
   work_ = 0;
   for (int step = 0; step < n; ++step) {
@@ -159,7 +159,6 @@ void BlockMatrix::shape(std::span<const int> sizes,
     const double size = sizes_[k];
     work_ += size * (size * size / 3 + size * later + later * later);
   }
-  values_.resize(next);
 }
 
 void BlockMatrix::eliminate_symbolically(std::vector<std::uint64_t>& pattern) {
@@ -199,7 +198,7 @@ void BlockMatrix::eliminate_symbolically(std::vector<std::uint64_t>& pattern) {
   }
 }
 
-void BlockMatrix::clear() { std::fill(values_.begin(), values_.end(), 0.0); }
+void BlockMatrix::clear() { values_.assign(entries_, 0.0); }
 
 bool BlockMatrix::factor() {
   const int n = static_cast<int>(count());

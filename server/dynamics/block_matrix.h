@@ -18,13 +18,14 @@ class BlockMatrix {
   /// @param couplings  pairs of blocks that meet off the diagonal
   void shape(std::span<const int> sizes, std::span<const std::pair<int, int>> couplings);
 
-  /// Multiplications that factor() takes, about.
+  /// Multiplications that factor() takes, about. The entries have no memory yet: see clear().
   double work() const { return work_; }
   std::size_t count() const { return sizes_.size(); }
   int size(int i) const { return sizes_[i]; }
   int offset(int i) const { return offsets_[i]; }  ///< of a block's first row in a vector
   int rows() const { return rows_; }
 
+  /// Takes memory for the entries, as far as there is none, and makes them 0.
   void clear();
   /// A block's entries, row by row. It must be in the pattern.
   double* block(int i, int j) { return values_.data() + index_[i * count() + j]; }
@@ -46,6 +47,7 @@ class BlockMatrix {
   std::vector<std::uint64_t> pattern_;
   std::vector<int> degree_;
   int rows_ = 0;
+  std::size_t entries_ = 0;
   double work_ = 0;
 };
 

@@ -178,7 +178,7 @@ void kick(Tree& tree, Workspace& work, double length) {
   const auto acts = [](const Wrench& w) { return !w.moment.isZero(0) || !w.force.isZero(0); };
   if (std::none_of(tree.external.begin(), tree.external.end(), acts)) return;
   compute_mass(tree, work);
-  factor_mass(tree, work, length);
+  factor_mass(tree, work, 0);
   external_forces(tree, work, work.scratch, true, false);
   solve_mass(tree, work, work.scratch.data());
   for (int i = 0; i < tree.dofs; ++i) tree.v[i] += length * work.scratch[i];

@@ -21,6 +21,14 @@ Matrix3 frame_about(const Vector3& normal) {
   return frame;
 }
 
+/// Whether a limit's lower bound is the one that its joint may reach within a substep: the one that it
+/// passes at its speed, or else the nearer one.
+bool comes_to_lower(const Limit& limit, double q, double speed, double length) {
+  const double end = q + length * speed;
+  if (end < limit.lower || end > limit.upper) return end < limit.lower;
+  return q - limit.lower < limit.upper - q;
+}
+
 }  // namespace
 
 void Problem::clear() {
@@ -217,7 +225,7 @@ void Problem::add(const Limit& limit, int place, int source) {
   const Tree& tree = *trees[place];
   const int dof = joint_dof(tree, limit.link);
   const double q = tree.q[tree.first_place[limit.link]];
-  const bool at_lower = q - limit.lower < limit.upper - q;
+  const bool at_lower = comes_to_lower(limit, q, tree.v[dof], length);
   Block& block = blocks.emplace_back();
   block.law = Block::Law::bounded;
   block.rows = 1;

@@ -1,6 +1,7 @@
 // Islands that rest sleep: which do, and what wakes them.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "dynamics/system.h"
@@ -8,18 +9,11 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// Sums of what acts on all links.
-struct Load {
-  Vector3 force{0, 0, 0}, moment{0, 0, 0};
-};
-
-Load load(const Tree& tree) {
-  Load out;
-  for (const Wrench& wrench : tree.external) {
-    out.force += wrench.force;
-    out.moment += wrench.moment;
-  }
-  return out;
+/// A hash of numbers, one after the other: it changes with each of them.
+std::uint64_t mixed(std::uint64_t hash, double number) {
+  const double unsigned_zero = number + 0.0;
+  hash = (hash ^ std::bit_cast<std::uint64_t>(unsigned_zero)) * 0x9E3779B97F4A7C15U;
+  return hash ^ (hash >> 29);
 }
 
 /// Whether all coordinates of an island are so slow that it rests.
@@ -87,11 +81,15 @@ void System::forget_pushes() {
 /// Whether what acts on a sleeper is no longer what it was.
 bool System::changed(int index) const {
   const Sleeper& sleeper = sleepers_[index];
-  const Load now = load(trees[index]);
+  if (sleeper.command != sleeper.command_asleep) return true;
+  const Tree& tree = trees[index];
   const double bound = sleeper.force_bound;
-  return sleeper.command != sleeper.command_asleep ||
-         (now.force - sleeper.force).squaredNorm() > bound * bound ||
-         (now.moment - sleeper.moment).squaredNorm() > bound * bound * 1e-4;
+  for (std::size_t i = 0; i < tree.external.size(); ++i) {
+    const Wrench change = tree.external[i] - tree.held_by[i];
+    if (change.force.squaredNorm() > bound * bound) return true;
+    if (change.moment.squaredNorm() > bound * bound * 1e-4) return true;
+  }
+  return false;
 }
 
 /// Whether the awake side of a contact may touch the sleeping one within the substep.
@@ -117,8 +115,8 @@ void System::note_commands() {
   for (const Servo& servo : servos_) {
     if (servo.tree < 0) continue;
     watch_[servo.tree] |= commanded;
-    double& command = sleepers_[servo.tree].command;
-    command = 1.25 * command + servo.speed + 3 * servo.lower + 7 * servo.upper;
+    std::uint64_t& command = sleepers_[servo.tree].command;
+    for (const double number : {servo.speed, servo.lower, servo.upper}) command = mixed(command, number);
   }
 }
 
@@ -175,16 +173,18 @@ void System::settle(int first_tree, int last_tree, bool carried, double swept_mi
     Sleeper& sleeper = sleepers_[index];
     std::fill(tree.v.begin(), tree.v.end(), 0.0);
     move(tree);
-    const Load now = load(tree);
-    double mass = 0;
+    tree.held_by = tree.external;
+    double mass = 0, force = 0;
+    bool is_held = false;
     for (const Link& link : tree.links) mass += link.mass;
+    for (const Wrench& wrench : tree.external) {
+      force += wrench.force.norm();
+      is_held |= !wrench.force.isZero(0) || !wrench.moment.isZero(0);
+    }
     next_[index] = i + 1 < last_tree ? tree_order_[i + 1] : tree_order_[first_tree];
     sleeper.command_asleep = sleeper.command;
-    sleeper.force = now.force;
-    sleeper.moment = now.moment;
-    const bool is_held = !now.force.isZero(0) || !now.moment.isZero(0);
     watch_[index] = static_cast<unsigned char>((watch_[index] & ~held) | (is_held ? held : 0));
-    sleeper.force_bound = rest.force * (mass * tree.gravity.norm() + now.force.norm());
+    sleeper.force_bound = rest.force * (mass * tree.gravity.norm() + force);
   }
 }
 

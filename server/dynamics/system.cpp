@@ -331,13 +331,9 @@ void System::write_impulses() {
       case Block::Source::servo:
         servos_[block.source].impulse = g[0];
         break;
-      case Block::Source::limit: {
-        Limit& limit = limits_[block.source];
-        const Tree& tree = trees[limit.tree];
-        const double q = tree.q[tree.first_place[limit.link]];
-        limit.impulse = q - limit.lower < limit.upper - q ? g[0] : -g[0];
+      case Block::Source::limit:  // along the joint at the lower bound, against it at the upper
+        limits_[block.source].impulse = problem_.jacobian[block.ja + block.dofs_a[0]] * g[0];
         break;
-      }
     }
   }
 }

@@ -111,11 +111,10 @@ class System {
 
   /// What is known of a tree's sleep.
   struct Sleeper {
-    double quiet = 0;    // how long it has been at rest [s]
-    double command = 0;  // of its servos, see note_commands()
-    double command_asleep = 0;
-    double force_bound = 0;                   // of changes [N], [N m] per radius of 1 m
-    Vector3 force{0, 0, 0}, moment{0, 0, 0};  // when it fell asleep
+    double quiet = 0;           // how long it has been at rest [s]
+    std::uint64_t command = 0;  // of its servos, see note_commands()
+    std::uint64_t command_asleep = 0;
+    double force_bound = 0;  // of changes on a link [N], [N m] per radius of 1 m
     void archive(math::Archive& archive);
   };
   std::vector<Sleeper> sleepers_;

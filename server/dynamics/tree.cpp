@@ -162,6 +162,7 @@ void Tree::begin() {
     if (links[i].joint == JointType::spherical) q[first_place[i]] = 1;
   }
   external.resize(size);
+  held_by.resize(size);
   rotation.resize(size);
   position.resize(size);
   axes.resize(dofs);

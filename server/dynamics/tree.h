@@ -95,6 +95,8 @@ class Tree {
   /// change with the place. They act as one impulse at the beginning, so that the substep is
   /// symplectic: stiff fields stay stable where a Taylor step would pump energy into them.
   std::vector<Wrench> external;
+  /// The same when it fell asleep: what it rests under.
+  std::vector<Wrench> held_by;
 
   // What follows from q, by place().
   std::vector<Matrix3> rotation;  ///< of each link in the world

@@ -60,6 +60,24 @@ TEST(Joint, ARodSwingsOntoItsLimit) {
   EXPECT_NEAR(world.tree(0).q[0], 1, 1e-6);
 }
 
+// It is nearer to the other bound when the substep begins.
+TEST(Joint, WhatCrossesMostOfItsRangeInASubstepStopsAtItsLimit) {
+  for (const double speed : {100., -100.}) {
+    Touching world;
+    world.gravity.setZero();
+    world.add(slide(2), Vector3::Zero(), 0);
+    Limit limit;
+    limit.tree = 0, limit.link = 1, limit.lower = -1, limit.upper = 1;
+    world.limits = {limit};
+    world.tree(0).q[0] = speed < 0 ? 0.2 : -0.2;
+    place(world.tree(0));
+    world.tree(0).v[0] = 1.4 * speed;
+    world.step(0.01);
+    EXPECT_NEAR(world.tree(0).q[0], speed < 0 ? -1 : 1, 1e-6);
+    EXPECT_EQ(world.limits[0].impulse < 0, speed > 0);
+  }
+}
+
 TEST(Joint, AVelocityServoHoldsItsSpeedUnderLoadUpToItsImpulse) {
   Touching world;
   world.add(slide(2), Vector3::Zero(), 0);
@@ -113,6 +131,24 @@ TEST(Joint, DampingIsImplicit) {
   world.tree(0).v[0] = 1;
   world.step(0.01);
   EXPECT_LT(std::abs(world.tree(0).v[0]), 0.01);
+}
+
+// Pushed without end it goes as far in a substep as the damping lets it: force / damping * length.
+TEST(Joint, DampingBalancesAForce) {
+  Link load = testing::hung(testing::box_link({0.2, 0.2, 0.2}, 1), 0, JointType::prismatic,
+                            Vector3::UnitX(), Vector3::Zero(), Vector3::Zero());
+  load.damping = 20;
+  for (const double length : {0.01, 0.1}) {
+    System system;
+    system.trees.emplace_back(std::vector<Link>{testing::ground(), load}, math::Pose());
+    double before = 0;
+    for (int i = 0; i < 200; ++i) {
+      before = system.trees[0].q[0];
+      system.push(0, 1, {Vector3::Zero(), Vector3(3, 0, 0)});
+      system.step(length, {});
+    }
+    EXPECT_NEAR((system.trees[0].q[0] - before) / length, 3.0 / 20, 1e-6) << length;
+  }
 }
 
 // Nothing outside: linear and angular momentum of a robot whose servos turn its arms.

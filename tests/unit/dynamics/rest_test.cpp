@@ -91,32 +91,67 @@ TEST(Rest, ATowerWakesWhereItIsStruck) {
   EXPECT_LT(world.tree(2).position[0].x(), -1e-3);
 }
 
-TEST(Rest, AServoWakesByItsCommand) {
-  Touching world;
-  world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
-  std::vector<Link> links{testing::box_link({0.1, 0.1, 0.1}, 1)};
-  links.push_back(testing::hung(testing::box_link({0.1, 0.1, 0.1}, 1), 0, JointType::revolute,
-                                Vector3::UnitZ(), {0, 0, 0.1}, {0, 0, 0.1}));
-  System& system = world.system;
-  system.trees.emplace_back(links, at(0, 0, 0.05));
-  testing::weigh(system.trees[0]);
-  std::vector<Servo> servos(1);
-  servos[0].tree = 0, servos[0].dof = 6, servos[0].lower = -1, servos[0].upper = 1;
-  std::vector<Contact> contacts;
-  for (const double x : {-0.05, 0.05}) {
+/// Points of a foot of 10 cm, on the floor about (x, 0).
+void add_foot(double x, double friction, int link, std::vector<Contact>& contacts) {
+  for (const double dx : {-0.05, 0.05}) {
     for (const double y : {-0.05, 0.05}) {
-      Contact contact;
-      contact.a.tree = 0;
-      contact.point = Vector3(x, y, 0);
-      contact.friction = 0.8;
-      contacts.push_back(contact);
+      Contact& contact = contacts.emplace_back();
+      contact.a = {0, link};
+      contact.point = Vector3(x + dx, y, 0);
+      contact.friction = friction;
     }
   }
+}
+
+/// What a body with rotors about z does: each turns at the speed commanded after it fell asleep.
+void expect_to_wake_by(const std::vector<double>& speeds) {
+  System system;
+  std::vector<Link> links{testing::box_link({0.1, 0.1, 0.1}, 1)};
+  std::vector<Servo> servos;
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    links.push_back(testing::hung(testing::box_link({0.1, 0.1, 0.1}, 1), 0, JointType::revolute,
+                                  Vector3::UnitZ(), {0, 0, 0.1}, {0, 0, 0.1}));
+    Servo& servo = servos.emplace_back();
+    servo.tree = 0, servo.dof = 6 + static_cast<int>(i), servo.lower = -1, servo.upper = 1;
+  }
+  system.trees.emplace_back(links, at(0, 0, 0.05));
+  testing::weigh(system.trees[0]);
+  std::vector<Contact> contacts;
+  add_foot(0, 0.8, 0, contacts);
   for (int i = 0; i < 100; ++i) system.step(0.01, contacts, servos);
   ASSERT_TRUE(system.asleep(0));
-  servos[0].speed = 0.5;
+  for (std::size_t i = 0; i < speeds.size(); ++i) servos[i].speed = speeds[i];
   system.step(0.01, contacts, servos);
-  EXPECT_NEAR(system.trees[0].v[6], 0.5, 1e-6);
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    EXPECT_NEAR(system.trees[0].v[6 + i], speeds[i], 1e-6);
+  }
+}
+
+TEST(Rest, AServoWakesByItsCommand) { expect_to_wake_by({0.5}); }
+
+// Commands of several are no sum: 1.25 * 0.8 - 1 is 0.
+TEST(Rest, ServosWakeByTheirCommandsWhateverTheyAre) {
+  expect_to_wake_by({0.8, -1});
+  expect_to_wake_by({-0.4, 0.5});
+}
+
+// Two boxes on a slide, held by friction of 3 N each, and pushed apart by 10 N.
+TEST(Rest, ForcesOnTwoLinksThatCancelWake) {
+  System system;
+  const Link box = testing::box_link({0.1, 0.1, 0.1}, 1);
+  const Link slider = testing::hung(box, 0, JointType::prismatic, Vector3::UnitX(), {0.3, 0, 0},
+                                    Vector3::Zero());
+  system.trees.emplace_back(std::vector<Link>{box, slider}, at(0, 0, 0.05));
+  testing::weigh(system.trees[0]);
+  std::vector<Contact> contacts;
+  add_foot(0, 0.3, 0, contacts);
+  add_foot(0.3, 0.3, 1, contacts);
+  for (int i = 0; i < 100; ++i) system.step(0.01, contacts);
+  ASSERT_TRUE(system.asleep(0));
+  system.push(0, 0, {Vector3::Zero(), Vector3(-10, 0, 0)});
+  system.push(0, 1, {Vector3::Zero(), Vector3(10, 0, 0)});
+  system.step(0.01, contacts);
+  EXPECT_NEAR(system.trees[0].v[6], 2 * (10 - 0.3 * g) * 0.01, 1e-6);
 }
 
 // Sleepers are left alone: the bits of what sleeps do not change.
