@@ -38,6 +38,9 @@ int hide_variable(lua_State* state) {
 // reader or message handler could take it from there.
 // Upvalue: Lua's debug.getinfo. Not by lua_call: levels count this function as they count Lua's.
 int get_info(lua_State* state) {
+  // Lua 5.3 would pop a value from the stack, also of a coroutine, and again until there is none.
+  const int option = lua_isthread(state, 1) ? 3 : 2;
+  luaL_argcheck(state, *luaL_optstring(state, option, "") != '>', option, "invalid option");
   const int results = lua_tocfunction(state, lua_upvalueindex(1))(state);
   if (results == 1 && lua_istable(state, -1)) {
     lua_pushnil(state);

@@ -101,6 +101,18 @@ TEST_F(Sandbox, TakesNoFunctionFromTheStack) {
   EXPECT_EQ(value("debug.getinfo(coroutine.create(print), print, 'S').what"), "C");
 }
 
+// In Lua 5.3 the option '>' pops a value from the stack of any coroutine, below its end, too.
+TEST_F(Sandbox, EmptiesNoStack) {
+  const std::string taken_away =
+      "(function() local own = coroutine.create(function() return coroutine.yield() end) "
+      "coroutine.resume(own) "
+      "for _ = 1, 100000 do pcall(debug.getinfo, own, 0, '>S') end "
+      "return select(2, coroutine.resume(own, 'kept')) end)()";
+  EXPECT_EQ(value(taken_away), "kept");
+  EXPECT_EQ(value("tostring(pcall(debug.getinfo, 1, '>S'))"), "false");
+  EXPECT_EQ(value("tostring(pcall(debug.getinfo, print, '>S'))"), "false");
+}
+
 TEST_F(Sandbox, OpensNoFileOutsideItsFolders) {
   for (const char* name :
        {"OUT .. 'secret.txt'", "'/etc/passwd'", "IN .. '../secret.txt'", "IN .. 'link.txt'",
