@@ -184,7 +184,7 @@ class ParallelEnv:
             seeds = [] if seed is None else ["--seed", str(seed)]
             self._server = Server(self._scene, command=self._command,
                                   arguments=[*self._arguments, *seeds])
-            self._session = connect(self._server.endpoint, self._robots, can_restore=True)
+            self._session = self._server.session(robots=self._robots, can_restore=True)
         else:
             self._session = connect(self._endpoint, self._robots, can_restore=True)
             if seed is not None and seed != self._session.seed:

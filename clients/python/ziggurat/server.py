@@ -6,6 +6,9 @@ import json
 import subprocess
 from typing import Any, Optional, Sequence
 
+from .errors import ConnectionLost
+from .session import Session, connect
+
 
 class Server:
     """Runs `ziggurat serve SCENE` on a free port of this machine until it is closed.
@@ -27,6 +30,25 @@ class Server:
         except (ValueError, KeyError):
             _, errors = self.process.communicate()
             raise RuntimeError(f"ziggurat serve did not start: {line}{errors}") from None
+
+    def session(self, **options: Any) -> Session:
+        """As connect(). Without one the server is ended; if it has ended itself, because of a fault in the scene
+        for example, RuntimeError has what it printed."""
+        try:
+            return connect(self.endpoint, **options)
+        except BaseException as error:
+            if isinstance(error, ConnectionLost) or getattr(error, "code", "") == "OUT_OF_STATE":
+                self._explain(error)
+            self.close()
+            raise
+
+    def _explain(self, error: Exception) -> None:
+        """Raises what the server printed, if it has ended, or does now."""
+        try:
+            _, errors = self.process.communicate(timeout=1)
+        except subprocess.TimeoutExpired:
+            return
+        raise RuntimeError(f"ziggurat serve has ended: {errors}") from error
 
     def wait(self, timeout: Optional[float] = None) -> int:
         """Waits for the end of the run [s]; returns the exit code."""

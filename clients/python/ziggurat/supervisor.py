@@ -126,7 +126,7 @@ class Supervisor:
             if kind == "error":
                 raise ProtocolError(message.error)
             if kind == "end":
-                self.ending = Ending(v1.End.Reason.Name(message.end.reason).lower(),
+                self.ending = Ending(name_of(v1.End.Reason, message.end.reason).lower(),
                                      message.end.message, message.end.tick)
                 raise ConnectionLost(f"the run has ended: {self.ending.reason}")
 

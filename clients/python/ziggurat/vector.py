@@ -18,7 +18,7 @@ except ImportError as error:
 from .parallel import all_readings
 from .robot import Robot
 from .server import Server
-from .session import Session, connect
+from .session import Session
 from .spaces import Box
 from .supervisor import Supervisor
 
@@ -56,7 +56,7 @@ class _World:
     def __init__(self, scene: str, robots: Union[str, Sequence[str]], command: str,
                  arguments: Sequence[str]):
         self.server = Server(scene, command=command, arguments=arguments)
-        self.session: Session = connect(self.server.endpoint, can_restore=True)
+        self.session: Session = self.server.session(can_restore=True)
         patterns = [robots] if isinstance(robots, str) else list(robots)
         self.agents: List[Robot] = [robot for robot in self.session.robots
                                     if any(fnmatchcase(robot.id, each) for each in patterns)]

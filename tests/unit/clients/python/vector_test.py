@@ -44,6 +44,27 @@ class Vector(unittest.TestCase):
         self.addCleanup(env.close)
         return env
 
+    def refused(self, scene, why):
+        """No server is left of worlds that could not begin."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "bad.argos"
+            path.write_text(scene)
+            for make in (lambda: ziggurat.vector_env(str(path), 2, command=PROGRAM),
+                         lambda: ziggurat.parallel_env(str(path), command=PROGRAM).reset()):
+                with self.assertRaisesRegex((RuntimeError, ziggurat.Refused), why):
+                    make()
+            arguments = [file.read_bytes() for file in pathlib.Path("/proc").glob("[0-9]*/cmdline")]
+            self.assertFalse([each for each in arguments if str(path).encode() in each])
+
+    def test_a_faulty_scene_is_told_and_leaves_no_server(self):
+        self.refused("<argos-configuration/>", "lacks the element <arena>")
+
+    def test_a_scene_without_robots_leaves_no_server(self):
+        self.refused("""<argos-configuration>
+            <framework><experiment length="0" ticks_per_second="10" random_seed="1"/></framework><controllers/>
+            <arena size="4,4,2"/><physics_engines><dynamics3d id="d"/></physics_engines><media/>
+            </argos-configuration>""", "no robots")
+
     def test_each_world_is_the_one_that_it_would_be_alone(self):
         env = self.make(VEHICLE, 3, reward=lambda robot: robot.joints[0].encoder)
         observations, infos = env.reset(seed=5)
