@@ -60,6 +60,11 @@ int report(const SweepOptions& options, const sweep::Folder& folder, bool is_int
   return failed > 0 ? exit_code::controller_failed : exit_code::finished;
 }
 
+void tell_warnings(const SweepOptions& options) {
+  reports::Console console({options.quiet, false});
+  for (const scene::Problem& warning : options.warnings) console.problem(warning);
+}
+
 int execute_local(const SweepOptions& options, processes::Signals& signals) {
   const sweep::Experiment& experiment = options.definition.experiment;
   reports::Console console({options.quiet, false});
@@ -132,6 +137,7 @@ int execute_sweep(const Arguments& arguments, processes::Signals& signals) {
   if (verb == "plot") return sweep_plot(rest);
   if (verb == "task") return sweep_task(rest, signals);
   const SweepOptions options = verb == "resume" ? parse_resume(rest) : parse_sweep(arguments);
+  tell_warnings(options);
   if (options.dry_run) {
     print_runs(options.definition.experiment);
     return exit_code::finished;

@@ -142,12 +142,14 @@ void read_experiment(const Values& values, const Arguments& for_run, sweep::Expe
 }
 
 /// Reads the scene, and takes its seed if there are no others.
-void complete(sweep::Definition& definition, const sweep::Settings& settings) {
+void complete(SweepOptions& options) {
+  sweep::Definition& definition = options.definition;
   sweep::Experiment& experiment = definition.experiment;
   check(experiment);
   check_run_arguments(experiment.run_arguments);
   auto files = sweep::read_scene(experiment);
   definition.files = std::move(files.hashes);
+  options.warnings = std::move(files.warnings);
   if (experiment.seeds.empty()) {
     if (files.seed == 0) {
       throw text::UsageError(fmt::format("{} has no random_seed, so that each run would draw its own; "
@@ -157,9 +159,9 @@ void complete(sweep::Definition& definition, const sweep::Settings& settings) {
     experiment.seeds = {files.seed};
     check(experiment);
   }
-  const run::Options first = options_of_first_run(experiment, settings);
+  const run::Options first = options_of_first_run(experiment, options.settings);
   const bool may_never_end = !first.ticks && first.duration.value_or(files.length) == 0;
-  if (may_never_end && !settings.timeout) {
+  if (may_never_end && !options.settings.timeout) {
     throw text::UsageError(fmt::format("{} has no length, so that a run may never end; write "
                                        "--duration S or --timeout S",
                                        experiment.scene));
@@ -220,7 +222,7 @@ SweepOptions resumed(const Parsed& parsed, const char* verb) {
         fmt::format("--{} can't change: {} goes on with the experiment of the folder", name, verb));
   }
   options.definition = sweep::Folder(options.out).definition();
-  complete(options.definition, options.settings);
+  complete(options);
   return options;
 }
 
@@ -290,7 +292,7 @@ SweepOptions parse_sweep(const Arguments& arguments) {
   if (options.out.empty() && !options.dry_run) {
     throw text::UsageError("no folder for the results is given; write --out DIR");
   }
-  complete(options.definition, options.settings);
+  complete(options);
   return options;
 }
 

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/commands.h"
+#include "scene/problem.h"
 #include "sweep/definition.h"
 #include "sweep/job.h"
 #include "sweep/kubernetes.h"
@@ -26,6 +28,7 @@ struct SweepOptions {
   bool retries_failed = false;
   bool dry_run = false;
   bool quiet = false;
+  std::vector<scene::Problem> warnings = {};  ///< of the scene
 };
 
 boost::program_options::options_description sweep_options();

@@ -78,7 +78,13 @@ struct Failure {
   std::uint64_t tick = 0;  ///< of the observation that it failed on
 };
 
-/// The same of a director.
+/// A robot whose controller took leave of it before the end of the run.
+struct Departure {
+  std::size_t robot = 0;  ///< into Layout::robots
+  std::uint64_t tick = 0;  ///< of the last observation that it got
+};
+
+/// A director that reported its own failure.
 struct DirectorFailure {
   std::string director;  ///< id
   std::string message;
@@ -97,6 +103,7 @@ struct Report {
   std::vector<wire::LogLine> log;    ///< robots in scene order, then as given: independent of which
                                      ///< process runs where and which answers first
   std::vector<Failure> failures;     ///< in scene order
+  std::vector<Departure> departures;  ///< in scene order
   std::vector<DirectorLine> log_of_directors;     ///< those of each as given
   std::vector<DirectorFailure> failed_directors;
   std::string stopped;               ///< the sentence on the deadline that stops the run, if any

@@ -65,6 +65,26 @@ struct Finder {
            command.substr(word.begin + word.size);
   }
 
+  /// The first word, or the one behind exec.
+  Word program_word() const {
+    const Word first = word_at(command, 0);
+    return text(first) == "exec" ? word_at(command, first.begin + first.size) : first;
+  }
+
+  /// Whether only a shell can read the word, or runs it itself.
+  bool is_of_shell(const Word& word) const {
+    return !text::is_plain_word(text(word)) || std::ranges::find(shell_words, text(word)) != shell_words.end();
+  }
+
+  /// A sentence if no shell finds a program of this name.
+  std::string missing_in_path(const std::string& name) const {
+    if (is_in_path(name)) return {};
+    const bool is_beside = find_file(name, naming_file, scene_file).has_value();
+    return fmt::format("'{}' is no program in PATH; {}", name,
+                       is_beside ? fmt::format("write ./{}, which is there", name)
+                                 : "install it, or write its path");
+  }
+
   FoundCommand program(const Word& word) const {
     const std::string name = text(word);
     const auto found = find_file(name, naming_file, scene_file);
@@ -101,18 +121,11 @@ struct Finder {
 FoundCommand find_command(const std::string& command, const fs::path& naming_file,
                           const fs::path& scene_file) {
   const Finder finder{command, naming_file, scene_file};
-  Word first = word_at(command, 0);
-  if (finder.text(first) == "exec") first = word_at(command, first.begin + first.size);
+  const Word first = finder.program_word();
   const std::string program = finder.text(first);
-  if (!text::is_plain_word(program)) return {command, {}};
+  if (finder.is_of_shell(first)) return {command, {}};
   if (program.find('/') != std::string::npos) return finder.program(first);
-  if (std::ranges::find(shell_words, program) != shell_words.end()) return {command, {}};
-  if (!is_in_path(program)) {
-    const bool is_beside = find_file(program, naming_file, scene_file).has_value();
-    return {command, fmt::format("'{}' is no program in PATH; {}", program,
-                                 is_beside ? fmt::format("write ./{}, which is there", program)
-                                           : "install it, or write its path")};
-  }
+  if (std::string missing = finder.missing_in_path(program); !missing.empty()) return {command, missing};
   return finder.script(first.begin + first.size);
 }
 
@@ -132,6 +145,25 @@ std::vector<scene::Problem> find_commands(scene::Scene& scene, const fs::path& s
   for (scene::Controller& controller : scene.controllers) find(controller, controller.type);
   for (scene::Director& director : scene.directors) find(director, "director");
   return problems;
+}
+
+std::string why_not_started(const std::string& command) {
+  const fs::path here = fs::current_path() / "-";
+  const Finder finder{command, here, here};
+  const std::string program = finder.text(finder.program_word());
+  if (finder.is_of_shell(finder.program_word())) return {};
+  if (program.find('/') == std::string::npos) return finder.missing_in_path(program);
+  const fs::path file = fs::absolute(program).lexically_normal();
+  std::error_code error;
+  if (fs::is_regular_file(file, error)) {
+    return ::access(file.c_str(), X_OK) == 0
+               ? std::string()
+               : fmt::format("'{0}' can't be executed; write chmod +x {0}", program);
+  }
+  if (fs::exists(file, error)) return fmt::format("'{}' is no program but a folder or device", program);
+  const std::string meant = similar_file(file);
+  return fmt::format("'{}' is not there: {} has no such file{}", program, file.parent_path().string(),
+                     meant.empty() ? "; check its path" : fmt::format("; did you mean '{}'?", meant));
 }
 
 }  // namespace ziggurat::processes

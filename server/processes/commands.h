@@ -25,4 +25,8 @@ FoundCommand find_command(const std::string& command, const std::filesystem::pat
 std::vector<scene::Problem> find_commands(scene::Scene& scene,
                                           const std::filesystem::path& scene_file);
 
+/// Why /bin/sh can't start the program of a command in the working directory: a sentence. Empty if it can, or if
+/// only a shell can read its first word.
+std::string why_not_started(const std::string& command);
+
 }  // namespace ziggurat::processes

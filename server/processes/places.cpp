@@ -18,21 +18,6 @@ fs::path folder_of(const fs::path& file) {
   return fs::absolute(file).lexically_normal().parent_path();
 }
 
-/// A file beside the one that is not there, with nearly its name; empty if there is none.
-std::string similar(const fs::path& missing) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator file(missing.parent_path(), error), end; !error && file != end;
-       file.increment(error)) {
-    if (names.size() >= most_compared) break;
-    if (file->is_regular_file(error)) names.push_back(file->path().filename().string());
-  }
-  std::ranges::sort(names);
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  const auto meant = scene::nearest(missing.filename().string(), views);
-  return meant ? std::string(*meant) : std::string();
-}
-
 }  // namespace
 
 std::vector<fs::path> places_of(const fs::path& naming_file, const fs::path& scene_file) {
@@ -61,6 +46,20 @@ std::optional<fs::path> find_file(const std::string& name, const fs::path& namin
   return std::nullopt;
 }
 
+std::string similar_file(const fs::path& missing) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator file(missing.parent_path(), error), end; !error && file != end;
+       file.increment(error)) {
+    if (names.size() >= most_compared) break;
+    if (file->is_regular_file(error)) names.push_back(file->path().filename().string());
+  }
+  std::ranges::sort(names);
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const auto meant = scene::nearest(missing.filename().string(), views);
+  return meant ? std::string(*meant) : std::string();
+}
+
 std::string looked_for(const std::string& name, const fs::path& naming_file,
                        const fs::path& scene_file) {
   if (fs::path(name).is_absolute()) return "; check its path";
@@ -76,7 +75,7 @@ std::string looked_for(const std::string& name, const fs::path& naming_file,
   if (!error && here != beside && here != of_scene) {
     text += fmt::format(", nor in the working directory {}", here.string());
   }
-  const std::string meant = similar(beside / name);
+  const std::string meant = similar_file(beside / name);
   return meant.empty() ? text + "; put it beside the scene"
                        : text + fmt::format("; did you mean '{}'?",
                                             (fs::path(name).parent_path() / meant).string());

@@ -51,6 +51,17 @@ std::string failed(const std::vector<Summary::Failure>& failures) {
   return text + "\n";
 }
 
+/// Robots whose controller left before the end.
+std::string departed(const std::vector<Summary::Departure>& departures) {
+  constexpr std::size_t most = 8;
+  std::string text = fmt::format("  {} left before the end: ", departures.size());
+  for (std::size_t i = 0; i < std::min(most, departures.size()); ++i) {
+    text += fmt::format("{}robot {} at tick {}", i == 0 ? "" : ", ", departures[i].robot, departures[i].tick);
+  }
+  if (departures.size() > most) text += fmt::format(" and {} more", departures.size() - most);
+  return text + "\n";
+}
+
 /// A line with the first metrics.
 std::string metrics(const std::map<std::string, double>& all) {
   constexpr std::size_t most = 8;
@@ -101,6 +112,7 @@ std::string to_text(const Summary& summary) {
                         each.ticks, each.ticks == 1 ? "" : "s");
   }
   if (!summary.failures.empty()) text += failed(summary.failures);
+  if (!summary.departures.empty()) text += departed(summary.departures);
   for (const auto& each : summary.dropped) text += fmt::format("  {}\n", each);
   if (const auto& solver = summary.solver; solver.not_converged > 0) {
     text += fmt::format(
@@ -126,6 +138,10 @@ std::string to_json(const Summary& summary) {
     entry["message"] = failure.message;
     failures.push_back(std::move(entry));
   }
+  auto departures = nlohmann::ordered_json::array();
+  for (const auto& each : summary.departures) {
+    departures.push_back({{"robot", each.robot}, {"controller", each.controller}, {"tick", each.tick}});
+  }
   auto missed = nlohmann::ordered_json::array();
   for (const auto& each : summary.missed) {
     missed.push_back({{"controller", each.controller}, {"ticks", each.ticks}});
@@ -149,6 +165,7 @@ std::string to_json(const Summary& summary) {
       {"hash", math::to_hex(summary.hash)},
       {"robots", summary.robots},
       {"failures", failures},
+      {"left", departures},
       {"missed_deadlines", missed},
       {"dropped", summary.dropped},
       {"vanished", summary.vanished}};

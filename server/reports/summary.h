@@ -61,6 +61,12 @@ struct Summary {
     std::string director = {};  ///< that failed; empty: a robot's controller did
   };
   std::vector<Failure> failures;     ///< in order of time
+  struct Departure {
+    std::string robot;
+    std::string controller;
+    std::uint64_t tick = 0;  ///< the last that it took part in
+  };
+  std::vector<Departure> departures;  ///< robots whose controller left before the end; in order of time
   std::string shutdown_reason;       ///< shut_down: why
   /// How a director has ended the run.
   struct Result {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "processes/commands.h"
 #include "text/names.h"
 #include "text/numbers.h"
 
@@ -48,8 +49,15 @@ std::vector<std::size_t> awaited_named(std::string_view option, const std::strin
   return places;
 }
 
+void check_command(const std::string& id, const std::string& command) {
+  const std::string wrong = processes::why_not_started(command);
+  if (!wrong.empty()) throw text::UsageError(fmt::format("--controller {}={}: {}", id, command, wrong));
+}
+
 void set_command(scene::Scene& scene, const std::string& id, const std::string& command) {
-  for (const std::size_t i : awaited_named("--controller", id, scene)) {
+  const std::vector<std::size_t> replaced = awaited_named("--controller", id, scene);
+  if (!command.empty()) check_command(id, command);
+  for (const std::size_t i : replaced) {
     if (i < scene.controllers.size()) {
       scene.controllers[i].command = command;
       continue;

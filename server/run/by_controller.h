@@ -24,6 +24,9 @@ std::vector<std::string> ids_of_awaited(const scene::Scene& scene);
 std::vector<std::size_t> awaited_named(std::string_view option, const std::string& id,
                                        const scene::Scene& scene);
 
+/// @throws text::UsageError if no shell could start its program
+void check_command(const std::string& id, const std::string& command);
+
 /// The command of `--controller ID=CMD`, of a controller or director; the script of a director is not run then.
 /// @throws as awaited_named()
 void set_command(scene::Scene& scene, const std::string& id, const std::string& command);

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <tuple>
 #include <utility>
+
+#include "processes/controllers.h"
 
 namespace ziggurat::run {
 namespace {
@@ -30,6 +33,7 @@ void PeerReports::notice_of_peer(const std::string& text, network::Allowance::Ti
 
 void PeerReports::take(network::Report report, std::uint64_t tick, network::Allowance::Time now) {
   for (const auto& text : report.dropped) notice(text);
+  take_departures(report.departures, now);
   for (const auto& text : report.notices) notice_of_peer(text, now);
   const auto& robots = world_.simulation.layout().robots;
   for (wire::LogLine& line : report.log) log_.push_back({std::move(line), robots[line.robot].id});
@@ -55,6 +59,23 @@ void PeerReports::take(network::Report report, std::uint64_t tick, network::Allo
     tell_(channels::Severity::error, robot.id, text);
     failures_.push_back(
         {failure.robot, {robot.id, controller, failure.tick, std::move(failure.message)}});
+  }
+}
+
+void PeerReports::take_departures(const std::vector<network::Departure>& departures, network::Allowance::Time now) {
+  const world::Layout& layout = world_.simulation.layout();
+  std::map<std::pair<std::size_t, std::uint64_t>, std::vector<std::size_t>> groups;  // by controller and tick
+  for (const network::Departure& each : departures) {
+    const auto& robot = layout.robots[each.robot];
+    groups[{robot.controller, each.tick}].push_back(each.robot);
+    departures_.push_back({robot.id, world_.scene.controllers[robot.controller].id, each.tick});
+  }
+  for (const auto& [group, robots] : groups) {
+    notice_of_peer(
+        fmt::format("{} (controller '{}') left at tick {}: {} controller ended, and the run goes on without it",
+                    processes::names_of(robots, layout), world_.scene.controllers[group.first].id, group.second,
+                    robots.size() == 1 ? "its" : "their"),
+        now);
   }
 }
 

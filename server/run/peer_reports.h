@@ -47,6 +47,9 @@ class PeerReports {
   /// @param robots  into the present layout
   bool has_failure(std::span<const std::size_t> robots) const;
 
+  /// Of all robots whose controller left before the end: sorted by tick, then by scene order.
+  const std::vector<reports::Summary::Departure>& departures() const { return departures_; }
+
   /// Of all robots whose controller failed: sorted by tick, then by scene order.
   std::vector<reports::Summary::Failure> failures() const;
 
@@ -60,6 +63,7 @@ class PeerReports {
   static constexpr network::Rate notices_rate{1, 1000};
   void notice(const std::string& text);
   void notice_of_peer(const std::string& text, network::Allowance::Time now);
+  void take_departures(const std::vector<network::Departure>& departures, network::Allowance::Time now);
 
   const supervision::World& world_;
   reports::Console& console_;
@@ -69,6 +73,7 @@ class PeerReports {
   std::vector<std::pair<std::optional<std::size_t>, reports::Summary::Failure>> failures_;
   network::Allowance notices_{notices_rate, std::chrono::steady_clock::now()};
   std::uint64_t unprinted_ = 0;  ///< since the last notice that was
+  std::vector<reports::Summary::Departure> departures_;
 };
 
 }  // namespace ziggurat::run

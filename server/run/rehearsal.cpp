@@ -8,6 +8,7 @@
 #include "processes/scripts.h"
 #include "replay/recording_error.h"
 #include "replay/scene.h"
+#include "run/by_controller.h"
 #include "run/embedded_scripts.h"
 #include "run/recorded_world.h"
 #include "run/setup.h"
@@ -61,6 +62,7 @@ supervision::World Rehearsal::build_world() {
     if (found == opened.scene.controllers.end()) {
       throw text::UsageError(fmt::format("--controller: the recording has no controller '{}'", id));
     }
+    check_command(id, command);
     found->command = command;
   }
   if (!options_.command.empty()) {
@@ -195,7 +197,7 @@ std::optional<Rehearsal::Ending> Rehearsal::repeat() {
 int Rehearsal::tell(const std::optional<Ending>& ending) {
   if (const auto missing = file_.shortcoming(); !missing.empty()) console_.warning(missing);
   if (!watch_.vanished().empty()) console_.fault(watch_.vanished());
-  const auto failures = watch_.failures();
+  const auto failures = watch_.reported().failures();
   for (const auto& [robot, difference] : retelling_->differences()) {
     console_.report(fmt::format("'{}': {} of {} ticks differ, the first is {}", robot,
                                 difference.ticks, retelling_->ticks(), difference.first_tick));

@@ -258,7 +258,8 @@ int Run::execute() {
   watch_.end_run(end_message(summary_));
   const std::vector<world::Metric> metrics = last_metrics(server_, watch_, summary_);
   if (recorded_) recorded_->close(metrics);
-  summary_.failures = watch_.failures();
+  summary_.failures = watch_.reported().failures();
+  summary_.departures = watch_.reported().departures();
   recorders_.write_summary(summary_);
   for (const auto& picture : recorders_.pictures()) console_.result(picture);
   if (const auto missing = recorders_.missing_frames(); !missing.empty()) console_.warning(missing);

@@ -98,6 +98,7 @@ Watch::Watch(const Settings& settings, const supervision::World& world, network:
                            : std::vector{signals.descriptor()}),
       fails_fast_(settings.fail_fast),
       waits_for_clients_(settings.waits_for_clients),
+      last_tick_(settings.ticks),
       restarts_(settings.restarts),
       peers_(world, console, std::move(tell)),
       progress_(console, world.simulation.tick_length(), settings.ticks) {
@@ -283,6 +284,7 @@ void Watch::take_report() {
     stopped_ = Ending::failed_fast;
     vanished_ = fmt::format("the run ends at tick {}, as --fail-fast asks", tick_);
   }
+  if (tick_ == last_tick_) report.departures.clear();  // nothing is left to be done
   std::ranges::copy(report.dropped, std::back_inserter(dropped_));
   peers_.take(std::move(report), tick_);
 }

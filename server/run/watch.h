@@ -69,8 +69,8 @@ class Watch {
   /// The world was reset.
   void forget_spawned() { peers_.forget_spawned(); }
 
-  /// Sorted by tick, then by scene order.
-  std::vector<reports::Summary::Failure> failures() const { return peers_.failures(); }
+  /// What controllers and other peers reported.
+  const PeerReports& reported() const { return peers_; }
   /// A sentence on each robot that a deadline took out of the run.
   const std::vector<std::string>& dropped() const { return dropped_; }
   /// The sentence on the controller that ended the run; empty if none did.
@@ -103,6 +103,7 @@ class Watch {
   Showing* const showing_;
   const std::vector<int> descriptors_;  ///< that end a wait: of signals, and of viewers
   const bool fails_fast_, waits_for_clients_;
+  const std::optional<std::uint64_t> last_tick_;
   const std::vector<unsigned> restarts_;
   std::optional<reports::MetricsPort> metrics_;
   PeerReports peers_;

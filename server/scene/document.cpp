@@ -132,6 +132,12 @@ void Document::parse() {
     report_.fault(at(offset), "malformed XML: " + complaint(result, at_end));
     return;
   }
+  const Unescaped unescaped = find_unescaped(source_);
+  if (unescaped.fault) report_.fault(at(unescaped.fault->offset), "malformed XML: " + unescaped.fault->text);
+  if (unescaped.dashes) {
+    report_.warn(at(*unescaped.dashes), "dashes",
+                 "-- inside a comment, which other programs that read XML refuse; write it without");
+  }
   root_ = tree_.document_element();
   for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling()) {
     if (node.type() != pugi::node_element) continue;

@@ -197,7 +197,40 @@ class Scanner {
   std::optional<Malformed> found_;
 };
 
+/// Behind the tag that begins there.
+std::size_t end_of_tag(std::string_view source, std::size_t at, std::optional<Malformed>& fault) {
+  while ((at = source.find_first_of("\"'>", at)) != npos && source[at] != '>') {
+    const std::size_t begin = at + 1, end = source.find(source[at], begin);
+    if (end == npos) return npos;
+    const std::size_t literal = source.find('<', begin);
+    if (!fault && literal < end) fault = Malformed{literal, "< inside a value; write &lt; for a literal <"};
+    at = end + 1;
+  }
+  return at;
+}
+
 }  // namespace
+
+Unescaped find_unescaped(std::string_view source) {
+  Unescaped found;
+  for (std::size_t at = source.find('<'); at != npos; at = source.find('<', at)) {
+    const std::string_view rest = source.substr(at);
+    if (rest.starts_with("<!--")) {
+      const std::size_t dashes = source.find("--", at + 4), end = source.find("-->", at + 4);
+      if (dashes < end && !found.dashes) found.dashes = dashes;
+      at = end;
+    } else if (rest.starts_with("<![CDATA[")) {
+      at = source.find("]]>", at);
+    } else if (rest.starts_with("<?")) {
+      at = source.find("?>", at);
+    } else if (rest.starts_with("<!")) {
+      return found;  // a document type may have tags of its own
+    } else {
+      at = end_of_tag(source, at, found.fault);
+    }
+  }
+  return found;
+}
 
 std::optional<Malformed> find_malformed(std::string_view source) { return Scanner(source).scan(); }
 

@@ -18,4 +18,13 @@ struct Malformed {
 /// @param source  UTF-8
 std::optional<Malformed> find_malformed(std::string_view source);
 
+struct Unescaped {
+  std::optional<Malformed> fault;     ///< the first < inside an attribute's value
+  std::optional<std::size_t> dashes;  ///< offset of the first -- inside a comment
+};
+
+/// What is no XML by its standard, though the parser reads it.
+/// @param source  that the parser has read without error
+Unescaped find_unescaped(std::string_view source);
+
 }  // namespace ziggurat::scene

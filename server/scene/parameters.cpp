@@ -31,6 +31,40 @@ Wrong unknown(std::string_view name, const Parameters& parameters) {
                             advice(name, names_of(parameters)))};
 }
 
+bool is_number(std::string_view text) { return std::holds_alternative<double>(number(trimmed(text))); }
+
+/// "1|2|3" for "1,2,3", "1;2;3" or "1 2 3", as a sweep is told of several values; empty if these are no numbers.
+std::string as_values(std::string_view text) {
+  constexpr std::string_view separators = ",; \t";
+  std::string values;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
+    const std::string_view part = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (part.empty()) continue;
+    if (!is_number(part)) return {};
+    values += fmt::format("{}{}", values.empty() ? "" : "|", part);
+  }
+  return values.find('|') == std::string::npos ? std::string() : values;
+}
+
+bool is_range(std::string_view text) {
+  const std::size_t dots = text.find("..");
+  return dots != std::string_view::npos && is_number(text.substr(0, dots)) && is_number(text.substr(dots + 2));
+}
+
+/// Where the scene has one number, several are probably meant for as many runs.
+/// @param given  by the command line
+std::string doubt(const Parameter& declared, const std::string& given) {
+  if (!is_number(declared.value)) return {};
+  std::string values = as_values(given);
+  if (values.empty() && is_range(given)) values = "1|2|3";
+  if (values.empty()) return {};
+  return fmt::format("--param {0}={1} is one value, the text {2}, where the scene has the number {3}; for a run with each of "
+                     "several write: ziggurat sweep … --param '{0}={4}'",
+                     declared.name, given, in_quotes(given), declared.value, values);
+}
+
 }  // namespace
 
 Value<std::string> expand(std::string_view text, const Parameters& parameters) {
@@ -83,6 +117,9 @@ void read_parameters(Draft& draft, Element& root) {
   for (const auto& [name, value] : draft.options.variation.parameters) {
     const auto found = std::ranges::find(draft.parameters, name, &Parameter::name);
     if (found != draft.parameters.end()) {
+      if (auto text = doubt(*found, value); !text.empty()) {
+        draft.report.warn(root.where(), "parameter", std::move(text));
+      }
       found->value = value;
       found->given = true;
       continue;

@@ -186,7 +186,7 @@ std::optional<wire::Fault> Directing::check(const wire::Direction& direction) co
     }
     const auto entity = names.find(id);
     if (!entity || asked.removed.contains(id)) {
-      return at(i, no_entity(fmt::format("{}.entity", name_of(act)), id));
+      return at(i, no_entity(fmt::format("{}.entity", name_of(act)), id, &world_.simulation));
     }
     if (auto fault = check_act(world_.simulation, *entity, act)) return at(i, std::move(*fault));
     if (is_removal(act)) asked.removed.insert(id);

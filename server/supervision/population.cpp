@@ -7,11 +7,14 @@
 #include <exception>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "network/glob.h"
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
+#include "scene/names.h"
 #include "supervision/opener.h"
 #include "wire/fault.h"
 
@@ -80,10 +83,14 @@ scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string
   };
 }
 
-wire::Fault no_entity(std::string field, const std::string& id) {
-  return wire::make_fault(
-      ErrorCode::unknown_entity, std::move(field),
-      fmt::format("There is no entity '{}'.", id.substr(0, network::longest_pattern)));
+wire::Fault no_entity(std::string field, const std::string& id, const simulation::Simulation* world) {
+  std::string text = fmt::format("There is no entity '{}'.", id.substr(0, network::longest_pattern));
+  std::vector<std::string_view> ids;
+  for (std::size_t i = 0; world != nullptr && i < world->layout().entities.size(); ++i) {
+    if (!world->state().is_absent(i)) ids.push_back(world->layout().entities[i].id);
+  }
+  if (const auto meant = scene::nearest(id, ids)) text += fmt::format(" Did you mean '{}'?", *meant);
+  return wire::make_fault(ErrorCode::unknown_entity, std::move(field), std::move(text));
 }
 
 std::optional<std::size_t> entity_named(const simulation::Simulation& world,
@@ -199,7 +206,7 @@ void Population::add_controllers(std::size_t first, std::span<const std::string>
 
 std::optional<wire::Fault> Population::remove(const std::string& id) {
   const auto entity = entity_named(world_.simulation, id);
-  if (!entity) return no_entity("remove.entity", id);
+  if (!entity) return no_entity("remove.entity", id, &world_.simulation);
   std::vector<std::size_t> robots;
   const auto& all = world_.simulation.layout().robots;
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -22,7 +22,8 @@ namespace ziggurat::supervision {
 
 /// The fault of an act on an entity that is not there.
 /// @param field  of the request
-wire::Fault no_entity(std::string field, const std::string& id);
+/// @param world  an entity of it is suggested; null: none
+wire::Fault no_entity(std::string field, const std::string& id, const simulation::Simulation* world = nullptr);
 
 /// The entity of that id that is in the world, into Layout::entities.
 std::optional<std::size_t> entity_named(const simulation::Simulation& world, const std::string& id);

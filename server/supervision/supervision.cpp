@@ -213,7 +213,7 @@ Supervision::Reply Supervision::read(const network::Call& call) {
 
 Supervision::Reply Supervision::move(const network::Call& call) {
   const auto entity = entity_named(world_.simulation, call.request.text);
-  if (!entity) return fail(call, no_entity("move.entity", call.request.text));
+  if (!entity) return fail(call, no_entity("move.entity", call.request.text, &world_.simulation));
   auto pose = pose_of_move(world_.simulation.state().origins[*entity], call.request);
   if (auto* fault = std::get_if<wire::Fault>(&pose)) return fail(call, std::move(*fault));
   world_.simulation.move(*entity, std::get<math::Pose>(pose));

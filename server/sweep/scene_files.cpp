@@ -49,13 +49,21 @@ void name_option(std::vector<scene::Problem>& problems) {
   }
 }
 
-void refuse_faults(std::vector<scene::Problem> problems) {
-  std::erase_if(problems, [](const auto& each) {
-    return each.severity != scene::Problem::Severity::fault;
-  });
-  if (problems.empty()) return;
+/// Throws if there are faults. Otherwise keeps each warning once.
+void take_problems(std::vector<scene::Problem> problems, std::vector<scene::Problem>& warnings) {
   name_option(problems);
-  throw scene::SceneError(std::move(problems));
+  const auto rest = std::stable_partition(problems.begin(), problems.end(), [](const auto& each) {
+    return each.severity == scene::Problem::Severity::fault;
+  });
+  if (rest != problems.begin()) {
+    throw scene::SceneError({problems.begin(), rest});
+  }
+  for (scene::Problem& each : problems) {
+    const bool is_known = std::ranges::any_of(warnings, [&](const auto& known) {
+      return scene::to_string(known) == scene::to_string(each);
+    });
+    if (each.severity == scene::Problem::Severity::warning && !is_known) warnings.push_back(std::move(each));
+  }
 }
 
 }  // namespace
@@ -83,7 +91,7 @@ SceneFiles read_scene(const Experiment& experiment) {
       auto more = processes::check_scripts(scene.scene, experiment.scene);
       std::ranges::move(more, std::back_inserter(scene.problems));
     }
-    refuse_faults(std::move(scene.problems));
+    take_problems(std::move(scene.problems), files.warnings);
     files.seed = scene.scene.experiment.random_seed;
     const double length = scene.scene.experiment.length;
     files.length = i == 0 ? length : std::min(files.length, length);

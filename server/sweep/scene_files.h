@@ -3,7 +3,9 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
+#include "scene/problem.h"
 #include "sweep/experiment.h"
 
 namespace ziggurat::sweep {
@@ -12,6 +14,7 @@ struct SceneFiles {
   std::map<std::string, std::string> hashes;  ///< 16 hexadecimal digits, by path
   std::uint64_t seed = 0;                     ///< of the scene; 0: each run draws one
   double length = 0;                          ///< of the scene, simulated [s]: the least, if axes set it; 0: without end
+  std::vector<scene::Problem> warnings;       ///< each once
 };
 
 /// Reads the scene, with each value of each axis at least once, and all that it includes, its meshes

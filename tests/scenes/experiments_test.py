@@ -107,7 +107,9 @@ class Experiments(SceneTest):
     def test_an_act_that_is_wrong_is_named(self):
         self.with_director("function post_step(tick) world.remove('missing') end")
         _, outcome = self.summary(self.scene, "--ticks", "5", code=CONTROLLER_FAILED)
-        self.assert_is_sentence(outcome, r"director 'judge'.*There is no entity 'missing'.*what the script did at tick 1")
+        self.assert_is_sentence(outcome, r"director 'judge'.*There is no entity 'missing'.*asked for at tick 1")
+        self.assertRegex(outcome.err, r"judge\.lua:1: UNKNOWN_ENTITY")
+        self.assertEqual(outcome.err.count("There is no entity"), 1, outcome.err)
 
     def test_an_endless_loop_is_ended(self):
         self.with_director("function post_step(tick) while tick == 2 do end end")

@@ -1,10 +1,12 @@
 """Controllers that end, fail or never connect, and interruption by Ctrl-C."""
 
+import json
 import os
 import pathlib
 import re
 import shutil
 import signal
+import sys
 import tempfile
 import time
 
@@ -80,8 +82,40 @@ class Killed(SceneTest):
         self.assert_is_sentence(outcome, r"'swing'.*exit code 4 before the first tick.*r0, r1, r2")
 
     def test_program_that_does_not_exist(self):
-        outcome = self.run_scene("--controller", "swing=/no/such/program", code=CONTROLLER_FAILED)
-        self.assert_is_sentence(outcome, r"'swing'.*exit code 127")
+        for command, pattern in (("/no/such/program", r"swing=/no/such/program: '/no/such/program' is not there: /no/such has no"),
+                                 ("./nothere --fast", r"'./nothere' is not there: .* has no such file"),
+                                 ("nothere", r"'nothere' is no program in PATH")):
+            outcome = self.run_scene("--controller", "swing=" + command, code=1)
+            self.assert_is_sentence(outcome, r"--controller .*" + pattern)
+            self.assertNotIn("/bin/sh", outcome.err)
+
+
+LEAVES_AT_TICK_3 = """
+import os, ziggurat
+with ziggurat.connect(os.environ["ZIGGURAT_ENDPOINT"], controller="swing") as session:
+    for tick in session:
+        if tick.number == 3:
+            break
+"""
+
+
+class Leaving(SceneTest):
+    def setUp(self):
+        super().setUp()
+        self.write("leaves.py", LEAVES_AT_TICK_3)
+        self.environment["PYTHONPATH"] = os.environ["ZIGGURAT_PYTHON_PACKAGE"]
+        self.arguments = ("--controller", f"swing={sys.executable} {self.folder}/leaves.py")
+
+    def test_before_the_end_is_told_and_in_the_summary(self):
+        outcome = self.run_scene("--ticks", 6, "--summary", self.folder / "s.json", *self.arguments)
+        self.assertRegex(outcome.err, r"robots r0, r1, r2 \(controller 'swing'\) left at tick 3: their controller ended")
+        self.assertRegex(outcome.err, r"3 left before the end: robot r0 at tick 3")
+        left = json.loads((self.folder / "s.json").read_text())["left"]
+        self.assertEqual(left[0], {"robot": "r0", "controller": "swing", "tick": 3})
+
+    def test_at_the_last_tick_is_none_before_the_end(self):
+        outcome = self.run_scene("--ticks", 3, *self.arguments)
+        self.assertNotIn("left", outcome.err)
 
 
 FAILS_AT_TICK_3 = """

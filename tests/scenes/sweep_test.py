@@ -206,6 +206,14 @@ class Refusals(SweepTest):
             self.assert_is_sentence(outcome, pattern)
             self.assertFalse(self.out.exists(), arguments)
 
+    def test_a_list_in_another_notation_is_doubted(self):
+        for text, meant in (("1,2,3", "1|2|3"), ("1..3", "1|2|3"), ("4; 5", "4|5")):
+            outcome = self.ziggurat("sweep", self.scene, "--dry-run", "--ticks", "2", "--param", f"gain={text}")
+            self.assertEqual(outcome.code, FINISHED)
+            self.assertRegex(outcome.err, r"warning: .*--param gain=.* is one value, .* --param 'gain=" + re.escape(meant))
+        outcome = self.ziggurat("sweep", self.scene, "--dry-run", "--ticks", "2", "--param", "gain=fast|1.5")
+        self.assertEqual(outcome.err, "")
+
     def test_a_folder_with_other_files_stays_as_it_is(self):
         self.out.mkdir()
         (self.out / "mine").write_text("")

@@ -43,7 +43,9 @@ class DirectorRunner {
   Failure run_to_end() {
     Failure failure;
     while (!failure && !are_scripts_interrupted() && hears_of_next(failure)) {
-      for (const std::string& warning : director_.take_warnings()) director_.log_error(warning);
+      for (const std::string& warning : director_.take_warnings()) {
+        director_.log_error((script_ ? script_->before_error_of(warning) : std::string()) + warning);
+      }
       failure = script_ ? answer() : start();
       if (script_) hand_over_log();
       offer_to_terminal();
@@ -57,8 +59,8 @@ class DirectorRunner {
       return director_.next();
     } catch (const ProtocolError& error) {
       if (!script_) throw;
-      failure = std::string(error.what()) + " (what the script did at tick " +
-                std::to_string(director_.tick()) + ")";
+      failure = script_->before_error_of(error.details().field) + error.what() +
+                " (asked for at tick " + std::to_string(director_.tick()) + ")";
       return false;
     }
   }

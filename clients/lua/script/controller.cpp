@@ -1,6 +1,7 @@
 #include "script/controller.h"
 
 #include "script/metric_function.h"
+#include "script/missing_fields.h"
 #include "script/robot_random.h"
 #include "script/robot_table.h"
 
@@ -40,6 +41,7 @@ void Controller::set_up(lua_State* state) {
   lua_setfield(state, -2, "random");
   lua_pushinteger(state, static_cast<lua_Integer>(first_tick()));
   lua_setfield(state, -2, "first_tick");
+  watch_missing_fields(state, "robot", "robot", robot_.id().c_str());
   lua_setglobal(state, "robot");
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "script/missing_fields.h"
 #include "script/world_table.h"
 
 namespace ziggurat::lua {
@@ -36,6 +37,7 @@ Failure DirectorScript::start() {
 }
 
 Failure DirectorScript::step() {
+  places_.clear();
   const Running running(calling());
   const std::uint64_t tick = director_.tick();
   if (auto failure = call({"post_step", false, tick}, "post_step " + std::to_string(tick))) return failure;
@@ -63,6 +65,7 @@ Failure DirectorScript::prepare_next() {
 }
 
 Failure DirectorScript::reset(std::uint64_t seed) {
+  places_.clear();
   begin_anew(seed);
   const Running running(calling());
   if (auto failure = call("reset", false, "reset, tick 0")) return failure;
@@ -75,9 +78,10 @@ Failure DirectorScript::destroy() {
 }
 
 void DirectorScript::set_up(lua_State* state) {
-  push_world(state, {director_, log(), random().robot_random, first_tick()});
+  push_world(state, {director_, log(), random().robot_random, first_tick(), places_});
   lua_getfield(state, -1, "metric");
   lua_setglobal(state, "metric");
+  watch_missing_fields(state, "world", "director", director_.id().c_str());
   lua_setglobal(state, "world");
 }
 

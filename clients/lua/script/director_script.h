@@ -2,7 +2,10 @@
 // The script of a director: its life cycle.
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 
+#include "script/act_places.h"
 #include "script/script.h"
 #include "ziggurat/director.h"
 
@@ -25,6 +28,11 @@ class DirectorScript final : public Script {
   /// After the last tick: destroy().
   Failure destroy();
 
+  /// Where the script asked for the act that an error is about: `FILE:LINE: `; empty if that is not known. Of what was
+  /// asked for since the last call of step() or reset() began.
+  /// @param field  of the error
+  std::string before_error_of(std::string_view field) const { return places_.before_error_of(field); }
+
  private:
   void set_up(lua_State* state) override;
   void refresh(lua_State* state) override;
@@ -33,6 +41,7 @@ class DirectorScript final : public Script {
   void doubt_names();
 
   Director& director_;
+  ActPlaces places_;
 };
 
 }  // namespace ziggurat::lua

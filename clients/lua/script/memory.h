@@ -18,15 +18,20 @@ class BoundedState {
 
   lua_State* get() const { return state_.get(); }
   std::size_t used_bytes() const { return budget_.used; }
+  /// `FILE:LINE` where memory was last refused; empty: it was not, or outside of any Lua function.
+  const char* refused_at() const { return budget_.refused_at; }
 
  private:
   struct Budget {
     std::size_t used;
     std::size_t max;
+    lua_State* state = nullptr;  // once it is made
+    char refused_at[LUA_IDSIZE + 16] = "";
   };
   struct Close {
     void operator()(lua_State* state) const { lua_close(state); }
   };
+  static void note_place(Budget& budget);
   static void* allocate(void* budget, void* block, std::size_t old_size, std::size_t new_size);
 
   Budget budget_;

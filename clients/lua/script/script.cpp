@@ -6,6 +6,7 @@
 
 #include "script/error_message.h"
 #include "script/guarded.h"
+#include "script/missing_fields.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -22,6 +23,12 @@ fs::path shown(const fs::path& script) {
   if (error) return script;
   const fs::path relative = (here / script).lexically_normal().lexically_proximate(here);
   return relative.empty() || *relative.begin() == ".." ? script : relative;
+}
+
+/// Whether the value on top is a function, or may have a metatable that makes it one.
+bool may_be_called(lua_State* state) {
+  const int type = lua_type(state, -1);
+  return type == LUA_TFUNCTION || type == LUA_TTABLE || type == LUA_TUSERDATA;
 }
 
 int get_global(lua_State* state) {
@@ -89,6 +96,10 @@ Failure Script::call(const Wanted& wanted, const std::string& moment, bool* answ
     if (!wanted.is_required) return std::nullopt;
     return script_ + ": the script has no function " + wanted.name + "() (in " + moment + ")";
   }
+  if (!may_be_called(state)) {
+    return script_ + ": " + wanted.name + " is a " + luaL_typename(state, -1) + ", not a function; write: function " +
+           wanted.name + "() … end (in " + moment + ")";
+  }
   if (wanted.tick) lua_pushinteger(state, static_cast<lua_Integer>(*wanted.tick));
   if (auto failure = call_prepared(moment, wanted.tick ? 1 : 0, answer != nullptr ? 1 : 0)) {
     return failure;
@@ -136,14 +147,18 @@ int Script::prepare(lua_State* state) {
 
 std::string Script::describe_error(const std::string& moment) {
   auto [text, traceback] = take_error_message(state_.get());
+  const bool lacked_memory =
+      text.ends_with("not enough memory") || text.ends_with("not enough memory for buffer allocation");
+  if (text == "not enough memory" && *state_.refused_at() != '\0') text = std::string(state_.refused_at()) + ": " + text;
   // Most messages of Lua begin with file and line (long paths are shortened), some have neither.
   const auto end = script_.size() < LUA_IDSIZE ? script_ : script_.substr(script_.size() - 40);
   if (text.substr(0, LUA_IDSIZE + 1).find(end + ":") == std::string::npos) {
     text = script_ + ": " + text;
   }
-  if (text.ends_with("not enough memory") || text.ends_with("not enough memory for buffer allocation")) {
+  if (lacked_memory) {
     text += " (it may have " + std::to_string(max_memory_ >> 20) + " MiB)";
   }
+  if (const std::string missing = missing_field(state_.get(), text); !missing.empty()) text += ": " + missing;
   text += " (in " + moment + ")";
   return traceback.empty() ? text : text + "\n" + traceback;
 }

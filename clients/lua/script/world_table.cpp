@@ -19,9 +19,17 @@
 namespace ziggurat::lua {
 namespace {
 
-const char world_key = 0;  // its address, in the registry: the table
+const char world_key = 0;   // its address, in the registry: the table
+const char places_key = 0;  // likewise: of acts
 
 Director& director_of(lua_State* state) { return upvalue<Director>(state); }
+
+/// An act was added to what the director asks for.
+void note_act(lua_State* state) {
+  lua_rawgetp(state, LUA_REGISTRYINDEX, &places_key);
+  static_cast<ActPlaces*>(lua_touserdata(state, -1))->add(state);
+  lua_pop(state, 1);
+}
 
 /// An entity's table or its id; valid while it is on the stack.
 std::string_view check_entity(lua_State* state, int index) {
@@ -75,18 +83,21 @@ int move(lua_State* state) {
   } else {
     director_of(state).move(entity, position, check_orientation(state, 3));
   }
+  note_act(state);
   return 0;
 }
 
 int spawn(lua_State* state) {
   check_count(state, 1, 1, "world.spawn(xml)");
   director_of(state).spawn(check_text(state, 1));
+  note_act(state);
   return 0;
 }
 
 int remove(lua_State* state) {
   check_count(state, 1, 1, "world.remove(entity)");
   director_of(state).remove(check_entity(state, 1));
+  note_act(state);
   return 0;
 }
 
@@ -97,6 +108,7 @@ int push(lua_State* state) {
   const auto torque = lua_isnoneornil(state, 3) ? std::array<double, 3>{} : check_vector(state, 3);
   director_of(state).push(entity, force, torque,
                           lua_isnoneornil(state, 4) ? std::string_view() : check_text(state, 4));
+  note_act(state);
   return 0;
 }
 
@@ -146,6 +158,7 @@ int set_colors(lua_State* state) {
     lua_pop(state, 1);
   }
   (director_of(state).*set)(id, {colors, count});
+  note_act(state);
   return 0;
 }
 
@@ -166,6 +179,7 @@ int set_tags(lua_State* state) {
     lua_pop(state, 1);
   }
   director_of(state).set_tags(id, payloads);
+  note_act(state);
   return 0;
 }
 
@@ -253,6 +267,8 @@ void refresh_entities(lua_State* state, Director& director) {
 void push_world(lua_State* state, const WorldParts& parts) {
   Director& director = parts.director;
   prepare_entities(state, director);
+  lua_pushlightuserdata(state, &parts.places);
+  lua_rawsetp(state, LUA_REGISTRYINDEX, &places_key);
   lua_newtable(state);
   lua_pushvalue(state, -1);
   lua_rawsetp(state, LUA_REGISTRYINDEX, &world_key);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <lua.hpp>
 
+#include "script/act_places.h"
 #include "script/log_lines.h"
 #include "script/random_stream.h"
 #include "ziggurat/director.h"
@@ -16,6 +17,7 @@ struct WorldParts {
   LogLines& log;
   RandomStream& random;
   std::uint64_t first_tick;  ///< at which the script begins
+  ActPlaces& places;         ///< gets one for each act
 };
 
 /// Pushes it. May raise a Lua error.

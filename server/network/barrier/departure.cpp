@@ -116,6 +116,8 @@ void handle_leave(Barrier& barrier, Session& session) {
     const std::size_t robot = session.roster.robots[position];
     if (leave.reason == wire::LeaveReason::failed) {
       barrier.journal.fail(robot, leave.message, session.turn.tick);
+    } else if (session.state != SessionState::draining) {
+      barrier.journal.depart(robot, session.turn.tick);
     }
     remove_robot(barrier, robot);
   }

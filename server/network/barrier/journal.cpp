@@ -23,7 +23,10 @@ std::string printable(std::string_view text) {
 
 void Journal::note(std::string_view text) {
   if (report_.notices.size() == max_notices) report_.notices.erase(report_.notices.begin());
-  report_.notices.push_back(printable(text.substr(0, max_notice)));
+  std::string line(text.substr(0, max_notice));
+  while (line.ends_with('\n')) line.pop_back();
+  std::ranges::replace(line, '\n', ' ');
+  report_.notices.push_back(printable(line));
 }
 
 void Journal::fail(std::size_t robot, std::string_view message, std::uint64_t tick) {
@@ -43,12 +46,14 @@ void Journal::shrink(std::size_t count) {
   const auto is_behind = [&](const auto& entry) { return entry.robot >= count; };
   std::erase_if(report_.log, is_behind);
   std::erase_if(report_.failures, is_behind);
+  std::erase_if(report_.departures, is_behind);
 }
 
 Report Journal::take() {
   const auto by_robot = [](const auto& a, const auto& b) { return a.robot < b.robot; };
   std::stable_sort(report_.log.begin(), report_.log.end(), by_robot);
   std::stable_sort(report_.failures.begin(), report_.failures.end(), by_robot);
+  std::stable_sort(report_.departures.begin(), report_.departures.end(), by_robot);
   return std::exchange(report_, {});
 }
 

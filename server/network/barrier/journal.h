@@ -22,7 +22,10 @@ class Journal {
   /// A robot's controller has failed.
   /// @param tick  of the observation that it failed on
   void fail(std::size_t robot, std::string_view message, std::uint64_t tick);
-  /// The same for a director.
+  /// A robot's controller took leave of it before the end.
+  /// @param tick  of the last observation that it got
+  void depart(std::size_t robot, std::uint64_t tick) { report_.departures.push_back({robot, tick}); }
+  /// A director has failed.
   void fail(std::string director, std::string_view message, std::uint64_t tick);
   std::vector<DirectorLine>& log_of_directors() { return report_.log_of_directors; }
   /// A deadline took a robot out of the barrier.
@@ -31,7 +34,7 @@ class Journal {
   void stop(std::string text);
   /// Where lines that controllers log are appended.
   std::vector<wire::LogLine>& log() { return report_.log; }
-  /// Forgets what robots behind the first `count` logged and how they failed.
+  /// Forgets what robots behind the first `count` logged, and how they failed or departed.
   void shrink(std::size_t count);
 
   /// All of it since the last time.

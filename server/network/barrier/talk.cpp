@@ -48,8 +48,10 @@ void answer_fault(Barrier& barrier, const std::string& connection, Session* sess
   const std::string client = session == nullptr        ? "A peer without a session"
                              : session->client.empty() ? "A client that waits for the world"
                                                        : session->client;
-  barrier.journal.note(
-      fmt::format("{} was answered {}: {}", client, to_string(fault.code), fault.message));
+  const bool ends_with_it = session != nullptr && session->role == wire::Role::director;  // and says why
+  if (!ends_with_it || is_last) {
+    barrier.journal.note(fmt::format("{} was answered {}: {}", client, to_string(fault.code), fault.message));
+  }
   if (session == nullptr) return;
   if (is_last) return lose(barrier, *session, "it was closed for its bad messages");
   if (delivery == Delivery::unreachable) lose(barrier, *session, "its connection is gone");

@@ -108,6 +108,20 @@ TEST_F(Scripts, CommandsAreLookedForInTheSamePlaces) {
   EXPECT_NE(find("./drive.py").missing.find("chmod +x"), std::string::npos);
 }
 
+TEST_F(Scripts, ACommandThatNoShellCanStartIsTold) {
+  const auto program = write("drive", "#!/bin/sh\n");
+  const auto plain = write("drive.txt", "");
+  fs::permissions(program, fs::perms::owner_all);
+  for (const std::string& command : {program.string() + " --fast", "exec " + program.string(), std::string("sleep 1"),
+                                     std::string("X=1 ./nothing"), std::string("cd /tmp && ./nothing"), std::string("exit 4")}) {
+    EXPECT_EQ(why_not_started(command), "") << command;
+  }
+  EXPECT_NE(why_not_started(program.string() + "r").find("did you mean 'drive'?"), std::string::npos);
+  EXPECT_NE(why_not_started(plain.string()).find("chmod +x"), std::string::npos);
+  EXPECT_NE(why_not_started("./").find("is no program"), std::string::npos);
+  EXPECT_NE(why_not_started("no-such-program").find("no program in PATH"), std::string::npos);
+}
+
 TEST_F(Scripts, WithoutAFunctionThatRobotsNeedAreDoubted) {
   const auto scene_file = fs::path(folder_.path()) / "a.argos";
   const auto problems = [&](const char* text) {

@@ -32,7 +32,10 @@ TEST(Summary, JsonHasTheRatesAndTheHashInFull) {
   summary.seed = 7;
   summary.hash = 0xAB;
   summary.failures.push_back({"r\xff", "drive", 4, "not UTF-8: \xff"});
+  summary.departures.push_back({"r1", "drive", 5});
   const auto json = nlohmann::json::parse(to_json(summary));
+  EXPECT_EQ(json["left"], (nlohmann::json{{{"robot", "r1"}, {"controller", "drive"}, {"tick", 5}}}));
+  EXPECT_NE(to_text(summary).find("1 left before the end: robot r1 at tick 5"), std::string::npos);
   EXPECT_EQ(json["real_time_factor"], 8.0);
   EXPECT_EQ(json["ticks_per_s"], 40.0);
   EXPECT_EQ(json["seed"], 7);

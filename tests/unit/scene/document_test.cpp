@@ -103,6 +103,23 @@ TEST(Text, MalformedXmlIsAFaultAtItsPlace) {
   EXPECT_TRUE(contains(only_fault(read_text("<a b=c/>", "t")), "t:1:6: malformed XML"));
 }
 
+TEST(Text, WhatOtherParsersRefuseIsTold) {
+  SceneText text;
+  text.arena = arena_with(R"(<box id="a < b" size="1,1,1" movable="false"><body/></box>)");
+  EXPECT_TRUE(contains(only_fault(text.read()), "malformed XML: < inside a value; write &lt;")) << all_problems(text.read());
+  text.arena = arena_with(R"(<!-- a < b > c, "d' --><box id="a &lt; b > c" size="1,1,1" movable="false"><body/></box>)");
+  EXPECT_TRUE(text.read().problems.empty()) << all_problems(text.read());
+  for (const char* comment : {"<!-- a -- b -->", "<!-- a --->", "<!---------->"}) {
+    text.arena = arena_with(comment);
+    const ReadResult result = text.read();
+    ASSERT_TRUE(result.ok()) << comment;
+    ASSERT_EQ(result.problems.size(), 1u) << comment << all_problems(result);
+    EXPECT_TRUE(contains(result.problems[0].text, "-- inside a comment")) << all_problems(result);
+  }
+  text.arena = arena_with("<!----><!-- - - -->");
+  EXPECT_TRUE(text.read().problems.empty()) << all_problems(text.read());
+}
+
 TEST(Text, AnEntityBombIsHarmlessAndReported) {
   std::string text = "<?xml version=\"1.0\"?>\n<!DOCTYPE bomb [\n<!ENTITY lol0 \"lol\">\n";
   for (int i = 1; i < 10; ++i) {

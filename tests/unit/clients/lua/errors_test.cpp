@@ -73,6 +73,22 @@ TEST_F(Errors, OtherThanStringsNameTheScriptToo) {
   expect_contains(start("error(42)"), "42 (in its chunk");
 }
 
+TEST_F(Errors, OfWhatTheRobotLacksNameItAndWhatItHas) {
+  ASSERT_EQ(start("local absent = robot.radios == nil and not robot.joints.nothing\n"
+                  "function step() if not robot.radios and absent then robot.radios.r.send({}) end end"),
+            std::nullopt);
+  const Failure failure = controller().step(1);
+  expect_contains(failure, "main.lua:2: attempt to index a nil value (field 'radios'): robot '");
+  expect_contains(failure, " has no robot.radios; robot has: ");
+  expect_contains(start("local x = {}; local y = robot.nothing; x.other.z = 1"), "(field 'other') (in its chunk");
+  expect_contains(start("robot.params.gain.x = 1"), " has no robot.params.gain; robot.params has: script, speed (in its chunk");
+}
+
+TEST_F(Errors, OfWhatIsNoFunctionSayIt) {
+  ASSERT_EQ(start("function init() end step = 5"), std::nullopt);
+  expect_contains(controller().step(1), "main.lua: step is a number, not a function; write: function step()");
+}
+
 TEST_F(Errors, InTheErrorItself) {
   EXPECT_TRUE(start("error(setmetatable({}, {__tostring = function() error('again') end}))"));
 }
@@ -99,7 +115,7 @@ TEST_F(Errors, MemoryWithoutBound) {
   options_.max_memory = 8 << 20;
   const Failure failure = start("local t = {} while true do t[#t + 1] = ('x'):rep(1000) .. #t end");
   expect_contains(failure,
-                  "main.lua: not enough memory (it may have 8 MiB) (in its chunk, tick 0)");
+                  "main.lua:1: not enough memory (it may have 8 MiB) (in its chunk, tick 0)");
   EXPECT_LE(controller().used_memory(), std::size_t{8} << 20);
 }
 

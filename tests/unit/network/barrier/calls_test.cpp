@@ -67,7 +67,7 @@ TEST(Journal, NoticesArePrintableAndBounded) {
   journal.note(std::string(5000, 'x'));
   const Report report = journal.take();
   ASSERT_EQ(report.notices.size(), 100U);
-  EXPECT_EQ(report.notices[0], "?[31m51?");
+  EXPECT_EQ(report.notices[0], "?[31m51");
   EXPECT_EQ(report.notices.back().size(), 1000U);
   EXPECT_TRUE(journal.take().notices.empty());
 }
@@ -77,6 +77,7 @@ TEST(Journal, LinesAreInSceneOrderAndForgottenWithTheirRobots) {
   journal.log() = {{2, false, "c"}, {0, false, "a"}, {1, false, "b"}, {0, true, "a again"}};
   journal.fail(1, "broken", 5);
   journal.fail(0, std::string(100'000, 'x'), 5);
+  for (const std::size_t robot : {2, 1, 0}) journal.depart(robot, 5);
   journal.stop("first");
   journal.stop("second");
   journal.shrink(2);
@@ -86,6 +87,8 @@ TEST(Journal, LinesAreInSceneOrderAndForgottenWithTheirRobots) {
   EXPECT_EQ(report.log[2].text, "b");
   EXPECT_EQ(report.failures[0].robot, 0U);
   EXPECT_EQ(report.failures[0].message.size(), 16384U);
+  ASSERT_EQ(report.departures.size(), 2U);
+  EXPECT_EQ(report.departures[0].robot, 0U);
   EXPECT_EQ(report.stopped, "first");
 }
 
