@@ -217,7 +217,7 @@ Outcome Server::linger(world::Commands& commands, const Wait& wait) {
 void Server::add_robots(std::span<const std::string> scripts,
                         const world::Observations& observations,
                         const std::vector<std::string>& tag_payloads) {
-  state_->advance();
+  state_->barrier.now = Clock::now();
   ++state_->changes;
   network::add_robots(state_->barrier, scripts, {&observations, &tag_payloads});
 }
@@ -241,7 +241,8 @@ Pause Server::pause() const {
 }
 
 void Server::restart(const wire::Restart& restart) {
-  state_->advance();
+  // Only the time: until it is told, the barrier knows robots that the layout has no more.
+  state_->barrier.now = Clock::now();
   ++state_->changes;
   if (state_->link) state_->link->set_seed(restart.seed);
   network::restart(state_->barrier, restart);

@@ -71,7 +71,9 @@ void Simulation::Parts::archive(math::Archive& archive) {
 void Simulation::Parts::note_commands() {
   if (has_archive || history.size > longest_history) return;
   write_commands(layout, commands, commanding);
-  if (commanding == commanded) return;
+  // What lasts for one step must be written down again, though it is the same.
+  const bool lasts = commands.radio_messages.entries.empty() && commands.pushes.empty();
+  if (lasts && commanding == commanded) return;
   history.commands.push_back({state.tick, commanding});
   history.size += commanding.size();
   std::swap(commanded, commanding);

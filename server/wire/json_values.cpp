@@ -130,11 +130,12 @@ std::optional<std::string> bytes_of(std::string_view text) {
   return bytes;
 }
 
+/// An unknown name is as an unknown number: what must not be left out is refused later.
 bool put_enumeration(const Place& place, const std::string& name) {
+  constexpr std::int64_t unknown = -1;
   const auto* value = place.field.enum_type()->FindValueByName(name);
   if (value != nullptr) return put_integer(place, std::int64_t{value->number()});
-  put_integer_text(place, name);
-  return true;
+  return put_integer_text(place, name) || put_integer(place, unknown);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 namespace ziggurat::wire {
 
@@ -19,14 +20,19 @@ void zero(const world::Layout& layout, std::size_t robot, world::Commands& comma
 }
 
 void forget_radio_messages(const Roster& roster, world::RadioMessages& messages) {
-  std::erase_if(messages.entries, [&](const world::RadioMessages::Entry& entry) {
+  if (messages.entries.empty()) return;
+  const auto is_own = [&](std::size_t radio) {
     for (std::size_t i = 0; i < roster.radios.robots.size(); ++i) {
       const Packing::Stretch& radios = roster.radios.robots[i];
-      const bool is_own = entry.radio >= radios.flat && entry.radio < radios.flat + radios.count;
-      if (is_own) return !roster.taken[i];
+      if (radio >= radios.flat && radio < radios.flat + radios.count) return !roster.taken[i];
     }
     return false;
-  });
+  };
+  world::RadioMessages others;  // without the bytes of those that are forgotten
+  for (const world::RadioMessages::Entry& entry : messages.entries) {
+    if (!is_own(entry.radio)) others.add(entry.radio, messages.payload(entry));
+  }
+  messages = std::move(others);
 }
 
 }  // namespace ziggurat::wire

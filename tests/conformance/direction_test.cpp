@@ -70,7 +70,11 @@ TEST_F(Directing, R3_ASubscriptionHas64PatternsOf256Bytes) {
   longer.mutable_hello()->mutable_subscription()->add_entities(std::string(257, 'b'));
   EXPECT_EQ(refused(peers, longer).code(), v1::Error::TOO_MANY);
   peers.say("p", hello);
-  EXPECT_TRUE(peers.told("p").has_welcome());
+  const auto welcome = peers.told("p").welcome();
+  ASSERT_FALSE(welcome.session_token().empty());
+  more.mutable_hello()->set_session_token(welcome.session_token());
+  peers.say("r", more);
+  EXPECT_EQ(peers.told("r").refusal().error().code(), v1::Error::TOO_MANY) << "also to resume";
 }
 
 TEST_F(Directing, R4_EntitiesThatComeStandBehindTheOthersAndThoseThatGoKeepTheirPlaces) {

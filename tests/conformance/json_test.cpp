@@ -94,6 +94,12 @@ TEST_F(Twin, T6_OtherSpellingsOfTheSame) {
   EXPECT_EQ(barrier.sessions.size(), 0U);
 }
 
+TEST_F(Twin, H8_AnActionThatTheProtocolDoesNotHaveIsRefused) {
+  say("p", R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER","robots":["*"],
+               "deadlinePolicy":{"action":"STOPP","wallDeadlineMs":100}}})");
+  EXPECT_EQ(told("p")["refusal"]["error"]["code"], "BAD_VALUE");
+}
+
 TEST_F(Twin, T6_MalformedTextIsAnsweredInJson) {
   std::string deep = R"({"hello":{"x":)" + std::string(100'000, '[');
   for (const std::string& text :

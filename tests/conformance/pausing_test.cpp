@@ -33,6 +33,17 @@ TEST(Pause, P1_TakesEffectWhenTheTickIsAnswered) {
   EXPECT_TRUE(pair.peers.is_complete());
 }
 
+TEST(Pause, P1_TakesEffectWhenTheLastThatOwesIsClosedForItsMessages) {
+  Pair pair{Config{}};
+  pair.peers.say("p", Peers::leave({0}));  // it still owes its answer
+  pause(pair.peers.barrier);
+  EXPECT_FALSE(pair.peers.barrier.gate.is_standing());
+  for (unsigned i = 0; i <= Config{}.max_faults; ++i) pair.peers.send_bytes("p", "\xff");
+  EXPECT_EQ(pair.peers.barrier.sessions.size(), 1U);
+  pair.peers.pass(milliseconds{1});
+  EXPECT_TRUE(pair.peers.barrier.gate.is_standing());
+}
+
 TEST(Pause, P1_AWorldWithoutRobotsStandsAtEachTick) {
   const SmallRun small(0);
   Peers peers(small);

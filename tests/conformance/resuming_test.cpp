@@ -91,6 +91,7 @@ TEST(Resume, L9_AnAnswerOfBeforeIsReplacedNotRepeated) {
   peers.say("back", command);
   EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.radio_messages.entries.size(), 1U);
+  EXPECT_EQ(peers.commands.radio_messages.bytes.size(), 4U) << "a client may do that again and again";
   peers.inboxes.clear();
   peers.say("back", command);
   EXPECT_EQ(peers.told("back").error().code(), v1::Error::DUPLICATE_TICK);

@@ -1,5 +1,6 @@
 #include "network/barrier/deadlines.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace ziggurat::network {
@@ -76,6 +77,7 @@ void Deadlines::reset() {
     robot.misses_in_row = 0;
     robot.is_zeroed = false;
   }
+  std::ranges::fill(last_missed_, std::nullopt);
 }
 
 }  // namespace ziggurat::network

@@ -43,15 +43,7 @@ std::optional<wire::Refusal> check_wishes(const Barrier& barrier, const wire::He
   if (hello.director.empty()) {
     return refuse(ErrorCode::bad_value, "director", "A Hello of a director says which it is.");
   }
-  if (hello.subscription) {
-    const auto& patterns = hello.subscription->entities;
-    const auto is_long = [](const std::string& text) { return text.size() > longest_pattern; };
-    if (patterns.size() > most_patterns || std::ranges::any_of(patterns, is_long)) {
-      return refuse(ErrorCode::too_many, "subscription.entities",
-                    fmt::format("A subscription may have {} patterns of {} bytes at most.",
-                                most_patterns, longest_pattern));
-    }
-  }
+  if (auto refusal = check_subscription(hello)) return refusal;
   return check_policy(barrier, hello, {});
 }
 
@@ -217,6 +209,16 @@ void add_directors(Barrier& barrier, const std::vector<Config::Deadline>& deadli
     directors.seats.add(barrier.now, false);
     sort_last(directors);
   }
+}
+
+std::optional<wire::Refusal> check_subscription(const wire::Hello& hello) {
+  if (!hello.subscription) return std::nullopt;
+  const auto& patterns = hello.subscription->entities;
+  const auto is_long = [](const std::string& text) { return text.size() > longest_pattern; };
+  if (patterns.size() <= most_patterns && std::ranges::none_of(patterns, is_long)) return std::nullopt;
+  return refuse(ErrorCode::too_many, "subscription.entities",
+                fmt::format("A subscription may have {} patterns of {} bytes at most.", most_patterns,
+                            longest_pattern));
 }
 
 std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t director,

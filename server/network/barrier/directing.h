@@ -16,6 +16,8 @@ void add_directors(Barrier& barrier, const std::vector<Config::Deadline>& deadli
 /// A new session of the director that the Hello asks for.
 std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wire::Hello& hello,
                                                       const std::string& client);
+/// What is wrong with the subscription that a Hello has, if it has one.
+std::optional<wire::Refusal> check_subscription(const wire::Hello& hello);
 /// What is wrong with the policy that a Hello asks for, if the server fixes that of its director.
 std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t director,
                                          const wire::Hello& hello);

@@ -218,7 +218,6 @@ void check_deadlines(Barrier& barrier) {
   check_sessions(barrier);
   check_free_robots(barrier);
   check_free_directors(barrier);
-  stand_if_paused(barrier);
 }
 
 void send_heartbeats(Barrier& barrier) {
@@ -250,6 +249,7 @@ void advance(Barrier& barrier, Time now) {
   barrier.now = now;
   if (barrier.now >= barrier.timers.deadline) check_deadlines(barrier);
   if (barrier.now >= barrier.timers.heartbeat) send_heartbeats(barrier);
+  stand_if_paused(barrier);  // a session that was lost may have been the last that owed
 }
 
 Time next_event(const Barrier& barrier) {

@@ -153,6 +153,23 @@ TEST_P(Snapshots, ListTheContactsOfTheirLastSubstep) {
   }
 }
 
+TEST_P(Snapshots, CarryPushesThatAreTheSameAtEachTick) {
+  Case world(GetParam());
+  const auto push = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      world.simulation.commands().pushes.push_back({0, {3, 0, 1}, {0, 0, 0}});
+      world.simulation.step();
+    }
+    return world.simulation.hash();
+  };
+  push(5);
+  const Snapshot snapshot = world.simulation.snapshot();
+  const std::uint64_t expected = push(5);
+  world.spawn("c", "5,0,.9");  // so that the world is built again
+  world.simulation.restore(world.read.scene, snapshot);
+  EXPECT_EQ(push(5), expected);
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, Snapshots, ::testing::Values("newton", "sweeps"),
                          [](const auto& solver) { return std::string(solver.param); });
 

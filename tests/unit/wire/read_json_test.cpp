@@ -20,7 +20,7 @@ TEST(ReadJson, WhatProtobufReadsToo) {
               "deadlinePolicy":{"action":"HOLD","wallDeadlineMs":"7"}}})",
            R"({"hello":{"role":1,"takeover":false,"sessionToken":"AQIDBA=="}})",
            R"({"hello":{"role":"1","sessionToken":"AQIDBA"}})",
-           R"({"hello":{"role":"ROLE_UNKNOWN","session_token":"-_8="}})",
+           R"({"hello":{"session_token":"-_8="}})",
            R"({"hello":{"sessionToken":"+/8=","controller":null}})",
            R"({"command":{"tick":"18446744073709551615","robots":[0,"1",2.0,3e0]}})",
            R"({"command":{"tick":18446744073709551615}})",
@@ -41,6 +41,16 @@ TEST(ReadJson, WhatProtobufReadsToo) {
     EXPECT_EQ(read_json(text, message), "");
     EXPECT_EQ(message.SerializeAsString(), expected.SerializeAsString());
   }
+}
+
+TEST(ReadJson, AnUnknownNameOfAnEnumerationIsAsAnUnknownNumber) {
+  v1::ClientMessage message;
+  EXPECT_EQ(read_json(R"({"hello":{"deadlinePolicy":{"action":"STOPP"}}})", message), "");
+  EXPECT_EQ(static_cast<int>(message.hello().deadline_policy().action()), -1);
+  message.Clear();
+  EXPECT_EQ(read_json(R"({"command":{"turretModes":["TURRET_SPED","TURRET_SPEED"]}})", message), "");
+  ASSERT_EQ(message.command().turret_modes_size(), 2) << "the others keep their places";
+  EXPECT_EQ(message.command().turret_modes(0), -1);
 }
 
 TEST(ReadJson, TellsWhichFieldCannotHaveItsValue) {

@@ -43,6 +43,8 @@ TEST_F(Three, TicksAreCountedOncePerController) {
   deadlines.reset();
   EXPECT_EQ(deadlines.misses_in_row(1), 0U);
   EXPECT_EQ(deadlines.missed_ticks()[0], 2U) << "what was counted stays";
+  deadlines.miss(0, 5);
+  EXPECT_EQ(deadlines.missed_ticks()[0], 3U) << "that is another tick 5";
 }
 
 /// What the policy asks for after one miss, two, three.
