@@ -118,6 +118,7 @@ struct Call {
   std::string peer;  ///< its connection
   wire::Request request;
   bool is_local = false;  ///< of this process, which answers it itself: no connection has sent it
+  std::uint64_t session = 0;  ///< its number, see SessionId; a connection may have several, one after the other
 };
 
 }  // namespace ziggurat::network

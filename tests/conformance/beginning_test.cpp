@@ -162,6 +162,25 @@ TEST(Hello, TooManySessions) {
   EXPECT_TRUE(error.retryable());
 }
 
+TEST(Hello, V2_ARequestOfASessionThatHasLeftIsNotAnsweredToTheNextOne) {
+  const SmallRun small(1);
+  Peers peers(small);
+  v1::ClientMessage supervisor = Peers::hello("");
+  supervisor.mutable_hello()->clear_robots();
+  supervisor.mutable_hello()->set_role(v1::ROLE_SUPERVISOR);
+  peers.say("s", supervisor);
+  peers.say("s", Peers::request(7));
+  const std::vector<Call> calls = peers.barrier.calls.take();
+  ASSERT_EQ(calls.size(), 1U);
+  EXPECT_TRUE(can_hear(peers.barrier, calls[0]));
+  peers.say("s", Peers::leave());
+  peers.say("s", supervisor);
+  EXPECT_FALSE(can_hear(peers.barrier, calls[0]));
+  peers.inboxes.clear();
+  answer(peers.barrier, calls[0], [](wire::Outbox& outbox) { outbox.response(7, 0); });
+  EXPECT_TRUE(peers.inboxes["s"].empty());
+}
+
 TEST(Hello, K5_NoRoleTakesThePlacesOfAnother) {
   const SmallRun small(2);
   Config config;

@@ -1,5 +1,7 @@
 // Parsing of the frames from the server; no sockets.
 
+#include <limits>
+
 #include "connection.h"
 #include "ziggurat/error.h"
 #include "ziggurat/v1/envelope.h"
@@ -33,7 +35,9 @@ Connection::Kind Connection::parse() {
     kind = Kind::kWorldState;
   }
   if (message != &message_) forget(content.size());
-  if (transport_->has_more() || !message->ParseFromArray(content.data(), static_cast<int>(content.size()))) {
+  constexpr std::size_t longest = std::numeric_limits<int>::max();
+  if (transport_->has_more() || content.size() > longest ||
+      !message->ParseFromArray(content.data(), static_cast<int>(content.size()))) {
     throw ConnectionError(
         options_.endpoint +
         ": the answer is not a message of ziggurat.v1; is this the endpoint of a server?");

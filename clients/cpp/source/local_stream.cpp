@@ -19,6 +19,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds between_tries{50};
 constexpr milliseconds longest_linger{1000};
 constexpr std::size_t least_free = 4096;    // of the input before a read [bytes]
+constexpr unsigned most_commands = 1000;    // one after the other, before a look at the time
 constexpr std::size_t most_kept = 1 << 20;  // of a buffer that is empty [bytes]
 
 }  // namespace
@@ -43,7 +44,7 @@ LocalStream::~LocalStream() {
     flush();
   }
   // What has arrived is read: the server would take an unread rest for a broken connection.
-  while (stage_ != Stage::closed && fill()) filled_ = taken_ = 0;
+  while (stage_ != Stage::closed && Clock::now() < end && fill()) filled_ = taken_ = 0;
   close();
 }
 
@@ -158,7 +159,7 @@ bool LocalStream::take_command(zmtp::Bytes body) {
     stage_ = Stage::open;
     was_open_ = true;
     flush();
-  } else if (const auto context = zmtp::ping_context(body)) {
+  } else if (const auto context = zmtp::ping_context(body); context && output_.size() - sent_ < most_kept) {
     if (sent_ == output_.size()) output_.clear(), sent_ = 0;
     zmtp::append_command(output_, "PONG", zmtp::text_of(*context));
     flush();
@@ -210,10 +211,12 @@ bool LocalStream::wait(Clock::time_point end) {
 
 bool LocalStream::receive(milliseconds timeout) {
   const auto end = Clock::now() + timeout;
+  unsigned commands = 0;
   for (;;) {
     while (stage_ != Stage::closed) {
       const Step step = take();
       if (step == Step::message) return true;
+      if (step == Step::passed && ++commands > most_commands && Clock::now() > end) return false;
       if (step == Step::incomplete && (stage_ == Stage::closed || !fill())) break;
     }
     if (stage_ == Stage::closed) {

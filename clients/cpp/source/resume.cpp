@@ -98,6 +98,7 @@ bool SessionCore::repeats_answer(const Moment& next) {
     if (is_restored) part.restore(commanded);
   }
   if (next.tick != now.tick || is_reset) return false;
+  read_moment();  // handles point into the message, which may have other memory now
   send_answer();
   return true;
 }

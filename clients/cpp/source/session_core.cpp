@@ -129,12 +129,16 @@ void SessionCore::take(const v1::Error& error) {
   throw to_exception(error);
 }
 
-void SessionCore::take(const Moment& next) {
+void SessionCore::read_moment() {
   try {
     part.read(connection);
   } catch (const std::runtime_error& error) {
     throw ConnectionError(options.endpoint + ": " + error.what());
   }
+}
+
+void SessionCore::take(const Moment& next) {
+  read_moment();
   now = next;
   event = is_restored ? Event::restored
           : !has_begun ? Event::init

@@ -38,6 +38,7 @@ struct SessionCore {
   void send_answer();
   bool wait();  // false if there is none
   bool hear(Connection::Kind kind);  // a message that is not to be answered; false after the last one
+  void read_moment();  // the message to answer
   void take(const Moment& next);
   void take(const v1::Error& error);
   bool is_interrupted() const { return options.is_interrupted && options.is_interrupted(); }

@@ -115,7 +115,9 @@ struct Supervisor::State {
     fresh.set_id(++last_id);
     return fresh;
   }
-  Connection::Kind hear(const std::optional<std::chrono::milliseconds>& timeout, const char* what);
+  /// @param whole  time-out of which there is this rest; none = forever
+  Connection::Kind hear(std::optional<std::chrono::milliseconds> rest,
+                        std::optional<std::chrono::milliseconds> whole, const char* what);
 
   SupervisorOptions options;
   Connection connection;
@@ -124,14 +126,15 @@ struct Supervisor::State {
   std::string json;  // of the last answer
 };
 
-Connection::Kind Supervisor::State::hear(const std::optional<std::chrono::milliseconds>& timeout,
+Connection::Kind Supervisor::State::hear(std::optional<std::chrono::milliseconds> rest,
+                                         std::optional<std::chrono::milliseconds> whole,
                                          const char* what) {
-  const auto kind = connection.receive(timeout, options.is_interrupted);
+  const auto kind = connection.receive(rest, options.is_interrupted);
   if (!kind) {
     const bool interrupted = options.is_interrupted && options.is_interrupted();
     throw ConnectionError(
         std::string("no ") + what + " from " + options.endpoint +
-        (interrupted ? ": interrupted" : " after " + std::to_string(timeout->count()) + " ms"));
+        (interrupted ? ": interrupted" : " after " + std::to_string(whole->count()) + " ms"));
   }
   if (*kind == Connection::Kind::kError) throw to_exception(connection.message().error());
   if (*kind == Connection::Kind::kEnd) {
@@ -149,7 +152,7 @@ void Supervisor::State::open() {
   hello.set_client_version(v1::valid_utf8(options.version));
   connection.send(outgoing);
   for (;;) {
-    const auto kind = hear(options.connect_timeout, "welcome");
+    const auto kind = hear(options.connect_timeout, options.connect_timeout, "welcome");
     if (kind == Connection::Kind::kRefusal) {
       throw to_exception(connection.message().refusal().error());
     }
@@ -158,9 +161,15 @@ void Supervisor::State::open() {
 }
 
 const v1::Response& Supervisor::State::ask() {
+  using std::chrono::milliseconds;
+  using Clock = std::chrono::steady_clock;
   connection.send(outgoing);
+  // Heartbeats come in between: they do not extend the time-out.
+  const auto end = Clock::now() + options.answer_timeout.value_or(milliseconds{0});
+  auto rest = options.answer_timeout;
   for (;;) {
-    const auto kind = hear(options.answer_timeout, "answer");
+    const auto kind = hear(rest, options.answer_timeout, "answer");
+    if (rest) rest = std::max(std::chrono::ceil<milliseconds>(end - Clock::now()), milliseconds{0});
     if (kind != Connection::Kind::kResponse) continue;
     const v1::Response& response = connection.message().response();
     if (response.id() != last_id) continue;

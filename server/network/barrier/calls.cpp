@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "network/glob.h"
@@ -32,6 +33,14 @@ std::optional<wire::Fault> check_entities(const std::vector<std::string>& entiti
       fmt::format("The request names {} entities; {} are allowed.", entities.size(), most_ids));
 }
 
+/// What keeping it takes, about.
+std::size_t bytes_of(const wire::Request& request) {
+  std::size_t bytes = sizeof request + request.text.size() +
+                      sizeof(double) * (request.position.size() + request.orientation.size());
+  for (const std::string& each : request.entities) bytes += sizeof each + each.size();
+  return bytes;
+}
+
 }  // namespace
 
 std::optional<wire::Fault> check_request(const wire::Request& request, wire::Role role) {
@@ -46,20 +55,33 @@ std::optional<wire::Fault> check_request(const wire::Request& request, wire::Rol
   return check_entities(request.entities);
 }
 
-std::optional<wire::Fault> Calls::add(const std::string& connection, wire::Request request) {
-  std::size_t& unanswered = unanswered_[connection];
-  if (unanswered >= most_unanswered) {
+std::optional<wire::Fault> Calls::add(SessionId session, const std::string& connection,
+                                      wire::Request request) {
+  const std::size_t bytes = bytes_of(request);
+  Unanswered& unanswered = unanswered_[session];
+  const bool is_much =
+      unanswered.requests > 0 && unanswered.bytes + bytes > most_unanswered_bytes;
+  if (unanswered.requests >= most_unanswered || is_much) {
     return make_fault(ErrorCode::too_many, {},
-                      fmt::format("{} requests are unanswered.", unanswered));
+                      fmt::format("{} requests of {} bytes are unanswered.", unanswered.requests,
+                                  unanswered.bytes));
   }
-  ++unanswered;
-  calls_.push_back({connection, std::move(request)});
+  ++unanswered.requests;
+  unanswered.bytes += bytes;
+  calls_.push_back({connection, std::move(request), false, static_cast<std::uint64_t>(session)});
   return std::nullopt;
 }
 
-void Calls::answered(const std::string& connection) {
-  const auto found = unanswered_.find(connection);
-  if (found != unanswered_.end() && found->second > 0) --found->second;
+void Calls::answered(const Call& call) {
+  const auto found = unanswered_.find(SessionId{call.session});
+  if (found == unanswered_.end() || found->second.requests == 0) return;
+  --found->second.requests;
+  found->second.bytes -= std::min(found->second.bytes, bytes_of(call.request));
+}
+
+void Calls::forget(SessionId session) {
+  if (unanswered_.erase(session) == 0) return;
+  std::erase_if(calls_, [&](const Call& call) { return SessionId{call.session} == session; });
 }
 
 std::vector<Call> Calls::take() {

@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "network/barrier/session.h"
+#include "network/limits.h"
 #include "network/report.h"
 #include "wire/messages.h"
 #include "wire/request.h"
@@ -18,14 +20,15 @@ std::optional<wire::Fault> check_request(const wire::Request& request, wire::Rol
 
 class Calls {
  public:
-  static constexpr std::size_t most_unanswered = 64;  // requests of a connection
+  // Of a session; a single request may have more bytes.
+  static constexpr std::size_t most_unanswered = 64;
+  static constexpr std::size_t most_unanswered_bytes = 8 * mebibyte;
 
-  /// A connection asks. If it has too many requests that are not answered, that is its fault.
-  std::optional<wire::Fault> add(const std::string& connection, wire::Request request);
-  /// One of its requests is answered.
-  void answered(const std::string& connection);
-  /// Its session is over: it waits for no answer any more.
-  void forget(const std::string& connection) { unanswered_.erase(connection); }
+  /// A session asks. If it has too many requests that are not answered, that is its fault.
+  std::optional<wire::Fault> add(SessionId session, const std::string& connection, wire::Request request);
+  void answered(const Call& call);
+  /// The session is over: it waits for no answer any more.
+  void forget(SessionId session);
 
   /// Something else than a call needs to be looked at.
   void notify() { is_notified_ = true; }
@@ -35,8 +38,11 @@ class Calls {
   std::vector<Call> take();
 
  private:
+  struct Unanswered {
+    std::size_t requests = 0, bytes = 0;
+  };
   std::vector<Call> calls_;
-  std::unordered_map<std::string, std::size_t> unanswered_;  // by connection; looked up only
+  std::unordered_map<SessionId, Unanswered> unanswered_;  // looked up only
   bool is_notified_ = false;
 };
 

@@ -42,7 +42,7 @@ void release_all(Barrier& barrier, Session& holder, bool may_resume) {
 /// The session's connection has no session any more.
 void unbind(Barrier& barrier, const Session& session) {
   barrier.connections.unbind(session.connection);
-  barrier.calls.forget(session.connection);
+  barrier.calls.forget(session.id);
   if (!barrier.on_standing) return;
   barrier.on_standing(session.connection, Standing::none, longest_message(barrier, nullptr));
 }

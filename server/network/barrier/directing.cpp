@@ -71,9 +71,11 @@ std::variant<std::size_t, wire::Refusal> find_director(const Barrier& barrier, c
   std::size_t present = 0;
   for (std::size_t i = 0; i < directors.all.size(); ++i) present += directors.seats[i].has_left ? 0 : 1;
   if (present >= scene::Director::most || directors.all.size() >= most_in_a_run) {
-    return refuse(ErrorCode::too_many, "director",
-                  fmt::format("The world has {} directors, and has had {}; it takes no more.", present,
-                              directors.all.size()));
+    auto refusal = refuse(ErrorCode::too_many, "director",
+                          fmt::format("The world has {} directors, and has had {}; it takes no more.",
+                                      present, directors.all.size()));
+    refusal.fault.retryable = directors.all.size() < most_in_a_run;
+    return refusal;
   }
   return directors.all.size();
 }

@@ -33,7 +33,7 @@ void handle_request(Barrier& barrier, Session& session) {
   const std::uint64_t id = barrier.inbox.request_id();
   wire::Request request = barrier.inbox.request();
   auto fault = check_request(request, session.role);
-  if (!fault) fault = barrier.calls.add(session.connection, std::move(request));
+  if (!fault) fault = barrier.calls.add(session.id, session.connection, std::move(request));
   if (fault) return answer_fault(barrier, session.connection, &session, std::move(*fault), id);
   session.contact.faults = 0;
 }
@@ -143,13 +143,13 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
 }
 
 bool can_hear(const Barrier& barrier, const Call& call) {
-  return barrier.connections.session_of(call.peer) != SessionId::none;
+  return barrier.sessions.find(SessionId{call.session}) != nullptr;
 }
 
 void answer(Barrier& barrier, const Call& call, const std::function<void(wire::Outbox&)>& write) {
-  Session* session = barrier.sessions.find(barrier.connections.session_of(call.peer));
+  Session* session = barrier.sessions.find(SessionId{call.session});
   if (session == nullptr) return;
-  barrier.calls.answered(call.peer);
+  barrier.calls.answered(call);
   write(barrier.outbox);
   if (send(barrier, *session) == Delivery::unreachable) {
     lose(barrier, *session, "its connection is gone");

@@ -11,7 +11,7 @@ namespace ziggurat::network {
 /// @param commands  where values go while a tick is being collected; null otherwise
 void receive(Barrier& barrier, const Received& received, world::Commands* commands);
 
-/// Whether the client that called is still connected.
+/// Whether the session that called is still there.
 bool can_hear(const Barrier& barrier, const Call& call);
 /// Answers a call; `write` puts the response into the outbox.
 void answer(Barrier& barrier, const Call& call, const std::function<void(wire::Outbox&)>& write);

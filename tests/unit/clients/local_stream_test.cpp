@@ -96,6 +96,24 @@ class LocalStreams : public testing::Test {
   int listener_ = -1, client_ = -1;
 };
 
+TEST_F(LocalStreams, AServerThatNeverStopsWithCommandsIsNotListenedToWithoutEnd) {
+  listen();
+  std::thread server;
+  {
+    LocalStream stream(options_);
+    shake_hands(stream);
+    server = std::thread([this] {
+      std::string pings;
+      while (pings.size() < 1 << 20) pings += std::string("\4\7\4PING\0\0", 9);
+      while (::send(client_, pings.data(), pings.size(), MSG_NOSIGNAL) > 0) {
+      }
+    });
+    EXPECT_FALSE(stream.receive(10ms));
+    EXPECT_FALSE(stream.receive(200ms));
+  }  // nor is it when the stream ends
+  server.join();
+}
+
 TEST_F(LocalStreams, AreForPathsWithoutKeys) {
   EXPECT_EQ(LocalStream::path_of(options_), path_);
   options_.server_key = std::string(40, 'x');

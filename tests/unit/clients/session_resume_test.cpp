@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "fake_server.h"
@@ -61,6 +62,36 @@ TEST(Resuming, ALostAnswerIsSentAgainAndNoTickIsSeenTwice) {
   EXPECT_EQ(session.resumes(), 1U);
   EXPECT_FALSE(session.next());
   EXPECT_TRUE(session.ending());
+}
+
+TEST(Resuming, WhatIsHeardStaysThoughTheMessageComesAgain) {
+  v1::ServerMessage heard;  // two of them are more than messages keep their memory for
+  heard.mutable_observation()->set_tick(3);
+  heard.mutable_observation()->add_radio_messages()->mutable_payload()->assign(40 << 20, 'x');
+  v1::ServerMessage welcome;
+  welcome.mutable_welcome()->set_session_token("token");
+  welcome.mutable_welcome()->set_max_message_bytes(1 << 20);
+  v1::RobotDescription& robot = *welcome.mutable_welcome()->add_robots();
+  robot.set_id("a");
+  robot.add_radios()->set_receives(true);
+  FakeServer server([&](FakeServer& self) {
+    self.welcome(welcome);
+    self.send(heard);
+    self.receive();
+    self.cut();
+    expect_resumed(self, welcome);
+    self.send(heard);
+    self.receive();
+    self.end();
+    self.receive();
+  });
+  Session session(options_for(server));
+  ASSERT_TRUE(session.next());
+  EXPECT_FALSE(session.next());
+  ASSERT_EQ(session.robots()[0].radios().size(), 1U);
+  const auto& received = session.robots()[0].radios()[0].received();
+  ASSERT_EQ(received.size(), 1U);
+  EXPECT_EQ(std::count(received[0].begin(), received[0].end(), 'x'), 40 << 20);
 }
 
 TEST(Resuming, TheWorldMayHaveGoneOn) {

@@ -56,6 +56,31 @@ TEST(Supervisor, ListsTheSessions) {
   EXPECT_NE(supervisor.last_answer_json().find("ROLE_OBSERVER"), std::string::npos);
 }
 
+TEST(Supervisor, HeartbeatsDoNotExtendTheTimeOut) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    self.receive();
+    v1::ServerMessage message;
+    message.mutable_heartbeat()->set_sequence(1);
+    for (int i = 0; i < 60; ++i) {  // 3 s
+      self.send(message);
+      std::this_thread::sleep_for(std::chrono::milliseconds{50});
+    }
+    v1::ClientMessage late;
+    late.mutable_request()->set_id(1);
+    self.send(answer(late));
+  });
+  SupervisorOptions options = supervise(server);
+  options.answer_timeout = std::chrono::milliseconds{200};
+  Supervisor supervisor(options);
+  try {
+    supervisor.pause();
+    ADD_FAILURE() << "the server has not answered";
+  } catch (const ConnectionError& error) {
+    EXPECT_NE(std::string(error.what()).find("after 200 ms"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Supervisor, ServersOfLaterVersionsMayHaveMoreRoles) {
   FakeServer server([](FakeServer& self) {
     self.welcome();

@@ -32,11 +32,13 @@ TEST(Calls, RolesMayMakeTheirRequests) {
   EXPECT_EQ(verdict(Kind::restore, Role::observer), ErrorCode::forbidden);
 }
 
+constexpr SessionId first{1}, second{2};
+
 TEST(Calls, AreTakenOnceInTheirOrder) {
   Calls calls;
   EXPECT_FALSE(calls.has_news());
-  calls.add("a", request(Kind::pause));
-  calls.add("b", request(Kind::status));
+  calls.add(first, "a", request(Kind::pause));
+  calls.add(second, "b", request(Kind::status));
   EXPECT_TRUE(calls.has_news());
   const auto taken = calls.take();
   ASSERT_EQ(taken.size(), 2U);
@@ -47,18 +49,32 @@ TEST(Calls, AreTakenOnceInTheirOrder) {
   EXPECT_TRUE(calls.has_news());
 }
 
-TEST(Calls, AConnectionHasABoundedNumberUnanswered) {
+TEST(Calls, ASessionHasABoundedNumberUnanswered) {
   Calls calls;
   for (std::size_t i = 0; i < Calls::most_unanswered; ++i) {
-    ASSERT_FALSE(calls.add("a", request(Kind::status)));
+    ASSERT_FALSE(calls.add(first, "a", request(Kind::status)));
   }
-  EXPECT_EQ(calls.add("a", request(Kind::status))->code, ErrorCode::too_many);
-  EXPECT_FALSE(calls.add("b", request(Kind::status))) << "that is another";
-  calls.answered("a");
-  EXPECT_FALSE(calls.add("a", request(Kind::status)));
-  EXPECT_TRUE(calls.add("a", request(Kind::status)));
-  calls.forget("a");
-  EXPECT_FALSE(calls.add("a", request(Kind::status)));
+  EXPECT_EQ(calls.add(first, "a", request(Kind::status))->code, ErrorCode::too_many);
+  EXPECT_FALSE(calls.add(second, "b", request(Kind::status))) << "that is another";
+  const Call call = calls.take().front();
+  calls.answered(call);
+  EXPECT_FALSE(calls.add(first, "a", request(Kind::status)));
+  EXPECT_TRUE(calls.add(first, "a", request(Kind::status)));
+  calls.forget(first);
+  EXPECT_FALSE(calls.has_news()) << "what it asked is not answered any more";
+  EXPECT_FALSE(calls.add(first, "a", request(Kind::status)));
+}
+
+TEST(Calls, UnansweredOnesOfASessionTakeBoundedMemory) {
+  Calls calls;
+  wire::Request large = request(Kind::spawn);
+  large.text.assign(4 * mebibyte, 'x');
+  EXPECT_FALSE(calls.add(first, "a", large));
+  EXPECT_EQ(calls.add(first, "a", large)->code, ErrorCode::too_many);
+  EXPECT_FALSE(calls.add(first, "a", request(Kind::status)));
+  EXPECT_FALSE(calls.add(second, "b", large));
+  calls.answered(calls.take().front());
+  EXPECT_FALSE(calls.add(first, "a", large));
 }
 
 TEST(Journal, NoticesArePrintableAndBounded) {
