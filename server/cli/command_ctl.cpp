@@ -169,7 +169,9 @@ constexpr Verb verbs[] = {
     {"spawn", "FILE|-", 1, 1, "add an entity: one element, as in <arena>", spawn},
     {"remove", "ENTITY", 1, 1, "remove it from the world", remove},
     {"move", "ENTITY x,y,z [z,y,x]", 2, 3,
-     "put it at rest there [m], with this orientation [degrees]", move},
+     "put it at rest there [m], with this orientation [degrees]; the place need not be free: what overlaps is pushed "
+     "apart",
+     move},
     {"read", "[ID|GLOB]...", 0, any_number, "poses of entities: x y z, and the quaternion w x y z",
      read},
     {"shutdown", "[--reason TEXT]", 0, 0, "end the run, as Ctrl-C does; with a reason as planned",

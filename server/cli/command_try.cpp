@@ -4,6 +4,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "processes/commands.h"
 #include "processes/scripts.h"
 #include "run/rehearsal.h"
 #include "text/numbers.h"
@@ -71,6 +72,7 @@ int execute_try(const Arguments& arguments, processes::Signals& signals) {
   if (const auto fault = command.empty() ? processes::compile_error(options.script) : std::nullopt) {
     throw text::UsageError("--script: " + *fault);
   }
+  if (const auto wrong = processes::why_not_started(command); !wrong.empty()) throw text::UsageError("COMMAND: " + wrong);
   options.command = command;
   options.quiet = parsed.values.count("quiet") > 0;
   if (parsed.values.count("until")) options.until = text::to_integer("--until", text("until"));

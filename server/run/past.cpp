@@ -230,6 +230,9 @@ std::optional<Ending> Past::relive(supervision::World& world, const Retelling::P
     return ending;
   }
   if (retelling.has_ended()) {
+    if (file_.states() == 0) {
+      throw text::UsageError("the recording holds no tick: the run ended before its first");
+    }
     throw text::UsageError(fmt::format("--at {}: the recording has no such tick, it ends at tick {}",
                                        fork_.at, past.simulation.state().tick));
   }

@@ -149,7 +149,8 @@ int Replaying::execute() {
   try {
     end = repeat();
     if (same_ == 0 && end == End::complete) {  // each recording has the state of tick 0
-      damage_ = file_.shortcoming().empty() ? "there is no state" : file_.shortcoming();
+      is_empty_ = file_.shortcoming().empty();
+      damage_ = is_empty_ ? "it holds no tick: the run ended before its first" : file_.shortcoming();
       end = End::damaged;
     }
   } catch (const replay::RecordingError& error) {
@@ -310,8 +311,8 @@ void Replaying::tell(End end) {
     for (const auto& cause : likely_causes(file_.run())) text += "\n  " + cause;
   }
   if (end == End::damaged) {
-    verdict = "damaged";
-    text = fmt::format("{}; {} before it as recorded", damage_, states);
+    verdict = is_empty_ ? "empty" : "damaged";
+    text = is_empty_ ? damage_ : fmt::format("{}; {} before it as recorded", damage_, states);
   }
   if (end == End::stopped) verdict = "stopped";
   const std::string shortcoming = file_.shortcoming();

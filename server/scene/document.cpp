@@ -104,7 +104,9 @@ bool Document::check_text(ReadBudget& budget) {
   }
   budget.tags -= tags;
   if (const std::size_t nul = source_.find('\0'); nul != std::string::npos) {
-    report_.fault(at(nul), "this is binary data, not a scene; write an XML file in UTF-8");
+    const bool is_recording = source_.starts_with("\x89MCAP0\r\n");
+    report_.fault(at(nul), is_recording ? "this is a recording, not a scene; 'ziggurat replay' repeats it"
+                                        : "this is binary data, not a scene; write an XML file in UTF-8");
     return false;
   }
   if (const std::size_t bad = first_bad_utf8(source_); bad != std::string_view::npos) {

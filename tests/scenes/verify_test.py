@@ -4,7 +4,7 @@ import json
 import re
 import struct
 
-from harness import FAULT, FINISHED, main
+from harness import CONTROLLER_FAILED, FAULT, FINISHED, main
 from recorded import DAMAGED, DIFFERS, ROOT, Recorded, change_inputs
 
 
@@ -44,6 +44,17 @@ class Verify(Recorded):
         recording.write_bytes(data)
         outcome = self.ask("verify", recording, code=DAMAGED)
         self.assertRegex(outcome.out, r"^damaged: .*; 0 states before it as recorded")
+
+
+    def test_a_recording_of_a_run_without_ticks_is_empty(self):
+        recording = self.folder / "run.mcap"
+        self.run_scene("--controller", "swing=exit 4", "--record", recording, code=CONTROLLER_FAILED)
+        outcome = self.ask("verify", recording, code=DAMAGED)
+        self.assertRegex(outcome.out, r"^empty: it holds no tick: the run ended before its first")
+        outcome = self.ziggurat("fork", recording, "--at", 1, "--controller", "swing=true")
+        self.assert_is_sentence(outcome, "the recording holds no tick")
+        outcome = self.ziggurat("check", recording)
+        self.assert_is_sentence(outcome, "this is a recording, not a scene; 'ziggurat replay' repeats it")
 
 
 class OtherBuild(Recorded):

@@ -10,8 +10,10 @@ try:
     import google.protobuf
     import zmq
 except ImportError as error:
-    raise ImportError(f"{error}. The client needs pyzmq and protobuf: apt-get install python3-zmq "
-                      "python3-protobuf, or pip install pyzmq protobuf") from None
+    import sys
+    raise ImportError(f"{error}. The client needs pyzmq and protobuf, for this Python: {sys.executable or 'python3'} -m pip "
+                      "install pyzmq protobuf; for Debian's /usr/bin/python3: apt-get install python3-zmq "
+                      "python3-protobuf") from None
 
 from .connection import Curve
 from .devices import *

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from typing import Any, Dict, Generic, Iterable, Iterator, List, Sequence, TypeVar, Union
 
 T = TypeVar("T")
@@ -10,9 +11,11 @@ T = TypeVar("T")
 class Named(Sequence, Generic[T]):
     """A list with access by position or by id."""
 
-    def __init__(self, things: Iterable[T], kind: str):
+    def __init__(self, things: Iterable[T], kind: str, owner: str = ""):
+        """owner: whose they are, for messages."""
         self._things: List[T] = list(things)
         self._kind = kind
+        self._owner = owner
         self._by_id: Dict[str, T] = {}
         for thing in self._things:
             self._by_id.setdefault(thing.id, thing)
@@ -22,7 +25,10 @@ class Named(Sequence, Generic[T]):
             return self._things[key]
         if key in self._by_id:
             return self._by_id[key]
-        raise KeyError(f"no {self._kind} {key!r}; known: "
+        begin = f"{self._owner} has no" if self._owner else "no"
+        near = difflib.get_close_matches(key, self._by_id, 1) if len(self._by_id) <= 1000 else []
+        rest = f"did you mean {near[0]!r}? Known: " if near else "known: "
+        raise KeyError(f"{begin} {self._kind} {key!r}; {rest}"
                        + (", ".join(map(repr, self._by_id)) or "none"))
 
     def __len__(self) -> int:

@@ -24,20 +24,21 @@ class Robot(Sensors):
         self.gone = False  # it has left the run, or another client has taken it over
         super().__init__(exchange, given)
         self._position = position
+        owner = f"robot {self.id!r}"
         self._tell_leave = tell_leave
 
-        self.joints: Named[Joint] = Named(joints_of(exchange, given), "joint")
-        self.radios: Named[Radio] = Named([Radio(exchange, r) for r in given.radios], "radio")
-        self.leds: Named[Led] = Named([Led(exchange, "led_colors", l) for l in given.leds], "LED")
+        self.joints: Named[Joint] = Named(joints_of(exchange, given), "joint", owner)
+        self.radios: Named[Radio] = Named([Radio(exchange, r) for r in given.radios], "radio", owner)
+        self.leds: Named[Led] = Named([Led(exchange, "led_colors", l) for l in given.leds], "LED", owner)
         self.directional_leds: Named[Led] = Named(
             [Led(exchange, "directional_led_colors", l) for l in given.directional_leds],
-            "directional LED")
-        self.tags: Named[Tag] = Named([Tag(exchange, tag) for tag in given.tags], "tag")
-        self.magnets: Named[Magnet] = Named([Magnet(exchange, m) for m in given.magnets], "magnet")
+            "directional LED", owner)
+        self.tags: Named[Tag] = Named([Tag(exchange, tag) for tag in given.tags], "tag", owner)
+        self.magnets: Named[Magnet] = Named([Magnet(exchange, m) for m in given.magnets], "magnet", owner)
         self.range_and_bearing: Optional[RangeAndBearing] = \
             RangeAndBearing(exchange, position, given.range_and_bearing) \
             if given.HasField("range_and_bearing") else None
-        self.cameras: Named[Camera] = Named([Camera(exchange, c) for c in given.cameras], "camera")
+        self.cameras: Named[Camera] = Named([Camera(exchange, c) for c in given.cameras], "camera", owner)
         self.wheels: Optional[Wheels] = \
             Wheels(exchange, given.wheels) if given.HasField("wheels") else None
         self.turret: Optional[Turret] = \
@@ -52,6 +53,15 @@ class Robot(Sensors):
         """Sets a figure of the run, which the server keeps for each tick; the last value is the final one, in
         --summary under ROBOT/name. Sent with the command of this tick."""
         self._exchange.metrics.set(self._position, name, value)
+
+    def _lacks(self) -> str:
+        """What of it is None, and what it has."""
+        optional = ("range_and_bearing", "wheels", "turret", "pose", "battery")
+        absent = [name for name in optional if getattr(self, name) is None]
+        lists = ("joints", "radios", "leds", "directional_leds", "tags", "magnets", "cameras", "imus",
+                 "contact_sensors", "proximity_sensors")
+        there = [name for name in optional if name not in absent] + [n for n in lists if getattr(self, n)]
+        return f"robot {self.id!r} has no {', '.join(absent)} (None); it has: {', '.join(there) or 'no devices'}"
 
     def leave(self) -> None:
         """Leaves the run forever: the world no longer waits for this robot."""

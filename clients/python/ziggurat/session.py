@@ -444,4 +444,13 @@ class Session:
         return self
 
     def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
-        self.close("" if kind is None else f"{kind.__name__}: {error}")
+        hint = self._hint(error)
+        if hint and hasattr(error, "add_note"):
+            error.add_note(hint)
+        self.close("" if kind is None else f"{kind.__name__}: {error}" + (f" ({hint})" if hint else ""))
+
+    def _hint(self, error: Any) -> str:
+        """What a robot lacks, for the use of a device that is None."""
+        if not isinstance(error, AttributeError) or getattr(error, "obj", error) is not None:
+            return ""
+        return "; ".join(robot._lacks() for robot in list(self.robots)[:3])

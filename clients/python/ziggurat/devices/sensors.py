@@ -108,9 +108,10 @@ class Sensors:
             ProximitySensor(sensor.anchor, tuple(sensor.position), tuple(sensor.direction),
                             sensor.range, sensor.angle if sensor.HasField("angle") else None)
             for sensor in given.proximity_sensors]
-        self.imus: Named[Imu] = Named([Imu(exchange, imu) for imu in given.imus], "IMU")
+        self.imus: Named[Imu] = Named([Imu(exchange, imu) for imu in given.imus], "IMU", f"robot {given.id!r}")
         self.contact_sensors: Named[ContactSensor] = Named(
-            [ContactSensor(exchange, sensor) for sensor in given.contact_sensors], "contact sensor")
+            [ContactSensor(exchange, sensor) for sensor in given.contact_sensors], "contact sensor",
+            f"robot {given.id!r}")
         self._proximity = [exchange.place("proximity") for _ in self.proximity_sensors]
 
     @property

@@ -44,6 +44,8 @@ class Devices(unittest.TestCase):
                 self.two.joints["right"].target = bad
         with self.assertRaisesRegex(KeyError, "'left', 'arm', 'right'"):
             self.two.joints["wing"]
+        with self.assertRaisesRegex(KeyError, "robot 'two' has no joint 'lefd'; did you mean 'left'"):
+            self.two.joints["lefd"]
 
     def test_before_the_first_tick(self):
         self.assertEqual(self.two.joints["left"].encoder, 0)

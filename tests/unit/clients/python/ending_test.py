@@ -10,6 +10,21 @@ from session_case import SessionCase, open_with
 
 
 class Leaving(SessionCase):
+    def test_use_of_a_device_that_is_not_there_tells_what_the_robot_has(self):
+        def part(server):
+            open_with(server, v1.RobotDescription(id="bare", joint_sensors=[v1.JointDescription(id="arm")]))
+            server.observe(0)
+            self.assertRegex(server.receive().message,
+                             r"AttributeError: .*robot 'bare' has no .*wheels.*; it has: joints\)$")
+
+        def client():
+            with self.assertRaises(AttributeError):
+                with self.connect() as session:
+                    next(session)
+                    session.robots["bare"].wheels.left = 1
+
+        self.play(part, client)
+
     def test_an_exception_leaves_as_failed(self):
         def part(server):
             open_with(server)
