@@ -270,8 +270,8 @@ void integrate_point(Integration& integration, const Vector3& moment) {
   const double magnitude = moment.norm();
   if (!(magnitude > 0)) return;
   const double reach =
-      1e-4 * std::max(distance_outside(*integration.source, integration.offset),
-                      1e-3 * integration.offset.norm());
+      1e-4 * std::max({distance_outside(*integration.source, integration.offset),
+                       1e-3 * integration.offset.norm(), 1e-3 * longest_side(*integration.source)});
   const Vector3 lever = moment * (reach / magnitude);
   for (const double side : {-1.0, 1.0}) {
     integration.add({side * lever, side * magnitude / (2 * reach)}, 1);

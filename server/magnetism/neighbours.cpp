@@ -177,8 +177,8 @@ bool Neighbours::list_by_grid(const Dipoles& dipoles) {
       std::sort(found_.begin() + static_cast<std::ptrdiff_t>(from), found_.end());
       found_from_[i] = static_cast<std::uint32_t>(from);
       found_to_[i] = static_cast<std::uint32_t>(found_.size());
+      if (found_.size() > most) return false;
     }
-    if (found_.size() > most) return false;
   }
   for (std::uint32_t i = 0; i < dipoles.count; ++i) {
     first_.insert(first_.end(), found_to_[i] - found_from_[i], i);

@@ -25,21 +25,25 @@ void ViscousDamping::body_added(Body& body) {
 
 void ViscousDamping::body_removed(const Body& body) { std::erase(damped_, body.entity); }
 
-void ViscousDamping::before_substep(std::span<Body> bodies, double) {
+void ViscousDamping::before_substep(std::span<Body> bodies, double substep) {
+  // What a step of the law would turn round stops.
+  const auto rate = [substep](double factor, double speed) {
+    return std::min(factor * (1 + speed), 1 / substep);
+  };
   for (const std::size_t entity : damped_) {
     Body& body = bodies[entity];
     body.motions(motions_);
     for (const LinkBody& link : body.links) {
       if (!link.moves) continue;
       const auto [v, w] = body.motion(link, motions_);
-      const btVector3 force = -v * (link.mass * link.damping.linear * (1 + v.length()));
+      const btVector3 force = -v * (link.mass * rate(link.damping.linear, v.length()));
       const btTransform pose = body.transform(link);
       const btMatrix3x3& basis = pose.getBasis();
       const btVector3 momentum = basis * (to_bullet(link.inertia) * (basis.transpose() * w));
       const btVector3 arm = pose.getOrigin() - body.transform(link.part).getOrigin();
       body.apply_force(link.part, force);
       body.apply_torque(link.part,
-                        arm.cross(force) - momentum * (link.damping.angular * (1 + w.length())));
+                        arm.cross(force) - momentum * rate(link.damping.angular, w.length()));
     }
   }
 }

@@ -16,7 +16,8 @@ class Gravity final : public Plugin {
 };
 
 /// Force -m v (k + k |v|) and torque -I w (k + k |w|) on every link that asks for it: the law of
-/// Bullet's multi-bodies, for rigid bodies and for links damped unlike their neighbours.
+/// Bullet's multi-bodies, for rigid bodies and for links damped unlike their neighbours; at most what stops
+/// the link within the substep.
 class ViscousDamping final : public Plugin {
  public:
   void body_added(Body& body) override;

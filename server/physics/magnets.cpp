@@ -122,9 +122,11 @@ void Magnets::give_up_field() {
 void Magnets::build_field(std::span<const Body> bodies) {
   carriers_.clear();
   std::vector<magnetism::Magnet> magnets;
+  std::ptrdiff_t first = 0;  // carrier of the entity under way: magnets of an entity stand together
   for (const PlacedMagnet& placed : magnets_) {
-    const auto found = std::ranges::find_if(carriers_, [&](const Carrier& carrier) {
-      return carrier.entity == placed.entity && carrier.part == placed.part;
+    if (!carriers_.empty() && carriers_.back().entity != placed.entity) first = std::ssize(carriers_);
+    const auto found = std::find_if(carriers_.begin() + first, carriers_.end(), [&](const Carrier& carrier) {
+      return carrier.part == placed.part;
     });
     magnets.push_back(placed.magnet);
     magnets.back().body = static_cast<std::uint32_t>(found - carriers_.begin());
@@ -235,11 +237,12 @@ void Magnets::find_close_pairs(std::span<const Body> bodies, double substep) {
   for (std::size_t i = 0; i < magnets_.size(); ++i) {
     if (!magnets_[i].turning) moment = std::max(moment, field_->moment(i).norm());
   }
+  close_.clear();
+  if (moment == 0) return;  // a list of pairs at no distance would take as long as one of all
   field_->list_near(close_reach(moment, felt_inverse_mass_, inverse_inertia_, substep), near_);
   const auto carrier = [&](std::uint32_t magnet) -> Carrier& {
     return carriers_[field_->magnets()[magnet].body];
   };
-  close_.clear();
   for (const auto& [i, j] : near_) {
     Carrier &a = carrier(i), &b = carrier(j);
     if (magnets_[i].turning || magnets_[j].turning || a.entity == b.entity) continue;

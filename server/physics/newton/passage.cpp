@@ -10,11 +10,22 @@
 namespace ziggurat::physics {
 namespace {
 
-/// Where a collider is after some time.
+/// How its surface turns [rad/s]: what is round about an axis is the same however it turns about it. The
+/// points of a ball that turns would be carried back to its side or its top.
+btVector3 turning_of(const Collider& collider) {
+  if (std::holds_alternative<contact::Sphere>(collider.shape)) return {0, 0, 0};
+  const btVector3& turning = collider.angular_velocity;
+  const bool is_round = std::holds_alternative<contact::Cylinder>(collider.shape) ||
+                        std::holds_alternative<contact::Capsule>(collider.shape);
+  if (!is_round) return turning;
+  const btVector3 axis = collider.pose.getBasis().getColumn(2);
+  return turning - axis * axis.dot(turning);
+}
+
+/// Where a collider's surface is after some time.
 btTransform pose_after(const Collider& collider, double time) {
   if (!collider.moves) return collider.pose;
-  const math::Quaternion turn =
-      dynamics::exponential(from_bullet(collider.angular_velocity) * time);
+  const math::Quaternion turn = dynamics::exponential(from_bullet(turning_of(collider)) * time);
   return btTransform(btMatrix3x3(to_bullet(turn)) * collider.pose.getBasis(),
                      collider.pose.getOrigin() + collider.velocity * time);
 }
@@ -22,8 +33,8 @@ btTransform pose_after(const Collider& collider, double time) {
 /// The fastest that two surfaces can approach each other along a normal from b to a [m/s].
 double fastest_approach(const Collider& a, const Collider& b, const btVector3& normal) {
   return normal.dot(b.velocity - a.velocity) +
-         a.angular_velocity.cross(normal).length() * a.radius +
-         b.angular_velocity.cross(normal).length() * b.radius;
+         turning_of(a).cross(normal).length() * a.radius +
+         turning_of(b).cross(normal).length() * b.radius;
 }
 
 double least_distance(const contact::Contacts& found) {
@@ -48,7 +59,7 @@ void carry_back(contact::Contacts& found, const Collider& a, const btTransform& 
 }  // namespace
 
 contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near) {
-  constexpr int most_steps = 32;
+  constexpr int most_steps = 256;  // what turns much faster than it comes takes many
   double time = 0;
   for (int step = 0; step < most_steps; ++step) {
     const btTransform pose_a = pose_after(a, time), pose_b = pose_after(b, time);

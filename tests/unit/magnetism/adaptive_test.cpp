@@ -165,6 +165,26 @@ TEST(Charges, MatchTheAxialIntegralForCylinders) {
   }
 }
 
+TEST(Charges, OfAPointAtTheCentreOfAMagnetAreFinite) {
+  const Shape point = PointShape{};
+  const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  for (const Shape& shape : {Shape(Box{{0.01, 0.01, 0.02}}), Shape(Cylinder{0.005, 0.02})}) {
+    for (const Vector3& moment : {Vector3(0, 0, 1), Vector3(1, 0, 0), Vector3(0.6, 0, 0.8)}) {
+      const Interaction at_centre = charge_pair({&shape, Vector3::Zero(), axes, Vector3(0, 0, 1)},
+                                                {&point, Vector3::Zero(), axes, moment}, 0.01);
+      EXPECT_TRUE(at_centre.force_on_first.allFinite());
+      EXPECT_TRUE(at_centre.torque_on_first.allFinite());
+      EXPECT_EQ(at_centre.torque_on_first, -at_centre.torque_on_second);
+    }
+  }
+}
+
+TEST(ExactField, APointOnTheAxisOfALongCylinderLeavesItByItsSide) {
+  const Vector3 point = outside(Cylinder{0.002, 0.05}, {0, 0, 0.001});
+  EXPECT_NEAR(std::hypot(point.x(), point.y()), 0.002, 1e-10);
+  EXPECT_EQ(point.z(), 0.001);
+}
+
 TEST(ExactField, OfACylinderMatchesItsOwnVolumeOfDipoles) {
   const Shape shape = Cylinder{0.005, 0.007};
   const Vector3 moment(0.1, -0.2, 0.3);

@@ -64,6 +64,30 @@ TEST(Damping, OfASingleBodyFollowsTheSameLaw) {
   EXPECT_NEAR(-state_of(world).links[0].velocity.z(), terminal, 1e-3);
 }
 
+// A step of the law would turn what is that fast round, faster than before.
+TEST(Damping, StopsWhatIsFastWithinASubstepAndDoesNotTurnItRound) {
+  World world(with_gravity(0), 0.1);
+  scene::Entity box = single(scene::EntityKind::box, at(0, 0, 100), true, small_cube, 1);
+  box.links[0].damping = {0.5, 0.5};
+  world.add(box);
+  const double inertia = 1e-4 / 6;
+  const world::Push push{0, {1000, 0, 0}, {0, 0, 1000 * inertia}};  // to 100 m/s and rad/s
+  set_pushes(world, std::span(&push, 1));
+  world.step();
+  set_pushes(world, {});
+  double speed = 100.001, turning = 100.001;
+  for (int i = 0; i < 50; ++i) {
+    const world::LinkState link = state_of(world).links[0];
+    EXPECT_GE(link.velocity.x(), -1e-9);
+    EXPECT_LE(link.velocity.x(), speed);
+    EXPECT_GE(link.angular_velocity.z(), -1e-9);
+    EXPECT_LE(link.angular_velocity.z(), turning);
+    speed = link.velocity.x() + 1e-9, turning = link.angular_velocity.z() + 1e-9;
+    world.step();
+  }
+  EXPECT_LT(speed, 0.3);
+}
+
 TEST(Rest, ABoxStandsOnTheFloor) {
   World world(with_floor(9.8), 0.01);
   world.add(single(scene::EntityKind::box, {{0, 0, 0.02}, math::Quaternion::Identity()}, true,

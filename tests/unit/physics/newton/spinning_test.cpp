@@ -18,18 +18,22 @@ namespace {
 
 using namespace testing;
 
-/// Gives a part an angular impulse in the first substep.
+/// Gives a part momenta in the first substep.
 class Twist final : public Plugin {
  public:
-  Twist(std::size_t part, const Vector3& impulse) : part_(part), impulse_(impulse) {}
+  /// @param angular  [N m s];  @param linear  [N s]
+  Twist(std::size_t part, const Vector3& angular, const Vector3& linear)
+      : part_(part), angular_(angular), linear_(linear) {}
   void before_substep(std::span<Body> bodies, double substep) override {
-    bodies[0].apply_torque(part_, to_bullet(Vector3(impulse_ / substep)));
-    impulse_.setZero();
+    bodies[0].apply_torque(part_, to_bullet(Vector3(angular_ / substep)));
+    bodies[0].apply_force(part_, to_bullet(Vector3(linear_ / substep)));
+    angular_.setZero();
+    linear_.setZero();
   }
 
  private:
   std::size_t part_;
-  Vector3 impulse_;  // [N m s]
+  Vector3 angular_, linear_;
 };
 
 /// One entity in a core, with plug-ins.
@@ -45,8 +49,8 @@ struct Spinning {
     plugins.add(bodies.back());
   }
   ~Spinning() { core.remove(bodies[0]); }
-  void twist(std::size_t part, const Vector3& impulse) {
-    plugins.add(std::make_unique<Twist>(part, impulse));
+  void twist(std::size_t part, const Vector3& angular, const Vector3& linear = {0, 0, 0}) {
+    plugins.add(std::make_unique<Twist>(part, angular, linear));
   }
   void step() {
     plugins.before_substep(bodies, h);
@@ -158,6 +162,34 @@ TEST_P(NewtonSpin, OfAGyroscopePrecessesByTheFormula) {
 TEST(NewtonSpin, OfAGyroscopeGetsBetterWithShorterSubsteps) {
   EXPECT_LT(precession_error(1e-3), precession_error(0.01) + 1e-6);
   EXPECT_LT(precession_error(5e-4), precession_error(0.02) + 1e-6);
+}
+
+/// What is round about the axis that it turns about lands on a smooth floor in the second substep: it
+/// stops at its radius, and goes on turning.
+void expect_to_land_turning(const scene::Geometry& round, const math::Quaternion& lying, double speed,
+                            double rate) {
+  const double h = 0.01, radius = 0.1;
+  SCOPED_TRACE(::testing::Message() << speed << " m/s " << rate << " rad/s");
+  scene::Entity entity = loose({{0, 0, 0}, lying}, round, 1, 0);
+  entity.pose.position.z() = radius + 1.6 * speed * h + 0.003;
+  Spinning bench(newton(true, 0), h, entity);
+  const Vector3 axis = lying * Vector3::UnitZ(), inertia = bench.bodies[0].parts[0].inertia;
+  bench.twist(0, rate * inertia.z() * axis, {0, 0, -speed});
+  for (int i = 0; i < 10; ++i) bench.step();
+  EXPECT_NEAR(bench.pose(0).position.z(), radius, 2e-6);
+  EXPECT_NEAR(bench.spin(0).dot(axis), rate, 1e-6 * rate);
+  EXPECT_LT(bench.spin(0).cross(axis).norm(), 1e-6 * rate);
+}
+
+TEST(NewtonSpin, OfWhatIsRoundIsNotSeenByASmoothFloor) {
+  const math::Quaternion side = about({0, 1, 0}, EIGEN_PI / 2);
+  for (const double speed : {1., 3., 20.}) {
+    for (const double rate : {5., 50., 300., 3000.}) {
+      expect_to_land_turning(scene::Sphere{0.1}, side, speed, rate);
+      expect_to_land_turning(scene::Cylinder{0.1, 0.2}, side, speed, rate);
+      expect_to_land_turning(scene::Capsule{0.1, 0.4}, side, speed, rate);
+    }
+  }
 }
 
 TEST_P(NewtonSpin, AFreeBodyThatStartsSlowlyDoesNotFallAsleep) {
