@@ -90,7 +90,8 @@ void contact_points(const Sphere& a, const Cylinder& b, const Placement& at, Con
     if (beyond_cap > 0) nearest.setZ(up * b.half_height);
     outward = centre - nearest;
     depth = outward.length();
-    outward /= depth;
+    // On the surface but for rounding there is no way to it.
+    outward = depth > 1e-9 * b.radius ? outward / depth : beyond_side > 0 ? side : btVector3(0, 0, up);
   }
   add(a, pose_b * nearest, pose_b.getBasis() * outward, depth, reach, out);
 }

@@ -218,16 +218,16 @@ void Contacts::drop_hidden() {
   for (std::size_t i = 0; i < owner_.size(); ++i) {
     const Pair& pair = pairs_[owner_[i]];
     if (pair.first != i) continue;
-    const auto add = [&](std::size_t mover, const Collider& base) {
+    const auto add = [&](std::size_t mover, std::size_t on) {
+      const Collider& base = colliders_.all[on];
       if (!base.moves) {
-        on_bases_.push_back({mover, Collider::floor, 0, owner_[i]});
+        on_bases_.push_back({mover, Collider::floor, 0, on, owner_[i]});
       } else if (is_compound(base)) {
-        on_bases_.push_back({mover, base.entity, base.part, owner_[i]});
+        on_bases_.push_back({mover, base.entity, base.part, on, owner_[i]});
       }
     };
-    const Collider &a = colliders_.all[pair.a], &b = colliders_.all[pair.b];
-    if (a.moves) add(pair.a, b);
-    if (b.moves) add(pair.b, a);
+    if (colliders_.all[pair.a].moves) add(pair.a, pair.b);
+    if (colliders_.all[pair.b].moves) add(pair.b, pair.a);
   }
   std::sort(on_bases_.begin(), on_bases_.end());
   const auto same_base = [](const OnBase& a, const OnBase& b) {

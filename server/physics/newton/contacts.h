@@ -120,6 +120,7 @@ class Contacts {
     std::size_t mover = 0;   // a collider
     std::size_t entity = 0;  // of the base; Collider::floor: all that stands
     std::size_t part = 0;    // of it
+    std::size_t on = 0;      // its collider: places of pairs depend on others that were there
     int pair = 0;
     auto operator<=>(const OnBase&) const = default;
   };

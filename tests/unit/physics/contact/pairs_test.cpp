@@ -174,6 +174,18 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
   EXPECT_GT(touching, 20);
 }
 
+// By rounding it is outside and on the surface at once in one place of seven hundred.
+TEST(SphereCylinder, HasANormalWhereTheCentreIsOnTheSide) {
+  for (int i = 0; i < 20000; ++i) {
+    const btVector3 out(std::cos(i * 3e-4), std::sin(i * 3e-4), 0);
+    const Contacts found = find(ball, btTransform(btMatrix3x3::getIdentity(), 0.05 * out), Cylinder{0.05, 0.1},
+                                btTransform::getIdentity(), 0.01);
+    ASSERT_EQ(found.count, 1);
+    ASSERT_NEAR(found.normal.dot(out), 1, 1e-12) << i;
+    ASSERT_NEAR(found.points[0].distance, -0.005, 1e-12) << i;
+  }
+}
+
 TEST_P(AllPairs, FindTheSamePointsWhereOneIsUseful) {
   const Pair& pair = GetParam();
   Solid a{pair.a, btTransform::getIdentity()}, b{pair.b, btTransform::getIdentity()};
