@@ -1,5 +1,6 @@
 """Where cases for clients are played: a server's socket, and a controller program that connects to it."""
 
+import base64
 import os
 import subprocess
 import tempfile
@@ -25,7 +26,7 @@ from .wire import protocol
 _START = 10.0  # [s] until a program's first message
 _RULES = {"hello": "H1", "command": "S3", "leave": "L5"}  # that ask for these messages
 _LATE = 0.3  # [s] for a Command that need not come
-_TOKEN = b"0123456789abcdef"
+_TOKEN = b"token of the kit"
 _MOST_AT_ONCE, _MOST_A_SECOND = 2000, 1000  # M7
 
 
@@ -111,8 +112,15 @@ class ClientStage:
     def play(self, steps: tuple) -> None:
         """Raises Failed, NonStrict or Unimplemented."""
         self._play(steps)
+        if self._prints_token():
+            raise Failed("it prints the token of its session, which is a secret (T10)")
         if self._unkept:
             raise NonStrict("; ".join(map(str, self._unkept[:5])))
+
+    def _prints_token(self) -> bool:
+        self._output.seek(0)
+        printed = self._output.read(4 << 20)
+        return any(form in printed for form in (_TOKEN, _TOKEN.hex().encode(), base64.b64encode(_TOKEN)))
 
     def _play(self, steps: tuple) -> None:
         for step in steps:
@@ -336,6 +344,9 @@ class ClientStage:
                 strict_json(data)
             return wire.decode(protocol.ClientMessage, data, form)
         except ValueError as error:
+            if form == wire.BINARY and data.lstrip(b" \t\r\n\xef\xbb\xbf")[:1] == b"{":
+                error = "JSON that does not begin with `{`: nothing may stand before it"
+                form = wire.JSON
             raise Failed(f"the client sent {error} ({'T6' if form == wire.JSON else 'T2, T5'})") from None
 
     def _count(self, message: protocol.ClientMessage) -> None:

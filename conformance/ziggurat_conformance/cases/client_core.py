@@ -4,8 +4,8 @@ from ..case import Case
 from ..client_messages import (BEGUN, HELLO, LEFT, answered, end, error, heartbeat, observation, refusal, ticks,
                                welcome)
 from ..client_robots import robot, rover, sights
-from ..client_steps import (CheckClient, Ends, HearCorrection, HearFrom, Quiet, Refuse, Remove, Tell,
-                            TellBytes, TellObservation, Wait)
+from ..client_steps import (CheckClient, Ends, HearCorrection, HearFrom, Quiet, Refuse, Remove, SinceMinor,
+                            Tell, TellBytes, TellObservation, Wait)
 from ..wire import Some
 
 
@@ -60,6 +60,8 @@ CASES = [
          (HELLO, Tell({"loading": {"progress": 0.2}}), refusal("OUT_OF_STATE"), Ends(good=False, should=True))),
     Case("H2.later-minor", "A server of a later version is no reason to give up",
          (HELLO, welcome(version={"major": 1, "minor": 0}, server_version="99"), *ticks(0, 2))),
+    Case("S14.metrics", "Its metrics, if it has any, are of its robots, with plain names, at most 100 of a robot",
+         (HELLO, SinceMinor(3, (welcome(version={"major": 1, "minor": 3}), *ticks(0, 4, epoch=0), end(4), LEFT)))),
     Case("H10.refused", "After a refusal that is not retryable it ends, with another exit code than 0",
          (HELLO, refusal("VERSION_MISMATCH"), Ends(good=False, should=True))),
     Case("H10.no-storm", "A refusal is no reason for a storm of Hellos",

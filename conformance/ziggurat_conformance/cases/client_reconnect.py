@@ -73,6 +73,8 @@ CASES = [
           *BEGUN, *ticks(1, 3), error("OUT_OF_STATE", "FATAL"), _resumed(3)),
     Case("T10.token", "A program that finds the token of a session in its environment resumes that session",
          (HearResume(), welcome(), *ticks(5, 7)), Level.RECONNECT, variant=RESTARTED),
+    Case("T10.secret", "It does not print that token",
+         (HearResume(), welcome(), *ticks(5, 6), end(6), Ends()), Level.RECONNECT, variant=RESTARTED),
     _case("L4.no-such-session", "A session that can't be resumed is no reason for a storm of Hellos",
           *BEGUN, Cut(), HearResume(), refusal("NO_SUCH_SESSION"), CheckClient("storm", storm, should=True)),
     _case("L13.resumed", "A Welcome of 1.1 with what was commanded is a Welcome",

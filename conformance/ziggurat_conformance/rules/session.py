@@ -1,5 +1,6 @@
 """One session as both of its ends see it: every message of either direction is judged and remembered."""
 
+import collections
 import enum
 from typing import Iterator, Optional, Union
 
@@ -11,6 +12,7 @@ from .hello import hello_faults
 from .observation import observation_faults, welcome_faults
 
 STRANGERS_LIMIT = 64 << 10  # [bytes] of a message without a session
+_MOST_METRICS = 100  # of a robot
 _Error = protocol.Error
 _PASSING = {_Error.ROBOT_TAKEN, _Error.TOO_MANY}  # reasons of a Refusal that may pass with time
 
@@ -57,6 +59,7 @@ class Session:
         self._is_new_world = True  # the next Observation may have any tick
         self._world: Optional[list] = None  # what a director was told of; None: nothing yet
         self._used: set = set()  # (field, position) that were commanded since the start or a reset
+        self._metrics: set = set()  # (position, name) of this world
         self._must_repeat = False  # W6: the next Command should have them all
         self._heartbeats: list[int] = []  # sequences that the server sent
         self._requests: list[int] = []  # ids that wait for their Response
@@ -111,8 +114,7 @@ class Session:
         if self.epoch is not None and not command.HasField("epoch"):
             yield Fault("S13", "a Command without epoch, though its Observation has one", should=True)
         yield from command_faults(self.welcome.robots, self.left, command)
-        if self.welcome.version.minor >= 3:
-            yield from metric_faults(len(self.welcome.robots), command.metrics)
+        yield from self._metric_faults(command.metrics)
         if self._must_repeat and self.owes and command.tick == self.tick:
             lost = {field for field, _ in self._used - self._commanded(command)}
             if lost:
@@ -154,8 +156,18 @@ class Session:
             yield from last_words_faults(leave)
             return
         yield from leave_faults(len(self.welcome.robots) if self.welcome else 0, self.left, leave)
-        if self.welcome and self.welcome.version.minor >= 3:
-            yield from metric_faults(len(self.welcome.robots), leave.metrics)
+        if self.welcome:
+            yield from self._metric_faults(leave.metrics)
+
+    def _metric_faults(self, metrics) -> Iterator[Fault]:
+        if self.welcome.version.minor < 3:
+            return
+        yield from metric_faults(len(self.welcome.robots), metrics)
+        names = self._metrics | {(metric.robot, metric.name) for metric in metrics}
+        for position, count in collections.Counter(position for position, _ in names).items():
+            if count > _MOST_METRICS:
+                yield Fault("S14", f"robot {position} has {count} metrics; {_MOST_METRICS} are allowed in a run",
+                            "TOO_MANY", "metrics")
 
     def _judge_heartbeat(self, heartbeat: protocol.Heartbeat) -> Iterator[Fault]:
         if self.state in (State.NEW, State.CLOSED):
@@ -178,6 +190,7 @@ class Session:
         self.hello, self.state = hello, State.HELLO
 
     def _answered(self, command: protocol.Command) -> None:
+        self._metrics |= {(metric.robot, metric.name) for metric in command.metrics}
         if command.tick != self.tick:
             self.missed.discard(command.tick)
             self._used |= self._commanded(command)  # lost (W6)
@@ -331,6 +344,7 @@ class Session:
         self.owes, self._is_new_world = False, True
         self.missed.clear()
         self._used.clear()
+        self._metrics.clear()
 
     def _take_paused(self, paused: protocol.Paused) -> Iterator[Fault]:
         if paused.tick != self.tick:

@@ -160,7 +160,22 @@ def _sleeps(client, command):
         time.sleep(0.4)
 
 
+def _metrics(count=1, **fields):
+    """Of a session that has metrics; the names of several are new at each tick."""
+
+    def change(client, command):
+        if client.welcome.version.minor >= 3:
+            for i in range(count):
+                command.metrics.add(**{"name": f"m{client.tick}.{i}", "value": 1.0, **fields})
+
+    return change
+
+
 COMMANDS = {
+    "metric-beyond": _metrics(robot=99),
+    "metric-of-two-words": _metrics(name="two words"),
+    "metric-not-finite": _metrics(value=math.nan),
+    "ever-new-metrics": _metrics(count=40),
     "tick-ahead": _moved(1),
     "tick-behind": _moved(-1),
     "short-targets": _shorter("joint_targets"),

@@ -125,7 +125,7 @@ class Client:
     # ---- what it says ----
 
     def hello(self, token=b""):
-        hello = protocol.Hello(version={"major": 1, "minor": 2}, role=protocol.ROLE_CONTROLLER, robots=["*"],
+        hello = protocol.Hello(version={"major": 1, "minor": 3}, role=protocol.ROLE_CONTROLLER, robots=["*"],
                                client_name="tiny", session_token=token)
         bugs.HELLOS.get(self.bug, lambda *_: None)(hello)
         self.say(hello=hello)
@@ -201,6 +201,8 @@ class Client:
 
     def take_welcome(self, welcome):
         self.welcome, self.token = welcome, welcome.session_token
+        if self.bug == "prints-its-token":
+            print(f"resumed {self.token.hex()}", flush=True)
         if self.bug == "hello-twice":
             self.hello()
         if self.bug == "command-early":
