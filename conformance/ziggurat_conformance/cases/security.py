@@ -58,6 +58,9 @@ CASES = [
               join("controller", "*"), *observe("controller"),
               send_hello(key, "*", takeover=True), hear_refusal(key, "FORBIDDEN"), _GOES_ON)
       for key in ("supervisor", "observer")],
+    _secure("K11.stop", "A key for controllers may not end the run by its deadline policy",
+            send_hello("controller", "*", deadline_policy={"action": "STOP", "wall_deadline_ms": 60_000}),
+            hear_refusal("controller", "FORBIDDEN"), join("controller", "*"), *observe("controller")),
     *[_secure(case, title,
               join("controller", "*"), *observe("controller"), Hang("controller"),
               send_hello(key, "*", session_token=Token("controller")), hear_refusal(key, "FORBIDDEN"),

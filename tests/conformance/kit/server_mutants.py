@@ -46,6 +46,7 @@ MUTANTS = [
     _tiny("plain-text", "K1.plain"),
     _tiny("any-key", "K2.unlisted"),
     _tiny("any-role", "K3.controller-as-supervisor"),
+    _tiny("grants-stop", "K11.stop"),
     _bent("two-frames", "H1.at-once", "T2"),
     _bent("garbage-is-silent", "T2.session-garbage-ones"),
     _bent("reorders", "T3.order"),

@@ -130,6 +130,9 @@ class Server:
             raise Fault(E.FORBIDDEN)
         if hello.role != protocol.ROLE_CONTROLLER:
             raise Fault(E.BAD_VALUE)
+        ends_runs = self.allowed is None or "supervisor" in self.allowed or self.bug == "grants-stop"
+        if hello.deadline_policy.action == protocol.DeadlinePolicy.STOP and not ends_runs:
+            raise Fault(E.FORBIDDEN)
         if hello.session_token and self.bug != "any-token":
             session = self.resumed(hello.session_token)
         else:
