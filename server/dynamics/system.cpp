@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "dynamics/equations.h"
+#include "dynamics/excess.h"
 #include "dynamics/fetch.h"
 #include "dynamics/flight.h"
 
@@ -30,16 +31,12 @@ Vector6 momentum(const Tree& tree, const double* mass) {
   return out;
 }
 
-/// Moves a tree that touches nothing fixed. Its momentum stays, so its root's velocity changes with
-/// its shape.
-/// @param mass   its matrix before;  @param drift  see momentum_after()
-void displace_keeping_momentum(Tree& tree, Workspace& work, const double* mass,
-                               std::span<const double, 6> drift, std::span<const double> by) {
+/// Gives a tree that was displaced the momentum that its velocities were before: the root's change with its shape.
+/// @param origin  its origin before;  @param mass  its matrix before;  @param drift  see momentum_after()
+void keep_momentum(Tree& tree, Workspace& work, const Vector3& origin, const double* mass,
+                   std::span<const double, 6> drift) {
   Vector6 before = momentum(tree, mass);
   for (int i = 0; i < 6; ++i) before[i] += drift[i];
-  const Vector3 origin = tree.origin;
-  displace(tree, by);
-  place(tree);
   compute_mass(tree, work);
   before.head<3>() += (origin - tree.origin).cross(Vector3(before.tail<3>()));
   const Vector6 missing = before - momentum(tree, work.mass.data());
@@ -50,6 +47,22 @@ void displace_keeping_momentum(Tree& tree, Workspace& work, const double* mass,
   const Vector6 change = root.llt().solve(missing);
   for (int i = 0; i < 6; ++i) tree.v[i] += change[i];
   move(tree);
+}
+
+/// Moves a tree of the island. What touches nothing fixed keeps its momentum, and so does what would gain energy.
+/// @param excess  see note_excesses()
+void displace(const Problem& problem, std::size_t i, std::span<const double> by, bool drifts,
+              std::optional<double> excess, Workspace& work) {
+  Tree& tree = *problem.trees[i];
+  const Vector3 origin = tree.origin;
+  displace(tree, by);
+  place(tree);
+  move(tree);
+  const bool gains = excess && gains_much(tree, *excess + kinetic_energy(tree));
+  if (free_to_drift(tree) && (drifts || gains)) {
+    keep_momentum(tree, work, origin, problem.mass_of(i), problem.drift[i]);
+  }
+  if (excess) take_excess(tree, work, *excess + kinetic_energy(tree));
 }
 
 }  // namespace
@@ -262,6 +275,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   }
   step_.resize(problem_.velocity.size());
   for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = length_ * problem_.velocity[i];
+  note_excesses(problem_, work_, excess_);
   for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
     Tree& tree = *problem_.trees[i];
     std::copy_n(problem_.velocity.begin() + problem_.offset[i], tree.dofs, tree.v.begin());
@@ -276,17 +290,11 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   if (problem_.turn_into_displacement()) {
     solver_.solve_displacement(problem_);
     for (std::size_t i = 0; i < step_.size(); ++i) step_[i] += problem_.velocity[i];
+    add_lifts(problem_, work_, excess_);
   }
   for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
-    Tree& tree = *problem_.trees[i];
-    const std::span<const double> by(step_.data() + problem_.offset[i], tree.dofs);
-    if (grounded || !free_to_drift(tree)) {
-      displace(tree, by);
-      dynamics::place(tree);
-      move(tree);
-    } else {
-      displace_keeping_momentum(tree, work_, problem_.mass_of(i), problem_.drift[i], by);
-    }
+    const std::size_t dofs = problem_.trees[i]->dofs;
+    displace(problem_, i, {step_.data() + problem_.offset[i], dofs}, !grounded, excess_[i], work_);
   }
   const bool swept = outcome.sweeps > 0 && outcome.descents == 0;
   settle(first_tree, last_tree, carried, swept ? outcome.miss : 0);

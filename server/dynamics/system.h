@@ -3,6 +3,7 @@
 // trees, contacts, servos and limits alone.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -136,6 +137,7 @@ class System {
   std::vector<int> first_tree_, tree_order_, first_item_;
   std::vector<Item> items_, item_order_;
   std::vector<double> kept_, step_;
+  std::vector<std::optional<double>> excess_;  // see note_excesses()
   Workspace work_;
   Problem problem_;
   Solver solver_;

@@ -1,0 +1,66 @@
+// Mechanisms without motors that tumble on the floor, much faster than substeps can show: their energy never
+// grows, whatever they hit.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "touching.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+using testing::g;
+using testing::Touching;
+
+struct Random {
+  std::mt19937 bits;
+  double operator()(double least, double most) {
+    return least + (most - least) * static_cast<double>(bits()) / 4294967296.0;
+  }
+  Vector3 vector(double most) {
+    return Vector3((*this)(-most, most), (*this)(-most, most), (*this)(-most, most));
+  }
+};
+
+/// A heavy root without collider that carries light links one after the other; the last touches.
+Tree whip(int count, JointType joint, Random& random) {
+  std::vector<Link> links{testing::box_link({0.1, 0.15, 0.3}, 8)};
+  for (int i = 0; i < count; ++i) {
+    const Link link = testing::box_link({0.05, 0.1, 0.25}, i % 2 == 0 ? 0.3 : 2);
+    const Vector3 axis = random.vector(1).normalized();
+    links.push_back(testing::hung(link, i, joint, axis, random.vector(0.15), random.vector(0.15)));
+  }
+  return Tree(links, testing::at(0, 0, 0.8));
+}
+
+void tumble(double hz, JointType joint, int count, unsigned seed) {
+  Random random{std::mt19937(seed)};
+  Touching world;
+  world.planes.push_back({Vector3::Zero(), Vector3::UnitZ(), 0.5});
+  world.add(whip(count, joint, random), Vector3(0.025, 0.05, 0.125), 1);
+  Tree& tree = world.tree(0);
+  for (double& speed : tree.v) speed = random(-3, 3);
+  move(tree);
+  const double before = testing::energy(tree);
+  double least = before;
+  for (int i = 0; i < 2 * hz; ++i) {
+    world.step(1 / hz);
+    const double now = testing::energy(tree);
+    ASSERT_LE(now - least, 0.03 * before) << hz << " " << seed << " " << i;
+    least = std::min(least, now);
+  }
+}
+
+TEST(Tumbling, GivesMechanismsNoEnergy) {
+  for (const double hz : {100., 500.}) {
+    for (unsigned seed = 0; seed < 30; ++seed) {
+      tumble(hz, JointType::revolute, 1 + seed % 3, seed);
+      tumble(hz, JointType::spherical, 1 + seed % 3, seed);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ziggurat::dynamics
