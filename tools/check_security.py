@@ -4,7 +4,8 @@
 usage: check_security.py [ROOT]     ROOT is the top of the checkout (default: this file's)
 
 Behind the first heading of the second level, each sentence of a list and each row of a table has at
-least one name `WHERE:TEST` in backquotes, and no other text stands there but examples in code. WHERE is
+least one name `WHERE:TEST` in backquotes, and no other text stands there but examples in code. Nothing
+holds "by construction": that is no test. WHERE is
 a folder below tests/ (`network`), or a test program (`uninvited` is uninvited_test.py). TEST is
 Suite.Name or Suite of Google Test, or a function or class of a script. A sentence in _italics_ is advice
 and names none. Each violation is printed as file:line: text; the exit code is 1 if there is any.
@@ -46,6 +47,8 @@ def faults_of_form(text):
             continue
         sentences = [block] if rows else SENTENCE.split(block.removeprefix("- "))
         for sentence in sentences:
+            if "by construction" in sentence.lower():
+                yield line, f"by construction is no test: {sentence[:80]}"
             if not NAME.search(sentence) and not re.fullmatch(r"_.*_\.?", sentence):
                 yield line, f"names no test: {sentence[:80]}"
 

@@ -33,6 +33,7 @@ class CheckSecurity(unittest.TestCase):
 
     def test_finds_sentences_without_tests(self):
         for text in ("- One (`network:Keys`). Two.\n", "A paragraph (`network:Keys`).\n", "- One.\n",
+                     "- One, by construction (`network:Keys`).\n",
                      "| a |\n|---|\n| x |\n"):
             with self.subTest(text):
                 self.assertEqual(self.run_on(text)[0], 1)

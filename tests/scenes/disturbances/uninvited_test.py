@@ -309,6 +309,21 @@ class Uninvited(SceneTest):
             connection.close()
         self.end(process)
 
+    def test_few_files_leave_places_for_controllers(self):
+        """Of 80 connections: 20 are for observers, 10 for supervisors."""
+        process = self.serve(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (128, 128)))
+        for role, most in ((v1.ROLE_OBSERVER, 20), (v1.ROLE_SUPERVISOR, 10)):
+            peers = [RawPeer(self.endpoint) for _ in range(most + 1)]
+            for peer in peers:
+                peer.send_message(hello(role))
+            kinds = [answer(peer).WhichOneof("message") for peer in peers]
+            self.assertEqual(sorted(kinds), ["refusal"] + ["welcome"] * most)
+            self.addCleanup(lambda peers=peers: [peer.socket.close() for peer in peers])
+        with RawPeer(self.endpoint) as peer:
+            peer.send_message(hello(robots=["*"]))
+            self.assertTrue(answer(peer).HasField("welcome"))
+        self.end(process)
+
     # ---- the tick ----
 
     def test_controllers_tick_on(self):
