@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cctype>
 #include <fstream>
 #include <iterator>
@@ -11,6 +12,7 @@
 
 #include "processes/places.h"
 #include "scene/files.h"
+#include "scene/names.h"
 
 namespace ziggurat::processes {
 namespace {
@@ -76,14 +78,26 @@ std::optional<std::string_view> missing_function(const fs::path& script) {
   return std::nullopt;
 }
 
+/// A parameter that was probably meant to be the script; empty if there is none.
+std::string name_like_script(const std::vector<std::pair<std::string, std::string>>& params) {
+  for (const auto& [name, value] : params) {
+    const std::array candidates{std::string_view("script")};
+    if (name == "script") continue;  // its value is empty
+    if (scene::nearest(name, candidates) || value.ends_with(".lua")) return name;
+  }
+  return {};
+}
+
 void check(const scene::Scene& scene, const Use& use, const fs::path& scene_file,
            std::vector<scene::Problem>& problems) {
   using Severity = scene::Problem::Severity;
   const auto file = scene::file_of(scene, use.where);
   const auto script = script_of(*use.params);
   if (script.empty()) {
-    problems.push_back({Severity::notice, file, use.where,
-                        "<params> names no script: the robots of this controller do nothing"});
+    const auto slip = name_like_script(*use.params);
+    problems.push_back({slip.empty() ? Severity::notice : Severity::warning, file, use.where,
+                        "<params> names no script: the robots of this controller do nothing" +
+                            (slip.empty() ? slip : fmt::format("; did you mean script=\"…\" by {}=\"…\"?", slip))});
   } else if (auto text = fault(script, file, scene_file)) {
     problems.push_back({Severity::fault, file, use.where, *text});
   } else if (const auto name = missing_function(*find_file(script, file, scene_file))) {

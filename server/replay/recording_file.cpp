@@ -16,7 +16,11 @@ const std::string snapshot_folder = "snapshot/";  // of the names of attachments
 constexpr std::uint64_t most_embedded = std::uint64_t{1} << 30;  // all files [bytes]
 
 RecordingError damaged(const std::string& path, const mcap::Damaged& damage) {
-  if (damage.offset() == 0) {  // a scene, for example
+  if (damage.offset() == 0 && path.ends_with(".argos")) {
+    return RecordingError(fmt::format("{}: this is a scene, not a recording; write the file of 'ziggurat run {} --record FILE'",
+                                      path, path));
+  }
+  if (damage.offset() == 0) {
     return RecordingError(fmt::format(
         "{}: {}; write the file of 'ziggurat run SCENE --record FILE' (if this was one, 'ziggurat info {} --repair OUT' "
         "saves what is whole)",

@@ -61,7 +61,8 @@ void read_strength(Element& joint, JointActuator& actuator) {
   const auto torque = joint.optional("max_torque", non_negative);
   actuator.is_torque = torque.has_value();
   actuator.max_force = torque ? torque : force;
-  if (!actuator.max_force) {
+  const bool is_force = joint.has("max_force") || joint.has("max_torque");  // also one that is wrong
+  if (!is_force) {
     actuator.max_impulse = joint.required("max_impulse", non_negative);
     return;
   }

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <ranges>
 #include <utility>
 #include <vector>
 
+#include "scene/names.h"
 #include "scene/values.h"
 
 namespace ziggurat::scene {
@@ -29,6 +31,12 @@ std::string_view without_curly_quotes(std::string_view word) {
     break;
   }
   return word;
+}
+
+/// Whether one of the names is the other misspelt.
+bool is_nearly(std::string_view a, std::string_view b) {
+  const std::array candidates{b};
+  return nearest(a, candidates).has_value();
 }
 
 /// Walks over the tags of a text until one is wrong.
@@ -94,8 +102,9 @@ class Scanner {
                                            "or /> at the end of <{0} …> if nothing is in it",
                                            last.name, name, line_of(begin)));
     }
-    fail(begin, fmt::format("</{}> does not close <{}> of line {}; write </{}>", name, last.name,
-                            line_of(last.offset), last.name));
+    fail(begin, fmt::format("</{0}> does not close <{1}> of line {2}; write </{1}>{3}", name, last.name,
+                            line_of(last.offset),
+                            is_nearly(name, last.name) ? fmt::format(", or <{}> there", name) : std::string()));
   }
 
   void opening_tag() {

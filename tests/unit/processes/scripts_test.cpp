@@ -137,6 +137,15 @@ TEST_F(Scripts, WithoutAFunctionThatRobotsNeedAreDoubted) {
   EXPECT_TRUE(problems("require 'all'").empty());
 }
 
+TEST_F(Scripts, AMisspeltNameOfTheParameterIsDoubted) {
+  scene::Scene scene = naming("good.lua");
+  scene.controllers.front().params.back().first = "scrpt";
+  const auto problems = check_scripts(scene, fs::path(folder_.path()) / "a.argos");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].severity, scene::Problem::Severity::warning);
+  EXPECT_NE(problems[0].text.find("did you mean script=\"…\" by scrpt=\"…\"?"), std::string::npos) << problems[0].text;
+}
+
 TEST_F(Scripts, GoodOnesAreNoProblem) {
   write("good.lua", "function init() end function step() end");
   EXPECT_TRUE(check_scripts(naming("good.lua"), fs::path(folder_.path()) / "a.argos").empty());
