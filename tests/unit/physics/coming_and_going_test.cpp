@@ -54,6 +54,7 @@ TEST(AddEntity, TooManyInOnePlaceAreAFault) {
 }
 
 TEST(AddEntity, TooManyPointsOfContactAreAFault) {
+  if (tested_solver != scene::Solver::newton) GTEST_SKIP() << "sweeps count pairs alone";
   EXPECT_EQ(fault_of_crowd(1000),
             "bodies touch at more than 1000000 points; place fewer bodies, or farther from each other");
 }
