@@ -60,7 +60,10 @@ void Listening::accept() {
       });
     }
     socket.set_option(Tcp::no_delay(true), error);
-    take_(std::move(socket));
+    try {
+      take_(std::move(socket));
+    } catch (const std::bad_alloc&) {  // this connection ends; the next one is taken
+    }
     accept();
   });
 }

@@ -44,7 +44,7 @@ class Scanner {
   void add_metadata(std::string_view content);
   void end_data(std::string_view content);
   template <class Definition>
-  void define(std::optional<Definition> made, std::map<std::uint16_t, Definition>& all,
+  void define(std::optional<Definition> made, std::size_t size, std::map<std::uint16_t, Definition>& all,
               const char* what);
   bool has_room(std::size_t size);
   void fault(std::string text) {
@@ -139,9 +139,9 @@ void Scanner::take(const RecordHead& head) {
       if (offset_ != magic.size()) fault("there is a second header");
       return;
     case Op::schema:
-      return define(to_schema(content), scan_.contents.schemas, "schema");
+      return define(to_schema(content), content.size(), scan_.contents.schemas, "schema");
     case Op::channel:
-      return define(to_channel(content), scan_.contents.channels, "channel");
+      return define(to_channel(content), content.size(), scan_.contents.channels, "channel");
     case Op::chunk:
       return add_chunk(content);
     case Op::message_index:
@@ -171,14 +171,15 @@ bool Scanner::has_room(std::size_t size) {
   return false;
 }
 
+/// @param size  of its record [bytes]
 template <class Definition>
-void Scanner::define(std::optional<Definition> made, std::map<std::uint16_t, Definition>& all,
+void Scanner::define(std::optional<Definition> made, std::size_t size, std::map<std::uint16_t, Definition>& all,
                      const char* what) {
   if (!made) return fault(fmt::format("a {} is damaged", what));
   const auto known = all.find(made->id);
   if (known != all.end()) {
     if (known->second != *made) fault(fmt::format("{} {} is defined twice", what, made->id));
-  } else if (has_room(record_.size())) {
+  } else if (has_room(size)) {
     all.emplace(made->id, *std::move(made));
   }
 }
@@ -211,8 +212,8 @@ void Scanner::add_records(std::string_view records, ChunkIndex& index) {
     if (head.length > records.size() - at) throw Damaged(offset_, "the chunk is damaged");
     const std::string_view content = records.substr(at, static_cast<std::size_t>(head.length));
     at += content.size();
-    if (head.is(Op::schema)) define(to_schema(content), scan_.contents.schemas, "schema");
-    if (head.is(Op::channel)) define(to_channel(content), scan_.contents.channels, "channel");
+    if (head.is(Op::schema)) define(to_schema(content), content.size(), scan_.contents.schemas, "schema");
+    if (head.is(Op::channel)) define(to_channel(content), content.size(), scan_.contents.channels, "channel");
     if (!head.is(Op::message)) continue;
     const auto message = to_message(content);
     if (!message) throw Damaged(offset_, "the chunk is damaged");

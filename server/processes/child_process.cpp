@@ -52,12 +52,12 @@ int open_output(const std::string& path) {
   if (guardian) guardian->end_group(::getpid());
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);  // the parent died before prctl()
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ, SIGCHLD})
+  for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ, SIGCHLD})
     ::signal(number, SIG_DFL);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  const int empty = ::open("/dev/null", O_RDONLY);
+  const int empty = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (empty >= 0) ::dup2(empty, STDIN_FILENO);
   if (output >= 0) {
     ::dup2(output, STDOUT_FILENO);
@@ -155,7 +155,9 @@ int ChildProcess::exit_code() const {
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-void ChildProcess::signal(int number) const { ::kill(-id_, number); }
+void ChildProcess::signal(int number) const {
+  if (id_ > 0 && !status_) ::kill(-id_, number);  // later the id may be another group's
+}
 
 void end_all(std::vector<ChildProcess*> children, int patience_ms,
              const std::function<bool()>& hurry) {

@@ -21,7 +21,7 @@ struct Program {
 
 class ChildProcess {
  public:
-  /// Starts it with an empty stdin, and no signal blocked or ignored.
+  /// Starts it with an empty stdin, no signal blocked, and none ignored but SIGHUP, if it is here (nohup).
   /// @param guardian  kills its group if this program is killed; must outlive it; null: none
   /// @throws std::system_error if it cannot be started, or its output not be written
   explicit ChildProcess(const Program& program, const Guardian* guardian = nullptr);
@@ -41,7 +41,7 @@ class ChildProcess {
   /// "ended with exit code 3" or "was killed by signal 9 (Killed)"; only after it has ended.
   std::string how_it_ended() const;
 
-  /// Sends a signal to its whole process group.
+  /// Sends a signal to its whole process group, unless it has ended.
   void signal(int number) const;
 
  private:

@@ -20,12 +20,19 @@ void close_if_open(int descriptor) {
   if (descriptor >= 0) ::close(descriptor);
 }
 
+bool is_ignored(int number) {
+  struct sigaction action {};
+  return ::sigaction(number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 }  // namespace
 
 Signals::Signals(Guardian* guardian) : guardian_(guardian) {
   sigset_t set;
   ::sigemptyset(&set);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) ::sigaddset(&set, number);
+  for (const int number : {SIGINT, SIGTERM, SIGCHLD}) ::sigaddset(&set, number);
+  if (!is_ignored(SIGHUP)) ::sigaddset(&set, SIGHUP);  // blocked, it would arrive although it is ignored
+  ::signal(SIGCHLD, SIG_DFL);  // ignored, as a parent may have left it, it would take children away unseen
   ::pthread_sigmask(SIG_BLOCK, &set, &former_);
   ::signal(SIGPIPE, SIG_IGN);
   signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
@@ -53,15 +60,19 @@ Signals::Arrived Signals::take() {
   return {interruptions_.exchange(0), child_.exchange(false)};
 }
 
-void Signals::receive() {
+/// Whether there was an interruption.
+bool Signals::receive() {
+  bool is_interrupted = false;
   signalfd_siginfo info;
   while (::read(signals_, &info, sizeof info) == sizeof info) {
     if (info.ssi_signo == SIGCHLD) {
       child_ = true;
     } else {
       ++interruptions_;
+      is_interrupted = true;
     }
   }
+  return is_interrupted;
 }
 
 /// The thread.
@@ -79,8 +90,8 @@ void Signals::watch() {
     if (descriptors[1].revents != 0) return;
     if (deadline && clock::now() >= *deadline) end_by_force();
     if (descriptors[0].revents == 0) continue;
-    receive();
-    if (interruptions_ > 0 && !deadline) deadline = clock::now() + patience;
+    // take() may have reset the count already.
+    if (receive() && !deadline) deadline = clock::now() + patience;
     ::eventfd_write(news_, 1);
   }
 }

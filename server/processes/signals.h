@@ -18,7 +18,8 @@ class Signals {
   static constexpr std::chrono::milliseconds patience{900};
 
   /// Changes the whole process: blocks these signals for this thread and all threads started later,
-  /// and ignores SIGPIPE, so that a closed pipe is an error of write(). Starts a thread that ends
+  /// and ignores SIGPIPE, so that a closed pipe is an error of write(). SIGHUP stays ignored if it is (nohup).
+  /// Starts a thread that ends
   /// the process with exit code 130 if it still runs when the patience is over: in a long tick, or
   /// in an output that takes no more. main() makes the only one.
   /// @param guardian  must outlive this; null: none
@@ -49,7 +50,7 @@ class Signals {
 
  private:
   void watch();
-  void receive();
+  bool receive();
   [[noreturn]] void end_by_force();
 
   Guardian* guardian_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+
 #include "ziggurat/v1/channels.pb.h"
 
 namespace ziggurat::replay {
@@ -16,8 +18,8 @@ std::vector<std::string> link_names(const RecordingFile& file) {
     if (static_cast<std::size_t>(world.links_size()) <= names.size()) continue;
     names.clear();
     for (const auto& link : world.links()) {
-      const auto entity = static_cast<int>(link.entity());
-      const std::string id = entity < world.entities_size() ? world.entities(entity).id() : "?";
+      const bool is_known = link.entity() < static_cast<std::uint32_t>(world.entities_size());
+      const std::string id = is_known ? world.entities(static_cast<int>(link.entity())).id() : "?";
       names.push_back(link.id().empty() ? fmt::format("'{}'", id)
                                         : fmt::format("'{}', link '{}'", id, link.id()));
     }

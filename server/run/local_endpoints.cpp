@@ -39,9 +39,10 @@ network::Descriptor open_private(const std::string& folder) {
         ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     struct stat here {
     }, there{};
-    if (!opened.is_open() || ::flock(opened.number(), LOCK_SH) != 0) return {};
-    if (::fstat(opened.number(), &here) != 0) return {};
+    if (!opened.is_open() || ::fstat(opened.number(), &here) != 0) return {};
+    // Before the lock: another user could hold it.
     if (here.st_uid != ::geteuid() || (here.st_mode & 077) != 0) return {};
+    if (::flock(opened.number(), LOCK_SH) != 0) return {};
     const bool is_same = ::stat(folder.c_str(), &there) == 0 && here.st_ino == there.st_ino &&
                          here.st_dev == there.st_dev;
     if (is_same) return opened;  // otherwise another server has just removed it

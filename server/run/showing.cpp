@@ -69,12 +69,12 @@ void Showing::connect_callers() {
                              server_.desk().is_there(found->second.viewer);
                     },
                     [this](const network::Call& call, std::uint64_t tick) {
-                      server_.answer(unanswered_.at(call.request.id), tick);
-                      unanswered_.erase(call.request.id);
+                      const auto found = unanswered_.extract(call.request.id);
+                      if (found) server_.answer(found.mapped(), tick);  // otherwise the viewer has left
                     },
                     [this](const network::Call& call, const std::string& why) {
-                      server_.refuse(unanswered_.at(call.request.id), why);
-                      unanswered_.erase(call.request.id);
+                      const auto found = unanswered_.extract(call.request.id);
+                      if (found) server_.refuse(found.mapped(), why);
                     }});
 }
 

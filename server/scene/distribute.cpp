@@ -114,12 +114,6 @@ void read_pattern(Draft& draft, Element& pattern, Distribution& out) {
   }
 }
 
-std::uint64_t copies_so_far(const Scene& scene) {
-  std::uint64_t copies = 0;
-  for (const Distribution& distribution : scene.distributions) copies += distribution.quantity;
-  return copies;
-}
-
 }  // namespace
 
 void read_distribution(Draft& draft, Element& element) {
@@ -145,11 +139,12 @@ void read_distribution(Draft& draft, Element& element) {
     draft.report.notice(patterns[1].where(),
                         "only the first entity of a <distribute> has an effect");
   }
-  if (copies_so_far(draft.scene) + out.quantity > most_copies) {
+  if (draft.copies + out.quantity > most_copies) {
     entity->fault_at("quantity", fmt::format("makes more than {} distributed entities; write less",
                                              most_copies));
     return;
   }
+  draft.copies += out.quantity;
   read_pattern(draft, patterns.front(), out);
 }
 

@@ -103,6 +103,7 @@ struct Draft {
   std::unordered_map<std::string, std::size_t> controllers;  ///< id -> index
   std::set<Location> blamed;  ///< what entities have in common and is reported once already
   Ids entity_ids;
+  std::uint64_t copies = 0;  ///< of all <distribute> so far, lights included
   std::unordered_map<std::string, std::size_t> anchors;  ///< link id -> index, of the entity
                                                          ///< being read
 

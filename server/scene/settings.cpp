@@ -78,13 +78,14 @@ bool is_cheap(std::string_view condition) {
   return std::regex_match(condition.begin(), condition.end(), cheap);
 }
 
-/// Conditions in conditions or with far paths, axes and several `//` take a time that grows with a power of the
-/// scene's size.
+/// Conditions in conditions or with far paths, axes, several `//` and many `..`, as in `*/../*/../*`, take a time
+/// that grows with a power of the scene's size or of the path's.
 std::optional<Wrong> check_cost(std::string_view path) {
   if (path.size() > longest_path) {
     return Wrong{fmt::format("has {} characters; at most {} are allowed", path.size(), longest_path)};
   }
-  std::size_t begin = 0, anywhere = 0;  // of the condition; number of //
+  constexpr std::size_t most_upward = 3;
+  std::size_t begin = 0, anywhere = 0, upward = 0;  // of the condition; number of // and of ..
   bool is_condition = false;
   char quote = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -107,6 +108,8 @@ std::optional<Wrong> check_cost(std::string_view path) {
       }
     } else if (!is_condition && path.substr(i, 2) == "//" && ++anywhere > 1) {
       return Wrong{"has // more than once; write the names of the elements between"};
+    } else if (!is_condition && path.substr(i, 2) == ".." && ++upward > most_upward) {
+      return Wrong{"has .. more than three times; write the path without going up and down"};
     }
   }
   return std::nullopt;

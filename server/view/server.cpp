@@ -10,6 +10,7 @@
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <list>
+#include <new>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -325,13 +326,13 @@ struct Server::State {
 
   /// Takes what waits in the feed, again and again until nothing comes any more.
   void look() {
-    if (feed.pass_on(shared.hub)) {
+    if (pass_on()) {
       idle = 0;
       pump();
     } else if (++idle > longest_idle) {
       idle = 0;
       looks = false;
-      if (feed.pass_on(shared.hub)) {  // came just now
+      if (pass_on()) {  // came just now
         pump();
         wake();
       }
@@ -341,6 +342,15 @@ struct Server::State {
     next_look.async_wait([this](Error error) {
       if (!error) look();
     });
+  }
+
+  /// Without memory for what waits it is lost, and the next looks go on.
+  bool pass_on() {
+    try {
+      return feed.pass_on(shared.hub);
+    } catch (const std::bad_alloc&) {
+      return true;
+    }
   }
 
   std::string address(const char* scheme) const {

@@ -9,8 +9,13 @@ import signal
 import struct
 import subprocess
 
-from harness import FAULT, LIMIT, LUA, ZIGGURAT, main
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "disturbances"))
+
+from harness import FAULT, INTERRUPTED, LIMIT, LUA, ZIGGURAT, main
 from recorded import DIFFERS, ROOT, Recorded, change_inputs
+from websocket import PAUSE, RawViewer, STEP
 
 
 class Replay(Recorded):
@@ -263,6 +268,25 @@ class FromPoses(Recorded):
         self.assertIn("http://127.0.0.1:", process.stderr.readline())
         self.interrupt(process)
         self.finish(process)
+
+    def test_it_goes_on_when_the_viewer_that_steps_it_leaves(self):
+        recording, _ = self.record("--ticks", "40")
+        process = self.start("replay", recording, "--view", "127.0.0.1:0", "--real-time", "4")
+        port, token = self.read_until(process.stderr, r"http://127\.0\.0\.1:(\d+)/\?token=(\S+)").groups()
+        with RawViewer(int(port), token) as first:
+            channels = first.hear_operation("advertise")["channels"]
+            first.say(op="subscribe", subscriptions=[{"id": 1, "channelId": channels[0]["id"]}])
+            first.call(PAUSE, 1, b"{}")
+            self.assertTrue(first.hear_answer(1)[0])
+            first.call(STEP, 2, b'{"ticks": 10}')
+        with RawViewer(int(port), token) as second:
+            number, was_done = 0, False
+            while not was_done:  # the steps of the first are done then
+                number += 1
+                second.call(STEP, number, b'{"ticks": 1}')
+                was_done, _ = second.hear_answer(number)
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
 
     def test_what_needs_more_than_poses_is_refused(self):
         recording, _ = self.record("--ticks", "3")

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include "program/signals.h"
@@ -37,12 +38,18 @@ class Host {
     Guest& guest = guests_.emplace_back();
     ProgramOptions options = options_;
     options.robots = {id};
-    guest.thread = std::thread([this, &guest, options = std::move(options)] {
-      const int code = run_(options);
-      const std::lock_guard lock(mutex_);
-      guest.code = code;
-      guest.is_over = true;
-    });
+    try {
+      guest.thread = std::thread([this, &guest, options = std::move(options)] {
+        const int code = run_(options);
+        const std::lock_guard lock(mutex_);
+        guest.code = code;
+        guest.is_over = true;
+      });
+    } catch (const std::system_error&) {
+      guests_.pop_back();
+      throw std::runtime_error("robot '" + id + "' gets no thread: this process has " + std::to_string(guests_.size()) +
+                               " of them, and the system allows no more");
+    }
   }
   int join_all() {
     for (Guest& guest : guests_) {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "program/signals.h"
 #include "text/outlet.h"
@@ -81,8 +82,11 @@ void take_terminal(bool is_printable) {
 }
 
 void offer_to_terminal() {
-  out().outlet.write();
-  error().outlet.write();
+  for (const auto& [file, stream] : {std::pair{stdout, &out()}, {stderr, &error()}}) {
+    ::flockfile(file);  // other threads may print meanwhile
+    stream->outlet.write();
+    ::funlockfile(file);
+  }
 }
 
 void finish_terminal() {

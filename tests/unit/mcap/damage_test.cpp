@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "example.h"
+#include "mcap/encode.h"
 #include "mcap/scan.h"
 
 namespace ziggurat::mcap {
@@ -28,6 +29,28 @@ TEST(Damage, AFlippedBitAnywhereIsFound) {
       file[i] = static_cast<char>(file[i] ^ (1 << bit));
     }
   }
+}
+
+/// Many writers put schemas and channels into chunks; then they are no larger than they are.
+TEST(Damage, DefinitionsInLargeChunksTakeTheirOwnSizeOnly) {
+  std::string records;
+  for (std::uint16_t id = 1; id <= 8; ++id) {
+    append(Schema{id, "Type", "protobuf", "x"}, records);
+    append(Channel{id, id, "/topic", "protobuf", {}}, records);
+    append(Message{id, 0, 5, 5, std::string(1000, 'x')}, records);
+  }
+  std::string file(magic);
+  append(Header{"other", "test"}, file);
+  ChunkIndex index;
+  index.start_time = index.end_time = 5;
+  index.uncompressed_size = records.size();
+  append_chunk(index, 0, records, file);
+  Limits limits;
+  limits.index = 4 * records.size();
+  const Scan scanned = scan(bytes_of(file), limits);
+  EXPECT_EQ(scanned.contents.channels.size(), 8U);
+  EXPECT_EQ(scanned.contents.statistics.messages, 8U);
+  EXPECT_EQ(scanned.contents.chunks.size(), 1U);
 }
 
 /// How many messages are in chunks that end there or before.

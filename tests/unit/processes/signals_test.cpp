@@ -6,6 +6,9 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
+
+#include "processes/child_process.h"
 
 namespace ziggurat::processes {
 namespace {
@@ -43,6 +46,31 @@ TEST(Signals, EndAProgramThatDoesNotReact) {
       },
       testing::ExitedWithCode(130), "did not wait");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+}
+
+TEST(Signals, WhatNohupIgnoresStaysIgnored) {
+  EXPECT_EXIT(
+      {
+        ::signal(SIGHUP, SIG_IGN);
+        Signals signals;
+        ::kill(::getpid(), SIGHUP);
+        ::kill(::getpid(), SIGCHLD);  // behind it
+        while (!signals.take().child) readable(signals, 5000);
+        std::exit(signals.take().interruptions);
+      },
+      testing::ExitedWithCode(0), "");
+}
+
+TEST(Signals, ChildrenEndAlsoIfTheParentIgnoredThem) {
+  EXPECT_EXIT(
+      {
+        ::signal(SIGCHLD, SIG_IGN);
+        Signals signals;
+        ChildProcess child({{"/bin/sh", "-c", "exit 3"}, {}});
+        while (!child.poll()) readable(signals, 100);
+        std::exit(child.exit_code());
+      },
+      testing::ExitedWithCode(3), "");
 }
 
 TEST(Signals, PendingOnesDoNotStrikeAfterwards) {

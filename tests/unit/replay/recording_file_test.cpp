@@ -12,8 +12,10 @@
 #include "recorded_run.h"
 #include "replay/difference.h"
 #include "replay/export.h"
+#include "replay/names.h"
 #include "replay/recording_error.h"
 #include "temporary_folder.h"
+#include "ziggurat/v1/channels.pb.h"
 
 namespace ziggurat::replay {
 namespace {
@@ -131,6 +133,24 @@ TEST_F(Disk, OtherFilesAreRefused) {
   writer.close();
   std::ofstream(path("other.mcap"), std::ios::binary) << bytes;
   EXPECT_THROW(RecordingFile(path("other.mcap")), RecordingError);
+}
+
+TEST_F(Disk, NamesLinksOfEntitiesThatAreNotThere) {
+  std::string bytes;
+  mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"},
+                      mcap::Compression::none);
+  const auto channel = [&](const char* topic, const char* type) {
+    return writer.add_channel(writer.add_schema(type, "protobuf", "x"), topic, "protobuf");
+  };
+  const auto run = channel("/run", "ziggurat.v1.RunStart"), world = channel("/world", "ziggurat.v1.World");
+  writer.write(run, 0, 0, testing::start().SerializeAsString());
+  v1::World message;
+  message.add_entities()->set_id("box");
+  for (const std::uint32_t entity : {0U, 1U, 0x80000000U, 0xffffffffU}) message.add_links()->set_entity(entity);
+  writer.write(world, 0, 0, message.SerializeAsString());
+  writer.close();
+  const RecordingFile file("hostile", mcap::bytes_of(bytes));
+  EXPECT_EQ(link_names(file), (std::vector<std::string>{"'box'", "'?'", "'?'", "'?'"}));
 }
 
 TEST_F(Disk, MessagesBecomeLines) {

@@ -202,6 +202,15 @@ TEST(Distribute, TwoGroupsMustNotCreateTheSameIds) {
   EXPECT_EQ(count_containing(faults(text.read()), "makes a copy called \"b10\""), 1u);
 }
 
+TEST(Distribute, LightsCountAsCopies) {
+  const std::string begin = R"(<distribute><position method="constant" values="0,0,0"/>)"
+                            R"(<orientation method="constant" values="0,0,0"/><entity max_trials="0" quantity=")";
+  const std::string light = R"("><light id="" color="red" intensity="1" medium="leds"/></entity></distribute>)";
+  SceneText text;  // an empty id: no ids of copies are made
+  text.arena = arena_with(begin + "1000000" + light + begin + "1" + light);
+  EXPECT_EQ(count_containing(faults(text.read()), "makes more than 1000000 distributed entities"), 1u);
+}
+
 TEST(Arena, LightsAndGroundsAreCheckedWithoutEffect) {
   SceneText text;
   text.media = R"(<media><led id="leds"/></media>)";

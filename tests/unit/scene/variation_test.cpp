@@ -111,6 +111,7 @@ TEST(Set, RefusesPathsThatWouldTakeForEver) {
   for (const char* path : {"//*//*", "//*/..//*", "//*|//*", "*//*//@x/.."}) {
     EXPECT_NE(fault_of(std::string(path) + "/@x=1").find("// more than once"), std::string::npos) << path;
   }
+  EXPECT_NE(fault_of("arena/*/../*/../*/../*/../box/@mass=1").find(".. more than three times"), std::string::npos);
   for (const char* path : {"//*[count(//*/..//*/..//*)>0]", "//*[../*]", "//*[.//*]", "//*[/*/*]", "//*[@a and /*/*]",
                            "//*[@a and/*/*]", "//*[2*/*/*]", "//*[1-/*/*]", "arena[*/@x=*/@y]", "arena['1'=*/@y]", "arena[]"}) {
     EXPECT_NE(fault_of(std::string(path) + "/@x=1").find("has the condition ["), std::string::npos) << path;
