@@ -143,13 +143,18 @@ void write_text(const std::string& path, const std::string& text, mode_t mode) {
 
 }  // namespace
 
-bool Scope::includes(std::string_view robot, std::string_view controller) const {
-  const auto fits = [](const std::vector<std::string>& globs, std::string_view id) {
-    return globs.empty() || std::ranges::any_of(globs, [&](const std::string& glob) {
-             return glob == id || matches(glob, id);
-           });
+ScopeGlobs::ScopeGlobs(const Scope& scope)
+    : scope_(scope),
+      robots_(scope.robots.begin(), scope.robots.end()),
+      controllers_(scope.controllers.begin(), scope.controllers.end()) {}
+
+bool ScopeGlobs::includes(std::string_view robot, std::string_view controller) const {
+  const auto fits = [](const std::vector<std::string>& texts, const std::vector<Glob>& globs,
+                       std::string_view id) {
+    return texts.empty() || std::ranges::find(texts, id) != texts.end() ||
+           std::ranges::any_of(globs, [&](const Glob& glob) { return glob.matches(id); });
   };
-  return fits(robots, robot) && fits(controllers, controller);
+  return fits(scope_.robots, robots_, robot) && fits(scope_.controllers, controllers_, controller);
 }
 
 std::string read_secret_key(const std::string& path) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "network/glob.h"
 #include "wire/messages.h"
 
 namespace ziggurat::network {
@@ -44,8 +45,18 @@ struct Scope {
   std::vector<std::string> robots;       ///< ids or globs; empty: all
   std::vector<std::string> controllers;  ///< likewise, of the robots' controllers
   bool may_take_over = true;             ///< robots that other sessions have (Hello.takeover)
+};
 
+/// Which robots are in a scope.
+class ScopeGlobs {
+ public:
+  /// @param scope  must outlive this
+  explicit ScopeGlobs(const Scope& scope);
   bool includes(std::string_view robot, std::string_view controller) const;
+
+ private:
+  const Scope& scope_;
+  std::vector<Glob> robots_, controllers_;  // as in the scope
 };
 
 /// Who may connect.

@@ -39,8 +39,9 @@ std::variant<std::vector<Fit>, wire::Fault> fit_names(const std::vector<std::str
                         fmt::format("A Hello may have {} patterns of {} bytes at most.",
                                     most_patterns, longest_pattern));
     }
+    const Glob glob(name);
     for (std::size_t i = 0; i < fits.size(); ++i) {
-      if (fits[i] == Fit::none && matches(name, layout.robots[i].id)) fits[i] = Fit::by_pattern;
+      if (fits[i] == Fit::none && glob.matches(layout.robots[i].id)) fits[i] = Fit::by_pattern;
     }
   }
   return fits;

@@ -38,8 +38,9 @@ Selection select(const std::vector<std::string>& patterns, const simulation::Sim
     const auto named = places.find(pattern);
     bool is_known = named != places.end();
     if (is_known) is_selected[named->second] = true;
+    const network::Glob glob(network::has_wildcards(pattern) ? pattern : "");
     for (std::size_t i = 0; i < all.size() && network::has_wildcards(pattern); ++i) {
-      if (world.state().is_absent(i) || !network::matches(pattern, all[i].id)) continue;
+      if (world.state().is_absent(i) || !glob.matches(all[i].id)) continue;
       is_selected[i] = is_known = true;
     }
     if (!is_known && !selection.unknown) selection.unknown = pattern;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "network/barrier/departure.h"
 #include "network/barrier/exchange.h"
@@ -133,13 +134,16 @@ void displace(Barrier& barrier, std::size_t director, const std::string& by) {
 
 /// The world has grown: what fits the subscription is told.
 void update_view(wire::WorldView& view, const wire::Truth& truth) {
+  if (view.considered == truth.layout.entities.size()) return;
   const auto& patterns = view.subscription.entities;
+  std::vector<Glob> globs;
+  for (const std::string& pattern : patterns) {
+    if (has_wildcards(pattern)) globs.emplace_back(pattern);
+  }
   for (std::size_t i = view.considered; i < truth.layout.entities.size(); ++i) {
     const std::string& id = truth.layout.entities[i].id;
-    const bool is_wanted =
-        patterns.empty() || std::ranges::any_of(patterns, [&](const std::string& pattern) {
-          return pattern == id || (has_wildcards(pattern) && matches(pattern, id));
-        });
+    const bool is_wanted = patterns.empty() || std::ranges::find(patterns, id) != patterns.end() ||
+                           std::ranges::any_of(globs, [&](const Glob& glob) { return glob.matches(id); });
     consider(view, truth, i, is_wanted && !truth.state.is_absent(i));
   }
 }

@@ -33,8 +33,8 @@ const Scope* scope_of(const Barrier& barrier, const Access& access) {
   return &barrier.config.curve->clients[*access.key].scope;
 }
 
-bool is_in_scope(const Barrier& barrier, const Scope* scope, std::size_t robot) {
-  if (scope == nullptr) return true;
+bool is_in_scope(const Barrier& barrier, const std::optional<ScopeGlobs>& scope, std::size_t robot) {
+  if (!scope) return true;
   const auto& layout = barrier.run->layout.robots[robot];
   return scope->includes(layout.id, barrier.run->controllers[layout.controller].id);
 }
@@ -43,10 +43,12 @@ bool is_in_scope(const Barrier& barrier, const Scope* scope, std::size_t robot) 
 /// stay, whatever they are; otherwise refuses one that the key does not include.
 std::variant<std::vector<std::size_t>, wire::Refusal> allowed_robots(
     const Barrier& barrier, const std::vector<Selected>& selection, const Scope* scope) {
+  std::optional<ScopeGlobs> globs;
+  if (scope != nullptr) globs.emplace(*scope);
   std::vector<std::size_t> robots;
   bool has_any = false;
   for (const auto& [robot, by_id] : selection) {
-    if (!is_in_scope(barrier, scope, robot)) {
+    if (!is_in_scope(barrier, globs, robot)) {
       if (!by_id) continue;
       const std::string& id = barrier.run->layout.robots[robot].id;
       return refuse_robot(id, ErrorCode::forbidden,

@@ -94,13 +94,14 @@ TEST_F(Keys, ALineLimitsWhatAKeyMayDrive) {
       "list", a + " controller,observer robots=r1,scout* controllers=wander takeover=no A = B\n"));
   ASSERT_EQ(clients.size(), 1U);
   const Scope& scope = clients[0].scope;
-  EXPECT_TRUE(scope.includes("scout7", "wander"));
-  EXPECT_TRUE(scope.includes("r1", "wander"));
-  EXPECT_FALSE(scope.includes("r11", "wander"));
-  EXPECT_FALSE(scope.includes("r1", "wanderer"));
+  EXPECT_TRUE(ScopeGlobs(scope).includes("scout7", "wander"));
+  EXPECT_TRUE(ScopeGlobs(scope).includes("r1", "wander"));
+  EXPECT_FALSE(ScopeGlobs(scope).includes("r11", "wander"));
+  EXPECT_FALSE(ScopeGlobs(scope).includes("r1", "wanderer"));
   EXPECT_FALSE(scope.may_take_over);
   EXPECT_EQ(clients[0].name, "A = B");
-  EXPECT_TRUE(Scope{}.includes("any", "thing"));
+  const Scope none;
+  EXPECT_TRUE(ScopeGlobs(none).includes("any", "thing"));
 }
 
 TEST_F(Keys, FaultsOfLimitsAreNamed) {

@@ -34,6 +34,12 @@ TEST(Glob, Sets) {
   EXPECT_TRUE(matches("[a-]", "-"));
 }
 
+TEST(Glob, FitsManyTexts) {
+  const Glob glob("**r[a-c]*?");
+  for (const char* text : {"rax", "xxrcyy", "rrb0"}) EXPECT_TRUE(glob.matches(text)) << text;
+  for (const char* text : {"ra", "rdx", ""}) EXPECT_FALSE(glob.matches(text)) << text;
+}
+
 TEST(Glob, AnUnclosedSetIsText) {
   EXPECT_TRUE(matches("r[0", "r[0"));
   EXPECT_FALSE(matches("r[0", "r0"));
