@@ -20,6 +20,7 @@ void Collider::archive(math::Archive& archive) {
 }
 
 void Colliders::archive(math::Archive& archive) {
+  settle();
   archive("all", all);
   archive("woke", woke);
   for (ColliderGroup& group : groups) {
