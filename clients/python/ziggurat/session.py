@@ -451,6 +451,6 @@ class Session:
 
     def _hint(self, error: Any) -> str:
         """What a robot lacks, for the use of a device that is None."""
-        if not isinstance(error, AttributeError) or getattr(error, "obj", error) is not None:
+        if not isinstance(error, AttributeError) or not str(error).startswith("'NoneType' object"):
             return ""
         return "; ".join(robot._lacks() for robot in list(self.robots)[:3])

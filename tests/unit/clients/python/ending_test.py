@@ -25,6 +25,20 @@ class Leaving(SessionCase):
 
         self.play(part, client)
 
+    def test_a_misspelt_attribute_is_not_one_of_a_device_that_is_not_there(self):
+        def part(server):
+            open_with(server)
+            server.observe(0)
+            self.assertNotIn("it has", server.receive().message)
+
+        def client():
+            with self.assertRaises(AttributeError):
+                with self.connect() as session:
+                    next(session)
+                    session.robots[0].joints["left"].taget = 1
+
+        self.play(part, client)
+
     def test_an_exception_leaves_as_failed(self):
         def part(server):
             open_with(server)
