@@ -56,11 +56,11 @@ class Robot(Sensors):
 
     def _lacks(self) -> str:
         """What of it is None, and what it has."""
-        optional = ("range_and_bearing", "wheels", "turret", "pose", "battery")
-        absent = [name for name in optional if getattr(self, name) is None]
-        lists = ("joints", "radios", "leds", "directional_leds", "tags", "magnets", "cameras", "imus",
-                 "contact_sensors", "proximity_sensors")
-        there = [name for name in optional if name not in absent] + [n for n in lists if getattr(self, n)]
+        names = ("range_and_bearing", "wheels", "turret", "joints", "radios", "leds", "directional_leds", "tags",
+                 "magnets", "cameras") + Sensors._names
+        devices = {name: getattr(self, name) for name in names}
+        absent = [name for name, device in devices.items() if device is None]
+        there = [name for name, device in devices.items() if device]
         return f"robot {self.id!r} has no {', '.join(absent)} (None); it has: {', '.join(there) or 'no devices'}"
 
     def leave(self) -> None:

@@ -173,6 +173,11 @@ void Colliders::settle() {
   settled_ = groups.size();
 }
 
+int Colliders::depth() {
+  settle();
+  return std::max(btDbvt::maxdepth(broadphase_.m_sets[0].m_root), btDbvt::maxdepth(broadphase_.m_sets[1].m_root));
+}
+
 std::span<ColliderGroup> Colliders::groups_of(std::size_t entity) {
   const auto first = std::ranges::lower_bound(groups, entity, {}, &ColliderGroup::entity);
   const auto last = std::ranges::upper_bound(groups, entity, {}, &ColliderGroup::entity);

@@ -104,6 +104,8 @@ class Colliders {
   void find_near(std::vector<Near>& out);
   /// Those among some trees that were followed last, and with what stands.
   void find_near(std::vector<Near>& out, const TreeSet& chosen);
+  /// Levels of the broad phase's trees, of the taller one.
+  int depth();
 
  private:
   struct Filter;

@@ -59,24 +59,6 @@ TEST(AddEntity, TooManyPointsOfContactAreAFault) {
             "bodies touch at more than 1000000 points; place fewer bodies, or farther from each other");
 }
 
-/// Processor time of a world of boxes that stand in a row, for their coming and a step [s].
-/// @param stride  each is so many places behind the one before, around the end
-double time_of_row(std::size_t stride) {
-  constexpr std::size_t count = 8000;
-  const clock_t begin = ::clock();
-  World world(with_gravity(9.8), 0.01);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Pose pose{{3.0 * static_cast<double>(i * stride % count), 0, 0}, math::Quaternion::Identity()};
-    world.add(single(scene::EntityKind::box, pose, false, cube, 1));
-  }
-  world.step();
-  return static_cast<double>(::clock() - begin) / CLOCKS_PER_SEC;
-}
-
-TEST(AddEntity, OneAfterAnotherInARowTakesNoLongerThanInAnyOrder) {
-  EXPECT_LT(time_of_row(1), 0.1 + 4 * time_of_row(4999));
-}
-
 TEST(AddEntity, KeepsItsPoseUntilTheNextStep) {
   World world(with_gravity(9.8), 0.01);
   world.add(box_at({0, 0, 5}));

@@ -96,6 +96,8 @@ class ContactSensor(Device):
 class Sensors:
     """Those of a robot that the scene's controller enables."""
 
+    _names = ("pose", "battery", "imus", "contact_sensors", "proximity_sensors")  # for messages
+
     pose = Readings("positioning", 7, lambda values: Pose(tuple(values[:3]), tuple(values[3:])),
                     lambda given: given.positioning)
     battery = Readings("batteries", 2, Battery._make, lambda given: given.battery)
