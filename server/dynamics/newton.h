@@ -32,7 +32,7 @@ struct SolverOptions {
   double near = 1e-5;        ///< a miss of this times the largest speed needs no new factors
   int most_descents = 8;     ///< full steps of the softened problem
   double softness = 1e-3;    ///< its impulses give way by this times the mobility
-  int most_interior = 30;    ///< steps of the interior point method
+  int most_interior = 40;    ///< steps of the interior point method
   double most_work = 1.2e7;  ///< multiplications of a factorisation; more: sweeps
   std::size_t most_trees = 300;       ///< of an island whose matrix is looked at
   int most_sweeps = 60;               ///< of islands that are not factored

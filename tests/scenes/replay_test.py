@@ -96,7 +96,7 @@ class Replay(Recorded):
 
     def test_other_files_are_refused(self):
         outcome = self.ask("replay", self.scene, code=FAULT)
-        self.assert_is_sentence(outcome, r"arms\.argos: .*ziggurat run SCENE --record FILE")
+        self.assert_is_sentence(outcome, r"arms\.argos: this is a scene, not a recording; .*ziggurat run .*arms\.argos --record FILE")
         self.assert_is_sentence(self.ask("verify", "nothing.mcap", code=FAULT), r"nothing\.mcap")
         self.assert_is_sentence(self.ask("verify", code=FAULT), r"no recording is given")
 

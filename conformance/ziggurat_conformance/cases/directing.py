@@ -84,7 +84,7 @@ CASES = [
          fresh=True, variant=VARIANT),
     Case("R1.five", "A world has four directors",
          ([step for id in "abcd" for step in (Join(id, _hello(id)),)], Send("e", {"hello": _hello("e")}),
-          hear_refusal("e", "TOO_MANY")), fresh=True, variant=VARIANT),
+          hear_refusal("e", "TOO_MANY", retryable=True)), fresh=True, variant=VARIANT),
     Case("R2.waits", "The world waits for a director that has come",
          (_BOTH, answer("p"), Silence("p", 0.5), _says("d"), *observe("p"), *_sees("d")), fresh=True, variant=VARIANT),
     Case("R2.together", "WorldState has the tick of the Observation, and an epoch",

@@ -21,6 +21,8 @@ struct Nearest {
   btVector3 b_to_a{0, 0, 1};
   btVector3 on_b{0, 0, 0};
   btScalar distance = -BT_LARGE_FLOAT;
+  bool apart = false;  ///< the cores are
+  bool sharp = false;  ///< of the shapes themselves: on_b is on the surface
 };
 
 Nearest search(const Body& a, const btConvexShape& shape_a, const Body& b,
@@ -30,9 +32,9 @@ Nearest search(const Body& a, const btConvexShape& shape_a, const Body& b,
   // Bullet takes the guess and gives the normal in A's frame, the witnesses in the world.
   const btMatrix3x3& basis = at.a.getBasis();
   const btVector3 guess = basis.transpose() * (at.a.getOrigin() - at.b.getOrigin());
-  const bool apart = btGjkEpaSolver2::Distance(&shape_a, at.a, &shape_b, at.b, guess, results) &&
-                     results.distance > 0;
-  if (!apart && !btGjkEpaSolver2::Penetration(&shape_a, at.a, &shape_b, at.b, guess, results)) {
+  found.apart = btGjkEpaSolver2::Distance(&shape_a, at.a, &shape_b, at.b, guess, results) &&
+                results.distance > 0;
+  if (!found.apart && !btGjkEpaSolver2::Penetration(&shape_a, at.a, &shape_b, at.b, guess, results)) {
     return found;
   }
   const btScalar length = results.normal.length();
@@ -42,7 +44,7 @@ Nearest search(const Body& a, const btConvexShape& shape_a, const Body& b,
     found.b_to_a = -found.b_to_a;
   found.distance = separation(a, b, found.b_to_a);
   found.on_b = results.witnesses[1];
-  if (apart) found.on_b += found.b_to_a * shape_b.getMargin();
+  if (found.apart) found.on_b += found.b_to_a * shape_b.getMargin();
   return found;
 }
 
@@ -68,8 +70,8 @@ Nearest with_shape(const Hull& hull, btScalar, Use use) {
   return use(*hull.polyhedron->bullet);
 }
 
-Nearest nearest(const Body& a, const Body& b, const Placement& at) {
-  const btScalar margin = btScalar(0.1) * btMin(smallest(a), smallest(b));
+/// @param margin  by which cores of boxes and cylinders are smaller: their edges are round [m]
+Nearest nearest(const Body& a, const Body& b, const Placement& at, btScalar margin) {
   return std::visit(
       [&](const auto* first, const auto* second) {
         return with_shape(*first, margin, [&](const btConvexShape& shape_a) {
@@ -87,6 +89,7 @@ struct BestFace {
   int number = -1;
   btVector3 outward;
   btScalar distance = -BT_LARGE_FLOAT;
+  btVector3 b_to_a() const { return of_a ? -outward : outward; }
 };
 
 void consider_faces(const Body& body, const Body& other, bool of_a, btScalar prefer,
@@ -127,9 +130,21 @@ bool add_line(const Body& a, const Body& b, const Nearest& near, Contacts& out) 
   const btScalar from = btMax(-half_length, offset - line.half_length);
   const btScalar to = btMin(half_length, offset + line.half_length);
   if (to - from < btScalar(0.1) * half_length) return false;
-  out.add(line.middle + axis * (from - offset), near.distance);
-  out.add(line.middle + axis * (to - offset), near.distance);
+  // Along a face's axis the edge may be one of two, but not where it is.
+  const btVector3 on_line = near.sharp ? near.on_b : line.middle;
+  const btScalar along = axis.dot(on_line - a.centre);
+  out.add(on_line + axis * (from - along), near.distance);
+  out.add(on_line + axis * (to - along), near.distance);
   return true;
+}
+
+/// Takes what separates best. Between cores edges are round: where they touch or nearly do, the direction is
+/// one between the faces that meet there, and the point is not on the surface.
+/// @param sharp  of the shapes themselves; where they touch its direction may be anything
+void sharpen(Nearest& near, const BestFace& face, const Nearest& sharp) {
+  if (sharp.distance == -BT_LARGE_FLOAT) return;
+  if (sharp.distance > near.distance) near = sharp, near.sharp = true;
+  if (face.distance > near.distance) near = {face.b_to_a(), sharp.on_b, face.distance, true, true};
 }
 
 btScalar least(const Contacts& contacts) {
@@ -151,11 +166,11 @@ void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contact
   if (face.distance > most) return;
   consider_faces(a, b, true, prefer, face);
   if (face.distance > most) return;
-  const Nearest near = nearest(a, b, at);
+  Nearest near = nearest(a, b, at, btScalar(0.1) * btMin(smallest(a), smallest(b)));
   if (near.distance > at.reach) return;
 
   if (face.distance >= near.distance - 5 * prefer) {
-    out.normal = face.of_a ? -face.outward : face.outward;
+    out.normal = face.b_to_a();
     clip_features(face, face.of_a ? a : b, face.of_a ? b : a, at.reach, out);
     // The ball at the end of a capsule may be nearest beyond the face's outline.
     const bool enough =
@@ -164,6 +179,8 @@ void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contact
     out.count = 0;
   }
   if (near.distance == -BT_LARGE_FLOAT) return;
+  if (near.apart && at.support != Support::lowest) sharpen(near, face, nearest(a, b, at, 0));
+  if (near.distance > at.reach) return;
   out.normal = near.b_to_a;
   if (!add_line(a, b, near, out)) out.add(near.on_b, near.distance);
 }

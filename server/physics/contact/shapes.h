@@ -59,6 +59,8 @@ btScalar bounding_radius(const Shape& shape);
 struct Point {
   btVector3 on_b;     ///< on the surface of B, in the world [m]
   btScalar distance;  ///< along the normal; negative = overlap [m]
+  /// From the place opposite, along the normal, to where it meets a body that stands, if that is later [m].
+  btVector3 until_met;
 };
 
 /// Points that share one normal. Before reduction there may be up to `capacity` of them.
@@ -69,7 +71,7 @@ struct Contacts {
   std::array<Point, capacity> points;
 
   void add(const btVector3& on_b, btScalar distance) {
-    if (count < capacity) points[count++] = {on_b, distance};
+    if (count < capacity) points[count++] = {on_b, distance, {0, 0, 0}};
   }
 };
 

@@ -310,8 +310,8 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
     const contact::Point& point = found.points[i];
     const btVector3 on_a = point.on_b + found.normal * point.distance;
     Remembered& now = pair.points[i];
-    now.on_a = from_bullet(a.pose.invXform(on_a));
-    now.on_b = from_bullet(b.pose.invXform(point.on_b));
+    now.on_a = from_bullet(a.pose.invXform(a.moves ? on_a : on_a + point.until_met));
+    now.on_b = from_bullet(b.pose.invXform(b.moves ? point.on_b : point.on_b + point.until_met));
     now.point = from_bullet(!b.moves ? on_a : !a.moves ? point.on_b : (point.on_b + on_a) / 2);
     now.gap = point.distance;
     now.impulse.setZero();

@@ -53,6 +53,8 @@ void carry_back(contact::Contacts& found, const Collider& a, const btTransform& 
     point.distance = found.normal.dot(on_a - on_b);
     // Opposite the point of the body that moves.
     point.on_b = a.moves ? on_a - found.normal * point.distance : on_b;
+    if (!a.moves) point.until_met = on_a - (on_b + found.normal * point.distance);
+    if (!b.moves) point.until_met = on_b - point.on_b;
   }
 }
 

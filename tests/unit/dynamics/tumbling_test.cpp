@@ -20,7 +20,9 @@ struct Random {
     return least + (most - least) * static_cast<double>(bits()) / 4294967296.0;
   }
   Vector3 vector(double most) {
-    return Vector3((*this)(-most, most), (*this)(-most, most), (*this)(-most, most));
+    Vector3 out;
+    for (double& each : out) each = (*this)(-most, most);
+    return out;
   }
 };
 
@@ -30,7 +32,8 @@ Tree whip(int count, JointType joint, Random& random) {
   for (int i = 0; i < count; ++i) {
     const Link link = testing::box_link({0.05, 0.1, 0.25}, i % 2 == 0 ? 0.3 : 2);
     const Vector3 axis = random.vector(1).normalized();
-    links.push_back(testing::hung(link, i, joint, axis, random.vector(0.15), random.vector(0.15)));
+    const Vector3 in_parent = random.vector(0.15), in_child = random.vector(0.15);
+    links.push_back(testing::hung(link, i, joint, axis, in_parent, in_child));
   }
   return Tree(links, testing::at(0, 0, 0.8));
 }

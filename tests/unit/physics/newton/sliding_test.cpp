@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "newton_scene.h"
 
@@ -95,6 +96,37 @@ TEST_P(NewtonAt, ATileFloorIsAsSmoothAsOne) {
   const double a = earth * std::sin(angle), expected = a * seconds * seconds / 2;
   const double way = (origin(world, 0).position - start).dot(downhill);
   EXPECT_NEAR(way, expected, 0.002 * expected + 1.02 * a * seconds * h / 2);
+}
+
+/// What stands on a flat face: a box that is turned, a cylinder, a pyramid. All are 10 cm wide and high.
+std::vector<scene::Geometry> flat_shapes() {
+  const std::vector<Vector3> corners{{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0.1, 0.1, 0}, {0.05, 0.05, 0.1}};
+  return {cube, scene::Cylinder{0.05, 0.1}, std::get<scene::Hull>(scene::make_hull(corners))};
+}
+
+TEST_P(NewtonAt, TilesAreAsSmoothAsOneInEveryDirection) {
+  // Down a slope of square tiles without friction, over their edges and corners.
+  const double slope = 0.15, seconds = 0.9;
+  const math::Quaternion tilt = about({0, 1, 0}, slope);
+  const Vector3 up = tilt * Vector3::UnitZ(), downhill = tilt * Vector3::UnitX();
+  const double a = earth * std::sin(slope), expected = a * seconds * seconds / 2;
+  for (const scene::Geometry& shape : flat_shapes()) {
+    for (const double yaw : {0.0, 0.3, std::numbers::pi / 4, 1.2}) {
+      World world(newton(), h);
+      const math::Quaternion turned = tilt * about({0, 0, 1}, yaw);
+      const Pose start{turned * Vector3(0.01, 0.02, 0), turned * about({0, 0, 1}, 0.2)};
+      world.add(loose(start, shape, 0.1, 0));
+      for (int i = 0; i < 49; ++i) {
+        const Vector3 place(0.25 * (i / 7 - 3), 0.25 * (i % 7 - 3), -0.05);
+        world.add(standing({turned * place, turned}, scene::Box{{0.25, 0.25, 0.05}}, 1));
+      }
+      run(world, seconds, h);
+      const Vector3 moved = origin(world, 0).position - start.position;
+      EXPECT_NEAR(moved.dot(downhill), expected, 0.002 * expected + 1.02 * a * seconds * h / 2) << yaw;
+      EXPECT_LT((moved - moved.dot(downhill) * downhill).norm(), 1e-5) << yaw;
+      EXPECT_LT(origin(world, 0).orientation.angularDistance(start.orientation), 1e-3) << yaw;
+    }
+  }
 }
 
 /// Four flush tiles of 0.5 x 1 x 0.1 m in one body, in a row along x.
