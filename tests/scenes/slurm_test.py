@@ -1,11 +1,13 @@
 """`ziggurat sweep --slurm` on a real Slurm that this test starts: tasks are killed on the way, and its table is
 that of a sweep on this machine. And a world whose controllers are on another node."""
 
+import math
 import os
 import re
 import signal
 import sqlite3
 import subprocess
+import time
 import unittest
 
 import slurm_cluster
@@ -30,15 +32,24 @@ class SlurmTest(SweepTest):
 
     def requeue(self, task):
         """Slurm lets a requeued task wait for two minutes; here three seconds. A node refuses it within the second
-        in which it ended the former one: "job credential revoked"."""
+        in which it ended the former one: "job credential revoked"; and Slurm refuses to change the time of a task
+        that is still ending, so it is asked again."""
         self.cluster.ask("scontrol", "requeue", task)
 
         def show():
             return self.cluster.ask("scontrol", "show", "job", task)
 
         self.wait_for(show, lambda text: re.search("JobState=(PENDING|COMPLETED)|Restarts=[1-9]", text), "end of the former task")
-        self.cluster.ask("scontrol", "update", f"JobId={task}", "StartTime=now+3")
-        self.wait_for(show, lambda text: re.search(r"JobState=(RUNNING|COMPLETED|FAILED)", text), "requeued task")
+        asked = -math.inf
+
+        def runs(text):
+            nonlocal asked
+            if "JobState=PENDING" in text and time.monotonic() > asked + 10:
+                asked = time.monotonic()
+                self.cluster.ask("scontrol", "update", f"JobId={task}", "StartTime=now+3")
+            return re.search(r"JobState=(RUNNING|COMPLETED|FAILED)", text)
+
+        self.wait_for(show, runs, "requeued task")
 
     def tasks(self):
         """Ids of the processes `ziggurat sweep task` of this test."""
