@@ -11,6 +11,7 @@ constexpr char metatable_key = 0, name_key = 0, owner_key = 0, root_key = 0, tab
 
 constexpr int deepest = 3;             // robot.joints.<id>.<field>
 constexpr std::size_t most_named = 24;  // fields of a message
+constexpr int most_read = 10'000;       // fields, as scripts can make any tables
 
 /// __index: remembers the table and the field.
 int remember(lua_State* state) {
@@ -41,17 +42,20 @@ void watch_table(lua_State* state, int depth) {
 }
 
 /// The name of the table at `wanted` below the one on top; empty if it is not there.
-std::string name_of(lua_State* state, int wanted, const std::string& name, int depth) {
+/// @param left  so many fields may still be read
+std::string name_of(lua_State* state, int wanted, const std::string& name, int depth, int& left) {
   if (lua_rawequal(state, -1, wanted) != 0) return name;
   if (depth == deepest || lua_checkstack(state, 4) == 0) return {};
+  const int top = lua_gettop(state);
   std::string found;
   lua_pushnil(state);
-  while (lua_next(state, -2) != 0) {
-    if (found.empty() && lua_type(state, -1) == LUA_TTABLE && lua_type(state, -2) == LUA_TSTRING) {
-      found = name_of(state, wanted, name + "." + lua_tostring(state, -2), depth + 1);
+  while (found.empty() && left-- > 0 && lua_next(state, -2) != 0) {
+    if (lua_type(state, -1) == LUA_TTABLE && lua_type(state, -2) == LUA_TSTRING) {
+      found = name_of(state, wanted, name + "." + lua_tostring(state, -2), depth + 1, left);
     }
     lua_pop(state, 1);
   }
+  lua_settop(state, top);
   return found;
 }
 
@@ -59,7 +63,7 @@ std::string name_of(lua_State* state, int wanted, const std::string& name, int d
 std::string fields_of(lua_State* state, int table) {
   std::vector<std::string> names;
   lua_pushnil(state);
-  while (lua_next(state, table) != 0) {
+  for (int left = most_read; left > 0 && lua_next(state, table) != 0; --left) {
     if (lua_type(state, -2) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -2));
     lua_pop(state, 1);
   }
@@ -105,7 +109,8 @@ std::string missing_field(lua_State* state, std::string_view error) {
   if (is_set) {
     const int table = top + 2;
     const std::string field = lua_tostring(state, top + 1), root = lua_tostring(state, top + 4);
-    const std::string name = name_of(state, table, root, 1);
+    int left = most_read;
+    const std::string name = name_of(state, table, root, 1, left);
     if (!name.empty() && is_about(error, field)) {
       text = std::string(lua_tostring(state, top + 3)) + " has no " + name + "." + field + "; " + name +
              " has: " + fields_of(state, table);

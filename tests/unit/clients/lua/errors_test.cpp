@@ -84,6 +84,14 @@ TEST_F(Errors, OfWhatTheRobotLacksNameItAndWhatItHas) {
   expect_contains(start("robot.params.gain.x = 1"), " has no robot.params.gain; robot.params has: script, speed (in its chunk");
 }
 
+// It ended the process, and with it the scripts of all its robots, as a library function that does not end.
+TEST_F(Errors, OfAScriptWithHugeTablesComeAtOnce) {
+  const std::string huge =
+      "local rows = {} for i = 1, 30000 do rows['row' .. i] = {} end "
+      "for i = 1, 30000 do robot['copy' .. i] = rows end ";
+  expect_contains(start(huge + "robot.params.gain.x = 1"), "nil value (field 'gain')");
+}
+
 TEST_F(Errors, OfWhatIsNoFunctionSayIt) {
   ASSERT_EQ(start("function init() end step = 5"), std::nullopt);
   expect_contains(controller().step(1), "main.lua: step is a number, not a function; write: function step()");
