@@ -20,13 +20,15 @@ from .devices import *
 from .direct import World, direct
 from .errors import ConnectionLost, Displaced, ProtocolError, Refused, Timeout, ZigguratError
 from .find_server import find_server
+from .joining import Deadline, connect, resume
 from .named import Named
 from .parallel import ParallelEnv, all_readings, joint_targets, parallel_env
 from .robot import Robot
 from .server import Server
-from .session import Deadline, Ending, Event, Session, SpawnedRobot, Tick, connect, resume
+from .session import Session
 from .supervisor import (EntityState, LinkState, SessionStatus, SolverStatus, States, Status,
                          Supervisor, supervise)
+from .ticks import Ending, Event, SpawnedRobot, Tick
 
 __version__ = "0.1.0"
 

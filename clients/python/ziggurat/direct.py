@@ -16,8 +16,10 @@ from .connection import Curve
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of
 from .errors import ProtocolError
+from .joining import Deadline, take_token
 from .metrics import Metrics
-from .session import Deadline, Session, Tick, _take_token
+from .session import Session
+from .ticks import Tick
 
 _GROUPS = {name.lower(): number for name, number in v1.Subscription.Group.items() if number}
 _FLOOR = -1
@@ -177,7 +179,7 @@ def direct(director: str = "", endpoint: str = "", *, entities: Union[str, Seque
     token = b""
     if not endpoint:
         curve = curve or Curve.from_environment()
-        token = _take_token()
+        token = take_token()
     id = director or os.environ.get("ZIGGURAT_DIRECTOR", "")
     wanted = [entities] if isinstance(entities, str) else list(entities)
     hello = v1.Hello(role=v1.ROLE_DIRECTOR, director=id, client_name=name or id or "python",

@@ -10,7 +10,8 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 from .errors import ProtocolError
 from .robot import Robot
 from .server import Server
-from .session import Session, connect
+from .joining import connect
+from .session import Session
 from .supervisor import Supervisor
 
 Observe = Callable[[Robot], Any]

@@ -7,7 +7,8 @@ import subprocess
 from typing import Any, Optional, Sequence
 
 from .errors import ConnectionLost
-from .session import Session, connect
+from .joining import connect
+from .session import Session
 
 
 class Server:

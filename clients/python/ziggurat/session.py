@@ -1,12 +1,9 @@
-"""Sessions of controllers: ticks, commands, the end."""
+"""A session of a controller: ticks, commands, lost connections, the end."""
 
 from __future__ import annotations
 
-import enum
-import os
 import time
-from dataclasses import dataclass
-from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Union
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Union
 
 from . import protocol_pb2 as v1
 from .connection import Connection, Curve
@@ -14,126 +11,18 @@ from .errors import ConnectionLost, Displaced, ProtocolError, Refused, name_of
 from .exchange import Exchange
 from .named import Named
 from .robot import Robot
+from .ticks import Ending, Event, SpawnedRobot, Tick
 
 # Errors for a command that came too late or twice: harmless, as the next observation arrives anyway.
 # A command that was sent before a Reset arrived may have a future tick.
 _LATE = (v1.Error.STALE_TICK, v1.Error.DUPLICATE_TICK)
 
-_TOKEN = "ZIGGURAT_SESSION_TOKEN"
 # Wall times [s] of a session whose connection was lost.
 _SILENCE = 3.0  # of a server, at least
 _PATIENCE = 10.0  # as connect_timeout
 _BETWEEN_ATTEMPTS = 0.1  # while there is no server
 _BETWEEN_HELLOS = 1.0  # to a server that answers
 _MOST_IN_VAIN = 3
-
-
-class Event(enum.Enum):
-    """The kind of a tick."""
-
-    INIT = "init"  # the first observation of a session
-    STEP = "step"
-    RESET = "reset"  # the world was reset, and all commands with it
-    RESTORED = "restored"  # the world went back to a snapshot: Session.snapshot
-    RESUME = "resume"  # the first observation of a resumed session
-
-
-@dataclass(frozen=True)
-class Tick:
-    number: int
-    time_ns: int  # simulated
-    event: Event
-
-    @property
-    def time(self) -> float:
-        """Simulated [s]."""
-        return self.time_ns * 1e-9
-
-
-@dataclass(frozen=True)
-class Ending:
-    reason: str  # "finished", "interrupted" or "failed"
-    message: str
-    tick: int  # the last one
-
-
-@dataclass(frozen=True)
-class SpawnedRobot:
-    """A robot that a supervisor spawned. Another session takes it: connect(endpoint, robots=id)."""
-
-    id: str
-    controller: str  # its id in the scene
-    tick: int  # from which on it stands there
-
-
-@dataclass(frozen=True)
-class Deadline:
-    """The action if this controller does not answer in time: "wait", "hold", "zero", "drop" or
-    "stop". A wish, which the server may refuse."""
-
-    action: str
-    wall_ms: int = 0
-    miss_budget: int = 0
-
-    def _message(self) -> v1.DeadlinePolicy:
-        return v1.DeadlinePolicy(action=v1.DeadlinePolicy.Action.Value(self.action.upper()),
-                                 wall_deadline_ms=self.wall_ms, miss_budget=self.miss_budget)
-
-
-def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, controller: str = "",
-            name: str = "", version: str = "", deadline: Optional[Deadline] = None,
-            takeover: bool = False, can_restore: bool = False, curve: Optional[Curve] = None,
-            connect_timeout: float = 10.0, wait_timeout: Optional[float] = None,
-            resume_timeout: Optional[float] = None) -> "Session":
-    """A session with all robots that match both `robots` (ids, or globs with * ? [a-z]) and
-    `controller` (its id in the scene); with neither, all robots. Without endpoint it is that of
-    find_server(), the keys are those of Curve.from_environment(), and a token in ZIGGURAT_SESSION_TOKEN (in
-    hexadecimal) resumes its session; that is removed from the environment.
-
-    can_restore      this controller can go back: at Event.RESTORED it takes the state that it had at
-                     the tick of the snapshot. Without, the server refuses to restore the world
-    connect_timeout  wall time to wait for the server's welcome [s]
-    wait_timeout     wall time to wait for a message [s]; None: forever
-    resume_timeout   wall time for which a session whose connection was lost is tried to resume [s]; None: as
-                     long as the server reserves the robots, at least 10 s; 0: never
-
-    Raises ConnectionLost if no server answers, and Refused if the server refuses the session.
-    """
-    token = b""
-    if not endpoint:
-        curve = curve or Curve.from_environment()
-        token = _take_token()
-    wanted = [robots] if isinstance(robots, str) else list(robots)
-    if not wanted and not controller:
-        wanted = ["*"]
-    hello = v1.Hello(role=v1.ROLE_CONTROLLER, robots=wanted, controller=controller,
-                     client_name=name or controller or "python", client_version=version, takeover=takeover,
-                     session_token=token, can_restore=can_restore)
-    if deadline is not None:
-        hello.deadline_policy.CopyFrom(deadline._message())
-    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout)
-
-
-def _take_token() -> bytes:
-    """Of the session that this program is started to resume. A secret, and for one session only."""
-    text = os.environ.get(_TOKEN, "")
-    try:
-        token = bytes.fromhex(text)
-    except ValueError:
-        raise ValueError(f"{_TOKEN} is not hexadecimal; it has two digits for each byte of the "
-                         "token") from None
-    os.environ.pop(_TOKEN, None)
-    return token
-
-
-def resume(endpoint: str, token: bytes, *, name: str = "python", version: str = "",
-           takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
-           wait_timeout: Optional[float] = None, resume_timeout: Optional[float] = None) -> "Session":
-    """Resumes the session with this token after its connection was lost: same robots, same tick.
-    The last commands hold, and the robots have their values; the first tick's event is RESUME."""
-    hello = v1.Hello(role=v1.ROLE_CONTROLLER, robots=["*"], client_name=name,
-                     client_version=version, session_token=token, takeover=takeover)
-    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout)
 
 
 class Session:

@@ -10,7 +10,7 @@ from .connection import Connection, Curve
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of
 from .errors import ConnectionLost, ProtocolError, name_of
-from .session import Ending
+from .ticks import Ending
 
 
 @dataclass(frozen=True)
