@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/most_contacts.h"
 #include "physics/world.h"
 #include "scene/scene.h"
 
@@ -101,6 +102,20 @@ inline scene::Magnet magnet(int link, const math::Vector3& offset, const math::V
   magnet.offset = offset;
   magnet.passive_field = field;
   return magnet;
+}
+
+/// What is wrong with so many boxes in one place; empty: nothing.
+inline std::string fault_of_crowd(const scene::Physics& physics, int count) {
+  World world(physics, 0.01);
+  try {
+    for (int i = 0; i < count; ++i) {
+      world.add(single(scene::EntityKind::box, at(0, 0, 5), true, cube, 1));
+    }
+    world.step();
+  } catch (const TooManyContacts& fault) {
+    return fault.what();
+  }
+  return "";
 }
 
 inline world::State state_of(const World& world) {

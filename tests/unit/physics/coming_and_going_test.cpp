@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "bench_scene.h"
-#include "physics/most_contacts.h"
 #include "physics/ray.h"
 
 namespace ziggurat::physics {
@@ -36,27 +35,9 @@ scene::Entity pendulum(const Vector3& at) {
   return entity;
 }
 
-/// What is wrong with so many boxes in one place; empty: nothing.
-std::string fault_of_crowd(int count) {
-  World world(with_gravity(9.8), 0.01);
-  try {
-    for (int i = 0; i < count; ++i) world.add(box_at({0, 0, 5}));
-    world.step();
-  } catch (const TooManyContacts& fault) {
-    return fault.what();
-  }
-  return "";
-}
-
 TEST(AddEntity, TooManyInOnePlaceAreAFault) {
-  EXPECT_EQ(fault_of_crowd(1500),
+  EXPECT_EQ(fault_of_crowd(with_gravity(9.8), 1500),
             "more than 1000000 pairs of bodies are near each other; place fewer bodies in one place");
-}
-
-TEST(AddEntity, TooManyPointsOfContactAreAFault) {
-  if (tested_solver != scene::Solver::newton) GTEST_SKIP() << "sweeps count pairs alone";
-  EXPECT_EQ(fault_of_crowd(1000),
-            "bodies touch at more than 1000000 points; place fewer bodies, or farther from each other");
 }
 
 TEST(AddEntity, KeepsItsPoseUntilTheNextStep) {
