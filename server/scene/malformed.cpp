@@ -211,8 +211,8 @@ std::size_t end_of_tag(std::string_view source, std::size_t at, std::optional<Ma
   while ((at = source.find_first_of("\"'>", at)) != npos && source[at] != '>') {
     const std::size_t begin = at + 1, end = source.find(source[at], begin);
     if (end == npos) return npos;
-    const std::size_t literal = source.find('<', begin);
-    if (!fault && literal < end) fault = Malformed{literal, "< inside a value; write &lt; for a literal <"};
+    const std::size_t literal = source.substr(begin, end - begin).find('<');
+    if (!fault && literal != npos) fault = Malformed{begin + literal, "< inside a value; write &lt; for a literal <"};
     at = end + 1;
   }
   return at;

@@ -78,7 +78,7 @@ class Attacks(SceneTest):
         deep = "<a>" * 100_000 + "</a>" * 100_000
         for name, text in {
                 "deep": f"<argos-configuration>{deep}</argos-configuration>",
-                "attributes": self.text.replace("<arena ", "<arena " + 'x="1" ' * 50_000),
+                "attributes": self.text.replace("<arena ", "<arena " + 'x="1" ' * 1_200_000),
                 "long": self.text.replace('id="r0"', f'id="{"x" * 1_000_000}"'),
                 "entities": '<!DOCTYPE a [<!ENTITY x "yy"><!ENTITY y "&x;&x;">]>' + self.text,
                 "colors": self.text.replace('id="r0"', 'id="\x1b]0;x\x07\u009b31m"'),
