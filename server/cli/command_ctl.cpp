@@ -98,27 +98,13 @@ void spawn(const Call& call) {
 void remove(const Call& call) { print_result(call, "removed", call.server.remove(call.words[0])); }
 
 void move(const Call& call) {
-  const auto numbers = [](std::string_view what, const std::string& text) {
-    std::array<double, 3> values{};
-    std::istringstream fields(text);
-    std::string field;
-    for (double& value : values) {
-      if (!std::getline(fields, field, ',')) {
-        throw text::UsageError(
-            fmt::format("{} is '{}'; it must be three numbers with commas between "
-                        "them",
-                        what, text));
-      }
-      value = text::to_number(what, field);
-    }
-    return values;
-  };
-  const auto position = numbers("position", call.words[1]);
+  std::array<double, 3> position{};
+  text::to_numbers("position", call.words[1], "x,y,z in metres, as 1,-1,0.5", position);
   std::optional<std::array<double, 4>> orientation;
   if (call.words.size() == 3) {
-    const auto angles = numbers("orientation", call.words[2]);
-    const math::Quaternion turned =
-        scene::orientation_from_degrees({angles[0], angles[1], angles[2]});
+    math::Vector3 angles;
+    text::to_numbers("orientation", call.words[2], "turns about z,y,x in degrees, as 90,0,0", {angles.data(), 3});
+    const math::Quaternion turned = scene::orientation_from_degrees(angles);
     orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
   }
   print_result(call, "moved", call.server.move(call.words[0], position, orientation));
@@ -244,8 +230,8 @@ int execute_ctl(const Arguments& arguments) {
   }
   const std::string endpoint = take_endpoint(where);
   reports::Console console;
-  Supervisor server(supervisor_options(endpoint, parsed.values, false, "ziggurat ctl"));
-  verb.execute({server, console, words, parsed.values});
+  const auto server = connect(supervisor_options(endpoint, parsed.values, false, "ziggurat ctl"), console);
+  verb.execute({*server, console, words, parsed.values});
   console.flush();
   return reports::exit_code::finished;
 }

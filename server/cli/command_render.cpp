@@ -19,27 +19,10 @@ namespace po = boost::program_options;
 
 constexpr unsigned largest_side = 16384;  // [px]
 
-/// The parts of a text between separators.
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char character : text) {
-    if (character == separator) {
-      parts.emplace_back();
-    } else {
-      parts.back() += character;
-    }
-  }
-  return parts;
-}
-
 math::Vector3 to_point(std::string_view option, const std::string& text) {
-  const auto parts = split(text, ',');
-  if (parts.size() != 3) {
-    throw text::UsageError(
-        fmt::format("{} is '{}'; it must be x,y,z in metres, as 1,-1,0.5", option, text));
-  }
-  return {text::to_number(option, parts[0]), text::to_number(option, parts[1]),
-          text::to_number(option, parts[2])};
+  math::Vector3 point;
+  text::to_numbers(option, text, "x,y,z in metres, as 1,-1,0.5", {point.data(), 3});
+  return point;
 }
 
 unsigned to_side(const std::string& text) {
@@ -52,7 +35,7 @@ unsigned to_side(const std::string& text) {
 }
 
 void read_size(const std::string& text, run::PictureOptions& pictures) {
-  const auto sides = split(text, 'x');
+  const auto sides = text::split(text, 'x');
   if (sides.size() != 2) {
     throw text::UsageError(
         fmt::format("--size is '{}'; it must be WIDTHxHEIGHT in pixels, as 1280x720", text));
@@ -63,7 +46,7 @@ void read_size(const std::string& text, run::PictureOptions& pictures) {
 
 std::vector<double> to_times(const std::string& text) {
   std::vector<double> times;
-  for (const auto& part : split(text, ',')) {
+  for (const auto& part : text::split(text, ',')) {
     times.push_back(text::to_number("--at", part));
     if (times.back() < 0)
       throw text::UsageError("--at is negative; write simulated seconds from 0 on");
@@ -76,7 +59,7 @@ render::Layers to_layers(const std::string& text) {
                                                             {"frusta", &render::Layers::frusta},
                                                             {"labels", &render::Layers::labels}};
   render::Layers layers;
-  for (const std::string& part : split(text, ',')) {
+  for (const std::string& part : text::split(text, ',')) {
     const auto found = known.find(part);
     if (found == known.end()) {
       throw text::UsageError(

@@ -71,11 +71,11 @@ int execute_top(const Arguments& arguments, processes::Signals& signals) {
   SupervisorOptions options = supervisor_options(endpoint, parsed.values, true, "ziggurat top");
   bool is_interrupted = false;
   options.is_interrupted = [&] { return is_interrupted |= signals.take().interruptions > 0; };
-  Supervisor server(options);
+  const auto server = connect(std::move(options), console);
   const bool redraws = !once && !json && isatty(STDOUT_FILENO) != 0;
   do {
-    const ServerStatus status = server.status();
-    const std::string shown = json ? server.last_answer_json() : to_text(status);
+    const ServerStatus status = server->status();
+    const std::string shown = json ? server->last_answer_json() : to_text(status);
     redraws ? console.redraw(shown) : console.result(shown);
     console.flush();
   } while (!once && !sleep(signals, interval));

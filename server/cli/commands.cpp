@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "cli/arguments.h"
 #include "text/names.h"
@@ -44,6 +45,12 @@ const Command& command_named(const std::string& name) {
   if (name.ends_with(".argos") || name.ends_with(".xml")) {
     throw text::UsageError(
         fmt::format("there is no command '{0}'; to run a scene, write: ziggurat run {0}", name));
+  }
+  if (name.starts_with("--")) {
+    const std::array<std::string, 2> options{"--version", "--help"};
+    throw text::UsageError(fmt::format(
+        "there is no option '{}' without a command; {}", name,
+        text::advice(name, options, "write: ziggurat COMMAND [OPTION]..., where 'ziggurat help' lists the commands")));
   }
   if (name == "version" || name == "-v" || name == "-V") {
     throw text::UsageError(fmt::format("there is no command '{}'; write: ziggurat --version", name));

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <utility>
+
 #include "run/version.h"
 #include "ziggurat/session.h"
 
@@ -79,6 +82,24 @@ SupervisorOptions supervisor_options(const std::string& endpoint,
   options.name = std::move(name);
   options.version = run::version;
   return options;
+}
+
+std::unique_ptr<Supervisor> connect(SupervisorOptions options, reports::Console& console) {
+  const auto says_more = std::make_shared<bool>(true);
+  const std::string text =
+      fmt::format("nothing answers at {} yet; trying for {:.0f} s", options.endpoint,
+                  std::chrono::duration<double>(options.connect_timeout).count());
+  options.is_interrupted = [=, &console, is_interrupted = std::move(options.is_interrupted)] {
+    if (is_interrupted && is_interrupted()) return true;
+    if (std::exchange(*says_more, false)) {
+      console.notice(text);
+      console.offer();
+    }
+    return false;
+  };
+  auto server = std::make_unique<Supervisor>(options);
+  *says_more = false;
+  return server;
 }
 
 std::string to_text(const ServerStatus& status) {

@@ -3,9 +3,11 @@
 
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "reports/console.h"
 #include "ziggurat/supervisor.h"
 
 namespace ziggurat::cli {
@@ -20,6 +22,9 @@ std::string take_endpoint(std::vector<std::string>& words);
 SupervisorOptions supervisor_options(const std::string& endpoint,
                                      const boost::program_options::variables_map& values,
                                      bool only_observes, std::string name);
+
+/// Connects; if nothing answers for a moment, a notice says so while it goes on trying.
+std::unique_ptr<Supervisor> connect(SupervisorOptions options, reports::Console& console);
 
 /// Several lines without line feed at the end: the world, one row per session, where the wall time
 /// goes.

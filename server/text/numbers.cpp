@@ -26,6 +26,26 @@ double to_number(std::string_view option, const std::string& text) {
   return value;
 }
 
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char character : text) {
+    if (character == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += character;
+    }
+  }
+  return parts;
+}
+
+void to_numbers(std::string_view option, const std::string& text, std::string_view form, std::span<double> places) {
+  const auto parts = split(text, ',');
+  if (parts.size() != places.size()) {
+    throw UsageError(fmt::format("{} is '{}'; it must be {}", option, text, form));
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] = to_number(option, parts[i]);
+}
+
 std::optional<double> seconds_in(std::string_view unit) {
   if (unit == "us") return 1e-6;
   if (unit == "ms") return 1e-3;

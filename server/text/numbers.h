@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ziggurat::text {
 
@@ -19,6 +21,13 @@ class UsageError : public std::runtime_error {
 /// The whole text as a number; `option` names the place in the UsageError otherwise thrown.
 std::uint64_t to_integer(std::string_view option, const std::string& text);
 double to_number(std::string_view option, const std::string& text);  ///< finite
+
+/// The parts of a text between separators: one more than there are separators.
+std::vector<std::string> split(std::string_view text, char separator);
+
+/// As many numbers with commas between them as there are places, and no more.
+/// @param form  what must be written, such as "x,y,z in metres, as 1,-1,0.5"
+void to_numbers(std::string_view option, const std::string& text, std::string_view form, std::span<double> places);
 
 /// How many seconds a unit of time has: us, ms or s; nothing for another word.
 std::optional<double> seconds_in(std::string_view unit);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace ziggurat::text {
 namespace {
@@ -39,14 +41,28 @@ std::size_t length_of_character(std::string_view text) {
   return 0;
 }
 
-/// The character at the beginning, U+2000 to U+207F, if it changes the order in which what follows is
-/// shown, or begins a line; otherwise 0.
-unsigned reorders_text(std::string_view text) {
-  if (byte(text, 0) != 0xe2 || (byte(text, 1) & 0xfe) != 0x80 || byte(text, 2) < 0x80) return 0;
-  const unsigned code = 0x2000U + ((byte(text, 1) & 1U) << 6) + (byte(text, 2) & 0x3fU);
-  const bool is_mark = code == 0x200e || code == 0x200f;
-  const bool is_one = (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
-  return is_mark || is_one ? code : 0;
+/// The number of the character that these bytes are; 0 for none.
+char32_t code_of(std::string_view character) {
+  constexpr std::array<unsigned char, 5> first_bits{0, 0x7f, 0x1f, 0x0f, 0x07};  // by length
+  char32_t code = byte(character, 0) & first_bits[character.size()];
+  for (std::size_t i = 1; i < character.size(); ++i) code = code << 6 | (byte(character, i) & 0x3fU);
+  return code;
+}
+
+struct Range {
+  char32_t first, last;
+};
+
+/// Unicode 15's categories Cc above ASCII, Cf, Zl and Zp: they control the terminal, change the order in which
+/// others are shown, begin a line, or are not seen at all.
+constexpr Range unseen[] = {
+    {0x80, 0x9f},       {0xad, 0xad},       {0x600, 0x605},     {0x61c, 0x61c},     {0x6dd, 0x6dd},
+    {0x70f, 0x70f},     {0x890, 0x891},     {0x8e2, 0x8e2},     {0x180e, 0x180e},   {0x200b, 0x200f},
+    {0x2028, 0x202e},   {0x2060, 0x206f},   {0xfeff, 0xfeff},   {0xfff9, 0xfffb},   {0x110bd, 0x110bd},
+    {0x110cd, 0x110cd}, {0x13430, 0x1343f}, {0x1bca0, 0x1bca3}, {0x1d173, 0x1d17a}, {0xe0001, 0xe007f}};
+
+bool is_unseen(char32_t code) {
+  return std::ranges::any_of(unseen, [=](Range range) { return range.first <= code && code <= range.last; });
 }
 
 }  // namespace
@@ -60,14 +76,11 @@ std::string printable(std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(plain));
     if (text.empty()) break;
     const std::size_t length = length_of_character(text);
-    const bool is_control = length == 1 || (byte(text, 0) == 0xc2 && byte(text, 1) < 0xa0);
-    const unsigned reordering = reorders_text(text);
+    const char32_t code = code_of(text.substr(0, length));
     if (length == 0) {
       result += "\xef\xbf\xbd";
-    } else if (is_control) {
-      result += fmt::format("\\u{:04x}", byte(text, length - 1));
-    } else if (reordering != 0) {
-      result += fmt::format("\\u{:04x}", reordering);
+    } else if (length == 1 || is_unseen(code)) {
+      result += fmt::format("\\u{:04x}", static_cast<std::uint32_t>(code));
     } else {
       result.append(text.substr(0, length));
     }

@@ -6,8 +6,9 @@
 
 namespace ziggurat::text {
 
-/// The text with control characters written as \u001b, other than line feeds and tabs, and so those
-/// that change the order of what follows: escape sequences have no effect on a terminal. Bytes that are not UTF-8 become U+FFFD.
+/// The text with control characters written as \u001b, other than line feeds and tabs, and so those that change
+/// the order of what follows or are not seen: escape sequences have no effect on a terminal, and two names
+/// that differ look different. Bytes that are not UTF-8 become U+FFFD.
 std::string printable(std::string_view text);
 
 }  // namespace ziggurat::text

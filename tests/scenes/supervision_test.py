@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import tempfile
 import time
@@ -85,10 +86,21 @@ class Ctl(unittest.TestCase):
             for words, reason in ((("move", "unknown", "0,0,0"), "UNKNOWN_ENTITY"),
                                   (("step", "0"), "BAD_VALUE"),
                                   (("spawn", os.devnull), "not a regular file"),
+                                  (("move", entity, "1,2,3,4"), "position is '1,2,3,4'; it must be x,y,z"),
+                                  (("move", entity, "1,2,3", "90"), "orientation is '90'; it must be turns"),
                                   (("paus",), "did you mean 'pause'?")):
                 outcome = server.ask("ctl", *words, check=False)
                 self.assertEqual(1, outcome.returncode, words)
                 self.assertIn(reason, outcome.stderr)
+
+    def test_a_server_that_is_not_there_is_told_while_it_is_waited_for(self):
+        with socket.socket() as closed:
+            closed.bind(("127.0.0.1", 0))  # and does not listen
+            url = f"tcp://127.0.0.1:{closed.getsockname()[1]}"
+            for words in (["top", url], ["ctl", url, "status"]):
+                with subprocess.Popen([BIN / "ziggurat", *words], stderr=subprocess.PIPE, text=True) as asking:
+                    self.assertIn(f"nothing answers at {url} yet", asking.stderr.readline())
+                    asking.kill()
 
     def test_a_pause_before_controllers_come_is_answered_at_once(self):
         with Server(VEHICLE, "--duration", "0") as server:

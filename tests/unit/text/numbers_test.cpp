@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace ziggurat::text {
 namespace {
 
@@ -16,6 +18,15 @@ TEST(Numbers, NumbersAreFinite) {
   EXPECT_EQ(to_number("--x", "2.5e-1"), 0.25);
   for (const std::string text : {"", "nan", "inf", "1e999", "1,5", "fast"}) {
     EXPECT_THROW(to_number("--x", text), UsageError) << text;
+  }
+}
+
+TEST(Numbers, ListsHaveAsManyNumbersAsPlacesAndNoMore) {
+  std::array<double, 3> places{};
+  to_numbers("position", "1,-2,.5", "x,y,z", places);
+  EXPECT_EQ(places, (std::array{1.0, -2.0, 0.5}));
+  for (const std::string text : {"1,2,3,4", "1,2", "", "1,2,3,", ",1,2,3", "1,2,x", "1 2 3", "1,2,nan", "1,,3"}) {
+    EXPECT_THROW(to_numbers("position", text, "x,y,z", places), UsageError) << text;
   }
 }
 

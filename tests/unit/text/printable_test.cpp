@@ -28,6 +28,15 @@ TEST(Printable, CharactersThatReorderTextAreWrittenAsNumbers) {
   EXPECT_EQ(printable(others), others);
 }
 
+TEST(Printable, AllCharactersThatAreNotSeenAreWrittenAsNumbers) {
+  EXPECT_EQ(printable("a\u061cb"), "a\\u061cb") << "Arabic letter mark: it reorders, too";
+  EXPECT_EQ(printable("a\u00adb\u200bc\u200dd\u2060e\u206ff\ufeffg"),
+            "a\\u00adb\\u200bc\\u200dd\\u2060e\\u206ff\\ufeffg");
+  EXPECT_EQ(printable("a\U000e0001b\U000e007f"), "a\\ue0001b\\ue007f") << "tags";
+  const std::string neighbours = "\u00ac\u00ae\u061b\u061d\u200a\u2010\u2027\u202f\u205f\u2070\ufefe\U000e0080";
+  EXPECT_EQ(printable(neighbours), neighbours);
+}
+
 TEST(Printable, OtherBytesBecomeReplacementCharacters) {
   const std::string other = "\xef\xbf\xbd";
   EXPECT_EQ(printable("\x9b"
