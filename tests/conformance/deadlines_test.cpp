@@ -179,6 +179,89 @@ TEST(Deadline, W2_ATickThatWasMissedIsNotAwaitedOnceMoreWhenTheConnectionGoes) {
   EXPECT_FALSE(pair.peers.take_report().stopped.empty()) << "and two are not";
 }
 
+/// Clients take the robot one after the other and are gone before its deadline of 50 ms, as a program does that
+/// crashes and is started again.
+void crash_again_and_again(Pair& pair, int times) {
+  for (int i = 0; i < times; ++i) {
+    const std::string client = "crashes" + std::to_string(i);
+    pair.peers.join(client, "robot0");
+    pair.peers.pass(milliseconds{20});
+    disconnect(pair.peers.barrier, client);
+    pair.peers.pass(milliseconds{20});
+  }
+}
+
+TEST(Deadline, W11_WhoCrashesAgainAndAgainHoldsATickForThreeDeadlines) {
+  Pair pair(with_deadline(DeadlineAction::hold, 50));
+  disconnect(pair.peers.barrier, "p");
+  crash_again_and_again(pair, 3);  // 120 ms
+  EXPECT_FALSE(pair.peers.is_complete());
+  pair.peers.join("last", "robot0");
+  pair.peers.pass(milliseconds{29});
+  EXPECT_FALSE(pair.peers.is_complete());
+  pair.peers.pass(milliseconds{1});
+  EXPECT_TRUE(pair.peers.is_complete());
+  EXPECT_EQ(pair.peers.told("last").error().code(), v1::Error::DEADLINE_MISSED) << "W5";
+  pair.peers.publish(6);
+  pair.peers.say("q", Peers::command(6));
+  pair.peers.pass(milliseconds{49});
+  EXPECT_FALSE(pair.peers.is_complete()) << "the next tick waits anew";
+}
+
+TEST(Deadline, W11_ResumingATickAgainAndAgainHoldsItForThreeDeadlines) {
+  Pair pair(with_deadline(DeadlineAction::hold, 50));
+  auto resume = Peers::hello("");
+  resume.mutable_hello()->clear_robots();
+  resume.mutable_hello()->set_session_token(pair.peers.barrier.sessions
+                                                .find(pair.peers.barrier.seats[0].holder)
+                                                ->token);
+  for (int i = 0; i < 3; ++i) {  // over a new connection each time, as L8 allows
+    pair.peers.pass(milliseconds{40});
+    pair.peers.say("again" + std::to_string(i), resume);
+  }
+  pair.peers.pass(milliseconds{29});
+  EXPECT_FALSE(pair.peers.is_complete());
+  pair.peers.pass(milliseconds{1});
+  EXPECT_TRUE(pair.peers.is_complete());
+}
+
+TEST(Deadline, W11_ATickThatWaitsForOthersDoesNotUseThatUp) {
+  Config config = with_deadline(DeadlineAction::drop, 50);
+  config.deadlines.pop_back();  // q waits forever
+  Pair pair(config);
+  pair.peers.say("p", Peers::command(5));
+  pair.peers.publish(6);
+  pair.peers.say("p", Peers::command(6));
+  for (int i = 0; i < 5; ++i) {
+    pair.peers.pass(milliseconds{1000});
+    auto take = Peers::hello("robot0");
+    take.mutable_hello()->set_takeover(true);
+    const std::string client = "next" + std::to_string(i);
+    pair.peers.say(client, take);
+    pair.peers.pass(milliseconds{20});
+    pair.peers.say(client, Peers::command(6));
+  }
+  pair.peers.pass(milliseconds{1000});
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::held) << "five answers in time";
+}
+
+TEST(Deadline, W11_ARobotMissesATickOnceWhoeverHasIt) {
+  Config config = with_deadline(DeadlineAction::drop, 50, 1);
+  config.deadlines.pop_back();  // q waits forever
+  Pair pair(config);
+  pair.peers.say("p", Peers::command(5));
+  pair.peers.publish(6);
+  pair.peers.pass(milliseconds{50});
+  disconnect(pair.peers.barrier, "p");
+  pair.peers.join("heir", "robot0");
+  pair.peers.pass(milliseconds{50});
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::held) << "one miss is within the budget";
+  pair.peers.say("q", Peers::command(6));
+  pair.peers.publish(7);
+  pair.peers.pass(milliseconds{50});
+  EXPECT_EQ(pair.peers.status()[0].membership, Membership::gone);
+}
+
 TEST(Deadline, W3_TheBeginningWaitsForever) {
   const SmallRun small(2);
   Peers peers(small, with_deadline(DeadlineAction::drop, 50));

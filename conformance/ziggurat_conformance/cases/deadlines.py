@@ -2,7 +2,7 @@
 
 from ..case import Case, Level
 from ..messages import answer, hear_error, hear_refusal, hello, join, observe, send_hello
-from ..steps import Check, Hang, Hear, Join, Silence, Tick, Zeros
+from ..steps import Check, Hang, Hear, Join, Pause, Silence, Tick, Zeros
 from ..wire import Count
 
 MS = 150  # a deadline that no idle machine misses by itself
@@ -93,6 +93,12 @@ CASES = [
          (_late("HOLD"), answer("y"), Hang("x"), *observe("y"), join("z", "arm0"),
           Hear("z", "observation", {"tick": Tick(of="y")}), answer("y"), answer("z"),
           *observe("y", "z")), Level.HIL),
+    Case("W11.crashes", "Who comes and goes again and again holds a tick for three deadlines, not without end",
+         (_late("HOLD"), answer("y"), Hang("x"),
+          *[s for i in range(8) for s in (join(f"z{i}", "arm0", deadline_policy=policy("HOLD")),
+                                          Pause(MS / 1000 * 0.6), Hang(f"z{i}"))],
+          join("z", "arm0", deadline_policy=policy("HOLD")),
+          Hear("y", "observation", {"tick": Tick(1)}, within=MS / 1000 * 0.5)), Level.HIL),
     Case("W3.beginning", "The beginning waits forever",
          (join("x", "arm0", deadline_policy=policy("DROP", 20)), Silence("x", 0.2),
           join("y", "arm1", "arm2", "arm3"), *observe("x", "y")), Level.HIL, fresh=True),

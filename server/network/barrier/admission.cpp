@@ -65,7 +65,7 @@ Granted begin_with_robots(Barrier& barrier, const wire::Hello& hello, const Acce
   session.roster = wire::make_roster(barrier.run->layout, robots);
   take_over(barrier, robots, label_of(hello));
   for (const std::size_t robot : robots) {
-    barrier.seats.take(robot, session.id);
+    barrier.seats.take(robot, session.id, barrier.now);
     barrier.deadlines.clear_zero(robot);
   }
   return &session;
@@ -99,7 +99,7 @@ Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access&
     lose(barrier, *session, "it was taken up over another connection");
   }
   for (const std::size_t robot : robots) {
-    barrier.seats.take(robot, session->id);
+    barrier.seats.take(robot, session->id, barrier.now);
     barrier.deadlines.clear_zero(robot);
   }
   return session;
@@ -148,6 +148,17 @@ void set_policies(Barrier& barrier, const Session& session, const wire::Hello& h
     if (session.roster.gone[i]) continue;
     barrier.deadlines.set_policy(session.roster.robots[i], hello.deadline);
   }
+}
+
+/// How long the tick in hand has waited for those who had the session's robots, or its director, before.
+std::chrono::nanoseconds waited_before(const Barrier& barrier, const Session& session) {
+  std::chrono::nanoseconds longest{0};
+  if (session.director) longest = barrier.directors.seats[*session.director].waited;
+  for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
+    if (session.roster.gone[i]) continue;
+    longest = std::max(longest, barrier.seats[session.roster.robots[i]].waited);
+  }
+  return longest;
 }
 
 /// @param is_resumed  the session was there before
@@ -202,6 +213,7 @@ void admit(Barrier& barrier, const std::string& connection, const Access& access
   if (session.director) take_director(barrier, session, hello);
   set_policies(barrier, session, hello);
   update_patience(barrier, session);
+  session.turn.waited_before = waited_before(barrier, session);
   const bool is_welcomed = welcome(barrier, session, !hello.session_token.empty(), commands) &&
                            tell_taken(barrier, session, "Another client");
   const bool has_tick = barrier.gate.tick() && session.has_ticks();

@@ -40,7 +40,7 @@ Deadlines::Deadlines(std::vector<Config::Deadline> policies, std::size_t control
 }
 
 void Deadlines::add(std::size_t controller) {
-  robots_.push_back({controller, defaults_[controller].policy, 0, false});
+  robots_.push_back({controller, defaults_[controller].policy, 0, {}, false});
 }
 
 void Deadlines::grow(const Config::Deadline& deadline) {
@@ -62,7 +62,8 @@ std::optional<scene::DeadlinePolicy> Deadlines::fixed_against(
 
 Consequence Deadlines::miss(std::size_t robot, std::uint64_t tick) {
   Robot& one = robots_[robot];
-  ++one.misses_in_row;
+  if (one.last_missed != tick) ++one.misses_in_row;
+  one.last_missed = tick;
   if (last_missed_[one.controller] != tick) {
     last_missed_[one.controller] = tick;
     ++missed_ticks_[one.controller];
@@ -75,6 +76,7 @@ Consequence Deadlines::miss(std::size_t robot, std::uint64_t tick) {
 void Deadlines::reset() {
   for (Robot& robot : robots_) {
     robot.misses_in_row = 0;
+    robot.last_missed.reset();
     robot.is_zeroed = false;
   }
   std::ranges::fill(last_missed_, std::nullopt);

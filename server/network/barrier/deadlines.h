@@ -64,6 +64,7 @@ class Deadlines {
     std::size_t controller = 0;
     scene::DeadlinePolicy policy;
     std::uint32_t misses_in_row = 0;
+    std::optional<std::uint64_t> last_missed;  // tick, which counts once
     bool is_zeroed = false;
   };
 

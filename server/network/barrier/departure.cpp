@@ -22,7 +22,8 @@ namespace {
 void release(Barrier& barrier, const Session& holder, std::size_t robot, bool may_resume) {
   const bool is_skipped = barrier.gate.has_missed(holder.turn);  // waited for once, not twice
   const Time since = is_skipped ? holder.turn.owes_since : barrier.now;
-  barrier.seats.release(robot, may_resume ? holder.id : SessionId::none, since, is_skipped);
+  barrier.seats.release(robot, may_resume ? holder.id : SessionId::none, since, is_skipped,
+                        barrier.gate.waited(holder.turn, barrier.now));
   if (!is_skipped) expect_answer(barrier, robot);
 }
 
@@ -132,7 +133,7 @@ void lose(Barrier& barrier, Session& session, std::string_view why) {
   }
   const bool may_resume = session.state != SessionState::draining && session.has_ticks();
   if (!may_resume) return erase(barrier, session);
-  barrier.gate.settle(session.turn);
+  barrier.gate.settle(session.turn, barrier.now);
   unbind(barrier, session);
   give_up_answers(barrier, session);
   session.state = SessionState::lost;
@@ -170,7 +171,7 @@ bool tell_taken(Barrier& barrier, Session& session, const std::string& by) {
 
 void erase(Barrier& barrier, Session& session) {
   give_up_answers(barrier, session);
-  barrier.gate.settle(session.turn);
+  barrier.gate.settle(session.turn, barrier.now);
   if (session.state != SessionState::lost) unbind(barrier, session);
   release_all(barrier, session, false);
   for (const std::size_t robot : session.roster.robots) {
@@ -180,7 +181,7 @@ void erase(Barrier& barrier, Session& session) {
 }
 
 bool end(Barrier& barrier, Session& session, std::string why) {
-  barrier.gate.settle(session.turn);
+  barrier.gate.settle(session.turn, barrier.now);
   session.state = SessionState::draining;
   barrier.outbox.end({wire::EndReason::finished, std::move(why), tick_of(barrier)});
   return send(barrier, session) == Delivery::sent;
@@ -192,7 +193,7 @@ void finish(Barrier& barrier, const wire::End& end) {
     if (session.state == SessionState::draining) return;  // it is told already
     give_up_answers(barrier, session);
     if (session.state == SessionState::lost) return erase(barrier, session);
-    barrier.gate.settle(session.turn);
+    barrier.gate.settle(session.turn, barrier.now);
     barrier.outbox.end(end);
     const bool is_told = send(barrier, session) == Delivery::sent;
     const bool may_answer = session.has_ticks() || session.role == wire::Role::controller;  // with its last log lines

@@ -262,7 +262,7 @@ void take_director(Barrier& barrier, Session& session, const wire::Hello& hello)
   const bool is_of_none = !hello.subscription && hello.session_token.empty();
   session.view = {std::move(subscription)};
   if (is_of_none) session.view.subscription.entities = {std::string()};  // no entity has that id
-  barrier.directors.seats.take(*session.director, session.id);
+  barrier.directors.seats.take(*session.director, session.id, barrier.now);
   if (hello.deadline || hello.session_token.empty()) {
     barrier.directors.deadlines.set_policy(*session.director, hello.deadline);
   }
@@ -279,7 +279,8 @@ void release_director(Barrier& barrier, Session& session, bool may_resume) {
   }
   const bool is_skipped = barrier.gate.has_missed(session.turn);
   const Time since = is_skipped ? session.turn.owes_since : barrier.now;
-  seats.release(*session.director, may_resume ? session.id : SessionId::none, since, is_skipped);
+  seats.release(*session.director, may_resume ? session.id : SessionId::none, since, is_skipped,
+                barrier.gate.waited(session.turn, barrier.now));
   if (!is_skipped) check_soon(barrier);
 }
 
@@ -345,7 +346,7 @@ bool handle_direction(Barrier& barrier, Session& session, bool is_collecting) {
   barrier.directors.metrics.set(numbered(direction.metrics, *session.director));
   keep_words(barrier, *session.director, std::move(direction.log));
   barrier.directors.answers[*session.director] = std::move(direction);
-  barrier.gate.settle(session.turn);
+  barrier.gate.settle(session.turn, barrier.now);
   measure_answer(barrier, session);
   return true;
 }

@@ -61,15 +61,16 @@ void publish(Barrier& barrier, const world::Observations& observations,
   truth != nullptr ? void(barrier.directors.truth.emplace(*truth)) : barrier.directors.truth.reset();
   for (auto& answer : barrier.directors.answers) answer.reset();
   barrier.directors.metrics.begin_tick();
-  barrier.directors.seats.begin_tick();
+  barrier.directors.seats.begin_tick(barrier.now);
   barrier.metrics.begin_tick();
   barrier.gate.begin(observations.tick);
   barrier.timers.deadline = never;
-  barrier.seats.begin_tick();
+  barrier.seats.begin_tick(barrier.now);
   if (!barrier.seats.all_taken() || !barrier.directors.seats.all_taken()) check_soon(barrier);
   barrier.sessions.for_each([&](Session& session) {
     if (session.state == SessionState::lost || !session.has_ticks()) return;
     session.turn.is_repeated = false;
+    session.turn.waited_before = {};
     if (observe(barrier, session)) return;
     lose(barrier, session, "its connection is gone, or it does not read");
   });
@@ -141,7 +142,7 @@ bool handle_command(Barrier& barrier, Session& session, world::Commands* command
   barrier.inbox.apply(session.roster, *commands);
   barrier.inbox.append_log(session.roster, barrier.journal.log());
   take_metrics(barrier, session);
-  barrier.gate.settle(session.turn);
+  barrier.gate.settle(session.turn, barrier.now);
   measure_answer(barrier, session);
   return true;
 }
@@ -183,7 +184,10 @@ void resume(Barrier& barrier) {
   barrier.gate.set_standing(false);
   barrier.seats.restart(barrier.now);
   barrier.directors.seats.restart(barrier.now);
-  barrier.sessions.for_each([&](Session& session) { session.turn.owes_since = barrier.now; });
+  barrier.sessions.for_each([&](Session& session) {
+    session.turn.owes_since = barrier.now;
+    session.turn.waited = session.turn.waited_before = {};
+  });
   check_soon(barrier);
 }
 

@@ -61,7 +61,7 @@ void end_without_robots(Barrier& barrier, Session& session) {
   if (!is_told) return erase(barrier, session);
   for (const std::size_t robot : session.roster.robots) {
     if (barrier.seats[robot].holder != session.id) continue;
-    barrier.seats.release(robot, SessionId::none, barrier.now, false);
+    barrier.seats.release(robot, SessionId::none, barrier.now, false, {});
   }
   session.roster = {};
 }
@@ -116,7 +116,7 @@ void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const 
     remove_robot(barrier, robot);
     Session* session = barrier.sessions.find(holder);
     if (session == nullptr) continue;
-    if (session->roster.empty()) barrier.gate.settle(session->turn);
+    if (session->roster.empty()) barrier.gate.settle(session->turn, barrier.now);
     if (!why.empty()) tell_removed(barrier, *session, robot, why);
   }
   stand_if_paused(barrier);
@@ -137,7 +137,7 @@ void restart(Barrier& barrier, wire::Restart restart) {
   if (restart.snapshot) barrier.begin = {restart.snapshot->tick, *restart.snapshot->commands};
   barrier.deadlines.reset();
   barrier.sessions.for_each([&](Session& session) {
-    barrier.gate.settle(session.turn);
+    barrier.gate.settle(session.turn, barrier.now);
     const bool has_ticks =
         session.state == SessionState::stepping || session.state == SessionState::paused;
     if (!has_ticks || !session.has_ticks()) return;

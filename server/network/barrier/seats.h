@@ -1,6 +1,7 @@
 #pragma once
 // Who sits where: which session has which robot.
 
+#include <chrono>
 #include <cstddef>
 #include <vector>
 
@@ -17,6 +18,7 @@ class Seats {
     bool was_held = false;                 ///< by any session, ever
     bool is_skipped = false;               ///< free, and the tick in hand goes on without it
     Time free_since;                       ///< free: since when
+    std::chrono::nanoseconds waited{0};    ///< for it by the tick in hand, before what it waits for now
 
     /// The session that has the robot, or may resume; none: neither.
     SessionId owner() const { return holder == SessionId::none ? claimant : holder; }
@@ -31,19 +33,21 @@ class Seats {
   std::size_t size() const { return seats_.size(); }
 
   /// @param robot  free, and has not left
-  void take(std::size_t robot, SessionId session);
+  void take(std::size_t robot, SessionId session, Time now);
   /// @param robot     held
   /// @param claimant  the lost session that may resume; none: no session
   /// @param since     when it became free, as far as its deadline is concerned
   /// @param is_skipped  its session has missed the tick in hand already
-  void release(std::size_t robot, SessionId claimant, Time since, bool is_skipped);
+  /// @param waited    by the tick in hand for its session
+  void release(std::size_t robot, SessionId claimant, Time since, bool is_skipped,
+               std::chrono::nanoseconds waited);
   void drop_claim(std::size_t robot) { seats_[robot].claimant = SessionId::none; }
   /// Takes the robot out of the barrier for good. No effect if it has left.
   void leave(std::size_t robot);
   /// The tick in hand goes on without the robot, which is free.
-  void skip(std::size_t robot);
+  void skip(std::size_t robot, Time now);
   /// A tick begins, and waits for all free robots again.
-  void begin_tick();
+  void begin_tick(Time now);
   /// All free robots are free from now on, as far as their deadlines are concerned.
   void restart(Time now);
 
@@ -51,7 +55,11 @@ class Seats {
   bool is_awaited() const { return free_ != skipped_; }  ///< the tick waits for a free robot
 
  private:
+  void wait_over(Seat& seat, Time now);
+
   std::vector<Seat> seats_;  // per robot of the layout
+  Time begun_;               // the tick in hand, as far as deadlines are concerned
+  bool has_changes_ = false;  // of who has which robot, in the tick in hand
   std::size_t free_ = 0;     // robots without holder that have not left
   std::size_t skipped_ = 0;  // those of them that the tick does not wait for
 };

@@ -20,18 +20,25 @@ void TickGate::await(Turn& turn, Time now) {
   turn.owes = true;
   turn.has_missed = false;
   turn.owes_since = now;
+  turn.waited = {};
 }
 
-void TickGate::settle(Turn& turn) {
+void TickGate::settle(Turn& turn, Time now) {
   if (!turn.owes) return;
   turn.owes = false;
+  turn.waited = now - turn.owes_since;
   --owing_;
 }
 
-void TickGate::miss(Turn& turn) {
-  settle(turn);
+void TickGate::miss(Turn& turn, Time now) {
+  settle(turn, now);
   turn.has_missed = true;
   ++turn.late_commands;
+}
+
+std::chrono::nanoseconds TickGate::waited(const Turn& turn, Time now) const {
+  if (turn.tick != tick_) return {};
+  return turn.owes ? now - turn.owes_since : turn.waited;
 }
 
 std::optional<wire::Fault> check_epoch(const Turn& turn, std::optional<std::uint64_t> epoch) {

@@ -26,9 +26,11 @@ class TickGate {
   /// The session of this turn owes an answer to the tick in hand, which it is sent now.
   void await(Turn& turn, Time now);
   /// It owes nothing any more. No effect if it does not owe.
-  void settle(Turn& turn);
+  void settle(Turn& turn, Time now);
   /// It owes nothing any more because its deadline has passed: the tick goes on without it.
-  void miss(Turn& turn);
+  void miss(Turn& turn, Time now);
+  /// How long the tick in hand waits, or waited, for this answer.
+  std::chrono::nanoseconds waited(const Turn& turn, Time now) const;
   /// The tick has gone on without an answer for this session.
   bool has_missed(const Turn& turn) const { return turn.has_missed && turn.tick == tick_; }
 

@@ -131,7 +131,7 @@ void note_miss(Barrier& barrier, Session& session, milliseconds deadline) {
 
 /// The tick goes on without the session's answer.
 void miss(Barrier& barrier, Session& session) {
-  barrier.gate.miss(session.turn);
+  barrier.gate.miss(session.turn, barrier.now);
   expect_late_answer(barrier, session);
   ++session.misses;
   const auto& robots = session.roster.robots;
@@ -160,10 +160,15 @@ void wake_at(Barrier& barrier, Time time) {
 void check_sessions(Barrier& barrier) {
   barrier.sessions.for_each([&](Session& session) {
     if (!session.turn.owes || !session.turn.patience) return;
-    const Time deadline = session.turn.owes_since + *session.turn.patience;
+    const Time deadline = session.turn.deadline(*session.turn.patience);
     if (deadline > barrier.now) return wake_at(barrier, deadline);
     miss(barrier, session);
   });
+}
+
+/// Of a free robot or director, which does not wait.
+Time deadline_of(const Seats::Seat& seat, const scene::DeadlinePolicy& policy) {
+  return seat.free_since + time_left(milliseconds(policy.wall_deadline_ms), seat.waited);
 }
 
 void check_free_robots(Barrier& barrier) {
@@ -173,11 +178,11 @@ void check_free_robots(Barrier& barrier) {
     if (seat.holder != SessionId::none || seat.has_left || seat.is_skipped) continue;
     const scene::DeadlinePolicy& policy = barrier.deadlines.policy(robot);
     if (policy.action == DeadlineAction::wait) continue;
-    const Time deadline = seat.free_since + milliseconds(policy.wall_deadline_ms);
+    const Time deadline = deadline_of(seat, policy);
     if (deadline > barrier.now) {
       wake_at(barrier, deadline);
     } else {
-      barrier.seats.skip(robot);
+      barrier.seats.skip(robot, barrier.now);
       if (controller != barrier.deadlines.controller(robot)) {
         controller = barrier.deadlines.controller(robot);
         measure_absence(barrier, robot, seat.free_since);
@@ -195,12 +200,12 @@ void check_free_directors(Barrier& barrier) {
     const bool is_awaited =
         seat.holder == SessionId::none && !seat.has_left && !seat.is_skipped;
     if (!is_awaited || policy.action == DeadlineAction::wait) continue;
-    const Time deadline = seat.free_since + milliseconds(policy.wall_deadline_ms);
+    const Time deadline = deadline_of(seat, policy);
     if (deadline > barrier.now) {
       wake_at(barrier, deadline);
       continue;
     }
-    directors.seats.skip(i);
+    directors.seats.skip(i, barrier.now);
     if (!miss_director(barrier, i)) continue;
     Session* claimant = barrier.sessions.find(seat.claimant);
     directors.seats.leave(i);
@@ -265,7 +270,7 @@ void expect_answer(Barrier& barrier, std::size_t robot) {
 }
 
 void expect_answer(Barrier& barrier, const Session& session) {
-  if (session.turn.patience) wake_at(barrier, session.turn.owes_since + *session.turn.patience);
+  if (session.turn.patience) wake_at(barrier, session.turn.deadline(*session.turn.patience));
 }
 
 void update_patience(Barrier& barrier, Session& session) {

@@ -21,9 +21,9 @@ struct Two : ::testing::Test {
 TEST_F(Two, AreWaitedForUntilTheyAreTaken) {
   EXPECT_FALSE(seats.all_taken());
   EXPECT_TRUE(seats.is_awaited());
-  seats.take(0, one);
+  seats.take(0, one, start);
   EXPECT_TRUE(seats.is_awaited());
-  seats.take(1, other);
+  seats.take(1, other, start);
   EXPECT_TRUE(seats.all_taken());
   EXPECT_FALSE(seats.is_awaited());
   EXPECT_EQ(seats[1].holder, other);
@@ -31,45 +31,45 @@ TEST_F(Two, AreWaitedForUntilTheyAreTaken) {
 }
 
 TEST_F(Two, AReleasedOneIsFreeForItsClaimantAndOthers) {
-  seats.take(0, one);
-  seats.release(0, one, start + 5s, false);
+  seats.take(0, one, start);
+  seats.release(0, one, start + 5s, false, {});
   EXPECT_EQ(seats[0].holder, SessionId::none);
   EXPECT_EQ(seats[0].claimant, one);
   EXPECT_EQ(seats[0].free_since, start + 5s);
-  seats.take(0, other);
+  seats.take(0, other, start);
   EXPECT_EQ(seats[0].holder, other);
   EXPECT_EQ(seats[0].claimant, SessionId::none);
 }
 
 TEST_F(Two, ASkippedOneIsWaitedForAgainAtTheNextTick) {
-  seats.take(0, one);
-  seats.skip(1);
+  seats.take(0, one, start);
+  seats.skip(1, start);
   EXPECT_FALSE(seats.is_awaited());
   EXPECT_FALSE(seats.all_taken());
-  seats.begin_tick();
+  seats.begin_tick(start);
   EXPECT_TRUE(seats.is_awaited());
 }
 
 TEST_F(Two, OneThatLeftIsNeverWaitedForAgain) {
-  seats.take(0, one);
-  seats.skip(1);
+  seats.take(0, one, start);
+  seats.skip(1, start);
   seats.leave(0);
   seats.leave(1);
   seats.leave(1);
   EXPECT_TRUE(seats.all_taken());
-  seats.begin_tick();
+  seats.begin_tick(start);
   EXPECT_FALSE(seats.is_awaited());
   EXPECT_TRUE(seats[0].has_left);
   EXPECT_EQ(seats[0].holder, SessionId::none);
 }
 
 TEST_F(Two, ASpawnedOneIsWaitedForFromTheNextTickOn) {
-  seats.take(0, one);
-  seats.take(1, one);
+  seats.take(0, one, start);
+  seats.take(1, one, start);
   seats.add(start, true);
   EXPECT_FALSE(seats.all_taken());
   EXPECT_FALSE(seats.is_awaited());
-  seats.begin_tick();
+  seats.begin_tick(start);
   EXPECT_TRUE(seats.is_awaited());
   seats.leave(2);
   seats.shrink(2);

@@ -23,16 +23,16 @@ struct Gate : ::testing::Test {
 
 TEST_F(Gate, OpensWhenAllHaveAnswered) {
   EXPECT_FALSE(gate.is_complete());
-  gate.settle(first);
-  gate.settle(first);  // no second time
+  gate.settle(first, now);
+  gate.settle(first, now);  // no second time
   EXPECT_FALSE(gate.is_complete());
-  gate.settle(second);
+  gate.settle(second, now);
   EXPECT_TRUE(gate.is_complete());
 }
 
 TEST_F(Gate, AMissIsAsGoodAsAnAnswer) {
-  gate.settle(first);
-  gate.miss(second);
+  gate.settle(first, now);
+  gate.miss(second, now);
   EXPECT_TRUE(gate.is_complete());
   EXPECT_TRUE(gate.has_missed(second));
   EXPECT_FALSE(gate.has_missed(first));
@@ -43,23 +43,23 @@ TEST_F(Gate, AMissIsAsGoodAsAnAnswer) {
 
 TEST_F(Gate, AwaitingTwiceOwesOnce) {
   gate.await(first, now);
-  gate.settle(first);
-  gate.settle(second);
+  gate.settle(first, now);
+  gate.settle(second, now);
   EXPECT_TRUE(gate.is_complete());
 }
 
 TEST_F(Gate, WaitsForFreeRobots) {
-  gate.settle(first);
-  gate.settle(second);
+  gate.settle(first, now);
+  gate.settle(second, now);
   seats.add(now, false);
   EXPECT_FALSE(gate.is_complete());
-  seats.skip(0);
+  seats.skip(0, now);
   EXPECT_TRUE(gate.is_complete());
 }
 
 TEST_F(Gate, StaysClosedWhilePausedOrStopped) {
-  gate.settle(first);
-  gate.settle(second);
+  gate.settle(first, now);
+  gate.settle(second, now);
   for (const Hold hold : {Hold::paused, Hold::stopped}) {
     gate.hold(hold);
     EXPECT_FALSE(gate.is_complete());
@@ -85,10 +85,10 @@ TEST_F(Gate, ACommandIsForTheTickThatIsOwed) {
   EXPECT_EQ(code(6), wire::ErrorCode::stale_tick);
   EXPECT_EQ(code(7), wire::ErrorCode::unspecified);
   EXPECT_EQ(code(8), wire::ErrorCode::future_tick);
-  gate.settle(first);
+  gate.settle(first, now);
   EXPECT_EQ(code(7), wire::ErrorCode::duplicate_tick);
   gate.await(first, now);
-  gate.miss(first);
+  gate.miss(first, now);
   EXPECT_EQ(code(7), wire::ErrorCode::stale_tick);
 }
 
