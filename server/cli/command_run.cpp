@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <sstream>
 
 #include "cli/commands.h"
@@ -45,7 +47,9 @@ wait for controllers. Output files are complete up to half a second before, also
 }
 
 int execute_run(const Arguments& arguments, processes::Signals& signals) {
-  return run::Run(parse_options(arguments, run_options()), run::Service::run, signals).execute();
+  const run::Options options = parse_options(arguments, run_options());
+  if (options.ends_with_input) signals.interrupt_at_end_of(STDIN_FILENO);
+  return run::Run(options, run::Service::run, signals).execute();
 }
 
 }  // namespace ziggurat::cli

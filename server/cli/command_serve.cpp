@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <sstream>
 
 #include "cli/commands.h"
@@ -45,8 +47,9 @@ deadline dropped a robot; 4 the gate was missed; 130 interrupted.
 }
 
 int execute_serve(const Arguments& arguments, processes::Signals& signals) {
-  return run::Run(parse_options(arguments, serve_options()), run::Service::serve, signals)
-      .execute();
+  const run::Options options = parse_options(arguments, serve_options());
+  if (options.ends_with_input) signals.interrupt_at_end_of(STDIN_FILENO);
+  return run::Run(options, run::Service::serve, signals).execute();
 }
 
 }  // namespace ziggurat::cli

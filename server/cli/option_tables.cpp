@@ -66,6 +66,9 @@ po::options_description world_options() {
        "the allowed clients: lines KEY ROLE[,ROLE] [robots=GLOB,..] [controllers=GLOB,..] "
        "[takeover=yes|no] [NAME]; a ROLE is controller, director, supervisor or observer")            //
       ("paused", "stand at tick 0 until a supervisor resumes ('ziggurat ctl URL resume')")  //
+      ("end-with-input",
+       "end, as with Ctrl-C, when standard input ends: a program that starts this one with a pipe does not leave it "
+       "behind, however it ends itself")  //
       ("fail-fast", "end when the first controller fails or the first robot is dropped")    //
       ("allow-drops", "robots that a deadline dropped do not make the exit code 3")         //
       ("allow-director",

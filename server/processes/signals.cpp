@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -37,20 +38,21 @@ Signals::Signals(Guardian* guardian) : guardian_(guardian) {
   ::signal(SIGPIPE, SIG_IGN);
   signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
   news_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-  end_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  order_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   const int error = errno;
-  if (signals_ < 0 || news_ < 0 || end_ < 0) {
-    for (const int descriptor : {signals_, news_, end_}) close_if_open(descriptor);
+  if (signals_ < 0 || news_ < 0 || order_ < 0) {
+    for (const int descriptor : {signals_, news_, order_}) close_if_open(descriptor);
     throw std::system_error(error, std::generic_category(), "signals cannot be received");
   }
   thread_ = std::thread([this] { watch(); });
 }
 
 Signals::~Signals() {
-  ::eventfd_write(end_, 1);
+  is_ending_ = true;
+  ::eventfd_write(order_, 1);
   thread_.join();
   receive();  // pending signals must not end the program when they are unblocked
-  for (const int descriptor : {signals_, news_, end_}) ::close(descriptor);
+  for (const int descriptor : {signals_, news_, order_}) ::close(descriptor);
   ::pthread_sigmask(SIG_SETMASK, &former_, nullptr);
 }
 
@@ -75,6 +77,22 @@ bool Signals::receive() {
   return is_interrupted;
 }
 
+void Signals::interrupt_at_end_of(int descriptor) {
+  input_ = descriptor;
+  ::eventfd_write(order_, 1);
+}
+
+/// Reads on. @pre it does not wait for input
+bool Signals::has_input_ended() {
+  char ignored[4096];
+  const ssize_t count = ::read(input_, ignored, sizeof ignored);
+  const bool goes_on = count > 0 || (count < 0 && (errno == EINTR || errno == EAGAIN));
+  if (goes_on) return false;
+  input_ = -1;
+  ++interruptions_;
+  return true;
+}
+
 /// The thread.
 void Signals::watch() {
   using clock = std::chrono::steady_clock;
@@ -85,13 +103,17 @@ void Signals::watch() {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline - clock::now());
       timeout = std::max(0, static_cast<int>(left.count()));
     }
-    pollfd descriptors[] = {{signals_, POLLIN, 0}, {end_, POLLIN, 0}};
-    ::poll(descriptors, 2, timeout);
-    if (descriptors[1].revents != 0) return;
+    pollfd descriptors[] = {{signals_, POLLIN, 0}, {order_, POLLIN, 0}, {input_, POLLIN, 0}};
+    ::poll(descriptors, std::size(descriptors), timeout);
+    if (is_ending_) return;
     if (deadline && clock::now() >= *deadline) end_by_force();
-    if (descriptors[0].revents == 0) continue;
+    eventfd_t ignored = 0;
+    if (descriptors[1].revents != 0) ::eventfd_read(order_, &ignored);
+    if (descriptors[0].revents == 0 && descriptors[2].revents == 0) continue;
     // take() may have reset the count already.
-    if (receive() && !deadline) deadline = clock::now() + patience;
+    bool is_interrupted = receive();
+    if (descriptors[2].revents != 0) is_interrupted |= has_input_ended();
+    if (is_interrupted && !deadline) deadline = clock::now() + patience;
     ::eventfd_write(news_, 1);
   }
 }

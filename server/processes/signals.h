@@ -46,18 +46,24 @@ class Signals {
     is_completed_ = true;
   }
 
+  /// From now on the end of this input is an interruption, too: the program that has its other end is gone.
+  /// What can be read is read and ignored. @param descriptor  stays open while this exists
+  void interrupt_at_end_of(int descriptor);
+
   Guardian* guardian() const { return guardian_; }
 
  private:
   void watch();
   bool receive();
+  bool has_input_ended();
   [[noreturn]] void end_by_force();
 
   Guardian* guardian_;
-  int signals_ = -1, news_ = -1, end_ = -1;
+  int signals_ = -1, news_ = -1, order_ = -1;
   sigset_t former_;
   std::atomic<int> interruptions_ = 0, exit_code_ = 0;
-  std::atomic<bool> child_ = false, is_completed_ = false;
+  std::atomic<int> input_ = -1;
+  std::atomic<bool> child_ = false, is_completed_ = false, is_ending_ = false;
   std::thread thread_;
 };
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 from typing import Any, Optional, Sequence
 
@@ -12,17 +13,32 @@ from .session import Session
 
 
 class Server:
-    """Runs `ziggurat serve SCENE` on a free port of this machine until it is closed.
+    """Runs `ziggurat serve SCENE` on a free port of this machine until it is closed, or this program ends, however
+    that happens.
 
     command    path of the program, if it is not on the PATH
     arguments  other options of `ziggurat serve`
     """
 
     def __init__(self, scene: str, *, command: str = "ziggurat", arguments: Sequence[str] = ()):
-        self.process = subprocess.Popen(
-            [command, "serve", str(scene), "--endpoint", "tcp://127.0.0.1:*", "--json", *arguments],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        # Nothing is written: the server ends when the other end is closed, as by the end of this program.
+        end_for_server, self._end_for_program = os.pipe()
+        try:
+            self.process = subprocess.Popen(
+                [command, "serve", str(scene), "--endpoint", "tcp://127.0.0.1:*", "--json", "--end-with-input",
+                 *arguments],
+                stdin=end_for_server, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        except BaseException:
+            self._release()
+            raise
+        finally:
+            os.close(end_for_server)
         self.endpoint = self._read_endpoint()
+
+    def _release(self) -> None:
+        if self._end_for_program is not None:
+            os.close(self._end_for_program)
+            self._end_for_program = None
 
     def _read_endpoint(self) -> str:
         line = self.process.stdout.readline()
@@ -30,6 +46,7 @@ class Server:
             return json.loads(line)["endpoint"]
         except (ValueError, KeyError):
             _, errors = self.process.communicate()
+            self._release()
             raise RuntimeError(f"ziggurat serve did not start: {line}{errors}") from None
 
     def session(self, **options: Any) -> Session:
@@ -60,6 +77,7 @@ class Server:
         if self.process.poll() is None:
             self.process.terminate()
         self.process.communicate()
+        self._release()
 
     def __enter__(self) -> "Server":
         return self

@@ -48,6 +48,25 @@ TEST(Signals, EndAProgramThatDoesNotReact) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
 }
 
+TEST(Signals, TheEndOfAnInputIsAnInterruption) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  {
+    Signals signals;
+    signals.interrupt_at_end_of(ends[0]);
+    ASSERT_EQ(::write(ends[1], "text", 4), 4);  // no end
+    ::kill(::getpid(), SIGCHLD);
+    ASSERT_TRUE(readable(signals, 5000));
+    EXPECT_EQ(signals.take().interruptions, 0);
+    ::close(ends[1]);
+    int interruptions = 0;
+    while (interruptions == 0 && readable(signals, 5000)) interruptions += signals.take().interruptions;
+    EXPECT_EQ(interruptions, 1);
+    EXPECT_FALSE(readable(signals, 50)) << "once";
+  }
+  ::close(ends[0]);
+}
+
 TEST(Signals, WhatNohupIgnoresStaysIgnored) {
   EXPECT_EXIT(
       {

@@ -5,6 +5,9 @@ import itertools
 import math
 import os
 import pathlib
+import select
+import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -50,6 +53,36 @@ def until(is_true):
         if time.monotonic() > end:
             raise AssertionError("it did not come true")
         time.sleep(0.01)
+
+
+class Lifetime(unittest.TestCase):
+    def test_a_server_ends_with_a_program_that_is_killed(self):
+        program = ("import ziggurat, sys, time\n"
+                   f"server = ziggurat.Server({str(ARMS)!r}, command={PROGRAM!r}, arguments=('--duration', '0'))\n"
+                   "print(server.process.pid, flush=True)\n"
+                   "time.sleep(60)\n")
+        with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True) as killed:
+            server = int(killed.stdout.readline())
+            descriptor = os.pidfd_open(server)
+            killed.kill()
+        try:
+            self.assertTrue(select.select([descriptor], [], [], 60)[0], "it is left")
+        finally:
+            os.close(descriptor)
+
+    def test_a_server_that_is_closed_leaves_no_descriptor(self):
+        def one():
+            with serve():
+                pass
+
+        one()
+        before = len(os.listdir("/proc/self/fd"))
+        one()
+        with self.assertRaises(FileNotFoundError):
+            ziggurat.Server(str(ARMS), command="/nowhere/ziggurat")
+        with self.assertRaises(RuntimeError):
+            ziggurat.Server("/nowhere.argos", command=PROGRAM)
+        self.assertEqual(len(os.listdir("/proc/self/fd")), before)
 
 
 class Supervising(unittest.TestCase):
