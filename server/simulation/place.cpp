@@ -57,67 +57,84 @@ class Draw {
   std::size_t count_ = 0;
 };
 
-[[noreturn]] void no_place(const scene::Scene& scene, const scene::Distribution& group,
-                           const std::string& id, unsigned placed, const std::string& other) {
-  const bool grid = group.position.method == scene::DistributionMethod::grid;
+/// Places found, and attempts to find more.
+struct Search {
+  const scene::Scene& scene;
+  std::size_t most_attempts, all;
+  const TellPlaced& tell;
+  std::size_t attempts = 0, placed = 0;
+
+  void tell_now() const {
+    if (tell) tell(placed, all);
+  }
+};
+
+/// @param tried   for this entity
+/// @param placed  entities of this group
+[[noreturn]] void no_place(const Search& search, const scene::Distribution& group, const std::string& id,
+                           std::size_t tried, unsigned placed, const std::string& other) {
+  const bool is_grid = group.position.method == scene::DistributionMethod::grid;
+  const bool is_limit = search.attempts >= search.most_attempts;
   scene::Problem problem;
-  problem.file = scene.files.empty() ? "" : scene.files[group.where.file];
+  problem.file = search.scene.files.empty() ? "" : search.scene.files[group.where.file];
   problem.where = group.where;
-  problem.text =
-      grid ? fmt::format(
-                 "<distribute>: '{}' overlaps '{}' in its grid cell, after {} of {} were "
-                 "placed; make 'distances' larger or move what stands in the way",
-                 id, other, placed, group.quantity)
-           : fmt::format(
-                 "<distribute>: no free place for '{}' in {} attempts, after {} of {} were "
-                 "placed (the last attempt overlapped '{}'); widen the range, place fewer "
-                 "or raise 'max_trials'",
-                 id, std::size_t{group.max_trials} + 1, placed, group.quantity, other);
+  if (is_grid) {
+    problem.text = fmt::format(
+        "<distribute>: '{}' overlaps '{}' in its grid cell, after {} of {} were placed; make 'distances' larger or "
+        "move what stands in the way",
+        id, other, placed, group.quantity);
+  } else {
+    problem.text = fmt::format(
+        "<distribute>: no free place for '{}' in {} attempts{}, after {} of {} were placed (the last attempt "
+        "overlapped '{}'); widen the range{} place fewer{}",
+        id, tried,
+        is_limit ? fmt::format(", and a scene has {} in all", search.most_attempts) : "", placed, group.quantity,
+        other, is_limit ? " or" : ",", is_limit ? "" : " or raise 'max_trials'");
+  }
   throw scene::SceneError({problem});
 }
 
-void distribute(const scene::Scene& scene, const scene::Distribution& group,
-                math::RandomStream& random, physics::Placement& placement,
-                std::vector<scene::Entity>& entities, const std::function<void()>& tell) {
+void distribute(Search& search, const scene::Distribution& group, math::RandomStream& random,
+                physics::Placement& placement, std::vector<scene::Entity>& entities) {
+  constexpr std::size_t between_placed = 100, between_attempts = 10'000;  // two messages
   Draw position(group.position, random), orientation(group.orientation, random);
   const bool grid = group.position.method == scene::DistributionMethod::grid ||
                     group.orientation.method == scene::DistributionMethod::grid;
-  const std::size_t attempts = grid ? 1 : std::size_t{group.max_trials} + 1;
+  const std::size_t most = grid ? 1 : std::size_t{group.max_trials} + 1;
   for (unsigned i = 0; i < group.quantity; ++i) {
     scene::Entity entity = group.entity;
     entity.id += std::to_string(std::size_t{group.base_num} + i);
-    std::string other;
-    for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
+    for (std::size_t tried = 1;; ++tried) {
       entity.pose.position = position.next();
       entity.pose.orientation = scene::orientation_from_degrees(orientation.next());
-      other = placement.overlapped_by(entity);
+      const std::string other = placement.overlapped_by(entity);
       if (other.empty()) break;
+      if (++search.attempts % between_attempts == 0) search.tell_now();
+      if (tried == most || search.attempts >= search.most_attempts) {
+        no_place(search, group, entity.id, tried, i, other);
+      }
     }
-    if (!other.empty()) no_place(scene, group, entity.id, i, other);
     placement.add(entity);
     entities.push_back(std::move(entity));
-    tell();
+    if (++search.placed % between_placed == 0) search.tell_now();
   }
 }
 
 }  // namespace
 
-std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed,
-                                 const TellPlaced& tell) {
+std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellPlaced& tell,
+                                 std::size_t most_attempts) {
   std::vector<scene::Entity> entities = scene.entities;
   physics::Placement placement;
   if (!scene.distributions.empty()) {
     for (const scene::Entity& entity : entities) placement.add(entity);
   }
-  constexpr std::size_t between = 100;  // entities
-  std::size_t all = 0, placed = 0;
+  std::size_t all = 0;
   for (const scene::Distribution& group : scene.distributions) all += group.quantity;
-  const auto tell_one = [&] {
-    if (++placed % between == 0 && tell) tell(placed, all);
-  };
+  Search search{scene, most_attempts, all, tell};
   math::RandomStream random(seed, "distribute");
   for (const scene::Distribution& group : scene.distributions) {
-    distribute(scene, group, random, placement, entities, tell_one);
+    distribute(search, group, random, placement, entities);
   }
   return entities;
 }

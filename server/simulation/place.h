@@ -16,9 +16,10 @@ using TellPlaced = std::function<void(std::size_t placed, std::size_t all)>;
 
 /// All entities of the scene at their poses, in scene order: the placed ones, then the
 /// distributed ones group by group.
-/// @param tell  told now and then how many entities are distributed already
+/// @param tell           told now and then how many entities are distributed already
+/// @param most_attempts  that fail, of all entities together: whatever 'max_trials' says, the search ends
 /// @throws scene::SceneError if a distributed entity finds no free place
-std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed,
-                                 const TellPlaced& tell = {});
+std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellPlaced& tell = {},
+                                 std::size_t most_attempts = 10'000'000);
 
 }  // namespace ziggurat::simulation

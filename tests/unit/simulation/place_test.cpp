@@ -1,0 +1,55 @@
+#include "simulation/place.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "small_scene.h"
+
+namespace ziggurat::simulation {
+namespace {
+
+using namespace testing;
+
+/// A box that covers all places for another.
+scene::Scene full(const std::string& max_trials) {
+  SmallScene text;
+  text.arena = R"(<box id="big" size="3,3,1" movable="false"><body position="0,0,0"/></box><distribute>)"
+               R"(<position method="uniform" min="-1,-1,0" max="1,1,0"/>)"
+               R"(<orientation method="constant" values="0,0,0"/><entity quantity="2" max_trials=")" +
+               max_trials + R"("><box id="b" size=".1,.1,.1" movable="false"/></entity></distribute>)";
+  return text.read();
+}
+
+std::string fault_of(const scene::Scene& scene, std::size_t most_attempts) {
+  try {
+    place(scene, 1, {}, most_attempts);
+  } catch (const scene::SceneError& error) {
+    return scene::to_string(error.problems().at(0));
+  }
+  return {};
+}
+
+TEST(Place, TriesAsOftenAsTheSceneSays) {
+  EXPECT_NE(fault_of(full("7"), 1000).find("no free place for 'b0' in 8 attempts, after 0 of 2 were placed"),
+            std::string::npos);
+}
+
+TEST(Place, GivesUpAtTheLimitOfASceneWhateverItSays) {
+  const std::string fault = fault_of(full("4294967295"), 1000);
+  EXPECT_TRUE(fault.starts_with("small.argos:1:")) << fault;
+  EXPECT_NE(fault.find("no free place for 'b0' in 1000 attempts, and a scene has 1000 in all"), std::string::npos)
+      << fault;
+  EXPECT_NE(fault.find("widen the range or place fewer"), std::string::npos) << fault;
+}
+
+TEST(Place, TellsHowFarItIsWhileItTries) {
+  std::vector<std::pair<std::size_t, std::size_t>> told;
+  const auto tell = [&](std::size_t placed, std::size_t all) { told.emplace_back(placed, all); };
+  EXPECT_THROW(place(full("4294967295"), 1, tell, 25'000), scene::SceneError);
+  EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {0, 2}}));
+}
+
+}  // namespace
+}  // namespace ziggurat::simulation
