@@ -12,7 +12,7 @@
 namespace ziggurat::lua {
 
 Runner::Runner(ziggurat::Session& session, const ProgramOptions& options)
-    : session_(session), options_(options), folders_(options.folders) {
+    : session_(session), options_(options), folders_(options.folders), regions_(session.robots().size()) {
   for (ziggurat::Robot& robot : session_.robots()) seats_.push_back({&robot, nullptr});
 }
 
@@ -42,7 +42,8 @@ void Runner::start(Seat& seat) {
     seat.controller = std::make_unique<Controller>(
         *seat.robot, ScriptOptions{script.path, session_.seed(), session_.tick(),
                                        options_.max_memory, options_.max_instructions,
-                                       options_.trusts_scripts ? nullptr : &folders_});
+                                       options_.trusts_scripts ? nullptr : &folders_,
+                                       regions_[static_cast<std::size_t>(&seat - seats_.data())]});
   } catch (const std::bad_alloc&) {
     return fail(seat, "no memory for a Lua state");
   }

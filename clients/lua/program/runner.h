@@ -9,6 +9,7 @@
 
 #include "program/options.h"
 #include "script/controller.h"
+#include "script/regions.h"
 #include "ziggurat/session.h"
 
 namespace ziggurat::lua {
@@ -41,6 +42,7 @@ class Runner {
   ziggurat::Session& session_;
   const ProgramOptions& options_;
   const Folders folders_;
+  const Regions regions_;    ///< a seat each
   std::vector<Seat> seats_;  ///< as the session's robots
   std::size_t failures_ = 0;
 };

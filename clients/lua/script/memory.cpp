@@ -1,13 +1,15 @@
 #include "script/memory.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 namespace ziggurat::lua {
 
-BoundedState::BoundedState(std::size_t max_bytes)
-    : budget_{0, max_bytes}, state_(lua_newstate(&allocate, &budget_)) {
+BoundedState::BoundedState(std::size_t max_bytes, std::span<std::byte> region)
+    : budget_{0, max_bytes, BlockPool(region)}, state_(lua_newstate(&allocate, &budget_)) {
   if (!state_) throw std::bad_alloc();
   budget_.state = state_.get();
 }
@@ -23,12 +25,27 @@ void BoundedState::note_place(Budget& budget) {
   }
 }
 
+// What has left the pool stays outside, and so does what begins when it is full.
+void* BoundedState::resize(BlockPool& pool, void* block, std::size_t old_size, std::size_t new_size) {
+  const bool pooled = pool.owns(block);
+  if (block != nullptr && !pooled) return std::realloc(block, new_size);
+  if (pooled && BlockPool::same_room(old_size, new_size)) return block;
+  void* moved = pool.take(new_size);
+  if (moved == nullptr) moved = std::malloc(new_size);
+  if (pooled && moved != nullptr) {
+    std::memcpy(moved, block, std::min(old_size, new_size));
+    pool.give_back(block, old_size);
+  }
+  return moved;
+}
+
 void* BoundedState::allocate(void* budget_of_state, void* block, std::size_t old_size,
                              std::size_t new_size) {
   auto& budget = *static_cast<Budget*>(budget_of_state);
   if (block == nullptr) old_size = 0;  // old_size is the type of the new object
   if (new_size == 0) {
-    std::free(block);
+    if (block == nullptr) return nullptr;
+    budget.pool.owns(block) ? budget.pool.give_back(block, old_size) : std::free(block);
     budget.used -= old_size;
     return nullptr;
   }
@@ -37,7 +54,7 @@ void* BoundedState::allocate(void* budget_of_state, void* block, std::size_t old
     note_place(budget);
     return nullptr;
   }
-  void* const moved = std::realloc(block, new_size);
+  void* const moved = resize(budget.pool, block, old_size, new_size);
   if (moved == nullptr) return new_size <= old_size ? block : nullptr;
   budget.used = budget.used - old_size + new_size;
   return moved;

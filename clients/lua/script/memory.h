@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <lua.hpp>
 #include <memory>
+#include <span>
+
+#include "script/block_pool.h"
 
 namespace ziggurat::lua {
 
@@ -11,8 +14,9 @@ namespace ziggurat::lua {
 /// other scripts are not affected.
 class BoundedState {
  public:
+  /// @param region  where its blocks are as long as they have room; outlives the state
   /// @throws std::bad_alloc if an empty state does not fit
-  explicit BoundedState(std::size_t max_bytes);
+  explicit BoundedState(std::size_t max_bytes, std::span<std::byte> region = {});
   BoundedState(const BoundedState&) = delete;
   BoundedState& operator=(const BoundedState&) = delete;
 
@@ -25,6 +29,7 @@ class BoundedState {
   struct Budget {
     std::size_t used;
     std::size_t max;
+    BlockPool pool;
     lua_State* state = nullptr;  // once it is made
     char refused_at[LUA_IDSIZE + 16] = "";
   };
@@ -32,6 +37,7 @@ class BoundedState {
     void operator()(lua_State* state) const { lua_close(state); }
   };
   static void note_place(Budget& budget);
+  static void* resize(BlockPool& pool, void* block, std::size_t old_size, std::size_t new_size);
   static void* allocate(void* budget, void* block, std::size_t old_size, std::size_t new_size);
 
   Budget budget_;

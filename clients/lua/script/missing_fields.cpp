@@ -7,7 +7,7 @@ namespace ziggurat::lua {
 namespace {
 
 // Their addresses are keys of the registry.
-constexpr char metatable_key = 0, name_key = 0, owner_key = 0, root_key = 0, table_key = 0, field_key = 0;
+constexpr char watched_key = 0, name_key = 0, owner_key = 0, root_key = 0, table_key = 0, field_key = 0;
 
 constexpr int deepest = 3;             // robot.joints.<id>.<field>
 constexpr std::size_t most_named = 24;  // fields of a message
@@ -30,7 +30,7 @@ void watch_table(lua_State* state, int depth) {
     lua_pop(state, 1);
     return;
   }
-  lua_rawgetp(state, LUA_REGISTRYINDEX, &metatable_key);
+  lua_rawgetp(state, LUA_REGISTRYINDEX, &watched_key);
   lua_setmetatable(state, -2);
   if (depth == deepest) return;
   luaL_checkstack(state, 4, nullptr);
@@ -85,7 +85,7 @@ void watch_missing_fields(lua_State* state, const char* name, const char* kind, 
   lua_createtable(state, 0, 1);
   lua_pushcfunction(state, remember);
   lua_setfield(state, -2, "__index");
-  lua_rawsetp(state, LUA_REGISTRYINDEX, &metatable_key);
+  lua_rawsetp(state, LUA_REGISTRYINDEX, &watched_key);
   lua_pushstring(state, name);
   lua_rawsetp(state, LUA_REGISTRYINDEX, &name_key);
   lua_pushfstring(state, "%s '%s'", kind, id);

@@ -56,7 +56,7 @@ Script::Script(std::string name, const ScriptOptions& options)
       folders_(options.folders),
       script_(shown(options.script).string()),
       folder_(shown(options.script).parent_path().string()),
-      state_(options.max_memory) {
+      state_(options.max_memory, options.region) {
   if (folder_.empty()) folder_ = ".";
 }
 
