@@ -149,4 +149,23 @@ void take_excess(Tree& tree, Workspace& work, double excess) {
   move(tree);
 }
 
+void take_excess(std::span<Tree* const> trees, Workspace& work, double excess) {
+  double all = 0;
+  for (const Tree* tree : trees) all += kinetic_energy(*tree);
+  if (excess <= 0 || all <= 0) return;
+  const double share = excess / all;
+  for (Tree* tree : trees) take_excess(*tree, work, share * kinetic_energy(*tree));
+}
+
+double energy(std::span<Tree* const> trees) {
+  double sum = 0;
+  for (const Tree* tree : trees) {
+    sum += kinetic_energy(*tree);
+    for (std::size_t i = 0; i < tree->links.size(); ++i) {
+      sum -= tree->links[i].mass * tree->gravity.dot(tree->position[i]);
+    }
+  }
+  return sum;
+}
+
 }  // namespace ziggurat::dynamics

@@ -3,6 +3,7 @@
 // velocities are solved with the mass matrix of the beginning, and are then those of other poses.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "dynamics/problem.h"
@@ -26,5 +27,11 @@ bool gains_much(const Tree& tree, double excess);
 /// angular momentum stay if it is free, and what is left from its turning. Needs move(), and leaves it moved.
 /// @param excess  [J]; nothing happens where it is no gain
 void take_excess(Tree& tree, Workspace& work, double excess);
+
+/// The same from all trees of an island, in proportion to their kinetic energy.
+void take_excess(std::span<Tree* const> trees, Workspace& work, double excess);
+
+/// The energy of all trees, kinetic and potential [J]; needs move().
+double energy(std::span<Tree* const> trees);
 
 }  // namespace ziggurat::dynamics

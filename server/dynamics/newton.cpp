@@ -202,13 +202,13 @@ double Solver::worst_miss(const Problem& problem, double& scale) {
   return miss_now(problem, scale);
 }
 
-void Solver::Snapshot::take(const Problem& problem) {
+void Snapshot::take(const Problem& problem) {
   velocity = problem.velocity;
   impulses.clear();
   for (const Block& block : problem.blocks) impulses.push_back(block.impulse);
 }
 
-void Solver::Snapshot::give_back(Problem& problem) const {
+void Snapshot::give_back(Problem& problem) const {
   problem.velocity = velocity;
   for (std::size_t i = 0; i < impulses.size(); ++i) problem.blocks[i].impulse = impulses[i];
 }
@@ -279,6 +279,19 @@ Outcome Solver::solve(Problem& problem) {
     outcome.miss = before;
   }
   return outcome;
+}
+
+void Solver::solve_without_rebound(Problem& problem, Snapshot& out) {
+  rebounding_.take(problem);
+  seeks_.clear();
+  for (Block& block : problem.blocks) {
+    seeks_.push_back(block.seek[0]);
+    if (block.bounces) block.seek[0] = -std::max(0.0, block.gap) / problem.length;
+  }
+  solve(problem);
+  out.take(problem);
+  rebounding_.give_back(problem);
+  for (std::size_t i = 0; i < seeks_.size(); ++i) problem.blocks[i].seek[0] = seeks_[i];
 }
 
 bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most) {

@@ -66,22 +66,26 @@ void add_impulse(const Problem& problem, const Block& block, const double* impul
 /// @return  the largest change of a coordinate's speed that is missing, about [m/s] or [rad/s]
 double imbalance(const Problem& problem, std::vector<double>& out);
 
+/// Velocities and impulses of a problem.
+struct Snapshot {
+  std::vector<double> velocity;                                ///< of each dof
+  std::vector<std::array<double, Block::most_rows>> impulses;  ///< of each block
+  void take(const Problem& problem);
+  void give_back(Problem& problem) const;
+};
+
 class Solver {
  public:
   SolverOptions options;
 
   /// Solves for problem.velocity and the blocks' impulses, from what they are.
   Outcome solve(Problem& problem);
-  /// The same for a displacement, which need not be exact where many bodies overlap.
+  /// The solution if nothing rebounded, of a problem that is solved; leaves that as it is.
+  void solve_without_rebound(Problem& problem, Snapshot& out);
+  /// Solves a displacement, which need not be exact where many bodies overlap.
   void solve_displacement(Problem& problem);
 
  private:
-  struct Snapshot {
-    std::vector<double> velocity;
-    std::vector<std::array<double, Block::most_rows>> impulses;
-    void take(const Problem& problem);
-    void give_back(Problem& problem) const;
-  };
   void start_matrix(Problem& problem);
   bool iterate(Problem& problem, Outcome& outcome, int most);
   bool step(Problem& problem);
@@ -117,7 +121,8 @@ class Solver {
   std::vector<int> sizes_;
   std::vector<double> sloped_;
   std::vector<double> kept_velocity_, anchored_;
-  Snapshot start_, snapshot_;
+  Snapshot start_, snapshot_, rebounding_;
+  std::vector<double> seeks_;
   std::vector<double> direction_, residual_;
   std::vector<InteriorBlock> interior_;
   Sweeps sweeps_;

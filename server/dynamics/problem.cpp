@@ -152,6 +152,7 @@ void Problem::rebound(Block& block, double restitution) const {
   if (rise <= 0) return;
   block.bounces = true;
   block.rise = rise;
+  block.before = -impact - rest * pull;
   block.seek[0] = restitution * impact + rest * pull;
 }
 
@@ -259,8 +260,8 @@ void add_speeds(const double* columns, std::span<const int> dofs, const double* 
 
 }  // namespace
 
-void Problem::speeds(const Block& block, double* u) const {
-  const double *j = jacobian.data(), *v = velocity.data();
+void Problem::speeds(const Block& block, double* u, const double* v) const {
+  const double* j = jacobian.data();
   by_rows(block.rows, [&](auto rows) {
     for (int r = 0; r < rows(); ++r) u[r] = 0;
     if (block.a >= 0) add_speeds<rows()>(j + block.ja, block.dofs_a, v + offset[block.a], u);
@@ -300,6 +301,16 @@ bool Problem::turn_into_displacement() {
   std::fill(momentum.begin(), momentum.end(), 0.0);
   std::fill(velocity.begin(), velocity.end(), 0.0);
   return true;
+}
+
+void Problem::leave_rebounds() {
+  for (Block& block : blocks) {
+    block.impulse.fill(0);
+    if (block.kind != Block::Source::contact || block.lower == 0) continue;
+    block.lower = 0;
+    block.seek[0] -= block.rise;
+  }
+  std::fill(velocity.begin(), velocity.end(), 0.0);
 }
 
 }  // namespace ziggurat::dynamics

@@ -39,6 +39,7 @@ struct Block {
   double gap = 0;                   ///< of contacts and limits [m] or [rad]
   bool bounces = false;             ///< a contact that is met within the substep and rebounds
   double rise = 0;                  ///< of one that bounces: the gap at the substep's end [m]
+  double before = 0;                ///< and its speed with which the work of the impact is right [m/s]
   Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
   int source = 0;                   ///< into the contacts, servos or limits of the system
   enum class Source : unsigned char { contact, servo, limit } kind = Source::contact;
@@ -72,11 +73,15 @@ struct Problem {
   void add(const Limit& limit, int place, int source);
 
   /// Speeds at a block for the present velocities.
-  void speeds(const Block& block, double* u) const;
+  void speeds(const Block& block, double* u) const { speeds(block, u, velocity.data()); }
+  /// For other velocities, of each dof.
+  void speeds(const Block& block, double* u, const double* v) const;
   /// Turns the problem into that of the smallest displacement that undoes overlaps: v in [m] and
   /// [rad], without momentum and friction.
   /// @return  false if there is nothing to undo
   bool turn_into_displacement();
+  /// Of such a problem: leaves what rebounds where its velocity takes it, and begins anew.
+  void leave_rebounds();
 
  private:
   int add_columns(const Tree& tree, int rows);

@@ -265,6 +265,8 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   gather_island(first_tree, last_tree, first_item, last_item);
   const Outcome outcome = solver_.solve(problem_);
   add(outcome);
+  const bool rebounding = rebounds(problem_);
+  if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);
   write_impulses();
   const bool touched = std::any_of(problem_.blocks.begin(), problem_.blocks.end(),
                                    [](const Block& b) { return b.impulse[0] != 0; });
@@ -289,6 +291,10 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       });
   if (problem_.turn_into_displacement()) {
     solver_.solve_displacement(problem_);
+    if (rebounding && lifts_too_much(problem_, work_, rebound_, step_)) {
+      problem_.leave_rebounds();
+      solver_.solve_displacement(problem_);
+    }
     for (std::size_t i = 0; i < step_.size(); ++i) step_[i] += problem_.velocity[i];
     add_lifts(problem_, work_, excess_);
   }
@@ -296,6 +302,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     const std::size_t dofs = problem_.trees[i]->dofs;
     displace(problem_, i, {step_.data() + problem_.offset[i], dofs}, !grounded, excess_[i], work_);
   }
+  if (rebounding) bound_energy(problem_, work_, rebound_);
   const bool swept = outcome.sweeps > 0 && outcome.descents == 0;
   settle(first_tree, last_tree, carried, swept ? outcome.miss : 0);
 }
@@ -313,6 +320,7 @@ void System::push_apart(std::span<Contact> contacts, std::span<const int> chosen
     std::fill(problem_.velocity.begin(), problem_.velocity.end(), 0.0);
     for (Block& block : problem_.blocks) block.impulse.fill(0);
     if (!problem_.turn_into_displacement()) continue;
+    const double before = energy(problem_.trees);
     solver_.solve_displacement(problem_);
     for (std::size_t k = 0; k < problem_.trees.size(); ++k) {
       Tree& tree = *problem_.trees[k];
@@ -321,6 +329,7 @@ void System::push_apart(std::span<Contact> contacts, std::span<const int> chosen
       dynamics::place(tree);
       move(tree);
     }
+    take_excess(problem_.trees, work_, energy(problem_.trees) - before);
   }
   chosen_ = {};
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dynamics/newton.h"
+#include "dynamics/rebound.h"
 
 namespace ziggurat::dynamics {
 
@@ -138,6 +139,7 @@ class System {
   std::vector<Item> items_, item_order_;
   std::vector<double> kept_, step_;
   std::vector<std::optional<double>> excess_;  // see note_excesses()
+  Rebound rebound_;
   Workspace work_;
   Problem problem_;
   Solver solver_;

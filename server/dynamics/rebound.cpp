@@ -1,0 +1,204 @@
+#include "dynamics/rebound.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/excess.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+constexpr double rounding = 1e-9;  // of the energy
+
+/// What pushes the trees, without gravity, does in the substep, of which v is the solution.
+double work_of_pushes(const Problem& problem, Workspace& work) {
+  double sum = 0;
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const Tree& tree = *problem.trees[i];
+    work.scratch.resize(tree.dofs);
+    external_forces(tree, work, work.scratch, true, false);
+    const double* after = problem.velocity.data() + problem.offset[i];
+    for (int k = 0; k < tree.dofs; ++k) {
+      sum += problem.length * work.scratch[k] * (tree.v[k] + after[k]) / 2;
+    }
+  }
+  return sum;
+}
+
+/// What servos do in the substep, of which v is the solution.
+double work_of_servos(const Problem& problem) {
+  double sum = 0;
+  for (const Block& block : problem.blocks) {
+    if (block.kind != Block::Source::servo || block.impulse[0] == 0) continue;
+    const double* before = problem.trees[block.a]->v.data();
+    const double* after = problem.velocity.data() + problem.offset[block.a];
+    for (const int k : block.dofs_a) {
+      sum += block.impulse[0] * problem.jacobian[block.ja + k] * (before[k] + after[k]) / 2;
+    }
+  }
+  return sum;
+}
+
+/// Sets the velocities of all trees to share_a * a + share_b * b.
+void set_velocities(const Problem& problem, double share_a, const std::vector<double>& a,
+                    double share_b, const std::vector<double>& b) {
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    Tree& tree = *problem.trees[i];
+    for (int k = 0; k < tree.dofs; ++k) {
+      tree.v[k] = share_a * a[problem.offset[i] + k] + share_b * b[problem.offset[i] + k];
+    }
+    move(tree);
+  }
+}
+
+double kinetic_energy(const Problem& problem) {
+  double sum = 0;
+  for (const Tree* tree : problem.trees) sum += kinetic_energy(*tree);
+  return sum;
+}
+
+/// Whether the world touches it: its momentum is not its own.
+bool is_grounded(const Problem& problem) {
+  return std::any_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) {
+    return block.kind == Block::Source::contact && (block.a < 0 || block.b < 0);
+  });
+}
+
+/// Takes an energy from all speeds, as far as they have it.
+void slow_down(const Problem& problem, double excess) {
+  const double all = kinetic_energy(problem);
+  if (excess <= rounding * all) return;
+  const double share = excess < all ? std::sqrt(1 - excess / all) : 0;
+  for (Tree* tree : problem.trees) {
+    for (double& speed : tree->v) speed *= share;
+    move(*tree);
+  }
+}
+
+/// How much of the way back takes an energy: a t - b t^2 = energy, or where that is the most.
+double way_back(double a, double b, double energy) {
+  if (a <= 0) return 0;
+  const double square = a * a - 4 * b * energy;
+  const double way = square > 0 ? 2 * energy / (a + std::sqrt(square)) : a / (2 * b);
+  return std::min(1.0, way);
+}
+
+}  // namespace
+
+namespace {
+
+/// The work of all contacts and limits in the substep, as a function of the share of the way from the solution
+/// without rebound to the present one: at 0, and its first and second derivative, the second halved.
+struct Work {
+  double none = 0, slope = 0, curve = 0;  // [J]
+  double size = 0;                        // of what is summed
+};
+
+/// @param start  velocities at the beginning, of each dof
+Work work_of_contacts(const Problem& problem, const Snapshot& without,
+                      const std::vector<double>& start) {
+  Work out;
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    const Block& block = problem.blocks[i];
+    if (block.kind == Block::Source::servo) continue;
+    double before[Block::most_rows], least[Block::most_rows], most[Block::most_rows];
+    problem.speeds(block, most, problem.velocity.data());
+    problem.speeds(block, least, without.velocity.data());
+    problem.speeds(block, before, start.data());
+    if (block.bounces) before[0] = block.before;
+    for (int r = 0; r < block.rows; ++r) {
+      const double g = without.impulses[i][r], more = block.impulse[r] - g;
+      const double u = before[r] + least[r], faster = most[r] - least[r];
+      out.none += g * u / 2;
+      out.slope += (g * faster + more * u) / 2;
+      out.curve += more * faster / 2;
+      out.size += std::abs(block.impulse[r]) * (std::abs(before[r]) + std::abs(most[r]));
+    }
+  }
+  return out;
+}
+
+/// The largest share of the way at which contacts do not give energy.
+double share_without_gain(const Problem& problem, const Snapshot& without,
+                          const std::vector<double>& start) {
+  const Work work = work_of_contacts(problem, without, start);
+  if (work.none + work.slope + work.curve <= rounding * work.size) return 1;
+  if (work.none >= 0 || work.curve <= 0) return 0;
+  const double root = std::sqrt(work.slope * work.slope - 4 * work.curve * work.none);
+  return std::clamp((root - work.slope) / (2 * work.curve), 0.0, 1.0);
+}
+
+void blend(Problem& problem, const Snapshot& without, double share) {
+  for (std::size_t k = 0; k < problem.velocity.size(); ++k) {
+    problem.velocity[k] = without.velocity[k] + share * (problem.velocity[k] - without.velocity[k]);
+  }
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    for (int r = 0; r < problem.blocks[i].rows; ++r) {
+      double& impulse = problem.blocks[i].impulse[r];
+      impulse = without.impulses[i][r] + share * (impulse - without.impulses[i][r]);
+    }
+  }
+}
+
+}  // namespace
+
+bool rebounds(const Problem& problem) {
+  return std::any_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) {
+    return block.bounces && block.impulse[0] > 0;
+  });
+}
+
+void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& out) {
+  solver.solve_without_rebound(problem, out.without);
+  out.after.clear();
+  for (const Tree* tree : problem.trees) {
+    out.after.insert(out.after.end(), tree->v.begin(), tree->v.end());
+  }
+  const double share = share_without_gain(problem, out.without, out.after);
+  if (share < 1) blend(problem, out.without, share);
+  out.most_energy = energy(problem.trees) + work_of_pushes(problem, work) + work_of_servos(problem);
+}
+
+bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebound,
+                    const std::vector<double>& step) {
+  for (Tree* tree : problem.trees) move(*tree);
+  double lift = 0, now = energy(problem.trees);
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const Tree& tree = *problem.trees[i];
+    work.scratch.resize(tree.dofs);
+    external_forces(tree, work, work.scratch, false, true);
+    for (int k = 0; k < tree.dofs; ++k) {
+      const std::size_t place = problem.offset[i] + k;
+      lift -= work.scratch[k] * problem.velocity[place];
+      now -= work.scratch[k] * step[place];
+    }
+  }
+  return lift > 0 && now + lift - rebound.most_energy > rounding * (std::abs(now) + lift);
+}
+
+void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound) {
+  const double now = energy(problem.trees), excess = now - rebound.most_energy;
+  const double kinetic = kinetic_energy(problem);
+  if (excess <= rounding * (kinetic + std::abs(now))) return;
+  std::vector<double>&after = rebound.after, &change = rebound.change;
+  after.resize(problem.velocity.size());
+  change.resize(after.size());
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const Tree& tree = *problem.trees[i];
+    for (int k = 0; k < tree.dofs; ++k) {
+      const std::size_t place = problem.offset[i] + k;
+      after[place] = tree.v[k];
+      change[place] = rebound.without.velocity[place] - tree.v[k];
+    }
+  }
+  set_velocities(problem, 0, after, 1, change);
+  const double of_change = kinetic_energy(problem);
+  set_velocities(problem, 1, after, 1, change);
+  const double slope = kinetic + of_change - kinetic_energy(problem);
+  const double way = way_back(slope, of_change, excess);
+  set_velocities(problem, 1, after, way, change);
+  take_excess(problem.trees, work, energy(problem.trees) - rebound.most_energy);
+  if (is_grounded(problem)) slow_down(problem, energy(problem.trees) - rebound.most_energy);
+}
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,37 @@
+#pragma once
+// Where bodies that are no balls rebound, Newton's law of restitution at each point can add energy: several
+// points strike at once, friction turns the body, or it turns far within the substep. An island takes as much
+// of the way from the impact without rebound to that with it as adds none.
+
+#include <vector>
+
+#include "dynamics/newton.h"
+
+namespace ziggurat::dynamics {
+
+/// What bounds the rebounds of an island in a substep.
+struct Rebound {
+  double most_energy = 0;  ///< kinetic and potential, at the substep's end [J]
+  Snapshot without;        ///< the solution without rebound
+  std::vector<double> after, change;  ///< of bound_energy(), which uses their memory again
+};
+
+/// Whether a contact of the island pushes and rebounds; to be called when its problem is solved.
+bool rebounds(const Problem& problem);
+
+/// Weakens rebounds until the work of all contacts is no gain.
+/// @param problem  solved, its trees as they were
+void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& out);
+
+/// Whether what moves rebounds to where they should be lifts bodies by more than they have energy for: several
+/// points of a mechanism that rebound at different times.
+/// @param problem  that of the displacement, solved, its trees with the velocities that they will have; moves them
+/// @param step     displacements without it, of each dof [rad], [m]
+bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebound,
+                    const std::vector<double>& step);
+
+/// Takes what the rebounds gained all the same, at the substep's end: where bodies turn far, or what undoes overlaps
+/// lifts them. Needs move(), and leaves the trees moved.
+void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound);
+
+}  // namespace ziggurat::dynamics
