@@ -112,7 +112,7 @@ Delivery DisturbedLink::send(const std::string& connection, const wire::Outbox& 
   const v1::ServerMessage& message = out.message();
   if (message.has_welcome()) begin(connection, message.welcome());
   Line* line = find(connection);
-  if (line == nullptr) return send_(connection, bytes_of(out));
+  if (line == nullptr) return send_(connection, bytes_of(out), out.is_observation());
   Effect effect;
   if (message.has_observation()) {
     effect = draw(*line, Direction::observations, message.observation().tick());
@@ -120,7 +120,8 @@ Delivery DisturbedLink::send(const std::string& connection, const wire::Outbox& 
     effect = draw(*line, Direction::observations, message.world_state().tick());
   }
   if (effect.is_lost) return Delivery::sent;
-  const Delivery delivery = pass(connection, *line, bytes_of(out), now + effect.delay, now);
+  const Delivery delivery =
+      pass(connection, *line, {bytes_of(out), out.is_observation()}, now + effect.delay, now);
   if (delivery == Delivery::unreachable) {
     lines_.erase(connection);
   } else if (message.has_end() || is_fatal(message)) {
@@ -129,13 +130,15 @@ Delivery DisturbedLink::send(const std::string& connection, const wire::Outbox& 
   return delivery;
 }
 
-/// Sends the bytes behind all that is held back, or holds them back, too.
-Delivery DisturbedLink::pass(const std::string& connection, Line& line, std::string bytes,
+/// Sends the message behind all that is held back, or holds it back, too.
+Delivery DisturbedLink::pass(const std::string& connection, Line& line, Outgoing message,
                              Time arrival, Time now) {
   if (line.is_broken) return Delivery::unreachable;
-  if (arrival <= now && line.outgoing.empty()) return send_(connection, bytes);
+  if (arrival <= now && line.outgoing.empty()) {
+    return send_(connection, message.bytes, message.is_observation);
+  }
   if (line.outgoing.size() >= most_held_back) return Delivery::congested;
-  line.outgoing.push(arrival, std::move(bytes));
+  line.outgoing.push(arrival, std::move(message));
   return Delivery::sent;
 }
 
@@ -143,7 +146,9 @@ Delivery DisturbedLink::pass(const std::string& connection, Line& line, std::str
 /// @param is_orderly  what comes from the client still counts
 void DisturbedLink::end(const std::string& connection, Line& line, bool is_orderly, Time now) {
   line.paths.clear();
-  while (const auto bytes = line.outgoing.pop(never)) send_(connection, *bytes);
+  while (const auto message = line.outgoing.pop(never)) {
+    send_(connection, message->bytes, message->is_observation);
+  }
   if (is_orderly && !line.incoming.empty()) return line.incoming.hurry(now);
   lines_.erase(connection);
 }
@@ -187,8 +192,8 @@ std::optional<Received> DisturbedLink::next(Time now) {
 
 void DisturbedLink::release(Time now) {
   for (auto& [connection, line] : lines_) {
-    while (const auto bytes = line.outgoing.pop(now)) {
-      const Delivery delivery = send_(connection, *bytes);
+    while (const auto message = line.outgoing.pop(now)) {
+      const Delivery delivery = send_(connection, message->bytes, message->is_observation);
       // The barrier learns of it with its next message, a heartbeat if nothing else.
       const bool is_lost = delivery == Delivery::congested && line.may_lose;
       if (delivery == Delivery::sent || is_lost) continue;

@@ -25,8 +25,9 @@ namespace ziggurat::network {
 
 class DisturbedLink {
  public:
-  /// The link behind: sends bytes over a connection.
-  using SendBytes = std::function<Delivery(const std::string& connection, std::string_view bytes)>;
+  /// The link behind: sends bytes over a connection. Of Observations that wait there the newest wins.
+  using SendBytes = std::function<Delivery(const std::string& connection, std::string_view bytes,
+                                           bool is_observation)>;
 
   struct Target {
     std::string id;  ///< in the scene: of a controller or director
@@ -68,6 +69,10 @@ class DisturbedLink {
     Access access;
     std::size_t skipped = 0;
   };
+  struct Outgoing {
+    std::string bytes;
+    bool is_observation = false;
+  };
   /// A target that drives robots of a session.
   struct Path {
     std::size_t target = 0;
@@ -78,7 +83,7 @@ class DisturbedLink {
     std::vector<Path> paths;  ///< none: its session is over
     bool may_lose = false;    ///< every robot has a deadline
     bool is_broken = false;   ///< a message that was held back could not be sent
-    DelayLine<std::string> outgoing;
+    DelayLine<Outgoing> outgoing;
     DelayLine<Held> incoming;
     std::size_t incoming_bytes = 0;
   };
@@ -87,7 +92,7 @@ class DisturbedLink {
   std::vector<Path> paths_of(const v1::Welcome& welcome) const;
   void begin(const std::string& connection, const v1::Welcome& welcome);
   Effect draw(const Line& line, Direction direction, std::uint64_t tick);
-  Delivery pass(const std::string& connection, Line& line, std::string bytes, Time arrival,
+  Delivery pass(const std::string& connection, Line& line, Outgoing message, Time arrival,
                 Time now);
   void end(const std::string& connection, Line& line, bool is_orderly, Time now);
 

@@ -170,8 +170,9 @@ void Server::open(const wire::Run& run, const Config& config) {
   if (!config.private_endpoint.empty()) state.socket.add_private(config);
   if (std::ranges::any_of(config.injections, &Injection::any)) {
     state.link.emplace(targets_of(config, run), run.seed, 2 * config.max_message_bytes,
-                       [&state](const std::string& connection, std::string_view bytes) {
-                         return state.socket.send(connection, bytes);
+                       [&state](const std::string& connection, std::string_view bytes,
+                                bool is_observation) {
+                         return state.socket.send(connection, bytes, is_observation);
                        });
   }
   state.barrier.now = Clock::now();

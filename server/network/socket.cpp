@@ -88,8 +88,8 @@ Delivery Socket::send(const std::string& connection, const wire::Outbox& message
               [&](std::uint8_t* to) { message.write(to); });
 }
 
-Delivery Socket::send(const std::string& connection, std::string_view bytes) {
-  return send(connection, bytes.size(), false,
+Delivery Socket::send(const std::string& connection, std::string_view bytes, bool is_observation) {
+  return send(connection, bytes.size(), is_observation,
               [&](std::uint8_t* to) { std::memcpy(to, bytes.data(), bytes.size()); });
 }
 

@@ -43,7 +43,7 @@ class Socket {
 
   // Neither waits.
   Delivery send(const std::string& connection, const wire::Outbox& message);
-  Delivery send(const std::string& connection, std::string_view bytes);
+  Delivery send(const std::string& connection, std::string_view bytes, bool is_observation);
 
   /// What a connection is from now on.
   /// @param longest  of its messages [bytes]

@@ -249,7 +249,7 @@ const ControllerProcess* Controllers::first_ended(
   const ControllerProcess* first = nullptr;
   for (ControllerProcess& each : processes_) {
     const bool has_ended = each.process.poll();  // of all: it collects what each leaves behind
-    if (has_ended && first == nullptr && is_needed(each)) first = &each;
+    if (has_ended && first == nullptr && !each.is_replaced && is_needed(each)) first = &each;
   }
   return first;
 }

@@ -35,6 +35,7 @@ struct ControllerProcess {
   Program program;                ///< that it runs
   unsigned restarts = 0;          ///< how often it was started again
   std::string director = {};      ///< as Launch::director
+  bool is_replaced = false;       ///< it has ended, and clients of others have its robots
 };
 
 /// A script that runs now.
@@ -108,6 +109,11 @@ class Controllers {
   /// @returns the new process
   /// @throws std::runtime_error, see start_all
   const ControllerProcess& restart(const ControllerProcess& ended, const std::string& token);
+
+  /// first_ended() returns this process no more: others have its robots.
+  void replace(const ControllerProcess& ended) {
+    processes_[static_cast<std::size_t>(&ended - processes_.data())].is_replaced = true;
+  }
 
   /// The first process, in the order of their start, that has ended and for which `is_needed`.
   const ControllerProcess* first_ended(

@@ -80,6 +80,14 @@ std::string by_controller(const supervision::World& world, const std::vector<std
   return text;
 }
 
+/// Whether all robots of a process that has ended are driven by others, who took them over.
+bool is_replaced(const processes::ControllerProcess& ended,
+                 const std::vector<network::RobotStatus>& status) {
+  return !ended.robots.empty() && std::ranges::all_of(ended.robots, [&](std::size_t robot) {
+    return status[robot].membership == Membership::held;
+  });
+}
+
 }  // namespace
 
 Watch::Watch(const Settings& settings, const supervision::World& world, network::Server& server,
@@ -234,6 +242,12 @@ std::optional<Ending> Watch::lost_controller() {
   }
   if (!missed_since_) missed_since_ = clock::now();
   if (clock::now() - *missed_since_ < last_messages) return std::nullopt;
+  if (ended && is_replaced(*ended, status)) {
+    controllers_.replace(*ended);
+    missed_since_.reset();
+    child_ended_ = true;  // another may have ended with it
+    return std::nullopt;
+  }
   if (ended) {
     vanished_ = describe_end(*ended, gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick",
                              world_.simulation.layout());

@@ -88,7 +88,7 @@ Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access&
   }
   if (auto refusal = check_policy(barrier, hello, robots)) return std::move(*refusal);
   if (!session->director) {
-    if (auto refusal = check_stop(barrier, hello, access, robots)) return std::move(*refusal);
+    if (auto refusal = check_power(barrier, hello, access, robots)) return std::move(*refusal);
   } else {
     if (auto refusal = check_subscription(hello)) return std::move(*refusal);
     if (auto refusal = check_fixed(barrier, *session->director, hello)) return std::move(*refusal);

@@ -39,6 +39,10 @@ class Deadlines {
 
   std::size_t controller(std::size_t robot) const { return robots_[robot].controller; }
   const scene::DeadlinePolicy& policy(std::size_t robot) const { return robots_[robot].policy; }
+  /// Of the robot's controller, whatever its session wishes.
+  const scene::DeadlinePolicy& usual_policy(std::size_t robot) const {
+    return defaults_[robots_[robot].controller].policy;
+  }
   /// @param policy  none: that of the robot's controller
   void set_policy(std::size_t robot, const std::optional<scene::DeadlinePolicy>& policy);
   /// The policy of the robot's controller, if it is fixed and another than this one.

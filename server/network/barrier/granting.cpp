@@ -10,6 +10,7 @@
 
 namespace ziggurat::network {
 
+using scene::DeadlineAction;
 using wire::ErrorCode;
 
 namespace {
@@ -86,6 +87,12 @@ std::optional<wire::Refusal> check_robot(Barrier& barrier, std::size_t robot, bo
   return refuse_taken(id, *claimant,
                       fmt::format("Robot '{}' is kept for {}, which is lost, for {:.1f} s more.",
                                   id, claimant->client, rest.count()));
+}
+
+/// Whether the world may wait longer by a policy than by another.
+bool waits_longer(const scene::DeadlinePolicy& policy, const scene::DeadlinePolicy& than) {
+  if (than.action == DeadlineAction::wait) return false;
+  return policy.action == DeadlineAction::wait || policy.wall_deadline_ms > than.wall_deadline_ms;
 }
 
 }  // namespace
@@ -167,16 +174,27 @@ std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::He
   return std::nullopt;
 }
 
-std::optional<wire::Refusal> check_stop(const Barrier& barrier, const wire::Hello& hello,
-                                        const Access& access, std::span<const std::size_t> robots) {
-  if (!hello.deadline || hello.deadline->action != scene::DeadlineAction::stop) return std::nullopt;
-  const bool have_it = std::ranges::all_of(robots, [&](std::size_t robot) {
-    return barrier.deadlines.policy(robot).action == scene::DeadlineAction::stop;
-  });
-  if (access.roles.supervisor || have_it) return std::nullopt;
-  return make_refusal(ErrorCode::forbidden, "deadline_policy.action",
-                      "The policy STOP can end the run, which the key of this connection may not: it lacks "
-                      "the role `supervisor`.");
+std::optional<wire::Refusal> check_power(const Barrier& barrier, const wire::Hello& hello,
+                                         const Access& access, std::span<const std::size_t> robots) {
+  if (!hello.deadline || access.roles.supervisor) return std::nullopt;
+  const scene::DeadlinePolicy& wish = *hello.deadline;
+  for (const std::size_t robot : robots) {
+    const scene::DeadlinePolicy& policy = barrier.deadlines.policy(robot);
+    if (wish.action == DeadlineAction::stop && policy.action != DeadlineAction::stop) {
+      return make_refusal(
+          ErrorCode::forbidden, "deadline_policy.action",
+          "The policy STOP can end the run, which the key of this connection may not: it lacks "
+          "the role `supervisor`.");
+    }
+    const scene::DeadlinePolicy& usual = barrier.deadlines.usual_policy(robot);
+    if (wish == policy || !waits_longer(wish, usual)) continue;
+    return make_refusal(
+        ErrorCode::forbidden, "deadline_policy",
+        fmt::format("The world waits for robot '{}' by {}, and a key without the role `supervisor` may not "
+                    "let it wait longer.",
+                    barrier.run->layout.robots[robot].id, to_text(usual)));
+  }
+  return std::nullopt;
 }
 
 std::optional<wire::Refusal> check_takeover(const Barrier& barrier, const wire::Hello& hello,
@@ -200,7 +218,7 @@ std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barr
   if (auto refusal = check_takeover(barrier, hello, access)) return std::move(*refusal);
   const auto& robots = std::get<std::vector<std::size_t>>(allowed);
   if (auto refusal = check_policy(barrier, hello, robots)) return std::move(*refusal);
-  if (auto refusal = check_stop(barrier, hello, access, robots)) return std::move(*refusal);
+  if (auto refusal = check_power(barrier, hello, access, robots)) return std::move(*refusal);
   for (const std::size_t robot : robots) {
     if (auto refusal = check_robot(barrier, robot, hello.takeover)) return std::move(*refusal);
   }

@@ -28,9 +28,10 @@ std::optional<wire::Refusal> check_places(const Barrier& barrier, wire::Role rol
 /// Because its key may take nothing over, and it asks for that.
 std::optional<wire::Refusal> check_takeover(const Barrier& barrier, const wire::Hello& hello,
                                             const Access& access);
-/// Because it asks for the policy STOP, and its key may not end the run (K11).
+/// Because it asks for the policy STOP, or for one by which the world may wait longer than it would, and its
+/// key may neither end nor stop the run (K11).
 /// @param robots  that it is to hold for
-std::optional<wire::Refusal> check_stop(const Barrier& barrier, const wire::Hello& hello,
+std::optional<wire::Refusal> check_power(const Barrier& barrier, const wire::Hello& hello,
                                         const Access& access, std::span<const std::size_t> robots);
 /// Because of the deadline policy that it asks for.
 /// @param robots  that it is to hold for

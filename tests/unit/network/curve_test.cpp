@@ -292,6 +292,36 @@ TEST_F(Protected, K11_AKeyOfAControllerCannotEndTheRunByItsDeadline) {
   });
 }
 
+TEST_F(Protected, K11_AKeyOfAControllerCannotLetTheWorldWaitLonger) {
+  const SmallRun small(2);
+  config.curve->clients[0].roles = {.controller = true};
+  config.curve->clients[1].roles = {.controller = true, .supervisor = true};
+  config.deadlines = {{{scene::DeadlineAction::hold, 1000, 0}, false},
+                      {{scene::DeadlineAction::hold, 1000, 0}, false}};
+  Server server(config, small.run());
+  meanwhile(server, [&] {
+    Options from = options(server, "friend");
+    from.connect_timeout = milliseconds{20'000};
+    from.robots = {"robot0"};
+    from.deadline = Deadline{};
+    from.deadline->action = Deadline::Action::wait;
+    const std::string told = complaint_of(from);
+    EXPECT_NE(told.find("FORBIDDEN"), std::string::npos) << told;
+    EXPECT_NE(told.find("robot 'robot0' by hold:1000"), std::string::npos) << told;
+    from.deadline->action = Deadline::Action::drop;
+    from.deadline->after = milliseconds{1001};
+    EXPECT_NE(complaint_of(from).find("FORBIDDEN"), std::string::npos);
+    from.deadline->after = milliseconds{1000};
+    EXPECT_EQ(complaint_of(from), "");
+    Options other = options(server, "viewer");
+    other.connect_timeout = milliseconds{20'000};
+    other.robots = {"robot1"};
+    other.deadline = Deadline{};
+    other.deadline->action = Deadline::Action::wait;
+    EXPECT_EQ(complaint_of(other), "") << "a supervisor may pause the world, too";
+  });
+}
+
 TEST_F(Protected, K10_AKeyTakesOverOnlyIfItMay) {
   const SmallRun small(1);
   config.curve->clients[0].scope.may_take_over = false;

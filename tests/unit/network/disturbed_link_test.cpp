@@ -225,6 +225,19 @@ TEST(Delays, DoNotAffectOtherControllers) {
   EXPECT_EQ(peers.link->next_event(), never);
 }
 
+/// So that the newest wins where a client does not read (W8), and it is not disconnected.
+TEST(Delays, AnObservationIsSentAsOneNowOrLater) {
+  for (const Injection& injection : {Injection{both_ways, {}}, Injection{{}, both_ways}}) {
+    const SmallRun small(1);
+    Peers peers(small, config_with(injection));
+    peers.join("a", "robot0");
+    peers.say("a", Peers::heartbeat(1));
+    peers.publish(0);
+    peers.pass(5ms);
+    EXPECT_EQ(peers.observations_sent, 1);
+  }
+}
+
 TEST(Delays, AConnectionThatBreaksMeanwhileIsFoundOut) {
   const SmallRun small(1);
   Peers peers(small, config_with({both_ways, {}}));

@@ -172,7 +172,10 @@ class Peers {
     for (const scene::Controller& controller : run.controllers) add(controller.id, false);
     for (const scene::Director& director : run.directors) add(director.id, true);
     link.emplace(std::move(targets), run.seed, 2 * config_.max_message_bytes,
-                 [this](const auto& peer, auto bytes) { return deliver(peer, bytes); });
+                 [this](const auto& peer, auto bytes, bool is_observation) {
+                   if (is_observation) ++observations_sent;
+                   return deliver(peer, bytes);
+                 });
   }
 
   const SmallRun& small_;
@@ -183,6 +186,7 @@ class Peers {
   std::set<std::string> told_otherwise;  ///< peers that were told something in the other form
   std::map<std::string, std::vector<v1::ServerMessage>> inboxes;
   std::set<std::string> unreachable, congested;
+  int observations_sent = 0;  ///< by the link, as such
   Time now;
   world::Commands commands;
   world::Observations observations;  ///< of the published tick
