@@ -36,6 +36,13 @@ std::string check(const Parameter& wish) {
   return fmt::format("The parameter \"{}\" can't be set.", wish.name.substr(0, 64));
 }
 
+/// The clock comes before the messages of its time, to each viewer: one that has none takes the first for a jump, and
+/// may forget what was shown before. Some take a step away from 0 for a jump, too.
+void tell_time(std::int64_t time_ns, Viewer& viewer, std::vector<Item>& to) {
+  if (std::exchange(viewer.time_ns, time_ns) == time_ns) return;
+  to.push_back(time(std::max<std::int64_t>(time_ns, 1)));
+}
+
 }  // namespace
 
 Hub::Hub(Introduction introduction, std::vector<Parameter> parameters, Desk& desk)
@@ -108,6 +115,7 @@ void Hub::handle(Viewer& viewer, const Subscribe& message) {
     viewer.subscriptions.emplace(wanted, id);
     const auto newest = newest_.find(wanted);
     if (newest != newest_.end()) {
+      tell_time(time_ns_, viewer, known);
       known.push_back(view::message(id, newest->second, keep_of(*found)));
     }
     if (++subscribers_[wanted] == 1) fresh.push_back(wanted);
@@ -247,10 +255,10 @@ void Hub::show(std::int64_t time_ns, std::span<const channels::Message> messages
       newest_.insert_or_assign(each.channel, each);
     }
   }
-  const bool is_later = std::exchange(time_ns_, time_ns) != time_ns;
+  time_ns_ = time_ns;
   for (auto& [id, viewer] : viewers_) {
     std::vector<Item> items;
-    if (is_later && !viewer->channels.empty()) items.push_back(time(time_ns));
+    if (!viewer->channels.empty()) tell_time(time_ns, *viewer, items);
     for (const channels::Message& each : messages) {
       const auto subscription = viewer->subscriptions.find(each.channel);
       const channels::Channel* found = channel(each.channel);

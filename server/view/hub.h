@@ -25,6 +25,7 @@ struct Viewer {
   std::unordered_map<std::uint32_t, std::uint32_t> channels;  ///< subscription -> channel
   std::unordered_map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel -> subscription
   bool wants_parameters = false, wants_graph = false;
+  std::int64_t time_ns = -1;  ///< the clock that it was told; -1: none yet
   unsigned faults = 0;      ///< messages in a row that are none of the protocol
   unsigned unanswered = 0;  ///< calls
   bool is_over = false;     ///< to be disconnected: it sends nonsense, or does not read

@@ -385,6 +385,7 @@ Item warning(const std::string& text) {
 
 Item time(std::int64_t time_ns) {
   Item item;
+  item.keep = Keep::newest;
   item.head = '\x02';
   put(static_cast<std::uint64_t>(time_ns), item.head);
   return item;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -135,6 +137,66 @@ TEST(Hub, ChannelsComeAndGo) {
 std::string call_of(std::uint32_t service, const std::string& payload) {
   return std::string("\x02") + static_cast<char>(service) + std::string(3, '\0') + std::string(4, '\7') +
          std::string("\4\0\0\0json", 8) + payload;
+}
+
+/// Clocks as their times [ns], other messages as -1.
+std::vector<std::int64_t> clocks(Viewer& viewer) {
+  std::vector<std::int64_t> all;
+  while (auto item = viewer.output.next()) {
+    std::int64_t time_ns = -1;
+    if (item->head.starts_with('\x02')) std::memcpy(&time_ns, item->head.data() + 1, sizeof time_ns);
+    all.push_back(time_ns);
+  }
+  return all;
+}
+
+TEST(Hub, EachViewerIsToldTheClockBeforeItsFirstMessage) {
+  Bench bench;
+  Viewer& first = bench.hub.add(false);
+  bench.say(first, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})");
+  Viewer& second = bench.hub.add(false);
+  bench.sent(first);
+  bench.sent(second);
+  bench.hub.show(5, std::vector{message_of(1, "world")});
+  EXPECT_EQ(clocks(first), (std::vector<std::int64_t>{5, -1}));
+  EXPECT_TRUE(clocks(second).empty()) << "it has asked for nothing";
+  bench.say(second, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
+  EXPECT_EQ(clocks(second), (std::vector<std::int64_t>{5, -1})) << "with the newest message";
+  bench.hub.show(5, std::vector{message_of(1, "world"), message_of(2, "poses")});
+  EXPECT_EQ(clocks(first), std::vector<std::int64_t>{-1});
+  EXPECT_EQ(clocks(second), (std::vector<std::int64_t>{-1, -1})) << "once for a time";
+}
+
+TEST(Hub, AViewerThatComesWithinATimeIsToldTheClock) {
+  Bench bench;
+  bench.hub.show(5, std::vector{message_of(2, "poses")});
+  Viewer& viewer = bench.hub.add(false);
+  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
+  bench.sent(viewer);
+  bench.hub.show(5, std::vector{message_of(2, "poses")});
+  EXPECT_EQ(clocks(viewer), (std::vector<std::int64_t>{5, -1}));
+}
+
+TEST(Hub, TheClockStartsAfterZero) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(false);
+  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
+  bench.sent(viewer);
+  bench.hub.show(0, std::vector{message_of(2, "poses")});
+  EXPECT_EQ(clocks(viewer), (std::vector<std::int64_t>{1, -1}));
+}
+
+TEST(Hub, TheClockStaysWithWhatIsKeptOfADroppedTick) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(false);
+  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
+  bench.sent(viewer);
+  bench.hub.show(5, std::vector{message_of(1, "world")});
+  for (int i = 0; i < 10; ++i) bench.hub.show(5, std::vector{message_of(2, "poses")});
+  const auto all = clocks(viewer);
+  ASSERT_FALSE(all.empty());
+  EXPECT_EQ(all.front(), 5);
+  EXPECT_EQ(std::ranges::count(all, 5), 1);
 }
 
 TEST(Hub, ALargeCallWaitsForTheAnswersOfOthers) {
