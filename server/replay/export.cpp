@@ -164,7 +164,7 @@ std::uint64_t export_jsonl(const RecordingFile& file,
       throw RecordingError(fmt::format("{}: a message of {} is damaged", file.path(), topic.name));
     }
     output.buffer().append(fmt::format("{{\"topic\":{},\"time_s\":{},\"message\":{}}}\n",
-                                       nlohmann::json(topic.name).dump(),
+                                       nlohmann::json(topic.name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
                                        static_cast<double>(message->log_time) / 1e9,
                                        recording::to_json(*content)));
     output.written();

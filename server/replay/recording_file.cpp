@@ -41,10 +41,13 @@ RecordingFile::RecordingFile(std::string path, mcap::Source source) : path_(std:
     auto start = messages({"/run"});
     const auto message = start ? start->next() : std::nullopt;
     if (!message) {
-      throw RecordingError(fmt::format(
-          "{}: an MCAP file without the topic /run; only what 'ziggurat run --record' writes can "
-          "be repeated",
-          path_));
+      const std::string lacks = shortcoming();
+      throw RecordingError(
+          lacks.empty()
+              ? fmt::format("{}: an MCAP file without the topic /run; only what 'ziggurat run --record' writes can "
+                            "be repeated",
+                            path_)
+              : fmt::format("{}: {}; it has no message of /run, with which a recording begins", path_, lacks));
     }
     if (!run_.ParseFromArray(message->data.data(), static_cast<int>(message->data.size()))) {
       throw RecordingError(fmt::format("{}: its message of /run is damaged", path_));

@@ -106,11 +106,19 @@ void Replay::apply(const v1::Act& act) {
   }
 }
 
-std::size_t Replay::entity_named(const std::string& id) const {
+/// Ids are used again: an entity that is in the world is the last one of its id.
+std::optional<std::size_t> Replay::find(const std::string& id) {
   const auto& entities = world_.simulation.layout().entities;
-  for (std::size_t i = 0; i < entities.size(); ++i) {
-    if (entities[i].id == id && !world_.simulation.state().is_absent(i)) return i;
+  for (; names_.entities < entities.size(); ++names_.entities) {
+    names_.last[entities[names_.entities].id] = names_.entities;
   }
+  const auto found = names_.last.find(id);
+  if (found == names_.last.end() || world_.simulation.state().is_absent(found->second)) return std::nullopt;
+  return found->second;
+}
+
+std::size_t Replay::entity_named(const std::string& id) {
+  if (const auto entity = find(id)) return *entity;
   fail(fmt::format("there is no entity '{}'", id));
 }
 
@@ -140,12 +148,7 @@ void Replay::remove(const std::string& id) {
 
 void Replay::spawn(const std::string& xml) {
   const auto& entities = world_.simulation.layout().entities;
-  const auto is_taken = [&](const std::string& id) {
-    for (std::size_t i = 0; i < entities.size(); ++i) {
-      if (entities[i].id == id && !world_.simulation.state().is_absent(i)) return true;
-    }
-    return false;
-  };
+  const auto is_taken = [&](const std::string& id) { return find(id).has_value(); };
   scene::Addition addition =
       world_.additions.read(xml, world_.scene, most_spawned_bytes, is_taken, open_);
   try {
@@ -171,6 +174,7 @@ void Replay::reset(std::uint64_t seed) {
     fail(fmt::format("the world cannot be reset: {}", error.what()));
   }
   world_.seed = seed;
+  names_ = {};
   ++changes_;
 }
 
@@ -219,6 +223,7 @@ void Replay::restore_to(const simulation::Snapshot& snapshot) {
     world_.simulation.restore(world_.scene, snapshot);
   }
   world_.seed = snapshot.seed;
+  names_ = {};
   ++changes_;
 }
 

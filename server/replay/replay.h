@@ -11,7 +11,9 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -100,7 +102,8 @@ class Replay {
   void snapshot(const std::string& name);
   void restore(const v1::Act_Restore& restore);
   void restore_to(const simulation::Snapshot& snapshot);
-  std::size_t entity_named(const std::string& id) const;
+  std::optional<std::size_t> find(const std::string& id);
+  std::size_t entity_named(const std::string& id);
   [[noreturn]] void fail(const std::string& what) const;
 
   World world_;
@@ -117,6 +120,11 @@ class Replay {
   std::size_t common_robots_ = 0;
   std::uint64_t epoch_ = 0, tick_ = 0;  // of the present state
   bool has_commands_ = false, acted_ = false;
+  struct Names {
+    std::unordered_map<std::string, std::size_t> last;  ///< by id: the last entity that has it
+    std::size_t entities = 0;                           ///< that are in it
+  };
+  Names names_;  // of this world
 };
 
 }  // namespace ziggurat::replay

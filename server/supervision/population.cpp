@@ -173,6 +173,7 @@ std::optional<wire::Fault> Population::spawn(const std::string& xml) {
   for (const scene::Problem& notice : candidate.addition.problems) console_.problem(notice);
   callers_.tell(candidate.act);
   ++spawned_;
+  sizes_[xml] = candidate.addition.size;
   size_left_ -= candidate.addition.size;
   const std::size_t robots = world_.simulation.layout().robots.size();
   if (entity.controller) add_controllers(robots - 1, std::array{candidate.script.path});
@@ -218,15 +219,26 @@ std::optional<wire::Fault> Population::remove(const std::string& id) {
   return std::nullopt;
 }
 
+/// Of an element that was spawned, its model written out [bytes].
+std::size_t Population::size_of(const std::string& xml) const {
+  const auto is_free = [](const std::string&) { return false; };  // it is what is there
+  const auto read = world_.additions.read(xml, world_.scene, settings_.max_size, is_free, opener(allowed_, world_.path));
+  return std::max(read.size, xml.size());
+}
+
 /// Processes of robots that are gone end by themselves; robots that are back are free.
 void Population::restart(std::size_t robots) {
   const simulation::Simulation& simulation = world_.simulation;
   spawned_ = 0;
   size_left_ = settings_.max_size;
+  const auto known = std::exchange(sizes_, {});
   for (const simulation::Act& act : simulation.history().acts) {
     if (act.kind != simulation::Act::Kind::spawn) continue;
     ++spawned_;
-    size_left_ -= std::min(size_left_, act.xml.size());
+    const auto found = known.find(act.xml);
+    const std::size_t size = found != known.end() ? found->second : size_of(act.xml);
+    sizes_[act.xml] = size;
+    size_left_ -= std::min(size_left_, size);
   }
   const auto& all = simulation.layout().robots;
   controllers_.forget_robots(robots);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -68,6 +69,7 @@ class Population {
   const processes::AllowedFiles& allowed() const { return allowed_; }
 
  private:
+  std::size_t size_of(const std::string& xml) const;
   void add_controllers(std::size_t first, std::span<const std::string> scripts);
 
   const Settings settings_;
@@ -79,6 +81,7 @@ class Population {
   reports::Console& console_;
   std::size_t spawned_ = 0;  ///< entities, since the start or the last reset
   std::size_t size_left_;    ///< for more entities [bytes]
+  std::unordered_map<std::string, std::size_t> sizes_;  ///< of the elements spawned [bytes]
 };
 
 }  // namespace ziggurat::supervision

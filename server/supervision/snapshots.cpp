@@ -142,7 +142,7 @@ std::variant<FoundSnapshot, wire::Fault> Snapshots::find(const std::string& name
     return FoundSnapshot{std::move(snapshot), std::move(bytes)};
   } catch (const std::exception& exception) {
     return make_fault(ErrorCode::bad_value, "restore.name",
-                      std::string(exception.what()).substr(0, 1024));
+                      fmt::format("'{}': {}", path_of(name).filename().string(), exception.what()).substr(0, 1024));
   }
 }
 

@@ -244,6 +244,22 @@ class Spawn(SceneTest):
         self.ctl("move", "box1", "1e6,0,0")
         self.end(process)
 
+    def test_models_of_spawned_entities_count_after_a_restore_too(self):
+        self.change("<arena", f'''<models><prototype id="large">
+          <links ref="l"><link id="l" geometry="box" size="0.1,0.1,0.1{"0" * 50_000}" mass="1"/></links></prototype></models><arena''', 1)
+        process = self.begin_without_controllers("--max-scene-size", "120K")
+        large = '<prototype id="{}" model="large"><body position="{},3,0"/></prototype>'
+        self.spawn(large.format("a", 0))
+        self.spawn(large.format("b", 1))
+        self.assertIn("larger than", self.spawn(large.format("c", 2), code=1))
+        self.ctl("snapshot", "full")
+        self.ctl("step", 1)
+        self.ctl("restore", "full")
+        self.assertIn("larger than", self.spawn(large.format("c", 2), code=1))
+        self.ctl("reset")
+        self.spawn(large.format("c", 2))
+        self.end(process)
+
     def test_notices_about_a_spawned_entity_are_printed_by_the_server(self):
         process = self.begin_without_controllers("--lenient")
         self.spawn(BOX.format("crate", "0.05,0.08,0.2").replace("<box ", '<box flavour="oak" '))

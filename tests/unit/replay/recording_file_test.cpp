@@ -29,16 +29,17 @@ class Disk : public ::testing::Test {
  protected:
   std::string path(const std::string& name) const { return folder_ / name; }
 
-  /// @param size  of the file's bytes that are written; -1: all
-  std::string write(const Recording& recording, long size = -1) const {
+  /// @param size   of the file's bytes that are written; -1: all
+  /// @param topic  of the inputs
+  std::string write(const Recording& recording, long size = -1, const char* topic = "/inputs") const {
     std::string bytes;
     mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"},
                         mcap::Compression::zstd);
-    const auto channel = [&](const char* topic, const char* type) {
-      return writer.add_channel(writer.add_schema(type, "protobuf", "x"), topic, "protobuf");
+    const auto channel = [&](const char* name, const char* type) {
+      return writer.add_channel(writer.add_schema(type, "protobuf", "x"), name, "protobuf");
     };
     const auto run = channel("/run", "ziggurat.v1.RunStart");
-    const auto inputs = channel("/inputs", "ziggurat.v1.Inputs");
+    const auto inputs = channel(topic, "ziggurat.v1.Inputs");
     const auto state = channel("/state", "ziggurat.v1.ExactState");
     const EmbeddedFiles files = testing::files();
     for (const char* name : {"scenes/small.argos", "scenes/models/arm.xml"}) {
@@ -104,6 +105,19 @@ TEST_F(Disk, WhatAKilledRunLeavesIsRepeated) {
   EXPECT_EQ(same_states(cut), 16u);
 }
 
+TEST_F(Disk, OneThatIsCutBeforeItsFirstMessageSaysSo) {
+  const std::string path = write(eventful_run());
+  const RecordingFile whole(path);
+  const auto first = static_cast<long>(whole.reader().contents().chunks.front().offset);
+  write(eventful_run(), first + 5);
+  try {
+    const RecordingFile cut(path);
+    FAIL();
+  } catch (const RecordingError& error) {
+    EXPECT_NE(std::string_view(error.what()).find("its end is missing"), std::string_view::npos) << error.what();
+  }
+}
+
 TEST_F(Disk, ADamagedPlaceIsNamed) {
   const std::string path = write(eventful_run());
   const std::uint64_t place = RecordingFile(path).reader().contents().chunks[1].offset + 60;
@@ -164,6 +178,16 @@ TEST_F(Disk, MessagesBecomeLines) {
   EXPECT_TRUE(first.starts_with(R"({"topic":"/inputs","time_s":0,"message":{"epoch":"0","tick":"0")")) << first;
   EXPECT_THROW(export_jsonl(file, [](const auto&) { return false; }, path("out.jsonl")), RecordingError);
   EXPECT_THROW(export_csv(file, path("out.csv")), RecordingError) << "it has no /world";
+}
+
+TEST_F(Disk, ATopicThatIsNoUtf8IsExportedAsOneThatIs) {
+  const RecordingFile file(write(eventful_run(), -1, "/inputs\xff"));
+  const auto is_first = [](const std::string& topic) { return topic.starts_with("/inputs"); };
+  EXPECT_GT(export_jsonl(file, is_first, path("out.jsonl")), 0u);
+  std::ifstream lines(path("out.jsonl"));
+  std::string first;
+  std::getline(lines, first);
+  EXPECT_TRUE(first.starts_with("{\"topic\":\"/inputs\xef\xbf\xbd\",")) << first;
 }
 
 }  // namespace

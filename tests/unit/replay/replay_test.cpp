@@ -40,6 +40,25 @@ TEST(Replay, RepeatsCommandsMovesSpawnsRemovalsAndResets) {
   EXPECT_EQ(same_states(recording), recording.inputs.size());
 }
 
+TEST(Replay, FindsTheEntityOfANameThatIsUsedAgain) {
+  const std::string box = R"(<box id="b" size=".1,.1,.1" movable="true" mass="1"><body position="-2,0,1"/></box>)";
+  testing::Recorder run;
+  run.spawn(box);
+  run.snapshot("one");
+  run.remove("b");
+  run.spawn(box);
+  run.step();
+  run.remove("b");
+  run.step();
+  run.restore("one");
+  run.remove("b");
+  run.spawn(box);
+  run.step();
+  EXPECT_EQ(same_states(run.recording), run.recording.inputs.size());
+  run.recording.inputs.front().add_acts()->mutable_remove()->set_entity("c");
+  EXPECT_NE(error_of(run.recording).find("there is no entity 'c'"), std::string::npos);
+}
+
 TEST(Replay, RepeatsSnapshotsAndRestores) {
   testing::Recorder run;
   run.simulation().commands().joint_targets.at(0) = 1;

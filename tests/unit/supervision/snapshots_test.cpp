@@ -87,7 +87,10 @@ TEST_F(OfSnapshots, ADamagedFileIsRefused) {
   const fs::path file = folder / "here.snapshot";
   ASSERT_TRUE(has(Snapshots(folder, "build"), "here"));
   fs::resize_file(file, fs::file_size(file) - 1);
-  EXPECT_FALSE(has(Snapshots(folder, "build"), "here"));
+  const auto found = Snapshots(folder, "build").find("here", *world, no_files());
+  ASSERT_TRUE(std::holds_alternative<wire::Fault>(found));
+  EXPECT_EQ(std::get<wire::Fault>(found).message,
+            "'here.snapshot': The snapshot is damaged: its checksum is wrong.");
   fs::resize_file(file, 0);
   EXPECT_FALSE(has(Snapshots(folder, "build"), "here"));
   fs::remove(file);
