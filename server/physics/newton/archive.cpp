@@ -15,8 +15,6 @@ void Collider::archive(math::Archive& archive) {
   archive("velocity", velocity);
   archive("angular_velocity", angular_velocity);
   archive("reach", reach);
-  archive("low", low);
-  archive("high", high);
 }
 
 void Colliders::archive(math::Archive& archive) {

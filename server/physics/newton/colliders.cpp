@@ -28,10 +28,9 @@ bool inside(const btVector3& outer_low, const btVector3& outer_high, const btVec
          outer_high.x() >= high.x() && outer_high.y() >= high.y() && outer_high.z() >= high.z();
 }
 
-bool boxes_meet(const btVector3& low, const btVector3& high, const btVector3& other_low,
-                const btVector3& other_high) {
-  return low.x() <= other_high.x() && other_low.x() <= high.x() && low.y() <= other_high.y() &&
-         other_low.y() <= high.y() && low.z() <= other_high.z() && other_low.z() <= high.z();
+bool boxes_meet(const Bounds& a, const Bounds& b) {
+  return a.low.x() <= b.high.x() && b.low.x() <= a.high.x() && a.low.y() <= b.high.y() &&
+         b.low.y() <= a.high.y() && a.low.z() <= b.high.z() && b.low.z() <= a.high.z();
 }
 
 std::size_t index_of(const btBroadphaseProxy& proxy) {
@@ -49,7 +48,7 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   collider.shape = contact_shape(link.geometry);
   collider.entity = body.entity;
   collider.link = i;
-  collider.part = placed.part;
+  collider.part = static_cast<std::uint32_t>(placed.part);
   collider.in_part = to_bullet(placed.in_part);
   collider.centred = collider.in_part == btTransform::getIdentity();
   collider.moves = body.parts[placed.part].moves;
@@ -137,20 +136,21 @@ void Colliders::add(const Body& body, const scene::Entity& entity, const dynamic
   }
 }
 
+Bounds Collider::bounds() const {
+  btVector3 extent = pose.getBasis().absolute() * half;  // no larger than a ball needs
+  extent.setMin(btVector3(radius, radius, radius));
+  extent += btVector3(reach, reach, reach);
+  return {pose.getOrigin() - extent, pose.getOrigin() + extent};
+}
+
 /// Takes the boxes of its colliders, where they are.
 void Colliders::enclose(ColliderGroup& group) {
   group.low.setValue(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
   group.high = -group.low;
   for (std::size_t i = group.first; i < group.first + group.count; ++i) {
-    Collider& collider = all[i];
-    const btMatrix3x3 turned = collider.pose.getBasis().absolute();
-    btVector3 half = turned * collider.half;  // no larger than a ball needs
-    half.setMin(btVector3(collider.radius, collider.radius, collider.radius));
-    half += btVector3(collider.reach, collider.reach, collider.reach);
-    collider.low = collider.pose.getOrigin() - half;
-    collider.high = collider.pose.getOrigin() + half;
-    group.low.setMin(collider.low);
-    group.high.setMax(collider.high);
+    const Bounds bounds = all[i].bounds();
+    group.low.setMin(bounds.low);
+    group.high.setMax(bounds.high);
   }
 }
 
@@ -291,12 +291,13 @@ double Colliders::follow(ColliderGroup& group, const dynamics::System& system, d
 
 void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b,
                           std::vector<Near>& out) const {
-  if (!boxes_meet(a.low, a.high, b.low, b.high)) return;
+  const Bounds all_of_b{b.low, b.high};
+  if (!boxes_meet({a.low, a.high}, all_of_b)) return;
   for (std::size_t i = a.first; i < a.first + a.count; ++i) {
-    const Collider& one = all[i];
-    if (!boxes_meet(one.low, one.high, b.low, b.high)) continue;
+    const Bounds one = all[i].bounds();
+    if (!boxes_meet(one, all_of_b)) continue;
     for (std::size_t j = b.first; j < b.first + b.count; ++j) {
-      if (!boxes_meet(one.low, one.high, all[j].low, all[j].high)) continue;
+      if (!boxes_meet(one, all[j].bounds())) continue;
       out.push_back({std::min(i, j), std::max(i, j)});
     }
     check_near_pairs(out.size());

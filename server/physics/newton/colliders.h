@@ -4,6 +4,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,29 +18,37 @@
 
 namespace ziggurat::physics {
 
-struct Collider {
+/// Along the world's axes.
+struct Bounds {
+  btVector3 low{0, 0, 0}, high{0, 0, 0};  ///< corners [m]
+};
+
+/// What each substep reads and writes comes first, and fills four lines of the cache.
+struct alignas(64) Collider {
   static constexpr std::size_t floor = static_cast<std::size_t>(-1);
-  contact::Shape shape;
-  std::size_t entity = floor;                        ///< its number, and that of its tree
-  std::size_t link = 0;                              ///< into Body::links
-  std::size_t part = 0;                              ///< into Body::parts
-  btTransform in_part = btTransform::getIdentity();  ///< X_PS
-  bool centred = true;                               ///< in_part is the identity
-  bool moves = false;
-  bool present = false;   ///< otherwise removed; the floor is not, either
-  std::size_t group = 0;  ///< into the broad phase's groups
-  bool rolls = false;     ///< has wheels: does not rub on what is below or above it
-  scene::Surface surface;
-  btVector3 half{0, 0, 0};  ///< half extents of the box about it and its centre, in its axes [m]
-  double radius = 0;        ///< of the sphere about the shape's centre that holds it [m]
 
   // Of the coming substep:
   btTransform pose = btTransform::getIdentity();  ///< X_WS
   btVector3 velocity{0, 0, 0};                    ///< of the shape's centre [m/s]
   btVector3 angular_velocity{0, 0, 0};            ///< [rad/s]
   double reach = 0;                               ///< how far its surface may come [m]
-  btVector3 low{0, 0, 0}, high{0, 0, 0};          ///< corners of the box about it and its reach [m]
 
+  double radius = 0;           ///< of the sphere about the shape's centre that holds it [m]
+  btVector3 half{0, 0, 0};     ///< half extents of the box about it and its centre, in its axes [m]
+  std::size_t entity = floor;  ///< its number, and that of its tree
+  std::uint32_t part = 0;      ///< into Body::parts
+  bool centred = true;         ///< in_part is the identity
+  bool moves = false;
+  bool present = false;  ///< otherwise removed; the floor is not, either
+  bool rolls = false;    ///< has wheels: does not rub on what is below or above it
+
+  std::size_t group = 0;  ///< into the broad phase's groups
+  std::size_t link = 0;   ///< into Body::links
+  scene::Surface surface;
+  contact::Shape shape;
+  btTransform in_part = btTransform::getIdentity();  ///< X_PS
+
+  Bounds bounds() const;  ///< of it and its reach
   void archive(math::Archive& archive);
 };
 
