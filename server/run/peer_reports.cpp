@@ -95,6 +95,9 @@ void PeerReports::forget_spawned() {
   for (auto& [robot, failure] : failures_) {
     if (robot && (*robot >= robots.size() || robots[*robot].id != failure.robot)) robot.reset();
   }
+  std::size_t forgotten = 0;
+  std::erase_if(failures_, [&](const auto& failure) { return !failure.first && ++forgotten > most_kept; });
+  if (departures_.size() > most_kept) departures_.resize(most_kept);
 }
 
 bool PeerReports::has_failure(std::span<const std::size_t> robots) const {

@@ -26,6 +26,9 @@ using TellLine =
 
 class PeerReports {
  public:
+  /// Of each kind, over resets.
+  static constexpr std::size_t most_kept = 10'000;
+
   /// All must outlive this. @param tell  viewers and recordings
   PeerReports(const supervision::World& world, reports::Console& console, TellLine tell)
       : world_(world), console_(console), tell_(std::move(tell)) {}
@@ -40,7 +43,8 @@ class PeerReports {
   void print_log(std::uint64_t tick);
 
   /// The world was reset, or is that of a snapshot again: spawned robots are gone, and others may be at
-  /// their places.
+  /// their places. Of what is kept for the summary, 10 000 departures stay, and as many failures of robots that
+  /// are not there any more: a world may be reset without end.
   void forget_spawned();
 
   /// Whether the controller of one of these robots failed.

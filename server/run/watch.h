@@ -67,7 +67,10 @@ class Watch {
   void end_run(const wire::End& end);
 
   /// The world was reset.
-  void forget_spawned() { peers_.forget_spawned(); }
+  void forget_spawned() {
+    peers_.forget_spawned();
+    if (dropped_.size() > PeerReports::most_kept) dropped_.resize(PeerReports::most_kept);
+  }
 
   /// What controllers and other peers reported.
   const PeerReports& reported() const { return peers_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -21,12 +22,13 @@ void zero(const world::Layout& layout, std::size_t robot, world::Commands& comma
 
 void forget_radio_messages(const Roster& roster, world::RadioMessages& messages) {
   if (messages.entries.empty()) return;
+  const auto& pieces = roster.radios.stretches;  // ascending
   const auto is_own = [&](std::size_t radio) {
-    for (std::size_t i = 0; i < roster.radios.robots.size(); ++i) {
-      const Packing::Stretch& radios = roster.radios.robots[i];
-      if (radio >= radios.flat && radio < radios.flat + radios.count) return !roster.taken[i];
-    }
-    return false;
+    const auto after = std::ranges::upper_bound(pieces, radio, {}, &Packing::Stretch::flat);
+    if (after == pieces.begin()) return false;
+    const Packing::Stretch& piece = *std::prev(after);
+    if (radio >= piece.flat + piece.count) return false;
+    return !roster.taken[roster.radios.owner(piece.packed + radio - piece.flat)];
   };
   world::RadioMessages others;  // without the bytes of those that are forgotten
   for (const world::RadioMessages::Entry& entry : messages.entries) {

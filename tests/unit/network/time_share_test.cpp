@@ -52,7 +52,17 @@ TEST(TimeShare, WhatIsOwedIsBounded) {
   const auto now = std::chrono::steady_clock::now();
   share.charge(1h);
   EXPECT_FALSE(share.has_some(now));
-  EXPECT_TRUE(share.has_some(now + 500ms));
+  EXPECT_FALSE(share.has_some(now + 1900ms));
+  EXPECT_TRUE(share.has_some(now + 2100ms));
+}
+
+TEST(TimeShare, ATenthOfASecondIsOwedInFull) {
+  TimeShare share(0.05, 5ms);
+  const auto now = std::chrono::steady_clock::now();
+  share.charge(100ms);
+  EXPECT_FALSE(share.has_some(now));
+  EXPECT_FALSE(share.has_some(now + 1800ms));
+  EXPECT_TRUE(share.has_some(now + 2s));
 }
 
 }  // namespace

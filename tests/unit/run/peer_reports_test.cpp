@@ -57,6 +57,24 @@ TEST_F(Spawning, AFailureBeforeAResetIsNotThatOfALaterRobotAtItsPlace) {
   testing::internal::GetCapturedStderr();
 }
 
+TEST_F(Spawning, WhatIsKeptOfThemDoesNotGrowWithResets) {
+  testing::internal::CaptureStderr();
+  for (int i = 0; i < 3; ++i) {
+    network::Report report;
+    for (int k = 0; k < 6000; ++k) {
+      report.failures.push_back({0, "broken", 7});
+      report.departures.push_back({0, 7});
+    }
+    reports.take(std::move(report), 7);
+    world.reset(1);
+    reports.forget_spawned();
+    spawn("late");
+  }
+  EXPECT_EQ(reports.failures().size(), 10'000U);
+  EXPECT_EQ(reports.departures().size(), 10'000U);
+  testing::internal::GetCapturedStderr();
+}
+
 TEST_F(Spawning, AFailureIsNotThatOfARobotOfASnapshotAtItsPlace) {
   testing::internal::CaptureStderr();
   const std::vector<std::size_t> robots{0};

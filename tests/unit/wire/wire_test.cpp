@@ -5,12 +5,14 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <optional>
 
 #include "network/small_run.h"
 #include "wire/equipped_run.h"
 #include "wire/inbox.h"
 #include "wire/outbox.h"
 #include "wire/roster.h"
+#include "wire/zero.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -159,6 +161,26 @@ TEST(TickPath, DevicesAllocateNothingEither) {
   for (int i = 0; i < 100; ++i) tick();
   EXPECT_EQ(allocations, before);
   EXPECT_EQ(commands.radio_messages.entries.size(), 3U);
+}
+
+TEST(RadioMessages, ThoseOfARosterAreForgotten) {
+  const EquippedRun run;
+  const auto kept = [&](const std::vector<std::size_t>& robots, std::optional<std::size_t> taken = {}) {
+    Roster roster = make_roster(run.layout(), robots);
+    if (taken) roster.hand_over(*taken);
+    world::RadioMessages messages;
+    for (const std::uint8_t radio : {3, 0, 1, 2, 0}) messages.add(radio, std::vector<std::uint8_t>{radio});
+    forget_radio_messages(roster, messages);
+    std::string text;
+    for (const auto& entry : messages.entries) text += static_cast<char>('0' + messages.payload(entry)[0]);
+    EXPECT_EQ(messages.bytes.size(), text.size());
+    return text;
+  };
+  EXPECT_EQ(kept({0, 1}), "32");
+  EXPECT_EQ(kept({1, 2}), "010");
+  EXPECT_EQ(kept({1}), "30120");
+  EXPECT_EQ(kept({0, 1, 2}), "");
+  EXPECT_EQ(kept({0, 1, 2}, 0), "010") << "another session has the first robot";
 }
 
 TEST(Inbox, ASecondCommandIsNotMixedWithTheFirst) {
