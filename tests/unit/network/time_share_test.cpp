@@ -50,19 +50,21 @@ TEST(TimeShare, ItsTurnsAreNotShorterThanWorthwhile) {
 TEST(TimeShare, WhatIsOwedIsBounded) {
   TimeShare share(0.05, 5ms);
   const auto now = std::chrono::steady_clock::now();
+  EXPECT_TRUE(share.has_some(now));
   share.charge(1h);
   EXPECT_FALSE(share.has_some(now));
-  EXPECT_FALSE(share.has_some(now + 1900ms));
-  EXPECT_TRUE(share.has_some(now + 2100ms));
+  EXPECT_FALSE(share.has_some(now + 900ms));
+  EXPECT_TRUE(share.has_some(now + 1100ms));
 }
 
-TEST(TimeShare, ATenthOfASecondIsOwedInFull) {
+TEST(TimeShare, FiftyMillisecondsAreOwedInFull) {
   TimeShare share(0.05, 5ms);
   const auto now = std::chrono::steady_clock::now();
-  share.charge(100ms);
+  EXPECT_TRUE(share.has_some(now));
+  share.charge(50ms);
   EXPECT_FALSE(share.has_some(now));
-  EXPECT_FALSE(share.has_some(now + 1800ms));
-  EXPECT_TRUE(share.has_some(now + 2s));
+  EXPECT_FALSE(share.has_some(now + 800ms));
+  EXPECT_TRUE(share.has_some(now + 1s));
 }
 
 }  // namespace
