@@ -26,6 +26,17 @@ SLOW_TICK = """<argos-configuration>
     for i in range(20)))
 
 
+def guardian_of(process):
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            name, _, rest = (entry / "stat").read_text().partition("(")[2].rpartition(")")
+        except OSError:  # no process, or gone
+            continue
+        if name == "zig-guardian" and int(rest.split()[1]) == process.pid:
+            return int(entry.name)
+    raise AssertionError("there is no guardian")
+
+
 class Signals(SceneTest):
     def assert_ends_soon(self, process, number, code=INTERRUPTED):
         start = time.monotonic()
@@ -91,6 +102,34 @@ class Signals(SceneTest):
         self.assertEqual(outcome.code, CONTROLLER_FAILED, outcome.err)
         self.assertRegex(outcome.err, r"ziggurat-lua 2 of 2 .*ended with exit code 143 at tick \d+.*r1, r2")
 
+    def begin_endless(self):
+        process = self.start("run", self.scene, *ENDLESS, "--lua-processes", 2)
+        self.read_until(process.stdout, r"^\[20 r2\]")
+        return process
+
+    def test_a_killed_lua_process_of_several_ends_the_run(self):
+        process = self.begin_endless()
+        [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
+        os.kill(victim, signal.SIGKILL)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, CONTROLLER_FAILED, outcome.err)
+        self.assertRegex(outcome.err, r"ziggurat-lua 2 of 2 .*killed by signal 9.*r1, r2")
+
+    def test_a_stopped_lua_process_does_not_keep_it(self):
+        process = self.begin_endless()
+        [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
+        os.kill(victim, signal.SIGSTOP)
+        self.interrupt(process)
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+
+    def test_without_guardian_it_leaves_nothing(self):
+        for number in (signal.SIGKILL, signal.SIGSTOP):
+            process = self.begin_endless()
+            os.kill(guardian_of(process), number)
+            self.interrupt(process)
+            self.assertEqual(self.finish(process).code, INTERRUPTED)
+            self.assertEqual(list(self.runtime.iterdir()), [])
+
     def wait_until_blocked(self, pid):
         """Until the process has had no processor time for most of a second."""
         seen = [None] * 30
@@ -117,6 +156,16 @@ class Killed(SceneTest):
                       lambda left: not left, "end of the shell's children")
         self.wait_for(lambda: list(self.runtime.iterdir()), lambda left: not left,
                       "removal of the private folder")
+
+    def test_lua_processes_end_without_guardian_too(self):
+        process = self.start("run", self.scene, *ENDLESS, "--lua-processes", 2)
+        self.read_until(process.stdout, r"^\[20 r2\]")
+        os.kill(guardian_of(process), signal.SIGKILL)
+        process.kill()
+        process.wait()
+        self.assertEqual(self.left_processes(), [])
+        self.assertNotEqual(list(self.runtime.iterdir()), [])
+        self.run_scene("--ticks", 1, "--quiet")  # removes what is left
 
     def test_sockets_are_removed(self):
         socket = self.folder / "s"
