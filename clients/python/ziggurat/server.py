@@ -12,6 +12,20 @@ from .joining import connect
 from .session import Session
 
 
+def _readable(messages: str) -> str:
+    """What a server with --json printed on stderr, as sentences with their places."""
+    texts = []
+    for line in messages.splitlines():
+        try:
+            message = json.loads(line)
+            place = f"{message['file']}:{message['line']}:{message['column']}: " if message.get("line") else (
+                f"{message['file']}: " if message.get("file") else "")
+            texts.append(place + message["text"])
+        except (ValueError, KeyError, TypeError, AttributeError):
+            texts.append(line)
+    return "\n".join(text for text in texts if text)
+
+
 class Server:
     """Runs `ziggurat serve SCENE` on a free port of this machine until it is closed, or this program ends, however
     that happens.
@@ -28,6 +42,10 @@ class Server:
                 [command, "serve", str(scene), "--endpoint", "tcp://127.0.0.1:*", "--json", "--end-with-input",
                  *arguments],
                 stdin=end_for_server, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        except FileNotFoundError:
+            self._release()
+            raise FileNotFoundError(f"there is no program '{command}'; put the folder of 'ziggurat' on the PATH, or "
+                                    "pass command=PATH") from None
         except BaseException:
             self._release()
             raise
@@ -47,7 +65,7 @@ class Server:
         except (ValueError, KeyError):
             _, errors = self.process.communicate()
             self._release()
-            raise RuntimeError(f"ziggurat serve did not start: {line}{errors}") from None
+            raise RuntimeError(f"ziggurat serve did not start: {line}{_readable(errors)}") from None
 
     def session(self, **options: Any) -> Session:
         """As connect(). Without one the server is ended; if it has ended itself, because of a fault in the scene
@@ -66,7 +84,7 @@ class Server:
             _, errors = self.process.communicate(timeout=1)
         except subprocess.TimeoutExpired:
             return
-        raise RuntimeError(f"ziggurat serve has ended: {errors}") from error
+        raise RuntimeError(f"ziggurat serve has ended: {_readable(errors)}") from error
 
     def wait(self, timeout: Optional[float] = None) -> int:
         """Waits for the end of the run [s]; returns the exit code."""

@@ -1,6 +1,7 @@
 """Supervision, takeover, resuming, deadlines and keys: the package against the real server, whose program
 is in ZIGGURAT."""
 
+import gc
 import itertools
 import math
 import os
@@ -76,13 +77,16 @@ class Lifetime(unittest.TestCase):
                 pass
 
         one()
+        gc.collect()  # sockets of other tests
         before = len(os.listdir("/proc/self/fd"))
         one()
-        with self.assertRaises(FileNotFoundError):
+        with self.assertRaisesRegex(FileNotFoundError, "there is no program '/nowhere/ziggurat'; put .* on the PATH"):
             ziggurat.Server(str(ARMS), command="/nowhere/ziggurat")
-        with self.assertRaises(RuntimeError):
+        with self.assertRaisesRegex(RuntimeError, "did not start: /nowhere.argos: the file does not exist"):
             ziggurat.Server("/nowhere.argos", command=PROGRAM)
-        self.assertEqual(len(os.listdir("/proc/self/fd")), before)
+        with self.assertRaisesRegex(RuntimeError, "did not start: unknown option '--tiks'; did you mean '--ticks'"):
+            serve("--tiks", "3")
+        self.assertLessEqual(len(os.listdir("/proc/self/fd")), before)
 
 
 class Supervising(unittest.TestCase):
