@@ -92,6 +92,29 @@ bool System::changed(int index) const {
   return false;
 }
 
+/// How much faster a point of a link may become within a substep by what pushes its tree.
+/// @param reach  distance of the point from the tree's origin [m]
+double pushed_faster(const Tree& tree, double reach, double length) {
+  double sum = 0;
+  for (std::size_t i = 0; i < tree.external.size(); ++i) {
+    const Link& link = tree.links[i];
+    const Wrench& push = tree.external[i];
+    if (link.mass <= 0) continue;
+    sum += push.force.norm() / link.mass + push.moment.norm() * reach / link.inertia.minCoeff();
+  }
+  return length * sum;
+}
+
+/// The same by a servo that reaches its speed.
+double driven_faster(const Tree& tree, const Servo& servo, const Vector3& point) {
+  const Motion axis = servo.dof >= 0 ? tree.axes[servo.dof] : servo.direction;
+  const double now = servo.dof >= 0 ? tree.v[servo.dof]
+                                    : axis.linear.dot(tree.velocity(servo.link)) +
+                                          axis.angular.dot(tree.angular_velocity(servo.link));
+  const double reach = (point - tree.origin).norm();
+  return std::abs(servo.speed - now) * (axis.linear.norm() + axis.angular.norm() * reach);
+}
+
 /// Whether the awake side of a contact may touch the sleeping one within the substep.
 bool System::comes_to_touch(const Contact& contact) const {
   const auto speed = [&](const LinkIndex& side) -> Vector3 {
@@ -103,8 +126,18 @@ bool System::comes_to_touch(const Contact& contact) const {
   const double apart = contact.normal.dot(speed(contact.a) - speed(contact.b));
   const int mover =
       contact.a.tree >= 0 && !asleep(contact.a.tree) ? contact.a.tree : contact.b.tree;
-  const double fall = mover >= 0 ? trees[mover].gravity.norm() * length_ : 0;
-  return contact.gap + length_ * (apart - 2 * fall) < 1e-5;
+  if (mover < 0) return contact.gap + length_ * apart < 1e-5;
+  const Tree& tree = trees[mover];
+  double faster = 2 * tree.gravity.norm() * length_;
+  if (watch_[mover] & pushed) {
+    faster += pushed_faster(tree, (contact.point - tree.origin).norm(), length_);
+  }
+  if (watch_[mover] & commanded) {
+    for (const Servo& servo : servos_) {
+      if (servo.tree == mover) faster += driven_faster(tree, servo, contact.point);
+    }
+  }
+  return contact.gap + length_ * (apart - faster) < 1e-5;
 }
 
 /// One number per tree that changes with the commands of its servos.

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "physics/bit_reversed.h"
 #include "physics/convert.h"
 
 namespace ziggurat::physics {
@@ -148,6 +149,7 @@ struct Rays::Parts {
   std::size_t entities = 0;
   std::size_t links = 0, last_links = 0;  // of all, of the last entity
   std::vector<Solid> solids;
+  std::vector<std::size_t> fresh;  // solids of an update that are not yet in the tree
   btDbvt tree;
   mutable btAlignedObjectArray<const btDbvtNode*> stack;
 };
@@ -208,7 +210,7 @@ void Rays::take_back() {
 
 void Rays::update(const world::State& state) {
   Parts& p = *parts_;
-  bool grown = false;
+  p.fresh.clear();
   for (std::size_t i = 0; i < p.solids.size(); ++i) {
     Parts::Solid& solid = p.solids[i];
     if (solid.removed) continue;
@@ -219,17 +221,19 @@ void Rays::update(const world::State& state) {
     if (solid.leaf && solid.leaf->volume.Contain(volume(solid.geometry, pose, rounding_margin))) {
       continue;
     }
-    btDbvtVolume bounds = volume(solid.geometry, pose, volume_margin);
-    if (solid.leaf) {
-      p.tree.update(solid.leaf, bounds);
-    } else {
-      grown = true;
-      solid.leaf = p.tree.insert(bounds, nullptr);
-      solid.leaf->dataAsInt = static_cast<int>(i);
+    if (!solid.leaf) {
+      p.fresh.push_back(i);
+      continue;
     }
+    btDbvtVolume bounds = volume(solid.geometry, pose, volume_margin);
+    p.tree.update(solid.leaf, bounds);
   }
-
-  if (grown) return p.tree.optimizeTopDown();
+  in_bit_reversed_order(p.fresh.size(), [&](std::size_t i) {
+    Parts::Solid& solid = p.solids[p.fresh[i]];
+    solid.leaf = p.tree.insert(volume(solid.geometry, solid.pose, volume_margin), nullptr);
+    solid.leaf->dataAsInt = static_cast<int>(p.fresh[i]);
+  });
+  if (!p.fresh.empty()) return p.tree.optimizeTopDown();
   p.tree.optimizeIncremental(1 + static_cast<int>(p.solids.size() / 64));
 }
 

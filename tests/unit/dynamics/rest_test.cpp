@@ -71,6 +71,34 @@ TEST(Rest, ABallOnAGentleSlopeRolls) {
   }
 }
 
+// What is pushed or driven onto a sleeper, without gravity, wakes it before it is inside of it.
+TEST(Rest, ASleeperWakesByWhatIsAboutToBePushedOntoIt) {
+  for (const bool by_servo : {false, true}) {
+    Touching world = floor_with(1, 0.1);
+    world.planes[0].friction = 0.5;
+    run(world, 1, 100);
+    ASSERT_TRUE(world.system.asleep(0));
+    world.add_box(Vector3::Constant(0.1), 1, at(0, 0, 0.1502), 0.7);  // 0.2 mm above
+    Tree& tree = world.tree(1);
+    if (by_servo) {
+      Servo servo;
+      servo.tree = 1;
+      servo.dof = 5;
+      servo.speed = -1;
+      servo.lower = -10;
+      servo.upper = 10;
+      world.servos.push_back(servo);
+    } else {
+      world.system.push(1, 0, {Vector3::Zero(), Vector3(0, 0, -100)});
+    }
+    world.find(0.01);
+    for (Tree& each : world.system.trees) each.gravity.setZero();
+    world.system.step(0.01, world.contacts, world.servos);
+    EXPECT_GT(tree.position[0].z(), 0.15 - 2e-6) << by_servo;
+    EXPECT_FALSE(world.system.asleep(0)) << by_servo;
+  }
+}
+
 TEST(Rest, ATowerWakesWhereItIsStruck) {
   Touching world = floor_with(3, 0.05);
   const int ball = world.add_box(Vector3::Constant(0.02), 0.1, at(1, 0, 0.14), 0.5);
