@@ -83,10 +83,6 @@ double way_back(double a, double b, double energy) {
   return std::min(1.0, way);
 }
 
-}  // namespace
-
-namespace {
-
 /// The work of all contacts and limits in the substep, as a function of the share of the way from the solution
 /// without rebound to the present one: at 0, and its first and second derivative, the second halved.
 struct Work {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "dynamics/system.h"
 
@@ -43,6 +44,29 @@ bool is_noise(const std::vector<Tree>& trees, std::span<const int> island, const
   constexpr double some = 3;  // each is pushed by the misses of several contacts
   const double most = std::min(some * miss, rest.swept_speed);
   return 2 * energy <= mass * most * most;
+}
+
+/// How much faster a point of a link may become within a substep by what pushes its tree.
+/// @param reach  distance of the point from the tree's origin [m]
+double pushed_faster(const Tree& tree, double reach, double length) {
+  double sum = 0;
+  for (std::size_t i = 0; i < tree.external.size(); ++i) {
+    const Link& link = tree.links[i];
+    const Wrench& push = tree.external[i];
+    if (link.mass <= 0) continue;
+    sum += push.force.norm() / link.mass + push.moment.norm() * reach / link.inertia.minCoeff();
+  }
+  return length * sum;
+}
+
+/// The same by a servo that reaches its speed.
+double driven_faster(const Tree& tree, const Servo& servo, const Vector3& point) {
+  const Motion axis = servo.dof >= 0 ? tree.axes[servo.dof] : servo.direction;
+  const double now = servo.dof >= 0 ? tree.v[servo.dof]
+                                    : axis.linear.dot(tree.velocity(servo.link)) +
+                                          axis.angular.dot(tree.angular_velocity(servo.link));
+  const double reach = (point - tree.origin).norm();
+  return std::abs(servo.speed - now) * (axis.linear.norm() + axis.angular.norm() * reach);
 }
 
 }  // namespace
@@ -92,29 +116,6 @@ bool System::changed(int index) const {
   return false;
 }
 
-/// How much faster a point of a link may become within a substep by what pushes its tree.
-/// @param reach  distance of the point from the tree's origin [m]
-double pushed_faster(const Tree& tree, double reach, double length) {
-  double sum = 0;
-  for (std::size_t i = 0; i < tree.external.size(); ++i) {
-    const Link& link = tree.links[i];
-    const Wrench& push = tree.external[i];
-    if (link.mass <= 0) continue;
-    sum += push.force.norm() / link.mass + push.moment.norm() * reach / link.inertia.minCoeff();
-  }
-  return length * sum;
-}
-
-/// The same by a servo that reaches its speed.
-double driven_faster(const Tree& tree, const Servo& servo, const Vector3& point) {
-  const Motion axis = servo.dof >= 0 ? tree.axes[servo.dof] : servo.direction;
-  const double now = servo.dof >= 0 ? tree.v[servo.dof]
-                                    : axis.linear.dot(tree.velocity(servo.link)) +
-                                          axis.angular.dot(tree.angular_velocity(servo.link));
-  const double reach = (point - tree.origin).norm();
-  return std::abs(servo.speed - now) * (axis.linear.norm() + axis.angular.norm() * reach);
-}
-
 /// Whether the awake side of a contact may touch the sleeping one within the substep.
 bool System::comes_to_touch(const Contact& contact) const {
   const auto speed = [&](const LinkIndex& side) -> Vector3 {
@@ -133,22 +134,31 @@ bool System::comes_to_touch(const Contact& contact) const {
     faster += pushed_faster(tree, (contact.point - tree.origin).norm(), length_);
   }
   if (watch_[mover] & commanded) {
-    for (const Servo& servo : servos_) {
-      if (servo.tree == mover) faster += driven_faster(tree, servo, contact.point);
+    const auto is_its = [&](int i) {  // what it had before may be the servo of another now
+      return i >= 0 && i < static_cast<int>(servos_.size()) && servos_[i].tree == mover;
+    };
+    for (int i = sleepers_[mover].first_servo; is_its(i); i = next_servo_[i]) {
+      faster += driven_faster(tree, servos_[i], contact.point);
     }
   }
   return contact.gap + length_ * (apart - faster) < 1e-5;
 }
 
-/// One number per tree that changes with the commands of its servos.
+/// One number per tree that changes with the commands of its servos, and which they are.
 void System::note_commands() {
   for (const Servo& servo : servos_) {
-    if (servo.tree >= 0) sleepers_[servo.tree].command = 0;
+    if (servo.tree < 0) continue;
+    sleepers_[servo.tree].command = 0;
+    sleepers_[servo.tree].first_servo = -1;
   }
-  for (const Servo& servo : servos_) {
+  next_servo_.resize(servos_.size());
+  for (std::size_t i = 0; i < servos_.size(); ++i) {
+    const Servo& servo = servos_[i];
     if (servo.tree < 0) continue;
     watch_[servo.tree] |= commanded;
-    std::uint64_t& command = sleepers_[servo.tree].command;
+    Sleeper& sleeper = sleepers_[servo.tree];
+    next_servo_[i] = std::exchange(sleeper.first_servo, static_cast<int>(i));
+    std::uint64_t& command = sleeper.command;
     for (const double number : {servo.speed, servo.lower, servo.upper}) command = mixed(command, number);
   }
 }

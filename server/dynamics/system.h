@@ -117,6 +117,7 @@ class System {
     std::uint64_t command = 0;  // of its servos, see note_commands()
     std::uint64_t command_asleep = 0;
     double force_bound = 0;  // of changes on a link [N], [N m] per radius of 1 m
+    int first_servo = -1;    // that it had last, see next_servo_
     void archive(math::Archive& archive);
   };
   std::vector<Sleeper> sleepers_;
@@ -130,6 +131,7 @@ class System {
   double length_ = 0;
   std::span<Contact> contacts_;
   std::span<Servo> servos_;
+  std::vector<int> next_servo_;  // of each servo: the next of its tree; -1: none
   std::span<Limit> limits_;
   std::span<const int> chosen_;
   Report report_;

@@ -73,7 +73,7 @@ struct Server::State {
   Outcome wait_until(Done done, const Wait& wait, world::Commands* commands);
   template <class Done>
   bool take_messages(Done done, world::Commands* into);
-  void advance();
+  void advance(Time now);
   Time next_event() const;
 
   Socket socket;
@@ -119,8 +119,7 @@ bool Server::State::take_messages(Done done, world::Commands* into) {
   return done();
 }
 
-void Server::State::advance() {
-  const Time now = Clock::now();
+void Server::State::advance(Time now) {
   if (now >= network::next_event(barrier)) ++changes;
   if (link) link->release(now);
   network::advance(barrier, now);
@@ -135,20 +134,22 @@ template <class Done>
 Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* commands) {
   const bool is_bounded = wait.timeout.count() >= 0;
   const Time end = is_bounded ? Clock::now() + wait.timeout : never;
+  // What had arrived when the server last looked is not late, however long it was kept from taking it.
+  Time looked = barrier.now;
   socket.handled();
   for (;;) {
-    // What has arrived is not late, however long the server was kept from looking.
     barrier.now = Clock::now();
     socket.set_ticking(commands != nullptr && !waits_for_newcomer(barrier));
     socket.tend();
     if (take_messages(done, commands)) return Outcome::complete;
-    advance();
+    advance(looked);
     if (done()) return Outcome::complete;
     if (barrier.calls.has_news()) {
       socket.begin_charge();  // the caller answers them
       return Outcome::woken;
     }
-    const auto rest = std::chrono::ceil<milliseconds>(std::min(end, next_event()) - Clock::now());
+    looked = Clock::now();
+    const auto rest = std::chrono::ceil<milliseconds>(std::min(end, next_event()) - looked);
     const auto ready = socket.poll(std::max(rest, milliseconds{0}), wait.descriptors);
     if (ready == Socket::Ready::woken) return Outcome::woken;
     if (Clock::now() >= end) {
@@ -190,7 +191,7 @@ Outcome Server::gather(const Wait& wait) {
 
 void Server::publish(const world::Observations& observations,
                      const std::vector<std::string>& tag_payloads, const wire::Truth* truth) {
-  state_->advance();
+  state_->advance(Clock::now());
   ++state_->changes;
   network::publish(state_->barrier, observations, tag_payloads, truth);
 }
@@ -231,7 +232,7 @@ void Server::remove_robots(std::span<const std::size_t> robots, const std::strin
 void Server::set_paused(bool is_paused) {
   ++state_->changes;
   if (is_paused) return network::pause(state_->barrier);
-  state_->advance();
+  state_->advance(Clock::now());
   network::resume(state_->barrier);
 }
 
