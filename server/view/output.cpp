@@ -42,8 +42,8 @@ void Output::drop(std::size_t place) {
       return item->keep == Keep::newest && newer.keep == Keep::newest &&
              newer.channel == item->channel;
     });
-    if (item->keep == Keep::all) kept += item->size();
-    if (is_old || kept > most_kept) continue;
+    if (is_old) continue;
+    if (item->keep == Keep::all && (kept += item->size()) > most_kept) continue;
     heir.bytes += item->size();
     frame_bytes_ += item->size();
     heir.items.push_front(std::move(*item));

@@ -93,8 +93,7 @@ class Signals(SceneTest):
         self.assert_ends_soon(process, signal.SIGINT)
 
     def test_a_terminated_process_of_several_ends_the_run(self):
-        process = self.start("run", self.scene, *ENDLESS, "--lua-processes", 2)
-        self.read_until(process.stdout, r"^\[20 r2\]")
+        process = self.begin_endless()
         self.lua_processes(2)
         [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
         os.kill(victim, signal.SIGTERM)

@@ -282,16 +282,18 @@ double Colliders::follow(ColliderGroup& group, const dynamics::System& system, d
   return length * fastest;
 }
 
-void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b,
-                          std::vector<Near>& out) const {
+void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b, std::vector<Near>& out) {
   const Bounds all_of_b{b.low, b.high};
   if (!boxes_meet({a.low, a.high}, all_of_b)) return;
+  bounds_.clear();
   for (std::size_t i = a.first; i < a.first + a.count; ++i) {
     const Bounds one = all[i].bounds();
     if (!boxes_meet(one, all_of_b)) continue;
-    for (std::size_t j = b.first; j < b.first + b.count; ++j) {
-      if (!boxes_meet(one, all[j].bounds())) continue;
-      out.push_back({std::min(i, j), std::max(i, j)});
+    if (bounds_.empty()) {
+      for (std::size_t j = 0; j < b.count; ++j) bounds_.push_back(all[b.first + j].bounds());
+    }
+    for (std::size_t j = 0; j < b.count; ++j) {
+      if (boxes_meet(one, bounds_[j])) out.push_back({std::min(i, b.first + j), std::max(i, b.first + j)});
     }
     check_near_pairs(out.size());
   }

@@ -125,11 +125,12 @@ class Colliders {
   void keep_in_box(ColliderGroup& group, double step, bool shrinks);
   void insert(ColliderGroup& group, std::size_t index);
   void settle();
-  void find_near(const ColliderGroup& a, const ColliderGroup& b, std::vector<Near>& out) const;
+  void find_near(const ColliderGroup& a, const ColliderGroup& b, std::vector<Near>& out);
 
   std::unique_ptr<Filter> filter_;
   btDbvtBroadphase broadphase_;
   std::size_t settled_ = 0;  // groups that it knows
+  std::vector<Bounds> bounds_;  // of a group's colliders
   std::vector<std::size_t> followed_, hits_;
 };
 

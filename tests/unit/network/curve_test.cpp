@@ -137,6 +137,17 @@ struct Protected : Keys {
     options.connect_timeout = milliseconds{700};
     return options;
   }
+  /// Of a controller of one robot that wishes for a deadline policy.
+  Options wishing(const Server& server, const std::string& key, const std::string& robot,
+                  Deadline::Action action) const {
+    Options wish = options(server, key);
+    wish.connect_timeout = milliseconds{20'000};
+    wish.robots = {robot};
+    wish.deadline = Deadline{};
+    wish.deadline->action = action;
+    wish.deadline->after = milliseconds{1000};
+    return wish;
+  }
   /// Serves clients for as long as `client` takes.
   void meanwhile(Server& server, auto client) const {
     std::atomic<bool> is_done = false;
@@ -275,20 +286,10 @@ TEST_F(Protected, K11_AKeyOfAControllerCannotEndTheRunByItsDeadline) {
   config.curve->clients[1].roles = {.controller = true, .supervisor = true};
   Server server(config, small.run());
   meanwhile(server, [&] {
-    Options from = options(server, "friend");
-    from.connect_timeout = milliseconds{20'000};
-    from.robots = {"robot0"};
-    from.deadline = Deadline{};
-    from.deadline->action = Deadline::Action::stop;
-    from.deadline->after = milliseconds{1000};
-    const std::string told = complaint_of(from);
+    const std::string told = complaint_of(wishing(server, "friend", "robot0", Deadline::Action::stop));
     EXPECT_NE(told.find("FORBIDDEN"), std::string::npos) << told;
     EXPECT_NE(told.find("it lacks the role `supervisor`"), std::string::npos) << told;
-    Options other = options(server, "viewer");
-    other.connect_timeout = milliseconds{20'000};
-    other.robots = {"robot1"};
-    other.deadline = from.deadline;
-    EXPECT_EQ(complaint_of(other), "");
+    EXPECT_EQ(complaint_of(wishing(server, "viewer", "robot1", Deadline::Action::stop)), "");
   });
 }
 
@@ -300,25 +301,16 @@ TEST_F(Protected, K11_AKeyOfAControllerCannotLetTheWorldWaitLonger) {
                       {{scene::DeadlineAction::hold, 1000, 0}, false}};
   Server server(config, small.run());
   meanwhile(server, [&] {
-    Options from = options(server, "friend");
-    from.connect_timeout = milliseconds{20'000};
-    from.robots = {"robot0"};
-    from.deadline = Deadline{};
-    from.deadline->action = Deadline::Action::wait;
-    const std::string told = complaint_of(from);
+    const std::string told = complaint_of(wishing(server, "friend", "robot0", Deadline::Action::wait));
     EXPECT_NE(told.find("FORBIDDEN"), std::string::npos) << told;
     EXPECT_NE(told.find("robot 'robot0' by hold:1000"), std::string::npos) << told;
-    from.deadline->action = Deadline::Action::drop;
+    Options from = wishing(server, "friend", "robot0", Deadline::Action::drop);
     from.deadline->after = milliseconds{1001};
     EXPECT_NE(complaint_of(from).find("FORBIDDEN"), std::string::npos);
     from.deadline->after = milliseconds{1000};
     EXPECT_EQ(complaint_of(from), "");
-    Options other = options(server, "viewer");
-    other.connect_timeout = milliseconds{20'000};
-    other.robots = {"robot1"};
-    other.deadline = Deadline{};
-    other.deadline->action = Deadline::Action::wait;
-    EXPECT_EQ(complaint_of(other), "") << "a supervisor may pause the world, too";
+    EXPECT_EQ(complaint_of(wishing(server, "viewer", "robot1", Deadline::Action::wait)), "")
+        << "a supervisor may pause the world, too";
   });
 }
 

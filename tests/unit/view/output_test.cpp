@@ -68,6 +68,16 @@ TEST(Output, KeepsTheNewestWorldAndEachLine) {
   EXPECT_EQ(std::ranges::count(all, '+'), 3);
 }
 
+TEST(Output, ManyLinesDoNotTakeTheWorldWithThem) {
+  Output output;
+  output.add_frame({item(7, 10, Keep::newest, 'W'), item(9, 10, Keep::always, '+'),
+                    item(8, Output::most_kept, Keep::all, '1'), item(8, 10, Keep::all, '2')});
+  for (std::size_t i = 0; i < Output::most_waiting; ++i) output.add_frame({item(1, 10)});
+  const std::string all = marks(output);
+  EXPECT_EQ(all.substr(0, 3), "W+2") << "the oldest line is too much";
+  EXPECT_EQ(std::ranges::count(all, '1'), 0);
+}
+
 TEST(Output, TooManyAnswersAreAnError) {
   Output output;
   EXPECT_TRUE(output.add_answer(item(0, Output::most_answers)));

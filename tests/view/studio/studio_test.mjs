@@ -53,10 +53,15 @@ async function state(page, told) {
 }
 
 /**
- * The viewer with the world at `url`, with no problem, after it has shown `texts`. Whether it draws the robots.
+ * The viewer with the world at `url`, with no problem, after it has shown `texts` and the robots.
  * `begin` is called when it has shown the first.
  */
-async function shows(page, { url, topic, texts, begin }, told) {
+async function open({ url, topic, texts, begin }) {
+  const page = await newPage(browser, { width: 1400, height: 800 });
+  page.setDefaultTimeout(120000); // machines may be busy
+  const told = [];
+  page.on("console", (message) => told.push(message.text()));
+  page.on("pageerror", (error) => told.push(`error: ${error.stack ?? error.message}`));
   await page.goto(`http://127.0.0.1:${web.address().port}/?${new URLSearchParams({ url, topic })}`);
   const text = () => page.locator("body").innerText();
   for (const each of texts) {
@@ -71,30 +76,15 @@ async function shows(page, { url, topic, texts, begin }, told) {
     for (let i = 0; i < data.length; i += 4) if (data[i + 2] - data[i] > 40) ++blue;
     return blue > 5000;
   };
-  return waitFor(isDrawn, "robots in the picture", 45).then(() => true, () => false);
-}
-
-/** The viewer shows the world at `url`. It is loaded again twice at most: rarely it draws nothing of a scene that it has. */
-async function open(world) {
-  const { url, topic } = world;
-  for (let left = 2; ; --left) {
-    const page = await newPage(browser, { width: 1400, height: 800 });
-    page.setDefaultTimeout(120000); // machines may be busy
-    const told = [];
-    page.on("console", (message) => told.push(message.text()));
-    page.on("pageerror", (error) => told.push(`error: ${error.stack ?? error.message}`));
-    const isDrawn = await shows(page, world, told);
-    if (screenshot) await page.screenshot({ path: `${screenshot}${topic.replaceAll("/", "_")}.png` });
-    assert.deepEqual(told.filter((line) => /Player problem|^error/.test(line)), []);
-    assert.deepEqual(page.foreign, []);
-    if (!isDrawn) {
-      const what = `no robots in the picture of ${url}:\n${await state(page, told)}`;
-      assert.ok(left > 0, what);
-      console.log(what);
-    }
-    await page.close();
-    if (isDrawn) return;
+  try {
+    await waitFor(isDrawn, "robots in the picture", 120);
+  } catch (error) {
+    throw new Error(`${error.message}; the page had ${await state(page, told)}`);
   }
+  if (screenshot) await page.screenshot({ path: `${screenshot}${topic.replaceAll("/", "_")}.png` });
+  assert.deepEqual(told.filter((line) => /Player problem|^error/.test(line)), []);
+  assert.deepEqual(page.foreign, []);
+  await page.close();
 }
 
 /** A world that stands at its beginning is shown, and then runs. */
