@@ -83,6 +83,7 @@ Writes what a recording has as a file for other programs, or as a page for peopl
   ziggurat export run.mcap --html run.html
   ziggurat export run.mcap --csv poses.csv
   ziggurat export run.mcap --jsonl commands.jsonl --topics '/robots/*/command'
+  ziggurat export run.mcap --csv - | head
 
 Poses of links are exact in a table. Those of origins are computed from them, and can differ from a
 trace of the run in the last digit.
@@ -111,8 +112,9 @@ int execute_export(const Arguments& arguments) {
       throw text::UsageError(
           fmt::format("--{} is the recording itself; name another file", format.option));
     }
-    const auto path = std::filesystem::weakly_canonical(std::filesystem::absolute(order.out));
-    if (!written.insert(path).second) {
+    // Of a pipe, as /dev/stdout can be one, there is no whole path.
+    const auto path = std::filesystem::weakly_canonical(std::filesystem::absolute(order.out), error);
+    if (!written.insert(error ? std::filesystem::path(order.out) : path).second) {
       throw text::UsageError(fmt::format("--{} is '{}', the file of another format too; name another file",
                                          format.option, order.out));
     }

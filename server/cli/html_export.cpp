@@ -114,6 +114,7 @@ std::string to_base64(std::string_view bytes) {
 
 std::uint64_t export_html(const std::string& player, const std::string& recording,
                           const std::string& out) {
+  if (out == "-") fail("a page needs a file; write its name instead of -");
   const Template page = read_template(player);
   std::ifstream bytes = open_recording(recording);
   const std::string part = out + ".part";

@@ -14,6 +14,9 @@
 namespace ziggurat::recorder {
 
 Disk::Disk(std::string path) : path_(std::move(path)) {
+  if (path_ == "-") {
+    throw recording::WriteError("a recording needs a file; write its name instead of -, or /dev/stdout");
+  }
   // A pipe without a reader is an error, not a wait.
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
   if (descriptor_ < 0) fail(errno);

@@ -13,13 +13,14 @@ namespace {
 constexpr std::size_t full_buffer = std::size_t{256} << 10;  // [bytes]
 
 [[noreturn]] void fail(const std::string& path, int error) {
-  throw WriteError(fmt::format("{}: cannot be written: {}", path, std::strerror(error)));
+  throw WriteError(fmt::format("{}: cannot be written: {}", path == "-" ? "stdout" : path, std::strerror(error)));
 }
 
 }  // namespace
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  descriptor_ = path_ == "-" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
+                             : ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(path_, errno);
 }
 

@@ -17,7 +17,7 @@ class WriteError : public std::runtime_error {
 
 class OutputFile {
  public:
-  /// Creates the file, or empties it. @throws WriteError
+  /// Creates the file, or empties it; `-` is stdout. @throws WriteError
   explicit OutputFile(std::string path);
   /// Closes without writing what is still in the buffer: close() before is the good end.
   ~OutputFile();

@@ -140,12 +140,29 @@ void Document::parse() {
     report_.warn(at(*unescaped.dashes), "dashes",
                  "-- inside a comment, which other programs that read XML refuse; write it without");
   }
+  check_surroundings();
   root_ = tree_.document_element();
   for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling()) {
     if (node.type() != pugi::node_element) continue;
     report_.fault(locate(node.name() - 1),
                   fmt::format("a second root element, <{}>; a file has one", node.name()));
   }
+}
+
+void Document::check_surroundings() {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  const std::string_view source = source_;
+  const std::size_t start = source.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+  const std::size_t first = source.find('<'), behind = source.rfind('>') + 1;
+  const auto check = [&](std::size_t offset, std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    if (begin == std::string_view::npos) return;
+    report_.warn(at(offset + begin), "outside",
+                 "text outside of the root element has no effect, and other programs that read XML "
+                 "refuse it; remove it");
+  };
+  check(start, source.substr(start, first - start));
+  check(behind, source.substr(behind));
 }
 
 void Document::check_doctype() {

@@ -31,6 +31,14 @@ TEST(OutputFile, ReplacesAnExistingFile) {
   }
 }
 
+TEST(OutputFile, ADashIsStdout) {
+  testing::internal::CaptureStdout();
+  OutputFile file("-");
+  file.buffer().append(std::string_view("a line\n"));
+  file.close();
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "a line\n");
+}
+
 TEST(OutputFile, ReportsWhyItCannotBeCreated) {
   try {
     OutputFile file("/no/such/folder/file.csv");

@@ -120,6 +120,17 @@ TEST(Text, WhatOtherParsersRefuseIsTold) {
   EXPECT_TRUE(text.read().problems.empty()) << all_problems(text.read());
 }
 
+TEST_F(Folder, TextOutsideOfTheRootElementIsTold) {
+  const std::string scene = SceneText{}.str();
+  EXPECT_TRUE(read_file(write("good.argos", "\xEF\xBB\xBF" + scene + "\n")).problems.empty());
+  for (const std::string& text : {"scene " + scene, "<!-- a -->\n" + scene + "\n x"}) {
+    const ReadResult result = read_file(write("told.argos", text));
+    EXPECT_TRUE(result.ok()) << all_problems(result);
+    ASSERT_EQ(result.problems.size(), 1u) << all_problems(result);
+    EXPECT_TRUE(contains(result.problems[0].text, "outside of the root element")) << all_problems(result);
+  }
+}
+
 TEST(Text, AnEntityBombIsHarmlessAndReported) {
   std::string text = "<?xml version=\"1.0\"?>\n<!DOCTYPE bomb [\n<!ENTITY lol0 \"lol\">\n";
   for (int i = 1; i < 10; ++i) {
