@@ -140,7 +140,7 @@ void Document::parse() {
     report_.warn(at(*unescaped.dashes), "dashes",
                  "-- inside a comment, which other programs that read XML refuse; write it without");
   }
-  check_surroundings();
+  check_outside();
   root_ = tree_.document_element();
   for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling()) {
     if (node.type() != pugi::node_element) continue;
@@ -149,7 +149,7 @@ void Document::parse() {
   }
 }
 
-void Document::check_surroundings() {
+void Document::check_outside() {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   const std::string_view source = source_;
   const std::size_t start = source.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;

@@ -66,7 +66,7 @@ class Document {
  private:
   void parse();
   bool check_text(ReadBudget& budget);
-  void check_surroundings();
+  void check_outside();
   void check_doctype();
   Location at(std::size_t offset) const;
 
