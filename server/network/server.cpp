@@ -25,6 +25,7 @@ using std::chrono::milliseconds;
 
 // Between looks at descriptors and the time, so that no flood keeps us from either.
 constexpr int messages_at_once = 1000;
+constexpr milliseconds noticeable{1};  // to deadlines
 
 std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::Run& run) {
   std::vector<DisturbedLink::Target> targets;
@@ -194,6 +195,8 @@ void Server::publish(const world::Observations& observations,
   state_->advance(Clock::now());
   ++state_->changes;
   network::publish(state_->barrier, observations, tag_payloads, truth);
+  const Time sent = Clock::now();  // the system may have stopped the server meanwhile
+  if (sent - state_->barrier.now > noticeable) await_from(state_->barrier, sent);
 }
 
 Outcome Server::collect(world::Commands& commands, const Wait& wait,

@@ -77,6 +77,13 @@ void publish(Barrier& barrier, const world::Observations& observations,
   stand_if_paused(barrier);  // if no session owes an answer
 }
 
+void await_from(Barrier& barrier, Time now) {
+  barrier.now = now;
+  barrier.sessions.for_each([&](Session& session) {
+    if (session.turn.owes) session.turn.owes_since = now;
+  });
+}
+
 bool observe(Barrier& barrier, Session& session) {
   if (session.director) return show_world(barrier, session);
   const Connection* connection = barrier.connections.find(session.connection);

@@ -53,6 +53,22 @@ TEST_F(Measuring, AnAnswerInTime) {
   expect(kept()[0], 0, Reaction::Kind::in_time, 7e-3);
 }
 
+TEST_F(Measuring, DeadlinesBeginWhenTheObservationsAreSent) {
+  peers.publish(0);
+  peers.now += milliseconds{60};  // the server was stopped
+  await_from(peers.barrier, peers.now);
+  peers.pass(milliseconds{49});
+  EXPECT_FALSE(peers.is_complete()) << "it is not missed yet";
+  peers.say("p", Peers::command(0));
+  ASSERT_EQ(kept().size(), 1U);
+  expect(kept()[0], 0, Reaction::Kind::in_time, 49e-3);
+  peers.publish(1);
+  peers.now += milliseconds{60};
+  await_from(peers.barrier, peers.now);
+  peers.pass(milliseconds{50});
+  EXPECT_TRUE(peers.is_complete());
+}
+
 TEST_F(Measuring, ALateAnswerCountsWithItsWholeTime) {
   peers.publish(0);
   peers.pass(milliseconds{50});
