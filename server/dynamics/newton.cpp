@@ -222,6 +222,7 @@ bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
     ++outcome.iterations;
     outcome.miss = miss_now(problem, scale);
     if (outcome.miss <= tolerance(scale)) return true;
+    if (i + 1 >= options.most_far && outcome.miss > options.far * scale) return false;
     if (outcome.miss > options.near * scale) continue;
     correct(problem);
     outcome.miss = miss_now(problem, scale);

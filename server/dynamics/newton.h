@@ -30,6 +30,8 @@ struct SolverOptions {
   double newton_work = 3e4;  ///< multiplications of a factorisation; more: not on the law itself
   int most_iterations = 16;  ///< of Newton's method on the law itself
   double near = 1e-5;        ///< a miss of this times the largest speed needs no new factors
+  int most_far = 6;          ///< iterations with a miss above `far`: it goes round, and will not end
+  double far = 1e-3;         ///< times the largest speed
   int most_descents = 8;     ///< full steps of the softened problem
   double softness = 1e-3;    ///< its impulses give way by this times the mobility
   int most_interior = 40;    ///< steps of the interior point method
