@@ -23,6 +23,7 @@ struct Workspace {
   std::vector<double> factor;        ///< its factors
   std::vector<double> scratch;       ///< of each dof
   std::array<double, 6> drift{};     ///< by momentum_after()
+  double bending = 0;                ///< relative change of a tree's speeds by Coriolis forces, by momentum_after()
   std::vector<double> stages;        ///< of the integrator, see flight.h
   std::vector<double> before;        ///< q and v, kept while a flight is tried
 };

@@ -7,8 +7,11 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double far = 0.1;         // [rad] per substep
+constexpr double far = 0.1;          // [rad] per substep
+constexpr double near = 0.003;       // likewise, of what is struck
+constexpr double bends = 3e-4;       // relative change of speed by Coriolis forces
 constexpr double negligible = 1e-6;  // of the kinetic energy
+constexpr double most_given = 0.1;   // of the joints' energy: more is lost in an impact
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -44,16 +47,39 @@ double share_left(double energy, double excess) {
   return energy > excess ? std::sqrt(1 - excess / energy) : 0;
 }
 
-/// Whether links turn so far within a substep that it matters.
-/// @param after  velocities that were found
-bool turns_far(const Tree& tree, std::span<const double> after, double length) {
-  const double most = far * far / (length * length);
+/// Whether links turn further than that within a substep.
+/// @param after  velocities that were found;  @param angle  [rad]
+bool turns(const Tree& tree, std::span<const double> after, double length, double angle) {
+  const double most = angle * angle / (length * length);
   for (int k = 0; k < tree.dofs; ++k) {
     if (tree.axes[k].angular.squaredNorm() * after[k] * after[k] > most) return true;
   }
   return std::any_of(tree.motion.begin(), tree.motion.end(), [&](const Motion& motion) {
     return motion.angular.squaredNorm() > most;
   });
+}
+
+/// Whether contacts and servos change a tree's speeds by much.
+/// @param mass  its matrix, dofs x dofs
+bool is_struck(const Tree& tree, const double* mass, std::span<const double> after) {
+  constexpr double little = 1e-3;  // of the energy, so to speak
+  double all = 0, change = 0;
+  for (int k = 0; k < tree.dofs; ++k) {
+    const double own = mass[k * tree.dofs + k], step = after[k] - tree.v[k];
+    all += own * after[k] * after[k];
+    change += own * step * step;
+  }
+  return change > little * all;
+}
+
+/// @param after  velocities that were found
+Excess::Kind kind_of(const Problem& problem, std::size_t i, std::span<const double> after) {
+  const Tree& tree = *problem.trees[i];
+  if (turns(tree, after, problem.length, far)) return Excess::Kind::turns_far;
+  if (tree.single) return Excess::Kind::none;
+  const bool bent = problem.bending[i] > bends || (is_struck(tree, problem.mass_of(i), after) &&
+                                                   turns(tree, after, problem.length, near));
+  return bent ? Excess::Kind::bends : Excess::Kind::none;
 }
 
 /// The excess, less the kinetic energy that the tree has at the end; at its state of the beginning.
@@ -93,26 +119,106 @@ double lift(const Tree& tree, Workspace& work, const double* by) {
   return std::max(0.0, sum);
 }
 
+/// Which dofs servos and limits hold.
+void note_held(const Problem& problem, std::vector<unsigned char>& held) {
+  held.assign(problem.velocity.size(), 0);
+  for (const Block& block : problem.blocks) {
+    if (block.kind == Block::Source::contact) continue;
+    if (block.impulse[0] <= block.lower || block.impulse[0] >= block.upper) continue;
+    const bool drives = block.kind == Block::Source::servo;
+    for (const int k : block.dofs_a) {
+      unsigned char& dof = held[problem.offset[block.a] + k];
+      dof = drives ? Excesses::driven : std::max(dof, Excesses::at_limit);
+    }
+  }
+}
+
+/// The part of a tree's speeds that joints have which nothing holds, and with it the root so that the tree has no
+/// momentum and no angular momentum.
+/// @param of_joints  out: of each dof;  @param momentum  out: that it has, of each dof
+void find_inner_motion(const Tree& tree, Workspace& work, std::span<const unsigned char> held,
+                       std::vector<double>& of_joints, std::vector<double>& momentum) {
+  using Root = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 6, 6>;
+  const int n = tree.dofs, root = tree.dof_count[0];
+  compute_mass(tree, work);
+  of_joints.assign(n, 0.0);
+  momentum.assign(n, 0.0);
+  for (int k = root; k < n; ++k) of_joints[k] = held[k] == Excesses::free ? tree.v[k] : 0;
+  const auto add = [&](int from, int to) {
+    for (int i = 0; i < n; ++i) {
+      for (int k = from; k < to; ++k) momentum[i] += work.mass[i * n + k] * of_joints[k];
+    }
+  };
+  add(root, n);
+  if (root == 0) return;
+  Root mass(root, root);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> change(root);
+  for (int i = 0; i < root; ++i) {
+    change[i] = -momentum[i];
+    for (int k = 0; k < root; ++k) mass(i, k) = work.mass[i * n + k];
+  }
+  change = mass.llt().solve(change);
+  std::copy_n(change.data(), root, of_joints.begin());
+  add(0, root);
+}
+
+/// Takes energy from the joints that nothing holds, or gives it to them. Momentum and angular momentum stay if the tree
+/// is free.
+/// @param excess  [J]; < 0: what it should get
+/// @return        what it took [J]
+double take_from_joints(Tree& tree, Workspace& work, std::span<const unsigned char> held, double excess) {
+  if (std::abs(excess) <= negligible * kinetic_energy(tree)) return 0;
+  find_inner_motion(tree, work, held, work.scratch, work.before);
+  double slope = 0, curve = 0;  // of the energy, along that motion
+  for (int k = 0; k < tree.dofs; ++k) {
+    slope += work.before[k] * tree.v[k];
+    curve += work.before[k] * work.scratch[k] / 2;
+  }
+  if (slope <= 0 || curve <= 0 || -excess > most_given * curve) return 0;
+  const double square = slope * slope - 4 * curve * excess;
+  const double way = square > 0 ? -2 * excess / (slope + std::sqrt(square)) : -slope / (2 * curve);
+  for (int k = 0; k < tree.dofs; ++k) tree.v[k] += way * work.scratch[k];
+  move(tree);
+  return square > 0 ? excess : slope * slope / (4 * curve);
+}
+
 }  // namespace
 
-void note_excesses(const Problem& problem, Workspace& work, std::vector<std::optional<double>>& out) {
-  out.assign(problem.trees.size(), std::nullopt);
+void note_excesses(const Problem& problem, Workspace& work, Excesses& out) {
+  out.of_trees.assign(problem.trees.size(), {});
+  bool any = false;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     const std::size_t first = problem.offset[i], dofs = tree.dofs;
     const auto after = std::span(problem.velocity).subspan(first, dofs);
-    if (!turns_far(tree, after, problem.length)) continue;
-    out[i] = excess_before(tree, work, problem.mass_of(i),
-                           std::span(problem.momentum).subspan(first, dofs), after, problem.length);
+    Excess& excess = out.of_trees[i];
+    excess.kind = kind_of(problem, i, after);
+    if (excess.kind == Excess::Kind::none) continue;
+    any = true;
+    excess.before =
+        excess_before(tree, work, problem.mass_of(i),
+                      std::span(problem.momentum).subspan(first, dofs), after, problem.length);
   }
+  if (any) note_held(problem, out.held);
 }
 
-void add_lifts(const Problem& problem, Workspace& work, std::vector<std::optional<double>>& out) {
+void add_lifts(const Problem& problem, Workspace& work, Excesses& out) {
   const auto bounces = [](const Block& block) { return block.bounces; };
   if (std::any_of(problem.blocks.begin(), problem.blocks.end(), bounces)) return;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    if (!out[i]) continue;
-    *out[i] += lift(*problem.trees[i], work, problem.velocity.data() + problem.offset[i]);
+    Excess& excess = out.of_trees[i];
+    if (excess.kind == Excess::Kind::none) continue;
+    excess.before += lift(*problem.trees[i], work, problem.velocity.data() + problem.offset[i]);
+  }
+}
+
+void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<const unsigned char> held) {
+  if (excess.kind == Excess::Kind::none) return;
+  double sum = excess.before + kinetic_energy(tree);
+  if (!tree.single) sum -= take_from_joints(tree, work, held, sum);
+  const bool is_driven = std::find(held.begin(), held.end(), Excesses::driven) != held.end();
+  if (excess.kind == Excess::Kind::turns_far || !is_driven) {
+    take_excess(tree, work, sum);
   }
 }
 

@@ -2,7 +2,6 @@
 // What a substep with contacts gives a tree by turning it. Coriolis and gyroscopic forces do no work, but
 // velocities are solved with the mass matrix of the beginning, and are then those of other poses.
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,15 +9,35 @@
 
 namespace ziggurat::dynamics {
 
-/// The excess of each tree that turns far, less the kinetic energy that it has at the end; to be called when an
-/// island's velocities are solved, but not yet its trees'.
-/// @param out  of each tree of the island [J]
-void note_excesses(const Problem& problem, Workspace& work, std::vector<std::optional<double>>& out);
+/// The excess of one tree.
+struct Excess {
+  enum class Kind : unsigned char {
+    none,       ///< too small to matter
+    bends,      ///< Coriolis forces change its speeds: gains and losses are undone
+    turns_far,  ///< as well, and it turns so far that what its joints can't undo of a gain is taken all the same
+  };
+  Kind kind = Kind::none;
+  double before = 0;  ///< less the kinetic energy that it has at the end [J]
+};
+
+/// What a substep gives the trees of an island.
+struct Excesses {
+  std::vector<Excess> of_trees;
+  static constexpr unsigned char free = 0, at_limit = 1, driven = 2;
+  std::vector<unsigned char> held;  ///< what holds each dof: nothing, a limit or a servo
+};
+
+/// Notes the excess of each tree; to be called when an island's velocities are solved, but not yet its trees'.
+void note_excesses(const Problem& problem, Workspace& work, Excesses& out);
 
 /// What undoes overlaps lifts what fell too deep; where something rebounds nothing is added, as that is lifted to
 /// where it should be.
 /// @param problem  that of the displacement, solved
-void add_lifts(const Problem& problem, Workspace& work, std::vector<std::optional<double>>& out);
+void add_lifts(const Problem& problem, Workspace& work, Excesses& out);
+
+/// Gives a tree at the substep's end the energy that it should have. Needs move(), and leaves it moved.
+/// @param held  of its dofs, see Excesses
+void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<const unsigned char> held);
 
 /// Whether an excess is more than rounding; needs move().
 bool gains_much(const Tree& tree, double excess);

@@ -260,6 +260,7 @@ void momentum_of_body(const Tree& tree, Workspace& work, double length, std::spa
   omega += r * (torque.cwiseQuotient(link.inertia) * length);
   Vector3 momentum = r * (r.transpose() * omega).cwiseProduct(link.inertia);
   work.drift.fill(0);
+  work.bending = 0;
   if (!symmetric(link.inertia) && omega.norm() * length > slow) {
     double place[4];
     std::copy_n(tree.q.data() + 3, 4, place);
@@ -294,7 +295,8 @@ void momentum_after(Tree& tree, Workspace& work, double length, std::span<double
   }
   const int root = std::min(6, n);
   std::copy_n(out.begin(), root, work.drift.begin());
-  if (change > slow * slow * energy) {
+  work.bending = energy > 0 ? std::sqrt(change / energy) : 0;
+  if (work.bending > slow) {
     momentum_flown(tree, work, length, out);
   } else {
     for (int i = 0; i < n; ++i) out[i] -= length * work.scratch[i];

@@ -37,6 +37,7 @@ void Problem::clear() {
   mass.clear();
   mass_offset.clear();
   drift.clear();
+  bending.clear();
   blocks.clear();
   jacobian.clear();
   momentum.clear();
@@ -57,6 +58,7 @@ void Problem::add(Tree& tree, Workspace& work) {
   mass_offset.push_back(static_cast<int>(mass.size()));
   mass.insert(mass.end(), work.mass.begin(), work.mass.end());
   drift.push_back(work.drift);
+  bending.push_back(work.bending);
   velocity.insert(velocity.end(), tree.v.begin(), tree.v.end());
 }
 

@@ -53,6 +53,7 @@ struct Problem {
   std::vector<double> mass;                  ///< matrices of all trees, each dofs x dofs
   std::vector<int> mass_offset;              ///< of each tree in `mass`
   std::vector<std::array<double, 6>> drift;  ///< of each tree, see momentum_after()
+  std::vector<double> bending;               ///< of each tree, see Workspace
   std::vector<Block> blocks;
   std::vector<double> jacobian;
   std::vector<double> momentum;  ///< p

@@ -50,19 +50,21 @@ void keep_momentum(Tree& tree, Workspace& work, const Vector3& origin, const dou
 }
 
 /// Moves a tree of the island. What touches nothing fixed keeps its momentum, and so does what would gain energy.
-/// @param excess  see note_excesses()
 void displace(const Problem& problem, std::size_t i, std::span<const double> by, bool drifts,
-              std::optional<double> excess, Workspace& work) {
+              const Excesses& excesses, Workspace& work) {
   Tree& tree = *problem.trees[i];
   const Vector3 origin = tree.origin;
   displace(tree, by);
   place(tree);
   move(tree);
-  const bool gains = excess && gains_much(tree, *excess + kinetic_energy(tree));
+  const Excess& excess = excesses.of_trees[i];
+  const bool gains = excess.kind != Excess::Kind::none &&
+                     gains_much(tree, excess.before + kinetic_energy(tree));
   if (free_to_drift(tree) && (drifts || gains)) {
     keep_momentum(tree, work, origin, problem.mass_of(i), problem.drift[i]);
   }
-  if (excess) take_excess(tree, work, *excess + kinetic_energy(tree));
+  if (excess.kind == Excess::Kind::none) return;
+  undo_excess(tree, work, excess, std::span(excesses.held).subspan(problem.offset[i], tree.dofs));
 }
 
 }  // namespace
@@ -277,7 +279,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   }
   step_.resize(problem_.velocity.size());
   for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = length_ * problem_.velocity[i];
-  note_excesses(problem_, work_, excess_);
+  note_excesses(problem_, work_, excesses_);
   for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
     Tree& tree = *problem_.trees[i];
     std::copy_n(problem_.velocity.begin() + problem_.offset[i], tree.dofs, tree.v.begin());
@@ -296,11 +298,11 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       solver_.solve_displacement(problem_);
     }
     for (std::size_t i = 0; i < step_.size(); ++i) step_[i] += problem_.velocity[i];
-    add_lifts(problem_, work_, excess_);
+    add_lifts(problem_, work_, excesses_);
   }
   for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
     const std::size_t dofs = problem_.trees[i]->dofs;
-    displace(problem_, i, {step_.data() + problem_.offset[i], dofs}, !grounded, excess_[i], work_);
+    displace(problem_, i, {step_.data() + problem_.offset[i], dofs}, !grounded, excesses_, work_);
   }
   if (rebounding) bound_energy(problem_, work_, rebound_);
   const bool swept = outcome.sweeps > 0 && outcome.descents == 0;

@@ -3,10 +3,10 @@
 // trees, contacts, servos and limits alone.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
+#include "dynamics/excess.h"
 #include "dynamics/newton.h"
 #include "dynamics/rebound.h"
 
@@ -140,7 +140,7 @@ class System {
   std::vector<int> first_tree_, tree_order_, first_item_;
   std::vector<Item> items_, item_order_;
   std::vector<double> kept_, step_;
-  std::vector<std::optional<double>> excess_;  // see note_excesses()
+  Excesses excesses_;
   Rebound rebound_;
   Workspace work_;
   Problem problem_;
