@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "mcap/crc.h"
 #include "mcap/decode.h"
 
@@ -57,6 +61,23 @@ Footer read_footer(const Source& source) {
   return *footer;
 }
 
+/// A small file whose summary lists one chunk again and again would be read without end.
+/// @throws Damaged if it lists a place of the file twice
+void check_places(const Summary& summary) {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> places;  // offset and length
+  const auto add_all = [&](const auto& list) {
+    for (const auto& index : list) places.emplace_back(index.offset, index.length);
+  };
+  add_all(summary.contents.chunks);
+  add_all(summary.contents.attachments);
+  add_all(summary.contents.metadata);
+  std::ranges::sort(places);
+  const auto overlap = [](const auto& a, const auto& b) { return b.first - a.first < a.second; };
+  if (std::ranges::adjacent_find(places, overlap) != places.end()) {
+    throw Damaged(summary.start, "the summary is damaged: it lists a place of the file twice");
+  }
+}
+
 }  // namespace
 
 Summary read_summary(const Source& source, const Limits& limits) {
@@ -91,6 +112,7 @@ Summary read_summary(const Source& source, const Limits& limits) {
     }
     at += static_cast<std::size_t>(head.length);
   }
+  check_places(summary);
   return summary;
 }
 

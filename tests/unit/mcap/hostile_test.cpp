@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "example.h"
 #include "mcap/bytes.h"
 #include "mcap/crc.h"
@@ -86,28 +88,55 @@ std::string with_summary(const std::string& summary) {
 }
 
 TEST(Hostile, IndexesMayReferToAnything) {
-  std::string summary;
   for (const std::uint64_t offset : {std::uint64_t{0}, std::uint64_t{8}, ~std::uint64_t{0}}) {
     for (const std::uint64_t length : {std::uint64_t{0}, std::uint64_t{9}, ~std::uint64_t{0}}) {
       ChunkIndex chunk;
       chunk.offset = offset;
       chunk.length = length;
       chunk.end_time = ~std::uint64_t{0};
-      append(chunk, summary);
-      append(AttachmentIndex{offset, length, 0, 0, 0, "a", ""}, summary);
-      append(MetadataIndex{offset, length, "m"}, summary);
+      std::array<std::string, 3> summaries;
+      append(chunk, summaries[0]);
+      append(AttachmentIndex{offset, length, 0, 0, 0, "a", ""}, summaries[1]);
+      append(MetadataIndex{offset, length, "m"}, summaries[2]);
+      for (const std::string& summary : summaries) {
+        const std::string file = with_summary(summary);
+        const Reader reader(bytes_of(file));
+        EXPECT_TRUE(reader.has_summary());
+        const Contents& contents = reader.contents();
+        for (const auto& each : contents.chunks) EXPECT_THROW(reader.chunk(each), Damaged);
+        for (const auto& each : contents.attachments)
+          EXPECT_THROW(reader.attachment(each), Damaged);
+        for (const auto& each : contents.metadata) EXPECT_THROW(reader.metadata(each), Damaged);
+        EXPECT_EQ(read_what_can_be(file), 0u);
+        EXPECT_FALSE(check(bytes_of(file)).faults.empty());
+      }
     }
   }
-  const std::string file = with_summary(summary);
-  const Reader reader(bytes_of(file));
-  EXPECT_TRUE(reader.has_summary());
-  for (const auto& chunk : reader.contents().chunks) EXPECT_THROW(reader.chunk(chunk), Damaged);
-  for (const auto& each : reader.contents().attachments) {
-    EXPECT_THROW(reader.attachment(each), Damaged);
+}
+
+/// Else an export or a repair of a small file would have terabytes.
+TEST(Hostile, ASummaryThatListsAPlaceTwiceIsNotUsed) {
+  ChunkIndex chunk;
+  chunk.offset = 8;
+  chunk.length = 100;
+  const AttachmentIndex attachment{8, 100, 0, 0, 0, "a", ""},
+      overlapping{107, 100, 0, 0, 0, "b", ""}, next{108, 100, 0, 0, 0, "c", ""};
+  const MetadataIndex beyond{~std::uint64_t{0} - 50, 100, "m"};
+  std::array<std::string, 5> summaries;
+  append(chunk, summaries[0]);
+  append(chunk, summaries[0]);
+  append(attachment, summaries[1]);
+  append(attachment, summaries[1]);
+  append(chunk, summaries[2]);
+  append(overlapping, summaries[2]);
+  append(beyond, summaries[3]);
+  append(beyond, summaries[3]);
+  append(next, summaries[4]);
+  append(chunk, summaries[4]);
+  append(beyond, summaries[4]);
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    EXPECT_EQ(Reader(bytes_of(with_summary(summaries[i]))).has_summary(), i == 4) << i;
   }
-  for (const auto& each : reader.contents().metadata) EXPECT_THROW(reader.metadata(each), Damaged);
-  EXPECT_EQ(read_what_can_be(file), 0u);
-  EXPECT_FALSE(check(bytes_of(file)).faults.empty());
 }
 
 TEST(Hostile, DefinitionsAreBounded) {
