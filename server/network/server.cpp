@@ -245,6 +245,13 @@ Pause Server::pause() const {
   return gate.is_held(TickGate::Hold::paused) ? Pause::asked : Pause::none;
 }
 
+void keep_alive(Server& server) {
+  Server::State& state = *server.state_;
+  const Time now = Clock::now();
+  keep_alive(state.barrier, now);
+  if (state.link) state.link->release(now);
+}
+
 void Server::restart(const wire::Restart& restart) {
   // Only the time: until it is told, the barrier knows robots that the layout has no more.
   state_->barrier.now = Clock::now();

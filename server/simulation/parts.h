@@ -38,7 +38,8 @@ struct Simulation::Parts {
   void archive(math::Archive& archive);
   /// Does again what was done to a world that began as this one did. With another seed than the
   /// snapshot's random streams stay at their begin.
-  void repeat(const scene::Scene& scene, const Snapshot& snapshot, world::Layout& grown);
+  void repeat(const scene::Scene& scene, const Snapshot& snapshot, world::Layout& grown,
+              const std::function<void()>& tell);
   std::vector<std::byte> with_own_streams(const std::vector<std::byte>& given);
   void repeat_act(const scene::Scene& scene, const Act& act, world::Layout& grown);
   /// Writes down what the coming step takes, if only repeating gives the state again.

@@ -91,10 +91,11 @@ class Simulation {
   /// @param seed   given: the snapshot is of a scene that may have other values, but the same entities and
   ///               devices; this is the seed from then on, not 0. With another one than the snapshot's all
   ///               that is random is drawn anew
+  /// @param tell  called before each tick of a run that is repeated for it; may be empty
   /// @throws SnapshotError if it does not fit, or with a seed if its state can't be copied; then
   ///         nothing changes
   void restore(const scene::Scene& scene, const Snapshot& snapshot,
-               std::optional<std::uint64_t> seed = {});
+               std::optional<std::uint64_t> seed = {}, const std::function<void()>& tell = {});
   /// What was done to the world since the start, as far as snapshots need it.
   const History& history() const;
   /// The first field in which the state differs from that of a snapshot: empty if none does, or if

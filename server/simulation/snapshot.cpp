@@ -157,7 +157,7 @@ std::vector<std::byte> Simulation::Parts::with_own_streams(const std::vector<std
 }
 
 void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapshot,
-                               world::Layout& grown) {
+                               world::Layout& grown, const std::function<void()>& tell) {
   auto act = snapshot.history.acts.begin();
   const auto end = snapshot.history.acts.end();
   if (has_archive) {
@@ -169,6 +169,7 @@ void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapsh
   } else {
     auto change = snapshot.history.commands.begin();
     for (;; step()) {
+      if (tell) tell();
       for (; act != end && act->tick == state.tick; ++act) repeat_act(scene, *act, grown);
       if (state.tick == snapshot.tick) break;
       const bool changes =
@@ -182,7 +183,7 @@ void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapsh
 }
 
 void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
-                         std::optional<std::uint64_t> seed) {
+                         std::optional<std::uint64_t> seed, const std::function<void()>& tell) {
   Parts& p = *parts_;
   const bool copies = p.has_archive;
   if (seed && (!copies || snapshot.state.empty())) {
@@ -202,7 +203,7 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
   world::Layout before = *layout_;
   try {
     auto fresh = std::make_unique<Parts>(scene, Options{seed.value_or(snapshot.seed), {}}, *layout_);
-    fresh->repeat(scene, snapshot, *layout_);
+    fresh->repeat(scene, snapshot, *layout_, tell);
     if (world::hash(fresh->state, fresh->observations) != snapshot.hash) {
       throw SnapshotError("The snapshot's state is not the one that its hash is of.");
     }

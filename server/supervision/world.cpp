@@ -17,13 +17,14 @@ World::World(std::string path_given, scene::OpenScene opened, std::uint64_t seed
       seed(seed_given),
       simulation(scene, {seed, tell}) {}
 
-void World::reset(std::uint64_t new_seed) {
-  simulation.reset(scene, {new_seed, {}});
+void World::reset(std::uint64_t new_seed, const std::function<void()>& tell) {
+  const auto tell_placed = [&](std::size_t, std::size_t) { tell(); };
+  simulation.reset(scene, {new_seed, tell ? simulation::TellPlaced(tell_placed) : nullptr});
   seed = new_seed;
 }
 
-void World::restore(const simulation::Snapshot& snapshot) {
-  simulation.restore(scene, snapshot);
+void World::restore(const simulation::Snapshot& snapshot, const std::function<void()>& tell) {
+  simulation.restore(scene, snapshot, {}, tell);
   seed = snapshot.seed;
 }
 

@@ -2,6 +2,7 @@
 // The world of a run: what it was made from and what it has become.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "scene/additions.h"
@@ -19,10 +20,12 @@ struct World {
         const simulation::TellPlaced& tell = {}, const std::string& hash = {});
 
   /// Builds the world again, with this seed. @throws scene::SceneError; then nothing changes
-  void reset(std::uint64_t new_seed);
+  /// @param tell  called now and then
+  void reset(std::uint64_t new_seed, const std::function<void()>& tell = {});
 
   /// Puts the world back. @throws std::runtime_error; then nothing changes
-  void restore(const simulation::Snapshot& snapshot);
+  /// @param tell  called now and then: a run that is repeated takes its time
+  void restore(const simulation::Snapshot& snapshot, const std::function<void()>& tell = {});
 
   /// Puts this world into the state of a world of a scene with other values, with this seed from then on.
   /// @throws simulation::SnapshotError; then nothing changes

@@ -225,26 +225,34 @@ void check_deadlines(Barrier& barrier) {
   check_free_directors(barrier);
 }
 
-void send_heartbeats(Barrier& barrier) {
+/// To the session, if it is time.
+Delivery send_heartbeat(Barrier& barrier, Session& session) {
   const milliseconds usual = barrier.config.heartbeat;
-  barrier.timers.heartbeat = barrier.now + usual;
+  const bool is_rare = session.turn.owes && session.contact.heartbeats >= most_heartbeats;
+  const milliseconds interval = is_rare ? std::max(rare_heartbeat, usual) : usual;
+  Delivery delivery = Delivery::sent;
+  if (session.contact.last_sent + interval <= barrier.now) {
+    if (session.state == SessionState::hello) {
+      barrier.outbox.loading(barrier.progress.share, barrier.progress.message);
+    } else {
+      barrier.outbox.heartbeat(++barrier.heartbeats);
+    }
+    ++session.contact.heartbeats;
+    delivery = send(barrier, session);
+  }
+  barrier.timers.heartbeat =
+      std::min(barrier.timers.heartbeat, session.contact.last_sent + interval);
+  return delivery;
+}
+
+/// @param unreachable  called with sessions that can't be reached
+template <class Unreachable>
+void send_heartbeats(Barrier& barrier, Unreachable unreachable) {
+  if (barrier.now < barrier.timers.heartbeat) return;
+  barrier.timers.heartbeat = barrier.now + barrier.config.heartbeat;
   barrier.sessions.for_each([&](Session& session) {
     if (session.state == SessionState::lost) return;
-    const bool is_rare = session.turn.owes && session.contact.heartbeats >= most_heartbeats;
-    const milliseconds interval = is_rare ? std::max(rare_heartbeat, usual) : usual;
-    Delivery delivery = Delivery::sent;
-    if (session.contact.last_sent + interval <= barrier.now) {
-      if (session.state == SessionState::hello) {
-        barrier.outbox.loading(barrier.progress.share, barrier.progress.message);
-      } else {
-        barrier.outbox.heartbeat(++barrier.heartbeats);
-      }
-      ++session.contact.heartbeats;
-      delivery = send(barrier, session);
-    }
-    barrier.timers.heartbeat =
-        std::min(barrier.timers.heartbeat, session.contact.last_sent + interval);
-    if (delivery == Delivery::unreachable) lose(barrier, session, "its connection is gone");
+    if (send_heartbeat(barrier, session) == Delivery::unreachable) unreachable(session);
   });
 }
 
@@ -253,8 +261,14 @@ void send_heartbeats(Barrier& barrier) {
 void advance(Barrier& barrier, Time now) {
   barrier.now = now;
   if (barrier.now >= barrier.timers.deadline) check_deadlines(barrier);
-  if (barrier.now >= barrier.timers.heartbeat) send_heartbeats(barrier);
+  send_heartbeats(barrier,
+                  [&](Session& session) { lose(barrier, session, "its connection is gone"); });
   stand_if_paused(barrier);  // a session that was lost may have been the last that owed
+}
+
+void keep_alive(Barrier& barrier, Time now) {
+  barrier.now = now;
+  send_heartbeats(barrier, [](Session&) {});  // the next advance() finds that it is gone
 }
 
 Time next_event(const Barrier& barrier) {

@@ -10,6 +10,8 @@ namespace ziggurat::network {
 
 /// Wall time goes on: deadlines pass and heartbeats are sent.
 void advance(Barrier& barrier, Time now);
+/// Only heartbeats are sent: what robots there are may not be looked at now.
+void keep_alive(Barrier& barrier, Time now);
 /// When advance() has something to do next.
 Time next_event(const Barrier& barrier);
 

@@ -54,7 +54,8 @@ TEST(BetweenTicks, ASessionOfRobotsThatAResetHasTakenAwayIsOverWithoutThem) {
     client.say(answer);
     ASSERT_EQ(server.collect(commands, patience), Outcome::complete);
   }
-  std::this_thread::sleep_for(milliseconds{200});  // longer than between heartbeats; the client is gone
+  std::this_thread::sleep_for(
+      milliseconds{200});  // longer than between heartbeats; the client is gone
   server.take_report();
   small.layout().robots.resize(1);
   server.restart({42});
@@ -63,6 +64,37 @@ TEST(BetweenTicks, ASessionOfRobotsThatAResetHasTakenAwayIsOverWithoutThem) {
   }
   ASSERT_EQ(server.status().size(), 1U);
   EXPECT_EQ(server.status()[0].membership, RobotStatus::Membership::free);
+}
+
+TEST(BetweenTicks, AWorldThatIsBeingPutBackSendsHeartbeatsAndLooksAtNoRobots) {
+  SmallRun small(2);
+  Config config = path_config();
+  config.heartbeat = milliseconds{1};
+  Server server(config, small.run());
+  world::Commands commands = small.commands();
+  Peer observer(server.endpoints());
+  observer.say(hello(v1::ROLE_OBSERVER));
+  {
+    Peer client(server.endpoints());
+    auto wish = hello(v1::ROLE_CONTROLLER);
+    wish.mutable_hello()->add_robots("*");
+    client.say(wish);
+    ASSERT_EQ(server.gather(patience), Outcome::complete);
+    server.linger(commands, {milliseconds{200}, {}});
+  }
+  ASSERT_TRUE(observer.hear().has_welcome());
+  std::this_thread::sleep_for(milliseconds{200});  // the controller is gone
+  server.take_report();
+  small.layout().robots.resize(1);  // as in a world that is half built
+  const auto heartbeat = [&] {
+    keep_alive(server);
+    return observer.hear().heartbeat().sequence();
+  };
+  const std::uint64_t first = heartbeat();
+  std::this_thread::sleep_for(milliseconds{20});
+  keep_alive(server);
+  for (std::uint64_t heard = first; heard <= first + 1;) heard = heartbeat();
+  EXPECT_TRUE(server.take_report().notices.empty()) << "the controller is told of later";
 }
 
 TEST(BetweenTicks, WhatDirectorsWantStaysWhileRobotsAreSpawned) {

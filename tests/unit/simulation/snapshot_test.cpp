@@ -69,6 +69,20 @@ struct Case {
   Simulation simulation;
 };
 
+TEST(Snapshot, ARestoreTellsOfEachTickThatItRepeats) {
+  Case world("sweeps");
+  world.live();
+  const Snapshot snapshot = world.simulation.snapshot();
+  std::uint64_t told = 0;
+  world.simulation.restore(world.read.scene, snapshot, {}, [&] { ++told; });
+  EXPECT_EQ(told, snapshot.tick + 1);
+  const auto expected = world.future(3);
+  const auto give_up = [&] { throw std::runtime_error("enough"); };
+  EXPECT_THROW(world.simulation.restore(world.read.scene, snapshot, {}, give_up), std::runtime_error);
+  world.simulation.restore(world.read.scene, snapshot);
+  EXPECT_EQ(world.future(3), expected);
+}
+
 class Snapshots : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Snapshots, CarryWhatCameAndWentAndWasMoved) {
