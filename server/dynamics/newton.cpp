@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "dynamics/slope.h"
 
@@ -213,20 +214,49 @@ void Snapshot::give_back(Problem& problem) const {
   for (std::size_t i = 0; i < impulses.size(); ++i) problem.blocks[i].impulse = impulses[i];
 }
 
+void Snapshot::meet(Problem& problem) const {
+  for (std::size_t k = 0; k < velocity.size(); ++k) {
+    problem.velocity[k] = (problem.velocity[k] + velocity[k]) / 2;
+  }
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    if (problem.blocks[i].law != Block::Law::contact) continue;
+    for (int r = 0; r < problem.blocks[i].rows; ++r) {
+      double& impulse = problem.blocks[i].impulse[r];
+      impulse = (impulse + impulses[i][r]) / 2;
+    }
+  }
+}
+
 /// Newton's method from the present state, whose speeds are taken.
 /// @return  whether it converged; then the problem holds the solution
 bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
-  double scale = 0;
+  constexpr double same = 1e-6;
+  double scale = 0, last = 0, last_but_one = 0;
+  int far = 0;
   for (int i = 0; i < most; ++i) {
+    if (i > 3) earlier_.take(problem);
     if (!step(problem)) return false;
     ++outcome.iterations;
     outcome.miss = miss_now(problem, scale);
     if (outcome.miss <= tolerance(scale)) return true;
-    if (i + 1 >= options.most_far && outcome.miss > options.far * scale) return false;
+    const bool to_and_fro = i > 3 && std::abs(outcome.miss - last_but_one) < same * outcome.miss;
+    last_but_one = std::exchange(last, outcome.miss);
+    if (to_and_fro) {  // such as between sliding forth and back, while a motor gives all that it has
+      earlier_.meet(problem);
+      take_speeds(problem);
+      far = 0;
+      continue;
+    }
+    if (outcome.miss > options.far * scale && ++far >= options.most_far) return false;
     if (outcome.miss > options.near * scale) continue;
+    const double before = outcome.miss;
+    earlier_.take(problem);
     correct(problem);
     outcome.miss = miss_now(problem, scale);
     if (outcome.miss <= tolerance(scale)) return true;
+    if (outcome.miss <= before) continue;
+    earlier_.give_back(problem);  // where contacts are redundant it may lead far away
+    take_speeds(problem);
   }
   return false;
 }

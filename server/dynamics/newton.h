@@ -30,7 +30,7 @@ struct SolverOptions {
   double newton_work = 3e4;  ///< multiplications of a factorisation; more: not on the law itself
   int most_iterations = 16;  ///< of Newton's method on the law itself
   double near = 1e-5;        ///< a miss of this times the largest speed needs no new factors
-  int most_far = 6;          ///< iterations with a miss above `far`: it goes round, and will not end
+  int most_far = 6;          ///< iterations with a miss above `far`: it goes round, and rarely ends
   double far = 1e-3;         ///< times the largest speed
   int most_descents = 8;     ///< full steps of the softened problem
   double softness = 1e-3;    ///< its impulses give way by this times the mobility
@@ -74,6 +74,8 @@ struct Snapshot {
   std::vector<std::array<double, Block::most_rows>> impulses;  ///< of each block
   void take(const Problem& problem);
   void give_back(Problem& problem) const;
+  /// Takes velocities and the impulses of contacts half the way back.
+  void meet(Problem& problem) const;
 };
 
 class Solver {
@@ -123,7 +125,7 @@ class Solver {
   std::vector<int> sizes_;
   std::vector<double> sloped_;
   std::vector<double> kept_velocity_, anchored_;
-  Snapshot start_, snapshot_, rebounding_;
+  Snapshot start_, snapshot_, rebounding_, earlier_;
   std::vector<double> seeks_;
   std::vector<double> direction_, residual_;
   std::vector<InteriorBlock> interior_;

@@ -153,6 +153,53 @@ TEST(NewtonFall, IsDampedAsTheSceneSaysAndUnderTheSlowClock) {
   EXPECT_EQ(origin(first, 0).position, origin(second, 0).position);
 }
 
+/// A robot of 1.12 kg on two driven wheels, with a smooth ball before and one behind them.
+scene::Entity two_wheeler() {
+  std::vector<scene::Link> links{link("base", scene::Box{{0.1, 0.05, 0.02}}, 1)};
+  links[0].surface.friction = 0;
+  for (const char* id : {"left", "right"}) {
+    links.push_back(link(id, scene::Cylinder{0.02, 0.005}, 0.05));
+    links.back().surface.friction = 1;
+  }
+  for (const char* id : {"front", "back"}) {
+    links.push_back(link(id, scene::Sphere{0.005}, 0.01));
+    links.back().surface.friction = 0;
+  }
+  links[0].offset = at(0, 0, 0.01);
+  scene::Entity entity = prototype("robot", at(0, 0, 0), true, links);
+  for (int i = 0; i < 4; ++i) {
+    const bool wheel = i < 2;
+    const math::Pose side{{0, i == 0 ? 0.03 : -0.03, 0.01}, about(Vector3::UnitX(), -M_PI / 2)};
+    const math::Pose below = at(i == 2 ? 0.04 : -0.04, 0, -0.005);
+    scene::Joint next = joint(wheel ? scene::JointType::revolute : scene::JointType::fixed,
+                              Vector3::UnitZ(), wheel ? side : below, at(0, 0, wheel ? 0.0025 : 0.005));
+    next.id = links[i + 1].id;
+    next.child = i + 1;
+    entity.joints.push_back(next);
+  }
+  return entity;
+}
+
+// Five supports for three directions: where loads are not shared, wheels spin on the spot.
+TEST(NewtonWheels, DriveBetweenTwoSmoothBalls) {
+  const double wheel = 0.02, torque = 0.02, speed = 0.2, seconds = 1;
+  const double inertia = 0.05 * wheel * wheel / 2;
+  const double gain = 2 * torque / wheel / (1.12 + 2 * inertia / (wheel * wheel));  // [m/s^2]
+  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    scene::Physics physics = newton(true);
+    physics.floor->surface.friction = 1;
+    World world(physics, 1 / hz);
+    world.add(two_wheeler());
+    for (std::size_t i = 0; i < 2; ++i) {
+      world.add_motor(world.joint(0, i), scene::JointMode::velocity, torque / hz);
+      world.set_target(world.joint(0, i), speed / wheel);
+    }
+    run(world, seconds, 1 / hz);
+    EXPECT_NEAR(state_of(world).links[0].velocity.x(), speed, 1e-8) << hz;
+    EXPECT_NEAR(origin(world, 0).position.x(), speed * (seconds - speed / gain / 2), speed / hz) << hz;
+  }
+}
+
 TEST(NewtonMotor, HoldsItsSpeedWithinItsImpulse) {
   const double h = 0.01, mass = 2;
   World world(newton(false, 0), h);
