@@ -138,7 +138,6 @@ void note_held(const Problem& problem, std::vector<unsigned char>& held) {
 /// @param of_joints  out: of each dof;  @param momentum  out: that it has, of each dof
 void find_inner_motion(const Tree& tree, Workspace& work, std::span<const unsigned char> held,
                        std::vector<double>& of_joints, std::vector<double>& momentum) {
-  using Root = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 6, 6>;
   const int n = tree.dofs, root = tree.dof_count[0];
   compute_mass(tree, work);
   of_joints.assign(n, 0.0);
@@ -151,8 +150,8 @@ void find_inner_motion(const Tree& tree, Workspace& work, std::span<const unsign
   };
   add(root, n);
   if (root == 0) return;
-  Root mass(root, root);
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> change(root);
+  Matrix6 mass = Matrix6::Identity();
+  Vector6 change = Vector6::Zero();
   for (int i = 0; i < root; ++i) {
     change[i] = -momentum[i];
     for (int k = 0; k < root; ++k) mass(i, k) = work.mass[i * n + k];
