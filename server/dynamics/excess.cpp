@@ -76,7 +76,6 @@ bool is_struck(const Tree& tree, const double* mass, std::span<const double> aft
 Excess::Kind kind_of(const Problem& problem, std::size_t i, std::span<const double> after) {
   const Tree& tree = *problem.trees[i];
   if (turns(tree, after, problem.length, far)) return Excess::Kind::turns_far;
-  if (tree.single) return Excess::Kind::none;
   const bool bent = problem.bending[i] > bends || (is_struck(tree, problem.mass_of(i), after) &&
                                                    turns(tree, after, problem.length, near));
   return bent ? Excess::Kind::bends : Excess::Kind::none;
@@ -181,6 +180,27 @@ double take_from_joints(Tree& tree, Workspace& work, std::span<const unsigned ch
   return square > 0 ? excess : slope * slope / (4 * curve);
 }
 
+/// Gives a single body what turning took from it.
+/// @param excess  [J]; nothing happens where it is a gain
+void give_back_turning(Tree& tree, double excess) {
+  const Vector3 drift = tree.velocity(0);
+  const double turning = kinetic_energy(tree) - tree.links[0].mass * drift.squaredNorm() / 2;
+  if (excess >= 0 || -excess > most_given * turning) return;
+  const double share = std::sqrt(1 - excess / turning);
+  for (int k = 0; k < 3; ++k) tree.v[k] *= share;
+  move(tree);
+}
+
+/// Takes what is left of an excess from all speeds: the world may have turned spinning into flying.
+/// @param most  kinetic energy [J]
+void slow_down(Tree& tree, double most) {
+  const double all = kinetic_energy(tree);
+  if (all - most <= negligible * all) return;
+  const double share = std::sqrt(std::max(0.0, most) / all);
+  for (double& speed : tree.v) speed *= share;
+  move(tree);
+}
+
 }  // namespace
 
 void note_excesses(const Problem& problem, Workspace& work, Excesses& out) {
@@ -211,14 +231,20 @@ void add_lifts(const Problem& problem, Workspace& work, Excesses& out) {
   }
 }
 
-void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<const unsigned char> held) {
+void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<const unsigned char> held,
+                 bool grounded) {
   if (excess.kind == Excess::Kind::none) return;
   double sum = excess.before + kinetic_energy(tree);
-  if (!tree.single) sum -= take_from_joints(tree, work, held, sum);
-  const bool is_driven = std::find(held.begin(), held.end(), Excesses::driven) != held.end();
-  if (excess.kind == Excess::Kind::turns_far || !is_driven) {
-    take_excess(tree, work, sum);
+  if (tree.single) {
+    if (grounded) give_back_turning(tree, sum);
+  } else {
+    sum -= take_from_joints(tree, work, held, sum);
   }
+  const bool is_driven = std::find(held.begin(), held.end(), Excesses::driven) != held.end();
+  if (excess.kind != Excess::Kind::turns_far && is_driven) return;
+  const double most = kinetic_energy(tree) - sum;
+  take_excess(tree, work, sum);
+  if (grounded) slow_down(tree, most);
 }
 
 bool gains_much(const Tree& tree, double excess) {

@@ -36,8 +36,10 @@ void note_excesses(const Problem& problem, Workspace& work, Excesses& out);
 void add_lifts(const Problem& problem, Workspace& work, Excesses& out);
 
 /// Gives a tree at the substep's end the energy that it should have. Needs move(), and leaves it moved.
-/// @param held  of its dofs, see Excesses
-void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<const unsigned char> held);
+/// @param held      of its dofs, see Excesses
+/// @param grounded  whether its island touches the world, so that its angular momentum is not its own
+void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<const unsigned char> held,
+                 bool grounded);
 
 /// Whether an excess is more than rounding; needs move().
 bool gains_much(const Tree& tree, double excess);

@@ -267,6 +267,8 @@ void momentum_of_body(const Tree& tree, Workspace& work, double length, std::spa
     turn(place, link.inertia, length, omega);
     const Vector3 flown = r * (r.transpose() * omega).cwiseProduct(link.inertia);
     for (int k = 0; k < 3; ++k) work.drift[k] = momentum[k] - flown[k];
+    const double size = momentum.squaredNorm();
+    work.bending = size > 0 ? std::sqrt((flown - momentum).squaredNorm() / size) : 0;
     momentum = flown;
   }
   for (int k = 0; k < 3; ++k) {

@@ -64,7 +64,8 @@ void displace(const Problem& problem, std::size_t i, std::span<const double> by,
     keep_momentum(tree, work, origin, problem.mass_of(i), problem.drift[i]);
   }
   if (excess.kind == Excess::Kind::none) return;
-  undo_excess(tree, work, excess, std::span(excesses.held).subspan(problem.offset[i], tree.dofs));
+  undo_excess(tree, work, excess, std::span(excesses.held).subspan(problem.offset[i], tree.dofs),
+              !drifts);
 }
 
 }  // namespace
