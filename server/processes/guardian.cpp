@@ -1,6 +1,7 @@
 #include "processes/guardian.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -105,14 +107,14 @@ void clean_up(const Left& left) {
   for (const std::string& folder : left.empty_folders) ::rmdir(folder.c_str());
 }
 
-/// The next order; at the end of the pipe Kind::end_now.
-Order read_order(int pipe) {
+/// The next order; none at the end of the pipe.
+std::optional<Order> read_order(int pipe) {
   Order order;
   std::size_t have = 0;
   while (have < sizeof order) {
     const ssize_t count = ::read(pipe, reinterpret_cast<char*>(&order) + have, sizeof order - have);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return {Kind::end_now, 0, 0, 0, {}};
+    if (count <= 0) return std::nullopt;
     have += static_cast<std::size_t>(count);
   }
   return order;
@@ -143,15 +145,75 @@ void show_name(std::span<char*> arguments) {
   std::memcpy(begin, name.data(), std::min(size, name.size()));
 }
 
+/// Ends by SIGKILL only.
+struct Second {
+  pid_t process = -1;  ///< -1: the system allows none
+  int pipe = -1;       ///< to it
+};
+
+/// Nothing of it is left then.
+void end(const Second& second) {
+  if (second.process < 0) return;
+  ::close(second.pipe);
+  ::kill(second.process, SIGKILL);
+  ::waitpid(second.process, nullptr, 0);
+}
+
+/// In the second guardian: learns what the first one learns, until that is killed.
+void stand_by(int first, Left& left) {
+  ::setsid();  // a signal for the first one's group is not for it
+  while (const auto order = read_order(first)) {
+    if (order->kind == Kind::done) ::_exit(0);
+    take(*order, left);
+  }
+  ::close(first);
+}
+
+/// Starts a second guardian, in which this returns when the first one has been killed; and so on.
+Second make_second(Left& left) {
+  for (;;) {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) return {};
+    const pid_t process = ::fork();
+    if (process != 0) {
+      ::close(ends[0]);
+      if (process > 0) return {process, ends[1]};
+      ::close(ends[1]);
+      return {};
+    }
+    ::close(ends[1]);
+    stand_by(ends[0], left);
+  }
+}
+
+/// The second one has the next order before it is taken out of the pipe: the first may be killed at
+/// any moment.
+void pass_on(int pipe, Left& left, Second& second) {
+  pollfd wait{pipe, POLLIN, 0};
+  while (::poll(&wait, 1, -1) < 0 && errno == EINTR) {
+  }
+  // Without waiting: one that was stopped does not stop the first.
+  const auto copy = [&] { return ::tee(pipe, second.pipe, sizeof(Order), SPLICE_F_NONBLOCK); };
+  if (copy() >= 0 || errno != EPIPE) return;
+  end(second);  // it was killed
+  second = make_second(left);
+  copy();
+}
+
 [[noreturn]] void guard(int pipe, std::span<char*> arguments) {
   detach(pipe);
   show_name(arguments);
   Left left;
+  Second second = make_second(left);
   for (;;) {
-    const Order order = read_order(pipe);
-    if (order.kind == Kind::end_now) clean_up(left);
-    if (order.kind == Kind::end_now || order.kind == Kind::done) ::_exit(0);
-    take(order, left);
+    pass_on(pipe, left, second);
+    const auto order = read_order(pipe);
+    if (!order || order->kind == Kind::end_now) clean_up(left);
+    if (!order || order->kind == Kind::end_now || order->kind == Kind::done) {
+      end(second);
+      ::_exit(0);
+    }
+    take(*order, left);
   }
 }
 

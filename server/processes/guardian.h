@@ -1,6 +1,7 @@
 #pragma once
 // A small process beside this one. It sees when this one ends, however that happens (SIGKILL, a
-// crash), and then ends the processes that this one started and removes its files.
+// crash), and then ends the processes that this one started and removes its files. A second one takes
+// its place if it is killed.
 
 #include <sys/types.h>
 

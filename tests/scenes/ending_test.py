@@ -26,15 +26,24 @@ SLOW_TICK = """<argos-configuration>
     for i in range(20)))
 
 
-def guardian_of(process):
+def guardian_of(parent):
+    """The id of the guardian that this process started."""
     for entry in pathlib.Path("/proc").iterdir():
         try:
             name, _, rest = (entry / "stat").read_text().partition("(")[2].rpartition(")")
         except OSError:  # no process, or gone
             continue
-        if name == "zig-guardian" and int(rest.split()[1]) == process.pid:
+        if name == "zig-guardian" and int(rest.split()[1]) == parent:
             return int(entry.name)
     raise AssertionError("there is no guardian")
+
+
+def guardians_of(process):
+    """The second one first: it takes the place of the other when that is killed."""
+    first = guardian_of(process.pid)
+    while not pathlib.Path(f"/proc/{first}/task/{first}/children").read_text():
+        time.sleep(0.01)
+    return [guardian_of(first), first]
 
 
 class Signals(SceneTest):
@@ -124,7 +133,8 @@ class Signals(SceneTest):
     def test_without_guardian_it_leaves_nothing(self):
         for number in (signal.SIGKILL, signal.SIGSTOP):
             process = self.begin_endless()
-            os.kill(guardian_of(process), number)
+            for guardian in guardians_of(process):
+                os.kill(guardian, number)
             self.interrupt(process)
             self.assertEqual(self.finish(process).code, INTERRUPTED)
             self.assertEqual(list(self.runtime.iterdir()), [])
@@ -156,10 +166,25 @@ class Killed(SceneTest):
         self.wait_for(lambda: list(self.runtime.iterdir()), lambda left: not left,
                       "removal of the private folder")
 
+    def test_a_shells_children_end_with_the_server_and_its_guardian(self):
+        command = "sh -c 'sleep 1000.75 & sleep 1000.75 & echo begun; wait'; true"
+        for is_first in (True, False):
+            process = self.start("run", self.scene, "--controller", f"swing={command}")
+            self.read_until(process.stdout, "^begun$")
+            guardian = guardians_of(process)[1]
+            for each in (process.pid, guardian) if is_first else (guardian, process.pid):
+                os.kill(each, signal.SIGKILL)
+            process.wait()
+            self.wait_for(lambda: [t for _, t in self.processes("sleep 1000.75") if t.startswith("sleep")],
+                          lambda left: not left, "end of the shell's children")
+            self.wait_for(lambda: list(self.runtime.iterdir()), lambda left: not left,
+                          "removal of the private folder")
+
     def test_lua_processes_end_without_guardian_too(self):
         process = self.start("run", self.scene, *ENDLESS, "--lua-processes", 2)
         self.read_until(process.stdout, r"^\[20 r2\]")
-        os.kill(guardian_of(process), signal.SIGKILL)
+        for guardian in guardians_of(process):
+            os.kill(guardian, signal.SIGKILL)
         process.kill()
         process.wait()
         self.assertEqual(self.left_processes(), [])

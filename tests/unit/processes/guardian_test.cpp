@@ -110,5 +110,33 @@ TEST(Guardian, OneThatIsSlowIsNotCutShort) {
   EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/file"); }));
 }
 
+TEST(Guardian, OneThatIsKilledHasASecondThatTakesItsPlace) {
+  const PrivateFolder folder;
+  const std::string in = folder.path();
+  for (const char* name : {"before", "between", "after"}) std::ofstream(in + "/" + name) << "x";
+  in_another_process([&] {
+    const Guardian guardian;
+    const auto child_of = [](pid_t parent) {
+      const std::string id = std::to_string(parent);
+      std::ifstream children("/proc/" + id + "/task/" + id + "/children");
+      pid_t child = 0;
+      children >> child;
+      return child;
+    };
+    guardian.remove_file(in + "/before");
+    const pid_t first = child_of(::getpid());
+    eventually([&] { return child_of(first) != 0; });
+    const pid_t second = child_of(first);
+    ::kill(first, SIGKILL);
+    guardian.remove_file(in + "/between");
+    eventually([&] { return child_of(second) != 0; });
+    guardian.remove_file(in + "/after");
+    ::kill(::getpid(), SIGKILL);
+  });
+  for (const char* name : {"before", "between", "after"}) {
+    EXPECT_TRUE(eventually([&] { return !fs::exists(in + "/" + name); })) << name;
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::processes
