@@ -161,7 +161,8 @@ void end(const Second& second) {
 
 /// In the second guardian: learns what the first one learns, until that is killed.
 void stand_by(int first, Left& left) {
-  ::setsid();  // a signal for the first one's group is not for it
+  ::setsid();                          // a signal for the first one's group is not for it
+  ::prctl(PR_SET_PDEATHSIG, SIGCONT);  // it may have been stopped
   while (const auto order = read_order(first)) {
     if (order->kind == Kind::done) ::_exit(0);
     take(*order, left);

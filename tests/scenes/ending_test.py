@@ -38,6 +38,14 @@ def guardian_of(parent):
     raise AssertionError("there is no guardian")
 
 
+def has_ended(pid):
+    """Also if its new parent has not asked for it yet."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except OSError:
+        return True
+
+
 def guardians_of(process):
     """The second one first: it takes the place of the other when that is killed."""
     first = guardian_of(process.pid)
@@ -133,11 +141,14 @@ class Signals(SceneTest):
     def test_without_guardian_it_leaves_nothing(self):
         for number in (signal.SIGKILL, signal.SIGSTOP):
             process = self.begin_endless()
-            for guardian in guardians_of(process):
+            guardians = guardians_of(process)
+            for guardian in guardians:
                 os.kill(guardian, number)
             self.interrupt(process)
             self.assertEqual(self.finish(process).code, INTERRUPTED)
             self.assertEqual(list(self.runtime.iterdir()), [])
+            self.wait_for(lambda: [each for each in guardians if not has_ended(each)], lambda left: not left,
+                          "end of the guardians")
 
     def wait_until_blocked(self, pid):
         """Until the process has had no processor time for most of a second."""
