@@ -228,12 +228,13 @@ void Snapshot::meet(Problem& problem) const {
 }
 
 /// Newton's method from the present state, whose speeds are taken.
-/// @return  whether it converged; then the problem holds the solution
-bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
+/// @param most_far  iterations that miss the law by much
+/// @return          whether it converged; then the problem holds the solution
+bool Solver::iterate(Problem& problem, Outcome& outcome, int most_far) {
   constexpr double same = 1e-6;
   double scale = 0, last = 0, last_but_one = 0;
   int far = 0;
-  for (int i = 0; i < most; ++i) {
+  for (int i = 0; i < options.most_iterations; ++i) {
     if (i > 3) earlier_.take(problem);
     if (!step(problem)) return false;
     ++outcome.iterations;
@@ -247,7 +248,7 @@ bool Solver::iterate(Problem& problem, Outcome& outcome, int most) {
       far = 0;
       continue;
     }
-    if (outcome.miss > options.far * scale && ++far >= options.most_far) return false;
+    if (outcome.miss > options.far * scale && ++far >= most_far) return false;
     if (outcome.miss > options.near * scale) continue;
     const double before = outcome.miss;
     earlier_.take(problem);
@@ -292,7 +293,7 @@ Outcome Solver::solve(Problem& problem) {
     return outcome;
   }
   if (work <= options.newton_work) {
-    if (iterate(problem, outcome, options.most_iterations)) return outcome;
+    if (iterate(problem, outcome, options.most_far)) return outcome;
     start_.give_back(problem);
     if (soften_after_sweeps(problem, outcome)) return outcome;
     start_.give_back(problem);

@@ -91,7 +91,7 @@ class Solver {
 
  private:
   void start_matrix(Problem& problem);
-  bool iterate(Problem& problem, Outcome& outcome, int most);
+  bool iterate(Problem& problem, Outcome& outcome, int most_far);
   bool step(Problem& problem);
   void correct(Problem& problem);
   double start(Problem& problem);
