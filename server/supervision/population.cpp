@@ -131,7 +131,8 @@ std::variant<Population::Candidate, wire::Fault> Population::read(
   }
   const network::DirectorsDesk directors(server_);
   const auto is_used = [&](const std::string& id) { return is_taken(id) || directors.has(id); };
-  Candidate candidate{.act = {xml, {}, {}}};
+  Candidate candidate;
+  candidate.act = {xml, {}, {}};
   scene::Addition& addition = candidate.addition;
   try {
     addition = world_.additions.read(xml, world_.scene, size_left_ - std::min(size_left_, earlier.size),

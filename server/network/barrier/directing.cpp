@@ -36,6 +36,13 @@ bool is_id(std::string_view text) {
   });
 }
 
+/// Of what was subscribed to, for a director that knows nothing of the world yet.
+wire::WorldView view_of(wire::Subscription subscription) {
+  wire::WorldView view;
+  view.subscription = std::move(subscription);
+  return view;
+}
+
 /// What is wrong with what a director asks for, also for no director of the scene.
 std::optional<wire::Refusal> check_wishes(const Barrier& barrier, const wire::Hello& hello) {
   if (!hello.robots.empty() || !hello.controller.empty() || hello.lua_only) {
@@ -90,7 +97,7 @@ void sort_last(Directors& directors) {
 
 void add_from_outside(Barrier& barrier, const std::string& id) {
   Directors& directors = barrier.directors;
-  directors.all.push_back({.id = id});
+  directors.all.emplace_back().id = id;
   directors.answers.emplace_back();
   directors.seats.add(barrier.now, true);
   directors.deadlines.grow(directors.deadline_of_others);
@@ -260,7 +267,7 @@ std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wi
 void take_director(Barrier& barrier, Session& session, const wire::Hello& hello) {
   wire::Subscription subscription = hello.subscription.value_or(session.view.subscription);
   const bool is_of_none = !hello.subscription && hello.session_token.empty();
-  session.view = {std::move(subscription)};
+  session.view = view_of(std::move(subscription));
   if (is_of_none) session.view.subscription.entities = {std::string()};  // no entity has that id
   barrier.directors.seats.take(*session.director, session.id, barrier.now);
   if (hello.deadline || hello.session_token.empty()) {
@@ -309,7 +316,7 @@ bool show_world(Barrier& barrier, Session& session) {
     }
     const Delivery told = send(barrier, session);
     if (told != Delivery::sent) {  // all of it is told with the next tick
-      session.view = {std::move(session.view.subscription)};
+      session.view = view_of(std::move(session.view.subscription));
       return told == Delivery::congested && session.turn.patience;
     }
   }
@@ -379,7 +386,7 @@ void forget_directions(Barrier& barrier) {
   directors.deadlines.reset();
   directors.truth.reset();
   barrier.sessions.for_each([](Session& session) {
-    session.view = {std::move(session.view.subscription)};
+    session.view = view_of(std::move(session.view.subscription));
   });
 }
 
@@ -421,8 +428,11 @@ std::vector<DirectorStatus> director_status(const Barrier& barrier) {
   for (std::size_t i = 0; i < directors.all.size(); ++i) {
     const Seats::Seat& seat = directors.seats[i];
     const Session* session = barrier.sessions.find(seat.owner());
-    DirectorStatus status{directors.all[i].id, seat.holder != SessionId::none, seat.has_left,
-                          seat.was_held};
+    DirectorStatus status;
+    status.id = directors.all[i].id;
+    status.is_held = seat.holder != SessionId::none;
+    status.has_left = seat.has_left;
+    status.was_held = seat.was_held;
     status.waits = directors.deadlines.policy(i).action == scene::DeadlineAction::wait;
     if (session != nullptr) {
       status.client = session->client;
