@@ -21,6 +21,13 @@ v1::ClientMessage hello(v1::Role role) {
   return message;
 }
 
+void take_all_robots(Server& server, Peer& client) {
+  auto wish = hello(v1::ROLE_CONTROLLER);
+  wish.mutable_hello()->add_robots("*");
+  client.say(wish);
+  ASSERT_EQ(server.gather(patience), Outcome::complete);
+}
+
 /// On a path: there the end of a connection is found out at once.
 Config path_config() {
   Config config;
@@ -43,10 +50,7 @@ TEST(BetweenTicks, ASessionOfRobotsThatAResetHasTakenAwayIsOverWithoutThem) {
   world::Commands commands = small.commands();
   {
     Peer client(server.endpoints());
-    auto wish = hello(v1::ROLE_CONTROLLER);
-    wish.mutable_hello()->add_robots("*");
-    client.say(wish);
-    ASSERT_EQ(server.gather(patience), Outcome::complete);
+    take_all_robots(server, client);
     const world::Observations seen = small.observations(0);
     server.publish(seen, no_tags);
     v1::ClientMessage answer;
@@ -54,8 +58,7 @@ TEST(BetweenTicks, ASessionOfRobotsThatAResetHasTakenAwayIsOverWithoutThem) {
     client.say(answer);
     ASSERT_EQ(server.collect(commands, patience), Outcome::complete);
   }
-  std::this_thread::sleep_for(
-      milliseconds{200});  // longer than between heartbeats; the client is gone
+  std::this_thread::sleep_for(milliseconds{200});  // longer than between heartbeats; the client is gone
   server.take_report();
   small.layout().robots.resize(1);
   server.restart({42});
@@ -76,10 +79,7 @@ TEST(BetweenTicks, AWorldThatIsBeingPutBackSendsHeartbeatsAndLooksAtNoRobots) {
   observer.say(hello(v1::ROLE_OBSERVER));
   {
     Peer client(server.endpoints());
-    auto wish = hello(v1::ROLE_CONTROLLER);
-    wish.mutable_hello()->add_robots("*");
-    client.say(wish);
-    ASSERT_EQ(server.gather(patience), Outcome::complete);
+    take_all_robots(server, client);
     server.linger(commands, {milliseconds{200}, {}});
   }
   ASSERT_TRUE(observer.hear().has_welcome());
