@@ -88,9 +88,8 @@ void compute_mass(const Tree& tree, Workspace& work) {
   if (tree.free_root) set_root_mass(work.inertia[0], work.mass.data(), n);
 }
 
-void bias_forces(const Tree& tree, Workspace& work, std::span<double> out) {
-  const int size = static_cast<int>(tree.links.size());
-  for (int i = 0; i < size; ++i) {
+void bias_accelerations(const Tree& tree, Workspace& work) {
+  for (int i = 0; i < static_cast<int>(tree.links.size()); ++i) {
     const Link& link = tree.links[i];
     const Motion& motion = tree.motion[i];
     Motion& acceleration = work.acceleration[i];
@@ -106,12 +105,19 @@ void bias_forces(const Tree& tree, Workspace& work, std::span<double> out) {
       }
       acceleration = acceleration + cross(tree.motion[link.parent], relative);
     }
-    if (link.joint == JointType::fixed) {
+  }
+}
+
+void bias_forces(const Tree& tree, Workspace& work, std::span<double> out) {
+  bias_accelerations(tree, work);
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    if (tree.links[i].joint == JointType::fixed) {
       work.wrench[i] = Wrench{};
       continue;
     }
     const Inertia& inertia = work.own_inertia[i];
-    work.wrench[i] = inertia * acceleration + cross(motion, inertia * motion);
+    const Motion& motion = tree.motion[i];
+    work.wrench[i] = inertia * work.acceleration[i] + cross(motion, inertia * motion);
   }
   project_wrenches(tree, work, out);
 }

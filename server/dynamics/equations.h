@@ -32,6 +32,10 @@ struct Workspace {
 /// need it, for the same tree.
 void compute_mass(const Tree& tree, Workspace& work);
 
+/// What links accelerate by while all speeds of coordinates stay, into work.acceleration: spatial, about O; needs place()
+/// and move().
+void bias_accelerations(const Tree& tree, Workspace& work);
+
 /// Coriolis, centrifugal and gyroscopic forces c(q, v); needs place() and move().
 /// @param out  of each dof [N m] or [N]
 void bias_forces(const Tree& tree, Workspace& work, std::span<double> out);

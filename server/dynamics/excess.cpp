@@ -195,7 +195,7 @@ void give_back_turning(Tree& tree, double excess) {
 /// @param most  kinetic energy [J]
 void slow_down(Tree& tree, double most) {
   const double all = kinetic_energy(tree);
-  if (all - most <= negligible * all) return;
+  if (all <= 0 || all - most <= negligible * all) return;
   const double share = std::sqrt(std::max(0.0, most) / all);
   for (double& speed : tree.v) speed *= share;
   move(tree);

@@ -252,6 +252,27 @@ int fly(Tree& tree, Workspace& work, double length) {
 
 namespace {
 
+/// What a single body's angular velocity becomes within a substep by its own turning.
+void turn_freely(const Tree& tree, double length, Vector3& omega) {
+  const Vector3& inertia = tree.links[0].inertia;
+  if (omega.norm() * length > slow) {
+    double place[4];
+    std::copy_n(tree.q.data() + 3, 4, place);
+    turn(place, inertia, length, omega);
+    return;
+  }
+  // By the midpoint rule, in the body's axes: its error is of order 3 in the angle. The axes turn, too.
+  const Matrix3& r = tree.rotation[0];
+  const auto change = [&](const Vector3& w) -> Vector3 {
+    return w.cwiseProduct(inertia).cross(w).cwiseQuotient(inertia);
+  };
+  const Vector3 w = r.transpose() * omega;
+  const Vector3 middle = w + length / 2 * change(w);
+  const Vector3 turned = w + length * change(middle);
+  const Vector3 angle = length * middle;
+  omega = r * (turned + angle.cross(turned) + angle.cross(angle.cross(turned)) / 2);
+}
+
 void momentum_of_body(const Tree& tree, Workspace& work, double length, std::span<double> out) {
   const Link& link = tree.links[0];
   const Matrix3& r = tree.rotation[0];
@@ -261,10 +282,8 @@ void momentum_of_body(const Tree& tree, Workspace& work, double length, std::spa
   Vector3 momentum = r * (r.transpose() * omega).cwiseProduct(link.inertia);
   work.drift.fill(0);
   work.bending = 0;
-  if (!symmetric(link.inertia) && omega.norm() * length > slow) {
-    double place[4];
-    std::copy_n(tree.q.data() + 3, 4, place);
-    turn(place, link.inertia, length, omega);
+  if (!symmetric(link.inertia)) {
+    turn_freely(tree, length, omega);
     const Vector3 flown = r * (r.transpose() * omega).cwiseProduct(link.inertia);
     for (int k = 0; k < 3; ++k) work.drift[k] = momentum[k] - flown[k];
     const double size = momentum.squaredNorm();

@@ -31,6 +31,12 @@ void hold(const Block& block, int row, Linear& out) {
   out.constant[row] = block.impulse[row] + stiffness * block.seek[row];
 }
 
+void hold_normal(const Block& block, Linear& out) {
+  if (block.yield == 0) return hold(block, 0, out);
+  out.slope[0] = 1 / block.yield;
+  out.constant[0] = block.seek[0] / block.yield;
+}
+
 /// Friction within a disc: sticks, or slides with its whole bound against the slip.
 /// @param normal  part of y, > 0
 void linearise(const Block& block, const Disc& disc, const double* y, Linear& out) {
@@ -92,7 +98,8 @@ bool is_plain(const Block& block) { return block.rows == 3 && block.law == Block
 
 /// y of one row, see law.h.
 double pressed(const Block& block, const double* u, int row) {
-  return block.impulse[row] - (u[row] - block.seek[row]) / block.mobility[row];
+  const double yields = row == 0 ? block.yield * block.impulse[0] : 0;
+  return block.impulse[row] - (u[row] + yields - block.seek[row]) / block.mobility[row];
 }
 
 void linearise_plain(const Block& block, const double* u, Linear& out) {
@@ -101,12 +108,10 @@ void linearise_plain(const Block& block, const double* u, Linear& out) {
   if (out.zero) return;
   const double y[2] = {pressed(block, u, 1), pressed(block, u, 2)};
   const double* seek = block.seek.data() + 1;
-  const double stiffness = 1 / (give * block.mobility[0]);
   auto& slope = out.slope;
   auto& constant = out.constant;
-  slope[0] = stiffness;
   slope[1] = slope[2] = 0;
-  constant[0] = block.impulse[0] + stiffness * block.seek[0];
+  hold_normal(block, out);
   const double bound = block.friction * normal, square = y[0] * y[0] + y[1] * y[1];
   if (square <= bound * bound) {
     const double held = 1 / (give * block.mobility[1]);  // both tangents have the same mobility
@@ -177,7 +182,7 @@ void linearise(const Block& block, const double* u, Linear& out) {
     }
     return;
   }
-  hold(block, 0, out);
+  hold_normal(block, out);
   Disc all[3];
   const int count = discs(block, all);
   for (int d = 0; d < count; ++d) linearise(block, all[d], y, out);
@@ -203,8 +208,11 @@ void soften(const Block& block, const double* u, double softness, double* impuls
   const double lower = block.law == Block::Law::bounded ? block.lower : 0;
   const double upper =
       block.law == Block::Law::bounded ? block.upper : std::numeric_limits<double>::infinity();
+  const double give_of_normal = softness * block.mobility[0];
+  const double share = give_of_normal / (give_of_normal + block.yield);
+  y[0] *= share;
   impulse[0] = std::clamp(y[0], lower, upper);
-  if (y[0] > lower && y[0] < upper) give_way(0, 0, 1);
+  if (y[0] > lower && y[0] < upper) give_way(0, 0, share);
   Disc all[3];
   const int count = discs(block, all);
   for (int d = 0; d < count; ++d) {
@@ -245,6 +253,17 @@ double miss(const Block& block, const double* u) {
     worst = std::max(worst, std::abs(block.impulse[r] - y[r]) * block.mobility[r]);
   }
   return worst;
+}
+
+double wrong_energy(const Block& block, const double* u) {
+  const int rows = active_rows(block);
+  double y[Block::most_rows], sum = 0;
+  for (int r = 0; r < rows; ++r) y[r] = pressed(block, u, r);
+  project(block, y);
+  for (int r = 0; r < rows; ++r) {
+    sum += (block.impulse[r] - y[r]) * (block.impulse[r] - y[r]) * block.mobility[r];
+  }
+  return sum;
 }
 
 void clip(const Block& block, double* impulse) { project(block, impulse); }

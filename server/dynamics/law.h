@@ -29,6 +29,9 @@ void soften(const Block& block, const double* u, double softness, double* impuls
 /// By how much the block's impulses and speeds miss the law [m/s] or [rad/s].
 double miss(const Block& block, const double* u);
 
+/// What the block misses the law by, as the energy of the impulses that are wrong [J].
+double wrong_energy(const Block& block, const double* u);
+
 /// Clips impulses to the law's bounds at their own normal part.
 void clip(const Block& block, double* impulse);
 

@@ -75,16 +75,21 @@ double add_to_scale(const Block& block, const double* u, double& scale) {
   return sum;
 }
 
-/// @param scale  out: the largest of the blocks' speeds, or change of speed by an impulse
-/// @return       false if a speed or an impulse is no number
-bool find_scale(const Problem& problem, const Speeds& speeds, double& scale) {
+/// @param scale      out: the largest of the contacts' speeds, or change of speed by an impulse; of servos and limits
+///                   where nothing touches: a fast wheel does not say how exact contacts must be
+/// @param of_joints  out: of servos and limits
+/// @return           false if a speed or an impulse is no number
+bool find_scale(const Problem& problem, const Speeds& speeds, double& scale, double& of_joints) {
   double sum = 0;
-  scale = 0;
+  scale = of_joints = 0;
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    by_rows(problem.blocks[i].rows, [&](auto rows) {
-      sum += add_to_scale<rows()>(problem.blocks[i], speeds[i].data(), scale);
+    const Block& block = problem.blocks[i];
+    by_rows(block.rows, [&](auto rows) {
+      sum += add_to_scale<rows()>(block, speeds[i].data(),
+                                  block.kind == Block::Source::contact ? scale : of_joints);
     });
   }
+  if (scale == 0) scale = of_joints;
   return std::isfinite(sum);  // the maxima skip what is no number
 }
 
@@ -195,7 +200,8 @@ void Solver::correct(Problem& problem) {
 /// @param scale  out: see find_scale()
 /// @return       infinite if a speed or an impulse is no number
 double Solver::miss_now(const Problem& problem, double& scale) const {
-  return find_scale(problem, speeds_, scale) ? miss_beyond(problem, speeds_, HUGE_VAL) : HUGE_VAL;
+  double of_joints = 0;
+  return find_scale(problem, speeds_, scale, of_joints) ? miss_beyond(problem, speeds_, HUGE_VAL) : HUGE_VAL;
 }
 
 double Solver::worst_miss(const Problem& problem, double& scale) {
@@ -214,50 +220,86 @@ void Snapshot::give_back(Problem& problem) const {
   for (std::size_t i = 0; i < impulses.size(); ++i) problem.blocks[i].impulse = impulses[i];
 }
 
-void Snapshot::meet(Problem& problem) const {
+void Snapshot::draw_back(Problem& problem, double share) const {
   for (std::size_t k = 0; k < velocity.size(); ++k) {
-    problem.velocity[k] = (problem.velocity[k] + velocity[k]) / 2;
+    problem.velocity[k] += share * (velocity[k] - problem.velocity[k]);
   }
   for (std::size_t i = 0; i < impulses.size(); ++i) {
-    if (problem.blocks[i].law != Block::Law::contact) continue;
     for (int r = 0; r < problem.blocks[i].rows; ++r) {
       double& impulse = problem.blocks[i].impulse[r];
-      impulse = (impulse + impulses[i][r]) / 2;
+      impulse += share * (impulses[i][r] - impulse);
     }
   }
 }
 
-/// Newton's method from the present state, whose speeds are taken.
-/// @param most_far  iterations that miss the law by much
-/// @return          whether it converged; then the problem holds the solution
-bool Solver::iterate(Problem& problem, Outcome& outcome, int most_far) {
-  constexpr double same = 1e-6;
-  double scale = 0, last = 0, last_but_one = 0;
-  int far = 0;
-  for (int i = 0; i < options.most_iterations; ++i) {
-    if (i > 3) earlier_.take(problem);
-    if (!step(problem)) return false;
-    ++outcome.iterations;
-    outcome.miss = miss_now(problem, scale);
-    if (outcome.miss <= tolerance(scale)) return true;
-    const bool to_and_fro = i > 3 && std::abs(outcome.miss - last_but_one) < same * outcome.miss;
-    last_but_one = std::exchange(last, outcome.miss);
-    if (to_and_fro) {  // such as between sliding forth and back, while a motor gives all that it has
-      earlier_.meet(problem);
-      take_speeds(problem);
-      far = 0;
-      continue;
-    }
-    if (outcome.miss > options.far * scale && ++far >= most_far) return false;
-    if (outcome.miss > options.near * scale) continue;
+/// At the speeds that were taken.
+double Solver::wrong_energy_now(const Problem& problem) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    sum += wrong_energy(problem.blocks[i], speeds_[i].data());
+  }
+  return sum;
+}
+
+/// Halves a step of Newton's method, from `earlier_`, until less is wrong than before.
+/// @param wrong  see wrong_energy(): before; out: after
+void Solver::shorten(Problem& problem, double& wrong) {
+  constexpr int most = 6;
+  const double before = wrong;
+  for (int i = 0; i <= most; ++i) {
+    wrong = wrong_energy_now(problem);
+    if (wrong < before || i == most) return;
+    earlier_.draw_back(problem, 0.5);
+    take_speeds(problem);
+  }
+}
+
+/// Steps with the factors of the last one.
+/// @return  whether they converged; otherwise the problem holds the best state met
+bool Solver::correct_while_nearer(Problem& problem, Outcome& outcome) {
+  constexpr int most = 3;
+  constexpr double much = 0.1;  // less: new factors are worth their time
+  double scale = 0;
+  for (int i = 0; i < most; ++i) {
     const double before = outcome.miss;
     earlier_.take(problem);
     correct(problem);
     outcome.miss = miss_now(problem, scale);
     if (outcome.miss <= tolerance(scale)) return true;
-    if (outcome.miss <= before) continue;
-    earlier_.give_back(problem);  // where contacts are redundant it may lead far away
-    take_speeds(problem);
+    if (outcome.miss > before) {  // where contacts are redundant it may lead far away
+      earlier_.give_back(problem);
+      take_speeds(problem);
+      outcome.miss = before;
+    }
+    if (outcome.miss > much * before) return false;
+  }
+  return false;
+}
+
+/// Newton's method from the present state, whose speeds are taken. From the third step on it goes only as far as less is
+/// wrong: it went round, as between the two ends of a wheel's line that stick and slide by turns while its motor gives
+/// all that it has.
+/// @param most_far  iterations that lead no nearer and miss the law by much
+/// @return          whether it converged; then the problem holds the solution
+bool Solver::iterate(Problem& problem, Outcome& outcome, int most_far) {
+  double scale = 0, wrong = HUGE_VAL;
+  int far = 0;
+  for (int i = 0; i < options.most_iterations; ++i) {
+    const bool shortens = i > 1;
+    const double wrong_before = wrong;
+    if (shortens) earlier_.take(problem);
+    if (!step(problem)) return false;
+    ++outcome.iterations;
+    if (shortens) shorten(problem, wrong);
+    outcome.miss = miss_now(problem, scale);
+    if (outcome.miss <= tolerance(scale)) return true;
+    if (!shortens) wrong = wrong_energy_now(problem);
+    const bool nears = wrong < 0.5 * wrong_before;
+    if (outcome.miss > options.far * scale && !nears && ++far >= most_far) return false;
+    if (outcome.miss <= options.rounding * scale && !nears) return true;
+    if (outcome.miss > options.near * scale) continue;
+    if (correct_while_nearer(problem, outcome)) return true;
+    wrong = wrong_energy_now(problem);
   }
   return false;
 }
@@ -276,12 +318,14 @@ double Solver::start(Problem& problem) {
 
 /// Whether the velocities and impulses of the last substep still solve the problem.
 bool Solver::still_solved(const Problem& problem, Outcome& outcome) {
-  double scale = 0;
+  double scale = 0, of_joints = 0;
   take_speeds(problem);
-  const bool finite = find_scale(problem, speeds_, scale);
-  const double enough = options.absolute_tolerance + options.still_tolerance * scale;
+  const bool finite = find_scale(problem, speeds_, scale, of_joints);
+  const double enough = tolerance(scale);
   outcome.miss = finite ? miss_beyond(problem, speeds_, enough) : HUGE_VAL;
-  return outcome.miss <= enough && imbalance(problem, residual_) <= enough;
+  if (outcome.miss > enough) return false;
+  const double balanced = options.absolute_tolerance + options.still_tolerance * std::max(scale, of_joints);
+  return imbalance(problem, residual_) <= balanced;
 }
 
 Outcome Solver::solve(Problem& problem) {
@@ -297,6 +341,7 @@ Outcome Solver::solve(Problem& problem) {
     start_.give_back(problem);
     if (soften_after_sweeps(problem, outcome)) return outcome;
     start_.give_back(problem);
+    problem.harden();
   } else if (proximal(problem, outcome)) {
     return outcome;
   }

@@ -29,8 +29,8 @@ struct Outcome {
 struct SolverOptions {
   double newton_work = 3e4;  ///< multiplications of a factorisation; more: not on the law itself
   int most_iterations = 16;  ///< of Newton's method on the law itself
-  double near = 1e-5;        ///< a miss of this times the largest speed needs no new factors
-  int most_far = 6;          ///< iterations with a miss above `far`: it goes round, and rarely ends
+  double near = 1e-3;        ///< a miss of this times the largest speed needs no new factors
+  int most_far = 6;          ///< iterations that lead no nearer, with a miss above `far`
   double far = 1e-3;         ///< times the largest speed
   int most_descents = 8;     ///< full steps of the softened problem
   double softness = 1e-3;    ///< its impulses give way by this times the mobility
@@ -41,8 +41,9 @@ struct SolverOptions {
   int first_sweeps = 20;              ///< before patient steps
   int most_patient = 60;              ///< steps of the softened problem with a line search
   int displacement_sweeps = 20;       ///< of a displacement that Newton's method does not find
+  double rounding = 1e-7;             ///< of it, where Newton's method leads no nearer
   double relative_tolerance = 1e-9;   ///< of the largest speed or speed change in the island
-  double still_tolerance = 1e-8;      ///< of it, for the last substep's solution
+  double still_tolerance = 1e-8;      ///< of it, for the momentum that the last substep's solution misses
   double soft_tolerance = 2e-5;       ///< of it, where Newton's method did not converge
   double absolute_tolerance = 1e-10;  ///< [m/s] or [rad/s]
 };
@@ -74,8 +75,8 @@ struct Snapshot {
   std::vector<std::array<double, Block::most_rows>> impulses;  ///< of each block
   void take(const Problem& problem);
   void give_back(Problem& problem) const;
-  /// Takes velocities and the impulses of contacts half the way back.
-  void meet(Problem& problem) const;
+  /// Takes velocities and impulses back by a share of the way.
+  void draw_back(Problem& problem, double share) const;
 };
 
 class Solver {
@@ -93,7 +94,10 @@ class Solver {
   void start_matrix(Problem& problem);
   bool iterate(Problem& problem, Outcome& outcome, int most_far);
   bool step(Problem& problem);
+  void shorten(Problem& problem, double& wrong);
+  double wrong_energy_now(const Problem& problem) const;
   void correct(Problem& problem);
+  bool correct_while_nearer(Problem& problem, Outcome& outcome);
   double start(Problem& problem);
   bool still_solved(const Problem& problem, Outcome& outcome);
   void take_speeds(const Problem& problem);

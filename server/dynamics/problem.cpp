@@ -29,6 +29,14 @@ bool comes_to_lower(const Limit& limit, double q, double speed, double length) {
   return q - limit.lower < limit.upper - q;
 }
 
+/// Whether a link turns by enough that the ways of its points bend.
+bool turns(const Tree& tree, double length) {
+  constexpr double least = 1e-6;  // [rad]
+  return std::ranges::any_of(tree.motion, [&](const Motion& motion) {
+    return motion.angular.squaredNorm() * length * length > least * least;
+  });
+}
+
 }  // namespace
 
 void Problem::clear() {
@@ -42,6 +50,9 @@ void Problem::clear() {
   jacobian.clear();
   momentum.clear();
   inverse_mass.clear();
+  total_mass.clear();
+  bias.clear();
+  first_bias.clear();
   velocity.clear();
   couplings.clear();
 }
@@ -55,6 +66,15 @@ void Problem::add(Tree& tree, Workspace& work) {
   momentum_after(tree, work, length,
                  {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
   for (int k = 0; k < tree.dofs; ++k) inverse_mass.push_back(1 / work.mass[k * tree.dofs + k]);
+  first_bias.push_back(-1);
+  if (softness > 0 && turns(tree, length)) {
+    first_bias.back() = static_cast<int>(bias.size());
+    bias_accelerations(tree, work);
+    bias.insert(bias.end(), work.acceleration.begin(), work.acceleration.end());
+  }
+  double total = 0;
+  for (const Link& link : tree.links) total += link.mass;
+  total_mass.push_back(total);
   mass_offset.push_back(static_cast<int>(mass.size()));
   mass.insert(mass.end(), work.mass.begin(), work.mass.end());
   drift.push_back(work.drift);
@@ -153,9 +173,38 @@ void Problem::rebound(Block& block, double restitution) const {
   const double rise = rest * (restitution * impact + rest * pull / 2);
   if (rise <= 0) return;
   block.bounces = true;
+  block.yield = 0;
   block.rise = rise;
   block.before = -impact - rest * pull;
   block.seek[0] = restitution * impact + rest * pull;
+}
+
+/// What a point of a link accelerates by while the speeds of all coordinates stay [m/s^2].
+/// @param tree  its place in the island
+Vector3 Problem::bend(int tree, int link, const Vector3& point) const {
+  constexpr double most = 0.2;  // of what turns farther in the substep this does not say where it ends [rad]
+  const Motion& motion = trees[tree]->motion[link];
+  if (first_bias[tree] < 0 || motion.angular.squaredNorm() * length * length > most * most) return Vector3::Zero();
+  const Motion& spatial = bias[first_bias[tree] + link];
+  const Vector3 arm = point - trees[tree]->origin;
+  return spatial.linear + spatial.angular.cross(arm) +
+         motion.angular.cross(motion.linear + motion.angular.cross(arm));
+}
+
+/// What a contact that does not rebound seeks. Surfaces that are pressed together give way like stiff springs,
+/// all of a pair alike: so contacts that are more than needed share a load by how far each is pressed in.
+/// How rigid ones share it depends on all that came before.
+void Problem::press(Block& block) const {
+  constexpr double depth = 1e-7;  // no load presses in farther, and no more is pushed out at once [m]
+  block.seek[0] = -block.gap / length;
+  if (softness == 0) {
+    block.seek[0] = std::min(0.0, block.seek[0]);
+    return;
+  }
+  const auto inverse = [&](int place) { return place >= 0 ? 1 / total_mass[place] : 0; };
+  block.seek[0] = std::min(depth / length, block.seek[0]);
+  block.yield = softness * (inverse(block.a) + inverse(block.b));
+  if (block.yield * block.impulse[0] * length > depth) block.yield = depth / (length * block.impulse[0]);
 }
 
 void Problem::add(const Contact& contact, int a, int b, int source) {
@@ -181,13 +230,19 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
   }
   weigh(block);
   block.gap = contact.gap;
-  block.seek[0] = contact.gap > 0 ? -contact.gap / length : 0;
-  if (contact.restitution > 0) rebound(block, contact.restitution);
   const Vector3 impulse = block.frame.transpose() * contact.impulse;
   const Vector3 angular = block.frame.transpose() * contact.angular_impulse;
   block.impulse[0] = std::max(0.0, impulse[0]);
   for (int r = 1; r < std::min(block.rows, 3); ++r) block.impulse[r] = impulse[r];
   for (int r = 3; r < block.rows; ++r) block.impulse[r] = angular[r - 3];
+  press(block);
+  if (a >= 0 && b >= 0 && softness > 0) {  // what lies on a turntable does not drift outwards
+    const Vector3 apart = bend(a, contact.a.link, contact.point) - bend(b, contact.b.link, contact.point);
+    for (int r = 1; r < std::min(block.rows, 3); ++r) {
+      block.seek[r] = -length / 2 * block.frame.col(r).dot(apart);
+    }
+  }
+  if (contact.restitution > 0) rebound(block, contact.restitution);
   block.source = source;
   block.kind = Block::Source::contact;
   if (a >= 0 && b >= 0 && a != b) {
@@ -271,6 +326,15 @@ void Problem::speeds(const Block& block, double* u, const double* v) const {
   });
 }
 
+void Problem::harden() {
+  for (Block& block : blocks) {
+    if (block.yield == 0) continue;
+    block.yield = 0;
+    block.seek[0] = std::min(0.0, block.seek[0]);
+    block.seek[1] = block.seek[2] = 0;
+  }
+}
+
 bool Problem::turn_into_displacement() {
   const auto bounces = [](const Block& block) {
     return block.kind == Block::Source::contact && block.bounces && block.impulse[0] > 0;
@@ -298,6 +362,7 @@ bool Problem::turn_into_displacement() {
     } else {  // overlaps go four fifths a substep; the last micrometre stays
       block.seek[0] = block.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
     }
+    block.yield = 0;
     block.impulse.fill(0);
   }
   std::fill(momentum.begin(), momentum.end(), 0.0);

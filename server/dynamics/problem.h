@@ -34,6 +34,8 @@ struct Block {
   std::array<double, most_rows> impulse{};   ///< [N s], [N m s]
   std::array<double, most_rows> mobility{};  ///< about what a unit impulse changes of u
 
+  double yield = 0;  ///< of a contact: the speed into each other that a normal impulse leaves [1/kg]
+
   std::array<double, most_rows> anchor{};  ///< of the softened law, see law.h [N s], [N m s]
 
   double gap = 0;                   ///< of contacts and limits [m] or [rad]
@@ -47,6 +49,7 @@ struct Block {
 
 struct Problem {
   double length = 0;                         ///< of the substep [s]
+  double softness = 0;                       ///< of surfaces, see System; 0: they are rigid
   double allowed_overlap = 1e-6;             ///< that turn_into_displacement() leaves [m]
   std::vector<Tree*> trees;                  ///< by their index in the system
   std::vector<int> offset;                   ///< of each tree in p and v
@@ -59,6 +62,9 @@ struct Problem {
   std::vector<double> momentum;  ///< p
   std::vector<double>
       inverse_mass;  ///< of each dof as if it were alone: 1 / M_kk [1/kg] or [1/(kg m^2)]
+  std::vector<Motion> bias;                    ///< of each link of the trees that turn, see bias_accelerations()
+  std::vector<int> first_bias;                 ///< of each tree, in `bias`; -1: it hardly turns
+  std::vector<double> total_mass;              ///< of each tree [kg]
   std::vector<double> velocity;                ///< v: start and solution
   std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block
 
@@ -77,6 +83,8 @@ struct Problem {
   void speeds(const Block& block, double* u) const { speeds(block, u, velocity.data()); }
   /// For other velocities, of each dof.
   void speeds(const Block& block, double* u, const double* v) const;
+  /// Makes all surfaces rigid.
+  void harden();
   /// Turns the problem into that of the smallest displacement that undoes overlaps: v in [m] and
   /// [rad], without momentum and friction.
   /// @return  false if there is nothing to undo
@@ -88,6 +96,8 @@ struct Problem {
   int add_columns(const Tree& tree, int rows);
   int add_rows(const Tree& tree, int link, const Vector3& point, const Block& block, double sign);
   void weigh(Block& block) const;
+  Vector3 bend(int tree, int link, const Vector3& point) const;
+  void press(Block& block) const;
   void rebound(Block& block, double restitution) const;
 };
 

@@ -126,7 +126,8 @@ void Sweeps::add(const Problem& problem, const Block& block, int index) {
     }
     impulses_.push_back(block.impulse[r]);
     seek_.push_back(block.seek[r]);
-    inverse_.push_back(square > 0 ? 1 / square : 0);
+    yield_.push_back(r == 0 ? block.yield : 0);
+    inverse_.push_back(square > 0 ? 1 / (square + yield_.back()) : 0);
   }
   coupling_.resize(impulses_.size(), 0.0);
   if (rows == 3) {
@@ -144,7 +145,7 @@ void Sweeps::add(const Problem& problem, const Block& block, int index) {
 
 void Sweeps::start(const Problem& problem) {
   points_.clear(), pairs_.clear(), rows_.clear();
-  impulses_.clear(), seek_.clear(), inverse_.clear(), coupling_.clear();
+  impulses_.clear(), seek_.clear(), yield_.clear(), inverse_.clear(), coupling_.clear();
   factor(problem);
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
     add(problem, problem.blocks[i], static_cast<int>(i));
@@ -168,7 +169,7 @@ void Sweeps::sweep_sliding(const Point& point, const Sides& sides) {
   const double* seek = seek_.data() + point.impulse;
   const double* inverse = inverse_.data() + point.impulse;
   const double u0 = dot<A>(row0, wa, na) + dot<B>(row0 + na, wb, nb);
-  const double normal = g[0] - (u0 - seek[0]) * inverse[0];
+  const double normal = g[0] - (u0 + yield_[point.impulse] * g[0] - seek[0]) * inverse[0];
   if (normal <= 0 && g[0] == 0) return;
   const double* coupling = coupling_.data() + point.impulse;
   const double* row1 = row0 + width;
@@ -199,7 +200,8 @@ void Sweeps::sweep_other(const Point& point, const Sides& sides) {
   const auto row = [&](int r) { return rows_.data() + point.first + r * (na + nb); };
   const auto wanted = [&](int r) {
     const double u = dot<A>(row(r), sides.a, na) + dot<B>(row(r) + na, sides.b, nb);
-    return g[r] - (u - seek_[point.impulse + r]) * inverse_[point.impulse + r];
+    const int i = point.impulse + r;
+    return g[r] - (u + yield_[i] * g[r] - seek_[i]) * inverse_[i];
   };
   const auto give = [&](int r, double now) {
     const double change = now - g[r];

@@ -36,7 +36,7 @@ class Sweeps {
   struct Point {
     int block;                           // into Problem::blocks
     int first;                           // into rows_: of each row `a` and `b` values
-    int impulse;                         // into impulses_, and so of seek_ and inverse_
+    int impulse;                         // into impulses_, and so of seek_, yield_ and inverse_
     int rows;                            // that are solved
     double friction, spinning, rolling;  // bounds over the normal impulse
     double lower, upper;                 // of the normal impulse or the only one
@@ -68,7 +68,7 @@ class Sweeps {
   std::vector<double> factors_;  // C of all trees
   std::vector<int> factor_of_;   // of each tree, into factors_
   // Of each row: its impulse, the speed that it seeks, 1 / (j j^T), j j_normal^T.
-  std::vector<double> impulses_, seek_, inverse_, coupling_;
+  std::vector<double> impulses_, seek_, yield_, inverse_, coupling_;
   // Of the conjugate directions.
   std::vector<double> impulses_before_, w_before_, direction_, w_direction_, change_;
   double square_ = 0;

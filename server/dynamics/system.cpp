@@ -12,10 +12,18 @@
 namespace ziggurat::dynamics {
 namespace {
 
+constexpr int most_soft = 16;  // trees of an island: larger ones are solved for rigid surfaces
+
 enum Kind { contact_item, servo_item, limit_item };
 
 bool free_to_drift(const Tree& tree) {
   return tree.links[0].joint == JointType::floating && tree.freedoms == all_freedoms;
+}
+
+/// Whether a block does more than push out what is pressed in.
+bool holds(const Block& block) {
+  const double pushed = block.yield > 0 ? 2 * std::max(0.0, block.seek[0]) : 0;
+  return std::abs(block.impulse[0]) * block.mobility[0] > pushed;
 }
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -49,7 +57,7 @@ void keep_momentum(Tree& tree, Workspace& work, const Vector3& origin, const dou
   move(tree);
 }
 
-/// Moves a tree of the island. What touches nothing fixed keeps its momentum, and so does what would gain energy.
+/// Moves a tree of the island. What nothing fixed rubs keeps its momentum, and so does what would gain energy.
 void displace(const Problem& problem, std::size_t i, std::span<const double> by, bool drifts,
               const Excesses& excesses, Workspace& work) {
   Tree& tree = *problem.trees[i];
@@ -245,6 +253,7 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
   problem_.clear();
   problem_.length = length_;
   problem_.allowed_overlap = allowed_overlap;
+  problem_.softness = last_tree - first_tree <= most_soft ? softness : 0;
   for (int i = first_tree; i < last_tree; ++i) {
     problem_.add(trees[tree_order_[i]], work_);
   }
@@ -271,8 +280,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const bool rebounding = rebounds(problem_);
   if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);
   write_impulses();
-  const bool touched = std::any_of(problem_.blocks.begin(), problem_.blocks.end(),
-                                   [](const Block& b) { return b.impulse[0] != 0; });
+  const bool touched = std::any_of(problem_.blocks.begin(), problem_.blocks.end(), holds);
   if (!touched) {  // what it flew past did not hold it
     for (Tree* tree : problem_.trees) fly(*tree, work_, length_);
     settle(first_tree, last_tree, false);
@@ -285,9 +293,9 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     Tree& tree = *problem_.trees[i];
     std::copy_n(problem_.velocity.begin() + problem_.offset[i], tree.dofs, tree.v.begin());
   }
-  const bool grounded = std::any_of(
-      problem_.blocks.begin(), problem_.blocks.end(),
-      [](const Block& b) { return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0); });
+  const bool grounded = std::any_of(problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
+    return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0) && b.friction > 0;
+  });
   const bool carried =
       std::any_of(problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
         return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0) && b.impulse[0] > 0;

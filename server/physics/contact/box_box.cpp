@@ -1,8 +1,8 @@
 // Box against box: separating axes with signed distance, then the incident face clipped
 // against the reference face (S. Gottschalk 1996 for the axes; the clipping is Sutherland and
-// Hodgman's). Boxes that overlap always get a contact. Of those that are apart, two that pass
-// diagonally may get none, as the clipped face is empty: so blocks of a lattice, which touch their
-// diagonal neighbours along an edge, can slide past them.
+// Hodgman's). Boxes that overlap always get a contact. Of those that are apart and not turned
+// against each other, two that pass diagonally may get none, as the clipped face is empty: so
+// blocks of a lattice, which touch their diagonal neighbours along an edge, can slide past them.
 
 #include "physics/contact/pairs.h"
 #include "physics/contact/polygon.h"
@@ -87,6 +87,68 @@ void cross_edges(const OrientedBox& a, const OrientedBox& b, const Separation& e
   out.add(on_b + w * along, edge.distance);
 }
 
+/// An edge of a box.
+struct Edge {
+  btVector3 middle, direction;  ///< [m]; unit
+  btScalar half_length;         ///< [m]
+  btVector3 sides[2];           ///< outward normals of the faces that meet there
+};
+
+/// The edge along an axis that is farthest in a direction.
+Edge edge_of(const OrientedBox& box, int along, const btVector3& direction) {
+  Edge edge{box.centre, box.axis[along], box.half[along], {}};
+  for (int k = 0; k < 2; ++k) {
+    const int i = (along + 1 + k) % 3;
+    edge.sides[k] = box.axis[i].dot(direction) < 0 ? -box.axis[i] : box.axis[i];
+    edge.middle += edge.sides[k] * box.half[i];
+  }
+  return edge;
+}
+
+/// The axes of two boxes that are parallel, if the boxes are turned against each other about them.
+/// @return  whether there are such
+bool find_parallel(const OrientedBox& a, const OrientedBox& b, int& axis_a, int& axis_b) {
+  constexpr btScalar parallel = btScalar(5e-7), turned = btScalar(0.995);  // 1 - cos 1e-3, cos 0.1
+  for (axis_a = 0; axis_a < 3; ++axis_a) {
+    for (axis_b = 0; axis_b < 3; ++axis_b) {
+      if (btFabs(a.axis[axis_a].dot(b.axis[axis_b])) < 1 - parallel) continue;
+      const btVector3& other = a.axis[(axis_a + 1) % 3];
+      const btScalar along = btFabs(other.dot(b.axis[(axis_b + 1) % 3]));
+      return along < turned && btSqrt(1 - along * along) < turned;
+    }
+  }
+  return false;
+}
+
+/// Two edges that lie along each other touch: the ends of what they share. Where they meet, a normal
+/// between those of their faces is as good as any; it is that of edges with a radius, so it changes
+/// steadily from one face to the other.
+/// @param one, other  of A and of B
+/// @param radius      of the edges [m]
+/// @return  false if it is a face that touches
+bool meet_along_edges(const Edge& one, const Edge& other, btScalar radius, btScalar reach, Contacts& out) {
+  const btVector3& u = one.direction;
+  const btVector3 between = other.middle - one.middle;
+  const btVector3 across = between - u * u.dot(between);
+  btVector3 normal = across + radius * (one.sides[0] + one.sides[1] - other.sides[0] - other.sides[1]);
+  normal -= u * u.dot(normal);
+  for (int k = 0; k < 2; ++k) {
+    if (normal.dot(one.sides[k]) < 0 || normal.dot(other.sides[k]) > 0) return false;
+  }
+  normal.normalize();
+  const btScalar middle = u.dot(between), cosine = u.dot(other.direction);
+  const btScalar from = btMax(-one.half_length, middle - other.half_length);
+  const btScalar to = btMin(one.half_length, middle + other.half_length);
+  if (from >= to) return false;
+  out.normal = -normal;
+  for (const btScalar place : {from, to}) {
+    const btVector3 on_b = other.middle + other.direction * ((place - middle) / cosine);
+    const btScalar distance = normal.dot(on_b - one.middle - u * place);
+    if (distance <= reach) out.add(on_b, distance);
+  }
+  return true;
+}
+
 }  // namespace
 
 void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Contacts& out) {
@@ -98,7 +160,7 @@ void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Con
   const btScalar prefer_face = btScalar(1e-3) * smallest, prefer_faces_to_edges = 5 * prefer_face;
   const btScalar most = btMin(reach, useful + 10 * prefer_face);  // the axis that is taken
 
-  Separation face;
+  Separation face, faces[2];  // the last two: of A and of B
   for (int i = 0; i < 6; ++i) {
     const btVector3& axis = i < 3 ? a.axis[i] : b.axis[i - 3];
     const btScalar along = between.dot(axis);
@@ -107,6 +169,9 @@ void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Con
     if (distance > most) return;
     if (distance > face.distance + (i < 3 ? 0 : prefer_face)) {
       face = {distance, along < 0 ? -axis : axis, i < 3 ? i : -1, i < 3 ? -1 : i - 3};
+    }
+    if (distance > faces[i / 3].distance) {
+      faces[i / 3] = {distance, along < 0 ? -axis : axis, i < 3 ? i : -1, i < 3 ? -1 : i - 3};
     }
   }
   Separation edge;
@@ -125,8 +190,16 @@ void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Con
 
   if (edge.distance > face.distance + prefer_faces_to_edges) {
     out.normal = -edge.a_to_b;
-    cross_edges(a, b, edge, out);
-  } else if (face.axis_a >= 0) {
+    return cross_edges(a, b, edge, out);
+  }
+  int axis_a = 0, axis_b = 0;
+  if (support != Support::lowest && find_parallel(a, b, axis_a, axis_b)) {
+    const btVector3 towards_b = faces[0].a_to_b + faces[1].a_to_b;
+    const Edge one = edge_of(a, axis_a, towards_b), other = edge_of(b, axis_b, -towards_b);
+    if (meet_along_edges(one, other, prefer_face, reach, out)) return;
+    face = faces[faces[1].distance > faces[0].distance];
+  }
+  if (face.axis_a >= 0) {
     out.normal = -face.a_to_b;
     clip_faces(a, face.axis_a, face.a_to_b, b, true, reach, out);
   } else {

@@ -1,5 +1,7 @@
 // All shapes against a half-space.
 
+#include <cmath>
+
 #include "physics/contact/pairs.h"
 #include "physics/contact/sort.h"
 
@@ -24,6 +26,17 @@ void keep_lowest(Contacts& contacts, int most) {
 constexpr btScalar flat_tilt = 0.02;
 /// From this cosine of the tilt on a cylinder stands on a cap; below, it lies on its side.
 constexpr btScalar standing = 0.7;
+
+/// The lowest direction in a cap that is nearly flat, as one of 4096 that are fixed in the body, so that it does not
+/// change with every rounding: a cylinder tips over each point of its rim alike.
+/// @param x, y  in the cap;  @param down  the direction, of the length of the sine of the tilt
+btVector3 steady(const btVector3& x, const btVector3& y, const btVector3& down) {
+  constexpr btScalar steps = 1024, rounding = btScalar(1e-11);
+  const btScalar along = down.dot(x), across = down.dot(y), sum = btFabs(along) + btFabs(across);
+  if (sum < rounding) return x;
+  const btScalar share = std::round(steps * along / sum) / steps;
+  return x * share + y * (across < 0 ? btFabs(share) - 1 : 1 - btFabs(share));
+}
 
 /// The corners of the face that looks down most.
 void add_lower_face(const Box& box, const Placement& at, Contacts& out) {
@@ -65,7 +78,8 @@ void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Co
       axis * up - out.normal;  // in the caps, towards the plane; its length is sin(tilt)
   const bool flat = down.length2() < flat_tilt * flat_tilt;
   // Flat on its cap the deepest direction is noise: points fixed in the body rest quietly.
-  if (flat) down = pose_a.getBasis().getColumn(0);
+  const btVector3 x = pose_a.getBasis().getColumn(0), y = pose_a.getBasis().getColumn(1);
+  if (flat) down = support == Support::lowest ? x : steady(x, y, down);
   down *= a.radius / down.length();
   const btVector3 across = axis.cross(down);
   const btVector3 lower = pose_a.getOrigin() + to_lower, upper = pose_a.getOrigin() - to_lower;

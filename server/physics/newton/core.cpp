@@ -242,6 +242,7 @@ void NewtonCore::push_apart_what_turned(const Share& share) {
 
 void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
   system_.allowed_overlap = share.allowed_overlap;
+  system_.softness = share.softness;
   const dynamics::Report report =
       system_.step(share.length, contacts, servos_, limits_, share.trees());
   remember(share);
@@ -327,6 +328,7 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
   share.chosen = &chosen;
   share.splits = splits;
   share.allowed_overlap = overlap_of_magnets;
+  share.softness = 0;  // half of the parts have no forces, so nothing that presses
   contacts_.choose(chosen);
   stiff.choose_stiff(chosen.holds);
   stiff.push_stiff(bodies, -1);

@@ -22,6 +22,24 @@ Vector3 angular_momentum(const Tree& tree) {
   return r * omega.cwiseProduct(tree.links[0].inertia);
 }
 
+// Euler's equation: the inertia's axes turn with the body, so at the mass matrix of the beginning its momentum
+// becomes L - h w x L. However short the substep is: what rolls in a circle stands by that torque.
+TEST(Flight, GyroscopicTorquesActInSubstepsOfAnyLength) {
+  Workspace work;
+  Tree body = testing::box({0.1, 0.2, 0.3}, 2, {Vector3::Zero(), Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
+  body.v = {0.7, -0.4, 0.9, 0, 0, 0};
+  move(body);
+  const Vector3 omega(0.7, -0.4, 0.9), before = angular_momentum(body);
+  for (const double hz : {50., 200., 500., 1000., 2000., 1e4, 1e6}) {
+    double after[6];
+    compute_mass(body, work);
+    momentum_after(body, work, 1 / hz, after);
+    const Vector3 torque = hz * (Vector3(after[0], after[1], after[2]) - before);
+    const Vector3 exact = -omega.cross(before);
+    EXPECT_LT((torque - exact).norm(), 2 / hz * omega.norm() * exact.norm()) << hz;
+  }
+}
+
 TEST(Flight, FallsAlongAParabolaWhateverTheStep) {
   Workspace work;
   for (const double hz : {50.0, 100.0, 1000.0}) {

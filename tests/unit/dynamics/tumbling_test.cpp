@@ -56,6 +56,33 @@ void tumble(double hz, JointType joint, int count, unsigned seed) {
   }
 }
 
+/// Linear momentum along x and y [kg m/s].
+Vector3 drift_of(const Tree& tree) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    sum += tree.links[i].mass * tree.velocity(static_cast<int>(i));
+  }
+  return {sum.x(), sum.y(), 0};
+}
+
+// A smooth floor pushes upwards only.
+TEST(Tumbling, OnASmoothFloorKeepsItsDrift) {
+  for (const double hz : {50., 100., 200., 500., 1000., 2000.}) {
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      Random random{std::mt19937(seed)};
+      Touching world;
+      world.planes.push_back({Vector3::Zero(), Vector3::UnitZ(), 0});
+      world.add(whip(2, JointType::revolute, random), Vector3(0.025, 0.05, 0.125), 0);
+      Tree& tree = world.tree(0);
+      for (double& speed : tree.v) speed = random(-1, 1);
+      move(tree);
+      const Vector3 before = drift_of(tree);
+      for (int i = 0; i < 2 * hz; ++i) world.step(1 / hz);
+      EXPECT_LT((drift_of(tree) - before).norm(), 1e-6 * before.norm()) << hz << ' ' << seed;
+    }
+  }
+}
+
 TEST(Tumbling, GivesMechanismsNoEnergy) {
   for (const double hz : {100., 500.}) {
     for (unsigned seed = 0; seed < 30; ++seed) {

@@ -125,6 +125,42 @@ TEST(Edges, OfCrossedBoxesTouchAtOnePoint) {
   EXPECT_NEAR((contacts.points[0].on_b - btVector3(0, 0, edge)).length(), 0, 1e-9);
 }
 
+/// Two cards that lean on each other by 0.3 rad; their upper edges meet in the origin.
+/// @param up  how much higher the edge of A is [m]
+Contacts of_leaning_cards(btScalar up) {
+  const Box card{{0.03, 0.0005, 0.04}};
+  const btScalar lean = 0.3;
+  const auto pose = [&](btScalar side, btScalar z) {
+    const btTransform turn = at(0, 0, 0, {1, 0, 0}, side * lean);
+    return btTransform(turn.getBasis(), btVector3(0, 0, z) - turn * btVector3(0, -side * 0.0005, 0.04));
+  };
+  return find(card, pose(-1, up), card, pose(1, 0), 1e-3, Support::face);
+}
+
+TEST(Edges, ThatLieAlongEachOtherHaveANormalBetweenTheirFaces) {
+  const Contacts contacts = of_leaning_cards(0);
+  ASSERT_EQ(contacts.count, 2);
+  EXPECT_NEAR((contacts.normal - btVector3(0, -1, 0)).length(), 0, 1e-9);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_NEAR(contacts.points[i].distance, 0, 1e-12);
+    EXPECT_NEAR(btFabs(contacts.points[i].on_b.x()), 0.03, 1e-12);
+  }
+}
+
+TEST(Edges, ChangeFromTheNormalOfOneFaceToThatOfTheOtherWithoutAJump) {
+  btScalar before = 0;
+  for (int i = -100; i <= 100; ++i) {
+    const Contacts contacts = of_leaning_cards(i * 2e-8);
+    ASSERT_EQ(contacts.count, 2) << i;
+    const btScalar tilt = std::atan2(contacts.normal.z(), -contacts.normal.y());
+    if (i == -100) before = tilt;
+    EXPECT_NEAR(tilt, before, 0.05) << i;
+    before = tilt;
+    for (int k = 0; k < 2; ++k) EXPECT_LT(btFabs(contacts.points[k].distance), 1e-6) << i;
+  }
+  EXPECT_NEAR(before, 0.3, 1e-3);
+}
+
 TEST(Concentric, BodiesHaveAFinitePenetrationDepth) {
   const Shape shapes[] = {cube, can, Sphere{0.005}, Box{{0.05, 0.02, 0.01}}};
   for (const Shape& a : shapes) {

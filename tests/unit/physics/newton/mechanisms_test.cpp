@@ -200,6 +200,94 @@ TEST(NewtonWheels, DriveBetweenTwoSmoothBalls) {
   }
 }
 
+// A wheel stands on the two ends of a line. The balls rub, so wheels must push: their outer ends roll, and the inner
+// ones, which are faster, slide. Where loads are shared at random the robot turns about other points, or stands
+// on the balls while its wheels spin.
+TEST(NewtonWheels, ShareTheirLoadsWhateverTheSubstep) {
+  const double wheel = 0.02, track = 0.06, width = 0.005, seconds = 4;
+  scene::Entity robot = two_wheeler();
+  for (std::size_t i = 3; i < 5; ++i) robot.links[i].surface.friction = 0.3;
+  for (const auto& [left, right] : {std::pair(10.0, 5.0), {5.0, 2.0}, {4.0, -4.0}}) {
+    for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+      scene::Physics physics = newton(true);
+      physics.floor->surface.friction = 0.7;
+      World world(physics, 1 / hz);
+      world.add(robot);
+      for (std::size_t i = 0; i < 2; ++i) {
+        world.add_motor(world.joint(0, i), scene::JointMode::velocity, 0.02 / hz);
+        world.set_target(world.joint(0, i), i == 0 ? left : right);
+      }
+      run(world, seconds, 1 / hz);
+      const world::LinkState base = state_of(world).links[0];
+      EXPECT_NEAR(base.angular_velocity.z(), (right - left) * wheel / (track + width), 1e-6) << left << ' ' << hz;
+      EXPECT_NEAR(base.velocity.norm(), (right + left) * wheel / 2, 1e-6) << left << ' ' << hz;
+    }
+  }
+}
+
+// Four feet carry a quarter of the weight each, whatever came before and whichever way the table looks.
+TEST(NewtonTable, RestsOnItsFourFeetAlike) {
+  scene::Entity table = prototype("table", at(0, 0, 0.005), true, {link("top", scene::Box{{0.4, 0.3, 0.02}}, 1)});
+  table.links[0].offset = at(0, 0, 0.1);
+  for (int i = 0; i < 4; ++i) {
+    const double x = i < 2 ? 0.18 : -0.18, y = i % 2 == 0 ? 0.13 : -0.13;
+    table.links.push_back(link("foot" + std::to_string(i), scene::Sphere{0.05}, 0.1));
+    scene::Joint fixed = joint(scene::JointType::fixed, Vector3::UnitZ(), at(x, y, 0), at(0, 0, 0.1));
+    fixed.id = table.links.back().id;
+    fixed.child = i + 1;
+    table.joints.push_back(fixed);
+  }
+  for (const double heading : {0.0, 0.5, 2.0}) {
+    for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+      World world(newton(true), 1 / hz);
+      table.pose.orientation = about(Vector3::UnitZ(), heading);
+      world.add(table);
+      run(world, 1, 1 / hz);
+      std::vector<world::Contact> contacts;
+      world.list_contacts(contacts);
+      ASSERT_EQ(contacts.size(), 4u) << heading << ' ' << hz;
+      for (const world::Contact& contact : contacts) {
+        EXPECT_NEAR(contact.force.z(), 1.4 * earth / 4, 1e-3) << heading << ' ' << hz;
+      }
+    }
+  }
+}
+
+// Velocities are those at the substep's beginning: along them it would go outwards by a share of (w h)^2 / 2 in each.
+TEST(NewtonTurntable, CarriesABoxInACircle) {
+  const double radius = 0.2, speed = 2, seconds = 10;
+  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    World world(newton(), 1 / hz);
+    scene::Entity table = prototype("table", at(0, 0, 0), false,
+                                    {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1), link("disc", scene::Cylinder{0.4, 0.02}, 5)});
+    table.joints.push_back(joint(scene::JointType::revolute, Vector3::UnitZ(), at(0, 0, 0.2), at(0, 0, 0)));
+    world.add(with_friction(table, 1));
+    world.add(loose(at(radius, 0, 0.22), scene::Box{{0.05, 0.05, 0.02}}, 0.2, 1));
+    world.add_motor(world.joint(0, 0), scene::JointMode::velocity, 0.5 / hz);
+    world.set_target(world.joint(0, 0), speed);
+    run(world, seconds, 1 / hz);
+    EXPECT_NEAR(world.velocity(world.joint(0, 0)), speed, 1e-6) << hz;
+    EXPECT_NEAR(std::hypot(origin(world, 1).position.x(), origin(world, 1).position.y()), radius, 1e-3 * radius) << hz;
+  }
+}
+
+// It stops with all that it has: what is left of its energy is rounding.
+TEST(NewtonArm, ThatStrikesAPlateStaysANumber) {
+  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    World world(newton(), 1 / hz);
+    scene::Entity arm = prototype("arm", at(0, 0, 0), false,
+                                  {link("base", scene::Box{{0.05, 0.05, 0.05}}, 1), link("rod", scene::Box{{0.3, 0.02, 0.02}}, 0.2)});
+    arm.joints.push_back(joint(scene::JointType::revolute, Vector3::UnitY(), at(0, 0.2, 0.1), at(-0.15, 0, 0.01)));
+    world.add(arm);
+    world.add(standing(at(0.3, 0.2, 0.02), scene::Box{{0.2, 0.2, 0.05}}));
+    world.add_motor(world.joint(0, 0), scene::JointMode::position, 1.5 / hz);
+    world.set_target(world.joint(0, 0), 1);
+    run(world, 1, 1 / hz);
+    EXPECT_NEAR(world.velocity(world.joint(0, 0)), 0, 1e-9) << hz;
+    EXPECT_GT(world.position(world.joint(0, 0)), 0.05) << hz;
+  }
+}
+
 TEST(NewtonMotor, HoldsItsSpeedWithinItsImpulse) {
   const double h = 0.01, mass = 2;
   World world(newton(false, 0), h);

@@ -147,6 +147,65 @@ TEST(NewtonCards, AHouseOfThreeStoreysStands) {
   }
 }
 
+// It tips where the push at its middle has a larger moment about the rim than its weight, whichever part of the rim
+// that is.
+TEST(NewtonCylinder, TipsOverEachPointOfItsRimAlike) {
+  const double radius = 0.05, height = 0.2, mass = 1;
+  const double threshold = mass * earth * radius / (height / 2);
+  for (const double heading : {0.0, 0.3, M_PI / 4, 1.2}) {
+    for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+      for (const double share : {0.98, 1.02}) {
+        scene::Physics physics = newton(true);
+        physics.floor->surface.friction = 1;
+        World world(physics, 1 / hz);
+        world.add(loose({{0, 0, 0}, about(Vector3::UnitZ(), heading)}, scene::Cylinder{radius, height}, mass, 1));
+        for (int i = 1; i <= 10; ++i) {  // it grows within a second
+          const world::Push push{0, {share * threshold * i / 10, 0, 0}, {0, 0, 0}};
+          set_pushes(world, std::span(&push, 1));
+          run(world, i < 10 ? 0.1 : 2, 1 / hz);
+        }
+        const Vector3 up = origin(world, 0).orientation * Vector3::UnitZ();
+        const double tilt = std::acos(std::min(1.0, up.z()));
+        if (share > 1) {
+          EXPECT_GT(tilt, 0.1) << heading << ' ' << hz;
+        } else {
+          EXPECT_LT(tilt, 1e-6) << heading << ' ' << hz;
+          EXPECT_LT(origin(world, 0).position.norm(), 1e-6) << heading << ' ' << hz;
+        }
+      }
+    }
+  }
+}
+
+/// How far one of two cards moves in 2 s that lean on each other, without anything to hold them but friction [m].
+double slip_of_cards(double lean, double friction, double hz) {
+  const double length = 0.08, thick = 0.001, width = 0.06;
+  scene::Physics physics = newton(true);
+  physics.floor->surface.friction = 1;
+  World world(physics, 1 / hz);
+  const double y = length * std::sin(lean) + thick / 2 * std::cos(lean);
+  for (const double side : {-1, 1}) {
+    const Pose pose{{0, side * y, thick / 2 * std::sin(lean)}, about({1, 0, 0}, side * lean)};
+    scene::Entity card = loose(pose, scene::Box{{width, thick, length}}, 0.002, friction);
+    world.add(card);
+  }
+  const Vector3 start = origin(world, 0).position;
+  run(world, 2, 1 / hz);
+  return (origin(world, 0).position - start).norm();
+}
+
+// Each card presses the other by H horizontally and the floor by its weight w. About its lower edge:
+// H length cos(lean) = w (length sin(lean) - thick cos(lean)) / 2.
+TEST(NewtonCards, LeanOnEachOtherWithTheFrictionThatTheyNeed) {
+  for (const double lean : {0.2, 0.4, 0.6}) {
+    const double needed = std::tan(lean) / 2 - 0.001 / 0.16;
+    for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+      EXPECT_LT(slip_of_cards(lean, 1.01 * needed, hz), 1e-6) << lean << ' ' << hz;
+      EXPECT_GT(slip_of_cards(lean, 0.99 * needed, hz), 1e-3) << lean << ' ' << hz;
+    }
+  }
+}
+
 // On the seam of two flush tiles of different friction one contact is dropped; which one does not depend on
 // pairs that others have left behind.
 TEST(NewtonSeam, DoesNotDependOnWhatIsFarAway) {
