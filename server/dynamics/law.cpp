@@ -146,8 +146,9 @@ double miss_of_loose(const Block& block) {
   return worst;
 }
 
+/// What the impulses of a plain contact are more than the law's.
 /// @param normal  part of y, > 0
-double miss_of_plain(const Block& block, const double* u, double normal) {
+std::array<double, 3> wrong_of_plain(const Block& block, const double* u, double normal) {
   double y[2] = {pressed(block, u, 1), pressed(block, u, 2)};
   const double bound = block.friction * normal, square = y[0] * y[0] + y[1] * y[1];
   if (square > bound * bound) {
@@ -155,9 +156,13 @@ double miss_of_plain(const Block& block, const double* u, double normal) {
     y[0] *= factor, y[1] *= factor;
   }
   const auto& g = block.impulse;
+  return {g[0] - normal, g[1] - y[0], g[2] - y[1]};
+}
+
+double miss_of_plain(const Block& block, const double* u, double normal) {
+  const auto wrong = wrong_of_plain(block, u, normal);
   const auto& m = block.mobility;
-  const double tangent = std::max(std::abs(g[1] - y[0]) * m[1], std::abs(g[2] - y[1]) * m[2]);
-  return std::max(std::abs(g[0] - normal) * m[0], tangent);
+  return std::max({std::abs(wrong[0]) * m[0], std::abs(wrong[1]) * m[1], std::abs(wrong[2]) * m[2]});
 }
 
 }  // namespace
@@ -256,8 +261,16 @@ double miss(const Block& block, const double* u) {
 }
 
 double wrong_energy(const Block& block, const double* u) {
+  double sum = 0;
+  if (is_plain(block)) {
+    const double normal = pressed(block, u, 0);
+    const std::array<double, 3> wrong = normal > 0 ? wrong_of_plain(block, u, normal)
+                                                   : std::array{block.impulse[0], block.impulse[1], block.impulse[2]};
+    for (int r = 0; r < 3; ++r) sum += wrong[r] * wrong[r] * block.mobility[r];
+    return sum;
+  }
   const int rows = active_rows(block);
-  double y[Block::most_rows], sum = 0;
+  double y[Block::most_rows];
   for (int r = 0; r < rows; ++r) y[r] = pressed(block, u, r);
   project(block, y);
   for (int r = 0; r < rows; ++r) {
