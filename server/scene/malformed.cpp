@@ -218,9 +218,17 @@ std::size_t end_of_tag(std::string_view source, std::size_t at, std::optional<Ma
   return at;
 }
 
+/// Whether an instruction is the XML declaration; XML keeps the name in upper case for itself, too.
+bool is_declaration(std::string_view instruction) {
+  const std::string_view name = instruction.substr(2, instruction.find_first_of(" \t\r\n?", 2) - 2);
+  return name.size() == 3 && (name[0] | 32) == 'x' && (name[1] | 32) == 'm' && (name[2] | 32) == 'l';
+}
+
 }  // namespace
 
 Unescaped find_unescaped(std::string_view source) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  const std::size_t start = source.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
   Unescaped found;
   for (std::size_t at = source.find('<'); at != npos; at = source.find('<', at)) {
     const std::string_view rest = source.substr(at);
@@ -231,6 +239,7 @@ Unescaped find_unescaped(std::string_view source) {
     } else if (rest.starts_with("<![CDATA[")) {
       at = source.find("]]>", at);
     } else if (rest.starts_with("<?")) {
+      if (at > start && !found.declaration && is_declaration(rest)) found.declaration = at;
       at = source.find("?>", at);
     } else if (rest.starts_with("<!")) {
       return found;  // a document type may have tags of its own

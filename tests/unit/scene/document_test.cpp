@@ -131,6 +131,26 @@ TEST_F(Folder, TextOutsideOfTheRootElementIsTold) {
   }
 }
 
+TEST(Text, AnXmlDeclarationBehindTheBeginningIsTold) {
+  constexpr std::string_view declaration = "<?xml version=\"1.0\" ?>";
+  const std::string scene = SceneText{}.str(), declared = std::string(declaration) + "\n" + scene;
+  for (const std::string& good : {declared, "\xEF\xBB\xBF" + declared, "<?xml-stylesheet href='a'?>\n<?xmlx?>" + scene}) {
+    EXPECT_TRUE(read_text(good, "t").problems.empty()) << all_problems(read_text(good, "t"));
+  }
+  const auto told = [](const std::string& text) {
+    const ReadResult result = read_text(text, "t");
+    EXPECT_TRUE(result.ok()) << all_problems(result);
+    return result.problems.size() == 1 ? to_string(result.problems[0]) : all_problems(result);
+  };
+  const std::string text = "<?xml … ?> behind the beginning of the file";
+  EXPECT_TRUE(contains(told("\n" + declared), "t:2:1: " + text)) << told("\n" + declared);
+  EXPECT_TRUE(contains(told("<!-- a -->\n\n" + declared), "t:3:1: " + text));
+  EXPECT_TRUE(contains(told(declared + "<?XML?>"), ": " + text));
+  SceneText inside;
+  inside.arena = arena_with(std::string(declaration));
+  EXPECT_TRUE(contains(told(inside.str()), "t:4:")) << told(inside.str());
+}
+
 TEST(Text, AnEntityBombIsHarmlessAndReported) {
   std::string text = "<?xml version=\"1.0\"?>\n<!DOCTYPE bomb [\n<!ENTITY lol0 \"lol\">\n";
   for (int i = 1; i < 10; ++i) {
