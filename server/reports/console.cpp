@@ -97,7 +97,7 @@ void Console::problem(const scene::Problem& problem) {
                            {"file", problem.file},
                            {"line", problem.where.line},
                            {"column", problem.where.column},
-                           {"text", problem.text}}));
+                           {"text", scene::text_of(problem)}}));
   }
   const std::string kind = fault ? "" : fmt::format("{}: ", scene::to_text(problem.severity));
   to_stderr(text::printable(kind + to_string(problem)));

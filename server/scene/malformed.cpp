@@ -10,6 +10,7 @@
 
 #include "scene/names.h"
 #include "scene/values.h"
+#include "text/shortened.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -91,7 +92,8 @@ class Scanner {
     }
     at_ = end + 1;
     if (open_.empty()) {
-      return fail(begin, fmt::format("</{}> closes nothing: no element is open here; remove it", name));
+      return fail(begin, fmt::format("</{}> closes nothing: no element is open here; remove it",
+                                     text::shortened(name)));
     }
     const Open last = open_.back();
     open_.pop_back();
@@ -102,7 +104,7 @@ class Scanner {
                                            "or /> at the end of <{0} …> if nothing is in it",
                                            last.name, name, line_of(begin)));
     }
-    fail(begin, fmt::format("</{0}> does not close <{1}> of line {2}; write </{1}>{3}", name, last.name,
+    fail(begin, fmt::format("</{0}> does not close <{1}> of line {2}; write </{1}>{3}", text::shortened(name), last.name,
                             line_of(last.offset),
                             is_nearly(name, last.name) ? fmt::format(", or <{}> there", name) : std::string()));
   }
