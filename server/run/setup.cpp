@@ -36,7 +36,8 @@ scene::DeadlinePolicy usual_policy(const Options& options, const scene::Scene& s
 std::string existing_scene(const Options& options, reports::Console& console) {
   const std::string& path = only_scene(options);
   check_files(options);
-  if (!std::filesystem::exists(path)) load_scene(path, options, console);  // throws
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) load_scene(path, options, console);  // throws
   return path;
 }
 
