@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "processes/scripts.h"
+#include "reports/json_text.h"
 #include "run/files.h"
 #include "run/loading.h"
 #include "run/version.h"
@@ -76,7 +77,7 @@ void announce(const Options& options, const std::vector<std::string>& endpoints,
               reports::Console& console) {
   if (options.json) {
     console.result(
-        nlohmann::ordered_json{{"endpoint", endpoints.front()}, {"endpoints", endpoints}}.dump());
+        reports::json_text({{"endpoint", endpoints.front()}, {"endpoints", endpoints}}));
   } else {
     for (const auto& endpoint : endpoints) console.result("endpoint " + endpoint);
   }
@@ -152,7 +153,7 @@ std::unique_ptr<Showing> make_showing(const Options& options, const Showing::Run
   auto showing = std::make_unique<Showing>(options, run);
   const std::string page = showing->page_address(), viewer = showing->viewer_address();
   const std::string text =
-      options.json ? nlohmann::ordered_json{{"view", page}, {"viewer", viewer}}.dump() + "\n"
+      options.json ? reports::json_text({{"view", page}, {"viewer", viewer}}) + "\n"
                    : "ziggurat: watch this run at " + page +
                          "\nziggurat: or open a Foxglove WebSocket connection to " + viewer + "\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
