@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/program_options/errors.hpp>
 #include <boost/program_options/parsers.hpp>
 #include <boost/program_options/positional_options.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 #include "text/names.h"
@@ -67,9 +69,29 @@ std::vector<po::option> take_negative_number(Arguments& rest) {
   return {value};
 }
 
+/// Behind dashes of word processors at its beginning.
+std::string_view without_typographic_dashes(std::string_view word) {
+  constexpr std::string_view dashes[] = {"‐", "‑", "‒", "–", "—", "―", "−"};
+  const auto begins_word = [&](std::string_view dash) { return word.starts_with(dash); };
+  while (std::ranges::any_of(dashes, begins_word)) word.remove_prefix(std::ranges::find_if(dashes, begins_word)->size());
+  return word;
+}
+
+/// Refuses an option whose hyphens a word processor has made a dash: it would be taken for a file.
+void check_hyphens(const Arguments& arguments, const po::options_description& known) {
+  for (const std::string& word : arguments) {
+    if (word == "--") return;
+    const std::string_view rest = without_typographic_dashes(word);
+    const std::string name(rest.substr(0, rest.find('=')));
+    if (rest.size() == word.size() || name.empty() || known.find_nothrow(name, false) == nullptr) continue;
+    throw text::UsageError(fmt::format("'{}' begins with a dash that is no hyphen; write --{}", word, rest));
+  }
+}
+
 }  // namespace
 
 Parsed parse(const Arguments& arguments, const po::options_description& known) {
+  check_hyphens(arguments, known);
   po::options_description all;
   all.add(known).add_options()("positional", po::value<std::vector<std::string>>());
   po::positional_options_description positional;

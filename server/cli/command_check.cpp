@@ -165,7 +165,7 @@ nlohmann::ordered_json to_json(const std::string& path, const Finding& finding) 
                         {"file", problem.file},
                         {"line", problem.where.line},
                         {"column", problem.where.column},
-                        {"text", problem.text}});
+                        {"text", scene::text_of(problem)}});
   }
   auto models = nlohmann::ordered_json::array();
   for (const auto& model : finding.models) {

@@ -1,8 +1,11 @@
 // The program `ziggurat`: finds the command, and turns what it throws into a message and an exit
 // code. What belongs to the whole process, signals and limits, is set here and nowhere else.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <span>
 #include <string>
@@ -15,6 +18,7 @@
 #include "reports/console.h"
 #include "run/version.h"
 #include "scene/reader.h"
+#include "text/shortened.h"
 #include "text/standard_streams.h"
 
 namespace ziggurat::cli {
@@ -70,8 +74,10 @@ int main(int count, char** texts) {
     for (const auto& problem : error.problems()) console.problem(problem);
   } catch (const std::bad_alloc&) {
     console.fault("there is no memory left for the scene or for what was asked for");
+  } catch (const std::filesystem::filesystem_error& error) {
+    console.fault(fmt::format("{}: {}", error.path1().string(), error.code().message()));
   } catch (const std::exception& error) {
-    console.fault(error.what());
+    console.fault(text::shortened_message(error.what()));
   }
   return cli::exit_code::fault;
 }

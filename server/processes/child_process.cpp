@@ -159,11 +159,12 @@ void ChildProcess::signal(int number) const {
   if (id_ > 0 && !status_) ::kill(-id_, number);  // later the id may be another group's
 }
 
-void end_all(std::vector<ChildProcess*> children, int patience_ms,
-             const std::function<bool()>& hurry) {
+void end_all(std::vector<ChildProcess*> children, int patience_ms, const std::function<bool()>& hurry,
+             const std::function<void(const ChildProcess&)>& tell_slow) {
   using clock = std::chrono::steady_clock;
   for (const int number : {0, SIGTERM, SIGKILL}) {
     for (const auto* child : children) {
+      if (number == SIGTERM && tell_slow) tell_slow(*child);
       if (number != 0) child->signal(number);
     }
     const auto deadline = clock::now() + std::chrono::milliseconds(patience_ms);

@@ -55,7 +55,8 @@ class ChildProcess {
 /// Waits until all have ended. Slow ones get SIGTERM, at last SIGKILL.
 /// @param patience_ms  wall time before SIGTERM, and again before SIGKILL
 /// @param hurry        called again and again: true sends SIGKILL at once
-void end_all(std::vector<ChildProcess*> children, int patience_ms,
-             const std::function<bool()>& hurry);
+/// @param tell_slow    told of each before it gets SIGTERM; empty: not wanted
+void end_all(std::vector<ChildProcess*> children, int patience_ms, const std::function<bool()>& hurry,
+             const std::function<void(const ChildProcess&)>& tell_slow = {});
 
 }  // namespace ziggurat::processes

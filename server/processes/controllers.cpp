@@ -258,13 +258,16 @@ void Controllers::kill() {
   for (const ControllerProcess& each : processes_) each.process.signal(SIGKILL);
 }
 
-void Controllers::end(int patience_ms, const std::function<bool()>& hurry) {
+void Controllers::end(int patience_ms, const std::function<bool()>& hurry,
+                      const std::function<void(const ControllerProcess&)>& tell_slow) {
   std::vector<ChildProcess*> children;
   for (ControllerProcess& each : processes_) {
     each.pipe.reset();  // no more robots will come
     children.push_back(&each.process);
   }
-  end_all(children, patience_ms, hurry);
+  end_all(children, patience_ms, hurry, [&](const ChildProcess& slow) {
+    tell_slow(*std::ranges::find(processes_, slow.id(), [](const ControllerProcess& each) { return each.process.id(); }));
+  });
 }
 
 std::string find_lua_runner() {

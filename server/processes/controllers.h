@@ -121,7 +121,8 @@ class Controllers {
 
   void kill();  ///< SIGKILL to all that still run
   /// Waits until all have ended, as processes::end_all does.
-  void end(int patience_ms, const std::function<bool()>& hurry);
+  void end(int patience_ms, const std::function<bool()>& hurry,
+           const std::function<void(const ControllerProcess&)>& tell_slow);
 
  private:
   ControllerProcess& process_for_spawned();

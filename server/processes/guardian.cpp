@@ -4,7 +4,9 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -26,7 +28,9 @@ enum class Kind : std::int32_t {
   end_group,
   forget_group,
   remove_file,
+  remove_dead_socket,
   remove_folder,
+  forget_folder,
   remove_empty_folder,
   end_now,
   done
@@ -53,6 +57,12 @@ bool set_path(Order& order, const std::string& path) noexcept {
   return true;
 }
 
+void send_path(int pipe, Kind kind, const std::string& path) noexcept {
+  Order order;
+  order.kind = kind;
+  if (set_path(order, path)) send(pipe, order);
+}
+
 void sleep_ms(int ms) noexcept {
   const timespec time{ms / 1000, (ms % 1000) * 1'000'000L};
   ::nanosleep(&time, nullptr);
@@ -65,7 +75,7 @@ void sleep_ms(int ms) noexcept {
 struct Left {
   std::vector<pid_t> groups;
   std::vector<Order> files;
-  std::vector<std::string> folders, empty_folders;
+  std::vector<std::string> sockets, folders, empty_folders;
 };
 
 void take(const Order& order, Left& left) {
@@ -79,8 +89,14 @@ void take(const Order& order, Left& left) {
     case Kind::remove_file:
       left.files.push_back(order);
       break;
+    case Kind::remove_dead_socket:
+      left.sockets.emplace_back(order.path);
+      break;
     case Kind::remove_folder:
       left.folders.emplace_back(order.path);
+      break;
+    case Kind::forget_folder:
+      std::erase(left.folders, order.path);
       break;
     case Kind::remove_empty_folder:
       left.empty_folders.emplace_back(order.path);
@@ -89,6 +105,23 @@ void take(const Order& order, Left& left) {
     case Kind::done:
       break;
   }
+}
+
+/// Whether this is a socket at which no process listens.
+bool is_dead_socket(const std::string& path) {
+  sockaddr_un address{};
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0 || !S_ISSOCK(status.st_mode) || path.size() >= sizeof address.sun_path) {
+    return false;
+  }
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, path.size());
+  const int client = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (client < 0) return false;
+  const int result = ::connect(client, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  const bool is_dead = result != 0 && errno == ECONNREFUSED;
+  ::close(client);
+  return is_dead;
 }
 
 void clean_up(const Left& left) {
@@ -101,6 +134,9 @@ void clean_up(const Left& left) {
     const bool is_same =
         ::lstat(file.path, &now) == 0 && now.st_dev == file.device && now.st_ino == file.inode;
     if (is_same) ::unlink(file.path);
+  }
+  for (const std::string& socket : left.sockets) {
+    if (is_dead_socket(socket)) ::unlink(socket.c_str());
   }
   std::error_code ignored;
   for (const std::string& folder : left.folders) std::filesystem::remove_all(folder, ignored);
@@ -274,16 +310,20 @@ void Guardian::remove_file(const std::string& path) const noexcept {
   send(orders_, order);
 }
 
+void Guardian::remove_dead_socket(const std::string& path) const noexcept {
+  send_path(orders_, Kind::remove_dead_socket, path);
+}
+
 void Guardian::remove_folder(const std::string& path) const noexcept {
-  Order order;
-  order.kind = Kind::remove_folder;
-  if (set_path(order, path)) send(orders_, order);
+  send_path(orders_, Kind::remove_folder, path);
+}
+
+void Guardian::forget_folder(const std::string& path) const noexcept {
+  send_path(orders_, Kind::forget_folder, path);
 }
 
 void Guardian::remove_empty_folder(const std::string& path) const noexcept {
-  Order order;
-  order.kind = Kind::remove_empty_folder;
-  if (set_path(order, path)) send(orders_, order);
+  send_path(orders_, Kind::remove_empty_folder, path);
 }
 
 void Guardian::end_now() noexcept {

@@ -31,9 +31,13 @@ class Guardian {
   void forget_group(pid_t group) const noexcept;
   /// Removes this file, if it is still the one that stands there now.
   void remove_file(const std::string& path) const noexcept;
-  /// Removes this folder with everything in it.
+  /// Removes what stands there then, if it is a socket at which no process listens. Call it before the socket is made.
+  void remove_dead_socket(const std::string& path) const noexcept;
+  /// Removes this folder with everything in it. Call it before the folder is made, so that no moment is left in which
+  /// nothing knows it.
   void remove_folder(const std::string& path) const noexcept;
-
+  /// It is another's.
+  void forget_folder(const std::string& path) const noexcept;
   /// Removes this folder if nothing is left in it then.
   void remove_empty_folder(const std::string& path) const noexcept;
 

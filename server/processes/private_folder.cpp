@@ -5,10 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <tuple>
 #include <utility>
@@ -68,15 +70,31 @@ int lock_new(const std::string& folder) {
   return -1;
 }
 
-/// A folder with its lock; an empty path and -1 if the parent takes none.
-std::pair<std::string, int> make_locked(const std::string& parent) {
+/// A name that can't be guessed.
+std::string random_name() {
+  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+  std::array<unsigned char, name_length - prefix.size()> random;
+  if (::getentropy(random.data(), random.size()) != 0) {
+    throw std::system_error(errno, std::generic_category(), "the system gives no random numbers");
+  }
+  std::string name(prefix);
+  for (const unsigned char each : random) name += letters[each % letters.size()];
+  return name;
+}
+
+/// A folder with its lock; an empty path and -1 if the parent takes none. The guardian has its name before it is
+/// made: this program may be killed at any moment.
+std::pair<std::string, int> make_locked(const std::string& parent, const Guardian* guardian) {
   constexpr int most_tries = 100;
   for (int i = 0; i < most_tries; ++i) {
-    std::string name = parent + "/" + std::string(prefix) + "XXXXXX";
-    if (::mkdtemp(name.data()) == nullptr) break;  // mode 0700
-    const int file = lock_new(name);
-    if (file >= 0) return {name, file};
-    ::rmdir(name.c_str());
+    const std::string path = parent + "/" + random_name();
+    if (guardian) guardian->remove_folder(path);
+    const bool is_made = ::mkdir(path.c_str(), 0700) == 0;
+    const int error = errno, file = is_made ? lock_new(path) : -1;
+    if (file >= 0) return {path, file};
+    if (is_made) ::rmdir(path.c_str());
+    if (guardian) guardian->forget_folder(path);
+    if (!is_made && error != EEXIST) return errno = error, std::pair{std::string(), -1};
   }
   return {{}, -1};
 }
@@ -92,10 +110,8 @@ PrivateFolder::PrivateFolder(const Guardian* guardian) {
   parents.emplace_back("/tmp");
   for (const auto& parent : parents) {
     remove_left_folders(parent);
-    std::tie(path_, lock_) = make_locked(parent);
-    if (lock_ < 0) continue;
-    if (guardian) guardian->remove_folder(path_);
-    return;
+    std::tie(path_, lock_) = make_locked(parent, guardian);
+    if (lock_ >= 0) return;
   }
   throw std::system_error(errno, std::generic_category(), "cannot make a folder in /tmp");
 }

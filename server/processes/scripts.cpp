@@ -13,6 +13,7 @@
 #include "processes/places.h"
 #include "scene/files.h"
 #include "scene/names.h"
+#include "text/shortened.h"
 
 namespace ziggurat::processes {
 namespace {
@@ -47,7 +48,7 @@ std::optional<std::string> fault(const std::string& script, const fs::path& nami
                                  const fs::path& scene_file) {
   const auto path = find_file(script, naming_file, scene_file);
   if (!path) {
-    return fmt::format("script '{}' is not found{}", script, looked_for(script, naming_file, scene_file));
+    return fmt::format("script '{}' is not found{}", text::shortened(script), looked_for(script, naming_file, scene_file));
   }
   if (auto error = compile_error(*path)) return "script does not compile: " + *error;
   return std::nullopt;

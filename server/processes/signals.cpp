@@ -31,7 +31,8 @@ bool is_ignored(int number) {
 Signals::Signals(Guardian* guardian) : guardian_(guardian) {
   sigset_t set;
   ::sigemptyset(&set);
-  for (const int number : {SIGINT, SIGTERM, SIGCHLD}) ::sigaddset(&set, number);
+  // SIGXCPU: a soft limit of processor time, as of `ulimit -S -t`, ends the run as Ctrl-C does.
+  for (const int number : {SIGINT, SIGTERM, SIGXCPU, SIGCHLD}) ::sigaddset(&set, number);
   if (!is_ignored(SIGHUP)) ::sigaddset(&set, SIGHUP);  // blocked, it would arrive although it is ignored
   ::signal(SIGCHLD, SIG_DFL);  // ignored, as a parent may have left it, it would take children away unseen
   ::pthread_sigmask(SIG_BLOCK, &set, &former_);

@@ -1,5 +1,5 @@
 #pragma once
-// SIGINT, SIGTERM, SIGHUP and SIGCHLD as input of a descriptor that can be polled. The program ends
+// SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGCHLD as input of a descriptor that can be polled. The program ends
 // at most a second after the first interruption, whatever it is doing.
 
 #include <signal.h>
@@ -34,7 +34,7 @@ class Signals {
   int descriptor() const { return news_; }
 
   struct Arrived {
-    int interruptions = 0;  ///< SIGINT, SIGTERM, SIGHUP
+    int interruptions = 0;  ///< SIGINT, SIGTERM, SIGHUP, SIGXCPU
     bool child = false;     ///< SIGCHLD
   };
   /// The signals since the last call; never waits.

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "reports/json_text.h"
 #include "text/printable.h"
 
 namespace ziggurat::reports {
@@ -22,11 +23,6 @@ std::size_t terminal_width() {
   winsize size{};
   const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known ? size.ws_col : 80;
-}
-
-// JSON text, also if a text of a peer is not UTF-8.
-std::string dump(const nlohmann::ordered_json& json) {
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -82,7 +78,7 @@ void Console::notice(std::string_view text) {
 
 void Console::message(std::string_view severity, std::string_view text) {
   const bool fault = severity == "fault";
-  if (style_.json) return to_stderr(dump({{"severity", severity}, {"text", text}}), fault);
+  if (style_.json) return to_stderr(json_text({{"severity", severity}, {"text", text}}), fault);
   to_stderr(fmt::format("{}ziggurat: {}{}{}", color_error_ && fault ? red : "",
                         fault ? "" : fmt::format("{}: ", severity), text::printable(text),
                         color_error_ && fault ? plain : ""),
@@ -93,11 +89,11 @@ void Console::problem(const scene::Problem& problem) {
   const bool fault = problem.severity == scene::Problem::Severity::fault;
   if (!fault && style_.quiet) return;
   if (style_.json) {
-    return to_stderr(dump({{"severity", scene::to_text(problem.severity)},
+    return to_stderr(json_text({{"severity", scene::to_text(problem.severity)},
                            {"file", problem.file},
                            {"line", problem.where.line},
                            {"column", problem.where.column},
-                           {"text", problem.text}}));
+                           {"text", scene::text_of(problem)}}));
   }
   const std::string kind = fault ? "" : fmt::format("{}: ", scene::to_text(problem.severity));
   to_stderr(text::printable(kind + to_string(problem)));

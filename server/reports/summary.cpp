@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "math/hash.h"
+#include "reports/json_text.h"
 
 namespace ziggurat::reports {
 namespace {
@@ -181,7 +182,7 @@ std::string to_json(const Summary& summary) {
     json["solver"]["not_converged"] = summary.solver.not_converged;
     json["solver"]["worst_residual"] = summary.solver.worst_residual;
   }
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_text(json);
 }
 
 int exit_code_of(const Summary& summary) {

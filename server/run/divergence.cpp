@@ -11,6 +11,7 @@
 #include "math/hash.h"
 #include "replay/message_difference.h"
 #include "replay/names.h"
+#include "reports/json_text.h"
 #include "reports/plot.h"
 
 namespace ziggurat::run {
@@ -201,7 +202,7 @@ std::string to_json(const Divergence& of) {
                                  {"angle_rad", state->apart.angle},
                                  {"farthest", replay::name_of(of.names, state->apart.link)}});
   }
-  return json.dump();
+  return reports::json_text(json);
 }
 
 std::string to_svg(const Divergence& of) {

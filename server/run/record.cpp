@@ -18,6 +18,8 @@
 #include "processes/scripts.h"
 #include "recording/output_file.h"
 #include "run/build.h"
+#include "text/numbers.h"
+#include "text/printable.h"
 
 namespace ziggurat::run {
 namespace {
@@ -88,6 +90,15 @@ std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& pa
   };
 }
 
+/// Names in a recording are UTF-8: others would not be found again. @throws text::UsageError
+void check_names(const recorder::Start& start) {
+  const auto check = [](const std::string& name) {
+    if (!text::is_utf8(name)) throw text::UsageError(fmt::format("{}: the name is not UTF-8, as names in a recording are; rename it", name));
+  };
+  check(start.scene);
+  for (const recorder::EmbeddedFile& file : start.files) check(file.name);
+}
+
 recorder::Start start_of(const Options& options, const supervision::World& world,
                          const ReadFiles& files, std::uint64_t last_tick,
                          const std::vector<std::size_t>& idle, const Past* past,
@@ -111,6 +122,7 @@ recorder::Start start_of(const Options& options, const supervision::World& world
   start.arguments = options.arguments;
   start.files = files.all();
   past ? past->describe(world, start) : add_scripts(world, start, console);
+  check_names(start);
   return start;
 }
 

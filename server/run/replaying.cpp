@@ -11,6 +11,7 @@
 #include "recording/hash_file.h"
 #include "replay/recording_error.h"
 #include "replay/scene.h"
+#include "reports/json_text.h"
 #include "run/files.h"
 #include "run/recorded_world.h"
 #include "run/replay_difference.h"
@@ -328,7 +329,7 @@ void Replaying::tell(End end) {
     json["tick"] = replay_.inputs().tick();
     json["epoch"] = replay_.inputs().epoch();
   }
-  console_.result(json.dump());
+  console_.result(reports::json_text(json));
 }
 
 }  // namespace ziggurat::run

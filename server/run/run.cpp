@@ -60,7 +60,7 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
                   : existing_scene(options, console_)),
       local_(signals.guardian()),
       config_(network_config(options, service == Service::serve, local_)),
-      listening_(std::make_unique<network::Server>(config_)),
+      listening_(listen()),
       server_(*listening_),
       loaded_(load_world()),
       world_(*loaded_),
@@ -121,19 +121,23 @@ supervision::World Run::read_world(const Tell& tell_clients) {
   return {path_, std::move(opened), seed, tell_placed};
 }
 
-/// A killed program cannot remove the files of its sockets.
-void Run::guard_sockets() {
-  if (!signals_.guardian()) return;
-  for (const auto& endpoint : server_.endpoints()) {
-    if (const auto file = network::file_of(endpoint); !file.empty()) {
-      signals_.guardian()->remove_file(file);
+/// A killed program cannot remove the files of its sockets: the guardian has their names before they are made, and
+/// knows the files afterwards.
+std::unique_ptr<network::Server> Run::listen() const {
+  const processes::Guardian* const guardian = signals_.guardian();
+  const auto each_file = [&](const std::vector<std::string>& endpoints, auto act) {
+    for (const std::string& endpoint : endpoints) {
+      if (const auto file = network::file_of(endpoint); guardian && !file.empty()) act(file);
     }
-  }
+  };
+  each_file(config_.endpoints, [&](const std::string& file) { guardian->remove_dead_socket(file); });
+  auto server = std::make_unique<network::Server>(config_);
+  each_file(server->endpoints(), [&](const std::string& file) { guardian->remove_file(file); });
+  return server;
 }
 
 /// Answers clients while another thread loads the world, which alone uses the console meanwhile.
 std::unique_ptr<supervision::World> Run::load_world() {
-  guard_sockets();
   if (service_ == Service::serve) announce(options_, server_.endpoints(), console_);
   Background<supervision::World> loading([this](const Tell& tell) { return read_world(tell); });
   const std::array descriptors{signals_.descriptor(), loading.descriptor()};

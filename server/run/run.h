@@ -62,7 +62,7 @@ class Run {
 
   // Setting up.
   supervision::World read_world(const Tell& tell);
-  void guard_sockets();
+  std::unique_ptr<network::Server> listen() const;
   std::unique_ptr<supervision::World> load_world();
   Plan make_plan() const;
   network::Config complete_config();

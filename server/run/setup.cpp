@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "processes/scripts.h"
+#include "reports/json_text.h"
 #include "run/files.h"
 #include "run/loading.h"
 #include "run/version.h"
@@ -36,7 +37,8 @@ scene::DeadlinePolicy usual_policy(const Options& options, const scene::Scene& s
 std::string existing_scene(const Options& options, reports::Console& console) {
   const std::string& path = only_scene(options);
   check_files(options);
-  if (!std::filesystem::exists(path)) load_scene(path, options, console);  // throws
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) load_scene(path, options, console);  // throws
   return path;
 }
 
@@ -75,7 +77,7 @@ void announce(const Options& options, const std::vector<std::string>& endpoints,
               reports::Console& console) {
   if (options.json) {
     console.result(
-        nlohmann::ordered_json{{"endpoint", endpoints.front()}, {"endpoints", endpoints}}.dump());
+        reports::json_text({{"endpoint", endpoints.front()}, {"endpoints", endpoints}}));
   } else {
     for (const auto& endpoint : endpoints) console.result("endpoint " + endpoint);
   }
@@ -151,7 +153,7 @@ std::unique_ptr<Showing> make_showing(const Options& options, const Showing::Run
   auto showing = std::make_unique<Showing>(options, run);
   const std::string page = showing->page_address(), viewer = showing->viewer_address();
   const std::string text =
-      options.json ? nlohmann::ordered_json{{"view", page}, {"viewer", viewer}}.dump() + "\n"
+      options.json ? reports::json_text({{"view", page}, {"viewer", viewer}}) + "\n"
                    : "ziggurat: watch this run at " + page +
                          "\nziggurat: or open a Foxglove WebSocket connection to " + viewer + "\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());

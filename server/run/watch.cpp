@@ -32,16 +32,30 @@ constexpr Patience usual{milliseconds{2000}, 1000};
 constexpr Patience interrupted{milliseconds{400}, 100};
 
 /// "ziggurat-lua (process 7) was killed by signal 9 (Killed) at tick 3; it controlled robot r0"
-/// @param when  "at tick 3"
-std::string describe_end(const processes::ControllerProcess& ended, const std::string& when,
-                         const world::Layout& layout) {
-  if (!ended.director.empty()) {
-    return fmt::format("{} (process {}) {} {}", ended.name, ended.process.id(),
-                       ended.process.how_it_ended(), when);
+/// @param what  "was killed by signal 9 (Killed) at tick 3"
+std::string describe(const processes::ControllerProcess& controller, const std::string& what,
+                     const world::Layout& layout) {
+  const std::string text = fmt::format("{} (process {}) {}", controller.name, controller.process.id(), what);
+  if (!controller.director.empty()) return text;
+  return fmt::format("{}; it controlled {}", text, processes::names_of(controller.robots, layout));
+}
+
+/// On a process that goes on although the run is over: it is ended by force, and what it still does may be lost. A
+/// script that does has failed.
+network::Report report_on_slow(const processes::ControllerProcess& slow, const processes::Controllers& controllers,
+                               const world::Layout& layout, std::uint64_t tick) {
+  const auto patience = usual.answer + milliseconds{usual.exit_ms};
+  const std::string what = fmt::format("still ran {} s after the end of the run, and was ended", patience.count() / 1000);
+  network::Report report;
+  const auto script = slow.robots.empty() ? std::nullopt : controllers.busy_script(slow.robots.front());
+  const auto robot = std::ranges::find(layout.robots, script ? script->robot : "", &world::RobotLayout::id);
+  if (robot == layout.robots.end()) {
+    report.notices.push_back(describe(slow, what, layout));
+  } else {
+    report.failures.push_back({static_cast<std::size_t>(robot - layout.robots.begin()),
+                               fmt::format("{}: the script {}", script->place, what), tick});
   }
-  return fmt::format("{} (process {}) {} {}; it controlled {}", ended.name, ended.process.id(),
-                     ended.process.how_it_ended(), when,
-                     processes::names_of(ended.robots, layout));
+  return report;
 }
 
 /// Directors without session that the run can't go on without.
@@ -249,8 +263,8 @@ std::optional<Ending> Watch::lost_controller() {
     return std::nullopt;
   }
   if (ended) {
-    vanished_ = describe_end(*ended, gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick",
-                             world_.simulation.layout());
+    const std::string when = gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick";
+    vanished_ = describe(*ended, fmt::format("{} {}", ended->process.how_it_ended(), when), world_.simulation.layout());
     if (restart(*ended)) return std::nullopt;
   } else if (!free_directors.empty()) {
     vanished_ = fmt::format("director '{}' disconnected at tick {}", free_directors.front(), tick_);
@@ -393,7 +407,14 @@ void Watch::end_run(const wire::End& end) {
     }
   }
   peers_.print_log(tick_);
-  controllers_.end(patience.exit_ms, [&] { return signals_.take().interruptions > 0; });
+  const bool is_planned = end.reason != wire::EndReason::interrupted;
+  controllers_.end(patience.exit_ms, [&] { return signals_.take().interruptions > 0; },
+                   [&](const processes::ControllerProcess& slow) {
+                     if (is_planned) peers_.take(report_on_slow(slow, controllers_, world_.simulation.layout(), tick_), tick_);
+                   });
+  server_.drain({short_wait, {}});  // what those that ended meanwhile have said, their failures
+  take_report();
+  peers_.print_log(tick_);
 }
 
 }  // namespace ziggurat::run

@@ -140,6 +140,11 @@ void Document::parse() {
     report_.warn(at(*unescaped.dashes), "dashes",
                  "-- inside a comment, which other programs that read XML refuse; write it without");
   }
+  if (unescaped.declaration) {
+    report_.warn(at(*unescaped.declaration), "declaration",
+                 "<?xml … ?> behind the beginning of the file, which other programs that read XML refuse; let the file "
+                 "begin with it, or remove it");
+  }
   check_outside();
   root_ = tree_.document_element();
   for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling()) {

@@ -10,6 +10,7 @@
 
 #include "scene/names.h"
 #include "scene/values.h"
+#include "text/shortened.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -91,7 +92,8 @@ class Scanner {
     }
     at_ = end + 1;
     if (open_.empty()) {
-      return fail(begin, fmt::format("</{}> closes nothing: no element is open here; remove it", name));
+      return fail(begin, fmt::format("</{}> closes nothing: no element is open here; remove it",
+                                     text::shortened(name)));
     }
     const Open last = open_.back();
     open_.pop_back();
@@ -102,7 +104,7 @@ class Scanner {
                                            "or /> at the end of <{0} …> if nothing is in it",
                                            last.name, name, line_of(begin)));
     }
-    fail(begin, fmt::format("</{0}> does not close <{1}> of line {2}; write </{1}>{3}", name, last.name,
+    fail(begin, fmt::format("</{0}> does not close <{1}> of line {2}; write </{1}>{3}", text::shortened(name), last.name,
                             line_of(last.offset),
                             is_nearly(name, last.name) ? fmt::format(", or <{}> there", name) : std::string()));
   }
@@ -218,9 +220,17 @@ std::size_t end_of_tag(std::string_view source, std::size_t at, std::optional<Ma
   return at;
 }
 
+/// Whether an instruction is the XML declaration; XML keeps the name in upper case for itself, too.
+bool is_declaration(std::string_view instruction) {
+  const std::string_view name = instruction.substr(2, instruction.find_first_of(" \t\r\n?", 2) - 2);
+  return name.size() == 3 && (name[0] | 32) == 'x' && (name[1] | 32) == 'm' && (name[2] | 32) == 'l';
+}
+
 }  // namespace
 
 Unescaped find_unescaped(std::string_view source) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  const std::size_t start = source.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
   Unescaped found;
   for (std::size_t at = source.find('<'); at != npos; at = source.find('<', at)) {
     const std::string_view rest = source.substr(at);
@@ -231,6 +241,7 @@ Unescaped find_unescaped(std::string_view source) {
     } else if (rest.starts_with("<![CDATA[")) {
       at = source.find("]]>", at);
     } else if (rest.starts_with("<?")) {
+      if (at > start && !found.declaration && is_declaration(rest)) found.declaration = at;
       at = source.find("?>", at);
     } else if (rest.starts_with("<!")) {
       return found;  // a document type may have tags of its own

@@ -21,6 +21,7 @@ std::optional<Malformed> find_malformed(std::string_view source);
 struct Unescaped {
   std::optional<Malformed> fault;     ///< the first < inside an attribute's value
   std::optional<std::size_t> dashes;  ///< offset of the first -- inside a comment
+  std::optional<std::size_t> declaration;  ///< offset of the first <?xml that is not the text's beginning
 };
 
 /// What is no XML by its standard, though the parser reads it.

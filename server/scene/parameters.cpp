@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scene/draft.h"
+#include "text/shortened.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -26,8 +27,8 @@ Wrong unknown(std::string_view name, const Parameters& parameters) {
   return {parameters.empty()
               ? fmt::format("uses ${{{0}}}, and the scene has no parameters; write <parameters "
                             "{0}=\"…\"/> into <argos-configuration>, or $${{ for a literal ${{",
-                            name)
-              : fmt::format("uses ${{{}}}, which is no parameter; {}", name,
+                            text::shortened(name))
+              : fmt::format("uses ${{{}}}, which is no parameter; {}", text::shortened(name),
                             advice(name, names_of(parameters)))};
 }
 
@@ -62,7 +63,8 @@ std::string doubt(const Parameter& declared, const std::string& given) {
   if (values.empty()) return {};
   return fmt::format("--param {0}={1} is one value, the text {2}, where the scene has the number {3}; for a run with each of "
                      "several write: ziggurat sweep … --param '{0}={4}'",
-                     declared.name, given, in_quotes(given), declared.value, values);
+                     text::shortened(declared.name), text::shortened(given), in_quotes(given),
+                     text::shortened(declared.value), text::shortened(values));
 }
 
 }  // namespace
@@ -129,8 +131,8 @@ void read_parameters(Draft& draft, Element& root) {
         draft.parameters.empty()
             ? fmt::format("--param {0}={1}: the scene has no parameters; write <parameters "
                           "{0}=\"{1}\"/> into <argos-configuration>",
-                          name, value)
-            : fmt::format("--param {}={}: the scene has no such parameter; {}", name, value,
+                          text::shortened(name), text::shortened(value))
+            : fmt::format("--param {}={}: the scene has no such parameter; {}", text::shortened(name), text::shortened(value),
                           advice(name, names_of(draft.parameters))));
   }
 }

@@ -26,6 +26,9 @@ constexpr const char* to_text(Problem::Severity severity) {
                                                   : "notice";
 }
 
+/// Its text for people and programs: of names and values that the scene has in megabytes a part.
+std::string text_of(const Problem& problem);
+
 /// `file:line:column: text`, or `file: text` where no line is known.
 std::string to_string(const Problem& problem);
 

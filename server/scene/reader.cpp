@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scene/draft.h"
+#include "text/shortened.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -115,10 +116,13 @@ ReadResult refuse(const std::string& name, std::string text) {
 
 }  // namespace
 
+std::string text_of(const Problem& problem) { return text::shortened_message(problem.text); }
+
 std::string to_string(const Problem& problem) {
-  if (problem.where.line == 0) return fmt::format("{}: {}", problem.file, problem.text);
-  return fmt::format("{}:{}:{}: {}", problem.file, problem.where.line, problem.where.column,
-                     problem.text);
+  constexpr std::size_t longest_path = 4096;
+  const std::string file = text::shortened(problem.file, longest_path), text = text_of(problem);
+  if (problem.where.line == 0) return fmt::format("{}: {}", file, text);
+  return fmt::format("{}:{}:{}: {}", file, problem.where.line, problem.where.column, text);
 }
 
 bool ReadResult::ok() const {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scene/names.h"
+#include "text/shortened.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -104,7 +105,7 @@ std::optional<Wrong> check_cost(std::string_view path) {
       is_condition = false;
       if (const auto condition = path.substr(begin, i - begin); !is_cheap(condition)) {
         return Wrong{fmt::format("has the condition [{}]; write paths below the element, without // and .., and compare "
-                                 "them with values: [@x='1' and b/@y]", condition)};
+                                 "them with values: [@x='1' and b/@y]", text::shortened(condition))};
       }
     } else if (!is_condition && path.substr(i, 2) == "//" && ++anywhere > 1) {
       return Wrong{"has // more than once; write the names of the elements between"};
@@ -170,7 +171,7 @@ Value<std::pair<std::string, std::string>> to_parameter(std::string_view text) {
 }
 
 std::string to_string(const Setting& setting) {
-  return fmt::format("--set '{}={}'", setting.path, setting.value);
+  return fmt::format("--set '{}={}'", text::shortened(setting.path), text::shortened(setting.value));
 }
 
 std::string to_text(const Variation& variation) {

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <system_error>
 
+#include "text/shortened.h"
+
 namespace ziggurat::scene {
 namespace {
 
@@ -118,14 +120,10 @@ constexpr std::array<std::pair<std::string_view, Color>, 20> named_colors{{
 
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;
-  std::string result = "\"";
-  std::size_t end = std::min(text.size(), longest);
-  while (end < text.size() && end > 0 && (text[end] & 0xC0) == 0x80) --end;  // whole characters
-  for (const char c : text.substr(0, end)) {
-    result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-  }
-  if (end < text.size()) result += "…";
-  return result + '"';
+  std::string result = text::shortened(text, longest);
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  std::ranges::replace_if(result, is_control, ' ');
+  return '"' + result + '"';
 }
 
 Value<double> number(std::string_view text) {

@@ -1,6 +1,7 @@
 #include "simulation/place.h"
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include "math/random.h"
 #include "physics/placement.h"
@@ -57,24 +58,71 @@ class Draw {
   std::size_t count_ = 0;
 };
 
-/// Places found, and attempts to find more.
-struct Search {
-  const scene::Scene& scene;
-  std::size_t most_attempts, all;
-  const TellPlaced& tell;
-  std::size_t attempts = 0, placed = 0;
+/// The processor time of this thread [s].
+double processor_s() {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
-  void tell_now() const {
-    if (tell) tell(placed, all);
+/// Places found, and attempts to find more.
+class Search {
+ public:
+  Search(const scene::Scene& scene, const Patience& patience, const TellPlaced& tell)
+      : scene(scene), patience(patience), tell_(tell) {
+    for (const scene::Distribution& group : scene.distributions) all_ += group.quantity;
   }
+
+  const scene::Scene& scene;
+  const Patience patience;
+
+  /// @param tried  for this entity
+  void fail(std::size_t tried) {
+    constexpr std::size_t between_messages = 10'000, between_looks = 16;
+    if (tried == 1) since_ = processor_s();
+    if (++attempts_ % between_messages == 0) tell_now();
+    if (attempts_ % between_looks == 0) look();
+  }
+  void succeed(std::size_t tried) {
+    constexpr std::size_t between_messages = 100;
+    if (tried > 1) look();
+    if (++placed_ % between_messages == 0) tell_now();
+  }
+
+  bool is_out_of_attempts() const { return attempts_ >= patience.attempts; }
+  bool is_out_of_time() const { return spent_s_ >= patience.processor_s; }
+
+ private:
+  void look() {
+    const double now = processor_s();
+    spent_s_ += now - since_;
+    since_ = now;
+  }
+  void tell_now() const {
+    if (tell_) tell_(placed_, all_);
+  }
+
+  const TellPlaced& tell_;
+  std::size_t all_ = 0, attempts_ = 0, placed_ = 0;
+  double spent_s_ = 0;  ///< for attempts that failed
+  double since_ = 0;
 };
+
+/// Why it ends before 'max_trials' says; empty if it does not.
+std::string limit_of(const Search& search) {
+  if (search.is_out_of_attempts()) return fmt::format(", and a scene has {} in all", search.patience.attempts);
+  if (search.is_out_of_time()) {
+    return fmt::format(", and those of a scene take {} s of processor time at most", search.patience.processor_s);
+  }
+  return {};
+}
 
 /// @param tried   for this entity
 /// @param placed  entities of this group
 [[noreturn]] void no_place(const Search& search, const scene::Distribution& group, const std::string& id,
                            std::size_t tried, unsigned placed, const std::string& other) {
   const bool is_grid = group.position.method == scene::DistributionMethod::grid;
-  const bool is_limit = search.attempts >= search.most_attempts;
+  const std::string limit = limit_of(search);
   scene::Problem problem;
   problem.file = search.scene.files.empty() ? "" : search.scene.files[group.where.file];
   problem.where = group.where;
@@ -87,16 +135,14 @@ struct Search {
     problem.text = fmt::format(
         "<distribute>: no free place for '{}' in {} attempts{}, after {} of {} were placed (the last attempt "
         "overlapped '{}'); widen the range{} place fewer{}",
-        id, tried,
-        is_limit ? fmt::format(", and a scene has {} in all", search.most_attempts) : "", placed, group.quantity,
-        other, is_limit ? " or" : ",", is_limit ? "" : " or raise 'max_trials'");
+        id, tried, limit, placed, group.quantity, other, limit.empty() ? "," : " or",
+        limit.empty() ? " or raise 'max_trials'" : "");
   }
   throw scene::SceneError({problem});
 }
 
 void distribute(Search& search, const scene::Distribution& group, math::RandomStream& random,
                 physics::Placement& placement, std::vector<scene::Entity>& entities) {
-  constexpr std::size_t between_placed = 100, between_attempts = 10'000;  // two messages
   Draw position(group.position, random), orientation(group.orientation, random);
   const bool grid = group.position.method == scene::DistributionMethod::grid ||
                     group.orientation.method == scene::DistributionMethod::grid;
@@ -104,34 +150,33 @@ void distribute(Search& search, const scene::Distribution& group, math::RandomSt
   for (unsigned i = 0; i < group.quantity; ++i) {
     scene::Entity entity = group.entity;
     entity.id += std::to_string(std::size_t{group.base_num} + i);
-    for (std::size_t tried = 1;; ++tried) {
+    std::size_t tried = 1;
+    for (;; ++tried) {
       entity.pose.position = position.next();
       entity.pose.orientation = scene::orientation_from_degrees(orientation.next());
       const std::string other = placement.overlapped_by(entity);
       if (other.empty()) break;
-      if (++search.attempts % between_attempts == 0) search.tell_now();
-      if (tried == most || search.attempts >= search.most_attempts) {
+      search.fail(tried);
+      if (tried == most || search.is_out_of_attempts() || search.is_out_of_time()) {
         no_place(search, group, entity.id, tried, i, other);
       }
     }
     placement.add(entity);
     entities.push_back(std::move(entity));
-    if (++search.placed % between_placed == 0) search.tell_now();
+    search.succeed(tried);
   }
 }
 
 }  // namespace
 
 std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellPlaced& tell,
-                                 std::size_t most_attempts) {
+                                 Patience patience) {
   std::vector<scene::Entity> entities = scene.entities;
   physics::Placement placement;
   if (!scene.distributions.empty()) {
     for (const scene::Entity& entity : entities) placement.add(entity);
   }
-  std::size_t all = 0;
-  for (const scene::Distribution& group : scene.distributions) all += group.quantity;
-  Search search{scene, most_attempts, all, tell};
+  Search search(scene, patience, tell);
   math::RandomStream random(seed, "distribute");
   for (const scene::Distribution& group : scene.distributions) {
     distribute(search, group, random, placement, entities);

@@ -14,12 +14,18 @@ namespace ziggurat::simulation {
 /// How many of all entities that are to be distributed have their places.
 using TellPlaced = std::function<void(std::size_t placed, std::size_t all)>;
 
+/// When the search for free places ends, whatever 'max_trials' says: both of all attempts that fail, of all
+/// entities together.
+struct Patience {
+  std::size_t attempts = 10'000'000;
+  double processor_s = 10;  ///< one attempt may cost a microsecond, or milliseconds among thousands of bodies
+};
+
 /// All entities of the scene at their poses, in scene order: the placed ones, then the
 /// distributed ones group by group.
-/// @param tell           told now and then how many entities are distributed already
-/// @param most_attempts  that fail, of all entities together: whatever 'max_trials' says, the search ends
+/// @param tell  told now and then how many entities are distributed already
 /// @throws scene::SceneError if a distributed entity finds no free place
 std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellPlaced& tell = {},
-                                 std::size_t most_attempts = 10'000'000);
+                                 Patience patience = {});
 
 }  // namespace ziggurat::simulation

@@ -4,11 +4,17 @@
 
 #include <nlohmann/json.hpp>
 
+#include "text/numbers.h"
+#include "text/printable.h"
+
 namespace ziggurat::sweep {
 
 // Texts are written as JSON has them, which YAML reads.
 std::string kubernetes_manifest(std::size_t tasks, const std::vector<std::string>& command,
                                 unsigned jobs, const KubernetesOptions& options) {
+  for (const std::string& word : command) {
+    if (!text::is_utf8(word)) throw text::UsageError(fmt::format("'{}' is not UTF-8, as a manifest must be; rename it", word));
+  }
   const auto quoted = [](const std::string& text) { return nlohmann::json(text).dump(); };
   return fmt::format(
       R"(apiVersion: batch/v1

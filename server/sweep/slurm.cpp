@@ -72,7 +72,13 @@ std::string slurm_script(const Folder& folder, const std::vector<std::size_t>& t
                          const std::vector<std::string>& command, unsigned jobs,
                          const SlurmOptions& options) {
   std::string text = "#!/bin/sh\n";
-  const auto option = [&](const std::string& line) { text += "#SBATCH " + line + "\n"; };
+  const auto option = [&](const std::string& line) {
+    if (line.find_first_of("\r\n") != line.npos) {  // what stands behind would be a command of the script
+      throw text::UsageError(fmt::format("'{}' has a line break, which no option of Slurm may have; choose another folder, or "
+                                         "option", line));
+    }
+    text += "#SBATCH " + line + "\n";
+  };
   option("--job-name=ziggurat-sweep");
   option("--array=" + to_ranges(tasks));
   option(fmt::format("--cpus-per-task={}", jobs));

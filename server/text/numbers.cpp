@@ -12,7 +12,8 @@ std::uint64_t to_integer(std::string_view option, const std::string& text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
-    throw UsageError(fmt::format("{} is '{}'; it must be a whole number from 0 on", option, text));
+    const std::string most = error == std::errc::result_out_of_range ? fmt::format("to {}", ~std::uint64_t{0}) : "on";
+    throw UsageError(fmt::format("{} is '{}'; it must be a whole number from 0 {}", option, text, most));
   }
   return value;
 }

@@ -11,4 +11,6 @@ namespace ziggurat::text {
 /// that differ look different. Bytes that are not UTF-8 become U+FFFD.
 std::string printable(std::string_view text);
 
+bool is_utf8(std::string_view text);
+
 }  // namespace ziggurat::text

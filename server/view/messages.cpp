@@ -86,6 +86,7 @@ std::string base64(std::string_view bytes) {
 
 /// None if it is no JSON, or has so many values that they would take much memory.
 std::optional<Json> parse(std::string_view text) {
+  if (text.find('\0') != text.npos) return std::nullopt;  // for nlohmann's parser the end of the text
   std::size_t values = 0;
   bool is_in_text = false;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -255,6 +255,20 @@ class BrokenArguments(SceneTest):
         for option in ("--trace", "--readings", "--hash-file", "--summary"):
             self.refuses(r"/dev/full.*No space left", "run", self.scene, option, "/dev/full")
 
+    def test_names_that_are_not_utf8(self):
+        odd = os.fsdecode(b"n\xff.argos")
+        (self.folder / odd).write_text(self.text)
+        self.assertEqual(self.ziggurat("run", odd, "--ticks", 1, "--quiet").code, FINISHED)
+        self.refuses(r"n.*\.argos: the name is not UTF-8, as names in a recording are; rename it",
+                     "run", odd, "--ticks", 1, "--quiet", "--record", "r.mcap")
+        self.refuses(r"not UTF-8, as a manifest must be; rename it",
+                     "sweep", self.scene, "--seeds", "1..2", "--out", os.fsdecode(b"o\xff"), "--kubernetes", "job.yaml",
+                     "--image", "i", "--claim", "c", "--mount", self.folder)
+        served = self.start("serve", self.scene, "--json", "--endpoint", os.fsdecode(b"ipc://s\xff"))
+        self.assertIn('"endpoint":"ipc://s\ufffd"', served.stdout.readline())
+        self.interrupt(served)
+        self.finish(served)
+
     def test_foreign_address_needs_insecure(self):
         self.refuses(r"0\.0\.0\.0.*--insecure", "run", self.scene, "--endpoint", "tcp://0.0.0.0:0")
 

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import time
@@ -71,6 +72,14 @@ class Signals(SceneTest):
             self.wait_until_it_computes(process.pid, 1)
             self.assert_ends_soon(process, number)
             self.assertIn("hash 0 ", hashes.read_text(), "what was written before is there")
+
+    def test_a_limit_of_processor_time_ends_it_as_control_c_does(self):
+        summary = self.folder / "s.json"
+        scene = self.write("drop.argos", SLOW_TICK.replace("1000000", "10"))  # without controllers, which have limits, too
+        process = self.start("run", scene, *ENDLESS, "--summary", summary,
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (1, 100)))
+        self.assertEqual(self.finish(process).code, INTERRUPTED)
+        self.assertEqual(json.loads(summary.read_text())["ending"], "interrupted")
 
     def test_output_to_a_pipe_that_is_not_read(self):
         """The world goes on: a reader that stops stops nothing."""

@@ -199,6 +199,19 @@ end
         self.assertIn("1 failed: robot r1 at tick 2", outcome.err)
         self.assertIn("[2 r2] last", outcome.lines)
 
+    def test_a_destroy_that_does_not_end_is_a_failure(self):
+        self.write("swing.lua", "function init() end function step() end\n"
+                   "function destroy() if robot.id == 'r1' then\nwhile true do end end end")
+        outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
+        # On a fast machine it is the limit of instructions.
+        self.assertRegex(outcome.err, r"robot r1 .* failed at tick 2: .*swing\.lua:3: (the script still ran 3 s after the end of "
+                                      r"the run, and was ended|.*instructions)")
+
+    def test_a_command_that_does_not_end_is_told(self):
+        outcome = self.run_scene("--ticks", 2, "--controller", f"swing='{LUA}'; sleep 1000.125")
+        self.assertRegex(outcome.err, r"notice: .*\(process \d+\) still ran 3 s after the end of the run, and was ended; "
+                                      r"it controlled robots r0, r1, r2")
+
     def test_fail_fast_ends_at_the_first_error(self):
         self.write("swing.lua", FAILS_AT_TICK_3)
         outcome = self.run_scene("--fail-fast", *ENDLESS, code=CONTROLLER_FAILED)

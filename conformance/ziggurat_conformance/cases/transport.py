@@ -58,6 +58,7 @@ _NOT_JSON = {
     "number-for-a-text": b'{"command": {"log": [{"text": 7}]}}',
     "two-kinds": b'{"heartbeat": {"sequence": 5}, "command": {"tick": "0"}}',
     "name-twice": b'{"heartbeat": {"sequence": 5, "sequence": 6}}',
+    "nul": b'{"heartbeat": {"sequence": 5}}\0{"leave": {}}',
     "latin-1": b'{"command": {"log": [{"text": "\xe9"}]}}',
 }
 

@@ -69,6 +69,7 @@ class Attacks(SceneTest):
         self.assertEqual(outcome.code, FAULT, f"{arguments}\n{outcome.out[:2000]}\n{outcome.err[:2000]}")
         self.assert_is_sentence(outcome, pattern)
         self.assertNotRegex(outcome.err, "[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+        self.assertLess(len(outcome.err), 500_000, "long texts are quoted in part")
 
     # --- files and settings ---------------------------------------------------------------------
 
@@ -185,6 +186,13 @@ class Attacks(SceneTest):
                     self.assert_is_sentence(outcome, ".|^$")
                     self.assertNotRegex(outcome.out + outcome.err, "[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
+    def test_links_without_end(self):
+        loop = self.folder / "loop.argos"
+        loop.symlink_to(loop)
+        for command in (("run", loop), ("check", loop), ("sweep", self.scene, "--seeds", "1", "--out", loop), ("verify", loop)):
+            self.refuses(*command, pattern=r"loop\.argos.*: .*(symbolic links|read)")
+            self.assertNotIn("filesystem error", self.ziggurat(*command).err)
+
     def test_hostile_experiments(self):
         usual = {"scene": '"arms.argos"', "ticks": "1", "seeds": "[1]"}
         for changes in ({"scene": '""'}, {"scene": '"/dev/zero"'}, {"scene": "[1]"}, {"seeds": "[[1]]"}, {"seeds": "[-1]"},
@@ -192,6 +200,7 @@ class Attacks(SceneTest):
                         {"out": '"arms.argos"'}, {"out": '"/dev/null"'}, {"run": '["a\\u0000b"]'},
                         {"run": '["--trace", "arms.argos"]'}, {"run": '["--summary", "x"]'},
                         {"run": "[" + '"--quiet", ' * 100_000 + "]"}, {"k" * 1_000_000: "1"}, {"a": "[" * 100_000},
+                        {"seeds": '"' + "s" * 1_000_000 + '"'}, {"scene": '"' + "s" * 1_000_000 + '"'},
                         {"parameters": "[nan]"}, {"parameters": '{"x\\u001b[2J" = 1}'}):
             text = "".join(f"{key} = {value}\n" for key, value in (usual | changes).items())
             with self.subTest(text[-80:]):

@@ -69,6 +69,12 @@ TEST(Arguments, UnknownOptionsGetASuggestionIfOneIsNear) {
   EXPECT_NE(complaint({"--tick", "3"}), "") << "abbreviations are not guessed";
 }
 
+TEST(Arguments, ADashOfAWordProcessorIsTold) {
+  EXPECT_EQ(complaint({"scene.argos", "–ticks", "3"}), "'–ticks' begins with a dash that is no hyphen; write --ticks");
+  EXPECT_EQ(complaint({"——ticks=3"}), "'——ticks=3' begins with a dash that is no hyphen; write --ticks=3");
+  EXPECT_EQ(complaint({"–", "–file.argos", "− 3", "--", "–ticks"}), "") << "files and values may begin so";
+}
+
 TEST(Arguments, MissingValuesAndRepetitionsAreFaults) {
   EXPECT_NE(complaint({"--ticks"}), "");
   EXPECT_NE(complaint({"--ticks", "1", "--ticks", "2"}).find("more than once"), std::string::npos);

@@ -66,7 +66,9 @@ TEST(ChildProcess, StubbornOnesAreKilledInTheEnd) {
   ChildProcess stubborn(shell("trap '' TERM; touch " + ready + "; while :; do sleep 1; done"));
   ChildProcess polite(shell("exit 0"));
   ASSERT_TRUE(soon([&] { return std::filesystem::exists(ready); }));
-  end_all({&stubborn, &polite}, 50, [] { return false; });
+  std::vector<pid_t> slow;
+  end_all({&stubborn, &polite}, 50, [] { return false; }, [&](const ChildProcess& each) { slow.push_back(each.id()); });
+  EXPECT_EQ(slow, std::vector{stubborn.id()});
   EXPECT_EQ(stubborn.how_it_ended(), "was killed by signal 9 (Killed)");
   EXPECT_EQ(polite.how_it_ended(), "ended with exit code 0");
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -136,6 +138,31 @@ TEST(Guardian, OneThatIsKilledHasASecondThatTakesItsPlace) {
   for (const char* name : {"before", "between", "after"}) {
     EXPECT_TRUE(eventually([&] { return !fs::exists(in + "/" + name); })) << name;
   }
+}
+
+TEST(Guardian, RemovesADeadSocketAndNoOther) {
+  const PrivateFolder folder;
+  const auto listen = [&](const char* name) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    (folder.path() + name).copy(address.sun_path, sizeof address.sun_path - 1);
+    const int made = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    EXPECT_EQ(::bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    EXPECT_EQ(::listen(made, 1), 0);
+    return made;
+  };
+  const int live = listen("/live");
+  std::ofstream(folder.path() + "/file") << "of the user";
+  in_another_process([&] {
+    const Guardian guardian;
+    for (const char* name : {"/missing", "/live", "/file", "/dead"}) guardian.remove_dead_socket(folder.path() + name);
+    listen("/dead");
+    ::kill(::getpid(), SIGKILL);
+  });
+  EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/dead"); }));
+  EXPECT_TRUE(fs::exists(folder.path() + "/live"));
+  EXPECT_TRUE(fs::exists(folder.path() + "/file"));
+  ::close(live);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -81,6 +82,30 @@ TEST(PrivateFolder, IsShortEvenIfTheRuntimeFolderIsNot) {
   const PrivateFolder folder;
   before ? ::setenv("XDG_RUNTIME_DIR", kept.c_str(), 1) : ::unsetenv("XDG_RUNTIME_DIR");
   EXPECT_LT(folder.path().size(), 100u);
+}
+
+/// How many are left of those of a process that is killed while it makes one after another.
+std::ptrdiff_t left_after_kills(const PrivateFolder& parent, int kills) {
+  for (int i = 0; i < kills; ++i) {
+    const pid_t process = ::fork();
+    if (process == 0) {
+      ::setenv("XDG_RUNTIME_DIR", parent.path().c_str(), 1);
+      const Guardian guardian;
+      for (int k = 0; k < 100; ++k) const PrivateFolder folder(&guardian);  // its pipe has room for so many
+      for (;;) ::pause();
+    }
+    ::usleep(static_cast<useconds_t>(1000 + 73 * i));
+    ::kill(process, SIGKILL);
+    ::waitpid(process, nullptr, 0);
+  }
+  const auto count = [&] { return std::distance(fs::directory_iterator(parent.path()), fs::directory_iterator()) - 1; };
+  for (int i = 0; i < 3000 && count() > 0; ++i) ::usleep(1000);
+  return count();
+}
+
+TEST(PrivateFolder, OfAProcessThatIsKilledWhileItIsMadeDoesNotStay) {
+  const PrivateFolder parent;
+  EXPECT_EQ(left_after_kills(parent, 60), 0);
 }
 
 }  // namespace

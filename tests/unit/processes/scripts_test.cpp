@@ -172,6 +172,21 @@ TEST_F(Scripts, MissingOnesAreFaultsAndNoneIsANotice) {
   EXPECT_EQ(none[0].severity, scene::Problem::Severity::notice);
 }
 
+TEST_F(Scripts, ALongNameIsQuotedInPart) {
+  std::string words;
+  for (int i = 0; i < 1'000'000; ++i) words += "a b ";
+  for (const std::string& name : {std::string(3'000'000, 'n'), words}) {
+    const auto problems = check_scripts(naming(name), fs::path(folder_.path()) / "a.argos");
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_LT(to_string(problems[0]).size(), 1000u);
+    auto external = naming("");
+    external.controllers[0].command = "./" + name;
+    const auto told = find_commands(external, fs::path(folder_.path()) / "a.argos");
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_LT(to_string(told[0]).size(), 1000u);
+  }
+}
+
 TEST_F(Scripts, BytecodeIsRefused) {
   const auto path = write("code.lua", "\x1bLua rest");
   EXPECT_TRUE(compile_error(path));

@@ -36,6 +36,13 @@ TEST(Signals, ArriveOnTheDescriptorAndNowhereElse) {
   EXPECT_EQ(signals.take().interruptions, 0);
 }
 
+TEST(Signals, ALimitOfProcessorTimeIsAnInterruption) {
+  Signals signals;
+  ::kill(::getpid(), SIGXCPU);
+  ASSERT_TRUE(readable(signals, 5000));
+  EXPECT_EQ(signals.take().interruptions, 1);
+}
+
 TEST(Signals, EndAProgramThatDoesNotReact) {
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EXIT(

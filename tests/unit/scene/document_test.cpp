@@ -131,6 +131,76 @@ TEST_F(Folder, TextOutsideOfTheRootElementIsTold) {
   }
 }
 
+/// A scene with something of everything, whose words are replaced one by one.
+constexpr std::string_view sample = R"(<argos-configuration>
+<parameters gain="0.5"/>
+<framework><experiment length="5" ticks_per_second="10" random_seed="1"/></framework>
+<controllers><lua_controller id="push">
+<actuators><joints implementation="default"><joint id="rail" mode="velocity" max_impulse="${gain}"/></joints></actuators>
+<sensors><joints implementation="default"><joint id="rail" mode="position"/></joints></sensors>
+<params script="slider.lua"/></lua_controller></controllers>
+<arena size="2,2,1" center="0,0,0.5"> text
+<prototype id="slider" movable="false"><body position="0,0,0" orientation="0,0,0"/><controller config="push"/>
+<links ref="base"><link id="base" geometry="box" size="0.4,0.1,0.1" mass="1" position="0,0,0" orientation="0,0,0"/>
+<link id="sled" geometry="box" size="0.1,0.1,0.05" mass="0.2" position="0,0,0.1" orientation="0,0,0"/></links>
+<joints><joint id="rail" type="prismatic" axis="1,0,0" limit="-0.2:0.2">
+<parent link="base" position="0,0,0.1" orientation="0,0,0"/><child link="sled" position="0,0,0" orientation="0,0,0"/></joint></joints>
+<devices><leds medium="leds"><led anchor="sled" offset="0,0,0" color="red"/></leds></devices></prototype>
+<distribute><position method="uniform" min="1,1,0" max="2,2,0"/><orientation method="constant" values="0,0,0"/>
+<entity quantity="2" max_trials="10"><box id="b" size="0.1,0.1,0.1" movable="false"><body/></box></entity></distribute></arena>
+<physics_engines><dynamics3d id="dyn" iterations="10"><floor/><gravity g="9.8"/></dynamics3d></physics_engines>
+<media><led id="leds"/></media>
+</argos-configuration>)";
+
+TEST(Text, NoMessageQuotesMoreThanAPartOfALongText) {
+  constexpr std::size_t most = 1000;  // of a message [bytes]
+  const std::string word(5000, 'x');
+  std::string words, numbers, condition = "${";
+  for (int i = 0; i < 1000; ++i) words += "a b ", numbers += "1, ", condition += "a ";
+  const ReadOptions options{.variation = {{{"//@g", words}, {"arena/@" + word, word}}, {{"gain", numbers}, {"none", words}}}};
+  std::size_t tried = 0;
+  const auto check = [&](const std::string& text) {
+    for (const ReadOptions& each : {ReadOptions{}, options}) {
+      for (const Problem& problem : read_text(text, "t", each).problems) {
+        ASSERT_LE(text_of(problem).size(), most) << text << '\n' << text_of(problem);
+      }
+    }
+    ++tried;
+  };
+  for (std::size_t begin = 0; begin < sample.size();) {
+    constexpr std::string_view ends = "<>/=\" \n";
+    const std::size_t end = std::min(sample.find_first_of(ends, begin + 1), sample.size());
+    for (const std::string& longer : {word, words, numbers, condition + "}", "\"" + word, "=" + word, word + " " + word}) {
+      check(std::string(sample.substr(0, begin + 1)) + longer + std::string(sample.substr(end)));
+    }
+    begin = end;
+  }
+  EXPECT_GT(tried, 1000u);
+  const std::string megabytes(3'000'000, 'n');
+  check("<argos-configuration " + megabytes + "=\"1\"/>");
+  check("<argos-configuration><" + megabytes + "/></argos-configuration>");
+}
+
+TEST(Text, AnXmlDeclarationBehindTheBeginningIsTold) {
+  constexpr std::string_view declaration = "<?xml version=\"1.0\" ?>";
+  const std::string scene = SceneText{}.str(), declared = std::string(declaration) + "\n" + scene;
+  for (const std::string& good : {declared, "\xEF\xBB\xBF" + declared, "<?xml-stylesheet href='a'?>\n<?xmlx?>" + scene}) {
+    EXPECT_TRUE(read_text(good, "t").problems.empty()) << all_problems(read_text(good, "t"));
+  }
+  const auto told = [](const std::string& text) {
+    const ReadResult result = read_text(text, "t");
+    EXPECT_TRUE(result.ok()) << all_problems(result);
+    return result.problems.size() == 1 ? to_string(result.problems[0]) : all_problems(result);
+  };
+  const std::string text = "<?xml … ?> behind the beginning of the file";
+  EXPECT_TRUE(contains(told("\n" + declared), "t:2:1: " + text)) << told("\n" + declared);
+  EXPECT_TRUE(contains(told("<!-- a -->\n\n" + declared), "t:3:1: " + text));
+  EXPECT_TRUE(contains(told(declared + "<?XML?>"), ": " + text));
+  SceneText inside;
+  inside.arena = arena_with(std::string(declaration));
+  EXPECT_TRUE(contains(told(inside.str()), "t:4:")) << told(inside.str());
+}
+
 TEST(Text, AnEntityBombIsHarmlessAndReported) {
   std::string text = "<?xml version=\"1.0\"?>\n<!DOCTYPE bomb [\n<!ENTITY lol0 \"lol\">\n";
   for (int i = 1; i < 10; ++i) {

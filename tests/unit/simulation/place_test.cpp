@@ -22,9 +22,9 @@ scene::Scene full(const std::string& max_trials) {
   return text.read();
 }
 
-std::string fault_of(const scene::Scene& scene, std::size_t most_attempts) {
+std::string fault_of(const scene::Scene& scene, Patience patience) {
   try {
-    place(scene, 1, {}, most_attempts);
+    place(scene, 1, {}, patience);
   } catch (const scene::SceneError& error) {
     return scene::to_string(error.problems().at(0));
   }
@@ -32,14 +32,22 @@ std::string fault_of(const scene::Scene& scene, std::size_t most_attempts) {
 }
 
 TEST(Place, TriesAsOftenAsTheSceneSays) {
-  EXPECT_NE(fault_of(full("7"), 1000).find("no free place for 'b0' in 8 attempts, after 0 of 2 were placed"),
+  EXPECT_NE(fault_of(full("7"), {1000}).find("no free place for 'b0' in 8 attempts, after 0 of 2 were placed"),
             std::string::npos);
 }
 
 TEST(Place, GivesUpAtTheLimitOfASceneWhateverItSays) {
-  const std::string fault = fault_of(full("4294967295"), 1000);
+  const std::string fault = fault_of(full("4294967295"), {1000});
   EXPECT_TRUE(fault.starts_with("small.argos:1:")) << fault;
   EXPECT_NE(fault.find("no free place for 'b0' in 1000 attempts, and a scene has 1000 in all"), std::string::npos)
+      << fault;
+  EXPECT_NE(fault.find("widen the range or place fewer"), std::string::npos) << fault;
+}
+
+TEST(Place, GivesUpWhenFailingTakesTooLong) {
+  const std::string fault = fault_of(full("4294967295"), {1'000'000'000, 0.05});
+  EXPECT_NE(fault.find("no free place for 'b0' in "), std::string::npos) << fault;
+  EXPECT_NE(fault.find(" attempts, and those of a scene take 0.05 s of processor time at most, after 0 of 2"), std::string::npos)
       << fault;
   EXPECT_NE(fault.find("widen the range or place fewer"), std::string::npos) << fault;
 }
@@ -47,7 +55,7 @@ TEST(Place, GivesUpAtTheLimitOfASceneWhateverItSays) {
 TEST(Place, TellsHowFarItIsWhileItTries) {
   std::vector<std::pair<std::size_t, std::size_t>> told;
   const auto tell = [&](std::size_t placed, std::size_t all) { told.emplace_back(placed, all); };
-  EXPECT_THROW(place(full("4294967295"), 1, tell, 25'000), scene::SceneError);
+  EXPECT_THROW(place(full("4294967295"), 1, tell, {25'000}), scene::SceneError);
   EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {0, 2}}));
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "text/numbers.h"
+
 namespace ziggurat::sweep {
 namespace {
 
@@ -19,6 +21,17 @@ TEST(SlurmScript, WritesPathsAsSbatchAndTheShellReadThem) {
   has("#SBATCH --mem=2G");
   has(R"(#SBATCH --output="/data/50%%a \"x\"/cluster/task-%a.log")");
   has(R"(exec /usr/bin/ziggurat sweep task '/data/50%a "x"')");
+}
+
+TEST(SlurmScript, ALineBreakDoesNotEndAnOption) {
+  for (const char* each : {"\n", "\r", "\ntouch x\n"}) {
+    const auto script = [&](const std::string& folder, const SlurmOptions& options) {
+      return slurm_script(Folder(folder), {0}, {"ziggurat"}, 1, options);
+    };
+    EXPECT_THROW(script(std::string("/data/a") + each + "b", {}), text::UsageError);
+    EXPECT_THROW(script("/data", {std::string("short") + each, {}}), text::UsageError);
+    EXPECT_THROW(script("/data", {"", {std::string("--mem=2G") + each}}), text::UsageError);
+  }
 }
 
 }  // namespace

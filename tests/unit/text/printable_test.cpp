@@ -47,5 +47,10 @@ TEST(Printable, OtherBytesBecomeReplacementCharacters) {
   EXPECT_EQ(printable("\xf0\x9f"), other + other) << "cut";
 }
 
+TEST(IsUtf8, RefusesWhatPrintableReplaces) {
+  for (const char* text : {"", "a\n\x1b", "\u00ac\u2060\U000e0080"}) EXPECT_TRUE(is_utf8(text)) << text;
+  for (const char* text : {"a\x9b", "\xc0\x9b", "\xed\xa0\x80", "b\xf0\x9f"}) EXPECT_FALSE(is_utf8(text)) << text;
+}
+
 }  // namespace
 }  // namespace ziggurat::text

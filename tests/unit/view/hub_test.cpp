@@ -75,6 +75,8 @@ TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
     bench.say(viewer, text);
     EXPECT_EQ(bench.sent(viewer), Sent{"status"}) << text;
   }
+  bench.say(viewer, std::string(R"({"op":"unsubscribe","subscriptionIds":[]})") + '\0' + "{}");
+  EXPECT_EQ(bench.sent(viewer), Sent{"status"}) << "no JSON";
   std::mt19937 random(1);
   for (int i = 0; i < 1000 && !viewer.is_over; ++i) {
     std::string bytes(random() % 64, '\0');

@@ -84,6 +84,7 @@ TEST(ReadJson, TellsWhichFieldCannotHaveItsValue) {
   EXPECT_EQ(complaint(R"({"request":{"pause":{},"resume":{}}})"),
             "it has 'resume' beside another kind of request");
   EXPECT_EQ(complaint(R"({"command":)"), "not JSON at byte 12");
+  EXPECT_EQ(complaint(std::string(R"({"leave":{}})") + '\0' + R"({"command":{}})"), "not JSON at byte 13");
 }
 
 }  // namespace
