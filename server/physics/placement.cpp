@@ -15,6 +15,7 @@ struct Placement::Parts {
   std::vector<std::string> ids;
   std::vector<Placed> placed;
   Nearby nearby;  // of `placed`
+  std::size_t effort = 0;
 };
 
 Placement::Placement() : parts_(std::make_unique<Parts>()) {}
@@ -30,16 +31,23 @@ void Placement::add(const scene::Entity& entity) {
 }
 
 std::string Placement::overlapped_by(const scene::Entity& entity) const {
+  constexpr std::size_t of_collider = 5, of_test = 10;  // a neighbour that is passed over: 1
   const std::size_t none = parts_->placed.size();
   std::size_t first = none;
   for (const PlacedCollider& candidate : placed_colliders(entity)) {
+    parts_->effort += of_collider;
     parts_->nearby.visit(candidate.pose.getOrigin(), contact::bounding_radius(candidate.shape),
                          [&](std::size_t i) {
                            const auto& other = parts_->placed[i];
-                           if (i < first && overlaps(candidate, other.collider)) first = i;
+                           ++parts_->effort;
+                           if (i >= first) return;
+                           parts_->effort += of_test;
+                           if (overlaps(candidate, other.collider)) first = i;
                          });
   }
   return first == none ? std::string() : parts_->ids[parts_->placed[first].entity];
 }
+
+std::size_t Placement::effort() const { return parts_->effort; }
 
 }  // namespace ziggurat::physics

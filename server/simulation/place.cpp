@@ -1,7 +1,6 @@
 #include "simulation/place.h"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include "math/random.h"
 #include "physics/placement.h"
@@ -58,13 +57,6 @@ class Draw {
   std::size_t count_ = 0;
 };
 
-/// The processor time of this thread [s].
-double processor_s() {
-  timespec time{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 /// Places found, and attempts to find more.
 class Search {
  public:
@@ -76,44 +68,34 @@ class Search {
   const scene::Scene& scene;
   const Patience patience;
 
-  /// @param tried  for this entity
-  void fail(std::size_t tried) {
-    constexpr std::size_t between_messages = 10'000, between_looks = 16;
-    if (tried == 1) since_ = processor_s();
+  /// @param effort  of this attempt, see physics::Placement
+  void fail(std::size_t effort) {
+    constexpr std::size_t between_messages = 10'000;
+    effort_ += effort;
     if (++attempts_ % between_messages == 0) tell_now();
-    if (attempts_ % between_looks == 0) look();
   }
-  void succeed(std::size_t tried) {
+  void succeed() {
     constexpr std::size_t between_messages = 100;
-    if (tried > 1) look();
     if (++placed_ % between_messages == 0) tell_now();
   }
 
   bool is_out_of_attempts() const { return attempts_ >= patience.attempts; }
-  bool is_out_of_time() const { return spent_s_ >= patience.processor_s; }
+  bool is_out_of_effort() const { return effort_ >= patience.effort; }
 
  private:
-  void look() {
-    const double now = processor_s();
-    spent_s_ += now - since_;
-    since_ = now;
-  }
   void tell_now() const {
     if (tell_) tell_(placed_, all_);
   }
 
   const TellPlaced& tell_;
   std::size_t all_ = 0, attempts_ = 0, placed_ = 0;
-  double spent_s_ = 0;  ///< for attempts that failed
-  double since_ = 0;
+  std::size_t effort_ = 0;  ///< of attempts that failed
 };
 
 /// Why it ends before 'max_trials' says; empty if it does not.
 std::string limit_of(const Search& search) {
   if (search.is_out_of_attempts()) return fmt::format(", and a scene has {} in all", search.patience.attempts);
-  if (search.is_out_of_time()) {
-    return fmt::format(", and those of a scene take {} s of processor time at most", search.patience.processor_s);
-  }
+  if (search.is_out_of_effort()) return ", each so long that a scene has no more";
   return {};
 }
 
@@ -150,20 +132,20 @@ void distribute(Search& search, const scene::Distribution& group, math::RandomSt
   for (unsigned i = 0; i < group.quantity; ++i) {
     scene::Entity entity = group.entity;
     entity.id += std::to_string(std::size_t{group.base_num} + i);
-    std::size_t tried = 1;
-    for (;; ++tried) {
+    for (std::size_t tried = 1;; ++tried) {
       entity.pose.position = position.next();
       entity.pose.orientation = scene::orientation_from_degrees(orientation.next());
+      const std::size_t before = placement.effort();
       const std::string other = placement.overlapped_by(entity);
       if (other.empty()) break;
-      search.fail(tried);
-      if (tried == most || search.is_out_of_attempts() || search.is_out_of_time()) {
+      search.fail(placement.effort() - before);
+      if (tried == most || search.is_out_of_attempts() || search.is_out_of_effort()) {
         no_place(search, group, entity.id, tried, i, other);
       }
     }
     placement.add(entity);
     entities.push_back(std::move(entity));
-    search.succeed(tried);
+    search.succeed();
   }
 }
 

@@ -18,7 +18,7 @@ using TellPlaced = std::function<void(std::size_t placed, std::size_t all)>;
 /// entities together.
 struct Patience {
   std::size_t attempts = 10'000'000;
-  double processor_s = 10;  ///< one attempt may cost a microsecond, or milliseconds among thousands of bodies
+  std::size_t effort = 100'000'000;  ///< see physics::Placement; an attempt takes 16, or thousands among thousands of bodies
 };
 
 /// All entities of the scene at their poses, in scene order: the placed ones, then the
