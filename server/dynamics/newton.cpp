@@ -102,6 +102,15 @@ double miss_beyond(const Problem& problem, const Speeds& speeds, double enough) 
   return worst;
 }
 
+/// Of all blocks, see law.h [J].
+double wrong_energy(const Problem& problem, const Speeds& speeds) {
+  double sum = 0;
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    sum += dynamics::wrong_energy(problem.blocks[i], speeds[i].data());
+  }
+  return sum;
+}
+
 /// Whether a contact is faster than what one substep's forces give.
 bool has_strike(const Problem& problem) {
   double fastest = 0, forces = 0;
@@ -232,22 +241,13 @@ void Snapshot::draw_back(Problem& problem, double share) const {
   }
 }
 
-/// At the speeds that were taken.
-double Solver::wrong_energy_now(const Problem& problem) const {
-  double sum = 0;
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    sum += wrong_energy(problem.blocks[i], speeds_[i].data());
-  }
-  return sum;
-}
-
 /// Halves a step of Newton's method, from `earlier_`, until less is wrong than before.
 /// @param wrong  see wrong_energy(): before; out: after
 void Solver::shorten(Problem& problem, double& wrong) {
   constexpr int most = 6;
   const double before = wrong;
   for (int i = 0; i <= most; ++i) {
-    wrong = wrong_energy_now(problem);
+    wrong = wrong_energy(problem, speeds_);
     if (wrong < before || i == most) return;
     earlier_.draw_back(problem, 0.5);
     take_speeds(problem);
@@ -265,7 +265,7 @@ bool Solver::correct_while_nearer(Problem& problem, Outcome& outcome) {
     earlier_.take(problem);
     correct(problem);
     outcome.miss = miss_now(problem, scale);
-    if (outcome.miss <= tolerance(scale)) return true;
+    if (outcome.miss <= options.tolerance(scale)) return true;
     if (outcome.miss > before) {  // where contacts are redundant it may lead far away
       earlier_.give_back(problem);
       take_speeds(problem);
@@ -292,14 +292,14 @@ bool Solver::iterate(Problem& problem, Outcome& outcome, int most_far) {
     ++outcome.iterations;
     if (shortens) shorten(problem, wrong);
     outcome.miss = miss_now(problem, scale);
-    if (outcome.miss <= tolerance(scale)) return true;
-    if (!shortens) wrong = wrong_energy_now(problem);
+    if (outcome.miss <= options.tolerance(scale)) return true;
+    if (!shortens) wrong = wrong_energy(problem, speeds_);
     const bool nears = wrong < 0.5 * wrong_before;
     if (outcome.miss > options.far * scale && !nears && ++far >= most_far) return false;
     if (outcome.miss <= options.rounding * scale && !nears) return true;
     if (outcome.miss > options.near * scale) continue;
     if (correct_while_nearer(problem, outcome)) return true;
-    wrong = wrong_energy_now(problem);
+    wrong = wrong_energy(problem, speeds_);
   }
   return false;
 }
@@ -321,7 +321,7 @@ bool Solver::still_solved(const Problem& problem, Outcome& outcome) {
   double scale = 0, of_joints = 0;
   take_speeds(problem);
   const bool finite = find_scale(problem, speeds_, scale, of_joints);
-  const double enough = tolerance(scale);
+  const double enough = options.tolerance(scale);
   outcome.miss = finite ? miss_beyond(problem, speeds_, enough) : HUGE_VAL;
   if (outcome.miss > enough) return false;
   const double balanced = options.absolute_tolerance + options.still_tolerance * std::max(scale, of_joints);
@@ -384,7 +384,7 @@ bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most)
     sweeps_.finish(problem);
     double scale = 0;
     outcome.miss = worst_miss(problem, scale);
-    outcome.converged = outcome.miss <= soft_tolerance(scale);
+    outcome.converged = outcome.miss <= options.tolerance_of_softened(scale);
     if (outcome.converged) return true;
     sweeps_.accelerate();
   }

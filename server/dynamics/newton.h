@@ -46,6 +46,9 @@ struct SolverOptions {
   double still_tolerance = 1e-8;      ///< of it, for the momentum that the last substep's solution misses
   double soft_tolerance = 2e-5;       ///< of it, where Newton's method did not converge
   double absolute_tolerance = 1e-10;  ///< [m/s] or [rad/s]
+
+  double tolerance(double scale) const { return absolute_tolerance + relative_tolerance * scale; }
+  double tolerance_of_softened(double scale) const { return absolute_tolerance + soft_tolerance * scale; }
 };
 
 /// A block in the interior point method: impulse and speed in units in which a contact's cone is
@@ -95,7 +98,6 @@ class Solver {
   bool iterate(Problem& problem, Outcome& outcome, int most_far);
   bool step(Problem& problem);
   void shorten(Problem& problem, double& wrong);
-  double wrong_energy_now(const Problem& problem) const;
   void correct(Problem& problem);
   bool correct_while_nearer(Problem& problem, Outcome& outcome);
   double start(Problem& problem);
@@ -114,12 +116,6 @@ class Solver {
   double worst_miss(const Problem& problem, double& scale);
   bool sweep_until_converged(Problem& problem, Outcome& outcome, int most);
   bool soften_after_sweeps(Problem& problem, Outcome& outcome);
-  double tolerance(double scale) const {
-    return options.absolute_tolerance + options.relative_tolerance * scale;
-  }
-  double soft_tolerance(double scale) const {
-    return options.absolute_tolerance + options.soft_tolerance * scale;
-  }
 
   BlockMatrix matrix_;
   std::vector<std::array<double, Block::most_rows>> speeds_;  // of each block, by take_speeds()

@@ -138,8 +138,8 @@ bool Solver::proximal(Problem& problem, Outcome& outcome) {
       best = now;
       snapshot_.take(problem);
     }
-    if (now <= tolerance(scale)) return outcome.miss = now, true;
-    enough = best <= soft_tolerance(scale);
+    if (now <= options.tolerance(scale)) return outcome.miss = now, true;
+    enough = best <= options.tolerance_of_softened(scale);
     if (i > 0 && now > 0.3 * before) break;
     before = now;
     if (unbalanced <= 0.1 * law) {
@@ -173,8 +173,8 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome, bool strikes) 
       best = now;
       snapshot_.take(problem);
     }
-    if (nearer && now <= tolerance(scale)) return outcome.miss = now, true;
-    enough = best <= soft_tolerance(scale);
+    if (nearer && now <= options.tolerance(scale)) return outcome.miss = now, true;
+    enough = best <= options.tolerance_of_softened(scale);
     if (enough && strikes) break;
     if (!nearer || steps > many) {
       if (enough || softness >= softest) break;

@@ -277,7 +277,7 @@ class Attacks(SceneTest):
         self.endpoint = process.stdout.readline().split()[1]
         with Supervisor(self.endpoint) as supervisor, Supervisor(self.endpoint) as other:
             begin = time.monotonic()
-            while time.monotonic() - begin < 8:  # repeating them takes less: nobody asks in between
+            while time.monotonic() - begin < 8:  # repeating them takes less
                 self.assertEqual(supervisor.ask(step=v1.StepRequest(ticks=1)), "")
             self.assertEqual(supervisor.ask(snapshot=v1.SnapshotRequest(name="late")), "")
             other.number = 1
