@@ -333,13 +333,17 @@ Outcome Solver::solve(Problem& problem) {
   if (still_solved(problem, outcome)) return outcome;
   const double work = start(problem);
   if (work > options.most_work) {
+    problem.harden();
     sweep_until_converged(problem, outcome, options.most_sweeps);
     return outcome;
   }
   if (work <= options.newton_work) {
     if (iterate(problem, outcome, options.most_far)) return outcome;
     start_.give_back(problem);
-    if (soften_after_sweeps(problem, outcome)) return outcome;
+    if (soften_after_sweeps(problem, outcome)) {
+      sharpen(problem, outcome);
+      return outcome;
+    }
     start_.give_back(problem);
     problem.harden();
   } else if (proximal(problem, outcome)) {
@@ -369,6 +373,17 @@ void Solver::solve_without_rebound(Problem& problem, Snapshot& out) {
   out.take(problem);
   rebounding_.give_back(problem);
   for (std::size_t i = 0; i < seeks_.size(); ++i) problem.blocks[i].seek[0] = seeks_[i];
+}
+
+/// Newton's method once more, from the softened solution: that misses by more than what soft surfaces give way, so it
+/// would share loads as it pleases.
+void Solver::sharpen(Problem& problem, Outcome& outcome) {
+  start_.take(problem);
+  const double before = outcome.miss;
+  take_speeds(problem);
+  if (iterate(problem, outcome, options.most_far)) return;
+  start_.give_back(problem);
+  outcome.miss = before;
 }
 
 bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most) {

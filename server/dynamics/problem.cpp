@@ -8,6 +8,9 @@
 namespace ziggurat::dynamics {
 namespace {
 
+/// No load presses surfaces in farther, and no more is pushed out in a substep [m].
+constexpr double deepest = 1e-7;
+
 /// A right-handed frame whose first column is the normal.
 Matrix3 frame_about(const Vector3& normal) {
   int least = 0;
@@ -51,6 +54,7 @@ void Problem::clear() {
   momentum.clear();
   inverse_mass.clear();
   total_mass.clear();
+  weight = 0;
   bias.clear();
   first_bias.clear();
   velocity.clear();
@@ -75,6 +79,7 @@ void Problem::add(Tree& tree, Workspace& work) {
   double total = 0;
   for (const Link& link : tree.links) total += link.mass;
   total_mass.push_back(total);
+  weight += total * tree.gravity.norm();
   mass_offset.push_back(static_cast<int>(mass.size()));
   mass.insert(mass.end(), work.mass.begin(), work.mass.end());
   drift.push_back(work.drift);
@@ -195,16 +200,16 @@ Vector3 Problem::bend(int tree, int link, const Vector3& point) const {
 /// all of a pair alike: so contacts that are more than needed share a load by how far each is pressed in.
 /// How rigid ones share it depends on all that came before.
 void Problem::press(Block& block) const {
-  constexpr double depth = 1e-7;  // no load presses in farther, and no more is pushed out at once [m]
   block.seek[0] = -block.gap / length;
   if (softness == 0) {
     block.seek[0] = std::min(0.0, block.seek[0]);
     return;
   }
   const auto inverse = [&](int place) { return place >= 0 ? 1 / total_mass[place] : 0; };
-  block.seek[0] = std::min(depth / length, block.seek[0]);
+  block.seek[0] = std::min(deepest / length, block.seek[0]);
+  if (block.gap > 0 && block.impulse[0] == 0) return;  // an impact is stopped at the surface
   block.yield = softness * (inverse(block.a) + inverse(block.b));
-  if (block.yield * block.impulse[0] * length > depth) block.yield = depth / (length * block.impulse[0]);
+  if (weight > 0) block.yield = std::min(block.yield, deepest / (length * length * weight));
 }
 
 void Problem::add(const Contact& contact, int a, int b, int source) {
@@ -324,6 +329,13 @@ void Problem::speeds(const Block& block, double* u, const double* v) const {
     if (block.a >= 0) add_speeds<rows()>(j + block.ja, block.dofs_a, v + offset[block.a], u);
     if (block.b >= 0) add_speeds<rows()>(j + block.jb, block.dofs_b, v + offset[block.b], u);
   });
+}
+
+void Problem::bound_depth() {
+  double depth = 0;
+  for (const Block& block : blocks) depth = std::max(depth, block.yield * block.impulse[0] * length);
+  if (depth <= deepest) return;
+  for (Block& block : blocks) block.yield *= deepest / depth;
 }
 
 void Problem::harden() {

@@ -65,6 +65,7 @@ struct Problem {
   std::vector<Motion> bias;                    ///< of each link of the trees that turn, see bias_accelerations()
   std::vector<int> first_bias;                 ///< of each tree, in `bias`; -1: it hardly turns
   std::vector<double> total_mass;              ///< of each tree [kg]
+  double weight = 0;                           ///< of all trees [N]
   std::vector<double> velocity;                ///< v: start and solution
   std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block
 
@@ -83,6 +84,8 @@ struct Problem {
   void speeds(const Block& block, double* u) const { speeds(block, u, velocity.data()); }
   /// For other velocities, of each dof.
   void speeds(const Block& block, double* u, const double* v) const;
+  /// Makes all surfaces as much harder as the last substep's impulses need so as not to press them in too far.
+  void bound_depth();
   /// Makes all surfaces rigid.
   void harden();
   /// Turns the problem into that of the smallest displacement that undoes overlaps: v in [m] and

@@ -275,6 +275,7 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
 
 void System::solve_island(int first_tree, int last_tree, int first_item, int last_item) {
   gather_island(first_tree, last_tree, first_item, last_item);
+  problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
   add(outcome);
   const bool rebounding = rebounds(problem_);
