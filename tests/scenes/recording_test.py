@@ -124,9 +124,10 @@ class RecordingTest(SceneTest):
 
         arguments = ("run", "arms.argos", "--ticks", 300, "--record-compression", "none", "--record", "a.mcap")
         code, _, err = self.outcome(*arguments, preexec_fn=limit)
-        self.assertEqual(code, FINISHED, err)
-        self.assertIn("a.mcap: cannot be written: File too large", err)
+        self.assertEqual(code, FAULT, err)
+        self.assertRegex(err, r"a\.mcap: cannot be written: File too large; the recording ends before tick \d+, the run goes on")
         self.assertIn("finished: 300 ticks", err)
+        self.assertRegex(err, r"\n  not recorded in whole: .*a\.mcap: cannot be written: .*before tick \d+\n")
         self.assertLessEqual((self.folder / "a.mcap").stat().st_size, 60_000)
         info = self.info(self.folder / "a.mcap", code=FAULT)
         self.assertEqual(info["damaged_chunks"], 0)
