@@ -27,6 +27,11 @@ class Lost(Exception):
     """The connection was closed, or is silent for longer than the server promised."""
 
 
+def tell(text):
+    """A text of the server, without characters that a terminal would obey."""
+    print("".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in text), file=sys.stderr)
+
+
 class Connection:
     def __init__(self, endpoint):
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
@@ -144,11 +149,11 @@ class Controller:
     def take_refusal(self, refusal):
         if refusal["error"]["retryable"] and self.is_over_at:
             return self.resume()
-        print(refusal["error"]["message"], file=sys.stderr)
+        tell(refusal["error"]["message"])
         return 1
 
     def take_displaced(self, displaced):
-        print(displaced["message"], file=sys.stderr)
+        tell(displaced["message"])
         return 1
 
     def take_error(self, error):
@@ -159,9 +164,21 @@ class Controller:
             return None
         if error["severity"] != "FATAL":
             self.connection.send(leave={"reason": "FAILED", "message": error["message"]})
-        print(error["message"], file=sys.stderr)
+        tell(error["message"])
+        return 1
+
+
+def main():
+    endpoint = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("ZIGGURAT_ENDPOINT")
+    if not endpoint:
+        sys.exit("write controller.py ENDPOINT, as the server prints it, or set ZIGGURAT_ENDPOINT")
+    controller = Controller(endpoint)
+    try:
+        return controller.run()
+    except (ValueError, LookupError, TypeError, AttributeError, StopIteration, RecursionError) as error:
+        tell(f"{endpoint} sent what is no message of the protocol: {error!r:.200}")
         return 1
 
 
 if __name__ == "__main__":
-    sys.exit(Controller(sys.argv[1] if len(sys.argv) > 1 else os.environ["ZIGGURAT_ENDPOINT"]).run())
+    sys.exit(main())

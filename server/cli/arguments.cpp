@@ -88,6 +88,19 @@ void check_hyphens(const Arguments& arguments, const po::options_description& kn
   }
 }
 
+/// A value that is empty is that of a variable of a shell that is not set: without this an output would not be
+/// written, or an endpoint not be protected, without a word.
+void check_values(const po::variables_map& values, const po::options_description& known) {
+  for (const auto& [name, value] : values) {
+    const po::option_description* option = known.find_nothrow(name, false);
+    if (option == nullptr || option->semantic()->min_tokens() == 0) continue;  // a file, or the value may be left out
+    const auto* text = boost::any_cast<std::string>(&value.value());
+    const auto* texts = boost::any_cast<std::vector<std::string>>(&value.value());
+    const bool is_empty = (text && text->empty()) || (texts && std::ranges::find(*texts, "") != texts->end());
+    if (is_empty) throw text::UsageError(fmt::format("the value of --{0} is empty; write --{0} VALUE, or leave it out", name));
+  }
+}
+
 }  // namespace
 
 Parsed parse(const Arguments& arguments, const po::options_description& known) {
@@ -106,6 +119,7 @@ Parsed parse(const Arguments& arguments, const po::options_description& known) {
                   .extra_style_parser(take_negative_number)
                   .run(),
               parsed.values);
+    check_values(parsed.values, known);
   } catch (const po::unknown_option& error) {
     throw text::UsageError(unknown(error.get_option_name(), known));
   } catch (const po::multiple_occurrences& error) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -117,22 +118,26 @@ std::uint64_t export_html(const std::string& player, const std::string& recordin
   if (out == "-") fail("a page needs a file; write its name instead of -");
   const Template page = read_template(player);
   std::ifstream bytes = open_recording(recording);
-  const std::string part = out + ".part";
+  std::error_code error;
+  // A pipe or a device, as behind /dev/stdout, is written to; another file would take the place of its name.
+  const bool is_file = !fs::exists(out, error) || fs::is_regular_file(out, error);
+  const std::string target = fs::is_symlink(out, error) ? fs::weakly_canonical(out, error).string() : out;
+  const std::string part = is_file ? target + ".part" : out;
   std::ofstream file(part, std::ios::binary | std::ios::trunc);
   file << page.before_name << escaped(fs::path(recording).filename().string())
        << page.before_recording;
   copy_as_base64(bytes, file);
   file << page.rest;
+  const auto size = static_cast<std::streamoff>(file.tellp());
   file.close();
-  std::error_code error;
   if (!file || bytes.bad()) {
     const std::string reason = std::strerror(errno);
-    fs::remove(part, error);
+    if (is_file) fs::remove(part, error);
     fail(fmt::format("{} can't be written: {}", out, reason));
   }
-  fs::rename(part, out, error);
+  if (is_file) fs::rename(part, target, error);
   if (error) fail(fmt::format("{} can't be written: {}", out, error.message()));
-  return fs::file_size(out);
+  return static_cast<std::uint64_t>(std::max<std::streamoff>(size, 0));
 }
 
 }  // namespace ziggurat::cli

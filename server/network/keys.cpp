@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -42,8 +43,12 @@ std::string read_text(const std::string& path) {
 
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
-  std::istringstream words(text);
-  for (std::string word; std::getline(words, word, ',');) parts.push_back(word);
+  if (text.empty()) return parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    parts.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
   return parts;
 }
 
@@ -107,20 +112,38 @@ std::optional<std::string> read_scope(const std::string& word, Scope& scope) {
 /// Whether a word is a limit of a key rather than the beginning of its name.
 bool is_scope(const std::string& word) {
   const std::size_t equals = word.find('=');
-  return equals != std::string::npos && equals > 0 &&
-         std::all_of(word.begin(), word.begin() + static_cast<std::ptrdiff_t>(equals),
-                     [](unsigned char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
+  return equals != std::string::npos && equals > 0;
+}
+
+/// A limit in a name, where it would have no effect: `Alice robots=r1`, or `robots = r1`. Empty if there is none.
+std::string_view limit_in(const std::string& name) {
+  std::string text = " ";  // in lower case, with blanks before words only
+  for (const unsigned char c : name) {
+    if (c == '=' && text.back() == ' ') text.pop_back();
+    text += std::isspace(c) != 0 ? ' ' : static_cast<char>(std::tolower(c));
+  }
+  for (const std::string_view limit : {" robots=", " controllers=", " takeover="}) {
+    if (text.find(limit) != std::string::npos) return limit.substr(1);
+  }
+  return {};
 }
 
 /// The limits and the name that follow the roles. @returns what is wrong, if anything
 std::optional<std::string> read_rest(std::istringstream& words, ClientKey& client) {
   std::string word;
+  std::set<std::string> seen;
   while (words >> word && is_scope(word)) {
+    const std::string limit = word.substr(0, word.find('=') + 1);
+    if (!seen.insert(limit).second) return fmt::format("{0} stands there twice; write {0}A,B", limit);
     if (auto fault = read_scope(word, client.scope)) return fault;
     word.clear();
   }
   std::getline(words, client.name);
   client.name = word + client.name;
+  if (const std::string_view limit = limit_in(client.name); !limit.empty()) {
+    return fmt::format("{0} stands in the name, where it limits nothing; write it before the name, as {0}VALUE without blanks",
+                       limit);
+  }
   const Scope& scope = client.scope;
   const bool is_limited =
       !scope.robots.empty() || !scope.controllers.empty() || !scope.may_take_over;

@@ -94,6 +94,15 @@ Launch plan_director(const scene::Director& director, const LaunchSettings& sett
   return launch;
 }
 
+/// Where a program of ours was looked for that is not there, and what to do.
+std::string missing(const std::string& program) {
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return fmt::format("there is no {} beside {} and none in the folders of PATH; put it beside, as an installation does, or "
+                     "add its folder to PATH",
+                     program, error ? "this program" : self.string());
+}
+
 ControllerProcess start(const Launch& launch, const world::Layout& layout,
                         const Guardian* guardian) {
   if (!launch.robots_file.empty()) {
@@ -110,8 +119,10 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout,
             launch.place_file, std::move(pipe), launch.program,
             0,                 launch.director};
   } catch (const std::system_error& error) {
-    throw std::runtime_error(fmt::format("{} cannot be started ({}): {}", launch.name,
-                                         launch.program.arguments[0], error.code().message()));
+    const std::string& program = launch.program.arguments[0];
+    const bool is_missing = error.code() == std::errc::no_such_file_or_directory && program.find('/') == std::string::npos;
+    throw std::runtime_error(fmt::format("{} cannot be started ({}): {}", launch.name, program,
+                                         is_missing ? missing(program) : error.code().message()));
   }
 }
 

@@ -50,6 +50,9 @@ std::optional<std::string> fault(const std::string& script, const fs::path& nami
   if (!path) {
     return fmt::format("script '{}' is not found{}", text::shortened(script), looked_for(script, naming_file, scene_file));
   }
+  if (const auto unreadable = scene::fault_of_file(*path)) {
+    return fmt::format("script '{}' {}", text::shortened(path->string()), *unreadable);
+  }
   if (auto error = compile_error(*path)) return "script does not compile: " + *error;
   return std::nullopt;
 }

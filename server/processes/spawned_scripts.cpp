@@ -83,6 +83,11 @@ SpawnedScript spawned_script(const scene::Scene& scene, const scene::Entity& ent
                         script),
             {}};
   }
+  if (const auto unreadable = scene::fault_of_file(*path)) {
+    return {{},
+            fmt::format("script '{}' cannot be read; the server's output has the reason", script),
+            fmt::format("a spawned robot's script '{}' {}", path->string(), *unreadable)};
+  }
   if (auto error = compile_error(*path)) {
     return {{},
             fmt::format("script '{}' does not compile; the server's output has the reason", script),

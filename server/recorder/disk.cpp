@@ -18,8 +18,8 @@ Disk::Disk(std::string path) : path_(std::move(path)) {
     throw recording::WriteError("a recording needs a file; write its name instead of -, or /dev/stdout");
   }
   // A pipe without a reader is an error, not a wait.
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
-  if (descriptor_ < 0) fail(errno);
+  descriptor_ = recording::open_alone(path_, O_NONBLOCK);
+  has_name_ = recording::has_name(descriptor_);
   ::fcntl(descriptor_, F_SETFL, 0);  // from now on writes wait
 }
 
@@ -50,8 +50,10 @@ void Disk::write(std::string_view bytes) {
 
 void Disk::close() {
   if (descriptor_ < 0) return;
+  const bool is_removed = has_name_ && !recording::has_name(descriptor_);
   // Some file systems report a full disk only here.
   if (::close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+  if (is_removed) throw recording::WriteError(path_ + ": was removed while it was written, and is lost");
 }
 
 }  // namespace ziggurat::recorder

@@ -10,7 +10,8 @@ namespace ziggurat::recorder {
 
 class Disk {
  public:
-  /// Creates the file, or empties it. @throws recording::WriteError, also for a pipe without a reader
+  /// Creates the file, or empties it. @throws recording::WriteError, also for a pipe without a reader and a file to
+  /// which another program writes
   explicit Disk(std::string path);
   ~Disk();
   Disk(const Disk&) = delete;
@@ -33,6 +34,7 @@ class Disk {
 
   std::string path_;
   int descriptor_ = -1;
+  bool has_name_ = true;
   std::uint64_t size_ = 0;  // of what was written whole [bytes]
   std::atomic<std::uint64_t> taken_ = 0;
   std::atomic<bool> is_abandoned_ = false;

@@ -1,6 +1,8 @@
 #include "recording/output_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,10 +20,28 @@ constexpr std::size_t full_buffer = std::size_t{256} << 10;  // [bytes]
 
 }  // namespace
 
+int open_alone(const std::string& path, int flags) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | flags, 0666);
+  if (file < 0) fail(path, errno);
+  struct stat status {};
+  if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return file;
+  const bool is_taken = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (!is_taken && ::ftruncate(file, 0) == 0) return file;
+  const int error = errno;
+  ::close(file);
+  if (!is_taken) fail(path, error);
+  throw WriteError(path + ": cannot be written: another program writes to it; name another file");
+}
+
+bool has_name(int descriptor) {
+  struct stat status {};
+  return ::fstat(descriptor, &status) != 0 || status.st_nlink > 0;
+}
+
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
-  descriptor_ = path_ == "-" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
-                             : ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  descriptor_ = path_ == "-" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3) : open_alone(path_);
   if (descriptor_ < 0) fail(path_, errno);
+  has_name_ = has_name(descriptor_);
 }
 
 OutputFile::~OutputFile() {
@@ -35,8 +55,10 @@ void OutputFile::written() {
 void OutputFile::close() {
   if (descriptor_ < 0) return;
   flush();
+  const bool is_removed = has_name_ && !has_name(descriptor_);
   // Some file systems report a full disk only here.
   if (::close(std::exchange(descriptor_, -1)) != 0) fail(path_, errno);
+  if (is_removed) throw WriteError(path_ + ": was removed while it was written, and is lost");
 }
 
 void OutputFile::flush() {

@@ -15,6 +15,13 @@ class WriteError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Opens a file to write to it alone, and empties it. A pipe or a device may have several writers. @throws WriteError if it
+/// can't be created, or another program writes to it, which would mix both
+int open_alone(const std::string& path, int flags = 0);
+
+/// Whether an open file has a name, by which it can be found when it is closed.
+bool has_name(int descriptor);
+
 class OutputFile {
  public:
   /// Creates the file, or empties it; `-` is stdout. @throws WriteError
@@ -34,12 +41,13 @@ class OutputFile {
   /// Writes what is in the buffer. Call it between whole lines. @throws WriteError
   void flush();
 
-  /// Writes the rest and closes; further calls do nothing. @throws WriteError
+  /// Writes the rest and closes; further calls do nothing. @throws WriteError, also if the file was removed meanwhile
   void close();
 
  private:
   std::string path_;
   int descriptor_ = -1;
+  bool has_name_ = true;
   fmt::memory_buffer buffer_;
 };
 

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <sstream>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "text/numbers.h"
@@ -41,17 +42,13 @@ Condition parse_condition(const std::string& part) {
   const auto sign = part.find('<');
   if (sign == std::string::npos) wrong(part);
   const std::string_view name = text::trimmed(std::string_view(part).substr(0, sign));
-  const std::string limit(text::trimmed(std::string_view(part).substr(sign + 1)));
+  const std::string_view limit = text::trimmed(std::string_view(part).substr(sign + 1));
   const auto subject = std::ranges::find(subjects, name, [](const auto& s) { return s.first; });
   if (subject == subjects.end()) wrong(part);
   Condition condition{subject->second, false, 0, part};
-  std::size_t used = 0;
-  try {
-    condition.limit = std::stod(limit, &used);
-  } catch (const std::logic_error&) {
-    wrong(part);
-  }
-  const std::string_view unit = text::trimmed(std::string_view(limit).substr(used));
+  const auto [end, error] = std::from_chars(limit.data(), limit.data() + limit.size(), condition.limit);
+  if (error != std::errc()) wrong(part);
+  const std::string_view unit = text::trimmed(limit.substr(static_cast<std::size_t>(end - limit.data())));
   if (!std::isfinite(condition.limit) || condition.limit < 0) wrong(part);
   if (is_time(condition.subject)) {
     const auto seconds = text::seconds_in(unit);
@@ -60,6 +57,7 @@ Condition parse_condition(const std::string& part) {
   } else if (unit == "%") {
     condition.is_share = true;
     condition.limit /= 100;
+    if (condition.limit > 1) throw text::UsageError(fmt::format("--gate: '{}' is always met: a share has 100% at most", part));
   } else if (!unit.empty()) {
     wrong(part);
   }
@@ -70,11 +68,9 @@ Condition parse_condition(const std::string& part) {
 
 std::vector<Condition> parse_gate(const std::string& text) {
   std::vector<Condition> conditions;
-  std::istringstream parts(text);
-  for (std::string part; std::getline(parts, part, ',');) {
+  for (const std::string& part : text::split(text, ',')) {
     conditions.push_back(parse_condition(std::string(text::trimmed(part))));
   }
-  if (conditions.empty()) wrong(text);
   return conditions;
 }
 

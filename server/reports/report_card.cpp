@@ -87,7 +87,7 @@ std::string body(const ReportCard& card, const ControllerCard& controller) {
   text += injected(controller) + bars(found);
   for (const Condition& condition : card.gate) {
     text += fmt::format("\n    {}  {}", meets(card, controller, condition) ? "met " : "MISSED",
-                        to_text(condition, measured(card, controller, condition)));
+                        to_text(card, controller, condition));
   }
   return text;
 }
@@ -143,11 +143,11 @@ double measured(const ReportCard& card, const ControllerCard& controller,
 }
 
 bool meets(const ReportCard& card, const ControllerCard& controller, const Condition& condition) {
-  if (is_time(condition.subject) && controller.statistics.count() == 0) return false;
-  return measured(card, controller, condition) < condition.limit;
+  return controller.statistics.count() > 0 && measured(card, controller, condition) < condition.limit;
 }
 
 bool passes(const ReportCard& card) {
+  if (card.controllers.empty()) return card.gate.empty();
   return std::ranges::all_of(card.controllers, [&](const ControllerCard& controller) {
     return std::ranges::all_of(
         card.gate, [&](const Condition& condition) { return meets(card, controller, condition); });
@@ -170,7 +170,9 @@ std::string to_text(const std::vector<scene::DeadlinePolicy>& deadlines) {
   return text.empty() ? "none" : text;
 }
 
-std::string to_text(const Condition& condition, double value) {
+std::string to_text(const ReportCard& card, const ControllerCard& controller, const Condition& condition) {
+  if (controller.statistics.count() == 0) return condition.text + ": no observation counts";
+  const double value = measured(card, controller, condition);
   if (condition.is_share) return fmt::format("{}: {:.3g} %", condition.text, value * 100);
   if (is_time(condition.subject)) return fmt::format("{}: {:.3g} ms", condition.text, value * 1e3);
   return fmt::format("{}: {:g}", condition.text, value);
@@ -180,6 +182,7 @@ std::string to_text(const ReportCard& card) {
   std::string text = head(card);
   for (const ControllerCard& controller : card.controllers) text += body(card, controller);
   if (!card.gate.empty()) text += passes(card) ? "\n  gate: met" : "\n  gate: not met";
+  if (!card.gate.empty() && card.controllers.empty()) text += ": no controller was measured";
   return text;
 }
 

@@ -56,17 +56,17 @@ void complete(ReportCard& card);
 /// What a condition is about, in its unit.
 double measured(const ReportCard& card, const ControllerCard& controller,
                 const Condition& condition);
-/// Whether a controller meets a condition. One without any reaction meets no condition on times.
+/// Whether a controller meets a condition. One of which no reaction counts meets none.
 bool meets(const ReportCard& card, const ControllerCard& controller, const Condition& condition);
-/// Whether all meet all. True without a gate.
+/// Whether all meet all, and there is one. True without a gate.
 bool passes(const ReportCard& card);
 
 /// As text: "observations 5 ms ± 2 ms, 1 % lost; commands 4 ms".
 std::string to_text(const network::Injection& injection);
 /// "hold:18, drop:50:3", or "wait".
 std::string to_text(const std::vector<scene::DeadlinePolicy>& deadlines);
-/// "p99<20ms: 14 ms".
-std::string to_text(const Condition& condition, double value);
+/// What was measured of a condition: "p99<20ms: 14 ms".
+std::string to_text(const ReportCard& card, const ControllerCard& controller, const Condition& condition);
 
 /// Several lines without line feed at the end.
 std::string to_text(const ReportCard& card);

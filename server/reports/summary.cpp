@@ -114,6 +114,7 @@ std::string to_text(const Summary& summary) {
   }
   if (!summary.failures.empty()) text += failed(summary.failures);
   if (!summary.departures.empty()) text += departed(summary.departures);
+  if (!summary.recording_failure.empty()) text += fmt::format("  not recorded in whole: {}\n", summary.recording_failure);
   for (const auto& each : summary.dropped) text += fmt::format("  {}\n", each);
   if (const auto& solver = summary.solver; solver.not_converged > 0) {
     text += fmt::format(
@@ -172,6 +173,7 @@ std::string to_json(const Summary& summary) {
       {"vanished", summary.vanished}};
   json["metrics"] = summary.metrics;
   if (!summary.shutdown_reason.empty()) json["shutdown_reason"] = summary.shutdown_reason;
+  if (!summary.recording_failure.empty()) json["recording_failure"] = summary.recording_failure;
   if (summary.result) {
     json["director"] = summary.result->director;
     json["result"] = summary.result->text;
@@ -193,6 +195,7 @@ int exit_code_of(const Summary& summary) {
   if (is_by_controller(summary.ending) || !summary.failures.empty() || has_drops) {
     return exit_code::controller_failed;
   }
+  if (!summary.recording_failure.empty()) return exit_code::fault;
   return exit_code::finished;
 }
 

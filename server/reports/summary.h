@@ -76,6 +76,7 @@ struct Summary {
   std::optional<Result> result;
   std::vector<std::string> dropped;  ///< a sentence on each robot that a deadline took out
   bool drops_are_failures = true;
+  std::string recording_failure;  ///< why the recording is not complete, and what it lacks; empty: it is
   std::string vanished;  ///< the sentence on the controller that ended the run; empty: none did
 
   struct Missed {

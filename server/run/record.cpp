@@ -175,20 +175,20 @@ void RecordedRun::tick() {
   }
   recorder_.tick({simulation.state(), simulation.observations(), simulation.commands(),
                   simulation.contacts(), {}});
-  report_failure(
-      fmt::format("the recording ends before tick {}, the run goes on", simulation.state().tick));
+  report_failure(fmt::format("the recording ends before tick {}", simulation.state().tick), ", the run goes on");
 }
 
 void RecordedRun::close(const std::vector<world::Metric>& metrics) {
   recorder_.close(metrics);
-  report_failure("the recording is not complete");
+  report_failure("the recording lacks its last ticks, or its end");
 }
 
-void RecordedRun::report_failure(const std::string& consequence) {
+void RecordedRun::report_failure(const std::string& missing, const char* otherwise) {
   const auto why = recorder_.take_failure();
   if (!why) return;
   if (is_strict_) throw recording::WriteError(*why);
-  console_.fault(fmt::format("{}; {}", *why, consequence));
+  failure_ = fmt::format("{}; {}", *why, missing);
+  console_.fault(failure_ + otherwise);
 }
 
 /// That of a spawned robot, and what it loads; not those that the recording has, which may have been

@@ -59,11 +59,13 @@ class RecordedRun {
   /// After the last lines of controllers. @param metrics  that were set since the last tick
   /// @throws as tick()
   void close(const std::vector<world::Metric>& metrics = {});
+  /// Why the recording is not complete, and what it lacks; empty: nothing is known to be missing.
+  const std::string& failure() const { return failure_; }
 
  private:
   recorder::Start begin(recorder::Start start);
   void note(const std::vector<recorder::EmbeddedFile>& files);
-  void report_failure(const std::string& consequence);
+  void report_failure(const std::string& missing, const char* otherwise = "");
   void add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files);
 
   supervision::World& world_;
@@ -73,6 +75,7 @@ class RecordedRun {
   std::set<std::string> embedded_;           // names of files that the recording has
   std::set<std::filesystem::path> scripts_;  // of spawned robots
   recorder::Recorder recorder_;
+  std::string failure_;
   bool is_population_new_ = true;
 };
 

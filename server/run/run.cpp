@@ -261,7 +261,10 @@ int Run::execute() {
   complete_summary();
   watch_.end_run(end_message(summary_));
   const std::vector<world::Metric> metrics = last_metrics(server_, watch_, summary_);
-  if (recorded_) recorded_->close(metrics);
+  if (recorded_) {
+    recorded_->close(metrics);
+    summary_.recording_failure = recorded_->failure();
+  }
   summary_.failures = watch_.reported().failures();
   summary_.departures = watch_.reported().departures();
   recorders_.write_summary(summary_);

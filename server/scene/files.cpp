@@ -1,8 +1,12 @@
 // The files that a scene is made of: the scene's own, and those that it includes.
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <system_error>
 
@@ -111,6 +115,12 @@ std::optional<std::string> fault_of_file(const fs::path& path) {
   if (error) return fmt::format("cannot be read: {}", error.message());
   if (status.type() == fs::file_type::directory) return "is a folder; write the path of a file in it";
   if (status.type() != fs::file_type::regular) return "is not a regular file; check its path";
+  const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (opened < 0) {
+    const int reason = errno;
+    return fmt::format("cannot be read: {}{}", std::strerror(reason), reason == EACCES ? "; check its permissions" : "");
+  }
+  ::close(opened);
   return std::nullopt;
 }
 

@@ -40,6 +40,29 @@ bool is_nearly(std::string_view a, std::string_view b) {
   return nearest(a, candidates).has_value();
 }
 
+/// Behind the document type that begins there; it may have tags, comments and texts of its own.
+std::size_t end_of_document_type(std::string_view source, std::size_t at) {
+  const auto behind = [&](std::string_view end, std::size_t from) {
+    const std::size_t found = source.find(end, from);
+    return found == npos ? npos : found + end.size();
+  };
+  for (int depth = 0; (at = source.find_first_of("<>\"'", at)) != npos;) {
+    const std::string_view rest = source.substr(at);
+    if (rest.starts_with("<!--")) {
+      at = behind("-->", at + 4);
+    } else if (rest.starts_with("<?")) {
+      at = behind("?>", at + 2);
+    } else if (rest[0] == '"' || rest[0] == '\'') {
+      at = behind(rest.substr(0, 1), at + 1);
+    } else {
+      ++at;
+      depth += rest[0] == '<' ? 1 : -1;
+      if (depth == 0) return at;
+    }
+  }
+  return npos;
+}
+
 /// Walks over the tags of a text until one is wrong.
 class Scanner {
  public:
@@ -69,9 +92,8 @@ class Scanner {
     if (rest.starts_with("<![CDATA[")) {
       return skip("]]>", "this CDATA section is not closed; end it with ]]>");
     }
-    if (rest.starts_with("<!")) {  // a document type may have tags of its own
-      at_ = source_.size();
-      open_.clear();
+    if (rest.starts_with("<!")) {
+      at_ = std::min(end_of_document_type(source_, at_), source_.size());
       return;
     }
     rest.starts_with("</") ? closing_tag() : opening_tag();
@@ -244,7 +266,7 @@ Unescaped find_unescaped(std::string_view source) {
       if (at > start && !found.declaration && is_declaration(rest)) found.declaration = at;
       at = source.find("?>", at);
     } else if (rest.starts_with("<!")) {
-      return found;  // a document type may have tags of its own
+      at = end_of_document_type(source, at);
     } else {
       at = end_of_tag(source, at, found.fault);
     }

@@ -41,6 +41,26 @@ TEST(PeersWithoutSession, LeaveNothingBehind) {
   EXPECT_LE(peers.take_report().notices.size(), 100U);
 }
 
+/// The terminal of the server, or the disk of its log.
+TEST(PeersWithoutSession, FillNoLogWithWrongMessages) {
+  const SmallRun small(1);
+  Peers peers(small);
+  std::vector<std::string> told;
+  const auto send_many = [&] {
+    for (int i = 0; i < 500; ++i) {  // each told by itself, as at ticks of its own
+      peers.send_bytes("unknown" + std::to_string(i), "garbage");
+      if (i % 2 == 0) peers.say("other" + std::to_string(i), Peers::hello("nobody"));
+      for (const std::string& line : peers.take_report().notices) told.push_back(line);
+    }
+  };
+  send_many();
+  EXPECT_EQ(told.size(), 20U);
+  peers.barrier.now += std::chrono::seconds{1};
+  send_many();
+  ASSERT_EQ(told.size(), 21U);
+  EXPECT_TRUE(told.back().ends_with(" (730 more before it.)")) << told.back();
+}
+
 TEST(PeersWithoutSession, TheirNamesStayOneShortLine) {
   const SmallRun small(1);
   Peers peers(small);

@@ -6,11 +6,12 @@ import pathlib
 import re
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import time
 
-from harness import (BIN, CONTROLLER_FAILED, FINISHED, INTERRUPTED, LUA, SceneTest, main)
+from harness import (BIN, CONTROLLER_FAILED, FAULT, FINISHED, INTERRUPTED, LUA, SceneTest, main)
 
 ENDLESS = ("--duration", "0")
 
@@ -42,6 +43,16 @@ class Killed(SceneTest):
         [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
         os.kill(victim, signal.SIGKILL)
         self.assert_reports_the_kill(self.finish(process), "robot r1")
+
+    def test_a_missing_lua_runner_is_told_with_its_places(self):
+        shutil.copy(BIN / "ziggurat", self.folder)
+        self.environment["PATH"] = "/nowhere"
+        process = subprocess.Popen([self.folder / "ziggurat", "run", self.scene, "--ticks", "5"], env=self.environment,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.started.append(process)
+        outcome = self.finish(process)
+        self.assertEqual(outcome.code, FAULT, outcome.err)
+        self.assert_is_sentence(outcome, rf"there is no ziggurat-lua beside {self.folder}/ziggurat and none in the folders of PATH; ")
 
     def test_a_killed_process_is_started_again(self):
         """The scripts begin anew at the present tick, told which; the others notice nothing."""

@@ -111,6 +111,18 @@ class RecordingTest(SceneTest):
         self.assertEqual(process.returncode, INTERRUPTED)
         self.assertTrue(self.info(self.folder / "a.mcap", code=FINISHED)["is_whole"])
 
+    def test_a_file_that_is_removed_or_that_another_run_writes_to_is_told(self):
+        process = self.start("run", "arms.argos", "--duration", 0, "--record", "a.mcap", "--trace", "a.csv")
+        self.wait_for_size("a.mcap", 20_000)
+        for option, file in (("--record", "a.mcap"), ("--trace", "a.csv")):
+            code, _, err = self.outcome("run", "arms.argos", "--ticks", 3, option, file)
+            self.assertEqual(code, FAULT, err)
+            self.assertIn(f"{file}: cannot be written: another program writes to it", err)
+        (self.folder / "a.mcap").unlink()
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+        self.assertIn("a.mcap: was removed while it was written, and is lost", err)
+
     def wait_for_size(self, name, size):
         path = self.folder / name
         end = time.monotonic() + 60
@@ -124,9 +136,10 @@ class RecordingTest(SceneTest):
 
         arguments = ("run", "arms.argos", "--ticks", 300, "--record-compression", "none", "--record", "a.mcap")
         code, _, err = self.outcome(*arguments, preexec_fn=limit)
-        self.assertEqual(code, FINISHED, err)
-        self.assertIn("a.mcap: cannot be written: File too large", err)
+        self.assertEqual(code, FAULT, err)
+        self.assertRegex(err, r"a\.mcap: cannot be written: File too large; the recording (ends before tick \d+, the run goes on|lacks its last ticks)")
         self.assertIn("finished: 300 ticks", err)
+        self.assertRegex(err, r"\n  not recorded in whole: .*a\.mcap: cannot be written: .*; the recording (ends before|lacks).*\n")
         self.assertLessEqual((self.folder / "a.mcap").stat().st_size, 60_000)
         info = self.info(self.folder / "a.mcap", code=FAULT)
         self.assertEqual(info["damaged_chunks"], 0)

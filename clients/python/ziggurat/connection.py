@@ -9,9 +9,10 @@ from typing import Optional
 
 import zmq
 import zmq.utils.monitor
+from google.protobuf.message import DecodeError
 
 from . import protocol_pb2 as v1
-from .errors import ConnectionLost, Refused, Timeout
+from .errors import ConnectionLost, ProtocolError, Refused, Timeout
 from .find_server import find_server
 
 VERSION = v1.Version(major=1, minor=4)
@@ -123,7 +124,7 @@ class Connection:
             ready = dict(self.poller.poll(int(1000 * rest)))
             silence += min(rest, time.monotonic() - began)
             if self.socket in ready:
-                return v1.ServerMessage.FromString(self.socket.recv())
+                return self._decoded(self.socket.recv())
             if self._why_closed is not None:
                 self.close()
                 raise ConnectionLost(f"{self.endpoint}: {self._why_closed}")
@@ -134,6 +135,15 @@ class Connection:
                 raise ConnectionLost(f"{self.endpoint}: the server has been silent for {silence:.1f} s")
             if end is not None and time.monotonic() >= end:
                 raise Timeout(f"{self.endpoint}: no message for {timeout:g} s")
+
+    def _decoded(self, data: bytes) -> v1.ServerMessage:
+        try:
+            return v1.ServerMessage.FromString(data)
+        except DecodeError:
+            self.close()
+            raise ProtocolError(v1.Error(
+                code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
+                message=f"{self.endpoint} sent what is no message of the protocol; is it a Ziggurat server?")) from None
 
     def _next_reason(self) -> Optional[str]:
         """Takes the monitor's events up to the first by which the connection is lost, and says why it is."""

@@ -15,6 +15,10 @@ def name_of(enum: Any, number: int) -> str:
 class ZigguratError(Exception):
     """The base of the client's own exceptions."""
 
+    def __str__(self) -> str:
+        """Printable: texts of a server must not reach a terminal as escape sequences."""
+        return "".join(c if c.isprintable() or c in "\n\t" else f"\\u{ord(c):04x}" for c in super().__str__())
+
 
 class ConnectionLost(ZigguratError, ConnectionError):
     """No server answered, or the connection was closed. `ziggurat.resume` resumes the session."""
@@ -29,7 +33,8 @@ class Displaced(ZigguratError):
 
 
 class ProtocolError(ZigguratError):
-    """The server answered a message with an error, whose fields have the same names here."""
+    """The server answered a message with an error, whose fields have the same names here; or it sent what is no
+    message of the protocol (MALFORMED, is_fatal)."""
 
     def __init__(self, error: v1.Error):
         self.code: str = name_of(v1.Error.Code, error.code)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "network/barrier/departure.h"
@@ -29,6 +30,10 @@ Delivery send(Barrier& barrier, Session& session) {
   return send(barrier, session.connection);
 }
 
+void note_answer(Barrier& barrier, std::string sentence) {
+  if (const auto told = barrier.answered.add(std::move(sentence), barrier.now)) barrier.journal.note(*told);
+}
+
 void answer_fault(Barrier& barrier, const std::string& connection, Session* session,
                   wire::Fault fault, std::optional<std::uint64_t> request) {
   fault.tick = tick_of(barrier);
@@ -50,7 +55,7 @@ void answer_fault(Barrier& barrier, const std::string& connection, Session* sess
                                                        : session->client;
   const bool ends_with_it = session != nullptr && session->role == wire::Role::director;  // and says why
   if (!ends_with_it || is_last) {
-    barrier.journal.note(fmt::format("{} was answered {}: {}", client, to_string(fault.code), fault.message));
+    note_answer(barrier, fmt::format("{} was answered {}: {}", client, to_string(fault.code), fault.message));
   }
   if (session == nullptr) return;
   if (is_last) return lose(barrier, *session, "it was closed for its bad messages");

@@ -15,6 +15,8 @@ namespace ziggurat::network {
 Delivery send(Barrier& barrier, const std::string& connection);
 Delivery send(Barrier& barrier, Session& session);
 
+/// Tells of a wrong message or a refused session, unless there were too many a moment ago.
+void note_answer(Barrier& barrier, std::string sentence);
 /// Answers a bad message. A session that sends nothing else is closed.
 /// @param session  of the connection; null: none
 /// @param request  the number of the request that the message was, if it was one

@@ -75,6 +75,14 @@ TEST(Arguments, ADashOfAWordProcessorIsTold) {
   EXPECT_EQ(complaint({"–", "–file.argos", "− 3", "--", "–ticks"}), "") << "files and values may begin so";
 }
 
+TEST(Arguments, AnEmptyValueIsAFault) {
+  EXPECT_EQ(complaint({"--ticks", "", "a"}), "the value of --ticks is empty; write --ticks VALUE, or leave it out");
+  po::options_description several;
+  several.add_options()("endpoint", po::value<std::vector<std::string>>());
+  EXPECT_THROW(parse({"--endpoint", "a", "--endpoint", ""}, several), text::UsageError);
+  EXPECT_EQ(complaint({"--ticks", "1", "--quiet", "--real-time", "a.b", "--", ""}), "");
+}
+
 TEST(Arguments, MissingValuesAndRepetitionsAreFaults) {
   EXPECT_NE(complaint({"--ticks"}), "");
   EXPECT_NE(complaint({"--ticks", "1", "--ticks", "2"}).find("more than once"), std::string::npos);

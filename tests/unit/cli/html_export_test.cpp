@@ -61,6 +61,18 @@ TEST_F(HtmlExport, TheRecordingAndItsNameStandInThePage) {
   EXPECT_FALSE(fs::exists(path("out.html.part")));
 }
 
+TEST_F(HtmlExport, LinksAndDevicesStayWhatTheyAre) {
+  const auto player = write("player.html", "@NAME@ @RECORDING@"), recording = write("r.mcap", magic_);
+  const auto target = write("target", "old");
+  fs::create_symlink("target", path("link"));
+  fs::create_symlink("/dev/null", path("nothing"));
+  export_html(player, recording, path("link"));
+  export_html(player, recording, path("nothing"));
+  EXPECT_TRUE(fs::is_symlink(path("link")) && fs::is_symlink(path("nothing")));
+  EXPECT_EQ(read(target), "r.mcap " + to_base64(magic_));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
 TEST_F(HtmlExport, ALargeRecordingIsOneText) {
   const auto player = write("player.html", "@NAME@|@RECORDING@|");
   std::string bytes = magic_;

@@ -110,6 +110,15 @@ TEST_F(Keys, FaultsOfLimitsAreNamed) {
                                    std::pair(" controller robots=", "robots= names nothing"),
                                    std::pair(" controller robots=a,,b", "empty pattern"),
                                    std::pair(" controller takeover=maybe", "write yes or no"),
+                                   std::pair(" controller robots=a,", "empty pattern"),
+                                   std::pair(" controller,", "are no roles"),
+                                   std::pair(" controller robots=a robots=*", "robots= stands there twice"),
+                                   std::pair(" controller takeover=no takeover=yes", "takeover= stands there twice"),
+                                   std::pair(" controller Robots=a", "'Robots=' limits nothing"),
+                                   std::pair(" controller take-over=no", "'take-over=' limits nothing"),
+                                   std::pair(" controller Alice robots=a", "robots= stands in the name"),
+                                   std::pair(" controller takeover =no", "takeover= stands in the name"),
+                                   std::pair(" controller\tA\tControllers\t=\ta", "controllers= stands in the name"),
                                    std::pair(" observer robots=r1", "role controller")}) {
     const std::string file = write("list", a + line + "\n");
     const auto text = complaint([&] { read_client_keys(file); });

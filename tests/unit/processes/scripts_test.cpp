@@ -1,6 +1,7 @@
 #include "processes/scripts.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -185,6 +186,26 @@ TEST_F(Scripts, ALongNameIsQuotedInPart) {
     ASSERT_EQ(told.size(), 1u);
     EXPECT_LT(to_string(told[0]).size(), 1000u);
   }
+}
+
+/// Calls it as a user who is not root: of root's files everything can be read.
+template <typename Call>
+auto without_rights_of_root(Call call) {
+  const uid_t user = ::geteuid();
+  EXPECT_EQ(::seteuid(user == 0 ? 65534 : user), 0);
+  auto result = call();
+  EXPECT_EQ(::seteuid(user), 0);
+  return result;
+}
+
+TEST_F(Scripts, OneThatCannotBeReadSaysWhy) {
+  fs::permissions(folder_.path(), fs::perms{0755});
+  const auto path = write("secret.lua", "function init() end function step() end");
+  fs::permissions(path, fs::perms{0});
+  const auto problems = without_rights_of_root([&] { return check_scripts(naming("secret.lua"), fs::path(folder_.path()) / "a.argos"); });
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_TRUE(to_string(problems[0]).ends_with("script '" + path.string() + "' cannot be read: Permission denied; check its permissions"))
+      << to_string(problems[0]);
 }
 
 TEST_F(Scripts, BytecodeIsRefused) {

@@ -1,6 +1,8 @@
 #include "recording/output_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "file_text.h"
 
@@ -37,6 +39,31 @@ TEST(OutputFile, ADashIsStdout) {
   file.buffer().append(std::string_view("a line\n"));
   file.close();
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "a line\n");
+}
+
+TEST(OutputFile, HasOneWriter) {
+  const auto path = scratch("file");
+  OutputFile file(path);
+  file.buffer().append(std::string_view("a line\n"));
+  file.flush();
+  try {
+    OutputFile other(path);
+    ADD_FAILURE() << "both write";
+  } catch (const WriteError& error) {
+    EXPECT_EQ(std::string(error.what()), path + ": cannot be written: another program writes to it; name another file");
+  }
+  EXPECT_EQ(text_of(path), "a line\n") << "was not emptied";
+  file.close();
+  EXPECT_NO_THROW(OutputFile{path});
+}
+
+TEST(OutputFile, ReportsThatItWasRemoved) {
+  const auto path = scratch("file");
+  OutputFile file(path), anonymous("/proc/self/fd/" + std::to_string(::open(testing::TempDir().c_str(), O_TMPFILE | O_RDWR, 0600)));
+  ::unlink(path.c_str());
+  EXPECT_THROW(file.close(), WriteError);
+  EXPECT_NO_THROW(file.close());
+  EXPECT_NO_THROW(anonymous.close()) << "had no name before";
 }
 
 TEST(OutputFile, ReportsWhyItCannotBeCreated) {

@@ -25,9 +25,10 @@ TEST(Gate, ReadsTimesSharesAndNumbers) {
 
 TEST(Gate, NamesThePartThatIsWrong) {
   for (const char* text : {"", "p99", "p99<", "p99<2", "p99<2%", "p98<2ms", "misses<2ms", "p99>2ms",
-                           "p99<-1ms", "p99<nanms", "p99<2ms,,"}) {
+                           "p99<-1ms", "p99<nanms", "p99<2ms,,", "p99<2ms,", "p99<0x10ms", "misses<101%", "late<1e3%"}) {
     EXPECT_THROW(parse_gate(text), text::UsageError) << text;
   }
+  EXPECT_EQ(parse_gate("misses<100%")[0].limit, 1);
   try {
     parse_gate("p99<2ms,speed<3");
     FAIL();

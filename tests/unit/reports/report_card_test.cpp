@@ -70,6 +70,18 @@ TEST(ReportCard, TheWarmUpDoesNotCount) {
   EXPECT_NE(to_text(warm).find("the first 10 not counted"), std::string::npos);
 }
 
+TEST(ReportCard, WhereNothingCountsNoGateIsMet) {
+  const ReportCard warm = card("misses<1,late<1", 100'000);
+  EXPECT_FALSE(passes(warm));
+  EXPECT_NE(to_text(warm).find("MISSED  misses<1: no observation counts"), std::string::npos) << to_text(warm);
+  ReportCard none = card("late<100");
+  none.controllers.clear();
+  EXPECT_FALSE(passes(none));
+  EXPECT_NE(to_text(none).find("gate: not met: no controller was measured"), std::string::npos);
+  none.gate.clear();
+  EXPECT_TRUE(passes(none));
+}
+
 TEST(ReportCard, WhoNeverAnsweredMeetsNothingOnTimes) {
   ReportCard empty = card("p50<1s");
   empty.controllers.push_back({"silent", {}});

@@ -24,6 +24,17 @@ TEST(Summary, ExitCodeFollowsTheEnding) {
   EXPECT_EQ(exit_code_of(summary), 3);
 }
 
+TEST(Summary, ARecordingThatIsNotCompleteIsAFault) {
+  Summary summary;
+  EXPECT_FALSE(nlohmann::json::parse(to_json(summary)).contains("recording_failure"));
+  summary.recording_failure = "a.mcap: cannot be written: full; the recording ends before tick 4";
+  EXPECT_EQ(exit_code_of(summary), exit_code::fault);
+  EXPECT_EQ(nlohmann::json::parse(to_json(summary))["recording_failure"], summary.recording_failure);
+  EXPECT_NE(to_text(summary).find("not recorded in whole: " + summary.recording_failure + "\n"), std::string::npos);
+  summary.failures.push_back({"r0", "drive", 4, "why"});
+  EXPECT_EQ(exit_code_of(summary), exit_code::controller_failed);
+}
+
 TEST(Summary, JsonHasTheRatesAndTheHashInFull) {
   Summary summary;
   summary.ticks = 20;

@@ -93,7 +93,7 @@ TEST(InjectOption, MessagesThatTheWorldWaitsForAreNotLost) {
 
 TEST(InjectOption, DirectorsAreNamedAsControllersAre) {
   scene::Scene scene = scene_of_two();
-  scene.directors.push_back({.id = "judge"});
+  scene.directors.emplace_back().id = "judge";
   const auto injections = injections_of({to_injection("judge=latency=5ms,loss=1%")}, scene);
   ASSERT_EQ(injections.size(), 3U);
   EXPECT_FALSE(injections[0].any());

@@ -196,6 +196,8 @@ TEST(Text, AnXmlDeclarationBehindTheBeginningIsTold) {
   EXPECT_TRUE(contains(told("\n" + declared), "t:2:1: " + text)) << told("\n" + declared);
   EXPECT_TRUE(contains(told("<!-- a -->\n\n" + declared), "t:3:1: " + text));
   EXPECT_TRUE(contains(told(declared + "<?XML?>"), ": " + text));
+  const std::string type = "<!DOCTYPE argos-configuration [<!-- > ' --><!ELEMENT a (#PCDATA)><?b ' ?>] >\n";
+  EXPECT_TRUE(contains(all_problems(read_text(type + declared, "t")), "t:2:1: " + text)) << all_problems(read_text(type + declared, "t"));
   SceneText inside;
   inside.arena = arena_with(std::string(declaration));
   EXPECT_TRUE(contains(told(inside.str()), "t:4:")) << told(inside.str());

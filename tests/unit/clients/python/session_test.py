@@ -1,5 +1,8 @@
 """The session: its beginning, refusals, ticks and events; against a fake server."""
 
+import pathlib
+import subprocess
+import sys
 import time
 import unittest
 
@@ -93,6 +96,41 @@ class Beginning(SessionCase):
     def test_an_invalid_endpoint(self):
         with self.assertRaises(ValueError):
             ziggurat.connect("nonsense")
+
+
+class Lies(SessionCase):
+    """A server that sends anything."""
+
+    def test_what_is_no_message_is_an_error_of_the_protocol(self):
+        def part(server):
+            server.receive()
+            server.socket.send_multipart([server.peer, b"\xff no message"])
+
+        def client():
+            with self.assertRaisesRegex(ziggurat.ProtocolError, "MALFORMED: .* no message of the protocol") as caught:
+                self.connect()
+            self.assertTrue(caught.exception.is_fatal)
+
+        self.play(part, client)
+
+    def test_texts_of_a_server_are_printable(self):
+        error = v1.Error(message="\x1b]52;c;eA==\x07\u202eé")
+        self.assertEqual(str(ziggurat.ProtocolError(error)).split(": ", 1)[1], "\\u001b]52;c;eA==\\u0007\\u202eé")
+        self.assertEqual(str(ziggurat.Displaced("\x9b")), "\\u009b")
+
+    def test_the_json_client_ends_with_a_sentence(self):
+        controller = pathlib.Path(__file__).parents[4] / "clients" / "json" / "controller.py"
+        for lie in (b"\xff", b"{", b"[]", b"{}", b"[" * 100_000, b'{"welcome":{}}', b'{"welcome":null}',
+                    b'{"refusal":{"error":{"retryable":false,"message":"\\u001b[2J"}}}'):
+            with self.subTest(lie[:60]):
+                process = subprocess.Popen([sys.executable, controller, self.server.endpoint], stderr=subprocess.PIPE, text=True)
+                self.assertTrue(self.server.socket.poll(20_000))
+                peer, _ = self.server.socket.recv_multipart()
+                self.server.socket.send_multipart([peer, lie])
+                _, err = process.communicate(timeout=20)
+                self.assertEqual(process.returncode, 1)
+                self.assertRegex(err, r"no message of the protocol|^\\u001b\[2J\n$")
+                self.assertEqual(len(err.splitlines()), 1, err)
 
 
 class Security(SessionCase):
