@@ -225,6 +225,27 @@ TEST(NewtonWheels, ShareTheirLoadsWhateverTheSubstep) {
   }
 }
 
+// 1 m/s on a circle of 0.5 m: the outer side presses, but neither side lifts. At 50 Hz a substep takes it 2 cm on.
+TEST(NewtonWheels, DriveAFastCircleBetweenTwoSmoothBalls) {
+  const double wheel = 0.02, track = 0.06, speed = 0.5, radius = 0.5, seconds = 4;
+  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    scene::Physics physics = newton(true);
+    physics.floor->surface.friction = 1;
+    World world(physics, 1 / hz);
+    world.add(two_wheeler());
+    for (std::size_t i = 0; i < 2; ++i) {
+      world.add_motor(world.joint(0, i), scene::JointMode::velocity, 0.5 / hz);
+      const double side = i == 0 ? -track / 2 : track / 2;
+      world.set_target(world.joint(0, i), speed * (1 + side / radius) / wheel);
+    }
+    run(world, seconds, 1 / hz);
+    const world::LinkState base = state_of(world).links[0];
+    EXPECT_NEAR(base.velocity.norm(), speed, 2e-3 * speed) << hz;
+    // Smooth balls ask for no push: the wheel rolls about any point between its ends.
+    EXPECT_NEAR(base.angular_velocity.z(), speed / radius, 0.09 * speed / radius) << hz;
+  }
+}
+
 // Four feet carry a quarter of the weight each, whatever came before and whichever way the table looks.
 TEST(NewtonTable, RestsOnItsFourFeetAlike) {
   scene::Entity table = prototype("table", at(0, 0, 0.005), true, {link("top", scene::Box{{0.4, 0.3, 0.02}}, 1)});

@@ -147,6 +147,18 @@ TEST(NewtonCards, AHouseOfThreeStoreysStands) {
   }
 }
 
+// All of the weight is on a rim of 5 cm, and a little beside its middle.
+TEST(NewtonStack, ALoadOfTonsStandsOnALightCylinder) {
+  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    World world(newton(true), 1 / hz);
+    world.add(loose(at(0, 0, 0), scene::Cylinder{0.05, 0.1}, 0.1));
+    world.add(loose(at(0.004, 0.003, 0.1), scene::Box{{0.1, 0.1, 0.1}}, 1000));
+    run(world, 10, 1 / hz);
+    EXPECT_LT((origin(world, 0).position - Vector3(0, 0, 0)).norm(), 1e-6) << hz;
+    EXPECT_LT((origin(world, 1).position - Vector3(0.004, 0.003, 0.1)).norm(), 1e-6) << hz;
+  }
+}
+
 // It tips where the push at its middle has a larger moment about the rim than its weight, whichever part of the rim
 // that is.
 TEST(NewtonCylinder, TipsOverEachPointOfItsRimAlike) {
