@@ -341,7 +341,13 @@ Outcome Solver::solve(Problem& problem) {
     if (iterate(problem, outcome, options.most_far)) return outcome;
     start_.give_back(problem);
     if (soften_after_sweeps(problem, outcome)) {
-      sharpen(problem, outcome);
+      // It misses by more than soft surfaces give way, and would share loads at random.
+      const double before = outcome.miss;
+      start_.take(problem);
+      take_speeds(problem);
+      if (iterate(problem, outcome, options.most_far)) return outcome;
+      start_.give_back(problem);
+      outcome.miss = before;
       return outcome;
     }
     start_.give_back(problem);
@@ -373,17 +379,6 @@ void Solver::solve_without_rebound(Problem& problem, Snapshot& out) {
   out.take(problem);
   rebounding_.give_back(problem);
   for (std::size_t i = 0; i < seeks_.size(); ++i) problem.blocks[i].seek[0] = seeks_[i];
-}
-
-/// Newton's method once more, from the softened solution: that misses by more than what soft surfaces give way, so it
-/// would share loads as it pleases.
-void Solver::sharpen(Problem& problem, Outcome& outcome) {
-  start_.take(problem);
-  const double before = outcome.miss;
-  take_speeds(problem);
-  if (iterate(problem, outcome, options.most_far)) return;
-  start_.give_back(problem);
-  outcome.miss = before;
 }
 
 bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most) {

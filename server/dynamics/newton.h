@@ -116,7 +116,6 @@ class Solver {
   double worst_miss(const Problem& problem, double& scale);
   bool sweep_until_converged(Problem& problem, Outcome& outcome, int most);
   bool soften_after_sweeps(Problem& problem, Outcome& outcome);
-  void sharpen(Problem& problem, Outcome& outcome);
 
   BlockMatrix matrix_;
   std::vector<std::array<double, Block::most_rows>> speeds_;  // of each block, by take_speeds()

@@ -292,7 +292,8 @@ pageTest("a block is dragged in the server", tags, fromTop, async (page) => {
   await page.mouse.up();
   await waitFor(async () => Math.abs((await placeOf(page, "near"))[1] - (start[1] - 0.2)) < 0.01, "the new place");
   assert.ok(Math.abs((await placeOf(page, "near"))[0] - start[0]) < 0.01);
-  assert.deepEqual((await placeOf(page, "far")).map((value) => value.toFixed(2)), ["0.25", "0.20", "0.00"]);
+  const far = await placeOf(page, "far");
+  [0.25, 0.2, 0].forEach((value, i) => assert.ok(Math.abs(far[i] - value) < 0.005, String(far)));
 });
 
 pageTest("what is spawned comes, what is removed goes", tags, "", async (page) => {

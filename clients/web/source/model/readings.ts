@@ -19,6 +19,12 @@ export function bytesText(bytes: Uint8Array): string {
   return isPrintable ? `“${new TextDecoder().decode(bytes)}”  ${hex}${more}` : hex + more || "(empty)";
 }
 
+/** With so many digits; a zero has no sign: what stands on the floor is pressed in by some nanometres. */
+export function fixed(value: number, digits: number): string {
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? (0).toFixed(digits) : text;
+}
+
 export function number(value: number, unit = ""): string {
   if (!Number.isFinite(value)) return value > 0 ? "∞" : String(value);
   const text = Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-4) ? value.toExponential(2)

@@ -1,6 +1,7 @@
 // Spawns entities from the scene's models, robots with one of its controllers, or what XML describes.
 import type { App } from "../page/app";
 import { kindName, Kind, type World } from "../model/messages";
+import { fixed } from "../model/readings";
 import { make } from "./element";
 import type { Panel } from "./panel";
 
@@ -64,7 +65,7 @@ export class Change implements Panel {
   }
 
   setPlace(x: number, y: number, z: number): void {
-    this.place.value = [x, y, z].map((value) => value.toFixed(3)).join(", ");
+    this.place.value = [x, y, z].map((value) => fixed(value, 3)).join(", ");
     this.write();
   }
 

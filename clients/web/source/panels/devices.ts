@@ -1,7 +1,7 @@
 // Readings and commands of the selected robot, device by device; of any other entity its pose.
 import type { App } from "../page/app";
 import { kindName, type Command, type Observation, type Poses, type World } from "../model/messages";
-import { commanded, number, observed, type Group, type Limits, type Reading } from "../model/readings";
+import { commanded, fixed, number, observed, type Group, type Limits, type Reading } from "../model/readings";
 import { nameOf } from "../model/series";
 import type { Frame } from "../model/timeline";
 import { icon, make, setText } from "./element";
@@ -142,7 +142,7 @@ export class Devices implements Panel {
     if (!pose) return;
     const [w, x, y, z] = pose.orientation;
     const yaw = Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) * 180 / Math.PI;
-    setText(this.pose, `${pose.position.map((value) => value.toFixed(4)).join("  ")} m   heading ${yaw.toFixed(1)}°`);
+    setText(this.pose, `${pose.position.map((value) => fixed(value, 4)).join("  ")} m   heading ${fixed(yaw, 1)}°`);
   }
 
   /** Proximity sensors that look along the floor, with the angle from the robot's +x. */
