@@ -8,7 +8,7 @@ import { makeGeometry, partsOf } from "../source/drawing/shapes";
 import { makeWorld } from "../source/data/generated";
 import type { Camera, Description, Observation, World } from "../source/model/messages";
 import { compose, rotate } from "../source/model/pose";
-import { bytesText, observed } from "../source/model/readings";
+import { bytesText, fixed, observed } from "../source/model/readings";
 import { nameOf, numberAt, numbersIn, parseName } from "../source/model/series";
 import { fromAddress, settingsAtFirst, toAddress } from "../source/model/settings";
 
@@ -16,6 +16,12 @@ function near(a: ArrayLike<number>, b: number[], bound = 1e-12): void {
   assert.equal(a.length, b.length);
   b.forEach((value, i) => assert.ok(Math.abs(a[i] - value) < bound, `${Array.from(a)} is not ${b}`));
 }
+
+test("a zero has no sign", () => {
+  assert.equal(fixed(-2.5e-8, 4), "0.0000");
+  assert.equal(fixed(-0.00012, 4), "-0.0001");
+  assert.equal(fixed(1.25, 1), "1.3");
+});
 
 test("rotations are Hamilton's, w first", () => {
   const half = Math.SQRT1_2;
