@@ -89,6 +89,7 @@ void compute_mass(const Tree& tree, Workspace& work) {
 }
 
 void bias_accelerations(const Tree& tree, Workspace& work) {
+  work.acceleration.resize(tree.links.size());
   for (int i = 0; i < static_cast<int>(tree.links.size()); ++i) {
     const Link& link = tree.links[i];
     const Motion& motion = tree.motion[i];
@@ -124,6 +125,7 @@ void bias_forces(const Tree& tree, Workspace& work, std::span<double> out) {
 
 void external_forces(const Tree& tree, Workspace& work, std::span<double> out, bool fields,
                      bool gravity) {
+  work.wrench.resize(tree.links.size());  // the workspace may have served a smaller tree since
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     const Vector3 arm = tree.position[i] - tree.origin;
     Vector3 force = Vector3::Zero();
