@@ -1,6 +1,6 @@
 #pragma once
-// The contact law, exact and linearised. With y = g - (u - s) / m (s: the speed sought, m: the
-// mobility) it is the projection equation g = P(y): P clips the normal part at 0 and friction to
+// The contact law, exact and linearised. With y = g - (u + c g - s) / m (s: the speed sought, m: the
+// mobility, c: what a normal impulse makes surfaces give way, Block::yield) it is the projection equation g = P(y): P clips the normal part at 0 and friction to
 // discs whose radii are the coefficients times the normal part (Alart and Curnier, Comput. Methods
 // Appl. Mech. Eng. 92, 1991). That is Coulomb's law without the lift of associated cones.
 
@@ -16,8 +16,8 @@ struct Linear {
 };
 
 /// @param u  the block's speeds
-/// Where the law holds a speed it is let go by 1e-8 of its mobility times the impulse's change, so
-/// that contacts that say the same twice have a solution.
+/// Where the law holds a speed for which nothing gives way it is let go by 1e-8 of its mobility times the
+/// impulse's change, so that contacts that say the same twice have a solution.
 void linearise(const Block& block, const double* u, Linear& out);
 
 /// The softened law: y is taken about the block's anchor with `softness` times the mobility. Where

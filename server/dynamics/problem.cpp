@@ -71,7 +71,7 @@ void Problem::add(Tree& tree, Workspace& work) {
                  {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
   for (int k = 0; k < tree.dofs; ++k) inverse_mass.push_back(1 / work.mass[k * tree.dofs + k]);
   first_bias.push_back(-1);
-  if (softness > 0 && turns(tree, length)) {
+  if (softness > 0 && several && turns(tree, length)) {
     first_bias.back() = static_cast<int>(bias.size());
     bias_accelerations(tree, work);
     bias.insert(bias.end(), work.acceleration.begin(), work.acceleration.end());

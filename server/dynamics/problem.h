@@ -50,6 +50,7 @@ struct Block {
 struct Problem {
   double length = 0;                         ///< of the substep [s]
   double softness = 0;                       ///< of surfaces, see System; 0: they are rigid
+  bool several = false;                      ///< whether more than one tree will be added
   double allowed_overlap = 1e-6;             ///< that turn_into_displacement() leaves [m]
   std::vector<Tree*> trees;                  ///< by their index in the system
   std::vector<int> offset;                   ///< of each tree in p and v
@@ -63,7 +64,7 @@ struct Problem {
   std::vector<double>
       inverse_mass;  ///< of each dof as if it were alone: 1 / M_kk [1/kg] or [1/(kg m^2)]
   std::vector<Motion> bias;                    ///< of each link of the trees that turn, see bias_accelerations()
-  std::vector<int> first_bias;                 ///< of each tree, in `bias`; -1: it hardly turns
+  std::vector<int> first_bias;                 ///< of each tree, in `bias`; -1: not needed, or it hardly turns
   std::vector<double> total_mass;              ///< of each tree [kg]
   double weight = 0;                           ///< of all trees [N]
   std::vector<double> velocity;                ///< v: start and solution

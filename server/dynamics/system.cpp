@@ -254,6 +254,7 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
   problem_.length = length_;
   problem_.allowed_overlap = allowed_overlap;
   problem_.softness = last_tree - first_tree <= most_soft ? softness : 0;
+  problem_.several = last_tree - first_tree > 1;
   for (int i = first_tree; i < last_tree; ++i) {
     problem_.add(trees[tree_order_[i]], work_);
   }

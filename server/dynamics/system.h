@@ -44,7 +44,8 @@ class System {
   RestOptions rest;
   /// A contact gives way by the speed that its normal impulse gives both bodies, times this; 0: not at all. So loads
   /// are shared where there are more contacts than needed.
-  double softness = 5e-5;
+  double softness = usual_softness;
+  static constexpr double usual_softness = 5e-5;
   double allowed_overlap = 1e-6;  ///< it may remain, because rounding must not move bodies [m]
 
   /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and

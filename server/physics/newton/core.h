@@ -58,7 +58,7 @@ class NewtonCore {
     double of_impulses = 1;           // of the substep's forces and impulses, that act in it
     bool more = false;                // other parts follow
     double allowed_overlap = 1e-6;    // that remains [m]
-    double softness = 5e-5;           // see dynamics::System
+    double softness = dynamics::System::usual_softness;
     std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
   };
   void set_servos_and_limits(std::span<Body> bodies, const Share& share);

@@ -180,6 +180,14 @@ scene::Entity two_wheeler() {
   return entity;
 }
 
+/// Adds the two-wheeler's motors. @param left, right  [rad/s]
+void drive(World& world, double max_impulse, double left, double right) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    world.add_motor(world.joint(0, i), scene::JointMode::velocity, max_impulse);
+    world.set_target(world.joint(0, i), i == 0 ? left : right);
+  }
+}
+
 // Five supports for three directions: where loads are not shared, wheels spin on the spot.
 TEST(NewtonWheels, DriveBetweenTwoSmoothBalls) {
   const double wheel = 0.02, torque = 0.02, speed = 0.2, seconds = 1;
@@ -190,10 +198,7 @@ TEST(NewtonWheels, DriveBetweenTwoSmoothBalls) {
     physics.floor->surface.friction = 1;
     World world(physics, 1 / hz);
     world.add(two_wheeler());
-    for (std::size_t i = 0; i < 2; ++i) {
-      world.add_motor(world.joint(0, i), scene::JointMode::velocity, torque / hz);
-      world.set_target(world.joint(0, i), speed / wheel);
-    }
+    drive(world, torque / hz, speed / wheel, speed / wheel);
     run(world, seconds, 1 / hz);
     EXPECT_NEAR(state_of(world).links[0].velocity.x(), speed, 1e-8) << hz;
     EXPECT_NEAR(origin(world, 0).position.x(), speed * (seconds - speed / gain / 2), speed / hz) << hz;
@@ -213,10 +218,7 @@ TEST(NewtonWheels, ShareTheirLoadsWhateverTheSubstep) {
       physics.floor->surface.friction = 0.7;
       World world(physics, 1 / hz);
       world.add(robot);
-      for (std::size_t i = 0; i < 2; ++i) {
-        world.add_motor(world.joint(0, i), scene::JointMode::velocity, 0.02 / hz);
-        world.set_target(world.joint(0, i), i == 0 ? left : right);
-      }
+      drive(world, 0.02 / hz, left, right);
       run(world, seconds, 1 / hz);
       const world::LinkState base = state_of(world).links[0];
       EXPECT_NEAR(base.angular_velocity.z(), (right - left) * wheel / (track + width), 1e-6) << left << ' ' << hz;
@@ -233,11 +235,8 @@ TEST(NewtonWheels, DriveAFastCircleBetweenTwoSmoothBalls) {
     physics.floor->surface.friction = 1;
     World world(physics, 1 / hz);
     world.add(two_wheeler());
-    for (std::size_t i = 0; i < 2; ++i) {
-      world.add_motor(world.joint(0, i), scene::JointMode::velocity, 0.5 / hz);
-      const double side = i == 0 ? -track / 2 : track / 2;
-      world.set_target(world.joint(0, i), speed * (1 + side / radius) / wheel);
-    }
+    const double middle = speed / wheel, more = middle * track / 2 / radius;
+    drive(world, 0.5 / hz, middle - more, middle + more);
     run(world, seconds, 1 / hz);
     const world::LinkState base = state_of(world).links[0];
     EXPECT_NEAR(base.velocity.norm(), speed, 2e-3 * speed) << hz;
