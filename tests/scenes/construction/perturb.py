@@ -210,12 +210,37 @@ def remove_from(scene_file, entity):
     tree.write(scene_file)
 
 
-def run_and_kill(command, folder, draw, robots, kills, lose=False):
-    """Runs a command; ends so many robots' processes with SIGKILL, each when that robot logs a random line. With
-    lose, removes one robot from the world when it has come to a dark block. robots: their places in the scene by id."""
+# A robot's process ends itself in the tick after one of its lines, so that a run with kills is the same each time.
+DYING = """
+do
+  local say, walk, die, kept = log, step, false, "{folder}/lines-"
+  local deaths = {{{deaths}}}
+  function log(...)
+    say(...)
+    local lines = io.open(kept .. robot.id, "a+")
+    lines:write(".")
+    lines:flush()
+    die = deaths[robot.id .. " " .. lines:seek("end")]
+    lines:close()
+  end
+  function step()
+    if die then os.execute("kill -9 $PPID") end
+    walk()
+  end
+end
+"""
+
+
+def run_and_kill(command, folder, draw, robots, kills, lose=False, script=None):
+    """Runs a command; ends so many robots' processes with SIGKILL, each when that robot has logged a random line. With
+    lose, removes one robot from the world when it has come to a dark block. robots: their places in the scene by id;
+    script: theirs, if it is in Lua, which is changed."""
     plans = set()
     while len(plans) < kills:
         plans.add((draw.choice(sorted(robots)), draw.randint(4, 30)))
+    if script and plans:
+        deaths = ", ".join(f'["{robot} {line}"] = true' for robot, line in sorted(plans))
+        script.write_text(script.read_text() + DYING.format(folder=folder, deaths=deaths))
     lost = lose and (draw.choice(sorted(robots)), draw.randint(1, 3))
     with open(pathlib.Path(folder) / "stderr", "w+") as errors, subprocess.Popen(
             [str(word) for word in command], stdout=subprocess.PIPE, stderr=errors, text=True,
@@ -232,9 +257,10 @@ def run_and_kill(command, folder, draw, robots, kills, lose=False):
             if aims and (robot, counts[robot, "aim"]) == lost:
                 subprocess.run([command[0], "ctl", endpoint(folder), "remove", robot], check=True)
                 victims.append(f"{robot} removed at '{line.split('] ')[-1].strip()}'")
-            victim = process_of(folder, robots[robot]) if (robot, counts[robot]) in plans else None
+            victim = (robot, counts[robot]) in plans and (script or process_of(folder, robots[robot]))
             if victim:
-                os.kill(victim, signal.SIGKILL)
+                if not script:
+                    os.kill(victim, signal.SIGKILL)
                 victims.append(f"{robot} killed at '{line.split('] ')[-1].strip()}'")
         code = process.wait()
         errors.seek(0)
@@ -263,9 +289,10 @@ def run(number, options=(), change=perturb, solver=None, keep=None, kills=0, los
         outcome = run_and_kill(
             [BIN / "ziggurat", "run", scene_file, "--trace", trace, *options,
              *(["--readings", readings] if scene == STACKING else []),
-             *(["--lua-processes", "0", "--restart", "robot=9"] if kills else []),
+             *(["--lua-processes", "0", "--restart", "robot=9", "--trust-scripts"] if kills else []),
              *(["--endpoint", endpoint(folder)] if lose else [])],
-            folder, random.Random(number), robots, kills, lose)
+            folder, random.Random(number), robots, kills, lose,
+            None if any("--controller" in str(option) for option in options) else scene_file.parent / "assembler.lua")
         changes += "".join(f", {victim}" for victim in outcome.victims)
         if lose and outcome.victims:
             lost = outcome.victims[0].split()[0]

@@ -152,11 +152,7 @@ class Building(unittest.TestCase):
         self.assert_built(0, "rules_stairs")
 
     def test_robots_that_are_killed_and_started_again(self):
-        """A kill comes at another tick each time, and one run of twenty ends with a block that no robot can
-        reach (construction.md): of two runs one must be good."""
-        verdict, _, _ = perturb.run(4, change=perturb.perturb_steps("rules_cross"), kills=2)
-        if not verdict.good:
-            self.assert_built(4, "rules_cross", kills=2)
+        self.assert_built(4, "rules_cross", kills=2)
 
     def test_a_run_that_ends_too_early(self):
         verdict, _, _ = perturb.run(0, ["--duration", "60"], perturb.perturb_steps("rules_cross"))
