@@ -4,7 +4,6 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -51,20 +50,30 @@ Listening::Listening(asio::io_context& io, std::string_view option, const Addres
 }
 
 void Listening::accept() {
+  const auto now = Clock::now();
+  if (now >= period_begun_ + period) {
+    period_begun_ = now;
+    taken_ = 0;
+  }
+  if (taken_ >= most_in_period) return accept_at(period_begun_ + period);
   acceptor_.async_accept([this](Error error, Tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (error) {  // without descriptors left it would come back here at once, again and again
-      pause_.expires_after(std::chrono::milliseconds(20));
-      return pause_.async_wait([this](Error cancelled) {
-        if (!cancelled) accept();
-      });
-    }
+    // Without descriptors left it would come back here at once, again and again.
+    if (error) return accept_at(Clock::now() + std::chrono::milliseconds(20));
+    ++taken_;
     socket.set_option(Tcp::no_delay(true), error);
     try {
       take_(std::move(socket));
     } catch (const std::bad_alloc&) {  // this connection ends; the next one is taken
     }
     accept();
+  });
+}
+
+void Listening::accept_at(Clock::time_point time) {
+  pause_.expires_at(time);
+  pause_.async_wait([this](Error cancelled) {
+    if (!cancelled) accept();
   });
 }
 

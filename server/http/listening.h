@@ -4,6 +4,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string_view>
@@ -13,8 +14,13 @@
 
 namespace ziggurat::http {
 
+/// Takes connections as they come up to a number in a period; those beyond it wait in the system until the next one.
+/// Who connects without end takes little of the processors.
 class Listening {
  public:
+  static constexpr int most_in_period = 20;
+  static constexpr std::chrono::milliseconds period{100};
+
   using Take = std::function<void(boost::asio::ip::tcp::socket)>;
 
   /// @param option  of the program, for messages
@@ -28,11 +34,16 @@ class Listening {
   void close();
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void accept();
+  void accept_at(Clock::time_point time);
 
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer pause_;
   Take take_;
+  Clock::time_point period_begun_ = Clock::now();
+  int taken_ = 0;  // in this period
 };
 
 /// A thread that serves, at a lower priority than the others: clients that keep it busy leave the processors to

@@ -17,6 +17,8 @@
 #include <thread>
 #include <vector>
 
+#include "http/listening.h"
+
 namespace ziggurat::http {
 namespace {
 
@@ -141,6 +143,17 @@ TEST(Port, OfTooManyClientsTheOldestMakesPlace) {
     clients[i]->send("\r\n");
     EXPECT_TRUE(clients[i]->hear().starts_with("HTTP/1.1 200")) << i;
   }
+}
+
+TEST(Port, TakesSoManyConnectionsInAPeriod) {
+  const Port port("--metrics", {"127.0.0.1", 0}, false, read);
+  const auto begun = std::chrono::steady_clock::now();
+  for (int i = 0; i < 2 * Listening::most_in_period + 1; ++i) {
+    Client client(port.number());
+    client.send("GET / HTTP/1.1\r\n\r\n");
+    EXPECT_NE(client.hear(), "");
+  }
+  EXPECT_GE(std::chrono::steady_clock::now() - begun, Listening::period);  // the first may have been at the end of one
 }
 
 TEST(Port, ATakenAddressIsAnErrorThatNamesTheOption) {
