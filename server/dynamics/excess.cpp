@@ -7,11 +7,14 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double far = 0.1;          // [rad] per substep
-constexpr double near = 0.003;       // likewise, of what is struck
-constexpr double bends = 3e-4;       // relative change of speed by Coriolis forces
-constexpr double negligible = 1e-6;  // of the kinetic energy
-constexpr double most_given = 0.1;   // of the joints' energy: more is lost in an impact
+constexpr double far = 0.1;         // [rad] per substep
+constexpr double least = 1e-10;     // of the kinetic energy
+constexpr double most_given = 0.1;  // of the joints' energy: more is lost in an impact
+
+// The relative error of a substep's energy is about the square of an angle or of a relative change of speed. By how
+// much these may grow in a second, so that short substeps do not add up to more than long ones [1/s]:
+constexpr double near = 1e-3;   // the angle, of what is struck
+constexpr double bends = 1e-5;  // the change by Coriolis forces
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -76,8 +79,10 @@ bool is_struck(const Tree& tree, const double* mass, std::span<const double> aft
 Excess::Kind kind_of(const Problem& problem, std::size_t i, std::span<const double> after) {
   const Tree& tree = *problem.trees[i];
   if (turns(tree, after, problem.length, far)) return Excess::Kind::turns_far;
-  const bool bent = problem.bending[i] > bends || (is_struck(tree, problem.mass_of(i), after) &&
-                                                   turns(tree, after, problem.length, near));
+  const double length = problem.length;
+  const bool bent = problem.bending[i] > std::sqrt(bends * length) ||
+                    (is_struck(tree, problem.mass_of(i), after) &&
+                     turns(tree, after, length, std::sqrt(near * length)));
   return bent ? Excess::Kind::bends : Excess::Kind::none;
 }
 
@@ -165,7 +170,7 @@ void find_inner_motion(const Tree& tree, Workspace& work, std::span<const unsign
 /// @param excess  [J]; < 0: what it should get
 /// @return        what it took [J]
 double take_from_joints(Tree& tree, Workspace& work, std::span<const unsigned char> held, double excess) {
-  if (std::abs(excess) <= negligible * kinetic_energy(tree)) return 0;
+  if (std::abs(excess) <= least * kinetic_energy(tree)) return 0;
   find_inner_motion(tree, work, held, work.scratch, work.before);
   double slope = 0, curve = 0;  // of the energy, along that motion
   for (int k = 0; k < tree.dofs; ++k) {
@@ -195,7 +200,7 @@ void give_back_turning(Tree& tree, double excess) {
 /// @param most  kinetic energy [J]
 void slow_down(Tree& tree, double most) {
   const double all = kinetic_energy(tree);
-  if (all <= 0 || all - most <= negligible * all) return;
+  if (all <= 0 || all - most <= least * all) return;
   const double share = std::sqrt(std::max(0.0, most) / all);
   for (double& speed : tree.v) speed *= share;
   move(tree);
@@ -248,7 +253,7 @@ void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<co
 }
 
 bool gains_much(const Tree& tree, double excess) {
-  return excess > negligible * kinetic_energy(tree);
+  return excess > least * kinetic_energy(tree);
 }
 
 void take_excess(Tree& tree, Workspace& work, double excess) {
