@@ -140,7 +140,7 @@ void Solver::enter(const Problem& problem, double margin) {
       c.give = compliance * mobility.cwiseProduct(c.unit).cwiseProduct(c.unit);
       c.impulse = Vector3(block.impulse[0] * mu, block.impulse[1], block.impulse[2]);
       c.anchor = c.impulse;
-      c.speed = Vector3((u[0] - block.seek[0]) / mu, u[1], u[2]);
+      c.speed = Vector3((u[0] - block.seek[0]) / mu, u[1] - block.seek[1], u[2] - block.seek[2]);
       c.speed[0] = std::max(c.speed[0], 0.0) + tangential(c.speed) + margin / mu;
       c.impulse[0] =
           std::max(c.impulse[0], tangential(c.impulse)) + mu * margin / block.mobility[0];
@@ -180,7 +180,7 @@ double Solver::linearise_interior(Problem& problem) {
     const int rows = block.rows, solved = solved_rows(block);
     if (solved == 3) {
       scale_cone(c);
-      c.residual = Vector3(over + tangential(c.speed), u[1], u[2]) +
+      c.residual = Vector3(over + tangential(c.speed), u[1] - block.seek[1], u[2] - block.seek[2]) +
                    c.give.cwiseProduct(c.impulse - c.anchor) - c.speed;
       products += c.impulse.dot(c.speed);
       ++count;

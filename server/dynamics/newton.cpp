@@ -352,8 +352,9 @@ Outcome Solver::solve(Problem& problem) {
     }
     start_.give_back(problem);
     problem.harden();
-  } else if (proximal(problem, outcome)) {
-    return outcome;
+  } else {
+    problem.harden();
+    if (proximal(problem, outcome)) return outcome;
   }
   start_.give_back(problem);
   interior_points(problem, outcome);

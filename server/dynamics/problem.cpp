@@ -71,7 +71,7 @@ void Problem::add(Tree& tree, Workspace& work) {
                  {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
   for (int k = 0; k < tree.dofs; ++k) inverse_mass.push_back(1 / work.mass[k * tree.dofs + k]);
   first_bias.push_back(-1);
-  if (softness > 0 && several && turns(tree, length)) {
+  if (several && turns(tree, length)) {
     first_bias.back() = static_cast<int>(bias.size());
     bias_accelerations(tree, work);
     bias.insert(bias.end(), work.acceleration.begin(), work.acceleration.end());
@@ -241,7 +241,7 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
   for (int r = 1; r < std::min(block.rows, 3); ++r) block.impulse[r] = impulse[r];
   for (int r = 3; r < block.rows; ++r) block.impulse[r] = angular[r - 3];
   press(block);
-  if (a >= 0 && b >= 0 && softness > 0) {  // what lies on a turntable does not drift outwards
+  if (a >= 0 && b >= 0) {  // what lies on a turntable does not drift outwards
     const Vector3 apart = bend(a, contact.a.link, contact.point) - bend(b, contact.b.link, contact.point);
     for (int r = 1; r < std::min(block.rows, 3); ++r) {
       block.seek[r] = -length / 2 * block.frame.col(r).dot(apart);
@@ -343,7 +343,6 @@ void Problem::harden() {
     if (block.yield == 0) continue;
     block.yield = 0;
     block.seek[0] = std::min(0.0, block.seek[0]);
-    block.seek[1] = block.seek[2] = 0;
   }
 }
 

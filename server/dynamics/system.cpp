@@ -12,8 +12,6 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr int most_soft = 16;  // trees of an island: larger ones are solved for rigid surfaces
-
 enum Kind { contact_item, servo_item, limit_item };
 
 bool free_to_drift(const Tree& tree) {
@@ -253,7 +251,7 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
   problem_.clear();
   problem_.length = length_;
   problem_.allowed_overlap = allowed_overlap;
-  problem_.softness = last_tree - first_tree <= most_soft ? softness : 0;
+  problem_.softness = softness;
   problem_.several = last_tree - first_tree > 1;
   for (int i = first_tree; i < last_tree; ++i) {
     problem_.add(trees[tree_order_[i]], work_);

@@ -108,7 +108,7 @@ TEST_P(NewtonAt, TilesAreAsSmoothAsOneInEveryDirection) {
   // Down a slope of square tiles without friction, over their edges and corners.
   const double slope = 0.15, seconds = 0.9;
   const math::Quaternion tilt = about({0, 1, 0}, slope);
-  const Vector3 up = tilt * Vector3::UnitZ(), downhill = tilt * Vector3::UnitX();
+  const Vector3 downhill = tilt * Vector3::UnitX();
   const double a = earth * std::sin(slope), expected = a * seconds * seconds / 2;
   for (const scene::Geometry& shape : flat_shapes()) {
     for (const double yaw : {0.0, 0.3, std::numbers::pi / 4, 1.2}) {

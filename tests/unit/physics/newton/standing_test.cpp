@@ -80,6 +80,33 @@ TEST(NewtonStack, ThatSleepsMovesWithNothingAndWakesWhenItsFloorIsTaken) {
   EXPECT_NEAR(origin(world, 2).position.z(), rest.position.z() - earth * 0.125, 1e-6);
 }
 
+// A plate on 25 cubes, whose middle is not below its own: a rigid plate on springs, so loads are linear in the place.
+TEST(NewtonPlate, LoadsTwentyFiveCubesLinearly) {
+  constexpr double pitch = 0.05, mass = 10, cube_mass = 0.1;
+  const double away_x = 0.02, away_y = 0.01;  // of the cubes' middle
+  for (const double hz : {50, 100, 500, 2000}) {
+    World world(newton(true), 1 / hz);
+    world.add(loose(at(0, 0, 0.02), scene::Box{{0.4, 0.4, 0.02}}, mass, 0.5));
+    std::vector<Eigen::Vector2d> places;
+    for (int i = 0; i < 25; ++i) places.emplace_back(pitch * (i % 5 - 2), pitch * (i / 5 - 2));
+    for (const auto& place : places) {
+      world.add(loose(at(place.x() + away_x, place.y() + away_y, 0), scene::Box{{0.02, 0.02, 0.02}}, cube_mass, 0.5));
+    }
+    run(world, 1, 1 / hz);
+    std::vector<world::Contact> contacts;
+    world.list_contacts(contacts);
+    std::vector<double> loads(places.size(), 0);
+    for (const world::Contact& contact : contacts) {
+      if (!contact.other) loads[contact.link - 1] += contact.force.z();
+    }
+    const double square = 50 * pitch * pitch + 25 * 0.01 * 0.01;  // sum of x^2 over the cubes' corners, a quarter [m^2]
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double share = 1.0 / 25 - (away_x * places[i].x() + away_y * places[i].y()) / square;
+      EXPECT_NEAR(loads[i], earth * (mass * share + cube_mass), 1e-3 * earth * mass / 25) << hz << ' ' << i;
+    }
+  }
+}
+
 TEST(NewtonPlanks, LieOnTheFloorWhereTheyFell) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
