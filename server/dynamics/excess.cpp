@@ -9,6 +9,7 @@ namespace {
 
 constexpr double far = 0.1;         // [rad] per substep
 constexpr double least = 1e-10;     // of the kinetic energy
+constexpr double wild = 0.1;        // likewise, of a gain that servos have not made
 constexpr double most_given = 0.1;  // of the joints' energy: more is lost in an impact
 
 // The relative error of a substep's energy is about the square of an angle or of a relative change of speed. By how
@@ -112,6 +113,67 @@ double excess_before(const Tree& tree, Workspace& work, const double* mass,
   return sum;
 }
 
+bool is_free_joint(const Tree& tree, std::span<const unsigned char> held, int dof) {
+  return dof >= tree.dof_count[0] && held[dof] == Excesses::free;
+}
+
+bool has_free_joint(const Tree& tree, std::span<const unsigned char> held) {
+  for (int k = 0; k < tree.dofs; ++k) {
+    if (is_free_joint(tree, held, k)) return true;
+  }
+  return false;
+}
+
+/// Twice the kinetic energy of free joints while nothing else moves [J].
+double square_of_free(const Tree& tree, std::span<const unsigned char> held, const double* mass,
+                      std::span<const double> speeds) {
+  double sum = 0;
+  for (int i = 0; i < tree.dofs; ++i) {
+    for (int k = 0; k < tree.dofs && is_free_joint(tree, held, i); ++k) {
+      if (is_free_joint(tree, held, k)) sum += speeds[i] * mass[i * tree.dofs + k] * speeds[k];
+    }
+  }
+  return sum;
+}
+
+/// The bias forces of a part of a tree's speeds, which stay.
+/// @param of_free  of its free joints, or of all else
+void bias_of_part(Tree& tree, Workspace& work, std::span<const unsigned char> held, bool of_free,
+                  std::vector<double>& speeds, std::vector<double>& out) {
+  speeds.assign(tree.v.begin(), tree.v.end());
+  for (int k = 0; k < tree.dofs; ++k) {
+    if (is_free_joint(tree, held, k) != of_free) tree.v[k] = 0;
+  }
+  move(tree);
+  out.resize(tree.dofs);
+  bias_forces(tree, work, out);
+  std::copy(speeds.begin(), speeds.end(), tree.v.begin());
+  move(tree);
+}
+
+/// The same of the free joints of a tree that servos hold. What moves as servos tell it has all the power that it
+/// takes; what free joints get of that alone, as centrifugal forces, is no excess: it swings as in a potential. Where
+/// it changes their inertia it does work, half of what the forces say that depend on both, and that is none either.
+double excess_of_free(Tree& tree, Workspace& work, const double* mass, std::span<const double> momentum,
+                      std::span<const double> after, double length, std::span<const unsigned char> held,
+                      Excesses& memory) {
+  bias_of_part(tree, work, held, false, memory.speeds, memory.bias_of_held);
+  bias_of_part(tree, work, held, true, memory.speeds, memory.bias_of_free);
+  work.scratch.resize(tree.dofs);
+  external_forces(tree, work, work.scratch, true, true);
+  double sum = -square_of_free(tree, held, mass, after) / 2;
+  for (int i = 0; i < tree.dofs; ++i) {
+    if (!is_free_joint(tree, held, i)) continue;
+    double before = 0;
+    for (int k = 0; k < tree.dofs; ++k) before += mass[i * tree.dofs + k] * tree.v[k];
+    const double all = momentum[i] - before - length * (work.scratch[i] + tree.damping[i] * after[i]);
+    const double own = all + length * memory.bias_of_held[i];
+    const double of_both = own + length * memory.bias_of_free[i];
+    sum += own * (tree.v[i] + after[i]) / 2 - of_both * tree.v[i] / 2;
+  }
+  return sum;
+}
+
 /// The potential energy that a displacement gives a tree, if it is lifted.
 /// @param by  of each dof [m], [rad]
 /// @return    [J], >= 0
@@ -185,6 +247,18 @@ double take_from_joints(Tree& tree, Workspace& work, std::span<const unsigned ch
   return square > 0 ? excess : slope * slope / (4 * curve);
 }
 
+/// Takes energy from the free joints of a tree that servos hold, or gives it to them.
+/// @param before  see Excess
+void undo_excess_of_free(Tree& tree, Workspace& work, std::span<const unsigned char> held, double before) {
+  find_inner_motion(tree, work, held, work.scratch, work.before);
+  const double all = square_of_free(tree, held, work.mass.data(), tree.v) / 2;
+  const double excess = std::clamp(before + all, -most_given * all, most_given * all);
+  if (std::abs(excess) <= least * all) return;
+  const double more = std::sqrt(1 - excess / all) - 1;
+  for (int k = 0; k < tree.dofs; ++k) tree.v[k] += more * work.scratch[k];
+  move(tree);
+}
+
 /// Gives a single body what turning took from it.
 /// @param excess  [J]; nothing happens where it is a gain
 void give_back_turning(Tree& tree, double excess) {
@@ -212,18 +286,30 @@ void note_excesses(const Problem& problem, Workspace& work, Excesses& out) {
   out.of_trees.assign(problem.trees.size(), {});
   bool any = false;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
+    const auto after = std::span(problem.velocity).subspan(problem.offset[i], problem.trees[i]->dofs);
+    out.of_trees[i].kind = kind_of(problem, i, after);
+    any |= out.of_trees[i].kind != Excess::Kind::none;
+  }
+  if (!any) return;
+  note_held(problem, out.held);
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    Excess& excess = out.of_trees[i];
+    if (excess.kind == Excess::Kind::none) continue;
+    Tree& tree = *problem.trees[i];
     const std::size_t first = problem.offset[i], dofs = tree.dofs;
     const auto after = std::span(problem.velocity).subspan(first, dofs);
-    Excess& excess = out.of_trees[i];
-    excess.kind = kind_of(problem, i, after);
-    if (excess.kind == Excess::Kind::none) continue;
-    any = true;
-    excess.before =
-        excess_before(tree, work, problem.mass_of(i),
-                      std::span(problem.momentum).subspan(first, dofs), after, problem.length);
+    const auto momentum = std::span(problem.momentum).subspan(first, dofs);
+    const auto held = std::span(out.held).subspan(first, dofs);
+    const bool is_driven = std::find(held.begin(), held.end(), Excesses::driven) != held.end();
+    excess.of_free_joints = is_driven && has_free_joint(tree, held);
+    if (is_driven && !excess.of_free_joints && excess.kind == Excess::Kind::bends) {
+      excess.kind = Excess::Kind::none;
+      continue;
+    }
+    excess.before = excess.of_free_joints
+                        ? excess_of_free(tree, work, problem.mass_of(i), momentum, after, problem.length, held, out)
+                        : excess_before(tree, work, problem.mass_of(i), momentum, after, problem.length);
   }
-  if (any) note_held(problem, out.held);
 }
 
 void add_lifts(const Problem& problem, Workspace& work, Excesses& out) {
@@ -231,7 +317,7 @@ void add_lifts(const Problem& problem, Workspace& work, Excesses& out) {
   if (std::any_of(problem.blocks.begin(), problem.blocks.end(), bounces)) return;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     Excess& excess = out.of_trees[i];
-    if (excess.kind == Excess::Kind::none) continue;
+    if (excess.kind == Excess::Kind::none || excess.of_free_joints) continue;
     excess.before += lift(*problem.trees[i], work, problem.velocity.data() + problem.offset[i]);
   }
 }
@@ -239,14 +325,15 @@ void add_lifts(const Problem& problem, Workspace& work, Excesses& out) {
 void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<const unsigned char> held,
                  bool grounded) {
   if (excess.kind == Excess::Kind::none) return;
+  if (excess.of_free_joints) return undo_excess_of_free(tree, work, held, excess.before);
   double sum = excess.before + kinetic_energy(tree);
+  const bool is_driven = std::find(held.begin(), held.end(), Excesses::driven) != held.end();
+  if (is_driven && sum < wild * kinetic_energy(tree)) return;
   if (tree.single) {
     if (grounded) give_back_turning(tree, sum);
   } else {
     sum -= take_from_joints(tree, work, held, sum);
   }
-  const bool is_driven = std::find(held.begin(), held.end(), Excesses::driven) != held.end();
-  if (excess.kind != Excess::Kind::turns_far && is_driven) return;
   const double most = kinetic_energy(tree) - sum;
   take_excess(tree, work, sum);
   if (grounded) slow_down(tree, most);

@@ -17,7 +17,8 @@ struct Excess {
     turns_far,  ///< as well, and it turns so far that what its joints can't undo of a gain is taken all the same
   };
   Kind kind = Kind::none;
-  double before = 0;  ///< less the kinetic energy that it has at the end [J]
+  bool of_free_joints = false;  ///< alone: what servos hold moves as they are told
+  double before = 0;            ///< less the kinetic energy that it, or those, have at the end [J]
 };
 
 /// What a substep gives the trees of an island.
@@ -25,6 +26,7 @@ struct Excesses {
   std::vector<Excess> of_trees;
   static constexpr unsigned char free = 0, at_limit = 1, driven = 2;
   std::vector<unsigned char> held;  ///< what holds each dof: nothing, a limit or a servo
+  std::vector<double> speeds, bias_of_held, bias_of_free;  ///< of note_excesses(), which uses their memory again
 };
 
 /// Notes the excess of each tree; to be called when an island's velocities are solved, but not yet its trees'.

@@ -13,6 +13,7 @@ constexpr double largest_turn = 0.1;  // of a Runge-Kutta step of a single body 
 constexpr int most_steps = 4000;      // of one substep
 constexpr double tolerance = 1e-7;    // of a Dormand-Prince step, relative
 constexpr double slow = 3e-3;         // relative change of speed that bias forces may make
+constexpr double slow_driven = 0.045;  // its square, where servos hold a tree, over a second [1/s]
 
 using Quaternion4 = Eigen::Vector4d;  // w x y z
 
@@ -299,7 +300,7 @@ void momentum_of_body(const Tree& tree, Workspace& work, double length, std::spa
 
 }  // namespace
 
-void momentum_after(Tree& tree, Workspace& work, double length, std::span<double> out) {
+void momentum_after(Tree& tree, Workspace& work, double length, bool driven, std::span<double> out) {
   if (tree.single) return momentum_of_body(tree, work, length, out);
   const int n = tree.dofs;
   // Bias forces turn the velocity and do no work, but an explicit step of them adds the square of
@@ -317,7 +318,7 @@ void momentum_after(Tree& tree, Workspace& work, double length, std::span<double
   const int root = std::min(6, n);
   std::copy_n(out.begin(), root, work.drift.begin());
   work.bending = energy > 0 ? std::sqrt(change / energy) : 0;
-  if (work.bending > slow) {
+  if (work.bending > (driven ? std::max(slow, std::sqrt(slow_driven * length)) : slow)) {
     momentum_flown(tree, work, length, out);
   } else {
     for (int i = 0; i < n; ++i) out[i] -= length * work.scratch[i];

@@ -23,7 +23,9 @@ int fly(Tree& tree, Workspace& work, double length);
 /// its shape the mass matrix changes too.
 /// Needs place(), move() and compute_mass(), and leaves the tree so.
 /// @param length  [s]
+/// @param driven  whether servos hold some of its coordinates: then a free motion over the whole substep, in which
+///                nothing holds them, is farther off than forces of the beginning are, unless they change speeds by much
 /// @param out     of each dof [kg m/s] or [kg m^2/s]
-void momentum_after(Tree& tree, Workspace& work, double length, std::span<double> out);
+void momentum_after(Tree& tree, Workspace& work, double length, bool driven, std::span<double> out);
 
 }  // namespace ziggurat::dynamics

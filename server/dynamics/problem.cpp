@@ -49,6 +49,7 @@ void Problem::clear() {
   mass_offset.clear();
   drift.clear();
   bending.clear();
+  driven.clear();
   blocks.clear();
   jacobian.clear();
   momentum.clear();
@@ -61,13 +62,13 @@ void Problem::clear() {
   couplings.clear();
 }
 
-void Problem::add(Tree& tree, Workspace& work) {
+void Problem::add(Tree& tree, Workspace& work, bool is_driven) {
   const int first = static_cast<int>(momentum.size());
   trees.push_back(&tree);
   offset.push_back(first);
   momentum.resize(first + tree.dofs);
   compute_mass(tree, work);
-  momentum_after(tree, work, length,
+  momentum_after(tree, work, length, is_driven,
                  {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
   for (int k = 0; k < tree.dofs; ++k) inverse_mass.push_back(1 / work.mass[k * tree.dofs + k]);
   first_bias.push_back(-1);
@@ -84,6 +85,7 @@ void Problem::add(Tree& tree, Workspace& work) {
   mass.insert(mass.end(), work.mass.begin(), work.mass.end());
   drift.push_back(work.drift);
   bending.push_back(work.bending);
+  driven.push_back(is_driven);
   velocity.insert(velocity.end(), tree.v.begin(), tree.v.end());
 }
 

@@ -58,6 +58,7 @@ struct Problem {
   std::vector<int> mass_offset;              ///< of each tree in `mass`
   std::vector<std::array<double, 6>> drift;  ///< of each tree, see momentum_after()
   std::vector<double> bending;               ///< of each tree, see Workspace
+  std::vector<unsigned char> driven;         ///< of each tree: whether servos hold some of its coordinates
   std::vector<Block> blocks;
   std::vector<double> jacobian;
   std::vector<double> momentum;  ///< p
@@ -72,7 +73,8 @@ struct Problem {
 
   void clear();
   /// Adds a tree at the end, with its momentum; it is placed and moved.
-  void add(Tree& tree, Workspace& work);
+  /// @param is_driven  whether servos hold some of its coordinates
+  void add(Tree& tree, Workspace& work, bool is_driven);
   /// Mass matrix of a tree, without the joints' damping, row by row.
   const double* mass_of(std::size_t tree) const { return mass.data() + mass_offset[tree]; }
   /// Places of the trees in the island.

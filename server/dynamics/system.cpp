@@ -64,7 +64,7 @@ void displace(const Problem& problem, std::size_t i, std::span<const double> by,
   place(tree);
   move(tree);
   const Excess& excess = excesses.of_trees[i];
-  const bool gains = excess.kind != Excess::Kind::none &&
+  const bool gains = excess.kind != Excess::Kind::none && !excess.of_free_joints &&
                      gains_much(tree, excess.before + kinetic_energy(tree));
   if (free_to_drift(tree) && (drifts || gains)) {
     keep_momentum(tree, work, origin, problem.mass_of(i), problem.drift[i]);
@@ -246,6 +246,16 @@ void System::add(const Outcome& outcome) {
   report_.miss = std::max(report_.miss, outcome.miss);
 }
 
+/// Which trees of an island servos hold: those that did not give all that they have in the last substep.
+void System::note_driven(int first_tree, int last_tree, int first_item, int last_item) {
+  driven_.assign(last_tree - first_tree, 0);
+  for (int i = first_item; i < last_item; ++i) {
+    if (item_order_[i].kind != servo_item) continue;
+    const Servo& servo = servos_[item_order_[i].index];
+    if (servo.lower < servo.impulse && servo.impulse < servo.upper) driven_[place_[servo.tree]] = 1;
+  }
+}
+
 /// The problem of the trees and items of one island.
 void System::gather_island(int first_tree, int last_tree, int first_item, int last_item) {
   problem_.clear();
@@ -253,8 +263,9 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
   problem_.allowed_overlap = allowed_overlap;
   problem_.softness = softness;
   problem_.several = last_tree - first_tree > 1;
+  note_driven(first_tree, last_tree, first_item, last_item);
   for (int i = first_tree; i < last_tree; ++i) {
-    problem_.add(trees[tree_order_[i]], work_);
+    problem_.add(trees[tree_order_[i]], work_, driven_[i - first_tree]);
   }
   const auto place = [&](int tree) {
     return tree >= 0 && trees[tree].dofs > 0 ? place_[tree] : -1;

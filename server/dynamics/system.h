@@ -109,6 +109,7 @@ class System {
   void gather(std::span<const Contact> contacts, std::span<const Servo> servos,
               std::span<const Limit> limits);
   void fetch_after(std::size_t island) const;
+  void note_driven(int first_tree, int last_tree, int first_item, int last_item);
   void gather_island(int first_tree, int last_tree, int first_item, int last_item);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
   bool fly_island(int first_tree, int last_tree, int first_item, int last_item);
@@ -143,6 +144,7 @@ class System {
   std::vector<int> parent_, island_, place_;
   std::vector<int> first_tree_, tree_order_, first_item_;
   std::vector<Item> items_, item_order_;
+  std::vector<unsigned char> driven_;  // of each tree of an island
   std::vector<double> kept_, step_;
   Excesses excesses_;
   Rebound rebound_;

@@ -45,7 +45,7 @@ void expect_product(Tree first, Tree second) {
   for (Tree& each : trees) {
     place(each);
     move(each);
-    problem.add(each, work);
+    problem.add(each, work, false);
     sizes.push_back(each.dofs);
   }
   Contact contact;
