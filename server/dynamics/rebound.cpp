@@ -146,11 +146,11 @@ bool rebounds(const Problem& problem) {
 
 void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& out) {
   solver.solve_without_rebound(problem, out.without);
-  out.after.clear();
+  out.start.clear();
   for (const Tree* tree : problem.trees) {
-    out.after.insert(out.after.end(), tree->v.begin(), tree->v.end());
+    out.start.insert(out.start.end(), tree->v.begin(), tree->v.end());
   }
-  const double share = share_without_gain(problem, out.without, out.after);
+  const double share = share_without_gain(problem, out.without, out.start);
   if (share < 1) blend(problem, out.without, share);
   out.most_energy = energy(problem.trees) + work_of_pushes(problem, work) + work_of_servos(problem);
 }
@@ -170,6 +170,28 @@ bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebo
     }
   }
   return lift > 0 && now + lift - rebound.most_energy > rounding * (std::abs(now) + lift);
+}
+
+bool moves_too_far(const Problem& problem, const Rebound& rebound) {
+  double depth = 0;  // what overlaps is moved apart by up to that
+  for (const Block& block : problem.blocks) depth = std::max(depth, -block.gap);
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const Tree& tree = *problem.trees[i];
+    const std::size_t first = problem.offset[i];
+    const double* mass = problem.mass_of(i);
+    double way = 0, change = 0;
+    for (int k = 0; k < tree.dofs; ++k) {
+      for (int j = 0; j < tree.dofs; ++j) {
+        const double m = mass[k * tree.dofs + j];
+        way += m * problem.velocity[first + k] * problem.velocity[first + j];
+        change += m * (tree.v[k] - rebound.start[first + k]) * (tree.v[j] - rebound.start[first + j]);
+      }
+    }
+    // Before it struck, for a part of the substep, it had the other velocity.
+    const double most = 1.01 * change * problem.length * problem.length;
+    if (way > most + problem.total_mass[i] * 4 * depth * depth) return true;
+  }
+  return false;
 }
 
 void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound) {

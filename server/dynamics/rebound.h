@@ -13,6 +13,7 @@ namespace ziggurat::dynamics {
 struct Rebound {
   double most_energy = 0;  ///< kinetic and potential, at the substep's end [J]
   Snapshot without;        ///< the solution without rebound
+  std::vector<double> start;          ///< velocities at the substep's beginning, of each dof
   std::vector<double> after, change;  ///< of bound_energy(), which uses their memory again
 };
 
@@ -29,6 +30,11 @@ void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& o
 /// @param step     displacements without it, of each dof [rad], [m]
 bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebound,
                     const std::vector<double>& step);
+
+/// Whether what moves rebounds to where they should be moves a tree by more than it could have moved: points that strike
+/// at different times may ask for what only a large turn satisfies.
+/// @param problem  that of the displacement, solved, its trees with the velocities that they will have
+bool moves_too_far(const Problem& problem, const Rebound& rebound);
 
 /// Takes what the rebounds gained all the same, at the substep's end: where bodies turn far, or what undoes overlaps
 /// lifts them. Needs move(), and leaves the trees moved.

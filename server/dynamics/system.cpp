@@ -313,7 +313,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       });
   if (problem_.turn_into_displacement()) {
     solver_.solve_displacement(problem_);
-    if (rebounding && lifts_too_much(problem_, work_, rebound_, step_)) {
+    if (rebounding && (lifts_too_much(problem_, work_, rebound_, step_) || moves_too_far(problem_, rebound_))) {
       problem_.leave_rebounds();
       solver_.solve_displacement(problem_);
     }
