@@ -8,7 +8,8 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double rounding = 1e-9;  // of the energy
+constexpr double rounding = 1e-9;         // of the energy
+constexpr double more_than_moved = 1.02;  // the square of what a body that struck may be moved by
 
 /// What pushes the trees, without gravity, does in the substep, of which v is the solution.
 double work_of_pushes(const Problem& problem, Workspace& work) {
@@ -62,6 +63,12 @@ bool is_grounded(const Problem& problem) {
   return std::any_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) {
     return block.kind == Block::Source::contact && (block.a < 0 || block.b < 0);
   });
+}
+
+/// By how much a coordinate's unit moves points of its tree, squared: a turn, by the size that its inertia is that of.
+double square_of_lever(const Problem& problem, std::size_t tree, int dof) {
+  const Tree& of = *problem.trees[tree];
+  return problem.mass_of(tree)[dof * of.dofs + dof] / problem.total_mass[tree];
 }
 
 /// Takes an energy from all speeds, as far as they have it.
@@ -177,19 +184,19 @@ bool moves_too_far(const Problem& problem, const Rebound& rebound) {
   for (const Block& block : problem.blocks) depth = std::max(depth, -block.gap);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
-    const std::size_t first = problem.offset[i];
-    const double* mass = problem.mass_of(i);
-    double way = 0, change = 0;
-    for (int k = 0; k < tree.dofs; ++k) {
-      for (int j = 0; j < tree.dofs; ++j) {
-        const double m = mass[k * tree.dofs + j];
-        way += m * problem.velocity[first + k] * problem.velocity[first + j];
-        change += m * (tree.v[k] - rebound.start[first + k]) * (tree.v[j] - rebound.start[first + j]);
+    const double* way = problem.velocity.data() + problem.offset[i];
+    const double* start = rebound.start.data() + problem.offset[i];
+    for (int k = 0, last = 0; k < tree.dofs; k = last) {  // how it turns, how it moves, and each joint by itself
+      last = k < tree.dof_count[0] ? std::min(k + 3, tree.dof_count[0]) : k + 1;
+      double square = 0, change = 0;
+      for (int j = k; j < last; ++j) {
+        square += way[j] * way[j];
+        change += (tree.v[j] - start[j]) * (tree.v[j] - start[j]);
       }
+      // Before it struck, for a part of the substep, it had the other velocity.
+      const double most = more_than_moved * problem.length * problem.length * change;
+      if (square > most + 4 * depth * depth / square_of_lever(problem, i, k)) return true;
     }
-    // Before it struck, for a part of the substep, it had the other velocity.
-    const double most = 1.01 * change * problem.length * problem.length;
-    if (way > most + problem.total_mass[i] * 4 * depth * depth) return true;
   }
   return false;
 }
