@@ -39,9 +39,9 @@ struct Turn {
   /// Its deadline; none: the tick waits for it forever.
   std::optional<std::chrono::milliseconds> patience;
 
-  /// Until when the tick waits for the answer. @param patience  as above
-  Time deadline(std::chrono::milliseconds patience) const {
-    return owes_since + time_left(patience, waited_before);
+  /// Until when the tick waits for the answer. @param limit  patience, if it has one
+  Time deadline(std::chrono::milliseconds limit) const {
+    return owes_since + time_left(limit, waited_before);
   }
 };
 
