@@ -28,6 +28,7 @@ struct Turn {
   bool has_missed = false;     ///< nor will it be: the tick goes on without the answer
   bool is_repeated = false;    ///< that observation was sent before, to it or another session
   unsigned late_commands = 0;  ///< for ticks that it missed, that may still arrive
+  unsigned crossing = 0;       ///< likewise, for ticks of a world that was put back since
   Time owes_since;             ///< when that observation was sent
   std::chrono::nanoseconds waited{0};         ///< for the answer, which is there or was missed
   std::chrono::nanoseconds waited_before{0};  ///< by the same tick, for those who had its robots before
