@@ -8,6 +8,7 @@ namespace ziggurat::dynamics {
 
 void Tree::archive(math::Archive& archive) {
   archive("q", q);
+  archive.require(has_rotations(), "has a turn that is no rotation");
   archive("v", v);
   archive("flight_step", flight_step);
   for (Wrench& wrench : held_by) {

@@ -183,6 +183,16 @@ void Tree::take_apart() noexcept {
   move(*this);
 }
 
+bool Tree::has_rotations() const {
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const bool is_root = links[i].joint == JointType::floating;
+    if (!is_root && links[i].joint != JointType::spherical) continue;
+    const double* turn = q.data() + first_place[i] + (is_root ? 3 : 0);
+    if (!math::is_rotation({turn[0], turn[1], turn[2], turn[3]})) return false;
+  }
+  return true;
+}
+
 math::Pose Tree::pose(int link) const { return {position[link], Quaternion(rotation[link])}; }
 
 void Tree::set_root(const math::Pose& pose) {

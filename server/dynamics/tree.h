@@ -123,6 +123,7 @@ class Tree {
   std::span<const int> dofs_of(int link) const;   ///< that move a link, ascending
   std::span<const int> dof_alone(int dof) const;  ///< a span of it
   math::Pose pose(int link) const;                ///< X_WL, after place()
+  bool has_rotations() const;                     ///< all quaternions in q have length 1
   void set_root(const math::Pose& pose);          ///< of a floating or fixed root
   Vector3 velocity(int link) const;               ///< of the centre of mass, after move() [m/s]
   Vector3 angular_velocity(int link) const;       ///< after move() [rad/s]

@@ -147,7 +147,10 @@ class Archive {
     static_assert(rows > 0 && columns > 0);
     numbers(value.data(), static_cast<std::size_t>(rows * columns));
   }
-  void any(Quaternion& value) { numbers(value.coeffs().data(), 4); }
+  void any(Quaternion& value) {
+    numbers(value.coeffs().data(), 4);
+    require(is_rotation(value), "is no rotation");
+  }
   void any(Pose& value) {
     any(value.position);
     any(value.orientation);

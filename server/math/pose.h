@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <cmath>
+
 namespace ziggurat::math {
 
 using Vector2 = Eigen::Vector2d;
@@ -15,6 +17,9 @@ struct Pose {
   Vector3 position = Vector3::Zero();               ///< origin of B in A [m]
   Quaternion orientation = Quaternion::Identity();  ///< rotation from B to A, unit
 };
+
+/// Whether a quaternion has length 1, up to what rounding and other programs leave of it.
+inline bool is_rotation(const Quaternion& quaternion) { return std::abs(quaternion.squaredNorm() - 1) < 1e-6; }
 
 /// X_AC from X_AB and X_BC.
 inline Pose operator*(const Pose& a_b, const Pose& b_c) {

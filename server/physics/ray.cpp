@@ -164,6 +164,15 @@ btDbvtVolume volume(const scene::Geometry& geometry, const math::Pose& pose, dou
   return btDbvtVolume::FromCE(to_bullet(center), to_bullet(half));
 }
 
+/// Whether the tree can have it. Bullet builds a tree by comparing sizes, and writes outside of its list if all are infinite.
+bool is_bounded(const btDbvtVolume& volume) {
+  constexpr double farthest = 1e30;  // [m], whose third power is finite; no ray is as long
+  const auto is_near = [](const btVector3& v) {
+    return std::abs(v.x()) < farthest && std::abs(v.y()) < farthest && std::abs(v.z()) < farthest;
+  };
+  return is_near(volume.Mins()) && is_near(volume.Maxs());
+}
+
 bool same(const math::Pose& a, const math::Pose& b) {
   return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
@@ -221,11 +230,12 @@ void Rays::update(const world::State& state) {
     if (solid.leaf && solid.leaf->volume.Contain(volume(solid.geometry, pose, rounding_margin))) {
       continue;
     }
+    btDbvtVolume bounds = volume(solid.geometry, pose, volume_margin);
+    if (!is_bounded(bounds)) continue;
     if (!solid.leaf) {
       p.fresh.push_back(i);
       continue;
     }
-    btDbvtVolume bounds = volume(solid.geometry, pose, volume_margin);
     p.tree.update(solid.leaf, bounds);
   }
   in_bit_reversed_order(p.fresh.size(), [&](std::size_t i) {

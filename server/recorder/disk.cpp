@@ -20,7 +20,7 @@ Disk::Disk(std::string path) : path_(std::move(path)) {
   // A pipe without a reader is an error, not a wait.
   descriptor_ = recording::open_alone(path_, O_NONBLOCK);
   has_name_ = recording::has_name(descriptor_);
-  ::fcntl(descriptor_, F_SETFL, 0);  // from now on writes wait
+  ::fcntl(descriptor_, F_SETFL, O_APPEND);  // from now on writes wait
 }
 
 Disk::~Disk() {
@@ -31,8 +31,14 @@ void Disk::fail(int error) {
   throw recording::WriteError(fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
 }
 
+void Disk::check_loss() const {
+  const auto loss = recording::loss_of(descriptor_, has_name_, size_);
+  if (loss) throw recording::WriteError(fmt::format("{}: {}", path_, *loss));
+}
+
 void Disk::write(std::string_view bytes) {
   constexpr std::size_t piece = std::size_t{1} << 20;  // at once, so that a slow disk is seen to go on
+  check_loss();
   for (std::string_view left = bytes; !left.empty();) {
     const ssize_t count = ::write(descriptor_, left.data(), std::min(left.size(), piece));
     if (count >= 0 && !is_abandoned_) {
@@ -50,10 +56,9 @@ void Disk::write(std::string_view bytes) {
 
 void Disk::close() {
   if (descriptor_ < 0) return;
-  const bool is_removed = has_name_ && !recording::has_name(descriptor_);
+  check_loss();
   // Some file systems report a full disk only here.
   if (::close(std::exchange(descriptor_, -1)) != 0) fail(errno);
-  if (is_removed) throw recording::WriteError(path_ + ": was removed while it was written, and is lost");
 }
 
 }  // namespace ziggurat::recorder

@@ -17,7 +17,8 @@ class Disk {
   Disk(const Disk&) = delete;
   Disk& operator=(const Disk&) = delete;
 
-  /// Writes all bytes, or takes what was written of them back. @throws recording::WriteError
+  /// Writes all bytes, or takes what was written of them back. @throws recording::WriteError, also if another program has
+  /// removed or shortened the file
   void write(std::string_view bytes);
   /// @throws recording::WriteError
   void close();
@@ -31,6 +32,7 @@ class Disk {
 
  private:
   [[noreturn]] void fail(int error);
+  void check_loss() const;
 
   std::string path_;
   int descriptor_ = -1;

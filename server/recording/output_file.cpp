@@ -21,7 +21,7 @@ constexpr std::size_t full_buffer = std::size_t{256} << 10;  // [bytes]
 }  // namespace
 
 int open_alone(const std::string& path, int flags) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | flags, 0666);
+  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | flags, 0666);
   if (file < 0) fail(path, errno);
   struct stat status {};
   if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return file;
@@ -36,6 +36,15 @@ int open_alone(const std::string& path, int flags) {
 bool has_name(int descriptor) {
   struct stat status {};
   return ::fstat(descriptor, &status) != 0 || status.st_nlink > 0;
+}
+
+std::optional<std::string> loss_of(int descriptor, bool had_name, std::uint64_t size) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  if (had_name && status.st_nlink == 0) return "was removed while it was written, and is lost";
+  const auto now = static_cast<std::uint64_t>(status.st_size);
+  if (now >= size) return std::nullopt;
+  return fmt::format("was shortened by another program while it was written: {} bytes of {} are lost", size - now, size);
 }
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
@@ -55,10 +64,10 @@ void OutputFile::written() {
 void OutputFile::close() {
   if (descriptor_ < 0) return;
   flush();
-  const bool is_removed = has_name_ && !has_name(descriptor_);
+  const auto loss = loss_of(descriptor_, has_name_, size_);
   // Some file systems report a full disk only here.
   if (::close(std::exchange(descriptor_, -1)) != 0) fail(path_, errno);
-  if (is_removed) throw WriteError(path_ + ": was removed while it was written, and is lost");
+  if (loss) throw WriteError(fmt::format("{}: {}", path_, *loss));
 }
 
 void OutputFile::flush() {
@@ -76,6 +85,7 @@ void OutputFile::flush() {
     }
     next += count;
     left -= static_cast<std::size_t>(count);
+    size_ += static_cast<std::uint64_t>(count);
   }
   buffer_.clear();
 }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -15,12 +17,18 @@ class WriteError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Opens a file to write to it alone, and empties it. A pipe or a device may have several writers. @throws WriteError if it
-/// can't be created, or another program writes to it, which would mix both
+/// Opens a file to write to it alone, and empties it. What is written goes to its end, also behind a program that shortens it.
+/// A pipe or a device may have several writers. @throws WriteError if it can't be created, or another program writes to it,
+/// which would mix both
 int open_alone(const std::string& path, int flags = 0);
 
 /// Whether an open file has a name, by which it can be found when it is closed.
 bool has_name(int descriptor);
+
+/// What another program has done to a file of open_alone(), if it is no longer what was written: removed or shortened it.
+/// @param had_name  when it was opened
+/// @param size      of what was written [bytes]
+std::optional<std::string> loss_of(int descriptor, bool had_name, std::uint64_t size);
 
 class OutputFile {
  public:
@@ -41,13 +49,15 @@ class OutputFile {
   /// Writes what is in the buffer. Call it between whole lines. @throws WriteError
   void flush();
 
-  /// Writes the rest and closes; further calls do nothing. @throws WriteError, also if the file was removed meanwhile
+  /// Writes the rest and closes; further calls do nothing. @throws WriteError, also if the file was removed or shortened
+  /// meanwhile
   void close();
 
  private:
   std::string path_;
   int descriptor_ = -1;
   bool has_name_ = true;
+  std::uint64_t size_ = 0;  // of what was written [bytes]
   fmt::memory_buffer buffer_;
 };
 

@@ -1,7 +1,6 @@
 #include "run/files.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -9,7 +8,7 @@
 #include <vector>
 
 #include "processes/scripts.h"
-#include "scene/files.h"
+#include "run/clients_file.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -71,36 +70,6 @@ bool is_same(const std::string& a, const std::string& b) {
   return !error && whole == fs::weakly_canonical(fs::absolute(b), error) && !error;
 }
 
-/// Who can write the folder of a file can put another file in its place, unless the folder is sticky.
-void check_folders(const fs::path& file) {
-  std::error_code error;
-  fs::path folder = fs::canonical(file, error);
-  std::vector<fs::path> folders{fs::absolute(file, error).parent_path()};  // where a link may be
-  while (folder.has_relative_path()) folders.push_back(folder = folder.parent_path());
-  for (const fs::path& each : folders) {
-    struct stat status {};
-    const bool is_open = ::stat(each.c_str(), &status) == 0 && (status.st_mode & S_IWOTH) != 0;
-    if (!is_open || (status.st_mode & S_ISVTX) != 0) continue;
-    throw text::UsageError(fmt::format("--curve-clients is '{}', but all users can write the folder '{}': they could replace the "
-                                       "file; write: chmod o-w '{}'",
-                                       file.string(), each.string(), each.string()));
-  }
-}
-
-void check_clients(const std::string& path) {
-  struct stat status {};
-  if (path.empty() || scene::fault_of_file(path) || ::stat(path.c_str(), &status) != 0) return;  // reported when it is read
-  if (const uid_t user = ::geteuid(); user != 0 && status.st_uid != user && status.st_uid != 0) {
-    throw text::UsageError(fmt::format("--curve-clients is '{}', which belongs to another user, who could add keys; copy it", path));
-  }
-  check_folders(path);
-  if ((status.st_mode & (S_IWGRP | S_IWOTH)) == 0) return;
-  throw text::UsageError(fmt::format(
-      "--curve-clients is '{}', which other users can write: they could add their keys; "
-      "write: chmod go-w '{}'",
-      path, path));
-}
-
 }  // namespace
 
 void check_files(const Options& options) {
@@ -115,7 +84,7 @@ void check_files(const Options& options) {
     }
     taken.push_back(output);
   }
-  check_clients(options.curve_clients);
+  check_clients(options.curve_clients, ::geteuid());
 }
 
 void check_outputs(const Options& options, const scene::Scene& scene,

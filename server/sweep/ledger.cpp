@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -56,6 +57,14 @@ void shorten(std::vector<std::string>& columns, std::size_t& room, std::size_t& 
     ++kept;
   }
   columns.resize(kept);
+}
+
+/// The outermost of a file and its folders that is not there.
+std::string gone(const std::string& file) {
+  std::filesystem::path path = file;
+  std::error_code ignored;
+  while (path.has_relative_path() && !std::filesystem::exists(path.parent_path(), ignored)) path = path.parent_path();
+  return path.string();
 }
 
 }  // namespace
@@ -152,7 +161,17 @@ void Ledger::harden() {
 
 Ledger::~Ledger() { sqlite3_close(database_); }
 
+void Ledger::check_place() const {
+  int has_moved = 0;
+  sqlite3_file_control(database_, "main", SQLITE_FCNTL_HAS_MOVED, &has_moved);
+  if (has_moved == 0) return;
+  throw LedgerError(fmt::format("'{}' was removed, moved or replaced while the sweep wrote to it. If it was moved, bring it back and "
+                                "write: ziggurat sweep resume DIR. If it was removed, its results are lost: begin again",
+                                gone(path_)));
+}
+
 void Ledger::fail() const {
+  check_place();
   throw LedgerError(fmt::format("{}: {}", path_, sqlite3_errmsg(database_)));
 }
 

@@ -46,6 +46,7 @@ Sweep::Counts Sweep::execute(const std::vector<std::size_t>& runs) {
   waiting_.assign(runs.begin(), runs.end());
   total_ = runs.size();
   while (!waiting_.empty() || !jobs_.empty()) {
+    ledger_.check_place();  // a run would make its folders anew
     start_jobs();
     pollfd news{signals_.descriptor(), POLLIN, 0};
     ::poll(&news, 1, wait_ms);
@@ -79,6 +80,7 @@ void Sweep::collect(Job& job) {
     return;
   }
   const Result result = job.result();
+  ledger_.check_place();
   // First tidy, then write: a run with a row is never looked at again, and one without is repeated.
   tidy(folder_, result, settings_.record);
   ledger_.write(result, experiment_);

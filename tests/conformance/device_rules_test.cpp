@@ -105,7 +105,9 @@ TEST_F(Radios, D1_MessagesOfRobotsThatLeftAreIgnored) {
 TEST_F(Radios, D2_Limits) {
   auto command = Peers::command(5);
   send(command, 0, std::string(world::most_radio_message_bytes + 1, 'x'));
-  if (!talks_json()) EXPECT_EQ(faulted(command).code(), v1::Error::TOO_LARGE);
+  if (!talks_json()) {
+    EXPECT_EQ(faulted(command).code(), v1::Error::TOO_LARGE);
+  }
   command = Peers::command(5);
   const std::size_t longest = talks_json() ? 64 << 10 : world::most_radio_message_bytes;  // JSON: by T4
   for (int i = 0; i < 2; ++i) send(command, 0, std::string(longest, 'x'));

@@ -23,7 +23,10 @@ struct Boxes {
     const std::size_t i = layout.entities.size();
     layout.entities.push_back({"b" + std::to_string(i), {i, 1}, false, {i, 1}});
     layout.links.push_back({"", i});
-    layout.leds.push_back({.id = "led", .mount = {.entity = i}, .color = 7});
+    world::LedLayout& led = layout.leds.emplace_back();
+    led.id = "led";
+    led.mount.entity = i;
+    led.color = 7;
     entities.emplace_back().kind = scene::EntityKind::box;
     state.origins.push_back({{static_cast<double>(i), 0, 0}, math::Quaternion::Identity()});
     state.links.emplace_back().pose = state.origins.back();
@@ -72,10 +75,10 @@ struct Directing : ::testing::Test {
   }
   static SmallRun make_run() {
     SmallRun run(2);
-    run.directors.push_back({.id = "judge"});
+    run.directors.emplace_back().id = "judge";
     run.directors.back().params = {{"height", "0.3"}};
     run.directors.back().script = "/scenes/judge.lua";
-    run.directors.push_back({.id = "hasty"});
+    run.directors.emplace_back().id = "hasty";
     run.directors.back().deadline = {scene::DeadlineAction::hold, 50, 2};
     return run;
   }

@@ -9,8 +9,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
+Config open_config() {
+  Config config;
+  config.allows_directors = true;
+  return config;
+}
+
 struct DirectingFromOutside : Directing {
-  DirectingFromOutside() : Directing(Config{.allows_directors = true}) {}
+  DirectingFromOutside() : Directing(open_config()) {}
 };
 
 /// Policies of the command line, and a link that delays what the judge is told by 5 ms, and what it answers.
@@ -18,10 +24,11 @@ struct DirectingByOptions : Directing {
   static Config make_config() {
     const Config::Deadline fixed{{scene::DeadlineAction::hold, 50, 0}, true};
     const Disturbance late{milliseconds(5), {}, 0};
-    return {.allows_directors = true,
-            .deadlines = {{}, {}, fixed, fixed},
-            .deadline_of_others = fixed,
-            .injections = {{}, {}, {late, late}, {}}};
+    Config config = open_config();
+    config.deadlines = {{}, {}, fixed, fixed};
+    config.deadline_of_others = fixed;
+    config.injections = {{}, {}, {late, late}, {}};
+    return config;
   }
   DirectingByOptions() : Directing(make_config()) {}
 };
@@ -95,8 +102,8 @@ TEST_F(DirectingFromOutside, R1_OneThatHasLeftMakesPlaceForAnother) {
 }
 
 TEST_F(DirectingFromOutside, R1_ItsIdIsThatOfNoEntity) {
-  small.layout().entities = {{"robot0"}};
-  Peers others(small, Config{.allows_directors = true});
+  small.layout().entities.emplace_back().id = "robot0";
+  Peers others(small, open_config());
   others.say("r", director("robot0"));
   EXPECT_EQ(others.told("r").refusal().error().code(), v1::Error::BAD_VALUE);
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "directed_run.h"
+#include "wire/fault.h"
 
 namespace ziggurat::network {
 namespace {
@@ -122,9 +123,9 @@ TEST_F(Directing, R5_ContactsAreToldByTheirLinks) {
   hello.mutable_hello()->mutable_subscription()->add_entities("b1");
   hello.mutable_hello()->mutable_subscription()->add_groups(v1::Subscription::CONTACTS);
   peers.say("p", hello);
-  boxes.contacts.push_back({.link = 0});
+  boxes.contacts.emplace_back().link = 0;
   boxes.contacts.push_back({.link = 0, .other = 1, .point = {1, 2, 3}, .normal = {0, 0, 1}, .force = {0, 0, 5}});
-  boxes.contacts.push_back({.link = 1});
+  boxes.contacts.emplace_back().link = 1;
   peers.inboxes.clear();
   publish(5);
   const v1::WorldState state = told().back().world_state();
@@ -148,7 +149,7 @@ TEST_F(Directing, R6_ActsAreInTheOrderOfTheIds) {
 TEST_F(Directing, R7_AWrongDirectionHasNoEffect) {
   begin();
   peers.barrier.directors.check = [](const wire::Direction&) {
-    return wire::Fault{.code = wire::ErrorCode::unknown_entity, .field = "acts[0].push.entity", .message = "No."};
+    return wire::make_fault(wire::ErrorCode::unknown_entity, "acts[0].push.entity", "No.");
   };
   auto wrong = pushes(5, {1, 0, 0});
   wrong.mutable_direction()->add_log()->set_text("not printed");

@@ -221,6 +221,44 @@ TEST(LaterVersions, S13_ACommandThatCrossesAResetIsNotTakenForTheNewTick) {
   EXPECT_TRUE(peers.is_complete());
 }
 
+/// A supervisor that puts the world back again and again is no fault of a controller.
+TEST(LaterVersions, M4_ACommandThatCrossesAResetIsNoBadMessage) {
+  const SmallRun small(1);
+  Peers peers(small);
+  peers.say("p", hello("*", 2));
+  peers.publish(9);
+  std::uint64_t epoch = 0;
+  for (int i = 0; i < 150; ++i, ++epoch) {
+    restart(peers.barrier, {7});
+    if (i % 3 == 0) peers.say("p", command(i == 0 ? 9 : 0, epoch));  // before the next Observation
+    peers.publish(0);
+    if (i % 3 == 1) peers.say("p", command(0, epoch));
+    if (i % 3 == 2) continue;  // behind the next Reset
+    const v1::Error error = last(peers).error();
+    EXPECT_NE(error.severity(), v1::Error::FATAL) << i;
+  }
+  EXPECT_TRUE(peers.barrier.journal.take().notices.empty());
+  peers.say("p", command(0, epoch));
+  EXPECT_TRUE(peers.is_complete());
+  peers.say("p", command(0, epoch));
+  EXPECT_EQ(peers.barrier.journal.take().notices.size(), 1U) << "is told again";
+}
+
+TEST(LaterVersions, M4_NorWithoutEpochs) {
+  const SmallRun small(1);
+  Peers peers(small);
+  peers.say("p", hello("*", 1));
+  for (int i = 0; i < 150; ++i) {
+    peers.publish(9);
+    restart(peers.barrier, {7});
+    peers.publish(0);
+    peers.say("p", Peers::command(9));
+    ASSERT_EQ(last(peers).error().code(), v1::Error::FUTURE_TICK) << i;
+    restart(peers.barrier, {7});
+  }
+  EXPECT_TRUE(peers.barrier.journal.take().notices.empty());
+}
+
 TEST(LaterVersions, S13_ACommandWithoutEpochAnswersTheLastObservation) {
   const SmallRun small(1);
   Peers peers(small);

@@ -123,6 +123,18 @@ class RecordingTest(SceneTest):
         _, err = process.communicate(timeout=60)
         self.assertIn("a.mcap: was removed while it was written, and is lost", err)
 
+    def test_a_file_that_is_shortened_is_told(self):
+        process = self.start("run", "arms.argos", "--ticks", 100, "--real-time=5", "--record", "a.mcap")
+        self.wait_for_size("a.mcap", 1000)
+        os.truncate(self.folder / "a.mcap", 500)
+        _, err = process.communicate(timeout=60)
+        self.assertIn("finished: 100 ticks", err)
+        self.assertRegex(err, r"a\.mcap: was shortened by another program while it was written: \d+ bytes of \d+ are lost; "
+                              r"the recording ends before tick \d+, the run goes on")
+        self.assertRegex(err, r"\n  not recorded in whole: .*a\.mcap: was shortened")
+        self.assertEqual(process.returncode, FAULT)
+        self.assertEqual((self.folder / "a.mcap").stat().st_size, 500)
+
     def wait_for_size(self, name, size):
         path = self.folder / name
         end = time.monotonic() + 60

@@ -221,6 +221,16 @@ class Refusals(SweepTest):
         self.assert_is_sentence(outcome, "has files that are no sweep's")
         self.assertEqual([path.name for path in self.out.iterdir()], ["mine"])
 
+    def test_a_folder_that_is_moved_away_is_named(self):
+        process = self.start("sweep", self.scene, "--seeds", "1..500", "--ticks", "50", "--out", self.out)
+        while not (self.out / "runs").exists() and process.poll() is None:
+            time.sleep(0.01)
+        self.out.rename(self.folder / "elsewhere")
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, FAULT, err)
+        self.assertRegex(err, f"'{self.out}' was removed, moved or replaced while the sweep wrote to it.*sweep resume")
+        self.assertFalse(self.out.exists(), "is made anew")
+
     def test_a_resumed_sweep_must_end_too(self):
         self.sweep(self.scene, "--seeds", "1", "--duration", "0", "--timeout", "0.5", code=CONTROLLER_FAILED)
         outcome = self.sweep("resume", self.out, "--retry-failed", out=False, code=FAULT)

@@ -198,9 +198,11 @@ void tell_view_too_large(Barrier& barrier, const Session& session) {
 }
 
 void answer_bad_direction(Barrier& barrier, Session& session, wire::Fault fault) {
-  const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
-  if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
-  --session.turn.late_commands;  // it was told of its miss already: no bad message
+  if (!crosses_restart(session.turn, fault.code)) {
+    const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
+    if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
+    --session.turn.late_commands;  // it was told of its miss already: no bad message
+  }
   fault.tick = tick_of(barrier);
   barrier.outbox.error(fault);
   send(barrier, session);
@@ -348,7 +350,7 @@ bool handle_direction(Barrier& barrier, Session& session, bool is_collecting) {
     return false;
   }
   session.contact.faults = 0;
-  session.turn.late_commands = 0;
+  session.turn.late_commands = session.turn.crossing = 0;
   barrier.directors.deadlines.forgive(*session.director);
   barrier.directors.metrics.set(numbered(direction.metrics, *session.director));
   keep_words(barrier, *session.director, std::move(direction.log));

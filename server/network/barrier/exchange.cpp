@@ -43,10 +43,12 @@ void keep_log(Barrier& barrier, const Session& session) {
 
 /// Answers a Command that can't be taken.
 void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
-  const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
-  if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
-  --session.turn.late_commands;  // it was told of its miss already: no bad message
-  measure_late_answer(barrier, session, barrier.inbox.command_tick());
+  if (!crosses_restart(session.turn, fault.code)) {
+    const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
+    if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
+    --session.turn.late_commands;  // it was told of its miss already: no bad message
+    measure_late_answer(barrier, session, barrier.inbox.command_tick());
+  }
   fault.tick = tick_of(barrier);
   barrier.outbox.error(fault);
   send(barrier, session);
@@ -137,7 +139,7 @@ bool handle_command(Barrier& barrier, Session& session, world::Commands* command
     return false;
   }
   session.contact.faults = 0;
-  session.turn.late_commands = 0;
+  session.turn.late_commands = session.turn.crossing = 0;
   if (session.turn.patience) {
     for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
       if (!session.roster.taken[i]) barrier.deadlines.forgive(session.roster.robots[i]);

@@ -137,11 +137,10 @@ void restart(Barrier& barrier, wire::Restart restart) {
   if (restart.snapshot) barrier.begin = {restart.snapshot->tick, *restart.snapshot->commands};
   barrier.deadlines.reset();
   barrier.sessions.for_each([&](Session& session) {
-    barrier.gate.settle(session.turn, barrier.now);
+    barrier.gate.give_up(session.turn, barrier.now);
     const bool has_ticks =
         session.state == SessionState::stepping || session.state == SessionState::paused;
     if (!has_ticks || !session.has_ticks()) return;
-    session.turn.late_commands = 0;
     restart.epoch = epoch_for(barrier, session);
     barrier.outbox.restart(session.roster, restart);
     if (send(barrier, session) == Delivery::unreachable) {

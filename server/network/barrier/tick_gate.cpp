@@ -36,6 +36,19 @@ void TickGate::miss(Turn& turn, Time now) {
   ++turn.late_commands;
 }
 
+void TickGate::give_up(Turn& turn, Time now) {
+  turn.crossing += turn.late_commands + (turn.owes ? 1 : 0);
+  turn.late_commands = 0;
+  settle(turn, now);
+}
+
+bool crosses_restart(Turn& turn, ErrorCode code) {
+  const bool is_of_tick = code == ErrorCode::stale_tick || code == ErrorCode::future_tick || code == ErrorCode::duplicate_tick;
+  if (!is_of_tick || turn.crossing == 0) return false;
+  --turn.crossing;
+  return true;
+}
+
 std::chrono::nanoseconds TickGate::waited(const Turn& turn, Time now) const {
   if (turn.tick != tick_) return {};
   return turn.owes ? now - turn.owes_since : turn.waited;

@@ -29,6 +29,8 @@ class TickGate {
   void settle(Turn& turn, Time now);
   /// It owes nothing any more because its deadline has passed: the tick goes on without it.
   void miss(Turn& turn, Time now);
+  /// It owes nothing any more because the world is put back.
+  void give_up(Turn& turn, Time now);
   /// How long the tick in hand waits, or waited, for this answer.
   std::chrono::nanoseconds waited(const Turn& turn, Time now) const;
   /// The tick has gone on without an answer for this session.
@@ -61,6 +63,10 @@ class TickGate {
   bool holds_[3] = {};     // by Hold
   bool is_standing_ = false;
 };
+
+/// Whether an answer that can't be taken may be one that was on its way when the world was put back. Each is so once.
+/// @param code  of its fault
+bool crosses_restart(Turn& turn, wire::ErrorCode code);
 
 /// Why a Command of an epoch does not answer the last observation of a session, if it does not.
 /// @param epoch  none: the Command does not say

@@ -28,6 +28,7 @@ struct Turn {
   bool has_missed = false;     ///< nor will it be: the tick goes on without the answer
   bool is_repeated = false;    ///< that observation was sent before, to it or another session
   unsigned late_commands = 0;  ///< for ticks that it missed, that may still arrive
+  unsigned crossing = 0;       ///< likewise, for ticks of a world that was put back since
   Time owes_since;             ///< when that observation was sent
   std::chrono::nanoseconds waited{0};         ///< for the answer, which is there or was missed
   std::chrono::nanoseconds waited_before{0};  ///< by the same tick, for those who had its robots before
@@ -39,9 +40,9 @@ struct Turn {
   /// Its deadline; none: the tick waits for it forever.
   std::optional<std::chrono::milliseconds> patience;
 
-  /// Until when the tick waits for the answer. @param patience  as above
-  Time deadline(std::chrono::milliseconds patience) const {
-    return owes_since + time_left(patience, waited_before);
+  /// Until when the tick waits for the answer. @param limit  patience, if it has one
+  Time deadline(std::chrono::milliseconds limit) const {
+    return owes_since + time_left(limit, waited_before);
   }
 };
 

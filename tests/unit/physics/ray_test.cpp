@@ -140,6 +140,31 @@ TEST(Ray, HitsMovingBodiesAtTheirPresentPose) {
   }
 }
 
+/// Their volumes are infinite: Bullet's tree would write to memory that is not its own.
+TEST(Ray, LeavesOutBodiesThatAreFartherThanAnyRay) {
+  std::vector<scene::Entity> entities{solid(scene::Sphere{0.1}, {{1, 0, -0.1}, {1, 0, 0, 0}})};
+  for (int i = 0; i < 20; ++i) {
+    const double far = std::pow(10.0, 31 + 14 * i) * (i % 2 == 0 ? 1 : -1);
+    entities.push_back(solid(scene::Sphere{0.1}, {{far, -far, far}, {1, 0, 0, 0}}));
+  }
+  EXPECT_NEAR(*distance(rays_among(entities), {0, 0, 0}, {100, 0, 0}), 0.9, 1e-9);
+}
+
+TEST(Ray, ABodyThatGoesFarAndComesBackIsHit) {
+  Rays rays(scene::Physics{});
+  rays.add(solid(scene::Sphere{0.1}, {}));
+  world::State state;
+  state.links.resize(1);
+  for (const double x : {1.0, 1e200, 2.0}) {
+    state.links[0].pose.position = {x, 0, -0.1};
+    rays.update(state);
+    const auto hit = distance(rays, {0, 0, 0}, {100, 0, 0});
+    ASSERT_EQ(hit.has_value(), x < 100);
+    if (!hit) continue;
+    EXPECT_NEAR(*hit, x - 0.1, 1e-9);
+  }
+}
+
 TEST(Ray, FindsTheClosestOfManyLikeALinearSearch) {
   std::vector<scene::Entity> entities;
   for (int i = 0; i < 300; ++i) {

@@ -223,6 +223,30 @@ TEST(Recorder, AFullDiskHoldsUpNothing) {
   EXPECT_FALSE(run.recorder.take_failure()) << "once";
 }
 
+TEST(Recorder, AFileThatIsShortenedOrRemovedIsToldWhileTheRunGoesOn) {
+  const auto failure_after = [](int (*harm)(const char*)) -> std::string {
+    const File file;
+    Recorded run(file.path);
+    struct stat status {};
+    const auto grows_beyond = [&](off_t size) {
+      for (int i = 0; i < 5000; ++i) {
+        run.publish();
+        run.step(1);
+        if (::stat(file.path.c_str(), &status) == 0 && status.st_size > size) return true;
+      }
+      return false;
+    };
+    EXPECT_TRUE(grows_beyond(1 << 17));
+    harm(file.path.c_str());
+    grows_beyond(1 << 28);
+    return run.recorder.take_failure().value_or("");
+  };
+  const std::string shortened = failure_after([](const char* path) { return ::truncate(path, 100); });
+  EXPECT_NE(shortened.find("was shortened by another program while it was written"), std::string::npos) << shortened;
+  const std::string removed = failure_after([](const char* path) { return ::unlink(path); });
+  EXPECT_NE(removed.find("was removed while it was written, and is lost"), std::string::npos) << removed;
+}
+
 /// A disk that takes what its pipe holds, and more only when it is read.
 struct Pipe {
   Pipe() {

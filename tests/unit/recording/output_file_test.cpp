@@ -66,6 +66,22 @@ TEST(OutputFile, ReportsThatItWasRemoved) {
   EXPECT_NO_THROW(anonymous.close()) << "had no name before";
 }
 
+TEST(OutputFile, ReportsThatItWasShortened) {
+  const auto path = scratch("file");
+  OutputFile file(path);
+  file.buffer().append(std::string_view("a line\n"));
+  file.flush();
+  ASSERT_EQ(::truncate(path.c_str(), 2), 0);
+  file.buffer().append(std::string_view("another line\n"));
+  try {
+    file.close();
+    ADD_FAILURE() << "was not told";
+  } catch (const WriteError& error) {
+    EXPECT_EQ(std::string(error.what()), path + ": was shortened by another program while it was written: 5 bytes of 20 are lost");
+  }
+  EXPECT_EQ(text_of(path), "a another line\n") << "without a hole";
+}
+
 TEST(OutputFile, ReportsWhyItCannotBeCreated) {
   try {
     OutputFile file("/no/such/folder/file.csv");

@@ -118,6 +118,33 @@ TEST_F(LedgerTest, TheViewHasMetricsThatDifferInCase) {
 
 static_assert(!std::is_move_constructible_v<Ledger> && !std::is_copy_constructible_v<Ledger>);
 
+TEST_F(LedgerTest, AFileOrFolderThatIsGoneIsNamed) {
+  const auto complaint = [](const auto& action) -> std::string {
+    try {
+      action();
+    } catch (const LedgerError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto folder = folder_ / "results";
+  std::filesystem::create_directories(folder / "tasks");
+  Ledger ledger((folder / "tasks" / "0001.sqlite").string());
+  ledger.write(full(), experiment_);
+  EXPECT_EQ(complaint([&] { ledger.check_place(); }), "");
+  const auto moved = folder_ / "elsewhere";
+  std::filesystem::rename(folder, moved);
+  for (const std::string& text : {complaint([&] { ledger.write(full(), experiment_); }), complaint([&] { ledger.check_place(); })}) {
+    EXPECT_TRUE(text.starts_with("'" + folder.string() + "' was removed, moved or replaced")) << text;
+    EXPECT_NE(text.find("ziggurat sweep resume"), std::string::npos) << text;
+  }
+  std::filesystem::rename(moved, folder);
+  EXPECT_EQ(complaint([&] { ledger.write(full(), experiment_); }), "");
+  std::filesystem::remove(folder / "tasks" / "0001.sqlite");
+  const std::string text = complaint([&] { ledger.check_place(); });
+  EXPECT_TRUE(text.starts_with("'" + (folder / "tasks" / "0001.sqlite").string() + "' was")) << text;
+}
+
 TEST_F(LedgerTest, AFileThatIsNoneIsNamed) {
   std::filesystem::create_directory(path_);
   try {

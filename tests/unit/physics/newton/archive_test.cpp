@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <string>
 
@@ -88,6 +89,29 @@ TEST(Archive, RefusesPairsThatNoWorldHas) {
   has(error(~0U, slab), "is beyond its list");
   EXPECT_EQ(scene.error_of(scene.bytes), "") << "it can still be read into";
   scene.world.step();
+}
+
+/// A quaternion of length 1e-300 is finite, and the next substep would not be.
+TEST(Archive, RefusesTurnsThatAreNoRotations) {
+  Scene scene;
+  int turns = 0, trees = 0;
+  for (std::size_t i = 0; i + 1 < scene.places.size(); ++i) {
+    const auto& [offset, path] = scene.places[i];
+    const bool has_place = scene.places[i + 1].offset > offset;  // what stands has none
+    const bool is_turn = path.ends_with("/turn"), is_tree = path.ends_with("/q") && has_place;
+    if (!is_turn && !is_tree) continue;
+    std::array<double, 4> none{1e-300, 1e-300, 1e-300, 1e-300};
+    std::vector<std::byte> changed = scene.bytes;
+    const std::size_t place = offset + (is_tree ? 3 * sizeof(double) : 0);  // behind the root's position
+    ASSERT_LE(place + sizeof none, changed.size());
+    std::memcpy(changed.data() + place, none.data(), sizeof none);
+    const std::string error = scene.error_of(changed);
+    EXPECT_NE(error.find("rotation"), std::string::npos) << path << ": " << error;
+    ++(is_turn ? turns : trees);
+  }
+  EXPECT_EQ(turns, 6);
+  EXPECT_EQ(trees, 3);
+  EXPECT_EQ(scene.error_of(scene.bytes), "");
 }
 
 }  // namespace
