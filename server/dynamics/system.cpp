@@ -55,6 +55,9 @@ void keep_momentum(Tree& tree, Workspace& work, const Vector3& origin, const dou
   move(tree);
 }
 
+/// Whether a servo did not give all that it has in the last substep.
+bool is_obeyed(const Servo& servo) { return servo.lower < servo.impulse && servo.impulse < servo.upper; }
+
 /// Moves a tree of the island. What nothing fixed rubs keeps its momentum, and so does what would gain energy.
 void displace(const Problem& problem, std::size_t i, std::span<const double> by, bool drifts,
               const Excesses& excesses, Workspace& work) {
@@ -246,16 +249,6 @@ void System::add(const Outcome& outcome) {
   report_.miss = std::max(report_.miss, outcome.miss);
 }
 
-/// Which trees of an island servos hold: those that did not give all that they have in the last substep.
-void System::note_driven(int first_tree, int last_tree, int first_item, int last_item) {
-  driven_.assign(last_tree - first_tree, 0);
-  for (int i = first_item; i < last_item; ++i) {
-    if (item_order_[i].kind != servo_item) continue;
-    const Servo& servo = servos_[item_order_[i].index];
-    if (servo.lower < servo.impulse && servo.impulse < servo.upper) driven_[place_[servo.tree]] = 1;
-  }
-}
-
 /// The problem of the trees and items of one island.
 void System::gather_island(int first_tree, int last_tree, int first_item, int last_item) {
   problem_.clear();
@@ -263,7 +256,11 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
   problem_.allowed_overlap = allowed_overlap;
   problem_.softness = softness;
   problem_.several = last_tree - first_tree > 1;
-  note_driven(first_tree, last_tree, first_item, last_item);
+  driven_.assign(last_tree - first_tree, 0);
+  for (int i = first_item; i < last_item; ++i) {
+    const auto& [island, kind, index] = item_order_[i];
+    if (kind == servo_item && is_obeyed(servos_[index])) driven_[place_[servos_[index].tree]] = 1;
+  }
   for (int i = first_tree; i < last_tree; ++i) {
     problem_.add(trees[tree_order_[i]], work_, driven_[i - first_tree]);
   }

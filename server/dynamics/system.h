@@ -109,7 +109,6 @@ class System {
   void gather(std::span<const Contact> contacts, std::span<const Servo> servos,
               std::span<const Limit> limits);
   void fetch_after(std::size_t island) const;
-  void note_driven(int first_tree, int last_tree, int first_item, int last_item);
   void gather_island(int first_tree, int last_tree, int first_item, int last_item);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
   bool fly_island(int first_tree, int last_tree, int first_item, int last_item);

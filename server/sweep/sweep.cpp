@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <system_error>
 
 #include "text/duration.h"
 
@@ -46,7 +47,6 @@ Sweep::Counts Sweep::execute(const std::vector<std::size_t>& runs) {
   waiting_.assign(runs.begin(), runs.end());
   total_ = runs.size();
   while (!waiting_.empty() || !jobs_.empty()) {
-    ledger_.check_place();  // a run would make its folders anew
     start_jobs();
     pollfd news{signals_.descriptor(), POLLIN, 0};
     ::poll(&news, 1, wait_ms);
@@ -68,8 +68,12 @@ void Sweep::start_jobs() {
   while (jobs_.size() < settings_.jobs && !waiting_.empty()) {
     const std::size_t run = waiting_.front();
     waiting_.pop_front();
-    jobs_.push_back(
-        std::make_unique<Job>(experiment_, folder_, settings_, run, signals_.guardian()));
+    try {
+      jobs_.push_back(std::make_unique<Job>(experiment_, folder_, settings_, run, signals_.guardian()));
+    } catch (const std::system_error&) {
+      ledger_.check_place();  // which says more, if its folder is gone
+      throw;
+    }
   }
 }
 

@@ -141,18 +141,14 @@ def _(connection, message):
     return None
 
 
-@said("late-gets-nothing")
-def _(connection, message):
-    if message.HasField("command"):
-        connection.notes["answered"] = True
-
-
 @told("late-gets-nothing")
 def _(connection, message):
-    """A session that begins after another has answered never gets its first Observation."""
+    """A session that begins after another has got an Observation never gets its first one."""
+    if message.HasField("welcome"):
+        connection.notes["late"] = any(other.notes.get("begun") for other in connection.connections)
     if message.HasField("observation") and not connection.notes.get("begun"):
         connection.notes["begun"] = True
-        return [] if any(other.notes.get("answered") for other in connection.connections) else None
+        return [] if connection.notes.get("late") else None
     return None
 
 
