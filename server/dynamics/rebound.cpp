@@ -9,7 +9,7 @@ namespace ziggurat::dynamics {
 namespace {
 
 constexpr double rounding = 1e-9;         // of the energy
-constexpr double more_than_moved = 1.02;  // the square of what a body that struck may be moved by
+constexpr double more_than_moved = 16;    // the square of how much farther than its speeds say it may be moved
 
 /// What pushes the trees, without gravity, does in the substep, of which v is the solution.
 double work_of_pushes(const Problem& problem, Workspace& work) {

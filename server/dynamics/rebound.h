@@ -31,7 +31,7 @@ void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& o
 bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebound,
                     const std::vector<double>& step);
 
-/// Whether what moves rebounds to where they should be moves a tree by more than it could have moved: points that strike
+/// Whether what moves rebounds to where they should be moves a tree by much more than it could have moved: points that strike
 /// at different times may ask for what only a large turn satisfies.
 /// @param problem  that of the displacement, solved, its trees with the velocities that they will have
 bool moves_too_far(const Problem& problem, const Rebound& rebound);
