@@ -50,7 +50,8 @@ async function connect({ host, token }) {
   client.on("advertiseServices", (list) => list.forEach((s) => viewer.services.set(s.name, s)));
   client.on("status", (status) => viewer.statuses.push(status.message));
   viewer.info = await once(client, "serverInfo");
-  await until(() => viewer.channels.size > 0);
+  // What may steer is told the services too, in a message of its own.
+  await until(() => viewer.channels.size > 0 && (!token || viewer.services.size > 0), "channels and services");
   return viewer;
 }
 
@@ -92,7 +93,7 @@ function call(viewer, name, request = {}) {
   ]);
   const data = new TextEncoder().encode(JSON.stringify(request));
   viewer.client.sendServiceCallRequest({
-    serviceId: service?.id ?? 1, callId, encoding: "json",
+    serviceId: service?.id ?? 1 /* not offered: of /pause */, callId, encoding: "json",
     data: new DataView(data.buffer, data.byteOffset, data.byteLength),
   });
   return answer;
