@@ -198,10 +198,8 @@ void tell_view_too_large(Barrier& barrier, const Session& session) {
 }
 
 void answer_bad_direction(Barrier& barrier, Session& session, wire::Fault fault) {
-  if (!crosses_restart(session.turn, fault.code)) {
-    const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
-    if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
-    --session.turn.late_commands;  // it was told of its miss already: no bad message
+  if (excuse_of(session.turn, fault.code) == Excuse::none) {
+    return answer_fault(barrier, session.connection, &session, std::move(fault));
   }
   fault.tick = tick_of(barrier);
   barrier.outbox.error(fault);

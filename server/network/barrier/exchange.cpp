@@ -43,12 +43,9 @@ void keep_log(Barrier& barrier, const Session& session) {
 
 /// Answers a Command that can't be taken.
 void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
-  if (!crosses_restart(session.turn, fault.code)) {
-    const bool is_late = fault.code == ErrorCode::stale_tick && session.turn.late_commands > 0;
-    if (!is_late) return answer_fault(barrier, session.connection, &session, std::move(fault));
-    --session.turn.late_commands;  // it was told of its miss already: no bad message
-    measure_late_answer(barrier, session, barrier.inbox.command_tick());
-  }
+  const Excuse excuse = excuse_of(session.turn, fault.code);
+  if (excuse == Excuse::none) return answer_fault(barrier, session.connection, &session, std::move(fault));
+  if (excuse == Excuse::missed) measure_late_answer(barrier, session, barrier.inbox.command_tick());
   fault.tick = tick_of(barrier);
   barrier.outbox.error(fault);
   send(barrier, session);

@@ -42,11 +42,17 @@ void TickGate::give_up(Turn& turn, Time now) {
   settle(turn, now);
 }
 
-bool crosses_restart(Turn& turn, ErrorCode code) {
+Excuse excuse_of(Turn& turn, ErrorCode code) {
   const bool is_of_tick = code == ErrorCode::stale_tick || code == ErrorCode::future_tick || code == ErrorCode::duplicate_tick;
-  if (!is_of_tick || turn.crossing == 0) return false;
-  --turn.crossing;
-  return true;
+  if (is_of_tick && turn.crossing > 0) {
+    --turn.crossing;
+    return Excuse::crossed;
+  }
+  if (code == ErrorCode::stale_tick && turn.late_commands > 0) {
+    --turn.late_commands;
+    return Excuse::missed;
+  }
+  return Excuse::none;
 }
 
 std::chrono::nanoseconds TickGate::waited(const Turn& turn, Time now) const {

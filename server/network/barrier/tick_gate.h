@@ -64,9 +64,14 @@ class TickGate {
   bool is_standing_ = false;
 };
 
-/// Whether an answer that can't be taken may be one that was on its way when the world was put back. Each is so once.
-/// @param code  of its fault
-bool crosses_restart(Turn& turn, wire::ErrorCode code);
+/// Why an answer that can't be taken is no bad message.
+enum class Excuse {
+  none,
+  missed,   ///< its session was told already that it was too late
+  crossed,  ///< it was on its way when the world was put back
+};
+/// Each answer has an excuse once. @param code  of its fault
+Excuse excuse_of(Turn& turn, wire::ErrorCode code);
 
 /// Why a Command of an epoch does not answer the last observation of a session, if it does not.
 /// @param epoch  none: the Command does not say
