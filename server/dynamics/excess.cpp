@@ -87,6 +87,15 @@ Excess::Kind kind_of(const Problem& problem, std::size_t i, std::span<const doub
   return bent ? Excess::Kind::bends : Excess::Kind::none;
 }
 
+/// What turning alone adds to a momentum that a problem is solved with; work.scratch must have the forces from outside.
+/// @param momentum  of the dof, see momentum_after();  @param after  velocity of the dof that was found
+double added(const Tree& tree, const Workspace& work, const double* mass, double momentum, double after,
+             double length, int dof) {
+  double before = 0;
+  for (int k = 0; k < tree.dofs; ++k) before += mass[dof * tree.dofs + k] * tree.v[k];
+  return momentum - before - length * (work.scratch[dof] + tree.damping[dof] * after);
+}
+
 /// The excess, less the kinetic energy that the tree has at the end; at its state of the beginning.
 /// @param mass      its matrix, dofs x dofs
 /// @param momentum  that it was solved with, see momentum_after()
@@ -101,20 +110,20 @@ double excess_before(const Tree& tree, Workspace& work, const double* mass,
   external_forces(tree, work, work.scratch, true, true);
   double sum = 0;
   for (int i = 0; i < tree.dofs; ++i) {
-    double before = 0, energy = 0;
-    for (int j = 0; j < tree.dofs; ++j) {
-      before += mass[i * tree.dofs + j] * tree.v[j];
-      energy += mass[i * tree.dofs + j] * after[j] / 2;
-    }
-    const double added = momentum[i] - before - length * work.scratch[i] -
-                         length * tree.damping[i] * after[i];
-    sum += added * (tree.v[i] + after[i]) / 2 - energy * after[i];
+    double energy = 0;
+    for (int k = 0; k < tree.dofs; ++k) energy += mass[i * tree.dofs + k] * after[k] / 2;
+    const double of_turning = added(tree, work, mass, momentum[i], after[i], length, i);
+    sum += of_turning * (tree.v[i] + after[i]) / 2 - energy * after[i];
   }
   return sum;
 }
 
 bool is_free_joint(const Tree& tree, std::span<const unsigned char> held, int dof) {
   return dof >= tree.dof_count[0] && held[dof] == Excesses::free;
+}
+
+bool is_driven(std::span<const unsigned char> held) {
+  return std::find(held.begin(), held.end(), Excesses::driven) != held.end();
 }
 
 bool has_free_joint(const Tree& tree, std::span<const unsigned char> held) {
@@ -164,10 +173,7 @@ double excess_of_free(Tree& tree, Workspace& work, const double* mass, std::span
   double sum = -square_of_free(tree, held, mass, after) / 2;
   for (int i = 0; i < tree.dofs; ++i) {
     if (!is_free_joint(tree, held, i)) continue;
-    double before = 0;
-    for (int k = 0; k < tree.dofs; ++k) before += mass[i * tree.dofs + k] * tree.v[k];
-    const double all = momentum[i] - before - length * (work.scratch[i] + tree.damping[i] * after[i]);
-    const double own = all + length * memory.bias_of_held[i];
+    const double own = added(tree, work, mass, momentum[i], after[i], length, i) + length * memory.bias_of_held[i];
     const double of_both = own + length * memory.bias_of_free[i];
     sum += own * (tree.v[i] + after[i]) / 2 - of_both * tree.v[i] / 2;
   }
@@ -300,9 +306,8 @@ void note_excesses(const Problem& problem, Workspace& work, Excesses& out) {
     const auto after = std::span(problem.velocity).subspan(first, dofs);
     const auto momentum = std::span(problem.momentum).subspan(first, dofs);
     const auto held = std::span(out.held).subspan(first, dofs);
-    const bool is_driven = std::find(held.begin(), held.end(), Excesses::driven) != held.end();
-    excess.of_free_joints = is_driven && has_free_joint(tree, held);
-    if (is_driven && !excess.of_free_joints && excess.kind == Excess::Kind::bends) {
+    excess.of_free_joints = is_driven(held) && has_free_joint(tree, held);
+    if (is_driven(held) && !excess.of_free_joints && excess.kind == Excess::Kind::bends) {
       excess.kind = Excess::Kind::none;
       continue;
     }
@@ -327,8 +332,7 @@ void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<co
   if (excess.kind == Excess::Kind::none) return;
   if (excess.of_free_joints) return undo_excess_of_free(tree, work, held, excess.before);
   double sum = excess.before + kinetic_energy(tree);
-  const bool is_driven = std::find(held.begin(), held.end(), Excesses::driven) != held.end();
-  if (is_driven && sum < wild * kinetic_energy(tree)) return;
+  if (is_driven(held) && sum < wild * kinetic_energy(tree)) return;
   if (tree.single) {
     if (grounded) give_back_turning(tree, sum);
   } else {

@@ -13,7 +13,7 @@ constexpr double largest_turn = 0.1;  // of a Runge-Kutta step of a single body 
 constexpr int most_steps = 4000;      // of one substep
 constexpr double tolerance = 1e-7;    // of a Dormand-Prince step, relative
 constexpr double slow = 3e-3;         // relative change of speed that bias forces may make
-constexpr double slow_driven = 0.045;  // its square, where servos hold a tree, over a second [1/s]
+constexpr double slow_driven = 0.045; // its square, where servos hold a tree, over a second [1/s]
 
 using Quaternion4 = Eigen::Vector4d;  // w x y z
 

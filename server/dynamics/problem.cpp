@@ -49,7 +49,6 @@ void Problem::clear() {
   mass_offset.clear();
   drift.clear();
   bending.clear();
-  driven.clear();
   blocks.clear();
   jacobian.clear();
   momentum.clear();
@@ -85,7 +84,6 @@ void Problem::add(Tree& tree, Workspace& work, bool is_driven) {
   mass.insert(mass.end(), work.mass.begin(), work.mass.end());
   drift.push_back(work.drift);
   bending.push_back(work.bending);
-  driven.push_back(is_driven);
   velocity.insert(velocity.end(), tree.v.begin(), tree.v.end());
 }
 

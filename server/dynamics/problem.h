@@ -58,7 +58,6 @@ struct Problem {
   std::vector<int> mass_offset;              ///< of each tree in `mass`
   std::vector<std::array<double, 6>> drift;  ///< of each tree, see momentum_after()
   std::vector<double> bending;               ///< of each tree, see Workspace
-  std::vector<unsigned char> driven;         ///< of each tree: whether servos hold some of its coordinates
   std::vector<Block> blocks;
   std::vector<double> jacobian;
   std::vector<double> momentum;  ///< p

@@ -8,8 +8,8 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double rounding = 1e-9;         // of the energy
-constexpr double more_than_moved = 16;    // the square of how much farther than its speeds say it may be moved
+constexpr double rounding = 1e-9;       // of the energy
+constexpr double more_than_moved = 1.02;  // the square of how much farther than its speeds say it may be moved
 
 /// What pushes the trees, without gravity, does in the substep, of which v is the solution.
 double work_of_pushes(const Problem& problem, Workspace& work) {
@@ -179,7 +179,8 @@ bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebo
   return lift > 0 && now + lift - rebound.most_energy > rounding * (std::abs(now) + lift);
 }
 
-bool moves_too_far(const Problem& problem, const Rebound& rebound) {
+void bound_way(Problem& problem, const Rebound& rebound) {
+  double share = 1;
   double depth = 0;  // what overlaps is moved apart by up to that
   for (const Block& block : problem.blocks) depth = std::max(depth, -block.gap);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
@@ -194,11 +195,12 @@ bool moves_too_far(const Problem& problem, const Rebound& rebound) {
         change += (tree.v[j] - start[j]) * (tree.v[j] - start[j]);
       }
       // Before it struck, for a part of the substep, it had the other velocity.
-      const double most = more_than_moved * problem.length * problem.length * change;
-      if (square > most + 4 * depth * depth / square_of_lever(problem, i, k)) return true;
+      const double most = more_than_moved * problem.length * problem.length * change +
+                          4 * depth * depth / square_of_lever(problem, i, k);
+      if (square > most) share = std::min(share, std::sqrt(most / square));
     }
   }
-  return false;
+  for (double& way : problem.velocity) way *= share;
 }
 
 void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound) {

@@ -31,10 +31,10 @@ void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& o
 bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebound,
                     const std::vector<double>& step);
 
-/// Whether what moves rebounds to where they should be moves a tree by much more than it could have moved: points that strike
-/// at different times may ask for what only a large turn satisfies.
+/// Shortens what moves rebounds to where they should be, until it moves nothing by more than it could have moved: points
+/// that strike at different times may ask for what only a large turn satisfies.
 /// @param problem  that of the displacement, solved, its trees with the velocities that they will have
-bool moves_too_far(const Problem& problem, const Rebound& rebound);
+void bound_way(Problem& problem, const Rebound& rebound);
 
 /// Takes what the rebounds gained all the same, at the substep's end: where bodies turn far, or what undoes overlaps
 /// lifts them. Needs move(), and leaves the trees moved.

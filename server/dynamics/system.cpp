@@ -310,9 +310,11 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       });
   if (problem_.turn_into_displacement()) {
     solver_.solve_displacement(problem_);
-    if (rebounding && (lifts_too_much(problem_, work_, rebound_, step_) || moves_too_far(problem_, rebound_))) {
+    if (rebounding && lifts_too_much(problem_, work_, rebound_, step_)) {
       problem_.leave_rebounds();
       solver_.solve_displacement(problem_);
+    } else if (rebounding) {
+      bound_way(problem_, rebound_);
     }
     for (std::size_t i = 0; i < step_.size(); ++i) step_[i] += problem_.velocity[i];
     add_lifts(problem_, work_, excesses_);
