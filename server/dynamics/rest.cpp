@@ -95,6 +95,10 @@ void System::push(int tree, int link, const Wrench& wrench) {
 
 void System::forget_pushes() {
   each_that_takes_part([&](int tree) {
+    if (watch_[tree] & waits) {
+      watch_[tree] &= static_cast<unsigned char>(~waits);
+      return;
+    }
     if (!(watch_[tree] & pushed)) return;
     watch_[tree] &= static_cast<unsigned char>(~pushed);
     auto& external = trees[tree].external;

@@ -184,6 +184,8 @@ Report System::step(double length, std::span<Contact> contacts, std::span<Servo>
   limits_ = limits;
   chosen_ = chosen;
   report_ = {};
+  left.islands.clear();
+  left.trees.clear();
   wake_disturbed(length, contacts, servos);
   find_awake();
   report_.awake = static_cast<int>(awake_.size());
@@ -284,6 +286,17 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   gather_island(first_tree, last_tree, first_item, last_item);
   problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
+  if (most_parts > 1) {
+    const int parts = parts_for_tension(problem_, contacts_, work_, tension_);
+    if (parts > 1) {
+      const auto first = tree_order_.begin() + first_tree, last = tree_order_.begin() + last_tree;
+      std::for_each(first, last, [&](int tree) { watch_[tree] |= Watch::waits; });
+      left.islands.push_back({std::min(parts, most_parts), left.trees.size(), left.trees.size() + (last - first)});
+      left.trees.insert(left.trees.end(), first, last);
+      report_.not_converged += parts > most_parts;
+      return;
+    }
+  }
   add(outcome);
   const bool rebounding = rebounds(problem_);
   if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);

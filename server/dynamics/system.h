@@ -9,6 +9,7 @@
 #include "dynamics/excess.h"
 #include "dynamics/newton.h"
 #include "dynamics/rebound.h"
+#include "dynamics/tension.h"
 
 namespace ziggurat::dynamics {
 
@@ -22,6 +23,16 @@ struct Report {
   int most_sweeps = 0;      ///< over the contacts of an island
   double miss = 0;          ///< worst violation of the contact law [m/s] or [rad/s]
   int awake = 0;            ///< trees that moved
+};
+
+/// Islands that a step left as they were, because their links are pulled too hard for it.
+struct LeftIslands {
+  struct Island {
+    int parts = 0;                    ///< into which the step should be divided for it
+    std::size_t first = 0, last = 0;  ///< in `trees`
+  };
+  std::vector<Island> islands;
+  std::vector<int> trees;  ///< ascending in each island
 };
 
 /// What makes an island sleep. It must touch the world, and all its coordinates must stay this slow
@@ -47,6 +58,9 @@ class System {
   double softness = usual_softness;
   static constexpr double usual_softness = 5e-5;
   double allowed_overlap = 1e-6;  ///< it may remain, because rounding must not move bodies [m]
+  /// Into how many parts step() may ask to divide itself for an island, see tension.h; it leaves that as it is. 1: it may not.
+  int most_parts = 1;
+  LeftIslands left;    ///< by the last step()
 
   /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and
   /// are ignored, until something wakes its island: a contact with a tree that is awake and comes
@@ -128,8 +142,8 @@ class System {
   std::vector<int>
       next_;  // of each tree: the next in the ring of those that sleep with it; -1: awake
   // Of each tree: whether more than being touched may wake it. It is commanded, was pushed when it
-  // fell asleep, or is pushed now.
-  enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4 };
+  // fell asleep, or is pushed now. And, within a step, whether that left it as it was.
+  enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4, waits = 8 };
   std::vector<unsigned char> watch_;
   std::vector<int> awake_;
   double length_ = 0;
@@ -147,6 +161,7 @@ class System {
   std::vector<double> kept_, step_;
   Excesses excesses_;
   Rebound rebound_;
+  Tension tension_;
   Workspace work_;
   Problem problem_;
   Solver solver_;

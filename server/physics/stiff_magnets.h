@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "magnetism/field.h"
+#include "math/archive.h"
 
 namespace ziggurat::physics {
 

@@ -14,6 +14,9 @@ namespace {
 /// 3e-4 of the bond of two magnets of 10 mm.
 constexpr double overlap_of_magnets = 1e-7;
 
+/// Into how many a substep may be divided for what is pulled too hard.
+constexpr int most_parts = 200;
+
 /// What the dialect takes where a scene says nothing is for its own clock.
 void forget_usual_damping(Body& body, const scene::Physics& physics) {
   if (physics.clock != scene::Clock::nominal) return;
@@ -58,11 +61,47 @@ void each_of(std::vector<Item>& items, const TreeSet* chosen, Visit visit) {
   std::for_each(items.begin(), items.end(), visit);
 }
 
+/// Notes what pushes some trees.
+void note_pushes(const dynamics::System& system, const TreeSet& chosen, HeldBack& out) {
+  out.pushes.clear();
+  for (const int number : chosen.trees) {
+    const auto& external = system.trees[number].external;
+    out.pushes.insert(out.pushes.end(), external.begin(), external.end());
+  }
+}
+
+/// Takes it from them, and their gravity.
+void hold_back(dynamics::System& system, const TreeSet& chosen, HeldBack& out) {
+  note_pushes(system, chosen, out);
+  out.gravity.clear();
+  out.gravity.reserve(chosen.trees.size());
+  for (const int number : chosen.trees) out.gravity.push_back(system.trees[number].gravity);
+  auto push = out.pushes.begin();
+  for (const int number : chosen.trees) {
+    dynamics::Tree& tree = system.trees[number];
+    for (std::size_t k = 0; k < tree.links.size(); ++k, ++push) {
+      push->force += tree.links[k].mass * tree.gravity;
+      tree.external[k] = {};
+    }
+    tree.gravity.setZero();
+  }
+}
+
+/// Pushes them so, times `share`.
+void push(dynamics::System& system, const TreeSet& chosen, const HeldBack& held, double share) {
+  auto push = held.pushes.begin();
+  for (const int number : chosen.trees) {
+    for (std::size_t k = 0; k < system.trees[number].links.size(); ++k, ++push) {
+      system.push(number, static_cast<int>(k), {share * push->moment, share * push->force});
+    }
+  }
+}
+
 /// Gives trees back their gravity at its end, also where something throws.
 struct GravityComesBack {
   dynamics::System& system;
   const TreeSet& chosen;
-  const std::vector<math::Vector3>& gravity;  ///< that was taken: of the first trees, or of all
+  const std::vector<math::Vector3>& gravity;  ///< see HeldBack
 
   ~GravityComesBack() {
     for (std::size_t i = 0; i < gravity.size(); ++i) {
@@ -70,6 +109,14 @@ struct GravityComesBack {
     }
   }
 };
+
+/// @param trees  ascending
+/// @param holds  whether it becomes the set of these trees, or of all others, which it does not list
+void choose(TreeSet& out, std::span<const int> trees, bool holds, std::size_t count) {
+  out.trees.assign(trees.begin(), holds ? trees.end() : trees.begin());
+  out.holds.assign(count, !holds);
+  for (const int tree : trees) out.holds[tree] = holds;
+}
 
 }  // namespace
 
@@ -243,8 +290,13 @@ void NewtonCore::push_apart_what_turned(const Share& share) {
 void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
   system_.allowed_overlap = share.allowed_overlap;
   system_.softness = share.softness;
+  system_.most_parts = share.most_parts;
   const dynamics::Report report =
       system_.step(share.length, contacts, servos_, limits_, share.trees());
+  if (!system_.left.trees.empty()) {
+    choose(chosen_, system_.left.trees, false, system_.trees.size());
+    contacts_.keep(chosen_);
+  }
   remember(share);
   push_apart_what_turned(share);
   convergence_.islands += report.islands;
@@ -256,13 +308,17 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   Share whole;
   whole.length = length;
   whole.splits = splits;
+  whole.most_parts = most_parts;
   colliders_.follow(system_, length);
   set_servos_and_limits(bodies, whole);
   std::span<dynamics::Contact> contacts = contacts_.find(length);
   bool woke = stiff && wake_stiff(*stiff);
   woke |= system_.wake_disturbed(length, contacts, servos_);
   if (woke) contacts = contacts_.add_resting();
-  if (!stiff) return step(contacts, whole);
+  if (!stiff) {
+    step(contacts, whole);
+    return divide(bodies, whole);
+  }
   if (woke) {  // what has just woken may touch others
     division_.find(stiff->stiff_pairs(), contacts_.near(), contacts, colliders_.all, system_.trees);
   }
@@ -270,6 +326,7 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   if (!whole.chosen->trees.empty()) {
     keep_servos_and_limits(*whole.chosen);
     step(contacts_.keep(*whole.chosen), whole);
+    divide(bodies, whole);
   }
   for (const int count : division_.counts()) {
     substep_in_parts(bodies, length, splits, count, *stiff);
@@ -290,33 +347,6 @@ bool NewtonCore::wake_stiff(const Plugin& stiff) {
   return woke;
 }
 
-/// Takes from some trees what pushes them, and their gravity.
-void NewtonCore::hold_back(const TreeSet& chosen) {
-  constant_.clear();
-  gravity_.clear();
-  gravity_.reserve(chosen.trees.size());
-  for (const int number : chosen.trees) gravity_.push_back(system_.trees[number].gravity);
-  for (const int number : chosen.trees) {
-    dynamics::Tree& tree = system_.trees[number];
-    for (std::size_t k = 0; k < tree.links.size(); ++k) {
-      constant_.push_back(std::exchange(tree.external[k], dynamics::Wrench{}));
-      constant_.back().force += tree.links[k].mass * tree.gravity;
-    }
-    tree.gravity.setZero();
-  }
-}
-
-/// Pushes them so, times `share`.
-void NewtonCore::push_held_back(const TreeSet& chosen, double share) {
-  auto constant = constant_.begin();
-  for (const int number : chosen.trees) {
-    for (std::size_t k = 0; k < system_.trees[number].links.size(); ++k, ++constant) {
-      system_.push(number, static_cast<int>(k),
-                   {share * constant->moment, share * constant->force});
-    }
-  }
-}
-
 /// Moves a set of trees on in steps of length / count. Forces act in the middle of each, as
 /// impulses: a step ends half-way between two of them, so that places and velocities belong
 /// together to second order (drift, kick, drift). All that acts does so, gravity and motors too,
@@ -332,9 +362,9 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
   contacts_.choose(chosen);
   stiff.choose_stiff(chosen.holds);
   stiff.push_stiff(bodies, -1);
-  gravity_.clear();
-  const GravityComesBack at_the_end{system_, chosen, gravity_};
-  hold_back(chosen);
+  held_back_.gravity.clear();
+  const GravityComesBack at_the_end{system_, chosen, held_back_.gravity};
+  hold_back(system_, chosen, held_back_);
   for (int i = 0; i <= count; ++i) {
     const bool half = i == 0 || i == count;
     const double kick = i == 0 ? 0 : half ? 2 : 1;  // of the forces over this length
@@ -342,12 +372,39 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
     share.of_impulses = kick * share.length / length;
     share.more = i < count;
     if (i > 0) {
-      push_held_back(chosen, kick);
+      push(system_, chosen, held_back_, kick);
       stiff.push_stiff(bodies, kick);
     }
     colliders_.follow(system_, share.length, chosen);
     set_servos_and_limits(bodies, share);
     step(contacts_.find(share.length, chosen, share.of_impulses), share);
+  }
+}
+
+/// Moves the islands on that the whole substep left as they were.
+void NewtonCore::divide(std::span<Body> bodies, const Share& whole) {
+  std::swap(left_, system_.left);
+  for (const auto& [parts, first, last] : left_.islands) {
+    choose(chosen_, std::span(left_.trees).subspan(first, last - first), true, system_.trees.size());
+    take_parts(bodies, whole, parts);
+  }
+}
+
+/// Moves chosen_ on in equal parts. What pushes it stays the same.
+void NewtonCore::take_parts(std::span<Body> bodies, const Share& whole, int count) {
+  note_pushes(system_, chosen_, held_back_);
+  Share part = whole;
+  part.chosen = &chosen_;
+  part.length /= count;
+  part.of_impulses /= count;
+  part.most_parts = 1;
+  contacts_.choose(chosen_);
+  for (int i = 0; i < count; ++i) {
+    part.more = i + 1 < count;
+    if (i > 0) push(system_, chosen_, held_back_, 1);
+    colliders_.follow(system_, part.length, chosen_);
+    set_servos_and_limits(bodies, part);
+    step(contacts_.find(part.length, chosen_, part.of_impulses), part);
   }
 }
 

@@ -18,6 +18,12 @@
 
 namespace ziggurat::physics {
 
+/// What acts on a set of trees that takes a substep in parts, in its order.
+struct HeldBack {
+  std::vector<dynamics::Wrench> pushes;  ///< on their links
+  std::vector<math::Vector3> gravity;    ///< that was taken from them: of the first ones, or of all [m/s^2]
+};
+
 class NewtonCore {
  public:
   explicit NewtonCore(const scene::Physics& physics);
@@ -57,6 +63,7 @@ class NewtonCore {
     int splits = 1;                   // of the scene's substep, see substep()
     double of_impulses = 1;           // of the substep's forces and impulses, that act in it
     bool more = false;                // other parts follow
+    int most_parts = 1;               // into which islands that are pulled too hard divide it
     double allowed_overlap = 1e-6;    // that remains [m]
     double softness = dynamics::System::usual_softness;
     std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
@@ -67,10 +74,10 @@ class NewtonCore {
   bool wake_stiff(const Plugin& stiff);
   void remember(const Share& share);
   void push_apart_what_turned(const Share& share);
-  void hold_back(const TreeSet& chosen);
-  void push_held_back(const TreeSet& chosen, double share);
   void substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
                         Plugin& stiff);
+  void divide(std::span<Body> bodies, const Share& whole);
+  void take_parts(std::span<Body> bodies, const Share& whole, int count);
 
   scene::Physics settings_;
   dynamics::System system_;
@@ -82,8 +89,9 @@ class NewtonCore {
   std::vector<dynamics::Servo> servos_;
   std::vector<dynamics::Limit> limits_;
   Division division_;
-  std::vector<dynamics::Wrench> constant_;  // on the links of a set of trees, in its order
-  std::vector<math::Vector3> gravity_;      // of these trees, likewise [m/s^2]
+  dynamics::LeftIslands left_;  // by the whole substep
+  TreeSet chosen_;              // the trees of one of them, or all others
+  HeldBack held_back_;
   Convergence convergence_;
 };
 
