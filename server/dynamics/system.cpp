@@ -37,14 +37,22 @@ Vector6 momentum(const Tree& tree, const double* mass) {
   return out;
 }
 
-/// Gives a tree that was displaced the momentum that its velocities were before: the root's change with its shape.
-/// @param origin  its origin before;  @param mass  its matrix before;  @param drift  see momentum_after()
-void keep_momentum(Tree& tree, Workspace& work, const Vector3& origin, const double* mass,
-                   std::span<const double, 6> drift) {
+/// Where the centre of mass of a floating tree is, from its origin [m].
+/// @param mass  its matrix
+Vector3 centre(const Tree& tree, const double* mass) {
+  const int n = tree.dofs;
+  return Vector3(mass[2 * n + 4], mass[0 * n + 5], mass[1 * n + 3]) / mass[3 * n + 3];
+}
+
+/// Gives a tree that was displaced the momentum that its velocities were before, about its centre of mass: the root's change with
+/// its shape. About another point it would be wrong: what struck something did not move along its velocity.
+/// @param mass  its matrix before;  @param drift  see momentum_after()
+void keep_momentum(Tree& tree, Workspace& work, const double* mass, std::span<const double, 6> drift) {
   Vector6 before = momentum(tree, mass);
   for (int i = 0; i < 6; ++i) before[i] += drift[i];
   compute_mass(tree, work);
-  before.head<3>() += (origin - tree.origin).cross(Vector3(before.tail<3>()));
+  const Vector3 moved = centre(tree, work.mass.data()) - centre(tree, mass);  // from the origin
+  before.head<3>() += moved.cross(Vector3(before.tail<3>()));
   const Vector6 missing = before - momentum(tree, work.mass.data());
   Matrix6 root;
   for (int i = 0; i < 6; ++i) {
@@ -62,7 +70,6 @@ bool is_obeyed(const Servo& servo) { return servo.lower < servo.impulse && servo
 void displace(const Problem& problem, std::size_t i, std::span<const double> by, bool drifts,
               const Excesses& excesses, Workspace& work) {
   Tree& tree = *problem.trees[i];
-  const Vector3 origin = tree.origin;
   displace(tree, by);
   place(tree);
   move(tree);
@@ -70,7 +77,7 @@ void displace(const Problem& problem, std::size_t i, std::span<const double> by,
   const bool gains = excess.kind != Excess::Kind::none && !excess.of_free_joints &&
                      gains_much(tree, excess.before + kinetic_energy(tree));
   if (free_to_drift(tree) && (drifts || gains)) {
-    keep_momentum(tree, work, origin, problem.mass_of(i), problem.drift[i]);
+    keep_momentum(tree, work, problem.mass_of(i), problem.drift[i]);
   }
   if (excess.kind == Excess::Kind::none) return;
   undo_excess(tree, work, excess, std::span(excesses.held).subspan(problem.offset[i], tree.dofs),
