@@ -19,6 +19,8 @@ struct LinkIndex {
 struct Contact {
   LinkIndex a, b;
   Vector3 point{0, 0, 0};   ///< in the world [m]
+  /// From the point on a to that on b, without the gap: what meets later in the substep is not opposite yet [m].
+  Vector3 until_met{0, 0, 0};
   Vector3 normal{0, 0, 1};  ///< unit, from b to a
   double gap = 0;           ///< along the normal; negative = overlap [m]
   double friction = 0;      ///< Coulomb coefficient

@@ -230,7 +230,7 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
     block.dofs_a = trees[a]->dofs_of(contact.a.link);
   }
   if (b >= 0) {
-    block.jb = add_rows(*trees[b], contact.b.link, contact.point, block, -1);
+    block.jb = add_rows(*trees[b], contact.b.link, contact.point + contact.until_met, block, -1);
     block.dofs_b = trees[b]->dofs_of(contact.b.link);
   }
   weigh(block);
@@ -242,7 +242,8 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
   for (int r = 3; r < block.rows; ++r) block.impulse[r] = angular[r - 3];
   press(block);
   if (a >= 0 && b >= 0) {  // what lies on a turntable does not drift outwards
-    const Vector3 apart = bend(a, contact.a.link, contact.point) - bend(b, contact.b.link, contact.point);
+    const Vector3 apart = bend(a, contact.a.link, contact.point) -
+                          bend(b, contact.b.link, contact.point + contact.until_met);
     for (int r = 1; r < std::min(block.rows, 3); ++r) {
       block.seek[r] = -length / 2 * block.frame.col(r).dot(apart);
     }

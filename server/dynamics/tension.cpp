@@ -35,14 +35,14 @@ void add_contacts(const Problem& problem, std::span<const Contact> contacts, Ten
     if (block.kind != Block::Source::contact || block.impulse[0] == 0) continue;
     const Contact& contact = contacts[block.source];
     const Vector3 impulse = block.frame * Vector3(block.impulse[0], block.impulse[1], block.impulse[2]);
-    const auto add = [&](int place, int link, double sign) {
+    const auto add = [&](int place, int link, const Vector3& point, double sign) {
       if (place < 0) return;
       const int at = memory.first_link[place] + link;
       memory.impulse[at] += sign * impulse;
-      memory.dyad[at] += sign * (contact.point - problem.trees[place]->position[link]) * impulse.transpose();
+      memory.dyad[at] += sign * (point - problem.trees[place]->position[link]) * impulse.transpose();
     };
-    add(block.a, contact.a.link, 1);
-    add(block.b, contact.b.link, -1);
+    add(block.a, contact.a.link, contact.point, 1);
+    add(block.b, contact.b.link, contact.point + contact.until_met, -1);
   }
 }
 

@@ -59,7 +59,7 @@ btScalar bounding_radius(const Shape& shape);
 struct Point {
   btVector3 on_b;     ///< on the surface of B, in the world [m]
   btScalar distance;  ///< along the normal; negative = overlap [m]
-  /// From the place opposite, along the normal, to where it meets a body that stands, if that is later [m].
+  /// From the place opposite, along the normal, to where the other body meets it: of what stands, or of B [m].
   btVector3 until_met;
 };
 

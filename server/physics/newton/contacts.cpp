@@ -311,7 +311,7 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
     const btVector3 on_a = point.on_b + found.normal * point.distance;
     Remembered& now = pair.points[i];
     now.on_a = from_bullet(a.pose.invXform(a.moves ? on_a : on_a + point.until_met));
-    now.on_b = from_bullet(b.pose.invXform(b.moves ? point.on_b : point.on_b + point.until_met));
+    now.on_b = from_bullet(b.pose.invXform(a.moves ? point.on_b + point.until_met : point.on_b));
     now.point = from_bullet(!b.moves ? on_a : !a.moves ? point.on_b : (point.on_b + on_a) / 2);
     now.gap = point.distance;
     now.impulse.setZero();
@@ -332,6 +332,17 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
   emit(pair);
 }
 
+/// See dynamics::Contact; 0 where one of the two stands.
+math::Vector3 Contacts::until_met(const Pair& pair, const Remembered& point) const {
+  constexpr double rounding = 1e-12;  // [m]
+  const Collider& a = colliders_.all[pair.a];
+  const Collider& b = colliders_.all[pair.b];
+  if (!a.moves || !b.moves) return math::Vector3::Zero();
+  const math::Vector3 way = from_bullet(b.pose * to_bullet(point.on_b) - a.pose * to_bullet(point.on_a));
+  const math::Vector3 across = way - way.dot(pair.normal) * pair.normal;
+  return across.norm() > rounding ? across : math::Vector3::Zero();
+}
+
 /// Appends the contacts of a pair's points to the list.
 void Contacts::emit(const Pair& pair) {
   check_contact_points(contacts_.size());
@@ -342,6 +353,7 @@ void Contacts::emit(const Pair& pair) {
     dynamics::Contact& contact = contacts_.emplace_back(law);
     contact.point = pair.points[i].point;
     contact.gap = pair.points[i].gap;
+    contact.until_met = until_met(pair, pair.points[i]);
     contact.impulse = share_ * pair.points[i].impulse;
     contact.angular_impulse = share_ * pair.points[i].angular_impulse;
     owner_.push_back(static_cast<int>(&pair - pairs_.data()));

@@ -51,10 +51,9 @@ void carry_back(contact::Contacts& found, const Collider& a, const btTransform& 
     const btVector3 on_a = a.pose * then_a.invXform(point.on_b + found.normal * point.distance);
     const btVector3 on_b = b.pose * then_b.invXform(point.on_b);
     point.distance = found.normal.dot(on_a - on_b);
-    // Opposite the point of the body that moves.
+    // Opposite the point of the body that moves, or of the first one.
     point.on_b = a.moves ? on_a - found.normal * point.distance : on_b;
-    if (!a.moves) point.until_met = on_a - (on_b + found.normal * point.distance);
-    if (!b.moves) point.until_met = on_b - point.on_b;
+    point.until_met = a.moves ? on_b - point.on_b : on_a - (on_b + found.normal * point.distance);
   }
 }
 
