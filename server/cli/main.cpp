@@ -9,6 +9,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <system_error>
 #include <variant>
 
 #include "cli/commands.h"
@@ -76,6 +77,10 @@ int main(int count, char** texts) {
     console.fault("there is no memory left for the scene or for what was asked for");
   } catch (const std::filesystem::filesystem_error& error) {
     console.fault(fmt::format("{}: {}", error.path1().string(), error.code().message()));
+  } catch (const std::system_error& error) {
+    const bool is_crowded = error.code() == std::errc::resource_unavailable_try_again;  // fork() and threads
+    console.fault(text::shortened_message(error.what()) +
+                  (is_crowded ? "; the system allows this user no more processes and threads (ulimit -u)" : ""));
   } catch (const std::exception& error) {
     console.fault(text::shortened_message(error.what()));
   }

@@ -46,8 +46,9 @@ std::size_t Archive::count(std::size_t number, std::size_t size) {
 
 std::string Archive::path() const {
   std::string path;
-  for (const Scope* scope = name_; scope; scope = scope->outer_) {
-    path.insert(0, path.empty() ? std::string(scope->text_) : std::string(scope->text_) + "/");
+  for (const std::string_view name : names_) {
+    if (!path.empty()) path += '/';
+    path += name;
   }
   return path;
 }

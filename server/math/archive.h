@@ -101,19 +101,15 @@ class Archive {
   class Scope {
    public:
     Scope(Archive& archive, std::string_view name) : archive_(archive) {
-      outer_ = std::exchange(archive_.name_, this);
-      text_ = name;
+      archive_.names_.push_back(name);
       if (archive_.places_) archive_.note_place();
     }
-    ~Scope() { archive_.name_ = outer_; }
+    ~Scope() { archive_.names_.pop_back(); }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 
    private:
-    friend class Archive;
     Archive& archive_;
-    Scope* outer_;
-    std::string_view text_;
   };
 
   [[noreturn]] void fail(const char* what) const;
@@ -210,7 +206,7 @@ class Archive {
   std::span<const std::byte> in_;
   std::vector<std::byte>* out_ = nullptr;  // null: it reads
   std::vector<Place>* places_ = nullptr;
-  Scope* name_ = nullptr;  // of the field under way
+  std::vector<std::string_view> names_;     // of the field under way, behind those that it is in
 };
 
 /// A value of an enumeration. @param last  the largest that is allowed

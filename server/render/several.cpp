@@ -7,20 +7,28 @@ namespace ziggurat::render {
 Several::Several(const scene::Scene& scene, std::vector<scene::Entity> entities,
                  world::Layout layout, unsigned threads)
     : layout_(std::move(layout)) {
-  for (unsigned i = 0; i < threads; ++i) {
-    threads_.emplace_back([this, renderer = Renderer(scene, entities, layout_)]() mutable {
-      work(std::move(renderer));
-    });
+  try {
+    for (unsigned i = 0; i < threads; ++i) {
+      threads_.emplace_back([this, renderer = Renderer(scene, entities, layout_)]() mutable {
+        work(std::move(renderer));
+      });
+    }
+  } catch (...) {  // there is no memory, or the system allows no more threads
+    end();
+    throw;
   }
   std::unique_lock lock(mutex_);
   news_.wait(lock, [this] { return ready_ == threads_.size(); });
   if (!has_failed_) return;
   lock.unlock();
-  for (std::thread& thread : threads_) thread.join();
+  end();
   rethrow();
 }
 
-Several::~Several() {
+Several::~Several() { end(); }
+
+/// Waits for pictures that were begun.
+void Several::end() {
   {
     const std::lock_guard lock(mutex_);
     is_over_ = true;

@@ -23,7 +23,7 @@ class Several {
 
   /// Loads and makes what pictures need.
   /// @param scene, entities, layout  as of a Renderer; are copied
-  /// @throws RenderError
+  /// @throws RenderError, std::system_error if the system allows no more threads
   Several(const scene::Scene& scene, std::vector<scene::Entity> entities, world::Layout layout,
           unsigned threads);
   /// Pictures that were not begun are not drawn.
@@ -49,6 +49,7 @@ class Several {
   };
   void work(Renderer renderer);
   void do_job(Job& job, Renderer& renderer, Picture& picture);
+  void end();
   void rethrow();
 
   const world::Layout layout_;

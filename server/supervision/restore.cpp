@@ -43,7 +43,10 @@ std::string list_of(const std::vector<std::string>& clients) {
 
 }  // namespace
 
+/// Waits for a restore that was asked for before: what that goes back to is found already, but a recording has it behind
+/// a snapshot that is taken now, which may have the same name.
 Supervision::Reply Supervision::snapshot(const network::Call& call) {
+  if (resetting_) return Reply::later;
   if (auto fault = snapshots_.keep(call.request.text, world_)) return fail(call, std::move(*fault));
   callers_.tell(Kept{call.request.text});
   return done(call);

@@ -37,7 +37,8 @@ void read_clients(const std::string& text) {
     require(!clients.empty());
     for (const network::ClientKey& client : clients) {
       require(client.public_key.size() == 40);
-      require(client.roles.controller || client.roles.supervisor || client.roles.observer);
+      const network::Roles& roles = client.roles;
+      require(roles.controller || roles.director || roles.supervisor || roles.observer);
     }
   });
 }

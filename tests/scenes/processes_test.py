@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -14,6 +15,7 @@ import time
 from harness import (BIN, CONTROLLER_FAILED, FAULT, FINISHED, INTERRUPTED, LUA, SceneTest, main)
 
 ENDLESS = ("--duration", "0")
+OTHER_USER = 54321  # has no processes
 
 
 class Killed(SceneTest):
@@ -53,6 +55,26 @@ class Killed(SceneTest):
         outcome = self.finish(process)
         self.assertEqual(outcome.code, FAULT, outcome.err)
         self.assert_is_sentence(outcome, rf"there is no ziggurat-lua beside {self.folder}/ziggurat and none in the folders of PATH; ")
+
+    def test_too_few_processes_and_threads_are_told_with_their_limit(self):
+        shutil.copy(BIN / "ziggurat", self.folder)
+        self.folder.chmod(0o755)
+        limits = (1, 2) if os.geteuid() == 0 else (1,)  # another user may have more than that already
+
+        def limit(number):
+            resource.setrlimit(resource.RLIMIT_NPROC, (number, number))
+            if os.geteuid() == 0:  # for root there is no limit
+                os.setgroups([])
+                os.setgid(OTHER_USER)
+                os.setuid(OTHER_USER)
+
+        for number in limits:
+            process = subprocess.Popen([self.folder / "ziggurat", "run", self.scene, "--ticks", "5"], text=True,
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=lambda: limit(number))
+            self.started.append(process)
+            outcome = self.finish(process)
+            self.assertEqual(outcome.code, FAULT, outcome.err)
+            self.assert_is_sentence(outcome, "the system allows this user no more processes and threads")
 
     def test_a_killed_process_is_started_again(self):
         """The scripts begin anew at the present tick, told which; the others notice nothing."""

@@ -10,6 +10,8 @@ import contextlib
 import json
 import pathlib
 import random
+import signal
+import subprocess
 import sys
 import threading
 import time
@@ -20,7 +22,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import ziggurat  # noqa: E402
-from harness import INTERRUPTED, SceneTest  # noqa: E402
+from harness import INTERRUPTED, LUA, SceneTest  # noqa: E402
 from websocket import MOVE, PAUSE, RawViewer, REMOVE, RESUME, SPAWN, SPEED, STEP  # noqa: E402
 from zmtp import free_port  # noqa: E402
 
@@ -119,6 +121,29 @@ class Everything(SceneTest):
         urllib.request.urlopen(f"http://127.0.0.1:{self.metrics_port}/{path}", timeout=5).read()
         self.done["metrics"] += 1
         time.sleep(0.05)
+
+
+class TwoSupervisors(SceneTest):
+    def test_a_snapshot_that_meets_a_restore_of_its_name_is_repeated(self):
+        """Both arrive while the server stands, so that it sees them at once."""
+        process = self.start("serve", self.scene, "--json", "--record", "run.mcap", "--ticks", 5)
+        url = json.loads(process.stdout.readline())["endpoint"]
+        with ziggurat.supervise(url) as one, ziggurat.supervise(url) as other:
+            one.move("r1", (0, 1, 0.5))
+            one.snapshot("a")
+            one.move("r1", (0.2, 1, 0.5))
+            process.send_signal(signal.SIGSTOP)
+            threads = [threading.Thread(target=act, args=("a",)) for act in (one.restore, other.snapshot)]
+            for thread in threads:
+                thread.start()
+                time.sleep(0.1)  # it sends
+            process.send_signal(signal.SIGCONT)
+            for thread in threads:
+                thread.join()
+        subprocess.run([LUA, "--connect", url, "--quiet"], cwd=self.folder, env=self.environment)
+        self.assertEqual(self.finish(process).code, 0)
+        outcome = self.ziggurat("verify", "run.mcap")
+        self.assertEqual(outcome.code, 0, outcome.out + outcome.err)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,8 @@
-// What the conformance tests do not see: bytes, memory, packing.
+// What the conformance tests do not see: bytes, packing.
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <optional>
 
 #include "network/small_run.h"
@@ -16,19 +14,6 @@
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
-
-namespace {
-std::size_t allocations = 0;
-}
-
-// Not inlined: GCC 12 would take malloc and free for a mismatched pair.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace ziggurat::wire {
 namespace {
@@ -91,76 +76,6 @@ TEST(Outbox, InvalidTextOfASceneIsMadeValid) {
   v1::ServerMessage message;
   ASSERT_TRUE(message.ParseFromString(bytes_of(outbox)));
   EXPECT_EQ(message.welcome().robots(0).params(0).value(), "caf\xEF\xBF\xBD");
-}
-
-TEST(TickPath, AllocatesNothingOnceItHasGrown) {
-  const SmallRun small(64);
-  const auto run = small.run();
-  std::vector<std::size_t> robots(64);
-  for (std::size_t i = 0; i < robots.size(); ++i) robots[i] = i;
-  const Roster roster = make_roster(run.layout, robots);
-  const auto observations = small.observations(5);
-  auto commands = small.commands();
-  v1::ClientMessage answer;
-  answer.mutable_command()->set_tick(5);
-  for (int i = 0; i < 64; ++i) answer.mutable_command()->add_joint_targets(i);
-  const std::string bytes = answer.SerializeAsString();
-  Outbox outbox;
-  Inbox inbox;
-  std::string buffer(10'000, '\0');
-  const auto tick = [&] {
-    outbox.observation(roster, observations, {});
-    outbox.write(reinterpret_cast<std::uint8_t*>(buffer.data()));
-    if (inbox.parse(bytes) != Inbox::Kind::command) std::abort();
-    if (inbox.check(roster, run.layout)) std::abort();
-    inbox.apply(roster, commands);
-  };
-  tick();
-  const std::size_t before = allocations;
-  for (int i = 0; i < 100; ++i) tick();
-  EXPECT_EQ(allocations, before);
-  EXPECT_EQ(commands.joint_targets[63], 63);
-}
-
-TEST(TickPath, DevicesAllocateNothingEither) {
-  const EquippedRun run;
-  const std::vector<std::size_t> robots{0, 1, 2};
-  const Roster roster = make_roster(run.layout(), robots);
-  auto commands = run.commands();
-  auto observations = run.observations();
-  const std::vector<std::uint8_t> payload(100, 7);
-  for (int i = 0; i < 5; ++i) observations.radio_messages.add(3, payload);
-  const std::vector<std::string> tags(4, std::string(50, 'x'));
-  observations.leds.assign(3, {0, 0xFF, {1, 2}});
-  world::TagReading tag{2, 3, {1, 2}, {}};
-  tag.corners.fill({3, 4});
-  observations.tags.assign(5, tag);
-  observations.images = {{0, std::vector<std::uint8_t>(6)}};
-  v1::ClientMessage answer;
-  v1::Command& command = *answer.mutable_command();
-  for (int i = 0; i < 3; ++i) {
-    command.add_led_colors(1);
-    command.add_tag_payloads(std::string(50, 'x'));
-    v1::RadioMessage& message = *command.add_radio_messages();
-    message.set_payload(std::string(100, 'x'));
-  }
-  for (int i = 0; i < 4; ++i) command.add_wheel_velocities(i);
-  for (int i = 0; i < 2; ++i) command.add_turret_modes(v1::TURRET_SPEED);
-  const std::string bytes = answer.SerializeAsString();
-  Outbox outbox;
-  Inbox inbox;
-  const auto tick = [&] {
-    commands.radio_messages.clear();
-    if (!outbox.observation(roster, observations, tags)) std::abort();
-    if (inbox.parse(bytes) != Inbox::Kind::command) std::abort();
-    if (inbox.check(roster, run.layout())) std::abort();
-    inbox.apply(roster, commands);
-  };
-  tick();
-  const std::size_t before = allocations;
-  for (int i = 0; i < 100; ++i) tick();
-  EXPECT_EQ(allocations, before);
-  EXPECT_EQ(commands.radio_messages.entries.size(), 3U);
 }
 
 TEST(RadioMessages, ThoseOfARosterAreForgotten) {

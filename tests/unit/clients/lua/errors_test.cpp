@@ -159,7 +159,8 @@ TEST_F(Errors, OfOneRobotDoNotAffectAnother) {
   ASSERT_EQ(start("n = 0 function step() n = n + 1 log(n) end"), std::nullopt);
   write("other.lua", "function init() end n = 100 function step() n = nil + 1 end");
   OneRobot another(robot_);
-  Controller other(another.robot(), {folder() / "other.lua"});
+  options_.script = folder() / "other.lua";
+  Controller other(another.robot(), options_);
   ASSERT_EQ(other.start(), std::nullopt);
   EXPECT_TRUE(other.step(1));
   ASSERT_EQ(controller().step(1), std::nullopt);

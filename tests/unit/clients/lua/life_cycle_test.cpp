@@ -89,7 +89,8 @@ TEST_F(LifeCycle, GlobalsAreTheRobotsOwn) {
   ASSERT_EQ(start("shared = 1"), std::nullopt);
   write("other.lua", "function init() log(shared) end");
   OneRobot another(robot_);
-  Controller other(another.robot(), {folder() / "other.lua"});
+  options_.script = folder() / "other.lua";
+  Controller other(another.robot(), options_);
   ASSERT_EQ(other.start(), std::nullopt);
   EXPECT_EQ(other.log().lines.at(0).text, "nil");
 }
