@@ -18,10 +18,12 @@ bool free_to_drift(const Tree& tree) {
   return tree.links[0].joint == JointType::floating && tree.freedoms == all_freedoms;
 }
 
-/// Whether a block does more than push out what is pressed in.
-bool holds(const Block& block) {
+/// Whether a block does more than push out what is pressed in, or a joint is beyond its limit, as a scene may begin.
+/// @param allowed  [m], [rad]
+bool holds(const Block& block, double allowed) {
   const double pushed = block.yield > 0 ? 2 * std::max(0.0, block.seek[0]) : 0;
-  return std::abs(block.impulse[0]) * block.mobility[0] > pushed;
+  return std::abs(block.impulse[0]) * block.mobility[0] > pushed ||
+         (block.kind == Block::Source::limit && block.gap < -allowed);
 }
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -308,7 +310,8 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const bool rebounding = rebounds(problem_);
   if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);
   write_impulses();
-  const bool touched = std::any_of(problem_.blocks.begin(), problem_.blocks.end(), holds);
+  const bool touched =
+      std::ranges::any_of(problem_.blocks, [&](const Block& block) { return holds(block, allowed_overlap); });
   if (!touched) {  // what it flew past did not hold it
     for (Tree* tree : problem_.trees) fly(*tree, work_, length_);
     settle(first_tree, last_tree, false);

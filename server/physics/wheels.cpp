@@ -6,14 +6,27 @@
 namespace ziggurat::physics {
 namespace {
 
-void aim(const Body& body, GroundMotion& ground, double substep) {
+constexpr btScalar slowest = btScalar(1e-6);  // of what slides [m/s]
+
+/// Friction of what does not drive is along its motion: so it is the same in all directions, until it stands.
+/// @return  unit, level, or 0 where nothing moves
+btVector3 sliding(const Body& body, const GroundMotion& ground, std::vector<Motion>& motions) {
+  if (ground.velocity != 0 || ground.angular_velocity != 0) return {0, 0, 0};
+  body.motions(motions);
+  const btVector3 level(motions[0].velocity.x(), motions[0].velocity.y(), 0);
+  const btScalar speed = level.length();
+  return speed > slowest ? level / speed : btVector3(0, 0, 0);
+}
+
+/// @param direction  of its motion, or 0: that of its heading
+void aim(const Body& body, GroundMotion& ground, const btVector3& direction, double substep) {
   const double half = ground.angular_velocity * substep / 2;
   ground.speed =
       ground.velocity * (std::abs(half) < 1e-4 ? 1 - half * half / 6 : std::sin(half) / half);
   ground.length = substep;
   const btVector3 x = body.transform(std::size_t{0}).getBasis().getColumn(0);
   const double heading = std::atan2(x.y(), x.x()) + half;
-  ground.along.setValue(std::cos(heading), std::sin(heading), 0);
+  ground.along = direction.isZero() ? btVector3(std::cos(heading), std::sin(heading), 0) : direction;
   ground.across.setValue(-ground.along.y(), ground.along.x(), 0);
 }
 
@@ -47,7 +60,8 @@ void Wheels::body_moved(Body& body) {
 
 void Wheels::before_substep(std::span<Body> bodies, double substep) {
   for (const std::size_t entity : entities_) {
-    aim(bodies[entity], *bodies[entity].ground, substep);
+    GroundMotion& ground = *bodies[entity].ground;
+    aim(bodies[entity], ground, sliding(bodies[entity], ground, motions_), substep);
   }
 }
 

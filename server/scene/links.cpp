@@ -71,6 +71,11 @@ void read_axis_and_limit(Element& element, Joint& joint) {
     if (joint.type == JointType::revolute) doubt_angles(element, "limit");
     const double unit = joint.type == JointType::revolute ? std::numbers::pi / 180.0 : 1.0;
     joint.limit = JointLimit{limit->first * unit, limit->second * unit};
+    if (joint.limit->lower > 0 || joint.limit->upper < 0) {
+      element.report().warn(element.where("limit"), "limits without 0",
+                            element.sentence("limit", "leaves out 0, where the joint is assembled: it is moved into its limits as the run "
+                                                      "begins; measure limits from the assembled pose"));
+    }
   }
 }
 

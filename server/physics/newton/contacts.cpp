@@ -82,6 +82,17 @@ bool tumbles(const Collider& a, const Collider& b, const Approach& approach, dou
          far;
 }
 
+/// See dynamics::Contact; 0 where one of the two stands.
+/// @param on_a, on_b  in the colliders' frames [m]
+math::Vector3 until_met(const Collider& a, const math::Vector3& on_a, const Collider& b, const math::Vector3& on_b,
+                        const math::Vector3& normal) {
+  constexpr double rounding = 1e-12;  // [m]
+  if (!a.moves || !b.moves) return math::Vector3::Zero();
+  const math::Vector3 way = from_bullet(b.pose * to_bullet(on_b) - a.pose * to_bullet(on_a));
+  const math::Vector3 across = way - way.dot(normal) * normal;
+  return across.norm() > rounding ? across : math::Vector3::Zero();
+}
+
 }  // namespace
 
 dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
@@ -332,28 +343,18 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
   emit(pair);
 }
 
-/// See dynamics::Contact; 0 where one of the two stands.
-math::Vector3 Contacts::until_met(const Pair& pair, const Remembered& point) const {
-  constexpr double rounding = 1e-12;  // [m]
-  const Collider& a = colliders_.all[pair.a];
-  const Collider& b = colliders_.all[pair.b];
-  if (!a.moves || !b.moves) return math::Vector3::Zero();
-  const math::Vector3 way = from_bullet(b.pose * to_bullet(point.on_b) - a.pose * to_bullet(point.on_a));
-  const math::Vector3 across = way - way.dot(pair.normal) * pair.normal;
-  return across.norm() > rounding ? across : math::Vector3::Zero();
-}
-
 /// Appends the contacts of a pair's points to the list.
 void Contacts::emit(const Pair& pair) {
   check_contact_points(contacts_.size());
   if (pair.count == 0) return;
-  const dynamics::Contact law =
-      law_of(colliders_.all[pair.a], colliders_.all[pair.b], pair.normal, pair.count);
+  const Collider& a = colliders_.all[pair.a];
+  const Collider& b = colliders_.all[pair.b];
+  const dynamics::Contact law = law_of(a, b, pair.normal, pair.count);
   for (int i = 0; i < pair.count; ++i) {
     dynamics::Contact& contact = contacts_.emplace_back(law);
     contact.point = pair.points[i].point;
     contact.gap = pair.points[i].gap;
-    contact.until_met = until_met(pair, pair.points[i]);
+    contact.until_met = until_met(a, pair.points[i].on_a, b, pair.points[i].on_b, pair.normal);
     contact.impulse = share_ * pair.points[i].impulse;
     contact.angular_impulse = share_ * pair.points[i].angular_impulse;
     owner_.push_back(static_cast<int>(&pair - pairs_.data()));

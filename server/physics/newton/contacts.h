@@ -87,7 +87,6 @@ class Contacts {
   void meet(Pair& pair, double length);
   bool is_among(const Pair& pair, const TreeSet& chosen) const;
   void add(const contact::Contacts& found, Pair& pair);
-  math::Vector3 until_met(const Pair& pair, const Remembered& point) const;
   void emit(const Pair& pair);
   bool covers(const Pair& seen, const Pair& hidden, std::size_t mover) const;
   bool is_compound(const Collider& collider) const;

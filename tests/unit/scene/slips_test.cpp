@@ -188,5 +188,20 @@ TEST(Radians, AreDoubtedOnceWithTheirNumber) {
   }
 }
 
+TEST(Limits, ThatLeaveOutTheAssembledPoseAreDoubted) {
+  const auto warnings = [](const std::string& limit) {
+    std::string text = slider;
+    const std::string axis = "axis=\"1,0,0\"";
+    text.insert(text.find(axis) + axis.size(), " limit=\"" + limit + "\"");
+    return texts_of(read_text(text, "t"), Problem::Severity::warning);
+  };
+  ASSERT_EQ(warnings("0.1:0.2").size(), 1u);
+  EXPECT_EQ(warnings("0.1:0.2")[0],
+            "t:22:63: limit=\"0.1:0.2\" of <joint> leaves out 0, where the joint is assembled: it is moved into its limits as the run "
+            "begins; measure limits from the assembled pose (in prototype \"slider\")");
+  EXPECT_EQ(warnings("-0.2:-0.1").size(), 1u);
+  EXPECT_TRUE(warnings("0:0.2").empty());
+}
+
 }  // namespace
 }  // namespace ziggurat::scene

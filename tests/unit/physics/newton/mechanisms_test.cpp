@@ -95,6 +95,20 @@ TEST(NewtonChain, OfLightLinksCarriesAHundredKilograms) {
   }
 }
 
+// Nothing holds it there: it stayed outside.
+TEST(NewtonLimit, TakesInAJointThatBeginsOutside) {
+  World world(newton(false, 0), 0.01);
+  scene::Joint rail = joint(scene::JointType::prismatic, Vector3::UnitZ(), {}, {});
+  rail.limit = scene::JointLimit{0.1, 0.2};
+  scene::Entity entity = prototype("slide", at(0, 0, 5), false,
+                                   {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1), link("load", scene::Box{{0.1, 0.1, 0.1}}, 1)});
+  entity.joints.push_back(rail);
+  world.add(entity);
+  run(world, 1, 0.01);
+  EXPECT_NEAR(world.position(world.joint(0, 0)), 0.1, 1e-5);
+  EXPECT_NEAR(world.velocity(world.joint(0, 0)), 0, 1e-9);
+}
+
 TEST(NewtonLimit, StopsAHeavyFall) {
   for (const double mass : {1.0, 100.0, 1000.0}) {
     World world(newton(), 0.01);
