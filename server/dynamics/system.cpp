@@ -8,6 +8,7 @@
 #include "dynamics/excess.h"
 #include "dynamics/fetch.h"
 #include "dynamics/flight.h"
+#include "dynamics/nutation.h"
 
 namespace ziggurat::dynamics {
 namespace {
@@ -296,7 +297,8 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
   if (most_parts > 1) {
-    const int parts = parts_for_tension(problem_, contacts_, work_, tension_);
+    const int parts =
+        std::max(parts_for_tension(problem_, contacts_, work_, tension_), parts_for_nutation(problem_));
     if (parts > 1) {
       const auto first = tree_order_.begin() + first_tree, last = tree_order_.begin() + last_tree;
       std::for_each(first, last, [&](int tree) { watch_[tree] |= Watch::waits; });

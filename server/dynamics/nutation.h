@@ -1,0 +1,14 @@
+#pragma once
+// Nutation that is too fast for a substep. The axis of a body that spins turns about its angular momentum; impulses and places of one
+// step know it at the step's beginning only, so a top on its tip leaned over by tens of degrees.
+
+#include "dynamics/problem.h"
+
+namespace ziggurat::dynamics {
+
+/// Into how many parts the step of an island should be divided so that the axes of single bodies in contact can be followed: the
+/// speed of their spin, times the spread of their moments of inertia over the middle one, is what they nutate by.
+/// @return  1: it need not be
+int parts_for_nutation(const Problem& problem);
+
+}  // namespace ziggurat::dynamics
