@@ -25,7 +25,7 @@ struct Report {
   int awake = 0;            ///< trees that moved
 };
 
-/// Islands that a step left as they were, because their links are pulled too hard for it.
+/// Islands that a step left as they were, because something in them swings or nutates too fast for it.
 struct LeftIslands {
   struct Island {
     int parts = 0;                    ///< into which the step should be divided for it
@@ -58,9 +58,9 @@ class System {
   double softness = usual_softness;
   static constexpr double usual_softness = 5e-5;
   double allowed_overlap = 1e-6;  ///< it may remain, because rounding must not move bodies [m]
-  /// Into how many parts step() may ask to divide itself for an island, see tension.h; it leaves that as it is. 1: it may not.
+  /// Into how many parts step() may ask to divide itself for an island, see tension.h and nutation.h. 1: it may not.
   int most_parts = 1;
-  LeftIslands left;    ///< by the last step()
+  LeftIslands left;  ///< by the last step()
 
   /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and
   /// are ignored, until something wakes its island: a contact with a tree that is awake and comes

@@ -235,7 +235,7 @@ void NewtonCore::set_servos_and_limits(std::span<Body> bodies, const Share& shar
     if (std::exchange(entity, joint.entity) != joint.entity) is_factored = false;
     if (joint.mode != scene::JointMode::disabled) {
       const double impulse = joint.max_impulse / share.splits * share.of_impulses;
-      servos_.push_back(servo_of(joint, tree, work_, share.length, impulse, is_factored));
+      servos_.push_back(servo_of(joint, tree, work_, share.length, share.parts_left * share.length, impulse, is_factored));
       servos_.back().impulse *= share.of_impulses;
     }
     if (joint.limit) {
@@ -400,7 +400,8 @@ void NewtonCore::take_parts(std::span<Body> bodies, const Share& whole, int coun
   part.most_parts = 1;
   contacts_.choose(chosen_);
   for (int i = 0; i < count; ++i) {
-    part.more = i + 1 < count;
+    part.parts_left = count - i;
+    part.more = part.parts_left > 1;
     if (i > 0) push(system_, chosen_, held_back_, 1);
     colliders_.follow(system_, part.length, chosen_);
     set_servos_and_limits(bodies, part);

@@ -63,6 +63,7 @@ class NewtonCore {
     int splits = 1;                   // of the scene's substep, see substep()
     double of_impulses = 1;           // of the substep's forces and impulses, that act in it
     bool more = false;                // other parts follow
+    int parts_left = 1;               // until motors should be at their targets, with this one
     int most_parts = 1;               // into which islands that are pulled too hard divide it
     double allowed_overlap = 1e-6;    // that remains [m]
     double softness = dynamics::System::usual_softness;

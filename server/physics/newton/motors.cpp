@@ -19,8 +19,8 @@ double stoppable_velocity(double distance, double deceleration, double length) {
 
 /// The velocity of a motor that seeks a position.
 double approach(double error, const dynamics::Tree& tree, dynamics::Workspace& work, int dof,
-                double length, double impulse, bool& is_factored) {
-  const double velocity = error / length;
+                double length, double left, double impulse, bool& is_factored) {
+  const double velocity = error / left;
   if (impulse == 0 || error == 0) return velocity;
   if (!std::exchange(is_factored, true)) {
     compute_mass(tree, work);
@@ -35,7 +35,7 @@ double approach(double error, const dynamics::Tree& tree, dynamics::Workspace& w
 }  // namespace
 
 dynamics::Servo servo_of(const CoordinateJoint& joint, const dynamics::Tree& tree,
-                         dynamics::Workspace& work, double length, double impulse,
+                         dynamics::Workspace& work, double length, double left, double impulse,
                          bool& is_factored) {
   dynamics::Servo servo;
   servo.tree = static_cast<int>(joint.entity);
@@ -43,7 +43,7 @@ dynamics::Servo servo_of(const CoordinateJoint& joint, const dynamics::Tree& tre
   servo.speed = joint.target;
   if (joint.mode == scene::JointMode::position) {
     const double error = joint.target - tree.q[place_of(tree, joint.part)];
-    servo.speed = approach(error, tree, work, servo.dof, length, impulse, is_factored);
+    servo.speed = approach(error, tree, work, servo.dof, length, left, impulse, is_factored);
   }
   servo.lower = -impulse;
   servo.upper = impulse;

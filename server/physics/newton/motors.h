@@ -23,12 +23,13 @@ struct CoordinateJoint {
   double limit_impulse = 0, motor_impulse = 0;  ///< of the last substep [N s] or [N m s]
 };
 
-/// The servo of a motor for the coming substep.
-/// @param length       of the (internal) substep [s]
-/// @param impulse      its limit in that substep [N s] or [N m s]
+/// The servo of a motor for the coming substep, or a part of it.
+/// @param length       of it [s]
+/// @param left         from its beginning to the substep's end, when a target is to be reached [s]
+/// @param impulse      its limit in that substep or part [N s] or [N m s]
 /// @param is_factored  whether `work` has the factors of the tree's mass as it is now; in and out
 dynamics::Servo servo_of(const CoordinateJoint& joint, const dynamics::Tree& tree,
-                         dynamics::Workspace& work, double length, double impulse,
+                         dynamics::Workspace& work, double length, double left, double impulse,
                          bool& is_factored);
 
 /// What holds a body to its GroundMotion: speeds along and across, turn rate about the vertical.

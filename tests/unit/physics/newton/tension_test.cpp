@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "newton_scene.h"
+#include "physics/newton/motors.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -112,6 +113,27 @@ TEST(NewtonTension, OfARopeOverADrum) {
       EXPECT_NEAR(hoist.world.energy(), hoist.before, 0.02 * falls) << hz << ' ' << load;
     }
   }
+}
+
+// A motor is to be at its target at the end of the substep, not of its first part.
+TEST(NewtonTension, MotorsTakeAllPartsToTheirTargets) {
+  dynamics::Link base, sled;
+  base.joint = dynamics::JointType::fixed;
+  sled.parent = 0;
+  sled.joint = dynamics::JointType::prismatic;
+  sled.mass = 1;
+  sled.inertia = {1, 1, 1};
+  dynamics::Tree tree({base, sled}, {});
+  place(tree);
+  move(tree);
+  CoordinateJoint joint;
+  joint.part = 1;
+  joint.mode = scene::JointMode::position;
+  joint.target = 1e-3;
+  dynamics::Workspace work;
+  bool is_factored = false;
+  EXPECT_DOUBLE_EQ(servo_of(joint, tree, work, 1e-4, 1e-2, 1e3, is_factored).speed, 0.1);
+  EXPECT_DOUBLE_EQ(servo_of(joint, tree, work, 1e-4, 1e-4, 1e3, is_factored).speed, 10);
 }
 
 // Some 20 times as stiff as what parts can follow: that is told.
