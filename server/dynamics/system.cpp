@@ -89,6 +89,11 @@ void displace(const Problem& problem, std::size_t i, std::span<const double> by,
 
 }  // namespace
 
+void LeftIslands::add(std::span<const int> of_island, int parts) {
+  islands.push_back({parts, trees.size(), trees.size() + of_island.size()});
+  trees.insert(trees.end(), of_island.begin(), of_island.end());
+}
+
 int System::find(int tree) {
   while (parent_[tree] != tree) tree = parent_[tree] = parent_[parent_[tree]];
   return tree;
@@ -300,12 +305,10 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     const int parts =
         std::max(parts_for_tension(problem_, contacts_, work_, tension_), parts_for_nutation(problem_));
     if (parts > 1) {
-      const auto first = tree_order_.begin() + first_tree, last = tree_order_.begin() + last_tree;
-      std::for_each(first, last, [&](int tree) { watch_[tree] |= Watch::waits; });
-      left.islands.push_back({std::min(parts, most_parts), left.trees.size(), left.trees.size() + (last - first)});
-      left.trees.insert(left.trees.end(), first, last);
+      const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
+      for (const int tree : island) watch_[tree] |= Watch::waits;
       report_.not_converged += parts > most_parts;
-      return;
+      return left.add(island, std::min(parts, most_parts));
     }
   }
   add(outcome);

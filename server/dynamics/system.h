@@ -33,6 +33,8 @@ struct LeftIslands {
   };
   std::vector<Island> islands;
   std::vector<int> trees;  ///< ascending in each island
+
+  void add(std::span<const int> of_island, int parts);
 };
 
 /// What makes an island sleep. It must touch the world, and all its coordinates must stay this slow
