@@ -384,14 +384,17 @@ void take_excess(std::span<Tree* const> trees, Workspace& work, double excess) {
   for (Tree* tree : trees) take_excess(*tree, work, share * kinetic_energy(*tree));
 }
 
+double energy(const Tree& tree) {
+  double sum = kinetic_energy(tree);
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    sum -= tree.links[i].mass * tree.gravity.dot(tree.position[i]);
+  }
+  return sum;
+}
+
 double energy(std::span<Tree* const> trees) {
   double sum = 0;
-  for (const Tree* tree : trees) {
-    sum += kinetic_energy(*tree);
-    for (std::size_t i = 0; i < tree->links.size(); ++i) {
-      sum -= tree->links[i].mass * tree->gravity.dot(tree->position[i]);
-    }
-  }
+  for (const Tree* tree : trees) sum += energy(*tree);
   return sum;
 }
 

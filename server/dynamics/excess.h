@@ -54,7 +54,9 @@ void take_excess(Tree& tree, Workspace& work, double excess);
 /// The same from all trees of an island, in proportion to their kinetic energy.
 void take_excess(std::span<Tree* const> trees, Workspace& work, double excess);
 
-/// The energy of all trees, kinetic and potential [J]; needs move().
+/// The energy of a tree, kinetic and potential [J]; needs move().
+double energy(const Tree& tree);
+/// Of all trees.
 double energy(std::span<Tree* const> trees);
 
 }  // namespace ziggurat::dynamics

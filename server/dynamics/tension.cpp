@@ -10,7 +10,7 @@ namespace {
 
 /// How far a link may swing by itself within a step that is not divided, and how far it does in a part of one that is [rad].
 /// Neighbours swing against each other up to twice as fast, and from 2 on that is unstable.
-constexpr double too_far = 0.5, of_a_part = 0.35;
+constexpr double too_far = 0.7, of_a_part = 0.5;
 
 /// Whether a servo or a limit holds a coordinate.
 bool holds_joint(const Block& block) {
