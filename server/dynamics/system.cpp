@@ -302,8 +302,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
   if (most_parts > 1) {
-    const int parts =
-        std::max(parts_for_tension(problem_, contacts_, work_, tension_), parts_for_nutation(problem_));
+    const int parts = std::max(parts_for_tension(problem_, contacts_, work_, tension_), parts_for_nutation(problem_));
     if (parts > 1) {
       const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
       for (const int tree : island) watch_[tree] |= Watch::waits;
@@ -324,6 +323,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   }
   step_.resize(problem_.velocity.size());
   for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = length_ * problem_.velocity[i];
+  const double before = energy_if_passive(problem_);
   note_excesses(problem_, work_, excesses_);
   for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
     Tree& tree = *problem_.trees[i];
@@ -352,6 +352,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     displace(problem_, i, {step_.data() + problem_.offset[i], dofs}, !grounded, excesses_, work_);
   }
   if (rebounding) bound_energy(problem_, work_, rebound_);
+  bound_gain(problem_, before);
   const bool swept = outcome.sweeps > 0 && outcome.descents == 0;
   settle(first_tree, last_tree, carried, swept ? outcome.miss : 0);
 }
