@@ -115,6 +115,10 @@ bool is_pushed(const HeldBack& held) {
   return !std::ranges::all_of(held.pushes, [](const dynamics::Wrench& push) { return push.force.isZero(0) && push.moment.isZero(0); });
 }
 
+bool has_joints(const dynamics::System& system, const TreeSet& chosen) {
+  return std::ranges::any_of(chosen.trees, [&](int tree) { return system.trees[tree].links.size() > 1; });
+}
+
 /// Kinetic and potential [J].
 double energy_of(const dynamics::System& system, const TreeSet& chosen) {
   double sum = 0;
@@ -435,7 +439,7 @@ void NewtonCore::take_parts(std::span<Body> bodies, const Share& whole, int coun
     colliders_.follow(system_, part.length, chosen_);
     set_servos_and_limits(bodies, part);
     const std::span<dynamics::Contact> contacts = contacts_.find(part.length, chosen_, part.of_impulses);
-    const bool is_left_alone = servos_.empty() && !is_pushed(held_back_);
+    const bool is_left_alone = servos_.empty() && !is_pushed(held_back_) && has_joints(system_, chosen_);
     const double before = is_left_alone ? energy_of(system_, chosen_) : 0;
     step(contacts, part);
     if (is_left_alone) slow_down(system_, chosen_, energy_of(system_, chosen_) - before, contacts);
