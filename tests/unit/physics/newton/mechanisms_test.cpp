@@ -70,7 +70,7 @@ TEST(NewtonChain, OfTenKeepsItsEnergyAtAnySubstep) {
 // A substep with contacts is of first order: what falls at v is about h v / 2 from where it should be.
 TEST(NewtonChain, KeepsItsEnergyOnABaseThatStands) {
   for (const int links : {1, 2, 4}) {
-    for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    for (const double hz : long_runs::some_of({100, 50, 200, 500, 1000, 2000})) {
       EXPECT_LT(worst_energy_error(links, 10, 1 / hz, true), 10 / hz) << links << " " << hz;
     }
   }
