@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 namespace ziggurat::dynamics {
@@ -384,18 +385,45 @@ void take_excess(std::span<Tree* const> trees, Workspace& work, double excess) {
   for (Tree* tree : trees) take_excess(*tree, work, share * kinetic_energy(*tree));
 }
 
-double energy(const Tree& tree) {
-  double sum = kinetic_energy(tree);
-  for (std::size_t i = 0; i < tree.links.size(); ++i) {
-    sum -= tree.links[i].mass * tree.gravity.dot(tree.position[i]);
+double energy(std::span<Tree* const> trees) {
+  double sum = 0;
+  for (const Tree* tree : trees) {
+    sum += kinetic_energy(*tree);
+    for (std::size_t i = 0; i < tree->links.size(); ++i) {
+      sum -= tree->links[i].mass * tree->gravity.dot(tree->position[i]);
+    }
   }
   return sum;
 }
 
-double energy(std::span<Tree* const> trees) {
-  double sum = 0;
-  for (const Tree* tree : trees) sum += energy(*tree);
-  return sum;
+double energy_if_passive(const Problem& problem) {
+  const auto acts = [](const Wrench& push) { return !push.moment.isZero(0) || !push.force.isZero(0); };
+  const auto drives = [](const Block& block) { return block.kind == Block::Source::servo; };
+  const auto has_joints = [](const Tree* tree) { return tree->dofs > tree->dof_count[0]; };
+  const auto is_pushed = [&](const Tree* tree) { return std::ranges::any_of(tree->external, acts); };
+  const bool is_passive = std::ranges::any_of(problem.trees, has_joints) && std::ranges::none_of(problem.blocks, drives) &&
+                          std::ranges::none_of(problem.trees, is_pushed);
+  return is_passive ? energy(problem.trees) : std::numeric_limits<double>::infinity();
+}
+
+void bound_gain(const Problem& problem, Workspace& work, double before, bool grounded, bool is_part) {
+  constexpr double much = 0.02;
+  if (before == std::numeric_limits<double>::infinity()) return;
+  double kinetic = 0, mass = 0;
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    kinetic += kinetic_energy(*problem.trees[i]);
+    mass += problem.total_mass[i];
+  }
+  const double along = problem.length * problem.weight * std::sqrt(2 * kinetic / mass) / 2;
+  const double allowed = is_part ? least * kinetic : along + much * kinetic;
+  const double gain = energy(problem.trees) - before;
+  if (!(gain > allowed)) return;
+  if (!grounded) return take_excess(problem.trees, work, gain);
+  const double share = share_left(kinetic, gain);
+  for (Tree* tree : problem.trees) {
+    for (double& speed : tree->v) speed *= share;
+    move(*tree);
+  }
 }
 
 }  // namespace ziggurat::dynamics

@@ -54,9 +54,17 @@ void take_excess(Tree& tree, Workspace& work, double excess);
 /// The same from all trees of an island, in proportion to their kinetic energy.
 void take_excess(std::span<Tree* const> trees, Workspace& work, double excess);
 
-/// The energy of a tree, kinetic and potential [J]; needs move().
-double energy(const Tree& tree);
-/// Of all trees.
+/// The energy of all trees, kinetic and potential [J]; needs move().
 double energy(std::span<Tree* const> trees);
+
+/// The energy of an island with joints that no servo and no field moves, at the step's beginning [J]; of others infinity.
+double energy_if_passive(const Problem& problem);
+
+/// Takes what such an island gained when its trees have moved. So links that snap taut or are struck within a step can't throw others.
+/// @param before    see energy_if_passive()
+/// @param grounded  see undo_excess(); otherwise its momentum stays
+/// @param is_part   nothing is left; otherwise as much as a whole step may be off by: a fiftieth of its kinetic energy, and half of what its weight
+///                  does along it
+void bound_gain(const Problem& problem, Workspace& work, double before, bool grounded, bool is_part);
 
 }  // namespace ziggurat::dynamics

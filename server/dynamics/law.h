@@ -1,8 +1,8 @@
 #pragma once
 // The contact law, exact and linearised. With y = g - (u + c g - s) / m (s: the speed sought, m: the
 // mobility, c: what a normal impulse makes surfaces give way, Block::yield) it is the projection
-// equation g = P(y): P clips the normal part at 0 and friction to discs whose radii are the coefficients times the normal part (Alart and Curnier, Comput. Methods
-// Appl. Mech. Eng. 92, 1991). That is Coulomb's law without the lift of associated cones.
+// equation g = P(y): P clips the normal part at 0 and friction to discs whose radii are the
+// coefficients times the normal part (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991). That is Coulomb's law without the lift of associated cones.
 
 #include "dynamics/problem.h"
 

@@ -352,7 +352,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     displace(problem_, i, {step_.data() + problem_.offset[i], dofs}, !grounded, excesses_, work_);
   }
   if (rebounding) bound_energy(problem_, work_, rebound_);
-  bound_gain(problem_, before);
+  bound_gain(problem_, work_, before, grounded, is_part);
   const bool swept = outcome.sweeps > 0 && outcome.descents == 0;
   settle(first_tree, last_tree, carried, swept ? outcome.miss : 0);
 }

@@ -62,7 +62,8 @@ class System {
   double allowed_overlap = 1e-6;  ///< it may remain, because rounding must not move bodies [m]
   /// Into how many parts step() may ask to divide itself for an island, see tension.h and nutation.h. 1: it may not.
   int most_parts = 1;
-  LeftIslands left;  ///< by the last step()
+  bool is_part = false;  ///< step() takes one of these parts
+  LeftIslands left;      ///< by the last step()
 
   /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and
   /// are ignored, until something wakes its island: a contact with a tree that is awake and comes

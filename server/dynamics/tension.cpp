@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <Eigen/Eigenvalues>
-
-#include "dynamics/excess.h"
 
 namespace ziggurat::dynamics {
 namespace {
@@ -158,34 +155,6 @@ int parts_for_tension(const Problem& problem, std::span<const Contact> contacts,
     if (memory.free[i] > 0) most = std::max(most, swing(problem, i, work, memory));
   }
   return most > too_far ? static_cast<int>(std::min(std::ceil(most / of_a_part), 1e6)) : 1;
-}
-
-double energy_if_passive(const Problem& problem) {
-  const auto acts = [](const Wrench& push) { return !push.moment.isZero(0) || !push.force.isZero(0); };
-  const bool is_driven = std::ranges::any_of(problem.blocks, [](const Block& b) { return b.kind == Block::Source::servo; });
-  const bool has_joints =
-      std::ranges::any_of(problem.trees, [](const Tree* tree) { return tree->dofs > tree->dof_count[0]; });
-  const bool is_pushed = std::ranges::any_of(
-      problem.trees, [&](const Tree* tree) { return std::ranges::any_of(tree->external, acts); });
-  return has_joints && !is_driven && !is_pushed ? energy(problem.trees) : std::numeric_limits<double>::infinity();
-}
-
-void bound_gain(const Problem& problem, double before) {
-  constexpr double much = 0.1;
-  if (before == std::numeric_limits<double>::infinity()) return;
-  double kinetic = 0, mass = 0;
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    kinetic += kinetic_energy(*problem.trees[i]);
-    mass += problem.total_mass[i];
-  }
-  const double along = problem.length * problem.weight * std::sqrt(2 * kinetic / mass);
-  const double gain = energy(problem.trees) - before - along;
-  if (!(gain > much * kinetic)) return;
-  const double share = std::sqrt(std::max(0.0, 1 - gain / kinetic));
-  for (Tree* tree : problem.trees) {
-    for (double& speed : tree->v) speed *= share;
-    move(*tree);
-  }
 }
 
 }  // namespace ziggurat::dynamics

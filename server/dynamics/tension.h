@@ -31,12 +31,4 @@ struct Tension {
 /// @return          1: it need not be
 int parts_for_tension(const Problem& problem, std::span<const Contact> contacts, Workspace& work, Tension& memory);
 
-/// The energy of an island with joints that no servo and no field moves, at the step's beginning [J]; of others infinity.
-double energy_if_passive(const Problem& problem);
-
-/// Takes from the speeds of such an island, when its trees have moved, what it gained by much more than a step is off by: a tenth of its
-/// kinetic energy, and what its weight does along a step. So links that are struck within a step can't throw others.
-/// @param before  see energy_if_passive()
-void bound_gain(const Problem& problem, double before);
-
 }  // namespace ziggurat::dynamics

@@ -1,7 +1,6 @@
 #include "physics/newton/core.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "physics/build.h"
@@ -15,7 +14,7 @@ namespace {
 /// 3e-4 of the bond of two magnets of 10 mm.
 constexpr double overlap_of_magnets = 1e-7;
 
-/// Into how many a substep may be divided for what is pulled too hard.
+/// Into how many a substep may be divided for what is pulled too hard or nutates too far.
 constexpr int most_parts = 200;
 
 /// What the dialect takes where a scene says nothing is for its own clock.
@@ -110,38 +109,6 @@ struct GravityComesBack {
     }
   }
 };
-
-bool is_pushed(const HeldBack& held) {
-  return !std::ranges::all_of(held.pushes, [](const dynamics::Wrench& push) { return push.force.isZero(0) && push.moment.isZero(0); });
-}
-
-bool has_joints(const dynamics::System& system, const TreeSet& chosen) {
-  return std::ranges::any_of(chosen.trees, [&](int tree) { return system.trees[tree].links.size() > 1; });
-}
-
-/// Kinetic and potential [J].
-double energy_of(const dynamics::System& system, const TreeSet& chosen) {
-  double sum = 0;
-  for (const int tree : chosen.trees) sum += dynamics::energy(system.trees[tree]);
-  return sum;
-}
-
-/// Takes energy that nothing gave from an island, when links that are pulled hard snap taut: from all speeds, if it touched what stands.
-/// @param gain  [J]; nothing happens where it is none
-void slow_down(dynamics::System& system, const TreeSet& chosen, double gain, std::span<const dynamics::Contact> contacts) {
-  const auto stands = [&](const dynamics::LinkIndex& side) { return side.tree < 0 || system.trees[side.tree].dofs == 0; };
-  const auto holds = [&](const dynamics::Contact& contact) {
-    return (stands(contact.a) || stands(contact.b)) && !contact.impulse.isZero(0);
-  };
-  double all = 0;
-  for (const int tree : chosen.trees) all += dynamics::kinetic_energy(system.trees[tree]);
-  if (!(gain > 1e-9 * all) || std::ranges::none_of(contacts, holds)) return;
-  const double share = std::sqrt(std::max(0.0, 1 - gain / all));
-  for (const int tree : chosen.trees) {
-    for (double& speed : system.trees[tree].v) speed *= share;
-    dynamics::move(system.trees[tree]);
-  }
-}
 
 /// @param trees  ascending
 /// @param holds  whether it becomes the set of these trees, or of all others, which it does not list
@@ -324,6 +291,7 @@ void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share)
   system_.allowed_overlap = share.allowed_overlap;
   system_.softness = share.softness;
   system_.most_parts = share.most_parts;
+  system_.is_part = share.is_part;
   const dynamics::Report report =
       system_.step(share.length, contacts, servos_, limits_, share.trees());
   if (!system_.left.trees.empty()) {
@@ -431,6 +399,7 @@ void NewtonCore::take_parts(std::span<Body> bodies, const Share& whole, int coun
   part.length /= count;
   part.of_impulses /= count;
   part.most_parts = 1;
+  part.is_part = true;
   contacts_.choose(chosen_);
   for (int i = 0; i < count; ++i) {
     part.parts_left = count - i;
@@ -438,11 +407,7 @@ void NewtonCore::take_parts(std::span<Body> bodies, const Share& whole, int coun
     if (i > 0) push(system_, chosen_, held_back_, 1);
     colliders_.follow(system_, part.length, chosen_);
     set_servos_and_limits(bodies, part);
-    const std::span<dynamics::Contact> contacts = contacts_.find(part.length, chosen_, part.of_impulses);
-    const bool is_left_alone = servos_.empty() && !is_pushed(held_back_) && has_joints(system_, chosen_);
-    const double before = is_left_alone ? energy_of(system_, chosen_) : 0;
-    step(contacts, part);
-    if (is_left_alone) slow_down(system_, chosen_, energy_of(system_, chosen_) - before, contacts);
+    step(contacts_.find(part.length, chosen_, part.of_impulses), part);
   }
 }
 

@@ -64,7 +64,8 @@ class NewtonCore {
     double of_impulses = 1;           // of the substep's forces and impulses, that act in it
     bool more = false;                // other parts follow
     int parts_left = 1;               // until motors should be at their targets, with this one
-    int most_parts = 1;               // into which islands that are pulled too hard divide it
+    int most_parts = 1;               // into which islands may divide it
+    bool is_part = false;             // it is one of these
     double allowed_overlap = 1e-6;    // that remains [m]
     double softness = dynamics::System::usual_softness;
     std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
