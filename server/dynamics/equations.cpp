@@ -182,15 +182,29 @@ double mobility(const Tree& tree, Workspace& work, int dof) {
   return sum;
 }
 
-void accelerations(Tree& tree, Workspace& work, std::span<double> out) {
+void solve_held(const Tree& tree, Workspace& work, const Drive& drive, std::span<double> x) {
+  const int n = tree.dofs;
+  for (std::size_t k = 0; k < drive.held.size(); ++k) {
+    if (!drive.held[k]) continue;
+    for (int i = 0; i < n; ++i) {
+      if (!drive.held[i]) x[i] -= work.mass[i * n + k] * x[k];
+      work.mass[i * n + k] = work.mass[k * n + i] = 0;
+    }
+    work.mass[k * n + k] = 1;
+  }
+  factor_mass(tree, work, 0);
+  solve_mass(tree, work, x.data());
+}
+
+void accelerations(Tree& tree, Workspace& work, const Drive& drive, std::span<double> out) {
   place(tree);
   move(tree);
   compute_mass(tree, work);
-  factor_mass(tree, work, 0);
   external_forces(tree, work, out, false, true);
   bias_forces(tree, work, work.scratch);
   for (int k = 0; k < tree.dofs; ++k) out[k] -= work.scratch[k] + tree.damping[k] * tree.v[k];
-  solve_mass(tree, work, out.data());
+  for (std::size_t k = 0; k < drive.held.size(); ++k) out[k] = drive.held[k] ? 0 : out[k] + drive.push[k];
+  solve_held(tree, work, drive, out);
 }
 
 }  // namespace ziggurat::dynamics

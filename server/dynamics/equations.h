@@ -58,8 +58,20 @@ void solve_mass(const Tree& tree, const Workspace& work, double* x);
 /// needs the factors.
 double mobility(const Tree& tree, Workspace& work, int dof);
 
-/// dv/dt at the state (q, v) of the tree under gravity alone; places, moves and factors it.
+/// What servos do to a tree: they hold the speeds of some dofs, and push others. Of each dof; empty: there are none.
+struct Drive {
+  std::span<const unsigned char> held;  ///< whether its speed stays
+  std::span<const double> speed;        ///< of those that are held [rad/s] or [m/s]
+  std::span<const double> push;         ///< on the others [N m] or [N]
+  bool holds(std::size_t dof) const { return dof < held.size() && held[dof]; }
+};
+
+/// x := M^-1 x, where those that are held change by what x says, whatever it takes; work.mass and the factors are used up.
+/// @param x  of each dof: impulses, and changes of speed of those that are held
+void solve_held(const Tree& tree, Workspace& work, const Drive& drive, std::span<double> x);
+
+/// dv/dt at the state (q, v) of the tree under gravity and what drives it; places, moves and factors it.
 /// @param out  of each dof [rad/s^2] or [m/s^2]
-void accelerations(Tree& tree, Workspace& work, std::span<double> out);
+void accelerations(Tree& tree, Workspace& work, const Drive& drive, std::span<double> out);
 
 }  // namespace ziggurat::dynamics

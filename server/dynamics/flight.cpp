@@ -147,7 +147,7 @@ constexpr double error_weights[stage_count] = {
 
 /// One step of the method: stages in `k`, each the rates of q and v; the new state in the tree.
 /// @return  the estimated error relative to the tolerance
-double try_step(Tree& tree, Workspace& work, const double* start, double* k, double h) {
+double try_step(Tree& tree, Workspace& work, const Drive& drive, const double* start, double* k, double h) {
   const int places = static_cast<int>(tree.q.size()), size = places + tree.dofs;
   for (int stage = 1; stage < stage_count; ++stage) {
     for (int i = 0; i < size; ++i) {
@@ -156,7 +156,7 @@ double try_step(Tree& tree, Workspace& work, const double* start, double* k, dou
       (i < places ? tree.q[i] : tree.v[i - places]) = start[i] + h * sum;
     }
     place_rates(tree, tree.q.data(), tree.v.data(), k + stage * size);
-    accelerations(tree, work, {k + stage * size + places, static_cast<std::size_t>(tree.dofs)});
+    accelerations(tree, work, drive, {k + stage * size + places, static_cast<std::size_t>(tree.dofs)});
   }
   double speed = 0;  // the fastest coordinate: small ones need no digits of their own
   for (int i = 0; i < tree.dofs; ++i) speed = std::max(speed, std::abs(tree.v[i]));
@@ -174,34 +174,46 @@ double try_step(Tree& tree, Workspace& work, const double* start, double* k, dou
   return worst;
 }
 
-/// The impulse of the fields.
-void kick(Tree& tree, Workspace& work, double length) {
+/// The impulse of the fields, and of servos that hold speeds.
+void kick(Tree& tree, Workspace& work, double length, const Drive& drive) {
   const auto acts = [](const Wrench& w) { return !w.moment.isZero(0) || !w.force.isZero(0); };
-  if (std::none_of(tree.external.begin(), tree.external.end(), acts)) return;
+  if (drive.held.empty() && std::none_of(tree.external.begin(), tree.external.end(), acts)) return;
   compute_mass(tree, work);
-  factor_mass(tree, work, 0);
-  external_forces(tree, work, work.scratch, true, false);
-  solve_mass(tree, work, work.scratch.data());
-  for (int i = 0; i < tree.dofs; ++i) tree.v[i] += length * work.scratch[i];
+  auto& change = work.scratch;
+  external_forces(tree, work, change, true, false);
+  for (double& impulse : change) impulse *= length;
+  for (std::size_t k = 0; k < drive.held.size(); ++k) {
+    if (drive.held[k]) change[k] = drive.speed[k] - tree.v[k];
+  }
+  solve_held(tree, work, drive, change);
+  for (int i = 0; i < tree.dofs; ++i) tree.v[i] = drive.holds(i) ? drive.speed[i] : tree.v[i] + change[i];
 }
 
-int fly_tree(Tree& tree, Workspace& work, double length) {
+int fly_tree(Tree& tree, Workspace& work, double length, const Drive& drive) {
   const int places = static_cast<int>(tree.q.size()), size = places + tree.dofs;
   work.stages.resize((stage_count + 1) * size);
   double* start = work.stages.data();
   double* k = start + size;
-  kick(tree, work, length);
+  kick(tree, work, length, drive);
+  if (!drive.held.empty() && std::ranges::all_of(drive.held, [](unsigned char held) { return held != 0; })) {
+    std::copy(tree.v.begin(), tree.v.end(), work.scratch.begin());
+    for (double& step : work.scratch) step *= length;
+    displace(tree, work.scratch);
+    place(tree);
+    move(tree);
+    return 1;
+  }
   std::copy(tree.q.begin(), tree.q.end(), start);
   std::copy(tree.v.begin(), tree.v.end(), start + places);
   place_rates(tree, tree.q.data(), tree.v.data(), k);
-  accelerations(tree, work, {k + places, static_cast<std::size_t>(tree.dofs)});
+  accelerations(tree, work, drive, {k + places, static_cast<std::size_t>(tree.dofs)});
   double done = 0, h = std::min(length, tree.flight_step > 0 ? tree.flight_step : length);
   int steps = 0;
   while (done < length && steps < most_steps) {
     ++steps;
     const bool last = done + h >= length * (1 - 1e-12);
     if (last) h = length - done;
-    const double error = try_step(tree, work, start, k, h);
+    const double error = try_step(tree, work, drive, start, k, h);
     const double factor = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 4.0);
     if (error > 1 && steps < most_steps / 2) {
       h *= factor;
@@ -227,7 +239,7 @@ void momentum_flown(Tree& tree, Workspace& work, double length, std::span<double
   const int n = tree.dofs;
   work.before.assign(tree.q.begin(), tree.q.end());
   work.before.insert(work.before.end(), tree.v.begin(), tree.v.end());
-  fly_tree(tree, work, length);
+  fly_tree(tree, work, length, {});
   std::copy(tree.v.begin(), tree.v.end(), work.stages.begin());
   std::copy_n(work.before.begin(), tree.q.size(), tree.q.begin());
   std::copy_n(work.before.begin() + static_cast<std::ptrdiff_t>(tree.q.size()), n, tree.v.begin());
@@ -246,9 +258,9 @@ void momentum_flown(Tree& tree, Workspace& work, double length, std::span<double
 
 }  // namespace
 
-int fly(Tree& tree, Workspace& work, double length) {
+int fly(Tree& tree, Workspace& work, double length, const Drive& drive) {
   if (tree.single) return fly_single(tree, length);
-  return tree.dofs > 0 ? fly_tree(tree, work, length) : 0;
+  return tree.dofs > 0 ? fly_tree(tree, work, length, drive) : 0;
 }
 
 namespace {

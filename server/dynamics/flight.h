@@ -1,5 +1,5 @@
 #pragma once
-// Motion without contacts, limits and motors.
+// Motion without contacts and limits.
 
 #include "dynamics/equations.h"
 
@@ -12,9 +12,10 @@ namespace ziggurat::dynamics {
 /// the classical Runge-Kutta method of fourth order in steps of at most 0.1 rad, exactly where it
 /// keeps its axis. Other trees: the method of Dormand and Prince of order 5 (J. Comput. Appl.
 /// Math. 6, 1980, table 2) with steps chosen by its estimate of the error.
+/// Speeds that servos hold are so from the beginning on, where they become so by an impulse; all other pushes of servos last.
 /// @param length  [s]
 /// @return        how many steps it took
-int fly(Tree& tree, Workspace& work, double length);
+int fly(Tree& tree, Workspace& work, double length, const Drive& drive = {});
 
 /// The generalised momentum that a tree would have at the end of a substep without contacts, at the
 /// mass matrix of its beginning: M(q) v plus what its forces and its own motion add. The damping of

@@ -66,8 +66,14 @@ void keep_momentum(Tree& tree, Workspace& work, const double* mass, std::span<co
   move(tree);
 }
 
-/// Whether a servo did not give all that it has in the last substep.
-bool is_obeyed(const Servo& servo) { return servo.lower < servo.impulse && servo.impulse < servo.upper; }
+/// Whether more than motors of joints acts in an island.
+/// @param allowed  see holds()
+bool is_touched(const Problem& problem, std::span<const Servo> servos, double allowed) {
+  return std::ranges::any_of(problem.blocks, [&](const Block& block) {
+    const bool is_motor = block.kind == Block::Source::servo && servos[block.source].dof >= 0;
+    return !is_motor && holds(block, allowed);
+  });
+}
 
 /// Moves a tree of the island. What nothing fixed rubs keeps its momentum, and so does what would gain energy.
 void displace(const Problem& problem, std::size_t i, std::span<const double> by, bool drifts,
@@ -301,7 +307,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   gather_island(first_tree, last_tree, first_item, last_item);
   problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
-  if (most_parts > 1) {
+  if (most_parts > 1 && is_touched(problem_, servos_, allowed_overlap)) {
     const int parts = std::max(parts_for_tension(problem_, contacts_, work_, tension_), parts_for_nutation(problem_));
     if (parts > 1) {
       const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
@@ -314,10 +320,8 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const bool rebounding = rebounds(problem_);
   if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);
   write_impulses();
-  const bool touched =
-      std::ranges::any_of(problem_.blocks, [&](const Block& block) { return holds(block, allowed_overlap); });
-  if (!touched) {  // what it flew past did not hold it
-    for (Tree* tree : problem_.trees) fly(*tree, work_, length_);
+  if (!is_touched(problem_, servos_, allowed_overlap)) {  // what it flew past did not hold it
+    fly_driven(problem_, servos_, work_, drives_);
     settle(first_tree, last_tree, false);
     return;
   }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "dynamics/drive.h"
 #include "dynamics/excess.h"
 #include "dynamics/newton.h"
 #include "dynamics/rebound.h"
@@ -165,6 +166,7 @@ class System {
   Excesses excesses_;
   Rebound rebound_;
   Tension tension_;
+  Drives drives_;
   Workspace work_;
   Problem problem_;
   Solver solver_;
