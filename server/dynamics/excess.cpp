@@ -192,16 +192,18 @@ double lift(const Tree& tree, Workspace& work, const double* by) {
   return std::max(0.0, sum);
 }
 
-/// Which dofs servos and limits hold.
+/// See Excesses.
 void note_held(const Problem& problem, std::vector<unsigned char>& held) {
-  held.assign(problem.velocity.size(), 0);
+  static_assert(Excesses::apart == 1, "spins is 0 or 1");
+  held.clear();
+  for (const Tree* tree : problem.trees) held.insert(held.end(), tree->spins.begin(), tree->spins.end());
   for (const Block& block : problem.blocks) {
     if (block.kind == Block::Source::contact) continue;
     if (block.impulse[0] <= block.lower || block.impulse[0] >= block.upper) continue;
     const bool drives = block.kind == Block::Source::servo;
     for (const int k : block.dofs_a) {
       unsigned char& dof = held[problem.offset[block.a] + k];
-      dof = drives ? Excesses::driven : std::max(dof, Excesses::at_limit);
+      dof = drives ? Excesses::driven : std::max(dof, Excesses::apart);
     }
   }
 }

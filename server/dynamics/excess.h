@@ -24,8 +24,9 @@ struct Excess {
 /// What a substep gives the trees of an island.
 struct Excesses {
   std::vector<Excess> of_trees;
-  static constexpr unsigned char free = 0, at_limit = 1, driven = 2;
-  std::vector<unsigned char> held;  ///< what holds each dof: nothing, a limit or a servo
+  static constexpr unsigned char free = 0, apart = 1, driven = 2;
+  /// Of each dof: free; apart, because a limit holds it, or it spins (see Mechanism) and no error of turning is its own; or driven by a servo.
+  std::vector<unsigned char> held;
   std::vector<double> speeds, bias_of_held, bias_of_free;  ///< of note_excesses(), which uses their memory again
 };
 

@@ -6,9 +6,10 @@
 
 namespace ziggurat::dynamics {
 
-/// Into how many parts the step of an island should be divided so that the axes of single bodies in contact can be followed: the
-/// speed of their spin, times the spread of their moments of inertia over the middle one, is what they nutate by.
+/// Into how many parts the step of an island should be divided so that the axes of what is in contact can be followed. A single
+/// body nutates by the speed of its spin, times the spread of its moments of inertia over the middle one; what turns on a revolute
+/// joint by its angular momentum in the joint, times the mobility of turning across it.
 /// @return  1: it need not be
-int parts_for_nutation(const Problem& problem);
+int parts_for_nutation(const Problem& problem, Workspace& work);
 
 }  // namespace ziggurat::dynamics

@@ -307,8 +307,9 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   gather_island(first_tree, last_tree, first_item, last_item);
   problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
-  if (most_parts > 1 && is_touched(problem_, servos_, allowed_overlap)) {
-    const int parts = std::max(parts_for_tension(problem_, contacts_, work_, tension_), parts_for_nutation(problem_));
+  if (most_parts > 1) {
+    const bool is_pulled = is_touched(problem_, servos_, allowed_overlap);
+    const int parts = std::max(is_pulled ? parts_for_tension(problem_, contacts_, work_, tension_) : 1, parts_for_nutation(problem_, work_));
     if (parts > 1) {
       const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
       for (const int tree : island) watch_[tree] |= Watch::waits;

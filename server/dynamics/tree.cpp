@@ -1,6 +1,7 @@
 #include "dynamics/tree.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -93,6 +94,7 @@ Mechanism::Mechanism(std::vector<Link> with, unsigned with_freedoms)
     link_side.push_back(link.joint_in_link.orientation.conjugate().toRotationMatrix());
   }
   note_ways();
+  note_spinning();
   free_root = links[0].joint == JointType::floating && dof_count[0] == 6;
   single = size == 1 && free_root;
 }
@@ -110,6 +112,26 @@ void Mechanism::note_ways() {
   }
   dof_places.resize(dofs);
   std::iota(dof_places.begin(), dof_places.end(), 0);
+}
+
+void Mechanism::note_spinning() {
+  constexpr double rounding = 1e-9;
+  spins.assign(dofs, 0);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const Link& link = links[i];
+    if (link.joint == JointType::revolute) {
+      const Vector3 axis = link.joint_in_link.orientation * link.axis, arm = link.joint_in_link.position;
+      const Vector3 across = axis.unitOrthogonal(), other = axis.cross(across);
+      const auto inertia = [&](const Vector3& a, const Vector3& b) { return a.dot(link.inertia.cwiseProduct(b)); };
+      const double most = rounding * link.inertia.maxCoeff();
+      const bool round = std::abs(inertia(across, across) - inertia(other, other)) <= most && std::abs(inertia(across, other)) <= most &&
+                         std::abs(inertia(axis, across)) <= most && std::abs(inertia(axis, other)) <= most;
+      spins[first_dof[i]] = round && arm.cross(axis).norm() <= rounding * (1 + arm.norm());
+    }
+    int carrier = link.parent;
+    while (carrier >= 0 && dof_count[carrier] == 0) carrier = links[carrier].parent;
+    if (carrier >= 0 && dof_count[carrier] == 1) spins[first_dof[carrier]] = 0;
+  }
 }
 
 Tree::Tree(std::vector<Link> with, const math::Pose& root, unsigned with_freedoms) {
@@ -140,6 +162,7 @@ void Tree::use(std::shared_ptr<const Mechanism> mechanism) noexcept {
   first_place = m.first_place;
   parent_dof = m.parent_dof;
   damping = m.damping;
+  spins = m.spins;
   parent_side = m.parent_side;
   link_side = m.link_side;
   free_root = m.free_root;

@@ -56,12 +56,16 @@ struct Mechanism {
   std::vector<int> ways;         ///< the dofs from the root to each link, one after the other
   std::vector<int> way_end;      ///< of each link, into `ways`
   std::vector<int> dof_places;   ///< 0, 1, … dofs - 1
+  /// Of each dof: whether it turns a link that carries no other and is round about the axis. Then the tree's mass does not depend on its
+  /// place, and its motion does nothing to the link's angular momentum along the axis.
+  std::vector<unsigned char> spins;
   std::vector<Matrix3> parent_side, link_side;  ///< rotations X_PJ and X_JL of each link
   bool free_root = false;  ///< floating with all six freedoms: dofs 0 to 5 are the world's axes
   bool single = false;     ///< one link, with a free root
 
  private:
   void note_ways();
+  void note_spinning();
 };
 
 class Tree {
@@ -78,6 +82,7 @@ class Tree {
   int dofs = 0;
   std::span<const int> first_dof, dof_count, first_place, parent_dof;
   std::span<const double> damping;
+  std::span<const unsigned char> spins;
   std::span<const Matrix3> parent_side, link_side;
   bool free_root = false, single = false;
 
