@@ -66,6 +66,38 @@ void keep_momentum(Tree& tree, Workspace& work, const double* mass, std::span<co
   move(tree);
 }
 
+void add(const Outcome& outcome, Report& report) {
+  ++report.islands;
+  report.not_converged += !outcome.converged;
+  report.most_iterations = std::max(report.most_iterations, outcome.iterations);
+  report.most_descents = std::max(report.most_descents, outcome.descents);
+  report.most_interior = std::max(report.most_interior, outcome.interior);
+  report.most_sweeps = std::max(report.most_sweeps, outcome.sweeps);
+  report.miss = std::max(report.miss, outcome.miss);
+}
+
+/// Notes places and speeds of an island's trees.
+void keep(const std::vector<Tree>& trees, std::span<const int> island, std::vector<double>& out) {
+  out.clear();
+  for (const int number : island) {
+    out.insert(out.end(), trees[number].q.begin(), trees[number].q.end());
+    out.insert(out.end(), trees[number].v.begin(), trees[number].v.end());
+  }
+}
+
+/// Gives them back.
+void put_back(std::vector<Tree>& trees, std::span<const int> island, const std::vector<double>& kept) {
+  const double* next = kept.data();
+  for (const int number : island) {
+    Tree& tree = trees[number];
+    std::copy_n(next, tree.q.size(), tree.q.begin());
+    std::copy_n(next + tree.q.size(), tree.v.size(), tree.v.begin());
+    next += tree.q.size() + tree.v.size();
+    place(tree);
+    move(tree);
+  }
+}
+
 /// Whether more than motors of joints acts in an island.
 /// @param allowed  see holds()
 bool is_touched(const Problem& problem, std::span<const Servo> servos, double allowed) {
@@ -225,51 +257,33 @@ Report System::step(double length, std::span<Contact> contacts, std::span<Servo>
   return report_;
 }
 
-/// Advances an island where nothing holds it, as far as can be seen.
-/// @return  whether it flew, and hit nothing
-bool System::fly_island(int first_tree, int last_tree, int first_item, int last_item) {
-  const auto violated = [&](const Item& item) {
+/// Whether a joint of the island is beyond a limit.
+bool System::is_beyond(int first_item, int last_item) const {
+  return std::any_of(item_order_.begin() + first_item, item_order_.begin() + last_item, [&](const Item& item) {
+    if (item.kind != limit_item) return false;
     const Limit& limit = limits_[item.index];
     const Tree& tree = trees[limit.tree];
     const double q = tree.q[tree.first_place[limit.link]];
     return q < limit.lower || q > limit.upper;
-  };
-  for (int i = first_item; i < last_item; ++i) {
-    if (item_order_[i].kind != limit_item || violated(item_order_[i])) return false;
-  }
-  kept_.clear();
-  for (int i = first_tree; i < last_tree; ++i) {
-    Tree& tree = trees[tree_order_[i]];
-    if (first_item < last_item) {
-      kept_.insert(kept_.end(), tree.q.begin(), tree.q.end());
-      kept_.insert(kept_.end(), tree.v.begin(), tree.v.end());
-    }
-    fly(tree, work_, length_);
-  }
-  if (std::none_of(item_order_.begin() + first_item, item_order_.begin() + last_item, violated)) {
-    for (int i = first_item; i < last_item; ++i) limits_[item_order_[i].index].impulse = 0;
-    return true;
-  }
-  const double* kept = kept_.data();
-  for (int i = first_tree; i < last_tree; ++i) {
-    Tree& tree = trees[tree_order_[i]];
-    std::copy_n(kept, tree.q.size(), tree.q.begin());
-    std::copy_n(kept + tree.q.size(), tree.v.size(), tree.v.begin());
-    kept += tree.q.size() + tree.v.size();
-    place(tree);
-    move(tree);
-  }
-  return false;
+  });
 }
 
-void System::add(const Outcome& outcome) {
-  ++report_.islands;
-  report_.not_converged += !outcome.converged;
-  report_.most_iterations = std::max(report_.most_iterations, outcome.iterations);
-  report_.most_descents = std::max(report_.most_descents, outcome.descents);
-  report_.most_interior = std::max(report_.most_interior, outcome.interior);
-  report_.most_sweeps = std::max(report_.most_sweeps, outcome.sweeps);
-  report_.miss = std::max(report_.miss, outcome.miss);
+/// Advances an island where nothing holds it, as far as can be seen.
+/// @return  whether it flew, and hit nothing
+bool System::fly_island(int first_tree, int last_tree, int first_item, int last_item) {
+  for (int i = first_item; i < last_item; ++i) {
+    if (item_order_[i].kind != limit_item) return false;
+  }
+  if (is_beyond(first_item, last_item)) return false;
+  const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
+  if (first_item < last_item) keep(trees, island, kept_);
+  for (const int tree : island) fly(trees[tree], work_, length_);
+  if (is_beyond(first_item, last_item)) {
+    put_back(trees, island, kept_);
+    return false;
+  }
+  for (int i = first_item; i < last_item; ++i) limits_[item_order_[i].index].impulse = 0;
+  return true;
 }
 
 /// The problem of the trees and items of one island.
@@ -304,6 +318,7 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
 }
 
 void System::solve_island(int first_tree, int last_tree, int first_item, int last_item) {
+  const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
   gather_island(first_tree, last_tree, first_item, last_item);
   problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
@@ -311,20 +326,20 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     const bool is_pulled = is_touched(problem_, servos_, allowed_overlap);
     const int parts = std::max(is_pulled ? parts_for_tension(problem_, contacts_, work_, tension_) : 1, parts_for_nutation(problem_, work_));
     if (parts > 1) {
-      const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
       for (const int tree : island) watch_[tree] |= Watch::waits;
       report_.not_converged += parts > most_parts;
       return left.add(island, std::min(parts, most_parts));
     }
   }
-  add(outcome);
+  add(outcome, report_);
   const bool rebounding = rebounds(problem_);
   if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);
   write_impulses();
   if (!is_touched(problem_, servos_, allowed_overlap)) {  // what it flew past did not hold it
+    keep(trees, island, kept_);
     fly_driven(problem_, servos_, work_, drives_);
-    settle(first_tree, last_tree, false);
-    return;
+    if (!is_beyond(first_item, last_item)) return settle(first_tree, last_tree, false);
+    put_back(trees, island, kept_);
   }
   step_.resize(problem_.velocity.size());
   for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = length_ * problem_.velocity[i];

@@ -129,8 +129,8 @@ class System {
   void fetch_after(std::size_t island) const;
   void gather_island(int first_tree, int last_tree, int first_item, int last_item);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
+  bool is_beyond(int first_item, int last_item) const;
   bool fly_island(int first_tree, int last_tree, int first_item, int last_item);
-  void add(const Outcome& outcome);  // to the report
   void write_impulses();
 
   /// What is known of a tree's sleep.
