@@ -165,7 +165,7 @@ void Solver::enter(const Problem& problem, double margin) {
 /// Linearises all blocks, with the matrix and the residuals.
 /// @return  the mean product of impulse and speed [J]
 double Solver::linearise_interior(Problem& problem) {
-  start_matrix(problem);
+  start_matrix(problem, matrix_);
   double products = 0;
   int count = 0;
   for (std::size_t k = 0; k < problem.blocks.size(); ++k) {

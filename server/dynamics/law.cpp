@@ -193,7 +193,7 @@ void linearise(const Block& block, const double* u, Linear& out) {
   for (int d = 0; d < count; ++d) linearise(block, all[d], y, out);
 }
 
-void soften(const Block& block, const double* u, double softness, double* impulse, Linear* out) {
+void soften(const Block& block, const double* u, double softness, bool anchors, double* impulse, Linear* out) {
   const int rows = block.rows, active = active_rows(block);
   std::fill_n(impulse, rows, 0.0);
   if (out) {
@@ -203,7 +203,7 @@ void soften(const Block& block, const double* u, double softness, double* impuls
   if (active == 0) return;
   double y[Block::most_rows];
   for (int r = 0; r < active; ++r) {
-    y[r] = block.anchor[r] - (u[r] - block.seek[r]) / (softness * block.mobility[r]);
+    y[r] = (anchors ? block.anchor[r] : 0) - (u[r] - block.seek[r]) / (softness * block.mobility[r]);
   }
   const auto give_way = [&](int row, int column, double share) {
     if (!out) return;
@@ -214,7 +214,8 @@ void soften(const Block& block, const double* u, double softness, double* impuls
   const double upper =
       block.law == Block::Law::bounded ? block.upper : std::numeric_limits<double>::infinity();
   const double give_of_normal = softness * block.mobility[0];
-  const double share = give_of_normal / (give_of_normal + block.yield);
+  const bool is_spring = !anchors && block.yield > 0;
+  const double share = give_of_normal / (is_spring ? block.yield : give_of_normal + block.yield);
   y[0] *= share;
   impulse[0] = std::clamp(y[0], lower, upper);
   if (y[0] > lower && y[0] < upper) give_way(0, 0, share);

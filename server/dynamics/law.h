@@ -22,9 +22,10 @@ void linearise(const Block& block, const double* u, Linear& out);
 
 /// The softened law: y is taken about the block's anchor with `softness` times the mobility. Where
 /// anchor and impulse agree it is the contact law itself.
+/// @param anchors  otherwise y is taken about 0, so friction is viscous until it slides, and what gives way carries what it is pressed in by
 /// @param impulse  out: of each row
 /// @param out      out: its linearisation; may be null
-void soften(const Block& block, const double* u, double softness, double* impulse, Linear* out);
+void soften(const Block& block, const double* u, double softness, bool anchors, double* impulse, Linear* out);
 
 /// By how much the block's impulses and speeds miss the law [m/s] or [rad/s].
 double miss(const Block& block, const double* u);

@@ -127,12 +127,11 @@ bool has_strike(const Problem& problem) {
 
 }  // namespace
 
-/// The mass matrices.
-void Solver::start_matrix(Problem& problem) {
-  matrix_.clear();
+void start_matrix(const Problem& problem, BlockMatrix& matrix) {
+  matrix.clear();
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
-    double* block = matrix_.block(static_cast<int>(i), static_cast<int>(i));
+    double* block = matrix.block(static_cast<int>(i), static_cast<int>(i));
     std::copy_n(problem.mass_of(i), tree.dofs * tree.dofs, block);
     for (int k = 0; k < tree.dofs; ++k) {
       block[k * tree.dofs + k] += problem.length * tree.damping[k];
@@ -153,7 +152,7 @@ void Solver::take_speeds(const Problem& problem) {
 /// @return  false if the matrix has no factors; then nothing has changed
 bool Solver::step(Problem& problem) {
   kept_velocity_ = problem.velocity;
-  start_matrix(problem);
+  start_matrix(problem, matrix_);
   problem.velocity = problem.momentum;
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
     linearise(problem.blocks[i], speeds_[i].data(), linear_[i]);
@@ -205,17 +204,17 @@ void Solver::correct(Problem& problem) {
   }
 }
 
+double Solver::worst_miss(const Problem& problem, double& scale) {
+  take_speeds(problem);
+  return miss_now(problem, scale);
+}
+
 /// At the speeds that were taken.
 /// @param scale  out: see find_scale()
 /// @return       infinite if a speed or an impulse is no number
 double Solver::miss_now(const Problem& problem, double& scale) const {
   double of_joints = 0;
   return find_scale(problem, speeds_, scale, of_joints) ? miss_beyond(problem, speeds_, HUGE_VAL) : HUGE_VAL;
-}
-
-double Solver::worst_miss(const Problem& problem, double& scale) {
-  take_speeds(problem);
-  return miss_now(problem, scale);
 }
 
 void Snapshot::take(const Problem& problem) {
@@ -339,6 +338,8 @@ Outcome Solver::solve(Problem& problem) {
   }
   if (work <= options.newton_work) {
     if (iterate(problem, outcome, options.most_far)) return outcome;
+    start_.give_back(problem);
+    if (ease(problem, outcome)) return outcome;
     start_.give_back(problem);
     if (soften_after_sweeps(problem, outcome)) {
       // It misses by more than soft surfaces give way, and would share loads at random.

@@ -72,6 +72,10 @@ void add_impulse(const Problem& problem, const Block& block, const double* impul
 /// @return  the largest change of a coordinate's speed that is missing, about [m/s] or [rad/s]
 double imbalance(const Problem& problem, std::vector<double>& out);
 
+/// The mass matrices of a problem, with the joints' damping.
+/// @param matrix  of its shape
+void start_matrix(const Problem& problem, BlockMatrix& matrix);
+
 /// Velocities and impulses of a problem.
 struct Snapshot {
   std::vector<double> velocity;                                ///< of each dof
@@ -94,7 +98,6 @@ class Solver {
   void solve_displacement(Problem& problem);
 
  private:
-  void start_matrix(Problem& problem);
   bool iterate(Problem& problem, Outcome& outcome, int most_far);
   bool step(Problem& problem);
   void shorten(Problem& problem, double& wrong);
@@ -105,8 +108,9 @@ class Solver {
   void take_speeds(const Problem& problem);
   double miss_now(const Problem& problem, double& scale) const;
   bool proximal(Problem& problem, Outcome& outcome);
+  bool ease(Problem& problem, Outcome& outcome);
   bool patient_proximal(Problem& problem, Outcome& outcome, bool strikes);
-  bool proximal_step(Problem& problem, double softness, double shortest, double& unbalanced);
+  bool proximal_step(Problem& problem, double softness, bool anchors, double shortest, double& unbalanced);
   bool interior_points(Problem& problem, Outcome& outcome);
   void enter(const Problem& problem, double margin);
   double linearise_interior(Problem& problem);

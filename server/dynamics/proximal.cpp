@@ -71,10 +71,10 @@ namespace {
 /// Impulses of the softened law at speeds.
 /// @param linear  out: its linearisations; may be null
 void soften(Problem& problem, std::span<const std::array<double, Block::most_rows>> speeds,
-            double softness, Linear* linear) {
+            double softness, bool anchors, Linear* linear) {
   for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
     Block& block = problem.blocks[k];
-    soften(block, speeds[k].data(), softness, block.impulse.data(), linear ? linear + k : nullptr);
+    soften(block, speeds[k].data(), softness, anchors, block.impulse.data(), linear ? linear + k : nullptr);
   }
 }
 
@@ -89,14 +89,14 @@ double square(const Problem& problem, const std::vector<double>& missing) {
 
 }  // namespace
 
-/// One step about the anchors. Speeds must be taken, and are taken at the velocities that it finds.
+/// One step, about the anchors or about none: then what yields carries what it is pressed in by. Speeds must be taken, and are taken at the velocities that it finds.
 /// @param shortest    part of the way; below 1 it goes as far as it leaves less momentum missing
 /// @param unbalanced  out: the largest change of a coordinate's speed that is missing
 /// @return            false if no step does
-bool Solver::proximal_step(Problem& problem, double softness, double shortest, double& unbalanced) {
+bool Solver::proximal_step(Problem& problem, double softness, bool anchors, double shortest, double& unbalanced) {
   constexpr double enough = 0.1;
-  start_matrix(problem);
-  soften(problem, speeds_, softness, linear_.data());
+  start_matrix(problem, matrix_);
+  soften(problem, speeds_, softness, anchors, linear_.data());
   for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
     add_slope(problem, problem.blocks[k], linear_[k], sloped_, matrix_);
   }
@@ -112,7 +112,7 @@ bool Solver::proximal_step(Problem& problem, double softness, double shortest, d
       problem.velocity[k] = kept_velocity_[k] + way * direction_[k];
     }
     take_speeds(problem);
-    soften(problem, speeds_, softness, nullptr);
+    soften(problem, speeds_, softness, anchors, nullptr);
     unbalanced = imbalance(problem, residual_);
     if (shortest == 1) return true;
     if (square(problem, residual_) < (1 - enough * way) * before) return true;
@@ -131,7 +131,7 @@ bool Solver::proximal(Problem& problem, Outcome& outcome) {
   bool enough = false;
   for (int i = 0; i < options.most_descents; ++i) {
     ++outcome.descents;
-    if (!proximal_step(problem, options.softness, 1, unbalanced)) break;
+    if (!proximal_step(problem, options.softness, true, 1, unbalanced)) break;
     const double law = miss_now(problem, scale), now = std::max(law, unbalanced);
     if (!(now < HUGE_VAL)) break;
     if (now < best) {
@@ -167,7 +167,7 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome, bool strikes) 
   bool enough = false;
   for (int i = 0, steps = 1; i < options.most_patient; ++i, ++steps) {
     ++outcome.descents;
-    const bool nearer = proximal_step(problem, softness, shortest, unbalanced);
+    const bool nearer = proximal_step(problem, softness, true, shortest, unbalanced);
     const double law = miss_now(problem, scale), now = std::max(law, unbalanced);
     if (nearer && now < best) {
       best = now;
@@ -193,6 +193,25 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome, bool strikes) 
   snapshot_.give_back(problem);
   outcome.miss = best;
   return enough;
+}
+
+/// Newton's method from where friction is viscous, less and less so: what slides by a little, as the two ends of a wheel's line do,
+/// sticks and slides by turns in steps that know of no friction between.
+/// @return  whether it converged
+bool Solver::ease(Problem& problem, Outcome& outcome) {
+  constexpr double softest = 0.1, hardest = 1e-5, shortest = 1e-3, balanced = 1e-6;
+  constexpr int most = 6;
+  take_speeds(problem);
+  for (double softness = softest; softness > 0.9 * hardest; softness /= 10) {
+    for (int i = 0; i < most; ++i) {
+      double unbalanced = 0, scale = 0;
+      ++outcome.descents;
+      if (!proximal_step(problem, softness, false, shortest, unbalanced)) break;
+      miss_now(problem, scale);
+      if (unbalanced <= balanced * scale) break;
+    }
+  }
+  return iterate(problem, outcome, options.most_far);
 }
 
 }  // namespace ziggurat::dynamics

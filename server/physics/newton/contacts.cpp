@@ -300,13 +300,14 @@ void Contacts::meet(Pair& pair, double length) {
     found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
   }
   if (!tumbling || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
-  add(found, pair);
+  add(found, pair, length);
   if (tumbling && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
 }
 
 /// Appends the pair's contacts, each with the impulse of the point of the last substep that is
-/// nearest on either body.
-void Contacts::add(const contact::Contacts& found, Pair& pair) {
+/// nearest: on either body, or moved with one.
+/// @param length  [s]
+void Contacts::add(const contact::Contacts& found, Pair& pair, double length) {
   constexpr double same = 25e-6;  // 5 mm apart is another contact [m^2]
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
@@ -314,6 +315,8 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
   auto& old = before_;
   std::copy_n(pair.points.begin(), old_count, old.begin());
   std::array<bool, most_points> taken{};
+  // A point of what rolls moves with neither surface, but with the body that rolls.
+  const math::Vector3 with_a = length * from_bullet(a.velocity), with_b = length * from_bullet(b.velocity);
   pair.count = found.count;
   pair.normal = from_bullet(found.normal);
   pair.first = static_cast<std::uint32_t>(contacts_.size());
@@ -330,8 +333,8 @@ void Contacts::add(const contact::Contacts& found, Pair& pair) {
     int nearest = -1;
     double least = same;
     for (int j = 0; j < old_count; ++j) {
-      const double away =
-          std::min(square_between(old[j].on_a, now.on_a), square_between(old[j].on_b, now.on_b));
+      const double away = std::min({square_between(old[j].on_a, now.on_a), square_between(old[j].on_b, now.on_b),
+                                    square_between(old[j].point + with_a, now.point), square_between(old[j].point + with_b, now.point)});
       if (!taken[j] && away < least) least = away, nearest = j;
     }
     if (nearest >= 0) {

@@ -86,7 +86,7 @@ class Contacts {
   void meet_all(double length);
   void meet(Pair& pair, double length);
   bool is_among(const Pair& pair, const TreeSet& chosen) const;
-  void add(const contact::Contacts& found, Pair& pair);
+  void add(const contact::Contacts& found, Pair& pair, double length);
   void emit(const Pair& pair);
   bool covers(const Pair& seen, const Pair& hidden, std::size_t mover) const;
   bool is_compound(const Collider& collider) const;
