@@ -202,7 +202,7 @@ bool Solver::ease(Problem& problem, Outcome& outcome) {
   constexpr double softest = 0.1, hardest = 1e-5, shortest = 1e-3, balanced = 1e-6;
   constexpr int most = 6;
   take_speeds(problem);
-  for (double softness = softest; softness > 0.9 * hardest; softness /= 10) {
+  for (double softness = softest; softness > 0.9 * hardest; softness /= 3) {
     for (int i = 0; i < most; ++i) {
       double unbalanced = 0, scale = 0;
       ++outcome.descents;
