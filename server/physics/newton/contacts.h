@@ -88,7 +88,9 @@ class Contacts {
   bool is_among(const Pair& pair, const TreeSet& chosen) const;
   void add(const contact::Contacts& found, Pair& pair, double length);
   void emit(const Pair& pair);
-  bool covers(const Pair& seen, const Pair& hidden, std::size_t mover) const;
+  bool is_inside_base(const Collider& cover, const Collider& hidden, std::size_t mover, const btVector3& up, btScalar height,
+                      const btVector3& point);
+  bool covers(const Pair& seen, const Pair& hidden, std::size_t mover);
   bool is_compound(const Collider& collider) const;
   void drop_hidden();
   template <class IsKept>
@@ -110,6 +112,7 @@ class Contacts {
   std::vector<int> floor_pairs_;  // of each collider
   PairLists lists_;               // of all colliders but the floor
   std::vector<int> forgotten_;    // pairs, in forget()
+  std::vector<int> neighbours_;   // of a collider, in is_inside_base()
   std::vector<dynamics::Contact> contacts_;
   std::vector<int> owner_;                      // pair of each contact
   std::array<Remembered, most_points> before_;  // of the pair under way, a substep ago
@@ -126,5 +129,21 @@ class Contacts {
   };
   std::vector<OnBase> on_bases_;
 };
+
+/// @param is_kept  of the place of a contact: the same for all of a pair
+template <class IsKept>
+void Contacts::keep_if(IsKept is_kept) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < owner_.size(); ++i) {
+    Pair& pair = pairs_[owner_[i]];
+    const bool first = pair.first == i;
+    if (!is_kept(i)) continue;
+    if (first) pair.first = static_cast<std::uint32_t>(kept);
+    contacts_[kept] = contacts_[i];
+    owner_[kept++] = owner_[i];
+  }
+  contacts_.resize(kept);
+  owner_.resize(kept);
+}
 
 }  // namespace ziggurat::physics

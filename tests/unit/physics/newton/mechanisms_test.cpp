@@ -269,7 +269,9 @@ TEST(NewtonWheels, CarryTheirShareAlsoWhereTheyHardlySlide) {
           all += contact.force.z();
           of_wheels += contact.link == 1 || contact.link == 2 ? contact.force.z() : 0;
         }
-        if (i > 4) EXPECT_NEAR(of_wheels / all, 4.0 / 6, 0.02);
+        if (i > 4) {
+          EXPECT_NEAR(of_wheels / all, 4.0 / 6, 0.02);
+        }
       }
       EXPECT_NEAR(state_of(world).links[0].angular_velocity.z(), (right - left) * size.radius / (size.track + size.width), 1e-3 * (right - left));
     }

@@ -129,6 +129,29 @@ TEST_P(NewtonAt, TilesAreAsSmoothAsOneInEveryDirection) {
   }
 }
 
+/// Where a fast plank is after a while on a floor of tiles, or on a slab.
+Pose slid_plank(bool on_tiles, double h) {
+  World world(newton(), h);
+  world.add(loose({{-2, -1.7, 0}, about({0, 0, 1}, 70 * std::numbers::pi / 180)}, scene::Box{{0.9, 0.1, 0.02}}, 1, 0.2));
+  for (int i = 0; i < 121 && on_tiles; ++i) {
+    world.add(standing(at(0.5 * (i / 11 - 7), 0.5 * (i % 11 - 6), -0.1), scene::Box{{0.5, 0.5, 0.1}}));
+  }
+  if (!on_tiles) world.add(standing(at(0, 0, -0.1), scene::Box{{20, 20, 0.1}}));
+  const world::Push push{0, Vector3(3.2, 2.5, 0) / h, Vector3::Zero()};
+  set_pushes(world, std::span(&push, 1));
+  world.step();
+  set_pushes(world, {});
+  run(world, 0.9, h);
+  return origin(world, 0);
+}
+
+// Its corner goes from a tile over the tip of a second one into a third within a substep: that one's side was hit.
+TEST_P(NewtonAt, WhereFourTilesMeetIsNoEdge) {
+  const Pose tiles = slid_plank(true, h), slab = slid_plank(false, h);
+  EXPECT_LT((tiles.position - slab.position).norm(), 1e-6);
+  EXPECT_LT(tiles.orientation.angularDistance(slab.orientation), 1e-6);
+}
+
 /// Four flush tiles of 0.5 x 1 x 0.1 m in one body, in a row along x.
 scene::Entity platform(const Pose& pose, double friction) {
   std::vector<scene::Link> tiles;

@@ -1,0 +1,101 @@
+// Where colliders stand flush beside each other, in the world or in one body, their inner edges are none.
+
+#include <algorithm>
+
+#include "physics/convert.h"
+#include "physics/newton/contacts.h"
+
+namespace ziggurat::physics {
+namespace {
+
+constexpr btScalar flush = 1e-5;  // steps in a surface that are none [m]
+constexpr btScalar slack = 1e-4;  // how far beside a collider a point may lie in it [m]
+
+/// How far a collider reaches along a direction, from the world's origin [m].
+btScalar top_of(const Collider& collider, const btVector3& up) {
+  const btVector3 in_it = collider.pose.getBasis().transpose() * up;
+  return up.dot(collider.pose.getOrigin()) + contact::reach_along(collider.shape, in_it);
+}
+
+}  // namespace
+
+/// Whether a point on the base of `cover` is inside of another collider of the base than `hidden`, which ends flush with it: of those
+/// near the mover.
+/// @param height  of the surface of `cover` along `up` [m]
+bool Contacts::is_inside_base(const Collider& cover, const Collider& hidden, std::size_t mover, const btVector3& up, btScalar height,
+                              const btVector3& point) {
+  neighbours_.clear();
+  lists_.collect(mover, neighbours_);
+  return std::ranges::any_of(neighbours_, [&](int number) {
+    const Collider& other = colliders_.all[pairs_[number].a == mover ? pairs_[number].b : pairs_[number].a];
+    const bool same_base = cover.moves ? other.entity == cover.entity && other.part == cover.part : !other.moves;
+    return same_base && other.present && &other != &hidden && btFabs(top_of(other, up) - height) <= flush &&
+           contact::holds(other.shape, other.pose.invXform(point), slack);
+  });
+}
+
+/// Whether contacts of a collider with `hidden` lie in a seam that its contacts with `seen` cover:
+/// `hidden` is nowhere above the surface of `seen`, which goes on where they touch, in its neighbours too. Both are of one
+/// body, or stand.
+bool Contacts::covers(const Pair& seen, const Pair& hidden, std::size_t mover) {
+  const bool seen_first = seen.b == mover, hidden_first = hidden.b == mover;
+  const Collider& cover = colliders_.all[seen_first ? seen.a : seen.b];
+  const Collider& other = colliders_.all[hidden_first ? hidden.a : hidden.b];
+  const btVector3 up = to_bullet(seen_first ? math::Vector3(-seen.normal) : seen.normal);
+  const Remembered& on = seen.points[0];
+  const btScalar height = up.dot(cover.pose * to_bullet(seen_first ? on.on_a : on.on_b));
+  if (top_of(other, up) > height + flush) return false;
+  for (int i = 0; i < hidden.count; ++i) {
+    const Remembered& point = hidden.points[i];
+    const btVector3 at = other.pose * to_bullet(hidden_first ? point.on_a : point.on_b);
+    if (contact::holds(cover.shape, cover.pose.invXform(at), slack)) continue;
+    if (!is_inside_base(cover, other, mover, up, height, at)) return false;
+  }
+  return true;
+}
+
+/// Whether a collider's body has others, which may stand flush beside it.
+bool Contacts::is_compound(const Collider& collider) const {
+  return collider.moves && colliders_.groups[collider.group].count > 1;
+}
+
+/// Drops contacts with inner edges: those between colliders that stand flush beside each other, in
+/// the world or in one body.
+void Contacts::drop_hidden() {
+  on_bases_.clear();
+  for (std::size_t i = 0; i < owner_.size(); ++i) {
+    const Pair& pair = pairs_[owner_[i]];
+    if (pair.first != i) continue;
+    const auto add = [&](std::size_t mover, std::size_t on) {
+      const Collider& base = colliders_.all[on];
+      if (!base.moves) {
+        on_bases_.push_back({mover, Collider::floor, 0, on, owner_[i]});
+      } else if (is_compound(base)) {
+        on_bases_.push_back({mover, base.entity, base.part, on, owner_[i]});
+      }
+    };
+    if (colliders_.all[pair.a].moves) add(pair.a, pair.b);
+    if (colliders_.all[pair.b].moves) add(pair.b, pair.a);
+  }
+  std::sort(on_bases_.begin(), on_bases_.end());
+  const auto same_base = [](const OnBase& a, const OnBase& b) {
+    return a.mover == b.mover && a.entity == b.entity && a.part == b.part;
+  };
+  bool dropped = false;
+  for (std::size_t i = 0; i < on_bases_.size(); ++i) {
+    const OnBase& one = on_bases_[i];
+    Pair& pair = pairs_[one.pair];
+    for (std::size_t j = i; j-- > 0 && same_base(on_bases_[j], one) && pair.count > 0;) {
+      Pair& other = pairs_[on_bases_[j].pair];
+      if (other.count == 0) continue;
+      if (covers(other, pair, one.mover)) {
+        pair.count = 0, dropped = true;
+      } else if (covers(pair, other, one.mover)) {
+        other.count = 0, dropped = true;
+      }
+    }
+  }
+  if (dropped) keep_if([&](std::size_t i) { return pairs_[owner_[i]].count > 0; });
+}
+
+}  // namespace ziggurat::physics
