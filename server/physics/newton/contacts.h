@@ -91,7 +91,6 @@ class Contacts {
   bool is_inside_base(const Collider& cover, const Collider& hidden, std::size_t mover, const btVector3& up, btScalar height,
                       const btVector3& point);
   bool covers(const Pair& seen, const Pair& hidden, std::size_t mover);
-  bool is_compound(const Collider& collider) const;
   void drop_hidden();
   template <class IsKept>
   void keep_if(IsKept is_kept);

@@ -54,14 +54,10 @@ bool Contacts::covers(const Pair& seen, const Pair& hidden, std::size_t mover) {
   return true;
 }
 
-/// Whether a collider's body has others, which may stand flush beside it.
-bool Contacts::is_compound(const Collider& collider) const {
-  return collider.moves && colliders_.groups[collider.group].count > 1;
-}
-
 /// Drops contacts with inner edges: those between colliders that stand flush beside each other, in
 /// the world or in one body.
 void Contacts::drop_hidden() {
+  const auto is_compound = [&](const Collider& base) { return base.moves && colliders_.groups[base.group].count > 1; };
   on_bases_.clear();
   for (std::size_t i = 0; i < owner_.size(); ++i) {
     const Pair& pair = pairs_[owner_[i]];
