@@ -69,6 +69,7 @@ bool Replay::is_same() const { return inputs_->hash() == hash_; }
 void Replay::act() {
   acted_ = true;
   repeat(inputs_->acts());
+  if (!inputs_->acts().empty() && !links_) hash_ = world_.simulation.hash();
   if (!has_commands_) return;
   simulation::Simulation& simulation = world_.simulation;
   const auto fault = recording::unpack(inputs_->commands(), simulation.layout(), simulation.state(),

@@ -83,7 +83,8 @@ class Replay {
 
   /// Of the present state.
   const v1::Inputs& inputs() const { return *inputs_; }
-  std::uint64_t hash() const { return hash_; }  ///< as computed; if it is shown, as recorded
+  /// As computed, behind act() with what it has changed; if it is shown, as recorded.
+  std::uint64_t hash() const { return hash_; }
   bool is_same() const;                         ///< the recorded hash is the same
   /// How many resets and restores, moves, spawns and removals there were.
   std::uint64_t changes() const { return changes_; }

@@ -151,6 +151,19 @@ class Supervised(Recorded):
         outcome = self.ask("replay", recording, "--hash", "--quiet")
         self.assertEqual(f"hash 6 {state['hash']}", outcome.lines[-1])
 
+    def test_what_is_done_after_the_last_tick_is_repeated(self):
+        box = self.write("box.xml", '<box id="new" size="0.1,0.1,0.1" movable="true" mass="1"><body position="0.5,0.5,1"/></box>')
+        for number, act in enumerate((("move", "box0", "0.3,0.3,0.5"), ("spawn", box), ("remove", "box0"), ("reset", "--seed", "9"))):
+            with self.subTest(act[0]):
+                recording = self.folder / f"{number}.mcap"
+                process = self.start("run", self.scene, "--record", recording, "--hash", "--paused", "--quiet",
+                                     "--endpoint", f"ipc://{self.folder}/{number}")
+                for words in (("step", 3), act, ("shutdown",)):
+                    subprocess.run([ZIGGURAT, "ctl", f"ipc://{self.folder}/{number}", *map(str, words)], check=True,
+                                   capture_output=True, timeout=LIMIT, env=self.environment)
+                ran = self.finish(process)
+                self.assertEqual(self.ask("replay", recording, "--hash", "--quiet").lines[-1], ran.lines[-1])
+
 
     def test_what_is_done_before_the_first_tick_is_repeated(self):
         """While the world waits for controllers, at its start and again after a reset."""
