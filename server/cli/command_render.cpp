@@ -50,6 +50,7 @@ std::vector<double> to_times(const std::string& text) {
     times.push_back(text::to_number("--at", part));
     if (times.back() < 0)
       throw text::UsageError("--at is negative; write simulated seconds from 0 on");
+    check_time("--at", times.back());
   }
   return times;
 }
@@ -104,6 +105,8 @@ std::optional<run::FilmOptions> film_options(const po::variables_map& values) {
     throw text::UsageError(
         "--from and --to are simulated seconds; write --from from 0 on, and --to after it");
   }
+  check_time("--from", film.from);
+  check_time("--to", film.to.value_or(0));
   return film;
 }
 

@@ -41,12 +41,18 @@ std::pair<std::string, std::string> to_controller(const std::string& value) {
 }
 
 void read_length(const Values& values, run::Options& options) {
+  constexpr std::uint64_t most_ticks = std::uint64_t{1} << 53;  // as in scenes
   if (values.has("ticks")) options.ticks = text::to_integer("--ticks", values.text("ticks"));
+  if (options.ticks.value_or(0) > most_ticks) {
+    throw text::UsageError(
+        fmt::format("--ticks is {}; write at most 2^53, which is {}", *options.ticks, most_ticks));
+  }
   if (values.has("duration")) {
     options.duration = text::to_number("--duration", values.text("duration"));
     if (*options.duration < 0) {
       throw text::UsageError("--duration is negative; write seconds, or 0 for until Ctrl-C");
     }
+    check_time("--duration", *options.duration);
   }
   if (options.ticks && options.duration) {
     throw text::UsageError("--ticks and --duration both set the length; give one of them");
@@ -180,6 +186,14 @@ Arguments without_secrets(const Arguments& arguments) {
 }
 
 }  // namespace
+
+void check_time(const char* option, double seconds) {
+  constexpr double longest = 9e9;  // [s], as in scenes: nanoseconds fit 64 bits
+  if (seconds > longest) {
+    throw text::UsageError(
+        fmt::format("{} is {:g} s; write at most {:g} simulated seconds", option, seconds, longest));
+  }
+}
 
 run::Options parse_options(const Arguments& arguments, const po::options_description& known) {
   const Parsed parsed = parse(arguments, known);

@@ -22,6 +22,9 @@ boost::program_options::options_description picture_options();
 /// The pictures and the film that are asked for; nothing: none. @throws UsageError
 std::optional<run::PictureOptions> to_pictures(const boost::program_options::variables_map& values);
 
+/// @param seconds  simulated ones that this option has. @throws UsageError if they are more than a run can have
+void check_time(const char* option, double seconds);
+
 /// @throws UsageError
 run::Options parse_options(const Arguments& arguments,
                            const boost::program_options::options_description& known);

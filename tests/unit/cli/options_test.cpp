@@ -61,6 +61,7 @@ TEST(Options, AreTakenFromTheCommandLine) {
 TEST(Options, WrongValuesAreRefused) {
   for (const Arguments& arguments :
        {Arguments{"--ticks", "-1"}, Arguments{"--duration", "-1"}, Arguments{"--duration", "nan"},
+        Arguments{"--duration", "1e10"}, Arguments{"--ticks", "9007199254740993"},
         Arguments{"--real-time=0"}, Arguments{"--clock", "fast"}, Arguments{"--controller", "x"},
         Arguments{"--controller", "=x"}, Arguments{"--set", "arena"}, Arguments{"--param", "=1"}, Arguments{"--ticks", "1", "--duration", "1"}}) {
     EXPECT_THROW(run(arguments), text::UsageError) << arguments.front();
