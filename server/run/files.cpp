@@ -70,6 +70,13 @@ bool is_same(const std::string& a, const std::string& b) {
   return !error && whole == fs::weakly_canonical(fs::absolute(b), error) && !error;
 }
 
+/// What it includes, and its scripts.
+std::vector<std::string> files_of(const scene::Scene& scene, const std::string& path) {
+  std::vector<std::string> files = scene.files;
+  for (const fs::path& script : processes::scripts_of(scene, path)) files.push_back(script.string());
+  return files;
+}
+
 }  // namespace
 
 void check_files(const Options& options) {
@@ -89,12 +96,8 @@ void check_files(const Options& options) {
 
 void check_outputs(const Options& options, const scene::Scene& scene,
                    const std::vector<std::string>& read) {
-  const std::string& scene_file = only_scene(options);
-  std::vector<std::string> inputs = scene.files;
+  std::vector<std::string> inputs = files_of(scene, only_scene(options));
   inputs.insert(inputs.end(), read.begin(), read.end());
-  for (const fs::path& script : processes::scripts_of(scene, scene_file)) {
-    inputs.push_back(script.string());
-  }
   for (const File& output : outputs_of(options)) {
     for (const std::string& input : inputs) {
       if (!is_same(output.path, input)) continue;
@@ -104,6 +107,20 @@ void check_outputs(const Options& options, const scene::Scene& scene,
                       output.option, output.path));
     }
   }
+}
+
+std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene, const std::string& path) {
+  std::vector<std::string> arguments;
+  const auto add = [&](const char* option, const std::string& file) {
+    if (!file.empty()) arguments.insert(arguments.end(), {option, fs::absolute(file).string()});
+  };
+  if (scene) {
+    for (const std::string& file : files_of(*scene, path)) add("--read-only-file", file);
+  }
+  for (const File& output : outputs_of(options)) add("--read-only-file", output.path);
+  add("--read-only-file", options.curve_clients);
+  add("--hidden-file", options.curve_secret);
+  return arguments;
 }
 
 }  // namespace ziggurat::run

@@ -20,4 +20,9 @@ void check_files(const Options& options);
 void check_outputs(const Options& options, const scene::Scene& scene,
                    const std::vector<std::string>& read = {});
 
+/// Arguments of ziggurat-lua by which scripts, which may use the scene's folder, change neither the scene, its
+/// includes and scripts, nor outputs, nor the list of keys, and do not read the secret key.
+/// @param scene  null: its files are not on the disk
+std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene, const std::string& path);
+
 }  // namespace ziggurat::run

@@ -222,6 +222,8 @@ processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> dire
     for (const auto& folder : processes::folders_of(world_.scene, path_)) allow(folder.string());
   }
   for (const auto& folder : options_.spawned_script_folders) allow(folder);
+  const auto exceptions = exceptions_of(options_, past_ ? nullptr : &world_.scene, path_);
+  settings.lua_arguments.insert(settings.lua_arguments.end(), exceptions.begin(), exceptions.end());
   return settings;
 }
 

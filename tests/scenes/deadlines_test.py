@@ -176,6 +176,29 @@ class Keys(SceneTest):
         unlisted.kill()
         unlisted.wait()
 
+    def test_scripts_change_no_file_of_the_run_and_read_no_secret_key(self):
+        """Whatever these files are called; the scene starts programs, and the list decides who may connect."""
+        scene = self.write("arms.scene", self.text.replace("<framework>", '<include file="more.part"/><framework>')
+                           .replace("swing.lua", "swing.script"))
+        self.write("more.part", "<more/>")
+        listed = self.keygen("server")
+        self.write("clients", f"{listed} controller\n")
+        self.write("swing.script", """function init()
+   for _, name in ipairs{"arms.scene", "more.part", "swing.script", "clients", "server.secret", "hashes", "x.LUA", "notes"} do
+      local reads, appends = io.open(name), io.open(name, "a")
+      log(name, reads and " is read" or "", appends and " is written" or "", os.rename("data", name) and " is replaced" or "",
+          os.remove(name) and " is removed" or "")
+   end
+end
+function step() end""")
+        self.write("data", "")
+        outcome = self.run_scene("--ticks", 1, "--lua-processes", 1, "--endpoint", "tcp://127.0.0.1:*",
+                                 "--curve-secret", "server.secret", "--curve-clients", "clients",
+                                 "--hash-file", "hashes", scene=scene)
+        self.assertEqual([line.removeprefix("[0 r0] ") for line in outcome.lines if "r0" in line],
+                         ["arms.scene is read", "more.part is read", "swing.script is read", "clients is read",
+                          "server.secret", "hashes is read", "x.LUA", "notes is written is replaced is removed"])
+
     def test_run_starts_its_own_controllers_beside_protected_endpoints(self):
         expected = self.hash_of("--ticks", 5)
         server = self.keygen("server")

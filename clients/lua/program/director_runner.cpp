@@ -18,7 +18,7 @@ namespace {
 class DirectorRunner {
  public:
   DirectorRunner(Director& director, const ProgramOptions& options)
-      : director_(director), options_(options), folders_(options.folders) {}
+      : director_(director), options_(options), folders_(options.folders, options.exceptions) {}
 
   bool run() {
     Failure failure = run_to_end();

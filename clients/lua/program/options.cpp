@@ -59,6 +59,10 @@ po::options_description description() {
        "the server may name only scripts below DIR, and scripts may use only files below it; may "
        "be "
        "repeated; default: the working directory, and the folder of --script")  //
+      ("read-only-file", po::value<std::vector<std::string>>()->composing()->value_name("FILE"),
+       "scripts may not change FILE; may be repeated")  //
+      ("hidden-file", po::value<std::vector<std::string>>()->composing()->value_name("FILE"),
+       "scripts may not use FILE; may be repeated; the file of --curve-secret is hidden, too")  //
       ("trust-scripts",
        "scripts may use all of Lua, start programs, and read and write all files; no limit of "
        "instructions unless one is set")                                           //
@@ -150,6 +154,14 @@ void read_limits(const po::variables_map& found, ProgramOptions& options) {
     options.folders.push_back(options.script->has_parent_path() ? options.script->parent_path()
                                                                 : ".");
   }
+  const auto add = [&](const char* name, std::vector<std::filesystem::path>& files) {
+    if (!found.count(name)) return;
+    const auto& texts = found[name].as<std::vector<std::string>>();
+    files.insert(files.end(), texts.begin(), texts.end());
+  };
+  add("read-only-file", options.exceptions.read_only);
+  add("hidden-file", options.exceptions.hidden);
+  if (!options.curve_secret.empty()) options.exceptions.hidden.emplace_back(options.curve_secret);
   options.trusts_scripts = found.count("trust-scripts") > 0;
   if (options.trusts_scripts) options.max_instructions = 0;
   if (found.count("max-memory")) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "script/folders.h"
+
 namespace ziggurat::lua {
 
 struct ProgramOptions {
@@ -24,6 +26,7 @@ struct ProgramOptions {
   /// Scripts that the server names must be below these, and so must the files that scripts use;
   /// never empty.
   std::vector<std::filesystem::path> folders{"."};
+  Exceptions exceptions;                            ///< files there that scripts may use less
   bool trusts_scripts = false;                      ///< all of Lua, all files
   std::size_t max_memory = std::size_t{256} << 20;  ///< per robot [bytes]
   std::uint64_t max_instructions = 1'000'000'000;   ///< per robot and call; 0 = any number

@@ -12,7 +12,7 @@
 namespace ziggurat::lua {
 
 Runner::Runner(ziggurat::Session& session, const ProgramOptions& options)
-    : session_(session), options_(options), folders_(options.folders), regions_(session.robots().size()) {
+    : session_(session), options_(options), folders_(options.folders, options.exceptions), regions_(session.robots().size()) {
   for (ziggurat::Robot& robot : session_.robots()) seats_.push_back({&robot, nullptr});
 }
 

@@ -1,8 +1,11 @@
 #include "script/confined_files.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -22,11 +25,11 @@ const Folders& folders_of(lua_State* state) { return upvalue<const Folders>(stat
 bool may_write(const Folders& folders, const char* file) {
   constexpr std::string_view code[] = {".lua", ".argos", ".xml", ".toml", ".so", ".py", ".pyc", ".sh",
                                        ".js",  ".mjs",   ".cjs", ".rb",   ".pl", ".jar", ".m"};
-  if (!may_read(folders, file)) return false;
+  if (!may_read(folders, file) || folders.is_read_only(file)) return false;
   const fs::path path(file);
-  for (const auto ending : code) {
-    if (path.extension() == ending) return false;
-  }
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (std::ranges::find(code, extension) != std::end(code)) return false;
   std::error_code error;
   const auto status = fs::status(path, error);
   constexpr auto may_run = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;

@@ -126,6 +126,10 @@ TEST_F(Program, AllowsItsWorkingDirectoryAndTheFolderOfItsScript) {
   EXPECT_EQ(read({"--connect", "x"}).options.folders, (Paths{"."}));
   EXPECT_EQ(read({"--connect", "x", "--script", "/a/b.lua"}).options.folders, (Paths{".", "/a"}));
   EXPECT_EQ(read({"--connect", "x", "--script-folder", "/c"}).options.folders, (Paths{"/c"}));
+  const Exceptions exceptions =
+      read({"--connect", "x", "--read-only-file", "a", "--hidden-file", "b", "--curve-secret", "c"}).options.exceptions;
+  EXPECT_EQ(exceptions.read_only, (Paths{"a"}));
+  EXPECT_EQ(exceptions.hidden, (Paths{"b", "c"}));
   EXPECT_THROW(below(folder() / "none"), std::runtime_error);
 }
 

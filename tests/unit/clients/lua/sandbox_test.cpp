@@ -163,11 +163,31 @@ TEST_F(Sandbox, ReadsAndWritesInItsFolders) {
 TEST_F(Sandbox, ChangesNoProgramsAndScripts) {
   write("inside/drive", "#!/bin/sh");
   fs::permissions(folder() / "inside/drive", fs::perms::owner_all);
-  for (const char* name : {"drive", "part.lua", "new.lua", "scene.argos", "drive.js", "part.pyc", "sweep.toml"}) {
+  for (const char* name : {"drive", "part.lua", "new.lua", "scene.argos", "drive.js", "part.pyc", "sweep.toml", "new.LUA", "scene.Argos"}) {
     expect_refused("assert(io.open(IN .. '" + std::string(name) + "', 'a'))");
     expect_refused("assert(os.rename(IN .. 'data.txt', IN .. '" + std::string(name) + "'))");
   }
   expect_refused("assert(io.open(IN .. 'part.lua', 'r+'))");
+}
+
+TEST_F(Sandbox, ChangesNoFilesThatAreReadOnlyAndUsesNoneThatAreHidden) {
+  write("inside/arms.scene", "<scene/>");
+  write("inside/key", "key");
+  fs::create_hard_link(folder() / "inside/arms.scene", folder() / "inside/other");
+  fs::create_symlink(folder() / "inside/key", folder() / "inside/other_key");
+  folders_.emplace(std::vector<fs::path>{folder() / "inside"},
+                   Exceptions{{folder() / "inside/../inside/arms.scene"}, {folder() / "inside/key"}});
+  EXPECT_EQ(value("io.open(IN .. 'arms.scene'):read('a')"), "<scene/>");
+  for (const char* name : {"arms.scene", "other"}) {
+    expect_refused("assert(io.open(IN .. '" + std::string(name) + "', 'r+'))");
+    expect_refused("assert(os.remove(IN .. '" + std::string(name) + "'))");
+    expect_refused("assert(os.rename(IN .. 'data.txt', IN .. '" + std::string(name) + "'))");
+  }
+  for (const char* name : {"key", "other_key"}) {
+    expect_refused("assert(io.open(IN .. '" + std::string(name) + "'))");
+    expect_refused("io.lines(IN .. '" + std::string(name) + "')");
+    expect_refused("assert(select(2, loadfile(IN .. '" + std::string(name) + "')):find('near'))");
+  }
 }
 
 TEST_F(Sandbox, HidesTheMetatableOfFiles) {
