@@ -70,7 +70,9 @@ void check_settings(Draft& draft, const Document& document) {
 }
 
 void read_scene(Draft& draft, File file, const std::string& name) {
-  if (!trimmed(file.text).empty() && file.text.find_first_of("<\0"sv) == std::string::npos) {
+  const std::string_view text = trimmed(file.text);
+  const bool is_script = name.ends_with(".lua") && !text.starts_with('<');
+  if (!text.empty() && (is_script || text.find_first_of("<\0"sv) == std::string::npos)) {
     draft.scene.files.push_back(name);
     return draft.report.fault({}, no_xml(name));
   }

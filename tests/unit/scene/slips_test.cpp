@@ -154,6 +154,8 @@ TEST(OtherFiles, AreNamed) {
     return found.size() == 1 ? found[0] : testing::PrintToString(found);
   };
   EXPECT_EQ(fault("function step()\nend\n", "a.lua").substr(0, 27), "a.lua: this is a Lua script");
+  EXPECT_EQ(fault("-- as <params> says\nfunction step() return 1 < 2 end\n", "a.lua").substr(0, 27),
+            "a.lua: this is a Lua script");
   EXPECT_EQ(fault("{\"scene\": 1}", "a.json").substr(0, 23), "a.json: this is no XML;");
   EXPECT_EQ(fault("<sdf version='1.6'><world name='x'/></sdf>", "a.sdf").substr(0, 43),
             "a.sdf:1:1: <sdf> is the root of an SDF file");
