@@ -17,8 +17,8 @@ constexpr std::string_view ipc = "ipc://";
 constexpr std::string_view tcp = "tcp://";
 constexpr std::size_t max_ipc_path = sizeof(sockaddr_un::sun_path) - 1;
 
-/// Not abstract, and not a temporary path, which ZeroMQ chooses and removes.
-bool is_file(std::string_view path) { return path[0] != '@' && path[0] != '*'; }
+/// Not abstract, and not `*`, for which the listener makes a folder.
+bool is_file(std::string_view path) { return path[0] != '@' && path != "*"; }
 
 /// Whether another server accepts connections there.
 bool is_listening(const std::string& path) {
@@ -34,7 +34,7 @@ bool is_listening(const std::string& path) {
 }
 
 void check_ipc(const std::string& endpoint, const std::string& path) {
-  if (path.empty()) {
+  if (path.empty() || path == "@") {
     throw EndpointError(
         fmt::format("{}: no path; write for example ipc:///run/user/1000/arena", endpoint));
   }

@@ -44,7 +44,7 @@ TEST(Endpoint, OtherAddressesNeedConsent) {
 
 TEST(Endpoint, Forms) {
   for (const char* endpoint : {"", "7400", "http://127.0.0.1:1", "tcp://127.0.0.1", "tcp://:1",
-                               "tcp://127.0.0.1:x", "tcp://127.0.0.1:70000", "ipc://"}) {
+                               "tcp://127.0.0.1:x", "tcp://127.0.0.1:70000", "ipc://", "ipc://@"}) {
     EXPECT_TRUE(says(complaint(endpoint), "write for example")) << endpoint;
   }
 }
@@ -64,6 +64,22 @@ TEST_F(EndpointFiles, AFileInTheWayIsNotDeleted) {
   std::ofstream(folder / "thesis.tex") << "years of work";
   EXPECT_TRUE(says(complaint("ipc://" + (folder / "thesis.tex").string()), "in the way"));
   EXPECT_TRUE(std::filesystem::exists(folder / "thesis.tex"));
+}
+
+TEST_F(EndpointFiles, AFileWhoseNameBeginsWithAStarIsNotDeleted) {
+  const std::filesystem::path former = std::filesystem::current_path();
+  std::filesystem::current_path(folder / ".");
+  std::ofstream("*thesis") << "years of work";
+  EXPECT_TRUE(says(complaint("ipc://*thesis"), "in the way"));
+  std::filesystem::current_path(former);
+  EXPECT_EQ(file_of("ipc://*thesis"), "*thesis");
+  EXPECT_EQ(file_of("ipc://*"), "");
+}
+
+/// It has no permissions: all processes of this machine reach it, as they reach 127.0.0.1.
+TEST(Endpoint, AnAbstractPathIsNoFile) {
+  EXPECT_EQ(complaint("ipc://@arena"), "");
+  EXPECT_EQ(file_of("ipc://@arena"), "");
 }
 
 TEST_F(EndpointFiles, AnotherServersSocketIsNotTaken) {
