@@ -154,6 +154,9 @@ TEST_F(Radios, D5_ASessionThatWouldHearTooMuchIsLost) {
   const auto error = peers.told("p").error();
   EXPECT_EQ(error.code(), v1::Error::TOO_LARGE);
   EXPECT_EQ(error.severity(), v1::Error::FATAL);
+  const auto notices = peers.take_report().notices;
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices[0].find("is lost: its robots heard and saw more at a tick"), std::string::npos) << notices[0];
   EXPECT_EQ(peers.told("q").observation().tick(), 6U);
   EXPECT_FALSE(peers.is_complete());
 }

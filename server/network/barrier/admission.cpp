@@ -217,9 +217,10 @@ void admit(Barrier& barrier, const std::string& connection, const Access& access
   const bool is_welcomed = welcome(barrier, session, !hello.session_token.empty(), commands) &&
                            tell_taken(barrier, session, "Another client");
   const bool has_tick = barrier.gate.tick() && session.has_ticks();
-  const bool is_there = is_welcomed && (!has_tick || observe(barrier, session));
+  std::string_view why = is_welcomed ? "" : "its connection is gone";
+  if (is_welcomed && has_tick) why = observe(barrier, session);
   session.turn.is_repeated = true;
-  if (!is_there) lose(barrier, session, "its connection is gone");
+  if (!why.empty()) lose(barrier, session, why);
 }
 
 Delivery tell_loading(Barrier& barrier, Session& session) {

@@ -190,11 +190,12 @@ std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
   return barrier.directors.check(direction);
 }
 
-void tell_view_too_large(Barrier& barrier, const Session& session) {
+std::string_view tell_view_too_large(Barrier& barrier, const Session& session) {
   tell_fatal(barrier, session.connection,
              make_fault(ErrorCode::too_large, "subscription",
                         "What this director subscribed to is more than a message can hold; name fewer entities "
                         "or groups."));
+  return "what it subscribed to is more than a message can hold";
 }
 
 void answer_bad_direction(Barrier& barrier, Session& session, wire::Fault fault) {
@@ -297,7 +298,7 @@ void remove_director(Barrier& barrier, Session& session) {
   session.director.reset();
 }
 
-bool show_world(Barrier& barrier, Session& session) {
+std::string_view show_world(Barrier& barrier, Session& session) {
   const Connection* connection = barrier.connections.find(session.connection);
   const bool is_json = connection->encoding == wire::Encoding::json;
   const std::size_t limit =
@@ -306,29 +307,26 @@ bool show_world(Barrier& barrier, Session& session) {
   session.state = SessionState::stepping;
   barrier.gate.await(session.turn, barrier.now);
   expect_answer(barrier, session);
-  if (!barrier.directors.truth) return true;
+  if (!barrier.directors.truth) return {};
   const wire::Truth& truth = *barrier.directors.truth;
   update_view(session.view, truth);
   if (has_news(session.view, truth.state)) {
     if (!world_layout(barrier.outbox, *barrier.run, truth, session.view, limit)) {
-      tell_view_too_large(barrier, session);
-      return false;
+      return tell_view_too_large(barrier, session);
     }
     const Delivery told = send(barrier, session);
     if (told != Delivery::sent) {  // all of it is told with the next tick
       session.view = view_of(std::move(session.view.subscription));
-      return told == Delivery::congested && session.turn.patience;
+      return lost_by(told, session);
     }
   }
   if (!world_state(session.observation, truth, session.view, limit, barrier.epoch)) {
-    tell_view_too_large(barrier, session);
-    return false;
+    return tell_view_too_large(barrier, session);
   }
   session.contact.last_sent = barrier.now;
   session.observation.encode(connection->encoding);
   const Delivery delivery = barrier.send(session.connection, session.observation);
-  const bool may_miss = delivery == Delivery::congested && session.turn.patience;
-  return delivery == Delivery::sent || may_miss;
+  return lost_by(delivery, session);
 }
 
 bool handle_direction(Barrier& barrier, Session& session, bool is_collecting) {

@@ -70,8 +70,7 @@ void publish(Barrier& barrier, const world::Observations& observations,
     if (session.state == SessionState::lost || !session.has_ticks()) return;
     session.turn.is_repeated = false;
     session.turn.waited_before = {};
-    if (observe(barrier, session)) return;
-    lose(barrier, session, "its connection is gone, or it does not read");
+    if (const std::string_view why = observe(barrier, session); !why.empty()) lose(barrier, session, why);
   });
   stand_if_paused(barrier);  // if no session owes an answer
 }
@@ -83,7 +82,7 @@ void await_from(Barrier& barrier, Time now) {
   });
 }
 
-bool observe(Barrier& barrier, Session& session) {
+std::string_view observe(Barrier& barrier, Session& session) {
   if (session.director) return show_world(barrier, session);
   const Connection* connection = barrier.connections.find(session.connection);
   const bool is_json = connection->encoding == wire::Encoding::json;
@@ -97,7 +96,7 @@ bool observe(Barrier& barrier, Session& session) {
                make_fault(ErrorCode::too_large, {},
                           "The robots of this session heard and saw more at this tick than a message can hold; "
                           "share them among more sessions."));
-    return false;
+    return "its robots heard and saw more at a tick than a message can hold";
   }
   session.state = SessionState::stepping;
   barrier.gate.await(session.turn, barrier.now);
@@ -105,8 +104,7 @@ bool observe(Barrier& barrier, Session& session) {
   session.contact.last_sent = barrier.now;
   session.observation.encode(connection->encoding);
   const Delivery delivery = barrier.send(session.connection, session.observation);
-  const bool may_miss = delivery == Delivery::congested && session.turn.patience;
-  return delivery == Delivery::sent || may_miss;
+  return lost_by(delivery, session);
 }
 
 std::optional<wire::Fault> check_metrics(const Barrier& barrier, const Session& session) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "network/barrier/barrier.h"
@@ -20,8 +21,8 @@ void publish(Barrier& barrier, const world::Observations& observations,
              const std::vector<std::string>& tag_payloads, const wire::Truth* truth = nullptr);
 /// What was published is on its way only now: the deadlines of the answers begin.
 void await_from(Barrier& barrier, Time now);
-/// Sends a session what its robots sense at the tick in hand. False if it can't be reached.
-bool observe(Barrier& barrier, Session& session);
+/// Sends a session what its robots sense at the tick in hand. @returns why it is lost; empty: it is not
+std::string_view observe(Barrier& barrier, Session& session);
 
 /// Handles the Command in `barrier.inbox`. True if it is the expected answer.
 /// @param commands  where its values go; null: no tick is being collected

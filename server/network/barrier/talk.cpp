@@ -30,6 +30,12 @@ Delivery send(Barrier& barrier, Session& session) {
   return send(barrier, session.connection);
 }
 
+std::string_view lost_by(Delivery delivery, const Session& session) {
+  const bool may_miss = delivery == Delivery::congested && session.turn.patience;
+  if (delivery == Delivery::sent || may_miss) return {};
+  return "its connection is gone, or it does not read";
+}
+
 void note_answer(Barrier& barrier, std::string sentence) {
   if (const auto told = barrier.answered.add(std::move(sentence), barrier.now)) barrier.journal.note(*told);
 }

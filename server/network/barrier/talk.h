@@ -15,6 +15,9 @@ namespace ziggurat::network {
 Delivery send(Barrier& barrier, const std::string& connection);
 Delivery send(Barrier& barrier, Session& session);
 
+/// Why a session is lost that its tick reached so; empty: it is not.
+std::string_view lost_by(Delivery delivery, const Session& session);
+
 /// Tells of a wrong message or a refused session, unless there were too many a moment ago.
 void note_answer(Barrier& barrier, std::string sentence);
 /// Answers a bad message. A session that sends nothing else is closed.
