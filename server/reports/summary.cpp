@@ -8,6 +8,7 @@
 
 #include "math/hash.h"
 #include "reports/json_text.h"
+#include "text/printable.h"
 
 namespace ziggurat::reports {
 namespace {
@@ -102,11 +103,11 @@ std::string to_text(const Summary& summary) {
   }
   text += fmt::format("; before it, start-up {:.3f} s\n", summary.startup_s);
   if (!summary.shutdown_reason.empty()) {
-    text += fmt::format("  shut down by a supervisor: {}\n", summary.shutdown_reason);
+    text += fmt::format("  shut down by a supervisor: {}\n", text::indented(summary.shutdown_reason));
   }
   if (summary.result) {
     text += fmt::format("  director '{}' ended the run: {}\n", summary.result->director,
-                        summary.result->text);
+                        text::indented(summary.result->text));
   }
   for (const auto& each : summary.missed) {
     text += fmt::format("  controller '{}' missed its deadline at {} tick{}\n", each.controller,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "processes/controllers.h"
+#include "text/printable.h"
 
 namespace ziggurat::run {
 namespace {
@@ -43,7 +44,8 @@ void PeerReports::take(network::Report report, std::uint64_t tick, network::Allo
   for (auto& failure : report.failed_directors) {
     print_log(tick);
     const auto text =
-        fmt::format("director '{}' failed at tick {}: {}", failure.director, failure.tick, failure.message);
+        fmt::format("director '{}' failed at tick {}: {}", failure.director, failure.tick,
+                    text::indented(failure.message));
     console_.fault(text);
     tell_(channels::Severity::error, failure.director, text);
     failures_.push_back(
@@ -54,7 +56,7 @@ void PeerReports::take(network::Report report, std::uint64_t tick, network::Allo
     const auto& controller = world_.scene.controllers[robot.controller].id;
     print_log(tick);
     const auto text = fmt::format("robot {} (controller '{}') failed at tick {}: {}", robot.id,
-                                  controller, failure.tick, failure.message);
+                                  controller, failure.tick, text::indented(failure.message));
     console_.fault(text);
     tell_(channels::Severity::error, robot.id, text);
     failures_.push_back(

@@ -76,6 +76,15 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+std::string indented(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    result += c;
+    if (c == '\n') result += "    ";
+  }
+  return result;
+}
+
 std::string printable(std::string_view text) {
   std::string result;
   result.reserve(text.size());

@@ -11,6 +11,9 @@ namespace ziggurat::text {
 /// that differ look different. Bytes that are not UTF-8 become U+FFFD.
 std::string printable(std::string_view text);
 
+/// The text with four spaces before each line but the first: none of them looks like one of the program's own.
+std::string indented(std::string_view text);
+
 bool is_utf8(std::string_view text);
 
 }  // namespace ziggurat::text

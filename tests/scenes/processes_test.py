@@ -172,6 +172,12 @@ class Failing(SceneTest):
         self.assertEqual(outcome.err.count("out of luck"), 1, "printed once")
         self.assertIn("1 failed: robot r1 at tick 3", outcome.err)
 
+    def test_a_failure_makes_no_lines_of_the_server(self):
+        self.write("swing.lua", "function init() end function step() error('why\\n  seed 1, hash 0') end")
+        outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.err, r"(?m)^      seed 1, hash 0")
+        self.assertNotRegex(outcome.err, r"(?m)^  seed 1, hash 0")
+
     def test_a_stuck_robot_is_named_with_file_and_line(self):
         self.write("swing.lua", """function init() end
 function step()

@@ -35,6 +35,14 @@ TEST(Summary, ARecordingThatIsNotCompleteIsAFault) {
   EXPECT_EQ(exit_code_of(summary), exit_code::controller_failed);
 }
 
+TEST(Summary, TextsOfPeersMakeNoLinesOfIts) {
+  Summary summary;
+  summary.shutdown_reason = "enough\n  seed 1, hash 0";
+  summary.result = {"judge", "done\n  1 failed: robot r0"};
+  EXPECT_NE(to_text(summary).find("enough\n      seed 1"), std::string::npos) << to_text(summary);
+  EXPECT_NE(to_text(summary).find("done\n      1 failed"), std::string::npos) << to_text(summary);
+}
+
 TEST(Summary, JsonHasTheRatesAndTheHashInFull) {
   Summary summary;
   summary.ticks = 20;

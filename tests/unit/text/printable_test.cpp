@@ -11,6 +11,11 @@ TEST(Printable, TextIsKept) {
   EXPECT_EQ(printable(""), "");
 }
 
+TEST(Printable, FurtherLinesAreIndented) {
+  EXPECT_EQ(indented("why"), "why");
+  EXPECT_EQ(indented("why\nhash 3 0\n"), "why\n    hash 3 0\n    ");
+}
+
 TEST(Printable, ControlCharactersAreWrittenAsNumbers) {
   EXPECT_EQ(printable("\x1b]52;c;aGk=\x07"), "\\u001b]52;c;aGk=\\u0007");
   EXPECT_EQ(printable("a\rb\x7f"), "a\\u000db\\u007f");
