@@ -62,10 +62,14 @@ int dofile(lua_State* state) {
   return lua_gettop(state) - 1;
 }
 
+constexpr std::size_t most_templates = 100;
+
+/// Ends as soon as the text is longer than a path may be: a script's memory is bounded, this text is not part of it.
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
   if (from.empty()) return text;
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
     text.replace(at, from.size(), to);
+    if (text.size() > longest_path) break;
   }
   return text;
 }
@@ -78,12 +82,18 @@ struct Search {
 
 Search search(const Folders& folders, std::string_view name, std::string_view path) {
   Search result;
-  while (!path.empty()) {
+  for (std::size_t i = 0; !path.empty(); ++i) {
+    if (i == most_templates) {
+      result.tried += "\n\tonly the first 100 places were looked at";
+      return result;
+    }
     const auto end = std::min(path.find(';'), path.size());
-    const std::string file = replaced(std::string(path.substr(0, end)), "?", name);
+    const std::string file = replaced(std::string(path.substr(0, std::min(end, longest_path + 1))), "?", name);
     path.remove_prefix(std::min(end + 1, path.size()));
     std::error_code error;
-    if (!folders.contain(file)) {
+    if (file.size() > longest_path) {
+      result.tried += "\n\tno file, as its path is too long";
+    } else if (!folders.contain(file)) {
       result.tried += "\n\t'" + file + "' is outside the folders that scripts may use";
     } else if (std::filesystem::is_regular_file(file, error)) {
       result.found = file;
@@ -98,6 +108,9 @@ Search search(const Folders& folders, std::string_view name, std::string_view pa
 /// Pushes the file, or nil and what was tried. Lua errors come after the strings are gone.
 int push_search(lua_State* state, const char* name, const char* path, const char* from,
                 const char* to) {
+  for (const char* part : {name, from, to}) {
+    if (std::strlen(part) > longest_path) return luaL_error(state, "the name of a module is too long");
+  }
   const Search result = search(usable(state), replaced(name, from, to), path);
   if (result.found.empty()) lua_pushnil(state);
   const std::string& text = result.found.empty() ? result.tried : result.found;

@@ -114,7 +114,8 @@ void hide_metatable_of_files(lua_State* state) {
 }  // namespace
 
 bool may_read(const Folders& folders, const char* file) {
-  if (!folders.contain(file)) return false;
+  // Its parts would take many times its memory, and that is not part of the script's.
+  if (std::strlen(file) > longest_path || !folders.contain(file)) return false;
   std::error_code error;
   const auto status = fs::status(file, error);
   return !fs::exists(status) || fs::is_regular_file(status);  // a pipe could wait forever

@@ -1,5 +1,7 @@
 // What a script that is not trusted cannot do.
 
+#include <sys/resource.h>
+
 #include <fstream>
 #include <iterator>
 
@@ -9,6 +11,13 @@ namespace ziggurat::lua {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The most memory that this process had [bytes].
+std::size_t peak_rss() {
+  rusage used{};
+  ::getrusage(RUSAGE_SELF, &used);
+  return static_cast<std::size_t>(used.ru_maxrss) << 10;
+}
 
 /// A script in <test folder>/inside, which may use the files of that folder.
 class Sandbox : public ScriptTest {
@@ -143,6 +152,22 @@ TEST_F(Sandbox, RequiresNoModuleOutsideItsFolders) {
   expect_refused("assert(package.searchpath('secret', OUT .. '?.lua'))");
   EXPECT_EQ(value("(function() package.path = IN .. '?.lua' return require 'part' end)()"), "part");
   EXPECT_EQ(value("package.searchpath('part', IN .. '?.lua') == IN .. 'part.lua'"), "1");
+}
+
+// Memory outside of Lua's is not counted.
+TEST_F(Sandbox, LongNamesTakeLittleMemory) {
+  const std::size_t before = peak_rss();
+  expect_refused("require(('a'):rep(1 << 20))");
+  expect_refused("package.path = ('?;'):rep(1 << 20) require(('q'):rep(1000))");
+  expect_refused("package.path = ('?'):rep(1 << 20) require(('q'):rep(1000))");
+  expect_refused("package.path = ('x'):rep(1 << 20) require 'q'");
+  expect_refused("assert(package.searchpath(('.'):rep(4000), '?', '.', ('x'):rep(1 << 20)))");
+  for (const char* call : {"assert(io.open(long))", "assert(io.open(long, 'w'))", "io.lines(long)", "dofile(long)",
+                           "assert(os.remove(long))"}) {
+    expect_refused(std::string("local long = IN .. ('a/'):rep(1 << 22) ") + call);
+  }
+  EXPECT_LT(peak_rss() - before, std::size_t{200} << 20);
+  EXPECT_EQ(value("(function() package.path = IN .. '?.lua' return require 'part' end)()"), "part");
 }
 
 TEST_F(Sandbox, ReadsAndWritesInItsFolders) {
