@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "physics/build.h"
+#include "physics/convert.h"
 #include "physics/make_room.h"
 #include "physics/newton/tree.h"
 
