@@ -107,21 +107,38 @@ void take(const Order& order, Left& left) {
   }
 }
 
-/// Whether this is a socket at which no process listens.
-bool is_dead_socket(const std::string& path) {
+enum class Socket { none, dead, live };
+
+/// Whether this is a socket, and a process listens at it.
+Socket state_of_socket(const std::string& path) {
   sockaddr_un address{};
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISSOCK(status.st_mode) || path.size() >= sizeof address.sun_path) {
-    return false;
+    return Socket::none;
   }
   address.sun_family = AF_UNIX;
   path.copy(address.sun_path, path.size());
   const int client = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (client < 0) return false;
+  if (client < 0) return Socket::none;
   const int result = ::connect(client, reinterpret_cast<const sockaddr*>(&address), sizeof address);
   const bool is_dead = result != 0 && errno == ECONNREFUSED;
   ::close(client);
-  return is_dead;
+  return is_dead ? Socket::dead : Socket::live;
+}
+
+/// A process that is killed closes its files one after the other: its socket may live a little longer than the pipe that tells its end.
+void remove_dead_sockets(std::vector<std::string> sockets) {
+  const auto is_done = [](const std::string& socket) {
+    const Socket state = state_of_socket(socket);
+    if (state == Socket::dead) ::unlink(socket.c_str());
+    return state != Socket::live;
+  };
+  for (int wait = 1; wait < 256; wait *= 2) {  // 0.3 s in all, if it is another's
+    std::erase_if(sockets, is_done);
+    if (sockets.empty()) return;
+    sleep_ms(wait);
+  }
+  std::erase_if(sockets, is_done);
 }
 
 void clean_up(const Left& left) {
@@ -135,9 +152,7 @@ void clean_up(const Left& left) {
         ::lstat(file.path, &now) == 0 && now.st_dev == file.device && now.st_ino == file.inode;
     if (is_same) ::unlink(file.path);
   }
-  for (const std::string& socket : left.sockets) {
-    if (is_dead_socket(socket)) ::unlink(socket.c_str());
-  }
+  remove_dead_sockets(left.sockets);
   std::error_code ignored;
   for (const std::string& folder : left.folders) std::filesystem::remove_all(folder, ignored);
   for (const std::string& folder : left.empty_folders) ::rmdir(folder.c_str());
