@@ -25,7 +25,7 @@ struct ScriptOptions {
   /// The files that the script may use; they outlive it. Null: the script is trusted, and may use
   /// all of Lua.
   const Folders* folders = nullptr;
-  std::span<std::byte> region;  ///< for the script's Lua state; outlives it. Empty: it has none of its own
+  std::span<std::byte> region{};  ///< for the script's Lua state; outlives it. Empty: it has none of its own
 };
 
 /// The error of a script: `scenes/x.lua:12: attempt to … (in step 37)`, a line feed, and Lua's
