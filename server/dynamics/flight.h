@@ -5,8 +5,8 @@
 
 namespace ziggurat::dynamics {
 
-/// Advances q and v of a tree that nothing but its external wrenches acts on, which stay the same
-/// meanwhile. Leaves it placed and moved.
+/// Advances q and v of a tree that nothing but its external wrenches and motors of joints acts on, which stay the
+/// same meanwhile. Leaves it placed and moved.
 ///
 /// A single body: its centre of mass exactly; its angular momentum exactly; its orientation by
 /// the classical Runge-Kutta method of fourth order in steps of at most 0.1 rad, exactly where it
@@ -14,6 +14,7 @@ namespace ziggurat::dynamics {
 /// Math. 6, 1980, table 2) with steps chosen by its estimate of the error.
 /// Speeds that servos hold are so from the beginning on, where they become so by an impulse; all other pushes of servos last.
 /// @param length  [s]
+/// @param drive   what motors do; a single body has none
 /// @return        how many steps it took
 int fly(Tree& tree, Workspace& work, double length, const Drive& drive = {});
 

@@ -1,7 +1,8 @@
 #pragma once
 // Solves the velocity problem of an island, by the first of these that converges:
 // - Newton's method on the contact law (semi-smooth, as in Alart and Curnier 1991; S. Hueeber and
-//   B. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), for small islands;
+//   B. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), for small islands; where it goes round, the same
+//   from where friction is viscous;
 // - Newton's method on the softened problem about the last impulses (the method of multipliers, R.
 // T.
 //   Rockafellar, Math. Oper. Res. 1, 1976): of larger islands for what rests, of small ones with a

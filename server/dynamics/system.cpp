@@ -322,9 +322,9 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   gather_island(first_tree, last_tree, first_item, last_item);
   problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
+  const bool touched = is_touched(problem_, servos_, allowed_overlap);
   if (most_parts > 1) {
-    const bool is_pulled = is_touched(problem_, servos_, allowed_overlap);
-    const int parts = std::max(is_pulled ? parts_for_tension(problem_, contacts_, work_, tension_) : 1, parts_for_nutation(problem_, work_));
+    const int parts = std::max(touched ? parts_for_tension(problem_, contacts_, work_, tension_) : 1, parts_for_nutation(problem_, work_));
     if (parts > 1) {
       for (const int tree : island) watch_[tree] |= Watch::waits;
       report_.not_converged += parts > most_parts;
@@ -335,7 +335,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const bool rebounding = rebounds(problem_);
   if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);
   write_impulses();
-  if (!is_touched(problem_, servos_, allowed_overlap)) {  // what it flew past did not hold it
+  if (!touched) {  // what it flew past did not hold it
     keep(trees, island, kept_);
     fly_driven(problem_, servos_, work_, drives_);
     if (!is_beyond(first_item, last_item)) return settle(first_tree, last_tree, false);
