@@ -62,7 +62,8 @@ double mobility_across(const Tree& tree, std::size_t link, const Vector3& normal
   return std::sqrt(std::max(0.0, one.dot(by_one) * other.dot(by_other) - one.dot(by_other) * other.dot(by_one)));
 }
 
-/// How fast the axes of a tree's rotors may turn by themselves [rad/s]: what turns on a revolute joint, by its angular momentum.
+/// How fast the axes of a tree's rotors may turn by themselves [rad/s]: what turns on a revolute joint, by the most angular momentum
+/// that it has in the step, because a motor may spin it up within one.
 /// @param slow  what need not be known exactly
 double nutation_of_rotors(const Problem& problem, std::size_t place, double slow, Workspace& work) {
   const Tree& tree = *problem.trees[place];
@@ -74,7 +75,8 @@ double nutation_of_rotors(const Problem& problem, std::size_t place, double slow
     if (link.joint != JointType::revolute || carrier.joint == JointType::fixed) continue;
     const int dof = tree.first_dof[i];
     const Vector3 axis = tree.rotation[i].transpose() * tree.axes[dof].angular;
-    const double momentum = link.inertia.dot(axis.cwiseAbs2()) * std::abs(tree.v[dof]);
+    const double speed = std::max(std::abs(tree.v[dof]), std::abs(problem.velocity[problem.offset[place] + dof]));
+    const double momentum = link.inertia.dot(axis.cwiseAbs2()) * speed;
     if (momentum <= slow * (link.inertia.minCoeff() + carrier.inertia.minCoeff())) continue;
     if (!std::exchange(factored, true)) {
       work.mass.assign(problem.mass_of(place), problem.mass_of(place) + tree.dofs * tree.dofs);

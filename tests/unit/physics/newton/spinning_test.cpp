@@ -345,7 +345,7 @@ TEST(NewtonSpin, OfARotorThatStandsOnATip) {
   top.type = scene::JointType::revolute;
   for (const double spin : long_runs::some_of({100, 50, 400})) {
     for (const double hz : long_runs::some_of({50, 100, 200, 500, 1000})) {
-      EXPECT_NEAR(top.measured(spin, hz), top.expected(spin), 1.5) << spin << ' ' << hz;
+      EXPECT_NEAR(top.measured(spin, hz), top.expected(spin), 0.5) << spin << ' ' << hz;
     }
   }
 }
