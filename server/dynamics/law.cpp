@@ -214,8 +214,7 @@ void soften(const Block& block, const double* u, double softness, bool anchors, 
   const double upper =
       block.law == Block::Law::bounded ? block.upper : std::numeric_limits<double>::infinity();
   const double give_of_normal = softness * block.mobility[0];
-  const bool is_spring = !anchors && block.yield > 0;
-  const double share = give_of_normal / (is_spring ? block.yield : give_of_normal + block.yield);
+  const double share = give_of_normal / (anchors ? give_of_normal + block.yield : std::max(give_of_normal, block.yield));
   y[0] *= share;
   impulse[0] = std::clamp(y[0], lower, upper);
   if (y[0] > lower && y[0] < upper) give_way(0, 0, share);

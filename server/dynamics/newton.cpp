@@ -339,16 +339,15 @@ Outcome Solver::solve(Problem& problem) {
   if (work <= options.newton_work) {
     if (iterate(problem, outcome, options.most_far)) return outcome;
     start_.give_back(problem);
-    if (ease(problem, outcome)) return outcome;
-    start_.give_back(problem);
-    if (soften_after_sweeps(problem, outcome)) {
-      // It misses by more than soft surfaces give way, and would share loads at random.
-      const double before = outcome.miss;
-      start_.take(problem);
-      take_speeds(problem);
-      if (iterate(problem, outcome, options.most_far)) return outcome;
+    const bool strikes = has_strike(problem);
+    ease(problem, outcome);
+    outcome.converged = patient_proximal(problem, outcome, strikes);
+    if (!outcome.converged) {
       start_.give_back(problem);
-      outcome.miss = before;
+      soften_after_sweeps(problem, outcome);
+    }
+    if (outcome.converged) {
+      sharpen(problem, outcome);
       return outcome;
     }
     start_.give_back(problem);
@@ -401,6 +400,17 @@ bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most)
     sweeps_.accelerate();
   }
   return false;
+}
+
+/// Newton's method from a solution of the softened problem: it misses by more than soft surfaces give way, and would share loads
+/// at random.
+void Solver::sharpen(Problem& problem, Outcome& outcome) {
+  const double before = outcome.miss;
+  start_.take(problem);
+  take_speeds(problem);
+  if (iterate(problem, outcome, options.most_far)) return;
+  start_.give_back(problem);
+  outcome.miss = before;
 }
 
 /// Some sweeps, then the softened problem from where they end. Sweeps find which contacts hold,

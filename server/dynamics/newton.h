@@ -1,12 +1,10 @@
 #pragma once
 // Solves the velocity problem of an island, by the first of these that converges:
 // - Newton's method on the contact law (semi-smooth, as in Alart and Curnier 1991; S. Hueeber and
-//   B. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), for small islands; where it goes round, the same
-//   from where friction is viscous;
-// - Newton's method on the softened problem about the last impulses (the method of multipliers, R.
-// T.
+//   B. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), for small islands;
+// - Newton's method on the softened problem about the last impulses (the method of multipliers, R. T.
 //   Rockafellar, Math. Oper. Res. 1, 1976): of larger islands for what rests, of small ones with a
-//   line search, after sweeps;
+//   line search, from where everything is soft, or after sweeps;
 // - the interior point method, for larger islands that strike;
 // - sweeps over the contacts alone, where a factorisation costs too much.
 // All but the last factor one matrix along the contact graph.
@@ -109,7 +107,7 @@ class Solver {
   void take_speeds(const Problem& problem);
   double miss_now(const Problem& problem, double& scale) const;
   bool proximal(Problem& problem, Outcome& outcome);
-  bool ease(Problem& problem, Outcome& outcome);
+  void ease(Problem& problem, Outcome& outcome);
   bool patient_proximal(Problem& problem, Outcome& outcome, bool strikes);
   bool proximal_step(Problem& problem, double softness, bool anchors, double shortest, double& unbalanced);
   bool interior_points(Problem& problem, Outcome& outcome);
@@ -121,6 +119,7 @@ class Solver {
   double worst_miss(const Problem& problem, double& scale);
   bool sweep_until_converged(Problem& problem, Outcome& outcome, int most);
   bool soften_after_sweeps(Problem& problem, Outcome& outcome);
+  void sharpen(Problem& problem, Outcome& outcome);
 
   BlockMatrix matrix_;
   std::vector<std::array<double, Block::most_rows>> speeds_;  // of each block, by take_speeds()

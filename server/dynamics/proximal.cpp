@@ -195,12 +195,11 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome, bool strikes) 
   return enough;
 }
 
-/// Newton's method from where friction is viscous, less and less so: what slides by a little, as the two ends of a wheel's line do,
-/// sticks and slides by turns in steps that know of no friction between.
-/// @return  whether it converged
-bool Solver::ease(Problem& problem, Outcome& outcome) {
-  constexpr double softest = 0.1, hardest = 1e-5, shortest = 1e-3, balanced = 1e-6;
-  constexpr int most = 6;
+/// The softened problem about no anchor, less and less soft, so friction is viscous until it slides: what slides by a little, as the
+/// two ends of a wheel's line do, sticks and slides by turns in steps that know of no friction between.
+void Solver::ease(Problem& problem, Outcome& outcome) {
+  constexpr double softest = 1, hardest = 1e-5, shortest = 1e-3, balanced = 1e-2;
+  constexpr int most = 10;
   take_speeds(problem);
   for (double softness = softest; softness > 0.9 * hardest; softness /= 3) {
     for (int i = 0; i < most; ++i) {
@@ -211,7 +210,6 @@ bool Solver::ease(Problem& problem, Outcome& outcome) {
       if (unbalanced <= balanced * scale) break;
     }
   }
-  return iterate(problem, outcome, options.most_far);
 }
 
 }  // namespace ziggurat::dynamics
