@@ -1,31 +1,29 @@
 #include "dynamics/drive.h"
 
-#include "dynamics/flight.h"
-
 namespace ziggurat::dynamics {
 
-void fly_driven(const Problem& problem, std::span<const Servo> servos, Workspace& work, Drives& memory) {
+void find_drives(const Problem& problem, std::span<const Servo> servos, Drives& out) {
   const std::size_t dofs = problem.velocity.size();
-  memory.driven.assign(problem.trees.size(), 0);
-  memory.held.assign(dofs, 0);
-  memory.speed.assign(dofs, 0.0);
-  memory.push.assign(dofs, 0.0);
+  out.driven.assign(problem.trees.size(), 0);
+  out.held.assign(dofs, 0);
+  out.speed.assign(dofs, 0.0);
+  out.push.assign(dofs, 0.0);
   for (const Block& block : problem.blocks) {
     if (block.kind != Block::Source::servo) continue;
     const Servo& servo = servos[block.source];
     if (servo.dof < 0) continue;
     const std::size_t at = problem.offset[block.a] + servo.dof;
-    memory.driven[block.a] = 1;
-    memory.held[at] = is_obeyed(servo);
-    memory.speed[at] = servo.speed;
-    memory.push[at] = servo.impulse / problem.length;
+    out.driven[block.a] = 1;
+    out.held[at] = is_obeyed(servo);
+    out.speed[at] = servo.speed;
+    out.push[at] = servo.impulse / problem.length;
   }
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    Tree& tree = *problem.trees[i];
-    const auto of_tree = [&](auto& all) { return std::span(all).subspan(problem.offset[i], tree.dofs); };
-    const Drive drive = memory.driven[i] ? Drive{of_tree(memory.held), of_tree(memory.speed), of_tree(memory.push)} : Drive{};
-    fly(tree, work, problem.length, drive);
-  }
+}
+
+Drive drive_of(const Problem& problem, std::size_t tree, const Drives& drives) {
+  if (!drives.driven[tree]) return {};
+  const auto of_tree = [&](const auto& all) { return std::span(all).subspan(problem.offset[tree], problem.trees[tree]->dofs); };
+  return {of_tree(drives.held), of_tree(drives.speed), of_tree(drives.push)};
 }
 
 }  // namespace ziggurat::dynamics

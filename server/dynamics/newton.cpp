@@ -111,20 +111,6 @@ double wrong_energy(const Problem& problem, const Speeds& speeds) {
   return sum;
 }
 
-/// Whether a contact is faster than what one substep's forces give.
-bool has_strike(const Problem& problem) {
-  double fastest = 0, forces = 0;
-  for (const Block& block : problem.blocks) {
-    double u[Block::most_rows];
-    problem.speeds(block, u);
-    for (int r = 0; r < std::min(block.rows, 3); ++r) fastest = std::max(fastest, std::abs(u[r]));
-  }
-  for (const Tree* tree : problem.trees) {
-    forces = std::max(forces, problem.length * tree->gravity.norm());
-  }
-  return fastest > forces;
-}
-
 }  // namespace
 
 void start_matrix(const Problem& problem, BlockMatrix& matrix) {
@@ -303,10 +289,30 @@ bool Solver::iterate(Problem& problem, Outcome& outcome, int most_far) {
   return false;
 }
 
+double Solver::tolerance_of_softened(double scale) const {
+  const double least = std::max(beginning_.fastest, beginning_.fall);
+  if (least > 0) scale = std::min(scale, options.most_scale * least);
+  return options.absolute_tolerance + options.soft_tolerance * scale;
+}
+
+/// Of a problem that is not solved yet.
+static Beginning beginning_of(const Problem& problem) {
+  Beginning out;
+  for (const Block& block : problem.blocks) {
+    if (block.kind != Block::Source::contact) continue;
+    double u[Block::most_rows];
+    problem.speeds(block, u);
+    for (int r = 0; r < std::min(block.rows, 3); ++r) out.fastest = std::max(out.fastest, std::abs(u[r]));
+  }
+  for (const Tree* tree : problem.trees) out.fall = std::max(out.fall, problem.length * tree->gravity.norm());
+  return out;
+}
+
 /// Shapes the matrix, if it is not too large for that, and keeps the state.
 /// @return  multiplications that a factorisation takes
 double Solver::start(Problem& problem) {
   start_.take(problem);
+  beginning_ = beginning_of(problem);
   if (problem.trees.size() > options.most_trees) return HUGE_VAL;
   sizes_.clear();
   for (const Tree* tree : problem.trees) sizes_.push_back(tree->dofs);
@@ -339,9 +345,8 @@ Outcome Solver::solve(Problem& problem) {
   if (work <= options.newton_work) {
     if (iterate(problem, outcome, options.most_far)) return outcome;
     start_.give_back(problem);
-    const bool strikes = has_strike(problem);
     ease(problem, outcome);
-    outcome.converged = patient_proximal(problem, outcome, strikes);
+    outcome.converged = patient_proximal(problem, outcome);
     if (!outcome.converged) {
       start_.give_back(problem);
       soften_after_sweeps(problem, outcome);
@@ -357,14 +362,16 @@ Outcome Solver::solve(Problem& problem) {
     if (proximal(problem, outcome)) return outcome;
   }
   start_.give_back(problem);
-  interior_points(problem, outcome);
+  const bool found = interior_points(problem, outcome);
   outcome.converged = proximal(problem, outcome);
-  if (outcome.converged) return outcome;
-  const double before = outcome.miss;
+  if (outcome.converged && found) return outcome;
+  const Outcome before = outcome;  // where redundant contacts hold each other up, their impulses hide a miss
   start_.take(problem);
-  if (!soften_after_sweeps(problem, outcome) && outcome.miss > before) {
+  soften_after_sweeps(problem, outcome);
+  if (outcome.miss > before.miss) {
     start_.give_back(problem);
-    outcome.miss = before;
+    outcome.miss = before.miss;
+    outcome.converged = before.converged;
   }
   return outcome;
 }
@@ -395,7 +402,7 @@ bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most)
     sweeps_.finish(problem);
     double scale = 0;
     outcome.miss = worst_miss(problem, scale);
-    outcome.converged = outcome.miss <= options.tolerance_of_softened(scale);
+    outcome.converged = outcome.miss <= tolerance_of_softened(scale);
     if (outcome.converged) return true;
     sweeps_.accelerate();
   }
@@ -417,7 +424,6 @@ void Solver::sharpen(Problem& problem, Outcome& outcome) {
 /// stick and slide; where some of them contradict each other a little, as rolling friction and the
 /// two ends of a line do, only the softened problem ends.
 bool Solver::soften_after_sweeps(Problem& problem, Outcome& outcome) {
-  const bool strikes = has_strike(problem);
   sweeps_.start(problem);
   for (int sweep = 1; sweep <= options.first_sweeps; ++sweep) {
     sweeps_.sweep();
@@ -425,7 +431,7 @@ bool Solver::soften_after_sweeps(Problem& problem, Outcome& outcome) {
   }
   sweeps_.finish(problem);
   outcome.sweeps += options.first_sweeps;
-  return outcome.converged = patient_proximal(problem, outcome, strikes);
+  return outcome.converged = patient_proximal(problem, outcome);
 }
 
 void Solver::solve_displacement(Problem& problem) {

@@ -44,10 +44,10 @@ struct SolverOptions {
   double relative_tolerance = 1e-9;   ///< of the largest speed or speed change in the island
   double still_tolerance = 1e-8;      ///< of it, for the momentum that the last substep's solution misses
   double soft_tolerance = 2e-5;       ///< of it, where Newton's method did not converge
+  double most_scale = 4;             ///< of that speed, over the speeds at the beginning: redundant contacts may hold each other up with any impulse
   double absolute_tolerance = 1e-10;  ///< [m/s] or [rad/s]
 
   double tolerance(double scale) const { return absolute_tolerance + relative_tolerance * scale; }
-  double tolerance_of_softened(double scale) const { return absolute_tolerance + soft_tolerance * scale; }
 };
 
 /// A block in the interior point method: impulse and speed in units in which a contact's cone is
@@ -85,6 +85,14 @@ struct Snapshot {
   void draw_back(Problem& problem, double share) const;
 };
 
+/// How fast an island is before it is solved.
+struct Beginning {
+  double fastest = 0;  ///< of its contacts [m/s]
+  double fall = 0;     ///< what gravity gives in a substep [m/s]
+  /// Whether a contact is faster than forces of one substep make it.
+  bool strikes() const { return fastest > fall; }
+};
+
 class Solver {
  public:
   SolverOptions options;
@@ -108,7 +116,8 @@ class Solver {
   double miss_now(const Problem& problem, double& scale) const;
   bool proximal(Problem& problem, Outcome& outcome);
   void ease(Problem& problem, Outcome& outcome);
-  bool patient_proximal(Problem& problem, Outcome& outcome, bool strikes);
+  bool patient_proximal(Problem& problem, Outcome& outcome);
+  double tolerance_of_softened(double scale) const;
   bool proximal_step(Problem& problem, double softness, bool anchors, double shortest, double& unbalanced);
   bool interior_points(Problem& problem, Outcome& outcome);
   void enter(const Problem& problem, double margin);
@@ -129,6 +138,7 @@ class Solver {
   std::vector<int> sizes_;
   std::vector<double> sloped_;
   std::vector<double> kept_velocity_, anchored_;
+  Beginning beginning_;
   Snapshot start_, snapshot_, rebounding_, earlier_;
   std::vector<double> seeks_;
   std::vector<double> direction_, residual_;

@@ -156,34 +156,6 @@ void Problem::weigh(Block& block) const {
   for (int r = 0; r < block.rows; ++r) block.mobility[r] = std::max(block.mobility[r], 1e-12);
 }
 
-/// When in the substep surfaces that fall freely meet, and with which speed and how far apart they are at
-/// its end. What bodies are pushed by, and what else holds them, does not count.
-void Problem::rebound(Block& block, double restitution) const {
-  const auto weight = [&](int place) -> Vector3 {
-    return place >= 0 && trees[place]->free_root ? trees[place]->gravity : Vector3::Zero();
-  };
-  double before[Block::most_rows];
-  speeds(block, before);
-  const double pull = block.frame.col(0).dot(weight(block.a) - weight(block.b));  // apart: > 0
-  const double gap = std::max(0.0, block.gap);
-  const double square = before[0] * before[0] - 2 * pull * gap;  // of the speed of the impact
-  if (square < slowest_bounce * slowest_bounce) return;
-  const double impact = std::sqrt(square);
-  if (impact <= before[0]) return;  // they part
-  const double time = 2 * gap / (impact - before[0]), rest = length - time;
-  if (rest <= 0) {  // not yet: nothing may hold it
-    block.seek[0] = std::min(block.seek[0], before[0] + length * pull);
-    return;
-  }
-  const double rise = rest * (restitution * impact + rest * pull / 2);
-  if (rise <= 0) return;
-  block.bounces = true;
-  block.yield = 0;
-  block.rise = rise;
-  block.before = -impact - rest * pull;
-  block.seek[0] = restitution * impact + rest * pull;
-}
-
 /// What a point of a link accelerates by while the speeds of all coordinates stay [m/s^2].
 /// @param tree  its place in the island
 Vector3 Problem::bend(int tree, int link, const Vector3& point) const {
@@ -248,7 +220,7 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
       block.seek[r] = -length / 2 * block.frame.col(r).dot(apart);
     }
   }
-  if (contact.restitution > 0) rebound(block, contact.restitution);
+  block.restitution = contact.restitution;
   block.source = source;
   block.kind = Block::Source::contact;
   if (a >= 0 && b >= 0 && a != b) {
@@ -356,8 +328,13 @@ bool Problem::turn_into_displacement() {
     return overlaps || bounces(block);
   };
   if (std::none_of(blocks.begin(), blocks.end(), needs_it)) return false;
+  const bool rebounding = std::any_of(blocks.begin(), blocks.end(), bounces);
+  const auto holds = [&](const Block& block) {  // through the impact: what it holds did not move when it was struck
+    const double impulse = block.impulse[0];
+    return rebounding && (block.kind == Block::Source::servo ? impulse > block.lower && impulse < block.upper : impulse > 0);
+  };
   for (Block& block : blocks) {
-    if (block.kind == Block::Source::servo) {
+    if (block.kind == Block::Source::servo && !holds(block)) {
       block.law = Block::Law::off;
       block.impulse.fill(0);  // sweeps begin with what all impulses do
       continue;
@@ -365,11 +342,13 @@ bool Problem::turn_into_displacement() {
     double u[Block::most_rows];
     speeds(block, u);
     const double after = block.gap + length * u[0];
-    const bool bounced = bounces(block);
+    const bool bounced = bounces(block), both_ways = bounced || holds(block);
     block.law = Block::Law::bounded;
-    block.lower = bounced ? -std::numeric_limits<double>::infinity() : 0;
+    block.lower = both_ways ? -std::numeric_limits<double>::infinity() : 0;
     block.upper = std::numeric_limits<double>::infinity();
-    if (bounced) {  // it turned round at the surface, not at the substep's beginning
+    if (block.kind == Block::Source::servo) {
+      block.seek[0] = 0;
+    } else if (bounced) {  // it turned round at the surface, not at the substep's beginning
       block.seek[0] = block.rise - after;
     } else {  // overlaps go four fifths a substep; the last micrometre stays
       block.seek[0] = block.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
@@ -385,7 +364,7 @@ bool Problem::turn_into_displacement() {
 void Problem::leave_rebounds() {
   for (Block& block : blocks) {
     block.impulse.fill(0);
-    if (block.kind != Block::Source::contact || block.lower == 0) continue;
+    if (!block.bounces || block.lower == 0) continue;
     block.lower = 0;
     block.seek[0] -= block.rise;
   }

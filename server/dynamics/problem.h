@@ -39,9 +39,11 @@ struct Block {
   std::array<double, most_rows> anchor{};  ///< of the softened law, see law.h [N s], [N m s]
 
   double gap = 0;                   ///< of contacts and limits [m] or [rad]
+  double restitution = 0;           ///< of a contact
   bool bounces = false;             ///< a contact that is met within the substep and rebounds
   double rise = 0;                  ///< of one that bounces: the gap at the substep's end [m]
   double before = 0;                ///< and its speed with which the work of the impact is right [m/s]
+  double met = 0;                   ///< and when, from the substep's beginning [s]
   Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
   int source = 0;                   ///< into the contacts, servos or limits of the system
   enum class Source : unsigned char { contact, servo, limit } kind = Source::contact;
@@ -67,6 +69,7 @@ struct Problem {
   std::vector<int> first_bias;                 ///< of each tree, in `bias`; -1: not needed, or it hardly turns
   std::vector<double> total_mass;              ///< of each tree [kg]
   double weight = 0;                           ///< of all trees [N]
+  std::vector<double> carried;                 ///< memory of aim_rebounds(): what carries each tree, times gravity [N s m/s^2]
   std::vector<double> velocity;                ///< v: start and solution
   std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block
 
@@ -103,7 +106,6 @@ struct Problem {
   void weigh(Block& block) const;
   Vector3 bend(int tree, int link, const Vector3& point) const;
   void press(Block& block) const;
-  void rebound(Block& block, double restitution) const;
 };
 
 /// Calls f with a block's number of rows, as a number that the compiler knows.
@@ -122,8 +124,5 @@ void by_rows(int rows, F f) {
 /// Whether a side's touched dofs begin with the first six of its tree: those of a free root, or of joints on
 /// the way from a fixed one.
 inline bool leads(std::span<const int> dofs) { return dofs.size() >= 6 && dofs[5] == 5; }
-
-/// Slower impacts do not bounce [m/s].
-constexpr double slowest_bounce = 0.05;
 
 }  // namespace ziggurat::dynamics

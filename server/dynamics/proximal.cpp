@@ -139,7 +139,7 @@ bool Solver::proximal(Problem& problem, Outcome& outcome) {
       snapshot_.take(problem);
     }
     if (now <= options.tolerance(scale)) return outcome.miss = now, true;
-    enough = best <= options.tolerance_of_softened(scale);
+    enough = best <= tolerance_of_softened(scale);
     if (i > 0 && now > 0.3 * before) break;
     before = now;
     if (unbalanced <= 0.1 * law) {
@@ -153,9 +153,9 @@ bool Solver::proximal(Problem& problem, Outcome& outcome) {
 
 /// Steps that lead nearer to the law: from anchor to anchor, with less softness where few steps
 /// are enough for one, and more where many are not.
-/// @param strikes  then it need not be as exact as for what stands and must not creep
+/// What strikes need not be as exact as what stands and must not creep.
 /// @return  whether the miss became small; otherwise the problem holds the best state met
-bool Solver::patient_proximal(Problem& problem, Outcome& outcome, bool strikes) {
+bool Solver::patient_proximal(Problem& problem, Outcome& outcome) {
   constexpr int few = 5, many = 15;
   constexpr double hardest = 1e-7, softest = 1, shortest = 1e-4;
   double scale = 0, unbalanced = 0, softness = options.softness;
@@ -174,8 +174,8 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome, bool strikes) 
       snapshot_.take(problem);
     }
     if (nearer && now <= options.tolerance(scale)) return outcome.miss = now, true;
-    enough = best <= options.tolerance_of_softened(scale);
-    if (enough && strikes) break;
+    enough = best <= tolerance_of_softened(scale);
+    if (enough && beginning_.strikes()) break;
     if (!nearer || steps > many) {
       if (enough || softness >= softest) break;
       softness *= 10, steps = 0;

@@ -181,7 +181,7 @@ bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebo
 
 void bound_way(Problem& problem, const Rebound& rebound) {
   double share = 1;
-  double depth = 0;  // what overlaps is moved apart by up to that
+  double depth = problem.allowed_overlap;  // what overlaps is moved apart by up to that
   for (const Block& block : problem.blocks) depth = std::max(depth, -block.gap);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];

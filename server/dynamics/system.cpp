@@ -8,6 +8,7 @@
 #include "dynamics/excess.h"
 #include "dynamics/fetch.h"
 #include "dynamics/flight.h"
+#include "dynamics/impact.h"
 #include "dynamics/nutation.h"
 
 namespace ziggurat::dynamics {
@@ -98,13 +99,16 @@ void put_back(std::vector<Tree>& trees, std::span<const int> island, const std::
   }
 }
 
-/// Whether more than motors of joints acts in an island.
+/// Notes which trees of an island nothing but motors of joints acts on: what they come near does not hold them.
 /// @param allowed  see holds()
-bool is_touched(const Problem& problem, std::span<const Servo> servos, double allowed) {
-  return std::ranges::any_of(problem.blocks, [&](const Block& block) {
+void find_free(const Problem& problem, std::span<const Servo> servos, double allowed, std::vector<unsigned char>& out) {
+  out.assign(problem.trees.size(), 1);
+  for (const Block& block : problem.blocks) {
     const bool is_motor = block.kind == Block::Source::servo && servos[block.source].dof >= 0;
-    return !is_motor && holds(block, allowed);
-  });
+    if (is_motor || !holds(block, allowed)) continue;
+    if (block.a >= 0) out[block.a] = 0;
+    if (block.b >= 0) out[block.b] = 0;
+  }
 }
 
 /// Moves a tree of the island. What nothing fixed rubs keeps its momentum, and so does what would gain energy.
@@ -257,11 +261,13 @@ Report System::step(double length, std::span<Contact> contacts, std::span<Servo>
   return report_;
 }
 
-/// Whether a joint of the island is beyond a limit.
-bool System::is_beyond(int first_item, int last_item) const {
+/// Whether a joint of the island, or of a tree of it, is beyond a limit.
+/// @param of  the tree; -1: all
+bool System::is_beyond(int first_item, int last_item, int of) const {
   return std::any_of(item_order_.begin() + first_item, item_order_.begin() + last_item, [&](const Item& item) {
     if (item.kind != limit_item) return false;
     const Limit& limit = limits_[item.index];
+    if (of >= 0 && limit.tree != of) return false;
     const Tree& tree = trees[limit.tree];
     const double q = tree.q[tree.first_place[limit.link]];
     return q < limit.lower || q > limit.upper;
@@ -317,12 +323,32 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
   }
 }
 
+/// Flies those trees of an island that are free, as far as they stay within the limits of their joints; others are free no more.
+/// @return  whether all did
+bool System::fly_free(int first_tree, int last_tree, int first_item, int last_item) {
+  if (std::ranges::count(free_, 1) > 0) find_drives(problem_, servos_, drives_);
+  bool all = true;
+  for (int i = 0; i < last_tree - first_tree; ++i) {
+    const std::span<const int> tree(&tree_order_[first_tree + i], 1);
+    if (free_[i]) {
+      keep(trees, tree, kept_);
+      fly(trees[tree[0]], work_, length_, drive_of(problem_, i, drives_));
+      free_[i] = !is_beyond(first_item, last_item, tree[0]);
+      if (!free_[i]) put_back(trees, tree, kept_);
+    }
+    all &= free_[i];
+  }
+  return all;
+}
+
 void System::solve_island(int first_tree, int last_tree, int first_item, int last_item) {
   const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
   gather_island(first_tree, last_tree, first_item, last_item);
+  aim_rebounds(problem_);
   problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
-  const bool touched = is_touched(problem_, servos_, allowed_overlap);
+  find_free(problem_, servos_, allowed_overlap, free_);
+  const bool touched = std::ranges::count(free_, 0) > 0;
   if (most_parts > 1) {
     const int parts = std::max(touched ? parts_for_tension(problem_, contacts_, work_, tension_) : 1, parts_for_nutation(problem_, work_));
     if (parts > 1) {
@@ -335,19 +361,19 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const bool rebounding = rebounds(problem_);
   if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);
   write_impulses();
-  if (!touched) {  // what it flew past did not hold it
-    keep(trees, island, kept_);
-    fly_driven(problem_, servos_, work_, drives_);
-    if (!is_beyond(first_item, last_item)) return settle(first_tree, last_tree, false);
-    put_back(trees, island, kept_);
-  }
+  if (rebounding) free_.assign(free_.size(), 0);  // its energy is bounded as a whole
+  if (fly_free(first_tree, last_tree, first_item, last_item)) return settle(first_tree, last_tree, false);
   step_.resize(problem_.velocity.size());
   for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = length_ * problem_.velocity[i];
   const double before = energy_if_passive(problem_);
   note_excesses(problem_, work_, excesses_);
   for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
     Tree& tree = *problem_.trees[i];
-    std::copy_n(problem_.velocity.begin() + problem_.offset[i], tree.dofs, tree.v.begin());
+    if (free_[i]) {
+      std::fill_n(step_.begin() + problem_.offset[i], tree.dofs, 0.0);
+    } else {
+      std::copy_n(problem_.velocity.begin() + problem_.offset[i], tree.dofs, tree.v.begin());
+    }
   }
   const bool grounded = std::any_of(problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
     return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0) && b.friction > 0;
@@ -368,8 +394,14 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     add_lifts(problem_, work_, excesses_);
   }
   for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
-    const std::size_t dofs = problem_.trees[i]->dofs;
-    displace(problem_, i, {step_.data() + problem_.offset[i], dofs}, !grounded, excesses_, work_);
+    const std::span<const double> by(step_.data() + problem_.offset[i], problem_.trees[i]->dofs);
+    if (!free_[i]) {
+      displace(problem_, i, by, !grounded, excesses_, work_);
+    } else if (std::ranges::any_of(by, [](double way) { return way != 0; })) {  // something is pushed out of it
+      displace(*problem_.trees[i], by);
+      place(*problem_.trees[i]);
+      move(*problem_.trees[i]);
+    }
   }
   if (rebounding) bound_energy(problem_, work_, rebound_);
   bound_gain(problem_, work_, before, grounded, is_part);

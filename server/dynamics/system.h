@@ -129,8 +129,9 @@ class System {
   void fetch_after(std::size_t island) const;
   void gather_island(int first_tree, int last_tree, int first_item, int last_item);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
-  bool is_beyond(int first_item, int last_item) const;
+  bool is_beyond(int first_item, int last_item, int of = -1) const;
   bool fly_island(int first_tree, int last_tree, int first_item, int last_item);
+  bool fly_free(int first_tree, int last_tree, int first_item, int last_item);
   void write_impulses();
 
   /// What is known of a tree's sleep.
@@ -161,7 +162,7 @@ class System {
   std::vector<int> parent_, island_, place_;
   std::vector<int> first_tree_, tree_order_, first_item_;
   std::vector<Item> items_, item_order_;
-  std::vector<unsigned char> driven_;  // of each tree of an island
+  std::vector<unsigned char> driven_, free_;  // of each tree of an island
   std::vector<double> kept_, step_;
   Excesses excesses_;
   Rebound rebound_;
