@@ -303,7 +303,8 @@ bool Solver::interior_points(Problem& problem, Outcome& outcome) {
     for (int r = 0; r < solved_rows(block); ++r) block.impulse[r] = 0;
   }
   double scale = 0, best = HUGE_VAL;
-  worst_miss(problem, scale);
+  take_speeds(problem);
+  miss_now(problem, scale);
   const double pushed = imbalance(problem, residual_);
   snapshot_.take(problem);
   if (!(scale + pushed > 0)) return false;
@@ -318,7 +319,8 @@ bool Solver::interior_points(Problem& problem, Outcome& outcome) {
     const double centering = std::max(left * left * left, least_centering);
     const double way = interior_direction(problem, centering * product, straight > 0.1);
     advance_interior(problem, std::min(1.0, share * way));
-    outcome.miss = worst_miss(problem, scale);
+    take_speeds(problem);
+    outcome.miss = miss_now(problem, scale);
     if (!std::isfinite(outcome.miss)) break;
     if (outcome.miss < best) {
       best = outcome.miss;

@@ -111,6 +111,19 @@ double wrong_energy(const Problem& problem, const Speeds& speeds) {
   return sum;
 }
 
+/// Of a problem that is not solved yet.
+Beginning beginning_of(const Problem& problem) {
+  Beginning out;
+  for (const Block& block : problem.blocks) {
+    if (block.kind != Block::Source::contact) continue;
+    double u[Block::most_rows];
+    problem.speeds(block, u);
+    for (int r = 0; r < std::min(block.rows, 3); ++r) out.fastest = std::max(out.fastest, std::abs(u[r]));
+  }
+  for (const Tree* tree : problem.trees) out.fall = std::max(out.fall, problem.length * tree->gravity.norm());
+  return out;
+}
+
 }  // namespace
 
 void start_matrix(const Problem& problem, BlockMatrix& matrix) {
@@ -188,11 +201,6 @@ void Solver::correct(Problem& problem) {
                              problem.blocks[i]);
     });
   }
-}
-
-double Solver::worst_miss(const Problem& problem, double& scale) {
-  take_speeds(problem);
-  return miss_now(problem, scale);
 }
 
 /// At the speeds that were taken.
@@ -289,25 +297,6 @@ bool Solver::iterate(Problem& problem, Outcome& outcome, int most_far) {
   return false;
 }
 
-double Solver::tolerance_of_softened(double scale) const {
-  const double least = std::max(beginning_.fastest, beginning_.fall);
-  if (least > 0) scale = std::min(scale, options.most_scale * least);
-  return options.absolute_tolerance + options.soft_tolerance * scale;
-}
-
-/// Of a problem that is not solved yet.
-static Beginning beginning_of(const Problem& problem) {
-  Beginning out;
-  for (const Block& block : problem.blocks) {
-    if (block.kind != Block::Source::contact) continue;
-    double u[Block::most_rows];
-    problem.speeds(block, u);
-    for (int r = 0; r < std::min(block.rows, 3); ++r) out.fastest = std::max(out.fastest, std::abs(u[r]));
-  }
-  for (const Tree* tree : problem.trees) out.fall = std::max(out.fall, problem.length * tree->gravity.norm());
-  return out;
-}
-
 /// Shapes the matrix, if it is not too large for that, and keeps the state.
 /// @return  multiplications that a factorisation takes
 double Solver::start(Problem& problem) {
@@ -401,8 +390,9 @@ bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most)
     }
     sweeps_.finish(problem);
     double scale = 0;
-    outcome.miss = worst_miss(problem, scale);
-    outcome.converged = outcome.miss <= tolerance_of_softened(scale);
+    take_speeds(problem);
+    outcome.miss = miss_now(problem, scale);
+    outcome.converged = outcome.miss <= options.tolerance_of_softened(beginning_, scale);
     if (outcome.converged) return true;
     sweeps_.accelerate();
   }

@@ -9,6 +9,8 @@
 // - sweeps over the contacts alone, where a factorisation costs too much.
 // All but the last factor one matrix along the contact graph.
 
+#include <algorithm>
+
 #include "dynamics/block_matrix.h"
 #include "dynamics/law.h"
 #include "dynamics/sweeps.h"
@@ -23,6 +25,14 @@ struct Outcome {
   int sweeps = 0;      ///< over all contacts
   double miss = 0;     ///< worst violation of the contact law that is left [m/s] or [rad/s]
   bool converged = true;
+};
+
+/// How fast an island is before it is solved.
+struct Beginning {
+  double fastest = 0;  ///< of its contacts [m/s]
+  double fall = 0;     ///< what gravity gives in a substep [m/s]
+  /// Whether a contact is faster than forces of one substep make it.
+  bool strikes() const { return fastest > fall; }
 };
 
 struct SolverOptions {
@@ -47,6 +57,10 @@ struct SolverOptions {
   double most_scale = 4;             ///< of that speed, over the speeds at the beginning: redundant contacts may hold each other up with any impulse
   double absolute_tolerance = 1e-10;  ///< [m/s] or [rad/s]
 
+  double tolerance_of_softened(const Beginning& beginning, double scale) const {
+    const double least = std::max(beginning.fastest, beginning.fall);
+    return absolute_tolerance + soft_tolerance * (least > 0 ? std::min(scale, most_scale * least) : scale);
+  }
   double tolerance(double scale) const { return absolute_tolerance + relative_tolerance * scale; }
 };
 
@@ -85,14 +99,6 @@ struct Snapshot {
   void draw_back(Problem& problem, double share) const;
 };
 
-/// How fast an island is before it is solved.
-struct Beginning {
-  double fastest = 0;  ///< of its contacts [m/s]
-  double fall = 0;     ///< what gravity gives in a substep [m/s]
-  /// Whether a contact is faster than forces of one substep make it.
-  bool strikes() const { return fastest > fall; }
-};
-
 class Solver {
  public:
   SolverOptions options;
@@ -117,7 +123,6 @@ class Solver {
   bool proximal(Problem& problem, Outcome& outcome);
   void ease(Problem& problem, Outcome& outcome);
   bool patient_proximal(Problem& problem, Outcome& outcome);
-  double tolerance_of_softened(double scale) const;
   bool proximal_step(Problem& problem, double softness, bool anchors, double shortest, double& unbalanced);
   bool interior_points(Problem& problem, Outcome& outcome);
   void enter(const Problem& problem, double margin);
@@ -125,7 +130,6 @@ class Solver {
   double interior_direction(Problem& problem, double target, bool corrects);
   double product_after(const Problem& problem, double way) const;
   void advance_interior(Problem& problem, double way);
-  double worst_miss(const Problem& problem, double& scale);
   bool sweep_until_converged(Problem& problem, Outcome& outcome, int most);
   bool soften_after_sweeps(Problem& problem, Outcome& outcome);
   void sharpen(Problem& problem, Outcome& outcome);

@@ -124,7 +124,8 @@ bool Solver::proximal_step(Problem& problem, double softness, bool anchors, doub
 /// @return  whether the miss became small; otherwise the problem holds the best state met
 bool Solver::proximal(Problem& problem, Outcome& outcome) {
   double scale = 0, unbalanced = 0;
-  double before = std::max(worst_miss(problem, scale), imbalance(problem, residual_));
+  take_speeds(problem);
+  double before = std::max(miss_now(problem, scale), imbalance(problem, residual_));
   snapshot_.take(problem);
   double best = before;
   for (Block& block : problem.blocks) block.anchor = block.impulse;
@@ -139,7 +140,7 @@ bool Solver::proximal(Problem& problem, Outcome& outcome) {
       snapshot_.take(problem);
     }
     if (now <= options.tolerance(scale)) return outcome.miss = now, true;
-    enough = best <= tolerance_of_softened(scale);
+    enough = best <= options.tolerance_of_softened(beginning_, scale);
     if (i > 0 && now > 0.3 * before) break;
     before = now;
     if (unbalanced <= 0.1 * law) {
@@ -159,7 +160,8 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome) {
   constexpr int few = 5, many = 15;
   constexpr double hardest = 1e-7, softest = 1, shortest = 1e-4;
   double scale = 0, unbalanced = 0, softness = options.softness;
-  double best = std::max(worst_miss(problem, scale), imbalance(problem, residual_));
+  take_speeds(problem);
+  double best = std::max(miss_now(problem, scale), imbalance(problem, residual_));
   double at_anchor = HUGE_VAL;
   snapshot_.take(problem);
   anchored_ = problem.velocity;
@@ -174,7 +176,7 @@ bool Solver::patient_proximal(Problem& problem, Outcome& outcome) {
       snapshot_.take(problem);
     }
     if (nearer && now <= options.tolerance(scale)) return outcome.miss = now, true;
-    enough = best <= tolerance_of_softened(scale);
+    enough = best <= options.tolerance_of_softened(beginning_, scale);
     if (enough && beginning_.strikes()) break;
     if (!nearer || steps > many) {
       if (enough || softness >= softest) break;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "dynamics/equations.h"
 #include "dynamics/excess.h"
@@ -101,14 +102,19 @@ void put_back(std::vector<Tree>& trees, std::span<const int> island, const std::
 
 /// Notes which trees of an island nothing but motors of joints acts on: what they come near does not hold them.
 /// @param allowed  see holds()
-void find_free(const Problem& problem, std::span<const Servo> servos, double allowed, std::vector<unsigned char>& out) {
-  out.assign(problem.trees.size(), 1);
+/// @return         how many
+std::size_t find_free(const Problem& problem, std::span<const Servo> servos, double allowed, std::vector<unsigned char>& out) {
+  std::size_t count = problem.trees.size();
+  out.assign(count, 1);
+  const auto touch = [&](int tree) { count -= tree >= 0 && std::exchange(out[tree], 0); };
   for (const Block& block : problem.blocks) {
     const bool is_motor = block.kind == Block::Source::servo && servos[block.source].dof >= 0;
     if (is_motor || !holds(block, allowed)) continue;
-    if (block.a >= 0) out[block.a] = 0;
-    if (block.b >= 0) out[block.b] = 0;
+    touch(block.a);
+    touch(block.b);
+    if (count == 0) break;
   }
+  return count;
 }
 
 /// Moves a tree of the island. What nothing fixed rubs keeps its momentum, and so does what would gain energy.
@@ -129,6 +135,71 @@ void displace(const Problem& problem, std::size_t i, std::span<const double> by,
               !drifts);
 }
 
+/// Gives back to contacts, servos and limits what they gave, in world axes.
+void write_impulses(const Problem& problem, std::span<Contact> contacts, std::span<Servo> servos, std::span<Limit> limits) {
+  for (const Block& block : problem.blocks) {
+    const auto& g = block.impulse;
+    switch (block.kind) {
+      case Block::Source::contact: {
+        Contact& contact = contacts[block.source];
+        contact.impulse = block.frame * Vector3(g[0], g[1], g[2]);
+        contact.angular_impulse = block.frame * Vector3(g[3], g[4], g[5]);
+        break;
+      }
+      case Block::Source::servo:
+        servos[block.source].impulse = g[0];
+        break;
+      case Block::Source::limit:  // along the joint at the lower bound, against it at the upper
+        limits[block.source].impulse = problem.jacobian[block.ja + block.dofs_a[0]] * g[0];
+        break;
+    }
+  }
+}
+
+/// The order of contacts in an island: it depends on the island alone.
+bool is_earlier(const Contact& a, const Contact& b) {
+  const auto key = [](const Contact& c) {
+    return std::tuple(c.a.tree, c.b.tree, c.a.link, c.b.link, c.point.x(), c.point.y(), c.point.z(), c.gap);
+  };
+  return key(a) < key(b);
+}
+
+/// Takes the velocities of a solution, and how far they move trees; those that are free have moved.
+void take_velocities(const Problem& problem, const std::vector<unsigned char>& free, std::vector<double>& step) {
+  step.resize(problem.velocity.size());
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    Tree& tree = *problem.trees[i];
+    for (int k = 0; k < tree.dofs; ++k) {
+      const double speed = problem.velocity[problem.offset[i] + k];
+      step[problem.offset[i] + k] = free[i] ? 0 : problem.length * speed;
+      if (!free[i]) tree.v[k] = speed;
+    }
+  }
+}
+
+/// Whether the world rubs the island.
+bool world_rubs(const Problem& problem) {
+  return std::ranges::any_of(problem.blocks, [](const Block& b) {
+    return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0) && b.friction > 0;
+  });
+}
+
+/// Whether the world carries it.
+bool world_carries(const Problem& problem) {
+  return std::ranges::any_of(problem.blocks, [](const Block& b) {
+    return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0) && b.impulse[0] > 0;
+  });
+}
+
+/// Whether a motor moves something, however slowly.
+bool motors_move(const Problem& problem) {
+  constexpr double rounding = 1e-7;  // of what a motor holds [m/s], [rad/s]
+  return std::ranges::any_of(problem.blocks, [](const Block& b) {
+    const bool obeys = b.lower < b.impulse[0] && b.impulse[0] < b.upper;
+    return b.kind == Block::Source::servo && obeys && std::abs(b.seek[0]) > rounding;
+  });
+}
+
 }  // namespace
 
 void LeftIslands::add(std::span<const int> of_island, int parts) {
@@ -139,18 +210,6 @@ void LeftIslands::add(std::span<const int> of_island, int parts) {
 int System::find(int tree) {
   while (parent_[tree] != tree) tree = parent_[tree] = parent_[parent_[tree]];
   return tree;
-}
-
-/// The order of what acts in an island: it depends on the island alone.
-bool System::before(const Item& a, const Item& b) const {
-  if (a.kind != b.kind) return a.kind < b.kind;
-  if (a.kind != contact_item) return a.index < b.index;
-  const auto key = [&](const Item& item) {
-    const Contact& c = contacts_[item.index];
-    return std::tuple(c.a.tree, c.b.tree, c.a.link, c.b.link, c.point.x(), c.point.y(), c.point.z(),
-                      c.gap);
-  };
-  return key(a) < key(b);
 }
 
 /// Sorts trees that are awake and what acts on them by island; islands by their first tree.
@@ -204,11 +263,13 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
   for (const Item& item : items_) item_order_[first_item_[item.island]++] = item;
   for (int i = islands; i > 0; --i) first_item_[i] = first_item_[i - 1];
   first_item_[0] = 0;
-  const auto earlier = [&](const Item& a, const Item& b) { return before(a, b); };
+  const auto earlier = [&](const Item& a, const Item& b) {
+    if (a.kind != b.kind || a.kind != contact_item) return std::tuple(a.kind, a.index) < std::tuple(b.kind, b.index);
+    return is_earlier(contacts[a.index], contacts[b.index]);
+  };
   for (int i = 0; i < islands; ++i) {
-    const auto first = item_order_.begin() + first_item_[i];
-    const auto last = item_order_.begin() + first_item_[i + 1];
-    if (!std::is_sorted(first, last, earlier)) std::sort(first, last, earlier);
+    const auto of_island = std::span(item_order_).subspan(first_item_[i], first_item_[i + 1] - first_item_[i]);
+    if (!std::ranges::is_sorted(of_island, earlier)) std::ranges::sort(of_island, earlier);
   }
 }
 
@@ -326,7 +387,7 @@ void System::gather_island(int first_tree, int last_tree, int first_item, int la
 /// Flies those trees of an island that are free, as far as they stay within the limits of their joints; others are free no more.
 /// @return  whether all did
 bool System::fly_free(int first_tree, int last_tree, int first_item, int last_item) {
-  if (std::ranges::count(free_, 1) > 0) find_drives(problem_, servos_, drives_);
+  find_drives(problem_, servos_, drives_);
   bool all = true;
   for (int i = 0; i < last_tree - first_tree; ++i) {
     const std::span<const int> tree(&tree_order_[first_tree + i], 1);
@@ -347,8 +408,8 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   aim_rebounds(problem_);
   problem_.bound_depth();
   const Outcome outcome = solver_.solve(problem_);
-  find_free(problem_, servos_, allowed_overlap, free_);
-  const bool touched = std::ranges::count(free_, 0) > 0;
+  std::size_t free = find_free(problem_, servos_, allowed_overlap, free_);
+  const bool touched = free < free_.size();
   if (most_parts > 1) {
     const int parts = std::max(touched ? parts_for_tension(problem_, contacts_, work_, tension_) : 1, parts_for_nutation(problem_, work_));
     if (parts > 1) {
@@ -360,28 +421,13 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   add(outcome, report_);
   const bool rebounding = rebounds(problem_);
   if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);
-  write_impulses();
-  if (rebounding) free_.assign(free_.size(), 0);  // its energy is bounded as a whole
-  if (fly_free(first_tree, last_tree, first_item, last_item)) return settle(first_tree, last_tree, false);
-  step_.resize(problem_.velocity.size());
-  for (std::size_t i = 0; i < step_.size(); ++i) step_[i] = length_ * problem_.velocity[i];
+  write_impulses(problem_, contacts_, servos_, limits_);
+  if (rebounding) free_.assign(free_.size(), free = 0);  // its energy is bounded as a whole
+  if (free > 0 && fly_free(first_tree, last_tree, first_item, last_item)) return settle(first_tree, last_tree, false);
   const double before = energy_if_passive(problem_);
   note_excesses(problem_, work_, excesses_);
-  for (std::size_t i = 0; i < problem_.trees.size(); ++i) {
-    Tree& tree = *problem_.trees[i];
-    if (free_[i]) {
-      std::fill_n(step_.begin() + problem_.offset[i], tree.dofs, 0.0);
-    } else {
-      std::copy_n(problem_.velocity.begin() + problem_.offset[i], tree.dofs, tree.v.begin());
-    }
-  }
-  const bool grounded = std::any_of(problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
-    return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0) && b.friction > 0;
-  });
-  const bool carried =
-      std::any_of(problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) {
-        return b.kind == Block::Source::contact && (b.a < 0 || b.b < 0) && b.impulse[0] > 0;
-      });
+  take_velocities(problem_, free_, step_);
+  const bool grounded = world_rubs(problem_), rests = world_carries(problem_) && !motors_move(problem_);
   if (problem_.turn_into_displacement()) {
     solver_.solve_displacement(problem_);
     if (rebounding && lifts_too_much(problem_, work_, rebound_, step_)) {
@@ -406,7 +452,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   if (rebounding) bound_energy(problem_, work_, rebound_);
   bound_gain(problem_, work_, before, grounded, is_part);
   const bool swept = outcome.sweeps > 0 && outcome.descents == 0;
-  settle(first_tree, last_tree, carried, swept ? outcome.miss : 0);
+  settle(first_tree, last_tree, rests, swept ? outcome.miss : 0);
 }
 
 void System::push_apart(std::span<Contact> contacts, std::span<const int> chosen) {
@@ -434,27 +480,6 @@ void System::push_apart(std::span<Contact> contacts, std::span<const int> chosen
     take_excess(problem_.trees, work_, energy(problem_.trees) - before);
   }
   chosen_ = {};
-}
-
-/// Gives back to contacts, servos and limits what they gave, in world axes.
-void System::write_impulses() {
-  for (const Block& block : problem_.blocks) {
-    const auto& g = block.impulse;
-    switch (block.kind) {
-      case Block::Source::contact: {
-        Contact& contact = contacts_[block.source];
-        contact.impulse = block.frame * Vector3(g[0], g[1], g[2]);
-        contact.angular_impulse = block.frame * Vector3(g[3], g[4], g[5]);
-        break;
-      }
-      case Block::Source::servo:
-        servos_[block.source].impulse = g[0];
-        break;
-      case Block::Source::limit:  // along the joint at the lower bound, against it at the upper
-        limits_[block.source].impulse = problem_.jacobian[block.ja + block.dofs_a[0]] * g[0];
-        break;
-    }
-  }
 }
 
 }  // namespace ziggurat::dynamics

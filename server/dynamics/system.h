@@ -38,6 +38,15 @@ struct LeftIslands {
   void add(std::span<const int> of_island, int parts);
 };
 
+/// Trees, and the speeds that they will have at a substep's end, as far as is known what they meet.
+struct Foresight {
+  std::vector<int> trees;
+  std::vector<double> speeds;  ///< of each dof of each tree, in their order
+};
+
+/// Gives these trees the other speeds, and back.
+void swap_speeds(std::vector<Tree>& trees, Foresight& foresight);
+
 /// What makes an island sleep. It must touch the world, and all its coordinates must stay this slow
 /// for this time: a body on a slope that starts to move is faster by then.
 struct RestOptions {
@@ -86,6 +95,13 @@ class System {
   /// @return  whether something did
   bool wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos);
 
+  /// Which trees the coming substep sets in motion within it: by motors, pushes or blows, so that their speeds at its beginning do not
+  /// say what they meet. To be called after wake_disturbed(), whose servos it takes.
+  /// @param contacts  those, or more
+  /// @param far  what need not be known: how far such a tree comes in the substep [m]
+  /// @return     whether there are some
+  bool foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, Foresight& out);
+
   /// Advances all trees that are awake by one substep. Their external wrenches must be set.
   /// @param length    [s]
   /// The order of contacts in the list does not matter: in an island they are sorted by trees,
@@ -117,7 +133,6 @@ class System {
   template <class Visit>
   void each_that_takes_part(Visit visit) const;
   int find(int tree);
-  bool before(const Item& a, const Item& b) const;
   bool changed(int tree) const;
   void forget_pushes();
   bool comes_to_touch(const Contact& contact) const;
@@ -132,7 +147,6 @@ class System {
   bool is_beyond(int first_item, int last_item, int of = -1) const;
   bool fly_island(int first_tree, int last_tree, int first_item, int last_item);
   bool fly_free(int first_tree, int last_tree, int first_item, int last_item);
-  void write_impulses();
 
   /// What is known of a tree's sleep.
   struct Sleeper {
@@ -150,7 +164,7 @@ class System {
   // fell asleep, or is pushed now. And, within a step, whether that left it as it was.
   enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4, waits = 8 };
   std::vector<unsigned char> watch_;
-  std::vector<int> awake_;
+  std::vector<int> awake_, disturbed_;
   double length_ = 0;
   std::span<Contact> contacts_;
   std::span<Servo> servos_;

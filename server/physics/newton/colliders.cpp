@@ -59,6 +59,11 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   return collider;
 }
 
+/// The fastest that a point of it may be [m/s].
+double speed_of(const Collider& collider) {
+  return collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
+}
+
 /// Asks for the memory that follow() reads of the trees after one.
 void fetch_after(std::size_t number, const std::vector<dynamics::Tree>& trees) {
   if (number + 4 < trees.size()) dynamics::fetch(&trees[number + 4], sizeof(dynamics::Tree));
@@ -241,6 +246,7 @@ void Colliders::follow(const dynamics::System& system, double length) {
   const double least = least_reach(length);
   woke = false;
   followed_.clear();
+  thrown_.clear();
   for (ColliderGroup& group : groups) {
     if (!group.proxy) continue;
     group.rested = group.rests;
@@ -255,12 +261,18 @@ void Colliders::follow(const dynamics::System& system, double length) {
 void Colliders::follow(const dynamics::System& system, double length, const TreeSet& chosen) {
   settle();
   followed_.clear();
+  thrown_.clear();
   each_of(groups, chosen, [&](ColliderGroup& group) {
     if (!group.proxy || !group.moves) return;
     group.rests = false;
     followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
     keep_in_box(group, follow(group, system, length), false);
   });
+}
+
+const Collider& Colliders::thrown(std::size_t collider) const {
+  const auto found = std::ranges::find(thrown_, collider, &Thrown::index);
+  return found == thrown_.end() ? all[collider] : found->collider;
 }
 
 /// Takes the poses and motions of its colliders.
@@ -273,13 +285,36 @@ double Colliders::follow(ColliderGroup& group, const dynamics::System& system, d
     collider.reach = least_reach(length);
     if (!group.moves) continue;
     place(collider, system.trees[group.entity]);
-    const double speed =
-        collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
+    const double speed = speed_of(collider);
     collider.reach += 1.3 * length * speed;
     fastest = std::max(fastest, speed);
   }
   enclose(group);
   return length * fastest;
+}
+
+bool Colliders::widen(std::span<const int> trees, const dynamics::System& system, double length) {
+  bool any = false;
+  for (const int tree : trees) {
+    for (ColliderGroup& group : groups_of(static_cast<std::size_t>(tree))) {
+      double fastest = 0;
+      for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+        Collider moved = all[i];
+        place(moved, system.trees[tree]);
+        const double speed = speed_of(moved);
+        if (length * speed <= all[i].reach) continue;
+        all[i].reach = moved.reach = least_reach(length) + 1.3 * length * speed;
+        std::erase_if(thrown_, [&](const Thrown& before) { return before.index == i; });
+        thrown_.push_back({i, std::move(moved)});
+        fastest = std::max(fastest, speed);
+      }
+      if (fastest == 0) continue;
+      any = true;
+      enclose(group);
+      keep_in_box(group, length * fastest, false);
+    }
+  }
+  return any;
 }
 
 void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b, std::vector<Near>& out) {

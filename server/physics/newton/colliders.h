@@ -104,6 +104,11 @@ class Colliders {
   void follow(const dynamics::System& system, double length);
   /// Those of some trees that are awake, for a part of the substep.
   void follow(const dynamics::System& system, double length, const TreeSet& chosen);
+  /// Notes which colliders of some trees are faster now than their reach was made for, and widens that. Until the next follow().
+  /// @return  whether there are such: then others may be near
+  bool widen(std::span<const int> trees, const dynamics::System& system, double length);
+  /// A collider as widen() found it, or as it is.
+  const Collider& thrown(std::size_t collider) const;
   /// Groups that move and whose poses the last follow() took, ascending.
   std::span<const std::size_t> followed() const { return followed_; }
   /// X_WS of a collider now.
@@ -132,6 +137,11 @@ class Colliders {
   std::size_t settled_ = 0;  // groups that it knows
   std::vector<Bounds> bounds_;  // of a group's colliders
   std::vector<std::size_t> followed_, hits_;
+  struct Thrown {
+    std::size_t index = 0;  // into `all`
+    Collider collider;
+  };
+  std::vector<Thrown> thrown_;  // by widen(), in any order: few
 };
 
 /// How far a surface may come within a substep without moving yet [m].

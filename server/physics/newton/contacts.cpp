@@ -93,6 +93,28 @@ math::Vector3 until_met(const Collider& a, const math::Vector3& on_a, const Coll
   return across.norm() > rounding ? across : math::Vector3::Zero();
 }
 
+/// The points of two colliders that may touch within the substep.
+/// @param most_points  of those that tumble
+/// @param tumbling  out: whether one may turn so far that other points do
+contact::Contacts look(const Collider& a, const Collider& b, double length, int most_points, bool& tumbling) {
+  const double slack = least_reach(length);
+  const double reach = a.reach + b.reach;
+  contact::Contacts found =
+      contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
+                    farthest_that_may_touch(a, b, length, slack));
+  const Approach approach = approach_of(found, a, b, length, slack);
+  tumbling = approach.may_touch && tumbles(a, b, approach, length);
+  if (!approach.may_touch) {
+    found.count = 0;
+  } else if (approach.least > slack) {
+    found = first_meeting(a, b, length, slack / 2);
+  } else if (tumbling) {
+    found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
+  }
+  if (!tumbling || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
+  return found;
+}
+
 }  // namespace
 
 dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
@@ -203,21 +225,11 @@ void Contacts::meet(Pair& pair, double length) {
   resting_ -= pair.rests;
   pair.rests = colliders_.rests(a) && colliders_.rests(b);
   resting_ += pair.rests;
-  const double slack = least_reach(length);
-  const double reach = a.reach + b.reach;
-  contact::Contacts found =
-      contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
-                    farthest_that_may_touch(a, b, length, slack));
-  const Approach approach = approach_of(found, a, b, length, slack);
-  const bool tumbling = approach.may_touch && tumbles(a, b, approach, length);
-  if (!approach.may_touch) {
-    found.count = 0;
-  } else if (approach.least > slack) {
-    found = first_meeting(a, b, length, slack / 2);
-  } else if (tumbling) {
-    found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
-  }
-  if (!tumbling || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
+  bool tumbling = false;
+  contact::Contacts found = look(a, b, length, most_points, tumbling);
+  const Collider& thrown_a = colliders_.thrown(pair.a);
+  const Collider& thrown_b = colliders_.thrown(pair.b);
+  if (found.count == 0 && (&thrown_a != &a || &thrown_b != &b)) found = look(thrown_a, thrown_b, length, most_points, tumbling);
   add(found, pair, length);
   if (tumbling && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
 }

@@ -111,12 +111,29 @@ struct GravityComesBack {
   }
 };
 
+/// Gives trees back their speeds at its end, also where something throws.
+struct SpeedsComeBack {
+  dynamics::System& system;
+  dynamics::Foresight& foresight;
+
+  ~SpeedsComeBack() { swap_speeds(system.trees, foresight); }
+};
+
 /// @param trees  ascending
 /// @param holds  whether it becomes the set of these trees, or of all others, which it does not list
 void choose(TreeSet& out, std::span<const int> trees, bool holds, std::size_t count) {
   out.trees.assign(trees.begin(), holds ? trees.end() : trees.begin());
   out.holds.assign(count, !holds);
   for (const int tree : trees) out.holds[tree] = holds;
+}
+
+/// Takes two steps, because a push turns, too.
+void push_apart_what_turned(dynamics::System& system, Contacts& contacts, std::span<const int> trees) {
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::span<dynamics::Contact> overlaps = contacts.find_turned(system);
+    if (overlaps.empty()) return;
+    system.push_apart(overlaps, trees);
+  }
 }
 
 }  // namespace
@@ -279,15 +296,6 @@ void NewtonCore::remember(const Share& share) {
   });
 }
 
-/// Takes two steps, because a push turns, too.
-void NewtonCore::push_apart_what_turned(const Share& share) {
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::span<dynamics::Contact> overlaps = contacts_.find_turned(system_);
-    if (overlaps.empty()) return;
-    system_.push_apart(overlaps, share.trees());
-  }
-}
-
 void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
   system_.allowed_overlap = share.allowed_overlap;
   system_.softness = share.softness;
@@ -300,7 +308,7 @@ void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share)
     contacts_.keep(chosen_);
   }
   remember(share);
-  push_apart_what_turned(share);
+  push_apart_what_turned(system_, contacts_, share.trees());
   convergence_.islands += report.islands;
   convergence_.not_converged += report.not_converged;
   convergence_.worst = std::max(convergence_.worst, report.miss);
@@ -317,11 +325,12 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   bool woke = stiff && wake_stiff(*stiff);
   woke |= system_.wake_disturbed(length, contacts, servos_);
   if (woke) contacts = contacts_.add_resting();
+  woke |= foresee(length, contacts, woke);
   if (!stiff) {
     step(contacts, whole);
     return divide(bodies, whole);
   }
-  if (woke) {  // what has just woken may touch others
+  if (woke) {  // what has just woken, or is thrown, may touch others
     division_.find(stiff->stiff_pairs(), contacts_.near(), contacts, colliders_.all, system_.trees);
   }
   whole.chosen = &division_.with(0);
@@ -333,6 +342,25 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   for (const int count : division_.counts()) {
     substep_in_parts(bodies, length, splits, count, *stiff);
   }
+}
+
+/// Looks for contacts again with the speeds that things are set in motion with within the substep: what they would pass through is
+/// beyond the reach that their speeds at its beginning give them. What they strike may be thrown, too.
+/// @param contacts  in and out;  @param woke  in: whether something woke; out: also by what is thrown
+/// @return          whether there are other contacts
+bool NewtonCore::foresee(double length, std::span<dynamics::Contact>& contacts, bool& woke) {
+  constexpr int most_blows = 3;
+  bool any = false;
+  for (int i = 0; i < most_blows && system_.foresee(contacts, limits_, least_reach(length), foresight_); ++i) {
+    const SpeedsComeBack at_the_end{system_, foresight_};
+    swap_speeds(system_.trees, foresight_);
+    if (!colliders_.widen(foresight_.trees, system_, length)) break;
+    any = true;
+    contacts = contacts_.find(length);
+    woke |= system_.wake_disturbed(length, contacts, servos_);
+    if (woke) contacts = contacts_.add_resting();
+  }
+  return any;
 }
 
 /// What takes the substep in parts must be awake.

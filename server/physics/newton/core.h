@@ -74,8 +74,8 @@ class NewtonCore {
   void keep_servos_and_limits(const TreeSet& chosen);
   void step(std::span<dynamics::Contact> contacts, const Share& share);
   bool wake_stiff(const Plugin& stiff);
+  bool foresee(double length, std::span<dynamics::Contact>& contacts, bool& woke);
   void remember(const Share& share);
-  void push_apart_what_turned(const Share& share);
   void substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
                         Plugin& stiff);
   void divide(std::span<Body> bodies, const Share& whole);
@@ -94,6 +94,7 @@ class NewtonCore {
   dynamics::LeftIslands left_;  // by the whole substep
   TreeSet chosen_;              // the trees of one of them, or all others
   HeldBack held_back_;
+  dynamics::Foresight foresight_;
   Convergence convergence_;
 };
 

@@ -1,0 +1,92 @@
+// What a substep sets in motion: how fast it will be, before it is known what it meets.
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/impact.h"
+#include "dynamics/system.h"
+
+namespace ziggurat::dynamics {
+namespace {
+
+/// Of an island that is looked at: a heap has no room to be thrown far.
+constexpr int most_bodies = 8;
+/// How far from a joint something may be that it turns [m].
+constexpr double lever = 0.5;
+
+/// What pushes on a tree give its links at most [m/s].
+double push_speed(const Tree& tree, double length) {
+  double most = 0;
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    if (tree.links[i].mass > 0) most = std::max(most, length * tree.external[i].force.norm() / tree.links[i].mass);
+  }
+  return most;
+}
+
+/// How fast a servo changes what it moves, if it is as strong as that takes [m/s].
+double servo_change(const Servo& servo, const Tree& tree) {
+  if (servo.dof < 0 || servo.upper <= 0) return 0;
+  const double by = tree.axes[servo.dof].angular.isZero(0) ? 1 : lever;
+  return by * std::abs(servo.speed - tree.v[servo.dof]);
+}
+
+/// How fast two trees part at a contact [m/s].
+double parting(const std::vector<Tree>& trees, const Contact& contact) {
+  const auto velocity = [&](const LinkIndex& side, const Vector3& point) -> Vector3 {
+    const Motion& motion = trees[side.tree].motion[side.link];
+    return motion.linear + motion.angular.cross(point - trees[side.tree].origin);
+  };
+  return contact.normal.dot(velocity(contact.a, contact.point) - velocity(contact.b, contact.point + contact.until_met));
+}
+
+}  // namespace
+
+bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, Foresight& out) {
+  contacts_ = contacts;
+  out.trees.clear();
+  out.speeds.clear();
+  const double fast = far / length_;
+  const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0 && !asleep(tree); };
+  disturbed_.clear();
+  for (std::size_t i = 0; i < watch_.size(); ++i) {
+    const int tree = static_cast<int>(i);
+    if ((watch_[i] & pushed) && moves(tree) && push_speed(trees[i], length_) > fast) disturbed_.push_back(tree);
+  }
+  for (const Servo& servo : servos_) {
+    if (moves(servo.tree) && servo_change(servo, trees[servo.tree]) > fast) disturbed_.push_back(servo.tree);
+  }
+  for (const Contact& contact : contacts_) {
+    if (contact.b.tree < 0 || !moves(contact.a.tree) || !moves(contact.b.tree)) continue;
+    const double apart = parting(trees, contact);
+    if (-apart > fast && contact.gap + length_ * apart < 0) disturbed_.push_back(contact.a.tree);
+  }
+  if (disturbed_.empty()) return false;
+  limits_ = limits;
+  find_awake();
+  gather(contacts_, servos_, limits_);
+  for (int& tree : disturbed_) tree = island_[tree];
+  std::ranges::sort(disturbed_);
+  const auto repeated = std::ranges::unique(disturbed_);
+  disturbed_.erase(repeated.begin(), repeated.end());
+  for (const int island : disturbed_) {
+    const int first = first_tree_[island], last = first_tree_[island + 1];
+    if (last - first > most_bodies) continue;
+    gather_island(first, last, first_item_[island], first_item_[island + 1]);
+    aim_rebounds(problem_);
+    problem_.bound_depth();
+    solver_.solve(problem_);
+    out.trees.insert(out.trees.end(), tree_order_.begin() + first, tree_order_.begin() + last);
+    out.speeds.insert(out.speeds.end(), problem_.velocity.begin(), problem_.velocity.end());
+  }
+  return !out.trees.empty();
+}
+
+void swap_speeds(std::vector<Tree>& trees, Foresight& foresight) {
+  auto next = foresight.speeds.begin();
+  for (const int tree : foresight.trees) {
+    next = std::swap_ranges(trees[tree].v.begin(), trees[tree].v.end(), next);
+    move(trees[tree]);
+  }
+}
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,118 @@
+// What a motor, a push or a blow sets in motion within a substep meets what is in its way.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "newton_scene.h"
+
+namespace ziggurat::physics {
+namespace {
+
+using namespace testing;
+
+constexpr double rates[] = {50, 100, 200, 500, 1000, 2000};
+
+scene::Entity wall(double near, double thickness) {
+  return standing(at(near + thickness / 2, 0, -0.5), scene::Box{{thickness, 1, 1}}, 1);
+}
+
+/// A head of 4 cm on a slide along x, whose front is at x = 0.
+scene::Entity slide(double mass) {
+  scene::Entity entity = prototype("slide", at(-0.02, 0, 0), false, {link("base", scene::Box{{0.01, 0.01, 0.01}}, 1), link("head", scene::Box{{0.04, 0.04, 0.04}}, mass)});
+  entity.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitX(), at(0, 0, 0), {}));
+  return entity;
+}
+
+// It was through the wall at 100 Hz, because its reach was that of its speed at the beginning, 0.
+TEST(NewtonThrown, AMotorStopsAtAThinWall) {
+  for (const double hz : rates) {
+    for (const double gap : {0.005, 0.02, 0.035}) {
+      World world(newton(false), 1 / hz);
+      world.add(slide(0.05));
+      world.add(wall(gap, 0.005));
+      world.add_motor(world.joint(0, 0), scene::JointMode::velocity, 50 / hz);
+      world.set_target(world.joint(0, 0), 2);
+      for (int i = 0; i < hz / 2; ++i) {
+        world.step();
+        ASSERT_LT(world.position(world.joint(0, 0)), gap + 1e-4) << hz << ' ' << gap;
+      }
+      EXPECT_NEAR(world.position(world.joint(0, 0)), gap, 1e-5) << hz << ' ' << gap;
+    }
+  }
+}
+
+// Fingers of 20 g met within the block.
+TEST(NewtonThrown, AGripperClosesOnABlock) {
+  for (const double hz : rates) {
+    for (const double force : {2, 5, 10, 20}) {
+      World world(newton(true), 1 / hz);
+      scene::Entity gripper = prototype("gripper", at(0, 0, 0.2), false, {link("palm", scene::Box{{0.01, 0.01, 0.01}}, 1)});
+      for (const double side : {-1.0, 1.0}) {
+        gripper.links.push_back(link(side < 0 ? "left" : "right", scene::Box{{0.02, 0.01, 0.04}}, 0.02));
+        scene::Joint each = joint(scene::JointType::prismatic, -side * Vector3::UnitY(), at(0, side * 0.05, -0.2), {});
+        each.child = gripper.links.size() - 1;
+        gripper.joints.push_back(each);
+      }
+      world.add(gripper);
+      world.add(loose(at(0, 0, 0), scene::Box{{0.03, 0.03, 0.03}}, 0.1, 0.5));
+      run(world, 0.5, 1 / hz);  // the block sleeps
+      for (int i = 0; i < 2; ++i) {
+        world.add_motor(world.joint(0, i), scene::JointMode::position, force / hz);
+        world.set_target(world.joint(0, i), 0.05);
+      }
+      run(world, 1, 1 / hz);
+      for (int i = 0; i < 2; ++i) EXPECT_NEAR(world.position(world.joint(0, i)), 0.03, 1e-4) << hz << ' ' << force;
+    }
+  }
+}
+
+TEST(NewtonThrown, WhatIsStruckStopsAtAWall) {
+  for (const double hz : rates) {
+    for (const double speed : {3, 10}) {
+      World world(newton(false, 0), 1 / hz);
+      world.add(loose(at(-0.5, 0, 0), scene::Box{{0.1, 0.1, 0.1}}, 1, 0));
+      world.add(loose(at(0, 0, 0.03), scene::Box{{0.04, 0.04, 0.04}}, 0.05, 0));
+      world.add(wall(0.04, 0.005));
+      const world::Push push{0, Vector3(hz * speed, 0, 0), Vector3::Zero()};
+      set_pushes(world, std::span(&push, 1));
+      world.step();
+      set_pushes(world, {});
+      for (int i = 0; i < hz; ++i) {
+        world.step();
+        ASSERT_LT(origin(world, 1).position.x(), 0.02 + 1e-4) << hz << ' ' << speed;
+      }
+    }
+  }
+}
+
+TEST(NewtonThrown, APushStopsAtAWall) {
+  for (const double hz : rates) {
+    World world(newton(false, 0), 1 / hz);
+    world.add(loose(at(0, 0, 0), scene::Box{{0.04, 0.04, 0.04}}, 0.1, 0));
+    world.add(wall(0.05, 0.01));
+    const world::Push push{0, Vector3(500, 0, 0), Vector3::Zero()};
+    set_pushes(world, std::span(&push, 1));
+    world.step();
+    set_pushes(world, {});
+    run(world, 0.5, 1 / hz);
+    EXPECT_NEAR(origin(world, 0).position.x(), 0.03, 1e-4) << hz;
+  }
+}
+
+// It slept after 0.3 s, with its motor running.
+TEST(NewtonThrown, WhatAMotorMovesSlowlyDoesNotSleep) {
+  for (const double speed : {3e-5, 3e-4}) {
+    World world(newton(true), 0.01);
+    scene::Entity robot = slide(0.05);
+    robot.movable = true;
+    world.add(robot);
+    world.add_motor(world.joint(0, 0), scene::JointMode::velocity, 0.5);
+    world.set_target(world.joint(0, 0), speed);
+    run(world, 10, 0.01);
+    EXPECT_NEAR(world.position(world.joint(0, 0)), 10 * speed, 1e-3 * speed) << speed;
+  }
+}
+
+}  // namespace
+}  // namespace ziggurat::physics
