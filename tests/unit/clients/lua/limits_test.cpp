@@ -87,7 +87,7 @@ TEST_F(Limits, OfOneRobotDoNotAffectAnother) {
 TEST_F(Limits, EndCallsThatComputeForLongInTheLibrary) {
   options_.max_computing = 1;
   const std::string slow_find = "local s, p = ('a'):rep(15), ('a?'):rep(15) .. ('a'):rep(15) .. 'b' ";
-  for (const std::string& loop :
+  for (const char* loop :
        {"while true do s:find(p) end", "while true do pcall(string.find, s, p) end",
         "coroutine.wrap(function() while true do pcall(s.find, s, p) end end)()",
         "while true do coroutine.wrap(function() s:find(p) end)() end",
