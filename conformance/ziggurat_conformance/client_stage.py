@@ -1,6 +1,5 @@
 """Where cases for clients are played: a server's socket, and a controller program that connects to it."""
 
-import base64
 import os
 import subprocess
 import tempfile
@@ -16,10 +15,11 @@ from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, Hea
                            Mechanisms, Quiet, Refuse, Remove, SinceMinor, Tell, TellBytes, TellObservation, TellWelcome, Wait)
 from .keys import LATE_SERVER, MISLED, PLAIN_SERVER, RESTARTED, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE, Keys
 from .peer import Transcript
+from .rules.client_text import client_text_faults
 from .rules.fault import Fault, musts
 from .rules.observation import time_of
+from .rules.secret import is_sent_astray, is_told
 from .rules.session import Session, State
-from .rules.text_form import strict_json
 from .scene_robots import SceneRobots
 from .wire import protocol
 
@@ -120,7 +120,7 @@ class ClientStage:
     def _prints_token(self) -> bool:
         self._output.seek(0)
         printed = self._output.read(4 << 20)
-        return any(form in printed for form in (_TOKEN, _TOKEN.hex().encode(), base64.b64encode(_TOKEN)))
+        return is_told(_TOKEN, printed)
 
     def _play(self, steps: tuple) -> None:
         for step in steps:
@@ -328,8 +328,11 @@ class ClientStage:
         if size > limit:
             raise Failed(f"the client sent {size} bytes; at most {limit} are allowed (T4)")
         self.routing_id, self.key = arrival.routing_id, arrival.key
-        message = self._decoded(arrival.frames[0].bytes)
+        data = arrival.frames[0].bytes
+        message = self._decoded(data)
         self.transcript.add("client", "──▶", wire.text_of(message))
+        if is_sent_astray(_TOKEN, message, data):
+            raise Failed(f"its {wire.kind_of(message) or 'message'} has the token of its session, which is a secret (T10)")
         return message
 
     def _decoded(self, data: bytes) -> protocol.ClientMessage:
@@ -339,9 +342,9 @@ class ClientStage:
             why = "--form asks for it" if self.options.form else "its session began so"
             raise Failed(f"the client sent a message in the {form} form; {expected} is expected: {why} (T6)")
         self.form = form
+        if form == wire.JSON and (faults := list(client_text_faults(data))):
+            raise Failed(f"the client sent JSON that a server refuses: {'; '.join(faults[:5])} (T6)")
         try:
-            if form == wire.JSON:
-                strict_json(data)
             return wire.decode(protocol.ClientMessage, data, form)
         except ValueError as error:
             if form == wire.BINARY and data.lstrip(b" \t\r\n\xef\xbb\xbf")[:1] == b"{":
