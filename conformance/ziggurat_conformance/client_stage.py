@@ -276,6 +276,10 @@ class ClientStage:
         if not found:
             raise Unimplemented("it does not connect with the keys that it was given (T10)")
 
+    def connections(self) -> int:
+        """For checks."""
+        return self._socket.connections()
+
     # ---- messages ----------------------------------------------------------------------------------
 
     def receive(self, seconds: float) -> Optional[protocol.ClientMessage]:

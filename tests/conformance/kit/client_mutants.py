@@ -24,6 +24,7 @@ def _json(bug, case="S3.answers-each"):
 MUTANTS = [
     Mutant("uses-req", "T1", "T1.one-dealer"),
     Mutant("other-connection", "T1", "T1.one-dealer"),
+    _should("idle-connection", "T1", "T1.one-dealer"),
     Mutant("two-frames", "T2", "T1.one-dealer"),
     Mutant("empty-frame", "T2", "S3.answers-each"),
     Mutant("garbage", "T2", "S3.answers-each"),
