@@ -53,16 +53,18 @@ void note_place(lua_State* state) {
   }
 }
 
+// The place is that which was noted, whatever called what runs now.
 void raise(lua_State* state, lua_Debug*) {
   if (interrupted) {
     luaL_error(state, "interrupted");
   } else if (watch.is_late) {
-    luaL_error(state, "%s: computes for more than %d s in one call: an endless loop?", watch.place,
-               static_cast<int>(watch.max_looks / looks_per_s));
+    lua_pushfstring(state, "%s: computes for more than %d s in one call: an endless loop?", watch.place,
+                    static_cast<int>(watch.max_looks / looks_per_s));
   } else {
-    luaL_error(state, "%s: runs more than %d million instructions in one call: an endless loop?",
-               watch.place, static_cast<int>(watch.max_instructions / 1'000'000));
+    lua_pushfstring(state, "%s: runs more than %d million instructions in one call: an endless loop?",
+                    watch.place, static_cast<int>(watch.max_instructions / 1'000'000));
   }
+  lua_error(state);
 }
 
 constexpr int each = LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT;

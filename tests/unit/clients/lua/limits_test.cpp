@@ -33,6 +33,12 @@ class Limits : public ScriptTest {
 
 TEST_F(Limits, EndALoopWithItsLine) { expect_ended("\n\nwhile true do\nend", "3"); }
 
+TEST_F(Limits, NameThePlaceOnce) {
+  const Failure failure = start("local function loop()\nwhile true do end end\nlocal function outer() loop() end\nouter()");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->find("main.lua"), failure->find("main.lua:2: runs more than")) << *failure;
+}
+
 TEST_F(Limits, EndALoopThatCatchesErrors) {
   const Failure failure = start("while true do pcall(function() while true do end end) end");
   ASSERT_TRUE(failure);
@@ -99,6 +105,7 @@ TEST_F(Limits, EndCallsThatComputeForLongInTheLibrary) {
     EXPECT_NE(failure->find("main.lua:3: computes for more than 1 s in one call"), std::string::npos)
         << loop << "\n"
         << *failure;
+    EXPECT_EQ(failure->find("main.lua"), failure->find("main.lua:3: computes")) << *failure;  // the place stands once
   }
 }
 
