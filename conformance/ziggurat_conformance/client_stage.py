@@ -9,13 +9,13 @@ from typing import Any, Optional
 
 from . import wire
 from .case import Case, Failed, NonStrict, Unimplemented
+from .client_bytes import client_message, form_of
 from .client_robots import readings, robot
 from .client_socket import PlainGreeter, ServerSocket
 from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, HearLate, HearResume, Listen,
                            Mechanisms, Quiet, Refuse, Remove, SinceMinor, Tell, TellBytes, TellObservation, TellWelcome, Wait)
 from .keys import LATE_SERVER, MISLED, PLAIN_SERVER, RESTARTED, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE, Keys
 from .peer import Transcript
-from .rules.client_text import client_text_faults
 from .rules.fault import Fault, musts
 from .rules.observation import time_of
 from .rules.secret import is_sent_astray, is_told
@@ -340,21 +340,13 @@ class ClientStage:
         return message
 
     def _decoded(self, data: bytes) -> protocol.ClientMessage:
-        form = wire.JSON if data[:1] == b"{" else wire.BINARY
+        form = form_of(data)
         expected = self.options.form or self.form or form
         if form != expected:
             why = "--form asks for it" if self.options.form else "its session began so"
             raise Failed(f"the client sent a message in the {form} form; {expected} is expected: {why} (T6)")
         self.form = form
-        if form == wire.JSON and (faults := list(client_text_faults(data))):
-            raise Failed(f"the client sent JSON that a server refuses: {'; '.join(faults[:5])} (T6)")
-        try:
-            return wire.decode(protocol.ClientMessage, data, form)
-        except ValueError as error:
-            if form == wire.BINARY and data.lstrip(b" \t\r\n\xef\xbb\xbf")[:1] == b"{":
-                error = "JSON that does not begin with `{`: nothing may stand before it"
-                form = wire.JSON
-            raise Failed(f"the client sent {error} ({'T6' if form == wire.JSON else 'T2, T5'})") from None
+        return client_message(data)
 
     def _count(self, message: protocol.ClientMessage) -> None:
         """Messages other than Commands, as M7 counts them."""

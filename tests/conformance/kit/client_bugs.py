@@ -221,6 +221,8 @@ COMMANDS = {
     "log-beyond": _log(None),
     "names-dropped": lambda client, command: _names(client, command, 1) if client.tick == 6 else None,
     "line-feed": _log(0, "a line\n"),
+    "many-logs": lambda client, command: [command.log.add() for _ in range(1 << 18)],
+    "many-numbers": _at_tick(3, lambda client, command: command.robots.extend([0] * (5 << 20))),
     "long-log": _log(0, "x" * 5000),
     "huge-log": _log(0, "x" * (80 << 20)),
     "misses-deadlines": _sleeps,

@@ -32,6 +32,8 @@ MUTANTS = [
     Mutant("long-log", "T4", "T4.small-limit"),
     Mutant("huge-log", "T4", "S3.answers-each", patience=10),
     Mutant("long-name", "T4", "H1.hello-first"),
+    Mutant("many-logs", "K5", "S3.answers-each", form="json", patience=20),
+    Mutant("many-numbers", "K5", "S3.answers-each", patience=20),
     Mutant("not-utf8", "T5", "S3.answers-each"),
     Mutant("dies-of-unknown-fields", "T5", "T5.unknown-field"),
     _should("dies-of-news", "T5", "T5.unknown-kind"),
